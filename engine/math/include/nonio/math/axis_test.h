@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "nonio/sdk/observations.h"
+
+namespace nonio::math {
+
+/// The readings of one axis, arranged by target and direction of approach. Targets are matched by
+/// value, never by index: one that was reached from one side only has readings on that side only.
+class AxisTest {
+ public:
+  struct Reading {
+    double deviation;  ///< m or rad
+    std::uint32_t run;
+    std::uint32_t row;  ///< of the observations
+  };
+
+  bool rotary = false;
+  std::vector<double> targets;  ///< m or rad, strictly ascending
+
+  std::span<const Reading> plus(std::size_t i) const { return part(2 * i); }
+  std::span<const Reading> minus(std::size_t i) const { return part(2 * i + 1); }
+  std::span<const Reading> readings() const { return readings_; }
+
+  bool has_plus() const { return has_plus_; }
+  bool has_minus() const { return has_minus_; }
+  bool bidirectional() const { return has_plus_ && has_minus_; }
+  /// Every target has readings from every direction that occurs.
+  bool complete() const;
+  /// Smallest and largest number of readings at a target from one direction, over the directions
+  /// that occur; least is 0 if some target was not reached from one of them.
+  std::size_t least_approaches() const;
+  std::size_t most_approaches() const;
+  /// Distance from the first target to the last, m or rad.
+  double length() const { return targets.empty() ? 0.0 : targets.back() - targets.front(); }
+
+  /// From observations whose first axis column is the measured axis; rows without a direction of
+  /// approach do not occur. Readings at a target come in the order of their runs.
+  static AxisTest arrange(const Observations&);
+
+ private:
+  std::span<const Reading> part(std::size_t k) const {
+    return std::span(readings_).subspan(starts_[k], starts_[k + 1] - starts_[k]);
+  }
+  std::vector<Reading> readings_;    // by target, direction (+ first), run
+  std::vector<std::size_t> starts_;  // 2 * targets + 1 entries
+  bool has_plus_ = false, has_minus_ = false;
+};
+
+}  // namespace nonio::math

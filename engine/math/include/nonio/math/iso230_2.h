@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "nonio/math/axis_test.h"
+
+namespace nonio::math {
+
+/// ISO 230-2 at one target. m or rad; NaN where the readings do not give the value.
+struct Iso230Point {
+  double target;
+  std::size_t n_plus, n_minus;
+  double mean_plus, mean_minus;  ///< xm_i+, xm_i-
+  double mean;                   ///< xm_i = (xm_i+ + xm_i-)/2
+  double B;                      ///< B_i = xm_i+ - xm_i-
+  double s_plus, s_minus;        ///< estimator of the standard deviation, n - 1
+  double R_plus, R_minus, R;     ///< 2 k s; R_i = max(k s+ + k s- + |B_i|, R_i+, R_i-)
+};
+
+/// ISO 230-2 of the axis. A value is NaN unless every target gives its part of it, so that no
+/// printed range covers less than the whole axis.
+struct Iso230Result {
+  double k;  ///< coverage factor of R and A
+  std::vector<Iso230Point> points;
+  double A, A_plus, A_minus;
+  double E, E_plus, E_minus;
+  double M;
+  double R, R_plus, R_minus;
+  double B;       ///< max |B_i|
+  double B_mean;  ///< mean of B_i, signed
+};
+
+/// k = 3 for the edition of 1988, 2 for those of 1997, 2006 and 2014.
+/// Source: ISO 230-2:2014 clause 2 (symbols), k of 1988 from its forms 6 s and 3 s.
+Iso230Result evaluate_iso230_2(const AxisTest& test, double k);
+
+/// Expanded uncertainties (k = 2) of the results above; m or rad, NaN where not known.
+struct Iso230Uncertainty {
+  double A, A_plus, A_minus, E, E_plus, E_minus, M, R, R_plus, R_minus, B, B_mean;
+};
+
+}  // namespace nonio::math

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "nonio/math/axis_test.h"
+
+namespace nonio::math {
+
+/// What the reversal error of an axis is like, by tests and not by rules of thumb.
+struct Reversal {
+  enum class Kind {
+    unknown,      ///< not measured from both directions at every target, or no scatter is known
+    none,         ///< not distinguishable from zero
+    lost_motion,  ///< constant and negative: one value compensates it
+    over_compensated,  ///< constant and positive
+    not_constant,      ///< one value does not compensate it
+  };
+  Kind kind = Kind::unknown;
+  double mean = 0.0;          ///< B_mean, m or rad, signed
+  double u_mean = 0.0;        ///< its standard uncertainty from the scatter of the readings
+  double largest = 0.0;       ///< max |B_i|
+  double largest_left = 0.0;  ///< max |B_i - B_mean|: what a single value cannot remove
+  double p_varies = 1.0;      ///< F test: B_i differ more than the scatter explains
+  double p_mean = 1.0;        ///< t test: B_mean differs from zero
+
+  /// Rotary axes: sinusoids in the two directions. NaN if the targets do not cover the turn.
+  double opposed_amplitude = 0.0;  ///< amplitude of B_i / 2 over the angle: elasticity
+  double p_opposed = 1.0;
+  double concordant_amplitude = 0.0;  ///< amplitude common to both directions: eccentricity
+  double p_concordant = 1.0;
+  bool opposed = false, concordant = false;
+};
+
+Reversal assess_reversal(const AxisTest& test);
+
+}  // namespace nonio::math

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nonio {
+
+/// One axis of the machine. Lengths in m, angles in rad.
+struct Axis {
+  std::string name;
+  bool rotary = false;
+  std::optional<std::pair<double, double>> travel;
+  std::optional<double> screw_pitch;        ///< m; period of the drive or scale
+  std::optional<int> teeth;                 ///< periods per revolution of a rotary axis
+  std::optional<double> expansion;          ///< 1/K
+  std::map<std::string, double> tolerance;  ///< upper limit of a result, by its name: m or rad
+};
+
+struct Machine {
+  std::string maker, model, serial;
+  std::string structure;  ///< gantry, single-column, bridge, other; empty if not said
+  std::string control;    ///< name of the output plugin that writes its tables; empty: any
+  std::vector<Axis> axes;
+
+  const Axis* axis(std::string_view name) const {
+    for (const Axis& a : axes)
+      if (a.name == name) return &a;
+    return nullptr;
+  }
+};
+
+/// The measuring instrument; U are expanded uncertainties (k = 2) of its certificate.
+struct Instrument {
+  std::string maker, model, serial, calibrated, certificate;
+  std::optional<double> U_fixed;       ///< m
+  std::optional<double> U_per_length;  ///< m/m
+  std::optional<double> U_angle;       ///< rad
+};
+
+/// What the uncertainty budget needs beside the instrument (ISO/TR 230-9:2005 Annex C); each is
+/// the full range in which the quantity is known to lie.
+struct Environment {
+  std::optional<double> misalignment;            ///< m, beam against axis over the travel
+  std::optional<double> temperature_range;       ///< K, of the material temperature's reading
+  std::optional<double> temperature_difference;  ///< K, largest distance from 20 degC
+  std::optional<double> expansion_range;         ///< 1/K, of the expansion coefficient
+  std::optional<double> drift;                   ///< m, range of the drift test (E_VE)
+  std::optional<double> drift_angle;             ///< rad, the same of a rotary axis
+};
+
+struct Laboratory {
+  std::string name, address, country, accreditation, authoriser;
+};
+
+struct Measurement {
+  std::string id;
+  std::string kind;  ///< axis, straightness, diagonal, step-diagonal, ball-centres, observations
+  std::string axis;
+  std::string lateral;  ///< of a straightness: the axis in whose direction the deviation is
+  std::string file;
+  std::string reader;                      ///< empty: chosen by content
+  std::map<std::string, double> from, to;  ///< ends of a diagonal, m
+};
+
+struct Campaign {
+  std::string id, customer, site, operator_name, date;  ///< date as YYYY-MM-DD, or empty
+  Machine machine;
+  Instrument instrument;
+  Environment environment;
+  Laboratory laboratory;
+  std::vector<Measurement> measurements;
+  std::vector<std::string> model;  ///< effects, `kind:axis`
+};
+
+}  // namespace nonio

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace nonio {
+
+/// The one table that all measurements reduce to: a row is one reading that was taken. Columns
+/// have `size()` entries, or none where the file did not have them. SI: m, rad, s, degC.
+struct Observations {
+  /// Commanded position of one axis, and the direction from which it was reached.
+  struct AxisColumn {
+    std::string axis;
+    bool rotary = false;
+    std::vector<double> position;       ///< m, or rad
+    std::vector<std::int8_t> approach;  ///< +1, -1; empty if the axis stood still
+  };
+  /// Readings of one line share one unknown zero and one direction of sensing.
+  struct Line {
+    std::string name;
+    std::array<double, 3> sense{};  ///< unit vector; all 0 on a rotary axis (deviation is an angle)
+  };
+
+  std::string measurement;  ///< its id in the manifest
+  bool angular = false;     ///< deviation is an angle (rad), else a length (m)
+  std::vector<AxisColumn> axes;
+  std::vector<Line> lines;
+
+  std::vector<double> deviation;           ///< actual - target, m or rad; always finite
+  std::vector<double> u;                   ///< standard uncertainty of the deviation
+  std::vector<std::uint32_t> run;          ///< as numbered in the file, from 1
+  std::vector<std::uint32_t> line;         ///< index into `lines`; empty: all in lines[0]
+  std::vector<std::uint32_t> source_line;  ///< line of the file, 1-based
+  std::vector<double> time;                ///< s; NaN where blank
+  std::vector<double> material, air;       ///< degC; NaN where blank
+  std::vector<double> pressure, humidity;  ///< hPa, % ; NaN where blank
+
+  std::uint64_t missing = 0;       ///< readings that were not taken
+  std::vector<std::string> notes;  ///< what the reader did that a user would want to know
+
+  std::size_t size() const { return deviation.size(); }
+};
+
+}  // namespace nonio

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/sdk/campaign.h"
+#include "nonio/sdk/error.h"
+#include "nonio/sdk/observations.h"
+#include "nonio/sdk/results.h"
+#include "nonio/sdk/settings.h"
+#include "nonio/sdk/units.h"
+
+/// A plugin is a shared library with one exported symbol. It registers values of the four kinds
+/// below: pure functions from a value to a value or an error. The host owns disk, clock, log,
+/// locale, threads, processes and configuration.
+///
+///     NONIO_PLUGIN(registry) { registry.add(nonio::Analysis{...}); }
+namespace nonio {
+
+/// One option of a plugin. The host checks kind, range and choices and fills in the default.
+struct Option {
+  std::string name;
+  Setting otherwise;                      ///< the default; it also fixes the kind
+  std::string unit;                       ///< "" if none
+  std::string help;                       ///< one sentence
+  std::vector<std::string> choices{};     ///< of a text option: what is allowed; empty: anything
+  std::optional<double> least{}, most{};  ///< of a number: the allowed range
+};
+
+struct Info {
+  std::string name;
+  std::string version;
+  std::string summary;  ///< one sentence, for `nonio plugins`
+  std::vector<Option> options{};
+};
+
+struct ReadInput {
+  std::string_view bytes;  ///< the whole file
+  const Campaign& campaign;
+  const Measurement& measurement;
+  const Settings& options;
+  /// To be called now and then with the offset up to which the bytes are not needed any more, so
+  /// that a file of a gigabyte does not stay in memory beside its readings. May be empty.
+  std::function<void(std::size_t)> done_with{};
+};
+
+/// bytes -> observations
+struct Reader {
+  Info info;
+  /// Whether the first bytes of a file look like this reader's format.
+  bool (*recognises)(std::string_view head) = nullptr;
+  /// Whether it can read a measurement of this kind.
+  bool (*reads)(std::string_view measurement_kind) = nullptr;
+  Expected<Observations> (*read)(const ReadInput&) = nullptr;
+};
+
+/// One physical cause of deviation: observations -> one column for each linear parameter.
+struct Effect {
+  struct Parameter {
+    std::string name;
+    std::string help;
+    Quantity quantity = Quantity::number;
+  };
+  struct Shape {  ///< a parameter that is searched: a period, a time constant, an instant
+    Parameter parameter;
+    double (*from)(const Observations&, const Axis&) = nullptr;
+    double (*to)(const Observations&, const Axis&) = nullptr;
+  };
+  Info info;  ///< name: the kind without the axis, "backlash"
+  std::vector<Parameter> linear;
+  std::vector<Shape> shapes;
+  bool (*applies)(const Observations&, const Axis&) = nullptr;
+  /// Columns of length observations.size(), one for each of `linear`, of unit 1/unit of parameter.
+  Expected<std::vector<std::vector<double>>> (*columns)(const Observations&, const Axis&,
+                                                        const std::vector<double>& shape) = nullptr;
+};
+
+struct AnalysisInput {
+  const Campaign& campaign;
+  const Measurement& measurement;
+  const Observations& observations;
+  const Settings& options;
+};
+
+/// observations -> results
+struct Analysis {
+  Info info;
+  bool (*applies)(const Campaign&, const Measurement&) = nullptr;
+  Expected<Evaluation> (*analyse)(const AnalysisInput&) = nullptr;
+};
+
+struct OutputInput {
+  const Campaign& campaign;
+  /// One entry for each measurement of the campaign, in its order; empty where nothing could read
+  /// it.
+  const std::vector<Observations>& observations;
+  const Results& results;
+  const Settings& options;
+  const Templates& templates;
+};
+
+/// results -> artifacts
+struct Output {
+  enum class Stage {
+    table,     ///< for a controller; written first
+    document,  ///< sees in `results.outputs` what the tables predict
+  };
+  Info info;
+  Stage stage = Stage::document;
+  bool (*applies)(const Campaign&) = nullptr;
+  Expected<OutputResult> (*write)(const OutputInput&) = nullptr;
+  /// Optional: called once in a run, before any campaign, to pay for what all documents share
+  /// (fonts). It must not change what `write` gives.
+  void (*prepare)(const Templates&) = nullptr;
+};
+
+/// What the host gives to a plugin's registration function.
+class Registry {
+ public:
+  virtual void add(Reader) = 0;
+  virtual void add(Effect) = 0;
+  virtual void add(Analysis) = 0;
+  virtual void add(Output) = 0;
+
+ protected:
+  ~Registry() = default;
+};
+
+inline constexpr int sdk_version = 1;
+
+#define NONIO_STRING_(x) #x
+#define NONIO_STRING(x) NONIO_STRING_(x)
+#if defined(__clang__)
+#define NONIO_COMPILER "clang " NONIO_STRING(__clang_major__)
+#elif defined(__GNUC__)
+#define NONIO_COMPILER "gcc " NONIO_STRING(__GNUC__)
+#else
+#define NONIO_COMPILER "unknown"
+#endif
+#if defined(__GLIBCXX__)
+#define NONIO_STDLIB \
+  "libstdc++ abi " NONIO_STRING(__GXX_ABI_VERSION) " cxx11 " NONIO_STRING(_GLIBCXX_USE_CXX11_ABI)
+#else
+#define NONIO_STDLIB "other"
+#endif
+#if defined(_GLIBCXX_DEBUG)
+#define NONIO_DEBUG "debug containers"
+#else
+#define NONIO_DEBUG "plain containers"
+#endif
+
+/// Everything that must agree before a plugin may be called.
+#define NONIO_ABI_TAG "nonio-sdk 1; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
+
+/// The one exported symbol, `nonio_plugin`. Plain: the host reads the tag before it calls anything.
+struct PluginEntry {
+  char abi_tag[160];
+  void (*add_to)(Registry&);
+};
+
+}  // namespace nonio
+
+#define NONIO_PLUGIN(registry)                                                             \
+  static void nonio_plugin_add_to(nonio::Registry& registry);                              \
+  extern "C" __attribute__((visibility("default"))) const nonio::PluginEntry nonio_plugin; \
+  const nonio::PluginEntry nonio_plugin = {NONIO_ABI_TAG, &nonio_plugin_add_to};           \
+  static void nonio_plugin_add_to(nonio::Registry& registry)

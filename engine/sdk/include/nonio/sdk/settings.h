@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace nonio {
+
+using Setting = std::variant<bool, std::int64_t, double, std::string, std::vector<double>,
+                             std::vector<std::string>>;
+
+/// Names and values: the options of one plugin, or one file of templates/ with its tables
+/// flattened ("finding.drift.parallel.advice"). An accessor gives `otherwise` where the name is
+/// absent or of another kind; options are complete and of the declared kind when a plugin sees
+/// them.
+class Settings {
+ public:
+  std::map<std::string, Setting, std::less<>> values;
+
+  bool has(std::string_view name) const { return values.find(name) != values.end(); }
+  bool flag(std::string_view name, bool otherwise = false) const {
+    return get<bool>(name, otherwise);
+  }
+  std::int64_t integer(std::string_view name, std::int64_t otherwise = 0) const {
+    return get<std::int64_t>(name, otherwise);
+  }
+  double number(std::string_view name, double otherwise = 0.0) const {
+    const auto it = values.find(name);
+    if (it == values.end()) return otherwise;
+    if (const auto* i = std::get_if<std::int64_t>(&it->second)) return static_cast<double>(*i);
+    const auto* d = std::get_if<double>(&it->second);
+    return d != nullptr ? *d : otherwise;
+  }
+  std::string text(std::string_view name, std::string otherwise = {}) const {
+    return get<std::string>(name, std::move(otherwise));
+  }
+  std::vector<std::string> texts(std::string_view name) const {
+    return get<std::vector<std::string>>(name, {});
+  }
+  std::vector<double> numbers(std::string_view name) const {
+    return get<std::vector<double>>(name, {});
+  }
+
+ private:
+  template <class T>
+  T get(std::string_view name, T otherwise) const {
+    const auto it = values.find(name);
+    if (it == values.end()) return otherwise;
+    const T* value = std::get_if<T>(&it->second);
+    return value != nullptr ? *value : otherwise;
+  }
+};
+
+/// The files of templates/, read by the host: `*.toml` as settings under their path without the
+/// ending ("words/en"), everything else (logo, fonts) as bytes under the whole path.
+struct Templates {
+  std::map<std::string, Settings, std::less<>> tables;
+  std::map<std::string, std::string, std::less<>> files;
+};
+
+}  // namespace nonio

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <numbers>
+#include <string_view>
+
+namespace nonio {
+
+/// What a number is. Inside the program every number is SI (m, rad, s; temperatures in degC); a
+/// formatter multiplies by `unit_of(q).per_si` and prints `unit_of(q).symbol`.
+enum class Quantity {
+  number,                  ///< dimensionless
+  count,                   ///< dimensionless, integral
+  ratio,                   ///< dimensionless, printed as it is (0.83)
+  probability,             ///< dimensionless
+  length,                  ///< position, travel: m, printed in mm
+  deviation,               ///< deviation of a position: m, printed in um
+  angle,                   ///< position of a rotary axis: rad, printed in deg
+  angular_deviation,       ///< deviation of an angle: rad, printed in arcsec
+  small_angle,             ///< squareness and the like: rad, printed in urad
+  deviation_per_length,    ///< m/m, printed in um/m
+  deviation_per_angle,     ///< rad/rad, printed in arcsec/deg
+  expansion,               ///< 1/K, printed in um/(m K)
+  temperature,             ///< degC
+  temperature_difference,  ///< K
+  time,                    ///< s
+};
+
+struct Unit {
+  std::string_view symbol;  ///< as printed: "um"
+  std::string_view suffix;  ///< as part of a JSON or column name: "_um"
+  double per_si;            ///< printed value = SI value * per_si
+};
+
+inline constexpr double arcsec_per_rad = 180.0 * 3600.0 / std::numbers::pi;
+inline constexpr double deg_per_rad = 180.0 / std::numbers::pi;
+
+constexpr Unit unit_of(Quantity q) {
+  switch (q) {
+    case Quantity::number:
+    case Quantity::count:
+    case Quantity::ratio:
+    case Quantity::probability:
+      return {"", "", 1.0};
+    case Quantity::length:
+      return {"mm", "_mm", 1e3};
+    case Quantity::deviation:
+      return {"um", "_um", 1e6};
+    case Quantity::angle:
+      return {"deg", "_deg", deg_per_rad};
+    case Quantity::angular_deviation:
+      return {"arcsec", "_arcsec", arcsec_per_rad};
+    case Quantity::small_angle:
+      return {"urad", "_urad", 1e6};
+    case Quantity::deviation_per_length:
+      return {"um/m", "_um_per_m", 1e6};
+    case Quantity::deviation_per_angle:
+      return {"arcsec/deg", "_arcsec_per_deg", 3600.0};
+    case Quantity::expansion:
+      return {"um/(m K)", "_um_per_m_K", 1e6};
+    case Quantity::temperature:
+      return {"degC", "_c", 1.0};
+    case Quantity::temperature_difference:
+      return {"K", "_K", 1.0};
+    case Quantity::time:
+      return {"s", "_s", 1.0};
+  }
+  return {"", "", 1.0};
+}
+
+/// Position of an axis and its deviation, by kind of axis.
+constexpr Quantity position_of(bool rotary) { return rotary ? Quantity::angle : Quantity::length; }
+constexpr Quantity deviation_of(bool rotary) {
+  return rotary ? Quantity::angular_deviation : Quantity::deviation;
+}
+constexpr Quantity slope_of(bool rotary) {
+  return rotary ? Quantity::deviation_per_angle : Quantity::deviation_per_length;
+}
+
+}  // namespace nonio
