@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "nonio/sdk/results.h"
+#include "nonio/sdk/settings.h"
+#include "nonio/sdk/units.h"
+
+/// Numbers and words as people and programs read them; the locale of the process has no part in it.
+namespace nonio {
+
+/// With `decimals` digits after the point, rounded half to even on the binary value; never "-0.0".
+inline std::string fixed_text(double value, int decimals) {
+  if (!std::isfinite(value)) return "";
+  std::array<char, 400> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                 std::chars_format::fixed, decimals)
+                       .ptr;
+  std::string text(buffer.data(), end);
+  if (text.front() == '-' && text.find_first_of("123456789") == std::string::npos) text.erase(0, 1);
+  return text;
+}
+
+/// With about `significant` digits and without an exponent where a person expects none.
+inline std::string short_text(double value, int significant = 3) {
+  if (!std::isfinite(value)) return "";
+  const double size = std::fabs(value);
+  if (size != 0.0 && (size < 1e-4 || size >= 1e9)) {
+    std::array<char, 64> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                   std::chars_format::scientific, std::max(0, significant - 1))
+                         .ptr;
+    return {buffer.data(), end};
+  }
+  const int magnitude = size == 0.0 ? 0 : static_cast<int>(std::floor(std::log10(size)));
+  return fixed_text(value, std::clamp(significant - 1 - magnitude, 0, 9));
+}
+
+/// The value that programs get: SI converted to its printed unit, rounded to 12 significant digits
+/// so that 0.0252 m gives 25.2 mm and not its neighbour.
+inline double printed(double si, Quantity quantity) {
+  const double value = si * unit_of(quantity).per_si;
+  if (!std::isfinite(value)) return value;
+  std::array<char, 64> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                 std::chars_format::scientific, 11)
+                       .ptr;
+  double rounded = value;
+  std::from_chars(buffer.data(), end, rounded);
+  return rounded == 0.0 ? 0.0 : rounded;
+}
+
+/// Decimal comma for languages that use one.
+inline std::string localised(std::string number, std::string_view language) {
+  if (language == "it" || language == "de" || language == "es")
+    std::replace(number.begin(), number.end(), '.', ',');
+  return number;
+}
+
+/// A text of templates/words/<language>/*.toml by its flattened name; empty if there is none.
+inline std::string words(const Templates& templates, std::string_view language,
+                         std::string_view name) {
+  const std::string folder = "words/" + std::string(language) + "/";
+  for (auto it = templates.tables.lower_bound(folder);
+       it != templates.tables.end() && it->first.compare(0, folder.size(), folder) == 0; ++it)
+    if (it->second.has(name)) return it->second.text(name);
+  return {};
+}
+
+/// `text` with each `{name}` replaced by the finding's evidence of that name (numbers carry their
+/// unit in the name: {mean_um}). A place without evidence stays as it is, to be seen.
+inline std::string filled(std::string_view text, const Finding& finding,
+                          std::string_view language) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t close = text[i] == '{' ? text.find('}', i) : std::string_view::npos;
+    if (close == std::string_view::npos) {
+      out += text[i++];
+      continue;
+    }
+    const std::string_view name = text.substr(i + 1, close - i - 1);
+    std::string value(text.substr(i, close + 1 - i));
+    for (const Number& n : finding.evidence)
+      if (name == n.name + std::string(unit_of(n.quantity).suffix))
+        value = localised(short_text(printed(n.value, n.quantity)), language);
+    for (const auto& [key, words_of] : finding.texts)
+      if (name == key) value = words_of;
+    out += value;
+    i = close + 1;
+  }
+  return out;
+}
+
+/// The words for a finding: part is "title", "says" or "advice".
+inline std::string finding_text(const Templates& templates, std::string_view language,
+                                const Finding& finding, std::string_view part) {
+  std::string text = words(templates, language, "finding." + finding.id + "." + std::string(part));
+  if (text.empty() && language != "en")
+    text = words(templates, "en", "finding." + finding.id + "." + std::string(part));
+  if (text.empty()) return part == "advice" ? finding.advice : part == "title" ? finding.id : "";
+  return filled(text, finding, language);
+}
+
+}  // namespace nonio
