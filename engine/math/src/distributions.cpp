@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/math/distributions.h"
+
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/policies/policy.hpp>
+#include <cmath>
+
+namespace nonio::math {
+namespace {
+namespace bp = boost::math::policies;
+// Nothing throws: a value that cannot be had is NaN, and asked for below.
+using Quiet = bp::policy<bp::domain_error<bp::ignore_error>, bp::pole_error<bp::ignore_error>,
+                         bp::overflow_error<bp::ignore_error>,
+                         bp::evaluation_error<bp::ignore_error>, bp::promote_double<false>>;
+
+bool positive(double dof) { return std::isfinite(dof) && dof > 0.0; }
+}  // namespace
+
+double f_upper(double f, double dof1, double dof2) {
+  if (!positive(dof1) || !positive(dof2) || !(f > 0.0)) return 1.0;
+  if (std::isinf(f)) return 0.0;
+  const double p =
+      cdf(complement(boost::math::fisher_f_distribution<double, Quiet>(dof1, dof2), f));
+  return std::isnan(p) ? 1.0 : p;
+}
+
+double t_two_sided(double t, double dof) {
+  if (!positive(dof) || std::isnan(t)) return 1.0;
+  if (std::isinf(t)) return 0.0;
+  const double p =
+      2.0 * cdf(complement(boost::math::students_t_distribution<double, Quiet>(dof), std::fabs(t)));
+  return std::isnan(p) ? 1.0 : p;
+}
+
+}  // namespace nonio::math
