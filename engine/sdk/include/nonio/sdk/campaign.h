@@ -13,11 +13,11 @@ namespace nonio {
 struct Axis {
   std::string name;
   bool rotary = false;
-  std::optional<std::pair<double, double>> travel;
-  std::optional<double> screw_pitch;        ///< m; period of the drive or scale
-  std::optional<int> teeth;                 ///< periods per revolution of a rotary axis
-  std::optional<double> expansion;          ///< 1/K
-  std::map<std::string, double> tolerance;  ///< upper limit of a result, by its name: m or rad
+  std::optional<std::pair<double, double>> travel{};
+  std::optional<double> screw_pitch{};        ///< m; period of the drive or scale
+  std::optional<int> teeth{};                 ///< periods per revolution of a rotary axis
+  std::optional<double> expansion{};          ///< 1/K
+  std::map<std::string, double> tolerance{};  ///< upper limit of a result, by its name: m or rad
 };
 
 struct Machine {

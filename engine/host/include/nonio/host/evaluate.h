@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "nonio/host/manifest.h"
+#include "nonio/host/plugins.h"
+#include "nonio/sdk/results.h"
+
+namespace nonio::host {
+
+/// What every campaign of a run shares.
+struct Context {
+  std::string version;
+  SiteFile site;
+  std::string site_sha256;  ///< of site.toml; of nothing if there is none
+  const Plugins* plugins = nullptr;
+  std::string plugins_sha256;
+  Templates templates;
+  std::string templates_sha256;
+};
+
+/// What a campaign's results depend on, in the order in which a change is reported.
+using Inputs = std::vector<std::pair<std::string, std::string>>;  // name, SHA-256
+
+/// The parts of `Inputs` that all campaigns share.
+Inputs shared_inputs(const Context& context);
+
+struct Evaluated {
+  Campaign campaign;
+  Results results;
+  Inputs inputs;       ///< of the campaign's own files, manifest first
+  std::string status;  ///< ok, attention, failed
+};
+
+/// Told what is about to be called, for the case that it does not come back.
+using Stage = std::function<void(const std::string&)>;
+
+/// One campaign from its folder to its artifacts; writes nothing.
+Evaluated evaluate(const std::filesystem::path& folder, const std::string& id,
+                   const Context& context, const Stage& stage);
+
+/// ISO 14253-1 with an upper limit; source: ISO 14253-1:2017, confidence of the reading: medium.
+Decision decide(double value, double U, double tolerance);
+
+}  // namespace nonio::host

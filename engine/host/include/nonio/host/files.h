@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/sdk/error.h"
+#include "nonio/sdk/results.h"
+
+namespace nonio::host {
+
+/// A file mapped into memory for reading from front to back. Not copyable; unmapped at the end.
+class MappedFile {
+ public:
+  static Expected<MappedFile> open(const std::filesystem::path& path);
+  MappedFile(MappedFile&&) noexcept;
+  MappedFile& operator=(MappedFile&&) = delete;
+  ~MappedFile();
+
+  std::string_view bytes() const { return {data_, size_}; }
+  /// Gives the pages before `offset` back to the system; they can still be read, from disk.
+  void release(std::size_t offset) const;
+
+ private:
+  MappedFile(const char* data, std::size_t size) : data_(data), size_(size) {}
+  const char* data_;
+  std::size_t size_;
+};
+
+Expected<std::string> read_file(const std::filesystem::path& path);
+
+/// `relative` below `base`, with every link resolved; an error if it would lead outside.
+Expected<std::filesystem::path> path_inside(const std::filesystem::path& base,
+                                            const std::string& relative);
+
+/// Whether an artifact may have this name: a plain visible file name that the host does not use.
+bool is_artifact_name(std::string_view name);
+
+/// Writes files that appear whole or not at all: under a temporary name, fsync, rename, fsync of
+/// the folder. All are complete on disk before the first one is renamed; on an error nothing is
+/// renamed and the temporary files are gone. Folders that are missing are made.
+Expected<void> publish(const std::filesystem::path& folder, const std::vector<Artifact>& files);
+
+/// Removes files (those that are there) and fsyncs the folder.
+Expected<void> remove_files(const std::filesystem::path& folder,
+                            const std::vector<std::string>& names);
+
+/// Removes what a killed process left half-written in a folder.
+void remove_leftovers(const std::filesystem::path& folder);
+
+}  // namespace nonio::host

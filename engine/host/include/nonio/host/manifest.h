@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/sdk/campaign.h"
+#include "nonio/sdk/error.h"
+#include "nonio/sdk/plugin.h"
+#include "nonio/sdk/settings.h"
+
+namespace nonio::host {
+
+/// `[options.<plugin>]` as written, with the line of each key.
+struct RawOption {
+  Setting value;
+  std::string file;
+  std::uint64_t line = 0;
+};
+using RawOptions = std::map<std::string, std::map<std::string, RawOption>>;
+
+struct RunChoice {
+  std::optional<std::vector<std::string>> analyses, outputs;  ///< absent: all that apply
+};
+
+struct Manifest {
+  Campaign campaign;
+  RunChoice run;
+  RawOptions options;
+};
+
+struct Limits {
+  double seconds = 600.0;
+  double memory_MB = 4096.0;
+};
+
+struct SiteFile {
+  Laboratory laboratory;
+  RunChoice run;
+  RawOptions options;
+  Limits limits;
+  std::vector<std::string> notes;  ///< sections that this version does not use yet
+};
+
+template <class T>
+using Checked = tl::expected<T, std::vector<Error>>;
+
+/// All that is wrong with the file at once, each with its line.
+Checked<Manifest> parse_manifest(std::string_view text, const std::string& file);
+Checked<SiteFile> parse_site(std::string_view text, const std::string& file);
+
+/// The id of a manifest that may be broken elsewhere; empty if none can be seen.
+std::string salvage_id(std::string_view text);
+bool is_campaign_id(std::string_view id);
+
+/// The options of one plugin: defaults, then the site's, then the campaign's; each checked for
+/// name, kind, range and choice.
+Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
+                                 const RawOptions& campaign);
+
+/// A TOML file of templates/ as flat settings.
+Expected<Settings> parse_settings(std::string_view text, const std::string& file);
+
+}  // namespace nonio::host

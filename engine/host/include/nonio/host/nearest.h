@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nonio::host {
+
+/// ` (nearest: "name")` for the candidate that differs least from what was found, or "" if none is
+/// near enough to be what was meant.
+std::string suggestion(std::string_view found, const std::vector<std::string>& candidates);
+
+}  // namespace nonio::host

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/sdk/plugin.h"
+
+namespace nonio::host {
+
+/// One file in a plugin folder: what it brought, or why it was refused.
+struct PluginFile {
+  std::filesystem::path path;
+  std::string refused;               ///< empty: loaded
+  std::vector<std::string> brought;  ///< "analysis iso230-2 1.0.0", ...
+  std::string sha256;
+};
+
+/// All plugins of this process. Loaded once, never unloaded.
+class Plugins final : public Registry {
+ public:
+  /// Loads every shared library of the folders, in their order. Each is first loaded and registered
+  /// in a child process, so that one which crashes or hangs there is refused instead of loaded; the
+  /// ABI tag is compared before anything in it is called.
+  void load(const std::vector<std::filesystem::path>& folders);
+
+  const std::vector<PluginFile>& files() const { return files_; }
+  /// Two plugins of one kind with the same name, each with both paths.
+  const std::vector<std::string>& conflicts() const { return conflicts_; }
+  /// One digest over all that was loaded.
+  std::string digest() const;
+
+  const std::vector<Reader>& readers() const { return readers_; }
+  const std::vector<Effect>& effects() const { return effects_; }
+  const std::vector<Analysis>& analyses() const { return analyses_; }
+  const std::vector<Output>& outputs() const { return outputs_; }
+
+  /// Why a plugin of that name is not there, with the nearest name.
+  std::string absence(std::string_view kind, std::string_view name) const;
+
+  void add(Reader) override;
+  void add(Effect) override;
+  void add(Analysis) override;
+  void add(Output) override;
+
+ private:
+  void load_file(const std::filesystem::path& path);
+  bool accept(std::string_view kind, const Info& info);
+
+  std::vector<PluginFile> files_;
+  std::vector<std::string> conflicts_;
+  std::vector<std::pair<std::string, std::filesystem::path>> names_;  // "analysis iso230-2"
+  std::vector<Reader> readers_;
+  std::vector<Effect> effects_;
+  std::vector<Analysis> analyses_;
+  std::vector<Output> outputs_;
+};
+
+}  // namespace nonio::host

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "nonio/host/evaluate.h"
+#include "nonio/host/record.h"
+
+namespace nonio::host {
+
+struct RunOptions {
+  std::filesystem::path site, out;
+  std::vector<std::filesystem::path> plugin_folders, template_folders;
+  std::size_t jobs = 0;  ///< 0: one for each core
+  bool force = false;
+  bool dry_run = false;
+  std::string version;
+};
+
+/// One campaign of the night, as it is known so far.
+struct CampaignState {
+  std::string id;
+  std::string folder;  ///< relative to the site
+  enum class Action { todo, done, unchanged } action = Action::todo;
+  std::string reason;  ///< why it is to do, or why not
+  std::string status;  ///< ok, attention, failed; empty while it is to do
+  std::vector<Error> errors;
+  std::vector<KnownFinding> attention;     ///< findings that ask for somebody
+  std::vector<KnownFinding> new_findings;  ///< not there in the night before
+};
+
+/// What the run tells while it goes on.
+struct RunEvents {
+  std::function<void(const std::string& message)> note;
+  std::function<void(std::size_t campaigns, std::size_t to_do)> planned;
+  std::function<void(const CampaignState&)> finished;
+  std::function<void()> tick;  ///< several times a second, to redraw
+};
+
+struct Night {
+  enum class End { complete, interrupted, refused } end = End::complete;
+  std::string error;                     ///< of a refused run: usage or configuration
+  std::vector<CampaignState> campaigns;  ///< ordered by id
+  std::vector<std::string> notes;
+  bool any_failed() const;
+};
+
+/// The nightly run over a site. Returns when every campaign is done, or after a call of
+/// `request_stop`, or at once with `refused` if the site or the output folder cannot be used.
+Night run_site(const RunOptions& options, const RunEvents& events);
+
+/// Safe in a signal handler.
+void request_stop();
+
+}  // namespace nonio::host

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "child.h"
+
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <thread>
+
+namespace nonio::host {
+
+ChildEnd child_end(int status) {
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {true, {}};
+  if (WIFEXITED(status)) return {false, "exit status " + std::to_string(WEXITSTATUS(status))};
+  const int number = WTERMSIG(status);
+  return {false, "signal " + std::to_string(number) + " (" + ::strsignal(number) + ")"};
+}
+
+ChildEnd wait_for_child(pid_t child, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
+  auto pause = std::chrono::microseconds(100);
+  int status = 0;
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    if (Clock::now() > deadline) {
+      ::kill(-child, SIGKILL);
+      ::kill(child, SIGKILL);
+      ::waitpid(child, &status, 0);
+      return {false, "no answer within " + std::to_string(static_cast<int>(seconds)) + " s"};
+    }
+    std::this_thread::sleep_for(pause);
+    pause = std::min(pause * 2, std::chrono::microseconds(5000));
+  }
+  return child_end(status);
+}
+
+void settle_child() {
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::signal(SIGINT, SIG_DFL);
+  ::signal(SIGTERM, SIG_DFL);
+  const rlimit none{0, 0};
+  ::setrlimit(RLIMIT_CORE, &none);
+  ::dup2(STDERR_FILENO, STDOUT_FILENO);
+}
+
+void limit_memory(double megabytes) {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  const auto bytes = static_cast<rlim_t>(megabytes * 1e6);
+  const rlimit limit{bytes, bytes};
+  ::setrlimit(RLIMIT_DATA, &limit);
+#else
+  (void)megabytes;
+#endif
+}
+
+}  // namespace nonio::host

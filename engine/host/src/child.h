@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+
+namespace nonio::host {
+
+/// What became of a child process.
+struct ChildEnd {
+  bool well = false;  ///< it exited with 0
+  std::string words;  ///< else: "signal 11 (Segmentation fault)", "exit status 3"
+};
+
+/// From the status of waitpid.
+ChildEnd child_end(int wait_status);
+
+/// Waits up to `seconds`; kills the child's process group if it takes longer.
+ChildEnd wait_for_child(pid_t child, double seconds);
+
+/// To be called first in a child: its own process group, ended with its parent, no core file, its
+/// standard output joined to the standard error so that results on stdout stay clean.
+void settle_child();
+
+/// Private memory that the process may have from now on. Without effect under a sanitizer, whose
+/// shadow memory is larger than any limit.
+void limit_memory(double megabytes);
+
+}  // namespace nonio::host

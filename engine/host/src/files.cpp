@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/host/files.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace nonio::host {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view leftover_suffix = ".nonio-tmp";
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int get() const { return fd_; }
+  explicit operator bool() const { return fd_ >= 0; }
+
+ private:
+  int fd_;
+};
+
+tl::unexpected<Error> system_error(std::string_view what, const fs::path& path) {
+  const int code = errno;
+  return fail(std::string(what) + " " + path.string() + ": " + std::strerror(code));
+}
+
+Expected<void> write_new(const fs::path& path, std::string_view bytes) {
+  const Descriptor file(
+      ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0644));
+  if (!file) return system_error("cannot write", path);
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(file.get(), bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return system_error("cannot write", path);
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+  if (::fsync(file.get()) != 0) return system_error("cannot flush", path);
+  return {};
+}
+
+Expected<void> flush_folder(const fs::path& folder) {
+  const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!fd || ::fsync(fd.get()) != 0) return system_error("cannot flush folder", folder);
+  return {};
+}
+
+}  // namespace
+
+Expected<MappedFile> MappedFile::open(const fs::path& path) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  struct stat info {};
+  if (!file || ::fstat(file.get(), &info) != 0) return system_error("cannot read", path);
+  if (!S_ISREG(info.st_mode)) return fail("cannot read " + path.string() + ": not a file");
+  const auto size = static_cast<std::size_t>(info.st_size);
+  if (size == 0) return MappedFile("", 0);
+  void* data = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.get(), 0);
+  if (data == MAP_FAILED) return system_error("cannot read", path);
+  ::madvise(data, size, MADV_SEQUENTIAL);
+  return MappedFile(static_cast<const char*>(data), size);
+}
+
+MappedFile::MappedFile(MappedFile&& other) noexcept
+    : data_(other.data_), size_(std::exchange(other.size_, 0)) {}
+
+MappedFile::~MappedFile() {
+  if (size_ != 0) ::munmap(const_cast<char*>(data_), size_);
+}
+
+void MappedFile::release(std::size_t offset) const {
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t whole = std::min(offset, size_) / page * page;
+  if (whole != 0) ::madvise(const_cast<char*>(data_), whole, MADV_DONTNEED);
+}
+
+Expected<std::string> read_file(const fs::path& path) {
+  return MappedFile::open(path).map([](const MappedFile& f) { return std::string(f.bytes()); });
+}
+
+Expected<fs::path> path_inside(const fs::path& base, const std::string& relative) {
+  std::error_code error;
+  const fs::path root = fs::canonical(base, error);
+  if (error) return fail("cannot find the folder " + base.string() + ": " + error.message());
+  if (relative.empty() || fs::path(relative).is_absolute() ||
+      relative.find('\0') != std::string::npos)
+    return fail("\"" + relative + "\" is not a path below the campaign's folder");
+  const fs::path full = fs::weakly_canonical(root / relative, error);
+  if (error) return fail("cannot resolve \"" + relative + "\": " + error.message());
+  const fs::path below = full.lexically_relative(root);
+  if (below.empty() || *below.begin() == ".." || below == ".")
+    return fail("\"" + relative + "\" leads outside the campaign's folder");
+  return full;
+}
+
+bool is_artifact_name(std::string_view name) {
+  if (name.empty() || name.size() > 200 || name.front() == '.') return false;
+  if (name == "results.json" || name == "run.json") return false;
+  for (const char c : name)
+    if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return false;
+  return true;
+}
+
+Expected<void> publish(const fs::path& folder, const std::vector<Artifact>& files) {
+  std::error_code error;
+  const bool is_new = fs::create_directories(folder, error);
+  if (error) return fail("cannot make the folder " + folder.string() + ": " + error.message());
+  if (is_new)
+    if (auto flushed = flush_folder(folder.parent_path()); !flushed) return flushed;
+  const auto temporary = [&](const Artifact& f) {
+    return folder / ("." + f.name + std::string(leftover_suffix));
+  };
+  for (const Artifact& file : files) {
+    if (auto written = write_new(temporary(file), file.bytes); !written) {
+      for (const Artifact& f : files) fs::remove(temporary(f), error);
+      return written;
+    }
+  }
+  for (const Artifact& file : files)
+    if (::rename(temporary(file).c_str(), (folder / file.name).c_str()) != 0) {
+      auto failed = system_error("cannot write", folder / file.name);
+      for (const Artifact& f : files) fs::remove(temporary(f), error);
+      return failed;
+    }
+  return flush_folder(folder);
+}
+
+Expected<void> remove_files(const fs::path& folder, const std::vector<std::string>& names) {
+  bool removed = false;
+  for (const std::string& name : names) {
+    if (::unlink((folder / name).c_str()) == 0)
+      removed = true;
+    else if (errno != ENOENT && errno != ENOTDIR)
+      return system_error("cannot remove", folder / name);
+  }
+  return removed ? flush_folder(folder) : Expected<void>{};
+}
+
+void remove_leftovers(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    std::error_code ignored;
+    if (name.starts_with('.') && name.ends_with(leftover_suffix)) fs::remove(it->path(), ignored);
+  }
+}
+
+}  // namespace nonio::host

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "nonio/host/manifest.h"
+#include "nonio/host/nearest.h"
+#include "nonio/sdk/format.h"
+#include "toml_reader.h"
+
+namespace nonio::host {
+
+namespace {
+
+const char* kind_of(const Setting& setting) {
+  switch (setting.index()) {
+    case 0:
+      return "true or false";
+    case 1:
+      return "a whole number";
+    case 2:
+      return "a number";
+    case 3:
+      return "a text";
+    case 4:
+      return "a list of numbers";
+    default:
+      return "a list of texts";
+  }
+}
+
+/// The setting as the declared kind; a whole number will do where a number is wanted.
+std::optional<Setting> as_declared(const Setting& found, const Setting& declared) {
+  if (found.index() == declared.index()) return found;
+  if (const auto* i = std::get_if<std::int64_t>(&found);
+      i != nullptr && std::holds_alternative<double>(declared))
+    return Setting(static_cast<double>(*i));
+  return std::nullopt;
+}
+
+std::string range_complaint(const Option& option, const Setting& setting) {
+  double value = 0.0;
+  if (const auto* d = std::get_if<double>(&setting))
+    value = *d;
+  else if (const auto* i = std::get_if<std::int64_t>(&setting))
+    value = static_cast<double>(*i);
+  else
+    return {};
+  if ((!option.least || value >= *option.least) && (!option.most || value <= *option.most))
+    return {};
+  std::string wanted = "wanted";
+  if (option.least) wanted += " at least " + short_text(*option.least, 6);
+  if (option.most)
+    wanted += std::string(option.least ? " and" : "") + " at most " + short_text(*option.most, 6);
+  return wanted + ", found " + short_text(value, 6);
+}
+
+std::string choice_complaint(const Option& option, const Setting& setting) {
+  if (option.choices.empty()) return {};
+  std::string found;
+  if (const auto* text = std::get_if<std::string>(&setting))
+    found = *text;
+  else if (const auto* i = std::get_if<std::int64_t>(&setting))
+    found = std::to_string(*i);
+  else
+    return {};
+  std::string list;
+  for (const std::string& choice : option.choices) {
+    if (choice == found) return {};
+    list += (list.empty() ? "" : ", ") + choice;
+  }
+  return "wanted one of " + list + "; found \"" + found + "\"" + suggestion(found, option.choices);
+}
+
+}  // namespace
+
+Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
+                                 const RawOptions& campaign) {
+  Settings settings;
+  std::vector<Error> errors;
+  std::vector<std::string> known;
+  for (const Option& option : plugin.options) {
+    settings.values[option.name] = option.otherwise;
+    known.push_back(option.name);
+  }
+  for (const RawOptions* source : {&site, &campaign}) {
+    const auto of_plugin = source->find(plugin.name);
+    if (of_plugin == source->end()) continue;
+    for (const auto& [name, raw] : of_plugin->second) {
+      const std::string place = "options." + plugin.name + "." + name;
+      const auto option = std::find_if(plugin.options.begin(), plugin.options.end(),
+                                       [&](const Option& o) { return o.name == name; });
+      if (option == plugin.options.end()) {
+        errors.push_back(
+            Error{"unknown option " + place + suggestion(name, known), raw.file, raw.line});
+        continue;
+      }
+      const auto value = as_declared(raw.value, option->otherwise);
+      std::string complaint = value ? range_complaint(*option, *value)
+                                    : std::string("wanted ") + kind_of(option->otherwise) +
+                                          ", found " + kind_of(raw.value);
+      if (complaint.empty()) complaint = choice_complaint(*option, *value);
+      if (complaint.empty())
+        settings.values[name] = *value;
+      else
+        errors.push_back(Error{place + ": " + complaint, raw.file, raw.line});
+    }
+  }
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  return settings;
+}
+
+namespace {
+
+Expected<void> flatten(const toml::table& table, const std::string& prefix, const std::string& file,
+                       Settings& out) {
+  for (const auto& [key, node] : table) {
+    const std::string name = prefix + std::string(key.str());
+    if (const toml::table* child = node.as_table()) {
+      if (auto flat = flatten(*child, name + ".", file, out); !flat) return flat;
+    } else if (auto setting = to_setting(node)) {
+      out.values[name] = std::move(*setting);
+    } else {
+      return fail(Error{name + ": wanted a value or a list of one kind, found " + type_name(node),
+                        file, node.source().begin.line});
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Expected<Settings> parse_settings(std::string_view text, const std::string& file) {
+  auto root = parse_toml(text, file);
+  if (!root) return fail(root.error());
+  Settings settings;
+  if (auto flat = flatten(*root, "", file, settings); !flat) return fail(flat.error());
+  return settings;
+}
+
+}  // namespace nonio::host

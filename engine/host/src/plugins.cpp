@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/host/plugins.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/dll/shared_library.hpp>
+#include <cstring>
+#include <iostream>
+
+#include "child.h"
+#include "nonio/host/digest.h"
+#include "nonio/host/files.h"
+#include "nonio/host/nearest.h"
+
+namespace nonio::host {
+namespace fs = std::filesystem;
+namespace dll = boost::dll;
+
+namespace {
+
+constexpr double probe_seconds = 10.0;
+
+/// The libraries of all plugins, for the life of the process: never unloaded.
+std::vector<dll::shared_library>& libraries() {
+  static auto* kept = new std::vector<dll::shared_library>;
+  return *kept;
+}
+
+/// The entry of a library that may be called, or why not.
+Expected<const PluginEntry*> open_entry(const fs::path& path) {
+  boost::dll::fs::error_code error;
+  dll::shared_library library(path.string(), error, dll::load_mode::rtld_now);
+  if (error) return fail("cannot be loaded: " + error.message());
+  if (!library.has("nonio_plugin")) return fail("is not a plugin: it has no symbol nonio_plugin");
+  const PluginEntry* entry = &library.get<const PluginEntry>("nonio_plugin");
+  libraries().push_back(std::move(library));
+  const std::string tag(entry->abi_tag, ::strnlen(entry->abi_tag, sizeof entry->abi_tag));
+  if (tag != NONIO_ABI_TAG)
+    return fail("was built for \"" + tag + "\", this program is \"" NONIO_ABI_TAG "\"");
+  if (entry->add_to == nullptr) return fail("has no registration function");
+  return entry;
+}
+
+/// Loads and registers in a child; what it says through the pipe is why it must be refused.
+std::string probe(const fs::path& path) {
+  int ends[2];
+  if (::pipe(ends) != 0) return "cannot be tried: no pipe";
+  std::cout.flush();
+  const pid_t child = ::fork();
+  if (child == 0) {
+    settle_child();
+    struct Nobody final : Registry {
+      void add(Reader) override {}
+      void add(Effect) override {}
+      void add(Analysis) override {}
+      void add(Output) override {}
+    } nobody;
+    std::string refusal;
+    try {
+      const auto entry = open_entry(path);
+      if (entry)
+        (*entry)->add_to(nobody);
+      else
+        refusal = entry.error().message;
+    } catch (const std::exception& e) {
+      refusal = std::string("threw while registering: ") + e.what();
+    } catch (...) {
+      refusal = "threw while registering";
+    }
+    [[maybe_unused]] const ssize_t n =
+        ::write(ends[1], refusal.data(), std::min<std::size_t>(refusal.size(), 4000));
+    ::_exit(0);
+  }
+  ::close(ends[1]);
+  const ChildEnd end =
+      child < 0 ? ChildEnd{false, "no process"} : wait_for_child(child, probe_seconds);
+  std::string refusal(4000, '\0');
+  const ssize_t n = end.well ? ::read(ends[0], refusal.data(), refusal.size()) : 0;
+  ::close(ends[0]);
+  if (!end.well) return "did not survive loading: " + end.words;
+  refusal.resize(static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
+  return refusal;
+}
+
+}  // namespace
+
+void Plugins::load(const std::vector<fs::path>& folders) {
+  std::vector<fs::path> paths;
+  for (const fs::path& folder : folders) {
+    std::vector<fs::path> here;
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+      if (it->path().extension() == ".so" && it->is_regular_file()) {
+        std::error_code ignored;
+        const fs::path path = fs::canonical(it->path(), ignored);
+        if (std::find(paths.begin(), paths.end(), path) == paths.end()) here.push_back(path);
+      }
+    std::sort(here.begin(), here.end());
+    paths.insert(paths.end(), here.begin(), here.end());
+  }
+  for (const fs::path& path : paths) load_file(path);
+}
+
+void Plugins::load_file(const fs::path& path) {
+  files_.push_back(PluginFile{.path = path, .refused = probe(path), .brought = {}, .sha256 = {}});
+  PluginFile& file = files_.back();
+  if (!file.refused.empty()) return;
+  const auto bytes = MappedFile::open(path);
+  if (bytes) file.sha256 = host::sha256(bytes->bytes());
+  const auto entry = open_entry(path);
+  if (entry)
+    (*entry)->add_to(*this);
+  else
+    file.refused = entry.error().message;
+}
+
+std::string Plugins::digest() const {
+  std::string all;
+  for (const PluginFile& file : files_)
+    if (file.refused.empty()) all += file.path.filename().string() + " " + file.sha256 + "\n";
+  return host::sha256(all);
+}
+
+bool Plugins::accept(std::string_view kind, const Info& info) {
+  const std::string name = std::string(kind) + " " + info.name;
+  const fs::path& path = files_.back().path;
+  for (const auto& [known, where] : names_)
+    if (known == name) {
+      conflicts_.push_back("two plugins are the " + name + ": " + where.string() + " and " +
+                           path.string());
+      return false;
+    }
+  names_.emplace_back(name, path);
+  files_.back().brought.push_back(name + " " + info.version);
+  return true;
+}
+
+void Plugins::add(Reader reader) {
+  if (accept("reader", reader.info)) readers_.push_back(std::move(reader));
+}
+void Plugins::add(Effect effect) {
+  if (accept("effect", effect.info)) effects_.push_back(std::move(effect));
+}
+void Plugins::add(Analysis analysis) {
+  if (accept("analysis", analysis.info)) analyses_.push_back(std::move(analysis));
+}
+void Plugins::add(Output output) {
+  if (accept("output", output.info)) outputs_.push_back(std::move(output));
+}
+
+std::string Plugins::absence(std::string_view kind, std::string_view name) const {
+  std::vector<std::string> candidates;
+  const std::string prefix = std::string(kind) + " ";
+  for (const auto& [known, where] : names_)
+    if (known.starts_with(prefix)) candidates.push_back(known.substr(prefix.size()));
+  std::string words =
+      "there is no " + prefix + "\"" + std::string(name) + "\"" + suggestion(name, candidates);
+  for (const PluginFile& file : files_)
+    if (!file.refused.empty() && file.path.stem().string().find(name) != std::string::npos)
+      words += "; " + file.path.string() + " " + file.refused;
+  return words;
+}
+
+}  // namespace nonio::host
