@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+namespace nonio::math {
+
+/// One sinusoid a turn, fitted by least squares: y = c + a cos(angle) + b sin(angle).
+struct Harmonic {
+  bool known = false;      ///< false: the angles do not cover the turn
+  double amplitude = 0.0;  ///< sqrt(a^2 + b^2)
+  double share = 0.0;      ///< of the variance of y that it explains, 0..1
+  double p = 1.0;          ///< F test against what is left
+};
+
+/// The angles (rad) cover the turn if there are 5 different ones and no gap is above 120 deg.
+Harmonic fit_harmonic(std::span<const double> angle, std::span<const double> y);
+
+}  // namespace nonio::math

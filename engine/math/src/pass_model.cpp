@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pass_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "nonio/math/statistics.h"
+
+namespace nonio::math {
+namespace {
+
+struct Sums {  // of one pass, for the line through its residuals
+  double n = 0, z = 0, zz = 0, r = 0, zr = 0;
+};
+
+std::vector<std::uint32_t> runs_of(const AxisTest& test) {
+  std::vector<std::uint32_t> runs;
+  for (const auto& reading : test.readings()) {
+    if (!runs.empty() && runs.back() == reading.run) continue;
+    runs.push_back(reading.run);
+    if (runs.size() < 4096) continue;
+    std::sort(runs.begin(), runs.end());
+    runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+  }
+  std::sort(runs.begin(), runs.end());
+  runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+  return runs;
+}
+
+void index_readings(const AxisTest& test, PassModel& m) {
+  const auto runs = runs_of(test);
+  for (const std::uint32_t run : runs) {
+    m.passes.push_back({run, false});
+    m.passes.push_back({run, true});
+  }
+  m.pass.resize(test.readings().size());
+  m.target.resize(test.readings().size());
+  for (std::size_t i = 0; i < test.targets.size(); ++i)
+    for (const bool minus : {false, true}) {
+      const auto part = minus ? test.minus(i) : test.plus(i);
+      const std::size_t first = first_reading(test, i, minus);
+      for (std::size_t k = 0; k < part.size(); ++k) {
+        const auto at = std::lower_bound(runs.begin(), runs.end(), part[k].run) - runs.begin();
+        m.pass[first + k] = static_cast<std::uint32_t>(2 * at + (minus ? 1 : 0));
+        m.target[first + k] = static_cast<std::uint32_t>(i);
+      }
+    }
+}
+
+// e less its mean over each target and direction; gives the largest mean.
+double take_target_means(const AxisTest& test, PassModel& m) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < test.targets.size(); ++i)
+    for (const bool minus : {false, true}) {
+      const std::size_t first = first_reading(test, i, minus);
+      const std::size_t count = (minus ? test.minus(i) : test.plus(i)).size();
+      for (int twice = 0; twice < 2; ++twice) {  // the second pass takes the rounding of the first
+        double sum = 0.0, n = 0.0;
+        for (std::size_t k = first; k < first + count; ++k)
+          if (!std::isnan(m.e[k])) sum += m.e[k], n += 1.0;
+        if (n == 0.0) break;
+        for (std::size_t k = first; k < first + count; ++k) m.e[k] -= sum / n;
+        largest = std::max(largest, std::fabs(sum / n));
+      }
+    }
+  return largest;
+}
+
+// e less the offset (and slope) of each pass; gives the largest change.
+double take_passes(const AxisTest& test, PassModel& m, bool slopes) {
+  std::vector<Sums> sums(m.passes.size());
+  for (std::size_t k = 0; k < m.e.size(); ++k) {
+    if (std::isnan(m.e[k])) continue;
+    Sums& s = sums[m.pass[k]];
+    const double z = test.targets[m.target[k]] - m.middle;
+    s.n += 1.0, s.z += z, s.zz += z * z, s.r += m.e[k], s.zr += z * m.e[k];
+  }
+  std::vector<double> offset(sums.size(), 0.0), slope(sums.size(), 0.0);
+  const double reach = test.length() / 2.0;
+  double largest = 0.0;
+  for (std::size_t p = 0; p < sums.size(); ++p) {
+    const Sums& s = sums[p];
+    if (s.n == 0.0) continue;
+    const double spread = s.zz - s.z * s.z / s.n;
+    if (slopes && s.n >= 3.0 && spread > 1e-6 * reach * reach)
+      slope[p] = (s.zr - s.z * s.r / s.n) / spread;
+    offset[p] = (s.r - slope[p] * s.z) / s.n;
+    m.passes[p].offset += offset[p];
+    m.passes[p].slope += slope[p];
+    largest = std::max(largest, std::fabs(offset[p]) + std::fabs(slope[p]) * reach);
+  }
+  for (std::size_t k = 0; k < m.e.size(); ++k)
+    m.e[k] -= offset[m.pass[k]] + slope[m.pass[k]] * (test.targets[m.target[k]] - m.middle);
+  return largest;
+}
+
+void sum_up(const AxisTest& test, PassModel& m, bool slopes) {
+  for (std::size_t k = 0; k < m.e.size(); ++k)
+    if (!std::isnan(m.e[k])) ++m.passes[m.pass[k]].readings;
+  for (std::size_t d = 0; d < 2; ++d) {
+    PassModel::Side& side = m.side[d];
+    double offset = 0.0, slope = 0.0;
+    for (std::size_t p = d; p < m.passes.size(); p += 2)
+      if (m.passes[p].readings > 0)
+        ++side.passes, offset += m.passes[p].offset, slope += m.passes[p].slope;
+    for (std::size_t p = d; p < m.passes.size() && side.passes > 0; p += 2) {
+      m.passes[p].offset -= offset / static_cast<double>(side.passes);
+      m.passes[p].slope -= slope / static_cast<double>(side.passes);
+    }
+    for (std::size_t i = 0; i < test.targets.size(); ++i) {
+      const std::size_t first = first_reading(test, i, d == 1);
+      const std::size_t count = (d == 1 ? test.minus(i) : test.plus(i)).size();
+      std::size_t n = 0;
+      for (std::size_t k = first; k < first + count; ++k)
+        if (!std::isnan(m.e[k])) ++n, side.squares += m.e[k] * m.e[k];
+      side.readings += n;
+      if (n > 0) ++side.targets;
+    }
+    const double per_pass = slopes ? 2.0 : 1.0;
+    side.dof = static_cast<double>(side.readings) - static_cast<double>(side.targets) -
+               per_pass * (static_cast<double>(side.passes) - 1.0);
+  }
+}
+
+}  // namespace
+
+std::size_t first_reading(const AxisTest& test, std::size_t i, bool minus) {
+  const auto part = minus ? test.minus(i) : test.plus(i);
+  return static_cast<std::size_t>(part.data() - test.readings().data());
+}
+
+double joined_dof(double a, double dof_a, double b, double dof_b) {
+  const double sum = a + b;
+  if (!(sum > 0.0)) return dof_a + dof_b;
+  return sum * sum / ((a > 0.0 ? a * a / dof_a : 0.0) + (b > 0.0 ? b * b / dof_b : 0.0));
+}
+
+PassModel fit_passes(const AxisTest& test, bool slopes, std::span<const std::size_t> left_out) {
+  PassModel m;
+  index_readings(test, m);
+  m.middle = mean(test.targets);
+  m.e.reserve(test.readings().size());
+  for (const auto& reading : test.readings()) m.e.push_back(reading.deviation);
+  for (const std::size_t k : left_out) m.e[k] = std::numeric_limits<double>::quiet_NaN();
+  take_target_means(test, m);
+  double size = 0.0;
+  for (const double e : m.e)
+    if (!std::isnan(e)) size = std::max(size, std::fabs(e));
+  constexpr int most_rounds = 60;  // unequal runs converge geometrically
+  for (int round = 0; round < most_rounds; ++round) {
+    take_passes(test, m, slopes);
+    if (take_target_means(test, m) <= 1e-9 * size) break;
+  }
+  sum_up(test, m, slopes);
+  return m;
+}
+
+}  // namespace nonio::math
