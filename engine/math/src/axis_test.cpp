@@ -85,6 +85,22 @@ AxisTest AxisTest::arrange(const Observations& o) {
   return test;
 }
 
+AxisTest AxisTest::only(std::span<const std::size_t> kept) const {
+  AxisTest test;
+  test.rotary = rotary;
+  test.starts_.assign(1, 0);
+  for (const std::size_t i : kept) {
+    test.targets.push_back(targets[i]);
+    for (const auto& from : {plus(i), minus(i)}) {
+      test.readings_.insert(test.readings_.end(), from.begin(), from.end());
+      test.starts_.push_back(test.readings_.size());
+    }
+    test.has_plus_ = test.has_plus_ || !plus(i).empty();
+    test.has_minus_ = test.has_minus_ || !minus(i).empty();
+  }
+  return test;
+}
+
 bool AxisTest::complete() const { return least_approaches() > 0; }
 
 std::size_t AxisTest::least_approaches() const {

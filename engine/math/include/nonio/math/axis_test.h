@@ -38,6 +38,9 @@ class AxisTest {
   /// Distance from the first target to the last, m or rad.
   double length() const { return targets.empty() ? 0.0 : targets.back() - targets.front(); }
 
+  /// The same test with only these targets (ascending indices).
+  AxisTest only(std::span<const std::size_t> kept) const;
+
   /// From observations whose first axis column is the measured axis; rows without a direction of
   /// approach do not occur. Readings at a target come in the order of their runs.
   static AxisTest arrange(const Observations&);

@@ -19,7 +19,8 @@ struct Iso230Point {
 };
 
 /// ISO 230-2 of the axis. A value is NaN unless every target gives its part of it, so that no
-/// printed range covers less than the whole axis.
+/// printed range covers less than the whole axis; A+, E+ and R+ ask only the targets that were
+/// reached in direction +, and likewise for -.
 struct Iso230Result {
   double k;  ///< coverage factor of R and A
   std::vector<Iso230Point> points;
@@ -34,10 +35,5 @@ struct Iso230Result {
 /// k = 3 for the edition of 1988, 2 for those of 1997, 2006 and 2014.
 /// Source: ISO 230-2:2014 clause 2 (symbols), k of 1988 from its forms 6 s and 3 s.
 Iso230Result evaluate_iso230_2(const AxisTest& test, double k);
-
-/// Expanded uncertainties (k = 2) of the results above; m or rad, NaN where not known.
-struct Iso230Uncertainty {
-  double A, A_plus, A_minus, E, E_plus, E_minus, M, R, R_plus, R_minus, B, B_mean;
-};
 
 }  // namespace nonio::math
