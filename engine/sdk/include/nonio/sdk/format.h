@@ -73,8 +73,20 @@ inline std::string words(const Templates& templates, std::string_view language,
   return {};
 }
 
+/// The number of a finding in a sentence: counts are whole, positions keep their digits.
+inline std::string evidence_text(const Number& n) {
+  const double value = printed(n.value, n.quantity);
+  if (n.quantity == Quantity::count) return fixed_text(value, 0);
+  if (n.quantity != Quantity::length && n.quantity != Quantity::angle) return short_text(value);
+  std::string text = fixed_text(value, 4);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (!text.empty() && text.back() == '.') text.pop_back();
+  return text;
+}
+
 /// `text` with each `{name}` replaced by the finding's evidence of that name (numbers carry their
-/// unit in the name: {mean_um}). A place without evidence stays as it is, to be seen.
+/// unit in the name: {mean_um}; by the bare name, {mean}, a number comes with its unit, whatever
+/// that is). A place without evidence stays as it is, to be seen.
 inline std::string filled(std::string_view text, const Finding& finding,
                           std::string_view language) {
   std::string out;
@@ -88,7 +100,10 @@ inline std::string filled(std::string_view text, const Finding& finding,
     std::string value(text.substr(i, close + 1 - i));
     for (const Number& n : finding.evidence)
       if (name == n.name + std::string(unit_of(n.quantity).suffix))
-        value = localised(short_text(printed(n.value, n.quantity)), language);
+        value = localised(evidence_text(n), language);
+      else if (name == n.name)
+        value =
+            localised(evidence_text(n), language) + " " + std::string(unit_of(n.quantity).symbol);
     for (const auto& [key, words_of] : finding.texts)
       if (name == key) value = words_of;
     out += value;

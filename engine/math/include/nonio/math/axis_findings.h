@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "nonio/math/axis_test.h"
+#include "nonio/math/uncertainty.h"
+#include "nonio/sdk/campaign.h"
+#include "nonio/sdk/plugin.h"
+#include "nonio/sdk/results.h"
+
+/// What the readings of an axis say beside the numbers of a standard. docs/formulas.md has the
+/// tests; the words are in templates/words.
+namespace nonio::math {
+
+/// Everything that does not depend on the standard: drift, reversal, scatter, suspected readings,
+/// what was not measured, and what the test plan of ISO 230-2 asked.
+std::vector<Finding> axis_findings(const AxisTest&, const Observations&, const Axis* axis);
+
+/// The parts of the list above.
+void drift_findings(const AxisTest&, std::vector<Finding>&);
+void reversal_findings(const AxisTest&, std::vector<Finding>&);
+void scatter_findings(const AxisTest&, std::vector<Finding>&);
+void plan_findings(const AxisTest&, const Observations&, const Axis* axis, std::vector<Finding>&);
+
+/// Whether the scatter of the two directions differs (see repeatability.asymmetric).
+bool scatter_is_asymmetric(const AxisTest&);
+
+/// Targets that do not give every value: not reached from each direction that occurs, or once
+/// where others were reached more often.
+struct Incomplete {
+  std::vector<std::size_t> unpaired, single;
+  bool any() const { return !unpaired.empty() || !single.empty(); }
+};
+Incomplete incomplete_targets(const AxisTest&);
+
+/// What an analysis evaluates: all targets, or (`leave_out`) the complete ones; the finding says
+/// which targets were concerned and what was done.
+AxisTest choose_targets(const AxisTest&, bool leave_out, std::vector<Finding>&);
+
+/// `uncertainty.budget` with its parts, or `uncertainty.no-data` with the missing keys.
+Finding budget_finding(const BudgetOrGap&, bool rotary);
+
+/// "100, 250 mm"
+std::string target_list(const AxisTest&, const std::vector<std::size_t>& targets);
+
+}  // namespace nonio::math
