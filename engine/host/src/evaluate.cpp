@@ -14,8 +14,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* manifest_name = "campaign.toml";
-
 /// Nobody throws on purpose; whatever a plugin does throw ends here, with its name.
 template <class Call>
 auto guarded(const std::string& who, const Call& call) -> decltype(call()) {
@@ -38,7 +36,7 @@ class CampaignRun {
       : folder_(folder), context_(context), stage_(stage) {}
 
   Evaluated run(const std::string& id) {
-    out_.campaign.id = id;
+    id_ = out_.campaign.id = id;
     if (read_manifest()) {
       read_measurements();
       analyse();
@@ -70,7 +68,11 @@ class CampaignRun {
     out_.campaign = std::move(manifest->campaign);
     out_.campaign.laboratory = context_.site.laboratory;
     manifest_ = std::move(*manifest);
-    return true;
+    if (out_.campaign.id != id_) {
+      report(Error{"the id changed while the campaign was read", manifest_name});
+      out_.campaign.id = id_;
+    }
+    return !failed();
   }
 
   void read_measurements() {
@@ -86,11 +88,11 @@ class CampaignRun {
 
   Expected<void> read_measurement(const Measurement& m, Observations& into) {
     const auto path = path_inside(folder_, m.file);
+    const auto file = path ? MappedFile::open(*path) : fail(path.error());
+    note_input(m.file, file ? sha256(file->bytes()) : absent);
     if (!path)
       return fail(Error{"measurement \"" + m.id + "\": " + path.error().message, manifest_name});
-    const auto file = MappedFile::open(*path);
     if (!file) return fail(Error{"measurement \"" + m.id + "\": " + file.error().message, m.file});
-    note_input(m.file, file->bytes());
     const auto reader = choose_reader(m, file->bytes());
     if (!reader) return fail(reader.error());
     if (*reader == nullptr) return {};
@@ -116,10 +118,10 @@ class CampaignRun {
     return {};
   }
 
-  void note_input(const std::string& name, std::string_view bytes) {
+  void note_input(const std::string& name, const std::string& digest_now) {
     for (const auto& [known, digest] : out_.inputs)
-      if (known == name) return;
-    out_.inputs.emplace_back(name, sha256(bytes));
+      if (known == input_name(name)) return;
+    out_.inputs.emplace_back(input_name(name), digest_now);
   }
 
   /// The reader that is named, or the first that knows the content; none if no plugin reads this
@@ -371,6 +373,7 @@ class CampaignRun {
   const fs::path& folder_;
   const Context& context_;
   const Stage& stage_;
+  std::string id_;
   Evaluated out_;
   Manifest manifest_;
   std::vector<Observations> observations_;
@@ -385,6 +388,8 @@ Decision decide(double value, double U, double tolerance) {
   if (value > tolerance + U) return Decision::does_not_conform;
   return Decision::cannot_be_decided;
 }
+
+std::string input_name(const std::string& file) { return "file " + file; }
 
 Inputs shared_inputs(const Context& context) {
   return {{"site.toml", context.site_sha256},

@@ -27,6 +27,13 @@ struct Context {
 /// What a campaign's results depend on, in the order in which a change is reported.
 using Inputs = std::vector<std::pair<std::string, std::string>>;  // name, SHA-256
 
+inline constexpr const char* manifest_name = "campaign.toml";
+/// How a measurement file is called in `Inputs`.
+std::string input_name(const std::string& file);
+
+/// Stands for the SHA-256 of a file that cannot be read.
+inline constexpr const char* absent = "absent";
+
 /// The parts of `Inputs` that all campaigns share.
 Inputs shared_inputs(const Context& context);
 

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "progress.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+namespace nonio::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void print_event(const Json& event) {
+  std::cout << event.dump(-1, ' ', false, Json::error_handler_t::replace) << std::endl;
+}
+
+std::string duration(double seconds) {
+  const auto s = static_cast<long>(seconds + 0.5);
+  if (s < 60) return std::to_string(s) + " s";
+  if (s < 3600) return std::to_string(s / 60) + " min " + std::to_string(s % 60) + " s";
+  return std::to_string(s / 3600) + " h " + std::to_string(s / 60 % 60) + " min";
+}
+
+std::size_t terminal_width() {
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80;
+}
+
+std::string message_of(const host::CampaignState& c) {
+  if (c.errors.empty()) return c.reason;
+  const Error& e = c.errors.front();
+  return e.file + (e.line != 0 ? ":" + std::to_string(e.line) : "") + (e.file.empty() ? "" : ": ") +
+         e.message;
+}
+
+}  // namespace
+
+Progress::Progress(bool quiet, bool json)
+    : quiet_(quiet), json_(json), bar_(!quiet && !json && ::isatty(STDERR_FILENO) == 1) {}
+
+host::RunEvents Progress::events() {
+  return {[this](const std::string& m) { note(m); },
+          [this](std::size_t n, std::size_t k) { planned(n, k); },
+          [this](const host::CampaignState& c) { finished(c); },
+          [this] {
+            if (bar_) draw();
+          }};
+}
+
+void Progress::note(const std::string& message) {
+  if (json_)
+    print_event({{"event", "note"}, {"message", message}});
+  else
+    std::cerr << "nonio: " << message << "\n";
+}
+
+void Progress::planned(std::size_t campaigns, std::size_t to_do) {
+  to_do_ = to_do;
+  began_ = Clock::now();
+  if (json_)
+    print_event({{"event", "planned"}, {"campaigns", campaigns}, {"to_do", to_do}});
+  else if (!quiet_)
+    std::cerr << campaigns << " campaigns, " << to_do << " to do\n";
+}
+
+void Progress::finished(const host::CampaignState& c) {
+  ++done_;
+  const bool failed = c.status == "failed";
+  if (failed) ++failed_;
+  if (json_) {
+    Json event = {{"event", "campaign"}, {"id", c.id},    {"status", c.status},
+                  {"reason", c.reason},  {"done", done_}, {"to_do", to_do_}};
+    if (failed) event["message"] = message_of(c);
+    return print_event(event);
+  }
+  if (bar_ ? failed : failed || !quiet_) {
+    clear();
+    std::cerr << (failed                    ? "failed    "
+                  : c.status == "attention" ? "attention "
+                                            : "ok        ")
+              << c.id << (failed ? ": " + message_of(c) : "") << "\n";
+  }
+  if (bar_) draw();
+}
+
+void Progress::draw() {
+  const auto now = Clock::now();
+  if (drawn_once_ && now - drawn_ < std::chrono::milliseconds(100) && done_ < to_do_) return;
+  drawn_ = now;
+  drawn_once_ = true;
+  const double elapsed = std::chrono::duration<double>(now - began_).count();
+  const double rate = elapsed > 0.0 ? static_cast<double>(done_) / elapsed : 0.0;
+  std::string text = " " + std::to_string(done_) + "/" + std::to_string(to_do_) + "  " +
+                     std::to_string(failed_) + " failed";
+  if (done_ > 0 && rate > 0.0) {
+    std::string r = std::to_string(rate);
+    r.erase(r.find('.') + 2);
+    text += "  " + r + "/s  " + duration(static_cast<double>(to_do_ - done_) / rate) + " left";
+  }
+  const std::size_t width = terminal_width();
+  const std::size_t cells =
+      width > text.size() + 4 ? std::min<std::size_t>(width - text.size() - 4, 40) : 0;
+  const std::size_t full = to_do_ == 0 ? cells : cells * done_ / to_do_;
+  std::cerr << "\r\033[K[" << std::string(full, '#') << std::string(cells - full, '.') << "]"
+            << text << std::flush;
+}
+
+void Progress::clear() {
+  if (bar_ && drawn_once_) std::cerr << "\r\033[K";
+}
+
+void Progress::end() {
+  if (bar_ && drawn_once_) std::cerr << "\n";
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+#include "nonio/host/run.h"
+
+namespace nonio::app {
+
+/// How a run shows what it does: a bar on stderr where that is a terminal, else a plain line for
+/// each campaign; with --json one event a line on stdout; with --quiet only failures.
+class Progress {
+ public:
+  Progress(bool quiet, bool json);
+  host::RunEvents events();
+  /// Ends the bar's line.
+  void end();
+
+ private:
+  void note(const std::string& message);
+  void planned(std::size_t campaigns, std::size_t to_do);
+  void finished(const host::CampaignState& campaign);
+  void draw();
+  void clear();
+
+  using Clock = std::chrono::steady_clock;
+  bool quiet_, json_, bar_;
+  std::size_t to_do_ = 0, done_ = 0, failed_ = 0;
+  Clock::time_point began_ = Clock::now(), drawn_{};
+  bool drawn_once_ = false;
+};
+
+}  // namespace nonio::app

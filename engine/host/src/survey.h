@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "nonio/host/evaluate.h"
+#include "nonio/host/run.h"
+
+namespace nonio::host {
+
+struct SurveyInput {
+  std::filesystem::path site, out;
+  const Context& context;
+  std::uint64_t night;  ///< the one that is being done
+  bool force;
+};
+
+/// All campaigns of a site, by id, each with what is to be done with it and why. Campaigns whose
+/// ids collide come out failed, with an error that names all their folders.
+Expected<std::vector<CampaignState>> survey(const SurveyInput& input);
+
+/// Fills in what the record of a campaign done tonight says.
+void take_over_record(CampaignState& state, const Record& record);
+
+}  // namespace nonio::host
