@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "nonio/reports/font.h"
+#include "nonio/sdk/error.h"
+
+/// A document as a value: blocks from top to bottom, and how they look. Texts are UTF-8 in NFC;
+/// `field` says where a text came from, for the message when it cannot be printed. Lengths in pt.
+namespace nonio::reports {
+
+struct Colour {
+  float red = 0, green = 0, blue = 0;
+  bool operator==(const Colour&) const = default;
+};
+
+enum class Dash : std::uint8_t { solid, dashed, dotted, dash_dot };
+enum class Marker : std::uint8_t { none, up, down, dot, ring };
+
+struct Style {
+  double page_width = 595.28, page_height = 841.89;  // ISO 216 A4
+  double left = 51, right = 51, top = 43, bottom = 43;
+  double title = 18, heading = 12, subheading = 9.5, body = 8.5, small = 7.5;
+  double plot_height = 150;
+  double see_through = 0.25;
+  Colour text, muted, rule, shade, accent, attention, failed, good, plus, minus;
+};
+
+enum class Level : std::uint8_t { good, attention, failed, info };
+
+struct Heading {
+  std::string text;
+  int level = 1;  ///< 0: the document's title, 1: with a rule, 2: of a table or a list
+};
+
+struct Paragraph {
+  enum class Look : std::uint8_t { body, bold, small, muted };
+  std::string text;
+  Look look = Look::body;
+};
+
+/// Labels with values beside them; a value that is empty has no row.
+struct Grid {
+  struct Row {
+    std::string label, value, field;
+  };
+  std::string title;
+  std::vector<Row> rows;
+};
+
+struct Table {
+  struct Column {
+    std::string title, unit;
+    bool number = false;  ///< to the right
+  };
+  struct Cell {
+    std::string text;
+    bool bold = false;
+    Level level = Level::info;  ///< attention and failed are marked
+  };
+  std::string title;
+  std::vector<Column> columns;
+  std::vector<std::vector<Cell>> rows;
+};
+
+/// Lines, bands and markers over one horizontal axis, in the units that are printed.
+struct Plot {
+  struct Curve {
+    enum class Kind : std::uint8_t { line, band, bars };
+    Kind kind = Kind::line;
+    std::vector<double> x, y;
+    std::vector<double> y2{};  ///< of a band, its other side; bars go from y to y2
+    Colour colour{};
+    double width = 0.8;
+    Dash dash = Dash::solid;
+    Marker marker = Marker::none;
+    double marker_size = 2.2;
+    std::string legend{};  ///< empty: not in the legend
+  };
+  /// A span of the vertical axis, drawn as a dimension line at the right.
+  struct Span {
+    double from, to;
+    std::string text;
+  };
+  std::string title, x_title, y_title;
+  std::string language{};  ///< of the numbers
+  std::vector<Curve> curves;
+  std::vector<Span> spans{};
+  bool degrees = false;  ///< the horizontal axis is an angle: ticks at parts of a turn
+  bool zero_line = true;
+  std::string empty_text{};  ///< what is said where there is nothing to draw
+};
+
+/// Something that the reader must know: a mark, a title, what it says, what to do.
+struct Note {
+  Level level = Level::info;
+  std::string title, says, advice;
+};
+
+/// The line that is read first.
+struct Status {
+  Level level = Level::good;
+  std::string text;
+  std::vector<std::string> lines{};
+};
+
+struct Spacer {
+  double height = 6;
+};
+
+struct Block;
+
+/// Parts side by side; too high for a page they come one below the other.
+struct Columns {
+  std::vector<std::vector<Block>> parts;
+  std::vector<double> shares{};  ///< of the width; empty: equal
+};
+
+struct Block {
+  std::variant<Heading, Paragraph, Grid, Table, Plot, Note, Status, Spacer, Columns> what;
+  std::string field{};
+};
+
+struct Document {
+  std::string title, author, subject, language;
+  std::string date;  ///< YYYY-MM-DD, for the file's properties; may be empty
+  std::string head;  ///< at the top of the second page and those that follow
+  std::string foot;  ///< at the bottom of every page
+  std::string page_of = "{page}/{pages}";
+  Style style;
+  std::vector<Block> blocks;
+};
+
+/// The same document and fonts give the same bytes.
+Expected<std::string> pdf(const Document&, const Fonts&);
+
+}  // namespace nonio::reports

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "pieces.h"
+
+namespace nonio::reports {
+
+void SetText::draw(Canvas& canvas, std::size_t i, double x, double y, double width,
+                   double align) const {
+  const TextLine& l = lines[i];
+  canvas.text(x + align * (width - l.width * size), y - size, bold, size,
+              std::span(glyphs).subspan(l.begin, l.end - l.begin));
+}
+
+void SetText::draw_all(Canvas& canvas, double x, double y, double width, double align) const {
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    draw(canvas, i, x, y - leading() * static_cast<double>(i), width, align);
+}
+
+Expected<SetText> set_text(const Context& context, std::string_view text, bool bold, double size,
+                           double width, std::string_view field) {
+  auto glyphs = shape(text, context.font(bold), field);
+  if (!glyphs) return fail(glyphs.error());
+  SetText out{std::move(*glyphs), {}, bold, size};
+  out.lines = wrap(out.glyphs, width / size);
+  return out;
+}
+
+Expected<SetText> set_line(const Context& context, std::string_view text, bool bold, double size,
+                           double width, std::string_view field) {
+  auto glyphs = shape(text, context.font(bold), field);
+  if (!glyphs) return fail(glyphs.error());
+  SetText out{shortened(std::move(*glyphs), width / size, context.font(bold)), {}, bold, size};
+  out.lines.push_back({0, out.glyphs.size(), width_of(out.glyphs)});
+  return out;
+}
+
+Colour colour_of(const Style& style, Level level) {
+  switch (level) {
+    case Level::good:
+      return style.good;
+    case Level::attention:
+      return style.attention;
+    case Level::failed:
+      return style.failed;
+    case Level::info:
+      break;
+  }
+  return style.accent;
+}
+
+void draw_mark(Canvas& canvas, const Style& style, Level level, double x, double y, double size) {
+  canvas.fill_colour(colour_of(style, level));
+  if (level == Level::attention) {
+    canvas.move_to(x, y);
+    canvas.line_to(x + size, y);
+    canvas.line_to(x + size / 2, y + size);
+    canvas.close();
+    canvas.fill();
+  } else if (level == Level::failed) {
+    canvas.rectangle(x, y, size, size);
+    canvas.fill();
+  } else if (level == Level::good) {
+    canvas.circle(x + size / 2, y + size / 2, size / 2);
+    canvas.fill();
+  } else {
+    canvas.stroke_colour(colour_of(style, level));
+    canvas.line(size / 5);
+    canvas.circle(x + size / 2, y + size / 2, size * 0.4);
+    canvas.stroke();
+  }
+}
+
+namespace {
+
+/// Lines of a text as pieces: together while they are few, else each for itself.
+void add_text(std::vector<Piece>& pieces, const SetText& text, double indent, Colour colour,
+              bool with_next = false) {
+  constexpr std::size_t together = 8;
+  for (std::size_t i = 0; i < text.lines.size();) {
+    const std::size_t n = text.lines.size() <= together ? text.lines.size() : 1;
+    Canvas canvas;
+    canvas.fill_colour(colour);
+    for (std::size_t k = 0; k < n; ++k)
+      text.draw(canvas, i + k, indent, -text.leading() * static_cast<double>(k));
+    i += n;
+    pieces.push_back({text.leading() * static_cast<double>(n), 0.0, std::move(canvas.ops),
+                      with_next && i == text.lines.size()});
+  }
+}
+
+Expected<Laid> lay(const Heading& heading, double width, const Context& context,
+                   std::string_view field) {
+  const Style& style = context.style;
+  const double size = heading.level == 0   ? style.title
+                      : heading.level == 1 ? style.heading
+                                           : style.subheading;
+  auto text = set_text(context, heading.text, true, size, width, field);
+  if (!text) return fail(text.error());
+  Canvas canvas;
+  canvas.fill_colour(heading.level == 2 ? style.text : style.accent);
+  const double above = heading.level == 1 ? 9 : heading.level == 2 ? 4 : 0;
+  text->draw_all(canvas, 0, -above);
+  double height = above + text->height();
+  if (heading.level == 1) {
+    canvas.stroke_colour(style.accent);
+    canvas.line(0.8);
+    canvas.segment(0, -height - 1, width, -height - 1);
+    height += 2;
+  }
+  return Laid{{{height, heading.level == 2 ? 2.0 : 4.0, std::move(canvas.ops), true}}};
+}
+
+Expected<Laid> lay(const Paragraph& paragraph, double width, const Context& context,
+                   std::string_view field) {
+  const Style& style = context.style;
+  using Look = Paragraph::Look;
+  const bool small = paragraph.look == Look::small || paragraph.look == Look::muted;
+  auto text = set_text(context, paragraph.text, paragraph.look == Look::bold,
+                       small ? style.small : style.body, width, field);
+  if (!text) return fail(text.error());
+  Laid out;
+  add_text(out.pieces, *text, 0, paragraph.look == Look::muted ? style.muted : style.text);
+  out.pieces.back().gap = 3;
+  return out;
+}
+
+Expected<Laid> lay(const Grid& grid, double width, const Context& context, std::string_view field) {
+  const Style& style = context.style;
+  Laid out;
+  if (!grid.title.empty()) {
+    auto title = set_text(context, grid.title, true, style.body, width, field);
+    if (!title) return fail(title.error());
+    add_text(out.pieces, *title, 0, style.accent, true);
+    out.pieces.back().gap = 1.5;
+  }
+  double label_width = 0;
+  for (const Grid::Row& row : grid.rows)
+    if (auto label = shape(row.label, context.fonts.regular, row.field))
+      label_width = std::max(label_width, width_of(*label) * style.small);
+  label_width = std::min(label_width, 0.45 * width);
+  for (const Grid::Row& row : grid.rows) {
+    if (row.value.empty()) continue;
+    auto label = set_text(context, row.label, false, style.small, label_width, row.field);
+    if (!label) return fail(label.error());
+    const double x = label_width + 6;
+    auto value = set_text(context, row.value, false, style.small, width - x, row.field);
+    if (!value) return fail(value.error());
+    Piece first;
+    Canvas canvas;
+    canvas.fill_colour(style.muted);
+    label->draw_all(canvas, 0, 0);
+    std::vector<Piece> lines;
+    add_text(lines, *value, x, style.text);
+    first.ops = std::move(canvas.ops) + "q\n" + lines.front().ops + "Q\n";
+    first.height = std::max(lines.front().height, label->height());
+    lines.front() = std::move(first);
+    lines.back().gap = 0.8;
+    std::move(lines.begin(), lines.end(), std::back_inserter(out.pieces));
+  }
+  if (!out.pieces.empty()) out.pieces.back().gap = 5;
+  return out;
+}
+
+Expected<Laid> lay(const Note& note, double width, const Context& context, std::string_view field) {
+  const Style& style = context.style;
+  constexpr double indent = 13;
+  Laid out;
+  const auto add = [&](const std::string& text, bool bold, bool with_next) -> Expected<void> {
+    if (text.empty()) return {};
+    auto set = set_text(context, text, bold, style.body, width - indent, field);
+    if (!set) return fail(set.error());
+    add_text(out.pieces, *set, indent, style.text, with_next);
+    return {};
+  };
+  if (auto ok = add(note.title, true, true); !ok) return fail(ok.error());
+  if (auto ok = add(note.says, false, !note.advice.empty()); !ok) return fail(ok.error());
+  if (auto ok = add(note.advice.empty() ? "" : "→ " + note.advice, false, false); !ok)
+    return fail(ok.error());
+  if (out.pieces.empty()) return out;
+  Canvas canvas;
+  draw_mark(canvas, style, note.level, 0.5, -style.body, 7.5);
+  out.pieces.front().ops = "q\n" + canvas.ops + "Q\n" + out.pieces.front().ops;
+  out.pieces.back().with_next = false;
+  out.pieces.back().gap = 4.5;
+  return out;
+}
+
+Expected<Laid> lay(const Status& status, double width, const Context& context,
+                   std::string_view field) {
+  const Style& style = context.style;
+  constexpr double pad = 6, bar = 4, indent = 24;
+  std::vector<SetText> texts;
+  auto head = set_text(context, status.text, true, style.body + 1.5, width - indent - pad, field);
+  if (!head) return fail(head.error());
+  texts.push_back(std::move(*head));
+  for (const std::string& line : status.lines) {
+    auto text = set_text(context, "• " + line, false, style.body, width - indent - pad, field);
+    if (!text) return fail(text.error());
+    texts.push_back(std::move(*text));
+  }
+  double height = 2 * pad;
+  for (const SetText& text : texts) height += text.height();
+  if (height > context.page_room) {  // hardly ever: then without the box, so that it may be divided
+    Laid out;
+    for (const SetText& text : texts) add_text(out.pieces, text, 0, style.text);
+    return out;
+  }
+  Canvas canvas;
+  canvas.filled(0, -height, width, height, style.shade);
+  canvas.filled(0, -height, bar, height, colour_of(style, status.level));
+  draw_mark(canvas, style, status.level, bar + 6, -pad - style.body - 1.5, 9);
+  canvas.fill_colour(style.text);
+  double y = -pad;
+  for (const SetText& text : texts) {
+    text.draw_all(canvas, indent, y);
+    y -= text.height();
+  }
+  return Laid{{{height, 6, std::move(canvas.ops), false}}};
+}
+
+Expected<Laid> lay(const Spacer& spacer, double, const Context&, std::string_view) {
+  return Laid{{{0.0, spacer.height, {}, false}}};
+}
+
+Expected<Laid> lay(const Table& table, double width, const Context& context,
+                   std::string_view field) {
+  return lay_table(table, width, context, field);
+}
+
+Expected<Laid> lay(const Plot& plot, double width, const Context& context, std::string_view field) {
+  return lay_plot(plot, width, context, field);
+}
+
+Expected<Laid> lay_all(const std::vector<Block>& blocks, double width, const Context& context) {
+  Laid out;
+  for (const Block& block : blocks) {
+    auto laid = lay_block(block, width, context);
+    if (!laid) return laid;
+    std::move(laid->pieces.begin(), laid->pieces.end(), std::back_inserter(out.pieces));
+  }
+  return out;
+}
+
+Expected<Laid> lay(const Columns& columns, double width, const Context& context, std::string_view) {
+  constexpr double gutter = 16;
+  const std::size_t n = columns.parts.size();
+  const double room = width - gutter * static_cast<double>(n - 1);
+  Canvas canvas;
+  double x = 0, height = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double share =
+        i < columns.shares.size() ? columns.shares[i] : 1.0 / static_cast<double>(n);
+    auto part = lay_all(columns.parts[i], room * share, context);
+    if (!part) return part;
+    double y = 0;
+    for (const Piece& piece : part->pieces) {
+      canvas.place(x, -y, piece.ops);
+      y += piece.height + piece.gap;
+    }
+    height = std::max(height, y);
+    x += room * share + gutter;
+  }
+  if (height <= context.page_room) return Laid{{{height, 0, std::move(canvas.ops), false}}};
+  Laid out;
+  for (const std::vector<Block>& blocks : columns.parts) {
+    auto part = lay_all(blocks, width, context);
+    if (!part) return part;
+    std::move(part->pieces.begin(), part->pieces.end(), std::back_inserter(out.pieces));
+  }
+  return out;
+}
+
+}  // namespace
+
+Expected<Laid> lay_block(const Block& block, double width, const Context& context) {
+  return std::visit([&](const auto& what) { return lay(what, width, context, block.field); },
+                    block.what);
+}
+
+}  // namespace nonio::reports

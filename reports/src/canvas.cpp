@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "canvas.h"
+
+#include "bytes.h"
+
+namespace nonio::reports {
+
+void Canvas::number(double value) {
+  append_real(ops, value);
+  ops += ' ';
+}
+
+void Canvas::colour(Colour c, const char* op) {
+  for (const float part : {c.red, c.green, c.blue}) number(part);
+  ops += op;
+}
+
+void Canvas::fill_colour(Colour c) {
+  if (c == state_.fill) return;
+  state_.fill = c;
+  colour(c, "rg\n");
+}
+
+void Canvas::stroke_colour(Colour c) {
+  if (c == state_.stroke) return;
+  state_.stroke = c;
+  colour(c, "RG\n");
+}
+
+void Canvas::line(double width, Dash dash) {
+  if (width != state_.width) {
+    number(width);
+    ops += "w\n";
+    state_.width = width;
+  }
+  if (dash == state_.dash) return;
+  state_.dash = dash;
+  switch (dash) {
+    case Dash::solid:
+      ops += "[] 0 d\n";
+      break;
+    case Dash::dashed:
+      ops += "[4 2] 0 d\n";
+      break;
+    case Dash::dotted:
+      ops += "[1 1.6] 0 d\n";
+      break;
+    case Dash::dash_dot:
+      ops += "[6 2 1 2] 0 d\n";
+      break;
+  }
+}
+
+void Canvas::see_through(bool on) {
+  if (on == state_.see_through) return;
+  if (on) {
+    kept_ = state_;
+    ops += "q /G1 gs\n";
+    state_.see_through = true;
+  } else {
+    ops += "Q\n";
+    state_ = kept_;
+  }
+}
+
+void Canvas::move_to(double x, double y) {
+  number(x);
+  number(y);
+  ops += "m\n";
+}
+
+void Canvas::line_to(double x, double y) {
+  number(x);
+  number(y);
+  ops += "l\n";
+}
+
+void Canvas::curve_to(double x1, double y1, double x2, double y2, double x3, double y3) {
+  for (const double v : {x1, y1, x2, y2, x3, y3}) number(v);
+  ops += "c\n";
+}
+
+void Canvas::rectangle(double x, double y, double w, double h) {
+  for (const double v : {x, y, w, h}) number(v);
+  ops += "re\n";
+}
+
+void Canvas::circle(double x, double y, double radius) {
+  const double c = radius * 0.5523;  // 4 (sqrt 2 - 1)/3: a quarter circle as one Bezier curve
+  move_to(x + radius, y);
+  curve_to(x + radius, y + c, x + c, y + radius, x, y + radius);
+  curve_to(x - c, y + radius, x - radius, y + c, x - radius, y);
+  curve_to(x - radius, y - c, x - c, y - radius, x, y - radius);
+  curve_to(x + c, y - radius, x + radius, y - c, x + radius, y);
+}
+
+void Canvas::segment(double x1, double y1, double x2, double y2) {
+  move_to(x1, y1);
+  line_to(x2, y2);
+  stroke();
+}
+
+void Canvas::filled(double x, double y, double w, double h, Colour c) {
+  fill_colour(c);
+  rectangle(x, y, w, h);
+  fill();
+}
+
+void Canvas::clip(double x, double y, double w, double h) {
+  ops += "q\n";
+  rectangle(x, y, w, h);
+  ops += "W n\n";
+}
+
+void Canvas::leave() {
+  ops += "Q\n";
+  state_ = State{};
+}
+
+void Canvas::show(bool bold, double size, std::span<const Glyph> glyphs) {
+  ops += bold ? "/F2 " : "/F1 ";
+  number(size);
+  ops += "Tf (";
+  for (const Glyph& g : glyphs)
+    for (const int byte : {g.id >> 8, g.id & 0xFF}) {
+      const char c = static_cast<char>(byte);
+      if (c == '\r') {
+        ops += "\\r";
+        continue;
+      }
+      if (c == '(' || c == ')' || c == '\\') ops += '\\';
+      ops += c;
+    }
+  ops += ") Tj ET\n";
+}
+
+void Canvas::text(double x, double y, bool bold, double size, std::span<const Glyph> glyphs) {
+  if (glyphs.empty()) return;
+  ops += "BT ";
+  number(x);
+  number(y);
+  ops += "Td ";
+  show(bold, size, glyphs);
+}
+
+void Canvas::text_upwards(double x, double y, bool bold, double size,
+                          std::span<const Glyph> glyphs) {
+  if (glyphs.empty()) return;
+  ops += "BT 0 1 -1 0 ";
+  number(x);
+  number(y);
+  ops += "Tm ";
+  show(bold, size, glyphs);
+}
+
+void Canvas::place(double x, double y, const std::string& operators) {
+  if (operators.empty()) return;
+  ops += "q 1 0 0 1 ";
+  number(x);
+  number(y);
+  ops += "cm\n";
+  ops += operators;
+  ops += "Q\n";
+}
+
+}  // namespace nonio::reports

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/reports/font.h"
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+
+#include "bytes.h"
+
+namespace nonio::reports {
+namespace {
+
+/// Big-endian numbers of a font file; beyond its end everything is 0 and `ok` turns false.
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+  std::uint32_t u16(std::size_t at) const { return byte(at) << 8 | byte(at + 1); }
+  std::uint32_t u32(std::size_t at) const { return u16(at) << 16 | u16(at + 2); }
+  int s16(std::size_t at) const { return static_cast<std::int16_t>(u16(at)); }
+  bool ok() const { return ok_; }
+
+  /// Offset of a table; nothing if the font has none.
+  std::optional<std::size_t> table(std::string_view tag) const {
+    const std::size_t count = u16(4);
+    for (std::size_t i = 0; i < count; ++i)
+      if (12 + 16 * i + 16 <= bytes_.size() && bytes_.substr(12 + 16 * i, 4) == tag)
+        return u32(12 + 16 * i + 8);
+    return {};
+  }
+
+ private:
+  std::uint32_t byte(std::size_t at) const {
+    if (at < bytes_.size()) return static_cast<unsigned char>(bytes_[at]);
+    ok_ = false;
+    return 0;
+  }
+  std::string_view bytes_;
+  mutable bool ok_ = true;
+};
+
+/// The Unicode cmap of format 4 (basic plane), spread out by character.
+bool read_cmap(const Reader& r, std::size_t cmap, std::vector<std::uint16_t>& glyphs) {
+  const std::size_t count = r.u16(cmap + 2);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t record = cmap + 4 + 8 * i;
+    const std::size_t at = cmap + r.u32(record + 4);
+    const bool unicode = r.u16(record) == 0 || (r.u16(record) == 3 && r.u16(record + 2) == 1);
+    if (!unicode || r.u16(at) != 4) continue;
+    const std::size_t segments = r.u16(at + 6) / 2;
+    for (std::size_t s = 0; s < segments; ++s) {
+      const std::uint32_t last = r.u16(at + 14 + 2 * s);
+      const std::size_t first_at = at + 16 + 2 * segments + 2 * s;
+      const std::uint32_t first = r.u16(first_at);
+      const std::uint32_t delta = r.u16(first_at + 2 * segments);
+      const std::size_t range_at = first_at + 4 * segments;
+      const std::uint32_t range = r.u16(range_at);
+      for (std::uint32_t c = first; c <= last && c != 0xFFFF && r.ok(); ++c) {
+        std::uint32_t glyph = range == 0 ? c : r.u16(range_at + range + 2 * (c - first));
+        if (glyph != 0 || range == 0) glyph = (glyph + delta) & 0xFFFF;
+        if (glyph == 0) continue;
+        if (c >= glyphs.size()) glyphs.resize(c + 1);
+        glyphs[c] = static_cast<std::uint16_t>(glyph);
+      }
+    }
+    return r.ok();
+  }
+  return false;
+}
+
+void append_hex(std::string& out, std::uint32_t value) {
+  constexpr char digits[] = "0123456789ABCDEF";
+  for (int shift = 12; shift >= 0; shift -= 4) out += digits[value >> shift & 15];
+}
+
+/// Glyphs back to characters. The minus sign is given back as "-", so that numbers copied out of a
+/// report are numbers.
+std::string to_unicode(const Font& font) {
+  std::vector<std::uint16_t> character(font.advance.size());
+  for (std::size_t c = font.glyphs.size(); c-- > 0;)
+    if (font.glyphs[c] < character.size())
+      character[font.glyphs[c]] = static_cast<std::uint16_t>(c);
+  constexpr std::size_t minus = 0x2212;
+  if (minus < font.glyphs.size() && font.glyphs[minus] != 0) character[font.glyphs[minus]] = u'-';
+  std::vector<std::string> lines;
+  for (std::size_t g = 1; g < character.size(); ++g) {
+    if (character[g] == 0) continue;
+    std::string line = "<";
+    append_hex(line, static_cast<std::uint32_t>(g));
+    line += "> <";
+    append_hex(line, character[g]);
+    lines.push_back(line + ">\n");
+  }
+  std::string out =
+      "/CIDInit /ProcSet findresource begin\n12 dict begin\nbegincmap\n"
+      "/CIDSystemInfo << /Registry (Adobe) /Ordering (UCS) /Supplement 0 >> def\n"
+      "/CMapName /Adobe-Identity-UCS def\n/CMapType 2 def\n"
+      "1 begincodespacerange\n<0000> <FFFF>\nendcodespacerange\n";
+  constexpr std::size_t most = 100;  // entries of one block, by the CMap specification
+  for (std::size_t i = 0; i < lines.size(); i += most) {
+    const std::size_t n = std::min(most, lines.size() - i);
+    append_int(out, static_cast<long long>(n));
+    out += " beginbfchar\n";
+    for (std::size_t k = i; k < i + n; ++k) out += lines[k];
+    out += "endbfchar\n";
+  }
+  return out + "endcmap\nCMapName currentdict /CMap defineresource pop\nend\nend\n";
+}
+
+std::string widths_array(const std::vector<std::uint16_t>& advance) {
+  std::string out = "[0 [";
+  for (const std::uint16_t w : advance) {
+    append_int(out, w);
+    out += ' ';
+  }
+  out.back() = ']';
+  return out + "]";
+}
+
+/// Six letters that tell this subset from every other, then the name: "ABCDEF+LiberationSans".
+std::string subset_name(std::string_view bytes, std::string_view path) {
+  std::uint64_t hash = 1469598103934665603U;  // FNV-1a, 64 bits
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+  std::string name;
+  for (int i = 0; i < 6; ++i, hash /= 26) name += static_cast<char>('A' + hash % 26);
+  name += '+';
+  path = path.substr(path.find_last_of('/') + 1);
+  for (const char c : path.substr(0, path.find_last_of('.')))
+    if ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-')
+      name += c;
+  return name.substr(0, 100);
+}
+
+}  // namespace
+
+Expected<Font> parse_font(std::string bytes, std::string_view name) {
+  const Reader r(bytes);
+  const auto broken = [&](std::string_view why) {
+    return fail(Error{"a TrueType font was expected, but " + std::string(why), std::string(name)});
+  };
+  if (r.u32(0) != 0x00010000) return broken("the file does not begin as one");
+  const auto head = r.table("head"), hhea = r.table("hhea"), hmtx = r.table("hmtx");
+  const auto cmap = r.table("cmap"), maxp = r.table("maxp");
+  if (!head || !hhea || !hmtx || !cmap || !maxp || !r.table("glyf"))
+    return broken("a table of it is missing");
+  const double units = r.u16(*head + 18);
+  if (units < 16) return broken("its units per em are " + std::to_string(r.u16(*head + 18)));
+  const auto scaled = [&](int value) {
+    return static_cast<int>(value * 1000.0 / units + (value < 0 ? -0.5 : 0.5));
+  };
+  Font font;
+  font.name = subset_name(bytes, name);
+  for (std::size_t i = 0; i < 4; ++i) font.box[i] = scaled(r.s16(*head + 36 + 2 * i));
+  font.ascent = scaled(r.s16(*hhea + 4));
+  font.descent = scaled(r.s16(*hhea + 6));
+  font.cap_height = font.ascent * 8 / 10;
+  if (const auto os2 = r.table("OS/2"); os2 && r.u16(*os2) >= 2)
+    font.cap_height = scaled(r.s16(*os2 + 88));
+  const std::size_t glyphs = r.u16(*maxp + 4), metrics = r.u16(*hhea + 34);
+  if (metrics == 0 || metrics > glyphs) return broken("its widths are not those of its glyphs");
+  for (std::size_t g = 0; g < glyphs; ++g)
+    font.advance.push_back(static_cast<std::uint16_t>(
+        scaled(static_cast<int>(r.u16(*hmtx + 4 * std::min(g, metrics - 1))))));
+  if (!read_cmap(r, *cmap, font.glyphs)) return broken("it has no Unicode cmap of format 4");
+  if (!r.ok()) return broken("the file ends early");
+  for (std::uint16_t& g : font.glyphs)
+    if (g >= glyphs) g = 0;
+  font.widths = widths_array(font.advance);
+  font.to_unicode_deflated = deflated(to_unicode(font), 9);
+  font.file_deflated = deflated(bytes, 9);
+  font.bytes = std::move(bytes);
+  return font;
+}
+
+Expected<std::shared_ptr<const Fonts>> shared_fonts(std::string_view regular_bytes,
+                                                    std::string_view regular_name,
+                                                    std::string_view bold_bytes,
+                                                    std::string_view bold_name) {
+  struct Memo {
+    std::mutex mutex;
+    std::string regular_name, bold_name;
+    std::shared_ptr<const Fonts> fonts;
+  };
+  static Memo memo;  // never changes what is given, only how long it takes
+  const std::lock_guard lock(memo.mutex);
+  if (memo.fonts && memo.regular_name == regular_name && memo.bold_name == bold_name &&
+      memo.fonts->regular.bytes == regular_bytes && memo.fonts->bold.bytes == bold_bytes)
+    return memo.fonts;
+  auto regular = parse_font(std::string(regular_bytes), regular_name);
+  if (!regular) return fail(regular.error());
+  auto bold = parse_font(std::string(bold_bytes), bold_name);
+  if (!bold) return fail(bold.error());
+  memo.fonts = std::make_shared<const Fonts>(Fonts{std::move(*regular), std::move(*bold)});
+  memo.regular_name = regular_name;
+  memo.bold_name = bold_name;
+  return memo.fonts;
+}
+
+}  // namespace nonio::reports

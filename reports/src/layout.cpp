@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "pdf_file.h"
+#include "pieces.h"
+
+namespace nonio::reports {
+namespace {
+
+constexpr double head_room = 16, foot_room = 16;
+
+/// Puts strips on pages, from top to bottom.
+class Pages {
+ public:
+  Pages(const Style& style, bool head)
+      : style_(style),
+        room_(style.page_height - style.top - style.bottom - foot_room),
+        head_(head ? head_room : 0) {
+    pages_.emplace_back();
+  }
+
+  void add(const Laid& laid) {
+    const std::vector<Piece>& pieces = laid.pieces;
+    for (std::size_t i = 0; i < pieces.size();) {
+      std::size_t end = i + 1;
+      double height = pieces[i].height;
+      while (pieces[end - 1].with_next && end < pieces.size()) {
+        height += pieces[end - 1].gap + pieces[end].height;
+        ++end;
+      }
+      if (height > room_ - head_) end = i + 1, height = pieces[i].height;  // longer than a page
+      if (y_ + height > room_ + 0.01 && y_ > top_of_page()) {
+        next_page();
+        if (i > laid.rows_from)
+          for (const Piece& piece : laid.repeated) put(piece);
+      }
+      for (; i < end; ++i) put(pieces[i]);
+    }
+  }
+
+  std::vector<Canvas> take() { return std::move(pages_); }
+
+ private:
+  double top_of_page() const { return pages_.size() > 1 ? head_ : 0.0; }
+  void next_page() {
+    pages_.emplace_back();
+    y_ = top_of_page();
+  }
+  void put(const Piece& piece) {
+    pages_.back().place(style_.left, style_.page_height - style_.top - y_, piece.ops);
+    y_ += piece.height + piece.gap;
+  }
+
+  const Style& style_;
+  double room_, head_;
+  std::vector<Canvas> pages_;
+  double y_ = 0.0;
+};
+
+std::string numbered(std::string text, std::string_view place, std::size_t number) {
+  if (const std::size_t at = text.find(place); at != std::string::npos)
+    text.replace(at, place.size(), std::to_string(number));
+  return text;
+}
+
+/// The second pass, when the number of pages is known.
+Expected<void> add_heads_and_feet(std::vector<Canvas>& pages, const Document& document,
+                                  const Context& context) {
+  const Style& style = document.style;
+  const double width = style.page_width - style.left - style.right;
+  for (std::size_t i = 0; i < pages.size(); ++i) {
+    Canvas canvas;
+    const std::string number =
+        numbered(numbered(document.page_of, "{page}", i + 1), "{pages}", pages.size());
+    auto right = set_line(context, number, false, style.small, 0.4 * width, "page_of");
+    if (!right) return fail(right.error());
+    auto left = set_line(context, document.foot, false, style.small,
+                         width - right->lines[0].width * style.small - 10, "foot");
+    if (!left) return fail(left.error());
+    canvas.stroke_colour(style.rule);
+    canvas.line(0.4);
+    canvas.segment(0, foot_room - 2, width, foot_room - 2);
+    canvas.fill_colour(style.muted);
+    left->draw(canvas, 0, 0, foot_room - 5);
+    right->draw(canvas, 0, 0, foot_room - 5, width, 1.0);
+    pages[i].place(style.left, style.bottom - 6, canvas.ops);
+    if (i == 0 || document.head.empty()) continue;
+    Canvas head;
+    auto text = set_line(context, document.head, false, style.small, width, "head");
+    if (!text) return fail(text.error());
+    head.fill_colour(style.muted);
+    text->draw(head, 0, 0, 0);
+    head.stroke_colour(style.rule);
+    head.line(0.4);
+    head.segment(0, -style.small * 1.3 - 1, width, -style.small * 1.3 - 1);
+    pages[i].place(style.left, style.page_height - style.top, head.ops);
+  }
+  return {};
+}
+
+}  // namespace
+
+Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
+  const Style& style = document.style;
+  const double width = style.page_width - style.left - style.right;
+  const double room = style.page_height - style.top - style.bottom - head_room - foot_room;
+  if (!(width > 100 && room > 100))
+    return fail("the page's margins leave no room: " + std::to_string(width) + " pt by " +
+                std::to_string(room) + " pt");
+  const Context context{style, fonts, room};
+  for (const auto& [text, field] :
+       {std::pair(&document.title, "title"), std::pair(&document.author, "author"),
+        std::pair(&document.subject, "subject")})
+    if (auto glyphs = shape(*text, fonts.regular, field); !glyphs) return fail(glyphs.error());
+  Laid waiting;  // headings wait for what follows them
+  Pages pages(style, !document.head.empty());
+  for (const Block& block : document.blocks) {
+    auto laid = lay_block(block, width, context);
+    if (!laid) return fail(laid.error());
+    if (!waiting.pieces.empty()) {
+      laid->pieces.insert(laid->pieces.begin(), waiting.pieces.begin(), waiting.pieces.end());
+      laid->rows_from += waiting.pieces.size();
+      waiting.pieces.clear();
+    }
+    if (!laid->pieces.empty() && laid->pieces.back().with_next)
+      waiting = std::move(*laid);
+    else
+      pages.add(*laid);
+  }
+  for (Piece& piece : waiting.pieces) piece.with_next = false;
+  pages.add(waiting);
+  std::vector<Canvas> drawn = pages.take();
+  if (auto ok = add_heads_and_feet(drawn, document, context); !ok) return fail(ok.error());
+  PdfFile file{document.title,    document.author,   document.subject,
+               document.language, document.date,     style.page_width,
+               style.page_height, style.see_through, {}};
+  for (Canvas& canvas : drawn) file.pages.push_back(std::move(canvas.ops));
+  return write_pdf(file, fonts);
+}
+
+}  // namespace nonio::reports

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/reports/number.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/sdk/format.h"
+
+namespace nonio::reports {
+namespace {
+
+constexpr double largest_plain = 1e9;
+constexpr const char* dash = "–";
+
+/// The minus sign is U+2212; the PDF's ToUnicode gives it back as "-", for spreadsheets.
+std::string typeset(std::string number, std::string_view language) {
+  number = localised(std::move(number), language);
+  std::string out;
+  for (const char c : number)
+    if (c == '-')
+      out += "\u2212";
+    else
+      out += c;
+  return out;
+}
+
+/// To a multiple of 10^place.
+std::string rounded_text(double printed_value, int place, std::string_view language) {
+  if (!std::isfinite(printed_value)) return dash;
+  if (std::fabs(printed_value) >= largest_plain)
+    return typeset(short_text(printed_value, 4), language);
+  if (place <= 0) return typeset(fixed_text(printed_value, -place), language);
+  const double unit = std::pow(10.0, place);
+  return typeset(fixed_text(std::nearbyint(printed_value / unit) * unit, 0), language);
+}
+
+/// The place (power of ten) of the second significant digit, after rounding to it: 0.0996 gives
+/// 0.10 and so -2.
+int place_of_second_digit(double size) {
+  const int place = static_cast<int>(std::floor(std::log10(size))) - 1;
+  const double carried = std::nearbyint(size / std::pow(10.0, place));
+  return carried >= 100.0 ? place + 1 : place;
+}
+
+}  // namespace
+
+Printed printed_result(double value, std::optional<double> U, Quantity quantity,
+                       std::string_view language) {
+  if (quantity == Quantity::count) return {printed_number(value, quantity, 0, language), ""};
+  const double shown = printed(value, quantity);
+  const double shown_U = U ? printed(*U, quantity) : 0.0;
+  if (!(shown_U > 0.0) || !std::isfinite(shown_U)) return {rounded_text(shown, -3, language), ""};
+  const int place = std::max(place_of_second_digit(shown_U), -9);
+  return {rounded_text(shown, place, language), rounded_text(shown_U, place, language)};
+}
+
+std::string printed_number(double si, Quantity quantity, int decimals, std::string_view language) {
+  return rounded_text(printed(si, quantity), -decimals, language);
+}
+
+int decimals_for(const std::vector<double>& si, Quantity quantity, int most) {
+  int decimals = 0;
+  for (const double v : si) {
+    const double value = printed(v, quantity);
+    if (!(std::fabs(value) < largest_plain)) continue;
+    for (double scale = std::pow(10.0, decimals); decimals < most; ++decimals, scale *= 10.0)
+      if (std::fabs(value * scale - std::nearbyint(value * scale)) < 1e-6) break;
+  }
+  return decimals;
+}
+
+std::string unit_text(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::deviation:
+      return "µm";
+    case Quantity::angle:
+      return "°";
+    case Quantity::angular_deviation:
+      return "″";
+    case Quantity::small_angle:
+      return "µrad";
+    case Quantity::deviation_per_length:
+      return "µm/m";
+    case Quantity::deviation_per_angle:
+      return "″/°";
+    case Quantity::expansion:
+      return "µm/(m·K)";
+    case Quantity::temperature:
+      return "°C";
+    default:
+      return std::string(unit_of(quantity).symbol);
+  }
+}
+
+}  // namespace nonio::reports

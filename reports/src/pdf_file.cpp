@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pdf_file.h"
+
+#include <hpdf.h>
+#include <hpdf_conf.h>
+#include <hpdf_doc.h>
+#include <hpdf_objects.h>
+#include <hpdf_pages.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+
+#include "bytes.h"
+
+// The one place that knows libharu. Its own text functions are not used: libharu 2.3.0 would parse
+// and compress both fonts again for each document, lose glyphs in silence and write a 128 kB
+// CIDToGIDMap. Here the fonts are built from its objects, with streams that were compressed once.
+namespace nonio::reports {
+namespace {
+
+/// The first error of a document; libharu repeats it in every later call.
+struct Failure {
+  HPDF_STATUS code = HPDF_OK, detail = HPDF_OK;
+};
+
+void record(HPDF_STATUS code, HPDF_STATUS detail, void* user) {
+  auto* failure = static_cast<Failure*>(user);
+  if (failure->code == HPDF_OK) *failure = {code, detail};
+}
+
+struct Document {
+  Failure failure;
+  HPDF_Doc doc;
+  Document() : doc(HPDF_New(record, &failure)) {}
+  ~Document() {
+    if (doc != nullptr) HPDF_Free(doc);
+  }
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
+};
+
+/// libharu drops a /Filter that it did not apply itself; what is written here stands behind the
+/// dictionary's own entries.
+HPDF_STATUS write_filter(HPDF_Dict, HPDF_Stream stream) {
+  return HPDF_Stream_WriteStr(stream, "/Filter /FlateDecode\012");
+}
+
+HPDF_STATUS write_widths(HPDF_Dict dict, HPDF_Stream stream) {
+  const auto* font = static_cast<const Font*>(dict->attr);
+  HPDF_STATUS status = HPDF_Stream_WriteStr(stream, "/W ");
+  if (status == HPDF_OK) status = HPDF_Stream_WriteStr(stream, font->widths.c_str());
+  return status == HPDF_OK ? HPDF_Stream_WriteStr(stream, "\012") : status;
+}
+
+void fill(HPDF_Dict dict, const std::string& compressed) {
+  HPDF_Stream_Write(dict->stream, reinterpret_cast<const HPDF_BYTE*>(compressed.data()),
+                    static_cast<HPDF_UINT>(compressed.size()));
+  dict->filter = HPDF_STREAM_FILTER_NONE;
+  dict->write_fn = write_filter;
+}
+
+HPDF_Dict compressed_stream(HPDF_Doc doc, const std::string& compressed) {
+  HPDF_Dict dict = HPDF_DictStream_New(doc->mmgr, doc->xref);
+  if (dict != nullptr) fill(dict, compressed);
+  return dict;
+}
+
+HPDF_Dict new_object(HPDF_Doc doc, const char* type) {
+  HPDF_Dict dict = HPDF_Dict_New(doc->mmgr);
+  if (dict == nullptr || HPDF_Xref_Add(doc->xref, dict) != HPDF_OK) return nullptr;
+  if (type != nullptr) HPDF_Dict_AddName(dict, "Type", type);
+  return dict;
+}
+
+HPDF_Dict add_descriptor(HPDF_Doc doc, const Font& font, bool bold) {
+  HPDF_Dict file = compressed_stream(doc, font.file_deflated);
+  HPDF_Dict descriptor = new_object(doc, "FontDescriptor");
+  if (file == nullptr || descriptor == nullptr) return nullptr;
+  HPDF_Dict_AddNumber(file, "Length1", static_cast<HPDF_INT32>(font.bytes.size()));
+  HPDF_Dict_AddName(descriptor, "FontName", font.name.c_str());
+  HPDF_Dict_AddNumber(descriptor, "Flags", 4);  // symbolic: glyphs are chosen by number
+  HPDF_Array box = HPDF_Array_New(doc->mmgr);
+  HPDF_Dict_Add(descriptor, "FontBBox", box);
+  for (const int side : font.box) HPDF_Array_AddNumber(box, side);
+  HPDF_Dict_AddNumber(descriptor, "ItalicAngle", 0);
+  HPDF_Dict_AddNumber(descriptor, "Ascent", font.ascent);
+  HPDF_Dict_AddNumber(descriptor, "Descent", font.descent);
+  HPDF_Dict_AddNumber(descriptor, "CapHeight", font.cap_height);
+  HPDF_Dict_AddNumber(descriptor, "StemV", bold ? 140 : 80);
+  HPDF_Dict_Add(descriptor, "FontFile2", file);
+  return descriptor;
+}
+
+HPDF_Dict add_font(HPDF_Doc doc, const Font& font, bool bold) {
+  HPDF_Dict descriptor = add_descriptor(doc, font, bold);
+  HPDF_Dict to_unicode = compressed_stream(doc, font.to_unicode_deflated);
+  HPDF_Dict cid_font = new_object(doc, "Font"), type0 = new_object(doc, "Font");
+  if (descriptor == nullptr || to_unicode == nullptr || cid_font == nullptr || type0 == nullptr)
+    return nullptr;
+  HPDF_Dict_AddName(cid_font, "Subtype", "CIDFontType2");
+  HPDF_Dict_AddName(cid_font, "BaseFont", font.name.c_str());
+  HPDF_Dict system = HPDF_Dict_New(doc->mmgr);
+  HPDF_Dict_Add(cid_font, "CIDSystemInfo", system);
+  HPDF_Dict_Add(system, "Registry", HPDF_String_New(doc->mmgr, "Adobe", nullptr));
+  HPDF_Dict_Add(system, "Ordering", HPDF_String_New(doc->mmgr, "Identity", nullptr));
+  HPDF_Dict_AddNumber(system, "Supplement", 0);
+  HPDF_Dict_Add(cid_font, "FontDescriptor", descriptor);
+  HPDF_Dict_AddName(cid_font, "CIDToGIDMap", "Identity");
+  cid_font->attr = const_cast<Font*>(&font);
+  cid_font->write_fn = write_widths;
+
+  HPDF_Dict_AddName(type0, "Subtype", "Type0");
+  HPDF_Dict_AddName(type0, "BaseFont", font.name.c_str());
+  HPDF_Dict_AddName(type0, "Encoding", "Identity-H");
+  HPDF_Array descendants = HPDF_Array_New(doc->mmgr);
+  HPDF_Dict_Add(type0, "DescendantFonts", descendants);
+  HPDF_Array_Add(descendants, cid_font);
+  HPDF_Dict_Add(type0, "ToUnicode", to_unicode);
+  return type0;
+}
+
+/// One dictionary that all pages share.
+HPDF_Dict add_resources(HPDF_Doc doc, const Fonts& fonts, double see_through) {
+  HPDF_Dict resources = new_object(doc, nullptr);
+  HPDF_Dict regular = add_font(doc, fonts.regular, false), bold = add_font(doc, fonts.bold, true);
+  HPDF_Dict state = new_object(doc, "ExtGState");
+  if (resources == nullptr || regular == nullptr || bold == nullptr || state == nullptr)
+    return nullptr;
+  HPDF_Dict by_font = HPDF_Dict_New(doc->mmgr);
+  HPDF_Dict_Add(resources, "Font", by_font);
+  HPDF_Dict_Add(by_font, "F1", regular);
+  HPDF_Dict_Add(by_font, "F2", bold);
+  HPDF_Dict_AddReal(state, "ca", static_cast<HPDF_REAL>(see_through));
+  HPDF_Dict by_state = HPDF_Dict_New(doc->mmgr);
+  HPDF_Dict_Add(resources, "ExtGState", by_state);
+  HPDF_Dict_Add(by_state, "G1", state);
+  return resources;
+}
+
+/// Text of the document's properties: UTF-16 with a byte-order mark, from UTF-8 that was checked.
+std::string utf16(std::string_view text) {
+  std::string out = "\xFE\xFF";
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const std::size_t size = lead < 0x80 ? 1 : lead < 0xE0 ? 2 : 3;
+    std::uint32_t c = size == 1 ? lead : lead & (size == 2 ? 0x1FU : 0x0FU);
+    for (std::size_t k = 1; k < size && i + k < text.size(); ++k)
+      c = c << 6 | (static_cast<unsigned char>(text[i + k]) & 0x3FU);
+    out += static_cast<char>(c >> 8);
+    out += static_cast<char>(c & 0xFF);
+    i += size;
+  }
+  constexpr std::size_t most = 2000;  // a property is a label; the text itself stands in the report
+  if (out.size() > most) out.resize(most);
+  return out;
+}
+
+void add_property(HPDF_Doc doc, const char* key, std::string_view text) {
+  if (text.empty()) return;
+  std::string bytes = utf16(text);
+  HPDF_Dict_Add(doc->info, key,
+                HPDF_Binary_New(doc->mmgr, reinterpret_cast<HPDF_BYTE*>(bytes.data()),
+                                static_cast<HPDF_UINT>(bytes.size())));
+}
+
+void add_properties(HPDF_Doc doc, const PdfFile& file) {
+  add_property(doc, "Title", file.title);
+  add_property(doc, "Author", file.author);
+  add_property(doc, "Subject", file.subject);
+  HPDF_Date date{};
+  date.ind = 'Z';
+  const auto part = [&](std::size_t at, std::size_t size, HPDF_INT& value) {
+    const char* from = file.date.data() + at;
+    return std::from_chars(from, from + size, value).ptr == from + size;
+  };
+  if (file.date.size() == 10 && part(0, 4, date.year) && part(5, 2, date.month) &&
+      part(8, 2, date.day) &&
+      std::chrono::year_month_day(std::chrono::year(date.year),
+                                  std::chrono::month(static_cast<unsigned>(date.month)),
+                                  std::chrono::day(static_cast<unsigned>(date.day)))
+          .ok())
+    HPDF_SetInfoDateAttr(doc, HPDF_INFO_CREATION_DATE, date);
+  if (!file.language.empty())
+    HPDF_Dict_Add(doc->catalog, "Lang", HPDF_String_New(doc->mmgr, file.language.c_str(), nullptr));
+}
+
+void add_page(HPDF_Doc doc, const PdfFile& file, const std::string& content, HPDF_Dict resources) {
+  HPDF_Page page = HPDF_AddPage(doc);
+  if (page == nullptr) return;
+  HPDF_Page_SetWidth(page, static_cast<HPDF_REAL>(file.width));
+  HPDF_Page_SetHeight(page, static_cast<HPDF_REAL>(file.height));
+  HPDF_Dict_RemoveElement(page, "Resources");
+  HPDF_Dict_Add(page, "Resources", resources);
+  constexpr int level = 3;  // 6 costs twice the time for 5 % of size
+  fill(static_cast<HPDF_PageAttr>(page->attr)->contents, deflated(content, level));
+}
+
+}  // namespace
+
+Expected<std::string> write_pdf(const PdfFile& file, const Fonts& fonts) {
+  Document pdf;
+  if (pdf.doc == nullptr) return fail("the PDF could not be begun: out of memory");
+  pdf.doc->pdf_version = HPDF_VER_17;
+  add_properties(pdf.doc, file);
+  std::string bytes;
+  if (HPDF_Dict resources = add_resources(pdf.doc, fonts, file.see_through)) {
+    for (const std::string& content : file.pages) add_page(pdf.doc, file, content, resources);
+    if (pdf.failure.code == HPDF_OK && HPDF_SaveToStream(pdf.doc) == HPDF_OK) {
+      HPDF_UINT32 size = HPDF_GetStreamSize(pdf.doc);
+      bytes.resize(size);
+      HPDF_ResetStream(pdf.doc);
+      HPDF_ReadFromStream(pdf.doc, reinterpret_cast<HPDF_BYTE*>(bytes.data()), &size);
+      bytes.resize(size);
+    }
+  }
+  if (pdf.failure.code != HPDF_OK || bytes.empty()) {
+    std::array<char, 16> code{};
+    std::to_chars(code.data(), code.data() + code.size() - 1, pdf.failure.code, 16);
+    return fail("the PDF could not be written: libharu error 0x" + std::string(code.data()) +
+                ", detail " + std::to_string(pdf.failure.detail));
+  }
+  return bytes;
+}
+
+}  // namespace nonio::reports

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "canvas.h"
+#include "nonio/reports/document.h"
+
+namespace nonio::reports {
+
+/// A strip of the document that no page break divides; its origin is its upper left corner.
+struct Piece {
+  double height = 0.0;
+  double gap = 0.0;  ///< below it, where something follows on the same page
+  std::string ops{};
+  bool with_next = false;  ///< not the last one on a page
+};
+
+/// A block as strips; `repeated` stands again at the top of each further page that begins behind
+/// the piece `rows_from`.
+struct Laid {
+  std::vector<Piece> pieces;
+  std::vector<Piece> repeated{};
+  std::size_t rows_from = 0;
+};
+
+struct Context {
+  const Style& style;
+  const Fonts& fonts;
+  double page_room;  ///< height between head and foot
+
+  const Font& font(bool bold) const { return bold ? fonts.bold : fonts.regular; }
+};
+
+/// A text that is set at one size, in lines.
+struct SetText {
+  Glyphs glyphs;
+  std::vector<TextLine> lines;
+  bool bold = false;
+  double size = 0.0;
+
+  double leading() const { return size * 1.3; }
+  double height() const { return leading() * static_cast<double>(lines.size()); }
+  /// Line `i` with its upper edge at y; align 0 left, 0.5 centre, 1 right within `width`.
+  void draw(Canvas&, std::size_t i, double x, double y, double width = 0.0,
+            double align = 0.0) const;
+  /// All lines, the first with its upper edge at y.
+  void draw_all(Canvas&, double x, double y, double width = 0.0, double align = 0.0) const;
+};
+
+Expected<SetText> set_text(const Context&, std::string_view text, bool bold, double size,
+                           double width, std::string_view field);
+/// In one line, with an ellipsis if it is too long for it.
+Expected<SetText> set_line(const Context&, std::string_view text, bool bold, double size,
+                           double width, std::string_view field);
+
+/// A filled sign: a disc, a triangle, a square or a ring, so that colour is not needed to tell.
+void draw_mark(Canvas&, const Style&, Level, double x, double y, double size);
+Colour colour_of(const Style&, Level);
+
+Expected<Laid> lay_block(const Block&, double width, const Context&);
+Expected<Laid> lay_table(const Table&, double width, const Context&, std::string_view field);
+Expected<Laid> lay_plot(const Plot&, double width, const Context&, std::string_view field);
+
+}  // namespace nonio::reports

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "axis_scale.h"
+#include "pieces.h"
+
+namespace nonio::reports {
+namespace {
+
+using Curve = Plot::Curve;
+constexpr double largest_drawn = 1e300;  // so that the differences of two of them stay finite
+
+bool drawable(double v) { return std::fabs(v) < largest_drawn; }
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+  void add(double v) {
+    if (!drawable(v)) return;
+    low = std::min(low, v);
+    high = std::max(high, v);
+  }
+  bool empty() const { return !(low <= high); }
+};
+
+/// Where the curves are drawn.
+struct Frame {
+  double x, y, w, h;  ///< lower left corner and size
+  AxisScale across, up;
+  double px(double v) const { return x + w * across.at(v); }
+  double py(double v) const { return y + h * up.at(v); }
+};
+
+void draw_marker(Canvas& canvas, Marker marker, double x, double y, double r, Colour colour) {
+  canvas.stroke_colour(colour);
+  canvas.line(0.6);
+  switch (marker) {
+    case Marker::none:
+      return;
+    case Marker::up:
+      canvas.fill_colour(colour);
+      canvas.move_to(x - r, y - 0.75 * r);
+      canvas.line_to(x + r, y - 0.75 * r);
+      canvas.line_to(x, y + r);
+      canvas.close_fill_and_stroke();
+      return;
+    case Marker::down:
+      canvas.fill_colour({1, 1, 1});
+      canvas.move_to(x - r, y + 0.75 * r);
+      canvas.line_to(x + r, y + 0.75 * r);
+      canvas.line_to(x, y - r);
+      canvas.close_fill_and_stroke();
+      return;
+    case Marker::dot:
+    case Marker::ring:
+      canvas.fill_colour(marker == Marker::dot ? colour : Colour{1, 1, 1});
+      canvas.circle(x, y, 0.8 * r);
+      canvas.fill_and_stroke();
+      return;
+  }
+}
+
+/// Points of one unbroken stretch; of many in the same place only the first, the extremes and the
+/// last, which look the same.
+struct Point {
+  double x, y;
+};
+void thin_out(std::vector<Point>& points) {
+  constexpr double place = 0.4;
+  if (points.size() < 400) return;
+  std::vector<Point> out;
+  for (std::size_t i = 0; i < points.size();) {
+    std::size_t end = i, low = i, high = i;
+    while (end < points.size() && std::fabs(points[end].x - points[i].x) < place) {
+      if (points[end].y < points[low].y) low = end;
+      if (points[end].y > points[high].y) high = end;
+      ++end;
+    }
+    std::vector<std::size_t> kept = {i, std::min(low, high), std::max(low, high), end - 1};
+    kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+    for (const std::size_t k : kept) out.push_back(points[k]);
+    i = end;
+  }
+  points = std::move(out);
+}
+
+/// The curve's unbroken stretches in page coordinates; a reading that is missing breaks it.
+std::vector<std::vector<Point>> stretches(const Frame& frame, const std::vector<double>& x,
+                                          const std::vector<double>& y) {
+  std::vector<std::vector<Point>> out(1);
+  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
+    if (drawable(x[i]) && drawable(y[i]))
+      out.back().push_back({frame.px(x[i]), frame.py(y[i])});
+    else if (!out.back().empty())
+      out.emplace_back();
+  }
+  for (auto& stretch : out) thin_out(stretch);
+  return out;
+}
+
+void path(Canvas& canvas, const std::vector<Point>& points) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    i == 0 ? canvas.move_to(points[i].x, points[i].y) : canvas.line_to(points[i].x, points[i].y);
+}
+
+void draw_line(Canvas& canvas, const Frame& frame, const Curve& curve) {
+  const auto parts = stretches(frame, curve.x, curve.y);
+  if (curve.width > 0) {
+    canvas.stroke_colour(curve.colour);
+    canvas.line(curve.width, curve.dash);
+    bool any = false;
+    for (const auto& part : parts)
+      if (part.size() > 1) path(canvas, part), any = true;
+    if (any) canvas.stroke();
+    canvas.line(curve.width);
+  }
+  double last = -1e9;
+  for (const auto& part : parts)
+    for (const Point& p : part) {
+      if (curve.marker == Marker::none && part.size() > 1) break;
+      if (std::fabs(p.x - last) < 1.5 * curve.marker_size) continue;
+      last = p.x;
+      draw_marker(canvas, curve.marker == Marker::none ? Marker::dot : curve.marker, p.x, p.y,
+                  curve.marker_size, curve.colour);
+    }
+}
+
+void draw_band(Canvas& canvas, const Frame& frame, const Curve& curve) {
+  std::vector<double> one = curve.y, other = curve.y2;
+  for (std::size_t i = 0; i < one.size() && i < other.size(); ++i)
+    if (!drawable(one[i]) || !drawable(other[i])) one[i] = other[i] = std::nan("");
+  const auto upper = stretches(frame, curve.x, one), lower = stretches(frame, curve.x, other);
+  canvas.see_through(true);
+  canvas.fill_colour(curve.colour);
+  for (std::size_t k = 0; k < std::min(upper.size(), lower.size()); ++k) {
+    if (upper[k].size() < 2) continue;
+    path(canvas, upper[k]);
+    for (auto p = lower[k].rbegin(); p != lower[k].rend(); ++p) canvas.line_to(p->x, p->y);
+    canvas.close();
+    canvas.fill();
+  }
+  canvas.see_through(false);
+  if (!(curve.width > 0)) return;
+  canvas.stroke_colour(curve.colour);
+  canvas.line(curve.width, curve.dash);
+  for (const auto* side : {&upper, &lower})
+    for (const auto& part : *side)
+      if (part.size() > 1) path(canvas, part), canvas.stroke();
+  canvas.line(curve.width);
+}
+
+void draw_bars(Canvas& canvas, const Frame& frame, const Curve& curve) {
+  canvas.stroke_colour(curve.colour);
+  canvas.line(curve.width);
+  bool any = false;
+  for (std::size_t i = 0; i < curve.x.size() && i < curve.y.size() && i < curve.y2.size(); ++i) {
+    if (!drawable(curve.x[i]) || !drawable(curve.y[i]) || !drawable(curve.y2[i])) continue;
+    canvas.move_to(frame.px(curve.x[i]), frame.py(curve.y[i]));
+    canvas.line_to(frame.px(curve.x[i]), frame.py(curve.y2[i]));
+    any = true;
+  }
+  if (any) canvas.stroke();
+}
+
+class PlotSetter {
+ public:
+  PlotSetter(const Plot& plot, double width, const Context& context, std::string_view field)
+      : plot_(plot),
+        width_(width),
+        context_(context),
+        style_(context.style),
+        field_(field),
+        size_(std::max(5.0, context.style.small - 0.5)) {}
+
+  Expected<Laid> lay() {
+    Expected<double> top = draw_title();
+    if (top) top = draw_legend(*top);
+    if (!top) return fail(top.error());
+    const double height = std::max(style_.plot_height, *top + 60);
+    Range across, up;
+    for (const Curve& curve : plot_.curves) {
+      for (const double v : curve.x) across.add(v);
+      for (const double v : curve.y) up.add(v);
+      for (const double v : curve.y2) up.add(v);
+    }
+    const auto drawn =
+        across.empty() || up.empty() ? draw_nothing(*top, height) : draw(*top, height, across, up);
+    if (!drawn) return fail(drawn.error());
+    return Laid{{{height, 5, std::move(canvas_.ops), false}}};
+  }
+
+ private:
+  Expected<double> draw_title() {
+    auto title = set_line(context_, plot_.title, true, style_.small + 0.5, width_, field_);
+    if (!title) return fail(title.error());
+    canvas_.fill_colour(style_.text);
+    title->draw(canvas_, 0, 0, 0);
+    return title->height() + 1;
+  }
+
+  void draw_sample(const Curve& curve, double x, double y) {
+    constexpr double length = 16;
+    if (curve.kind == Curve::Kind::band) {
+      canvas_.see_through(true);
+      canvas_.filled(x, y - 2.5, length, 5, curve.colour);
+      canvas_.see_through(false);
+      canvas_.stroke_colour(curve.colour);
+      canvas_.line(curve.width, curve.dash);
+      if (curve.width > 0) {
+        canvas_.segment(x, y + 2.5, x + length, y + 2.5);
+        canvas_.segment(x, y - 2.5, x + length, y - 2.5);
+      }
+    } else {
+      canvas_.stroke_colour(curve.colour);
+      canvas_.line(std::max(curve.width, 0.1), curve.dash);
+      if (curve.kind == Curve::Kind::bars)
+        canvas_.segment(x + length / 2, y - 3, x + length / 2, y + 3);
+      else if (curve.width > 0)
+        canvas_.segment(x, y, x + length, y);
+    }
+    canvas_.line(curve.width);
+    draw_marker(canvas_, curve.marker, x + length / 2, y, curve.marker_size, curve.colour);
+  }
+
+  Expected<double> draw_legend(double top) {
+    double x = 0, y = top;
+    bool any = false;
+    for (const Curve& curve : plot_.curves) {
+      if (curve.legend.empty()) continue;
+      auto text = set_line(context_, curve.legend, false, size_, width_ - 20, field_);
+      if (!text) return fail(text.error());
+      const double wide = 19 + text->lines[0].width * size_;
+      if (x > 0 && x + wide > width_) {
+        x = 0;
+        y += text->leading();
+      }
+      draw_sample(curve, x, -y - 0.65 * size_);
+      canvas_.fill_colour(style_.text);
+      text->draw(canvas_, 0, x + 19, -y);
+      x += wide + 9;
+      any = true;
+    }
+    return any ? y + 1.3 * size_ + 3 : y;
+  }
+
+  Expected<void> draw_nothing(double top, double height) {
+    auto text = set_text(context_, plot_.empty_text, false, style_.small, width_, field_);
+    if (!text) return fail(text.error());
+    canvas_.stroke_colour(style_.rule);
+    canvas_.line(0.5);
+    canvas_.rectangle(0, -height, width_, height - top);
+    canvas_.stroke();
+    canvas_.fill_colour(style_.muted);
+    text->draw_all(canvas_, 0, -(height + top) / 2, width_, 0.5);
+    return {};
+  }
+
+  Expected<void> draw(double top, double height, Range across, Range up) {
+    if (plot_.zero_line) up.add(0.0);
+    for (const Plot::Span& span : plot_.spans) up.add(span.from), up.add(span.to);
+    const double edge = (up.high - up.low) * 0.06, side = (across.high - across.low) * 0.025;
+    Frame frame{};
+    frame.across =
+        axis_scale(across.low - side, across.high + side, 7, plot_.degrees, plot_.language);
+    frame.up = axis_scale(up.low - edge, up.high + edge, 6, false, plot_.language);
+    std::vector<SetText> labels;
+    double label_width = 0;
+    for (const std::string& label : frame.up.labels) {
+      auto text = set_line(context_, label, false, size_, width_, field_);
+      if (!text) return fail(text.error());
+      label_width = std::max(label_width, text->lines[0].width * size_);
+      labels.push_back(std::move(*text));
+    }
+    const double below = 2.9 * size_ + 3;
+    frame.x = 1.5 * size_ + label_width + 4;
+    frame.y = -height + below;
+    frame.w = width_ - frame.x - 2 - span_room() * static_cast<double>(plot_.spans.size());
+    frame.h = height - top - below;
+    if (auto ok = draw_axes(frame, labels); !ok) return ok;
+    canvas_.clip(frame.x, frame.y, frame.w, frame.h);
+    canvas_.ops += "1 j\n";  // round joins: no spikes where a curve turns
+    for (const Curve& curve : plot_.curves) {
+      if (curve.kind == Curve::Kind::band) draw_band(canvas_, frame, curve);
+    }
+    for (const Curve& curve : plot_.curves) {
+      if (curve.kind == Curve::Kind::bars) draw_bars(canvas_, frame, curve);
+      if (curve.kind == Curve::Kind::line) draw_line(canvas_, frame, curve);
+    }
+    canvas_.leave();
+    return draw_spans(frame);
+  }
+
+  Expected<void> draw_axes(const Frame& f, const std::vector<SetText>& labels) {
+    canvas_.stroke_colour(style_.rule);
+    canvas_.line(0.25);
+    for (const double tick : f.up.ticks) canvas_.segment(f.x, f.py(tick), f.x + f.w, f.py(tick));
+    for (const double tick : f.across.ticks)
+      canvas_.segment(f.px(tick), f.y, f.px(tick), f.y + f.h);
+    canvas_.stroke_colour(style_.muted);
+    canvas_.line(0.5);
+    if (plot_.zero_line) canvas_.segment(f.x, f.py(0), f.x + f.w, f.py(0));
+    canvas_.rectangle(f.x, f.y, f.w, f.h);
+    canvas_.stroke();
+    canvas_.fill_colour(style_.text);
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      labels[i].draw(canvas_, 0, 0, f.py(f.up.ticks[i]) + 0.65 * size_, f.x - 3, 1.0);
+    double free_from = -1e9;
+    for (std::size_t i = 0; i < f.across.ticks.size(); ++i) {
+      auto text = set_line(context_, f.across.labels[i], false, size_, width_, field_);
+      if (!text) return fail(text.error());
+      const double x = f.px(f.across.ticks[i]), half = text->lines[0].width * size_ / 2;
+      if (x - half < free_from) continue;
+      free_from = x + half + 3;
+      text->draw(canvas_, 0, x - 50, f.y - 2, 100, 0.5);
+    }
+    auto across = set_line(context_, plot_.x_title, false, size_, f.w, field_);
+    auto up = set_line(context_, plot_.y_title, false, size_, f.h, field_);
+    if (!across) return fail(across.error());
+    if (!up) return fail(up.error());
+    across->draw(canvas_, 0, f.x, f.y - 2 - 1.3 * size_, f.w, 0.5);
+    canvas_.text_upwards(size_, f.y + (f.h - up->lines[0].width * size_) / 2, false, size_,
+                         up->glyphs);
+    return {};
+  }
+
+  double span_room() const { return 1.3 * size_ + 7; }
+
+  /// Dimension lines as in a drawing, from the level of one extreme to that of the other.
+  Expected<void> draw_spans(const Frame& f) {
+    double x = f.x + f.w + 5;
+    for (const Plot::Span& span : plot_.spans) {
+      auto text = set_line(context_, span.text, false, size_, f.h, field_);
+      if (!text) return fail(text.error());
+      const double low = f.py(std::min(span.from, span.to)),
+                   high = f.py(std::max(span.from, span.to));
+      canvas_.stroke_colour(style_.text);
+      canvas_.line(0.5);
+      canvas_.segment(x, low, x, high);
+      canvas_.segment(x - 2.5, low, x + 2.5, low);
+      canvas_.segment(x - 2.5, high, x + 2.5, high);
+      canvas_.fill_colour(style_.text);
+      const double wide = text->lines[0].width * size_;
+      const double from = std::clamp((low + high - wide) / 2, f.y, std::max(f.y, f.y + f.h - wide));
+      canvas_.text_upwards(x + size_ + 2, from, false, size_, text->glyphs);
+      x += span_room();
+    }
+    return {};
+  }
+
+  const Plot& plot_;
+  double width_;
+  const Context& context_;
+  const Style& style_;
+  std::string_view field_;
+  double size_;
+  Canvas canvas_;
+};
+
+}  // namespace
+
+Expected<Laid> lay_plot(const Plot& plot, double width, const Context& context,
+                        std::string_view field) {
+  return PlotSetter(plot, width, context, field).lay();
+}
+
+}  // namespace nonio::reports

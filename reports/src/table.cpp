@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <numeric>
+
+#include "pieces.h"
+
+namespace nonio::reports {
+namespace {
+
+constexpr double pad = 3;  // left and right of a cell
+
+struct Cells {
+  std::vector<Glyphs> text;
+  std::vector<bool> bold;
+};
+
+/// Widths of the columns: what each needs, if there is room, and what is left over shared out;
+/// else its widest word and a share of the rest.
+std::vector<double> column_widths(const std::vector<double>& natural,
+                                  const std::vector<double>& least, double width) {
+  const double sum = std::accumulate(natural.begin(), natural.end(), 0.0);
+  const double sum_least = std::accumulate(least.begin(), least.end(), 0.0);
+  std::vector<double> out(natural.size());
+  for (std::size_t c = 0; c < out.size(); ++c) {
+    if (sum <= width)
+      out[c] = natural[c] + (width - sum) / static_cast<double>(out.size());
+    else if (sum_least <= width)
+      out[c] = least[c] + (natural[c] - least[c]) * (width - sum_least) / (sum - sum_least);
+    else
+      out[c] = width * least[c] / sum_least;
+  }
+  return out;
+}
+
+class TableSetter {
+ public:
+  TableSetter(const Table& table, double width, const Context& context, std::string_view field)
+      : table_(table), width_(width), context_(context), field_(field) {}
+
+  Expected<Laid> lay() {
+    if (auto ok = shape_all(); !ok) return fail(ok.error());
+    Laid out;
+    if (auto ok = add_title(out); !ok) return fail(ok.error());
+    out.repeated.push_back(header());
+    out.pieces.push_back(out.repeated.front());
+    out.rows_from = out.pieces.size();
+    for (std::size_t r = 0; r < rows_.size(); ++r) add_row(out.pieces, r);
+    keep_together(out);
+    end_rule(out.pieces.back());
+    return out;
+  }
+
+ private:
+  std::string name_of(std::size_t c) const {
+    std::string name(field_);
+    if (!table_.title.empty()) name += (name.empty() ? "" : ", ") + table_.title;
+    return c < table_.columns.size() ? name + ", " + table_.columns[c].title : name;
+  }
+
+  Expected<void> shape_all() {
+    const std::size_t n = table_.columns.size();
+    std::vector<double> natural(n, 0.0), least(n, 0.0);
+    const double size = context_.style.small;
+    const auto measure = [&](std::size_t c, const Glyphs& text) {
+      const double all = width_of(text) * size, word = widest_word(text) * size;
+      natural[c] = std::max(natural[c], all + 2 * pad);
+      least[c] = std::max(least[c], std::min(word, 0.4 * width_) + 2 * pad);
+    };
+    for (std::size_t c = 0; c < n; ++c) {
+      auto title = shape(table_.columns[c].title, context_.fonts.bold, name_of(c));
+      if (!title) return fail(title.error());
+      auto unit = shape(table_.columns[c].unit, context_.fonts.regular, name_of(c));
+      if (!unit) return fail(unit.error());
+      measure(c, *title);
+      measure(c, *unit);
+      titles_.push_back(std::move(*title));
+      units_.push_back(std::move(*unit));
+    }
+    for (const auto& row : table_.rows) {
+      Cells cells;
+      for (std::size_t c = 0; c < n && c < row.size(); ++c) {
+        auto text = shape(row[c].text, context_.font(row[c].bold), name_of(c));
+        if (!text) return fail(text.error());
+        measure(c, *text);
+        cells.text.push_back(std::move(*text));
+        cells.bold.push_back(row[c].bold);
+      }
+      rows_.push_back(std::move(cells));
+    }
+    widths_ = column_widths(natural, least, width_);
+    return {};
+  }
+
+  Expected<void> add_title(Laid& out) const {
+    if (table_.title.empty()) return {};
+    const Style& style = context_.style;
+    auto text = set_text(context_, table_.title, true, style.subheading, width_, field_);
+    if (!text) return fail(text.error());
+    Canvas canvas;
+    canvas.fill_colour(style.text);
+    text->draw_all(canvas, 0, -3);
+    out.pieces.push_back({text->height() + 3, 2, std::move(canvas.ops), true});
+    return {};
+  }
+
+  SetText set(Glyphs glyphs, bool bold, std::size_t c) const {
+    SetText text{std::move(glyphs), {}, bold, context_.style.small};
+    text.lines = wrap(text.glyphs, (widths_[c] - 2 * pad) / text.size);
+    return text;
+  }
+
+  Piece header() const {
+    const Style& style = context_.style;
+    std::vector<SetText> titles, units;
+    double title_height = 0, unit_height = 0;
+    for (std::size_t c = 0; c < widths_.size(); ++c) {
+      titles.push_back(set(titles_[c], true, c));
+      title_height = std::max(title_height, titles[c].height());
+      units.push_back(set(units_[c], false, c));
+      if (!units_[c].empty()) unit_height = std::max(unit_height, units[c].height());
+    }
+    const double height = title_height + unit_height + 4;
+    Canvas canvas;
+    canvas.stroke_colour(style.text);
+    canvas.line(0.8);
+    canvas.segment(0, 0, width_, 0);
+    canvas.line(0.4);
+    canvas.segment(0, -height, width_, -height);
+    double x = 0;
+    for (std::size_t c = 0; c < widths_.size(); ++c) {
+      const double align = table_.columns[c].number ? 1.0 : 0.0, room = widths_[c] - 2 * pad;
+      canvas.fill_colour(style.text);
+      titles[c].draw_all(canvas, x + pad, -1.5 - (title_height - titles[c].height()), room, align);
+      canvas.fill_colour(style.muted);
+      if (!units_[c].empty()) units[c].draw_all(canvas, x + pad, -1.5 - title_height, room, align);
+      x += widths_[c];
+    }
+    return {height, 0, std::move(canvas.ops), true};
+  }
+
+  /// A row; one of more than `together` lines may be divided between two of them.
+  void add_row(std::vector<Piece>& pieces, std::size_t r) const {
+    constexpr std::size_t together = 20;
+    const Style& style = context_.style;
+    std::vector<SetText> cells;
+    std::size_t lines = 1;
+    for (std::size_t c = 0; c < rows_[r].text.size(); ++c) {
+      cells.push_back(set(rows_[r].text[c], rows_[r].bold[c], c));
+      lines = std::max(lines, cells[c].lines.size());
+    }
+    const std::size_t each = lines <= together ? lines : 1;
+    for (std::size_t first = 0; first < lines; first += each) {
+      Canvas canvas;
+      const double leading = style.small * 1.3;
+      const double above = first == 0 ? 1.0 : 0.0, below = first + each >= lines ? 1.0 : 0.0;
+      const double height = leading * static_cast<double>(each) + above + below;
+      if (r % 2 == 1) canvas.filled(0, -height, width_, height, style.shade);
+      double x = 0;
+      for (std::size_t c = 0; c < cells.size(); ++c) {
+        const Level level = table_.rows[r][c].level;
+        canvas.fill_colour(level == Level::info ? style.text : colour_of(style, level));
+        for (std::size_t i = first; i < std::min(first + each, cells[c].lines.size()); ++i)
+          cells[c].draw(canvas, i, x + pad, -above - leading * static_cast<double>(i - first),
+                        widths_[c] - 2 * pad, table_.columns[c].number ? 1.0 : 0.0);
+        x += widths_[c];
+      }
+      pieces.push_back({height, 0, std::move(canvas.ops), false});
+    }
+  }
+
+  /// Short tables stay whole; of long ones at least two rows come to stand on each side.
+  void keep_together(Laid& laid) const {
+    constexpr std::size_t whole = 14;
+    const std::size_t n = laid.pieces.size();
+    for (std::size_t i = 0; i + 1 < n; ++i)
+      if (rows_.size() <= whole || i <= laid.rows_from || i + 2 == n)
+        laid.pieces[i].with_next = true;
+  }
+
+  void end_rule(Piece& last) const {
+    Canvas canvas;
+    canvas.stroke_colour(context_.style.text);
+    canvas.line(0.4);
+    canvas.segment(0, -last.height, width_, -last.height);
+    last.ops += canvas.ops;
+    last.gap = 6;
+    last.with_next = false;
+  }
+
+  const Table& table_;
+  double width_;
+  const Context& context_;
+  std::string_view field_;
+  std::vector<Glyphs> titles_, units_;
+  std::vector<Cells> rows_;
+  std::vector<double> widths_;
+};
+
+}  // namespace
+
+Expected<Laid> lay_table(const Table& table, double width, const Context& context,
+                         std::string_view field) {
+  if (table.columns.empty() || table.rows.empty()) return Laid{};
+  return TableSetter(table, width, context, field).lay();
+}
+
+}  // namespace nonio::reports

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/reports/font.h"
+
+namespace nonio::reports {
+
+struct Glyph {
+  std::uint16_t id;
+  std::uint16_t advance;  ///< 1/1000 of the font size
+  bool space;             ///< may vanish at the end of a line
+  bool break_after;       ///< a line may end here
+};
+using Glyphs = std::vector<Glyph>;
+
+/// UTF-8 (NFC) to glyphs. What cannot be printed is an error that names the character and `field`;
+/// nothing is left out in silence.
+Expected<Glyphs> shape(std::string_view text, const Font&, std::string_view field);
+
+/// In units of the font size.
+double width_of(const Glyph* begin, const Glyph* end);
+inline double width_of(const Glyphs& g) { return width_of(g.data(), g.data() + g.size()); }
+
+/// The widest part that no space or hyphen divides, in units of the font size.
+double widest_word(const Glyphs&);
+
+struct TextLine {
+  std::size_t begin, end;  ///< of the glyphs, without the spaces at its end
+  double width;            ///< in units of the font size
+};
+
+/// Lines no wider than `width` (in units of the font size); a word that is wider is divided.
+std::vector<TextLine> wrap(const Glyphs&, double width);
+
+/// At most `width` wide, with an ellipsis if something had to go.
+Glyphs shortened(Glyphs, double width, const Font&);
+
+}  // namespace nonio::reports
