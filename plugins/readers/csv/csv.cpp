@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "csv.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "duplicates.h"
+#include "fields.h"
+#include "header.h"
+
+namespace nonio::csv {
+namespace {
+
+constexpr std::size_t longest_line = 65536;
+constexpr std::size_t report_every = std::size_t{4} << 20U;
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
+/// The lines of a file, without LF or CRLF; a CR at the very end of the file counts as CRLF.
+class Lines {
+ public:
+  explicit Lines(std::string_view bytes) : bytes_(bytes) {
+    if (bytes_.substr(0, byte_order_mark.size()) == byte_order_mark)
+      offset_ = byte_order_mark.size();
+  }
+  bool next(std::string_view& line) {
+    if (offset_ >= bytes_.size()) return false;
+    const std::size_t end = std::min(bytes_.find('\n', offset_), bytes_.size());
+    line = bytes_.substr(offset_, end - offset_);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    offset_ = end + 1;
+    ++number_;
+    return true;
+  }
+  std::uint64_t number() const { return number_; }  ///< of the line last given, from 1
+  std::size_t offset() const { return std::min(offset_, bytes_.size()); }
+
+ private:
+  std::string_view bytes_;
+  std::size_t offset_ = 0;
+  std::uint64_t number_ = 0;
+};
+
+enum class Content { nothing, comment, fields };
+
+Content content_of(std::string_view line) {
+  for (const char c : line)
+    if (c != ' ' && c != '\t') return c == '#' ? Content::comment : Content::fields;
+  return Content::nothing;
+}
+
+/// What no line of a text file may hold. Rows of numbers need no such look: their fields would not
+/// be numbers.
+std::optional<Error> not_text(std::string_view line) {
+  if (line.size() > longest_line)
+    return Error{"expected lines of at most " + std::to_string(longest_line) + " bytes, found " +
+                 std::to_string(line.size())};
+  if (line.find('\0') != line.npos)
+    return Error{"expected text in UTF-8, found a NUL byte; is the file UTF-16 or binary?"};
+  if (!is_utf8(line))
+    return Error{"expected text in UTF-8, found other bytes; save the file as UTF-8"};
+  if (line.find('\r') != line.npos)
+    return Error{"expected lines that end in LF or CRLF, found a lone CR"};
+  return std::nullopt;
+}
+
+/// How many rows the file may hold, from lines counted in windows spread over it. Only a hint:
+/// reserving too much costs address space and no memory, too little one more copy.
+std::size_t estimated_rows(std::string_view bytes, std::size_t columns) {
+  constexpr std::size_t window = 4096, windows = 64;
+  const std::size_t shortest = 2 * columns;  // of a row: a character and a separator a field
+  const std::size_t pieces = bytes.size() <= window * windows ? 1 : windows;
+  const std::size_t length = pieces == 1 ? bytes.size() : window;
+  std::size_t lines = 0;
+  for (std::size_t k = 0; k < pieces; ++k) {
+    const std::size_t first = pieces == 1 ? 0 : (bytes.size() - length) / (pieces - 1) * k;
+    const std::string_view part = bytes.substr(first, length);
+    lines += static_cast<std::size_t>(std::count(part.begin(), part.end(), '\n'));
+  }
+  const double share = static_cast<double>(lines) / static_cast<double>(pieces * length);
+  const auto rows = static_cast<std::size_t>(share * 1.02 * static_cast<double>(bytes.size()));
+  return std::min(rows, bytes.size() / shortest) + 64;
+}
+
+/// Reads the rows that follow a header into observations.
+class Rows {
+ public:
+  Rows(const Header& header, const Expectation& expectation, Observations& obs)
+      : header_(header),
+        position_scale_(unit_of(position_of(expectation.rotary)).per_si),
+        deviation_scale_(unit_of(deviation_of(expectation.angular_reading())).per_si),
+        obs_(obs) {}
+
+  void reserve(std::size_t rows);
+  /// False if the line is not a row; `error` then says why. Bool, because this runs once a row.
+  bool add(std::string_view line, std::uint64_t number);
+  const Error& error() const { return error_; }
+  Expected<void> finish();
+
+ private:
+  struct Row {
+    Key key;
+    double target = 0.0;   ///< in the unit of the file
+    double reading = 0.0;  ///< in the unit of the file
+    bool taken = false;
+    double extra[5] = {};  ///< time and what follows it in Role
+  };
+  bool parse_field(std::size_t column, Row& row);
+  bool parse(std::size_t column, Number& number);
+  bool consistent_mark(const Number& number, std::size_t column);
+  Error bad_number(std::size_t column) const;
+  Error wrong_count(std::string_view line) const;
+  std::vector<double>& extra_column(std::size_t k);
+  void store(const Row& row);
+  bool refuse(Error error) {
+    error_ = std::move(error);
+    return false;
+  }
+  Error at(std::size_t column, std::string message) const {
+    Error error{std::move(message)};
+    error.column = header_.names[column];
+    return error;
+  }
+  static bool extra(Role role) { return role >= Role::time; }
+  static std::size_t extra_index(Role role) {
+    return static_cast<std::size_t>(role) - static_cast<std::size_t>(Role::time);
+  }
+
+  const Header& header_;
+  double position_scale_, deviation_scale_;
+  Observations& obs_;
+  std::vector<std::string_view> fields_;
+  std::uint64_t line_ = 0;
+  std::uint64_t first_point_ = 0, first_comma_ = 0;  ///< lines with that decimal mark; 0: none
+  std::uint64_t empty_rows_ = 0;
+  std::vector<Key> not_taken_;
+  PassOrder order_;
+  Error error_;
+};
+
+std::vector<double>& Rows::extra_column(std::size_t k) {
+  std::vector<double>* const columns[] = {&obs_.time, &obs_.material, &obs_.air, &obs_.pressure,
+                                          &obs_.humidity};
+  return *columns[k];
+}
+
+void Rows::reserve(std::size_t rows) {
+  obs_.deviation.reserve(rows);
+  obs_.axes[0].position.reserve(rows);
+  obs_.axes[0].approach.reserve(rows);
+  obs_.run.reserve(rows);
+  obs_.source_line.reserve(rows);
+  for (const Role role : header_.roles)
+    if (extra(role)) extra_column(extra_index(role)).reserve(rows);
+}
+
+Error Rows::wrong_count(std::string_view line) const {
+  std::string message = "expected " + std::to_string(header_.roles.size()) +
+                        " fields as in the header row, found " + std::to_string(fields_.size());
+  if (header_.separator == ',' && fields_.size() > header_.roles.size())
+    message += "; a decimal comma needs \";\" or a tab between the fields";
+  return Error{message + ": " + shown(line)};
+}
+
+Error Rows::bad_number(std::size_t column) const {
+  const std::string_view text = fields_[column];
+  std::string message = "expected a number, found " + shown(text);
+  if (!header_.comma_allowed() && parse_number(text, true).kind == Number::Kind::taken)
+    message += "; a decimal comma needs \";\" or a tab between the fields";
+  else if (text.find_first_of(".,' ") != text.npos && text.find_first_of("0123456789") != text.npos)
+    message += " (no thousands separators, one decimal mark)";
+  return at(column, std::move(message));
+}
+
+/// 1.234 in a file with decimal commas may mean 1234; nobody can tell, so nobody guesses.
+bool Rows::consistent_mark(const Number& number, std::size_t column) {
+  const bool point = number.mark == DecimalMark::point;
+  std::uint64_t& first = point ? first_point_ : first_comma_;
+  const std::uint64_t other = point ? first_comma_ : first_point_;
+  if (first == 0) first = line_;
+  if (other == 0) return true;
+  return refuse(at(column, "found " + shown(fields_[column]) + " with a decimal " +
+                               (point ? "point" : "comma") + ", but a decimal " +
+                               (point ? "comma" : "point") + " in line " + std::to_string(other) +
+                               "; expected the same everywhere"));
+}
+
+bool Rows::parse(std::size_t column, Number& number) {
+  number = parse_number(fields_[column], header_.comma_allowed());
+  if (number.kind == Number::Kind::bad) return refuse(bad_number(column));
+  if (number.mark == DecimalMark::none || !header_.comma_allowed()) return true;
+  return consistent_mark(number, column);
+}
+
+bool Rows::parse_field(std::size_t column, Row& row) {
+  const std::string_view text = fields_[column];
+  const Role role = header_.roles[column];
+  if (role == Role::run) {
+    row.key.run = parse_run(text);
+    if (row.key.run != 0) return true;
+    return refuse(at(column, "expected a whole number from 1 to 4294967295, found " + shown(text)));
+  }
+  if (role == Role::direction) {
+    if (text != "+" && text != "-")
+      return refuse(at(column, "expected + or -, found " + shown(text)));
+    row.key.approach = text == "+" ? std::int8_t{1} : std::int8_t{-1};
+    return true;
+  }
+  Number number;
+  if (!parse(column, number)) return false;
+  const bool taken = number.kind == Number::Kind::taken;
+  if (role == Role::reading) {
+    row.taken = taken;
+    row.reading = number.value;
+  } else if (role == Role::target) {
+    if (!taken) return refuse(at(column, "expected a target, found " + shown(text)));
+    row.target = number.value;
+    row.key.target = number.value / position_scale_;
+  } else {
+    row.extra[extra_index(role)] = taken ? number.value : std::numeric_limits<double>::quiet_NaN();
+  }
+  return true;
+}
+
+void Rows::store(const Row& row) {
+  order_.see(row.key);
+  if (!row.taken) {
+    not_taken_.push_back(row.key);
+    return;
+  }
+  // The difference is taken before the conversion: 100.25 - 100 is exact, 0.10025 - 0.1 is not.
+  const double deviation = header_.reading_is_position
+                               ? (row.reading - row.target) / position_scale_
+                               : row.reading / deviation_scale_;
+  obs_.deviation.push_back(deviation);
+  obs_.axes[0].position.push_back(row.key.target);
+  obs_.axes[0].approach.push_back(row.key.approach);
+  obs_.run.push_back(row.key.run);
+  obs_.source_line.push_back(static_cast<std::uint32_t>(line_));
+  for (const Role role : header_.roles)
+    if (extra(role)) extra_column(extra_index(role)).push_back(row.extra[extra_index(role)]);
+}
+
+bool Rows::add(std::string_view line, std::uint64_t line_number) {
+  line_ = line_number;
+  if (!split(line, header_.separator, fields_))
+    return refuse(
+        {"a quote is not closed on its line, or something stands behind it: " + shown(line)});
+  // Spreadsheets leave rows of separators behind; nothing is in them that could be misread.
+  if (fields_[0].empty() &&
+      std::all_of(fields_.begin(), fields_.end(), [](auto field) { return field.empty(); })) {
+    ++empty_rows_;
+    return true;
+  }
+  if (fields_.size() != header_.roles.size()) return refuse(wrong_count(line));
+  Row row;
+  for (std::size_t column = 0; column < fields_.size(); ++column)
+    if (!parse_field(column, row)) return false;
+  store(row);
+  return true;
+}
+
+Expected<void> Rows::finish() {
+  if (obs_.size() == 0 && not_taken_.empty())
+    return fail("expected readings, found only a header row");
+  if (empty_rows_ > 0)
+    obs_.notes.push_back(std::to_string(empty_rows_) +
+                         (empty_rows_ == 1 ? " row with nothing between its separators was skipped"
+                                           : " rows with nothing between their separators were "
+                                             "skipped"));
+  obs_.missing = not_taken_.size();
+  if (!order_.unique())
+    if (auto ok = settle_duplicates(obs_, not_taken_); !ok) return ok;
+  if (obs_.size() == 0)
+    return fail("expected readings, found " + std::to_string(obs_.missing) +
+                " of which not one was taken");
+  return {};
+}
+
+Expected<Expectation> expectation_of(const ReadInput& input) {
+  const Measurement& m = input.measurement;
+  const Axis* axis = input.campaign.machine.axis(m.axis);
+  if (axis == nullptr)
+    return fail("expected the axis of measurement \"" + m.id + "\" in [machine.axes], found " +
+                (m.axis.empty() ? "none" : "\"" + m.axis + "\""));
+  const bool straightness = m.kind == "straightness";
+  if (straightness && axis->rotary)
+    return fail("expected a linear axis for a straightness, found the rotary axis \"" + m.axis +
+                "\"");
+  if (straightness && m.lateral.empty())
+    return fail("expected `lateral`, the direction of the deviation, in measurement \"" + m.id +
+                "\"");
+  return Expectation{m.axis, axis->rotary, straightness};
+}
+
+Observations empty_observations(const Measurement& m, const Expectation& e) {
+  Observations obs;
+  obs.measurement = m.id;
+  obs.angular = e.angular_reading();
+  obs.axes.push_back({m.axis, e.rotary, {}, {}});
+  Observations::Line line;
+  line.name = m.id;
+  const std::string& along = e.straightness ? m.lateral : m.axis;
+  const std::size_t coordinate =
+      along.empty() ? along.npos : std::string_view("XYZ").find(along[0]);
+  if (!obs.angular && coordinate != along.npos) line.sense[coordinate] = 1.0;
+  obs.lines.push_back(line);
+  return obs;
+}
+
+/// The next line with fields on it; false at the end of the file, or with `error` set.
+bool next_content(Lines& lines, std::string_view& line, std::optional<Error>& error) {
+  while (lines.next(line)) {
+    const Content content = content_of(line);
+    if (content == Content::fields) return true;
+    if (content == Content::nothing) continue;
+    error = not_text(line);
+    if (error) return false;
+  }
+  return false;
+}
+
+Expected<Header> read_header(Lines& lines, const Expectation& expectation) {
+  std::string_view line;
+  std::optional<Error> error;
+  if (!next_content(lines, line, error))
+    return error ? fail(std::move(*error)) : fail("expected a header row, found an empty file");
+  if ((error = not_text(line))) return fail(std::move(*error));
+  return parse_header(line, expectation);
+}
+
+Expected<void> read_rows(const ReadInput& input, Lines& lines, const Header& header, Rows& rows) {
+  rows.reserve(estimated_rows(input.bytes.substr(lines.offset()), header.roles.size()));
+  std::size_t reported = 0;
+  std::string_view line;
+  std::optional<Error> error;
+  while (next_content(lines, line, error)) {
+    if (lines.number() > std::numeric_limits<std::uint32_t>::max())
+      return fail("expected at most 4294967295 lines");
+    if (line.size() > longest_line || !rows.add(line, lines.number())) {
+      // Bytes that are no text explain a bad field better than the field does.
+      error = not_text(line);
+      return fail(error ? std::move(*error) : rows.error());
+    }
+    if (input.done_with && lines.offset() - reported >= report_every)
+      input.done_with(reported = lines.offset());
+  }
+  if (error) return fail(std::move(*error));
+  return {};
+}
+
+}  // namespace
+
+bool recognises(std::string_view head) {
+  if (head.find('\0') != head.npos) return false;
+  Lines lines(head);
+  std::string_view line;
+  while (lines.next(line))
+    if (content_of(line) == Content::fields) return known_names(line, find_separator(line)) > 0;
+  return false;
+}
+
+bool reads(std::string_view measurement_kind) {
+  return measurement_kind == "axis" || measurement_kind == "straightness";
+}
+
+Expected<Observations> read(const ReadInput& input) {
+  const auto expectation = expectation_of(input);
+  if (!expectation) return fail(expectation.error());
+  Lines lines(input.bytes);
+  const auto in_file = [&](Error error, std::uint64_t line) {
+    error.file = input.measurement.file;
+    if (error.line == 0) error.line = line;
+    return fail(std::move(error));
+  };
+  const Expected<Header> header = read_header(lines, *expectation);
+  if (!header) return in_file(header.error(), lines.number());
+  Observations obs = empty_observations(input.measurement, *expectation);
+  Rows rows(*header, *expectation, obs);
+  if (auto ok = read_rows(input, lines, *header, rows); !ok)
+    return in_file(ok.error(), lines.number());
+  if (auto ok = rows.finish(); !ok) return in_file(ok.error(), 0);
+  return obs;
+}
+
+}  // namespace nonio::csv

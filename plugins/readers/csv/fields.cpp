@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fields.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <system_error>
+
+namespace nonio::csv {
+namespace {
+
+/// From here on a number is a mark of the instrument that no reading was taken.
+constexpr double sentinel = 1e19;
+
+constexpr std::array<double, 23> power_of_ten = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                                 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool same_word(std::string_view text, std::string_view lower) {
+  return std::equal(text.begin(), text.end(), lower.begin(), lower.end(),
+                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + 32 : a) == b; });
+}
+
+bool means_not_taken(std::string_view text) {
+  if (text.empty() || same_word(text, "n/a")) return true;
+  if (text.front() == '+' || text.front() == '-') text.remove_prefix(1);
+  return same_word(text, "nan") || same_word(text, "inf") || same_word(text, "infinity");
+}
+
+/// A number taken apart; value = digits * 10^exponent.
+struct Decimal {
+  bool negative = false;
+  std::uint64_t digits = 0;  ///< wrong if there are more than 19
+  long count = 0;            ///< of all digits, leading zeros too
+  long exponent = 0;         ///< of the last digit
+  DecimalMark mark = DecimalMark::none;
+};
+
+/// Adds the digits at `p`, and gives where they end.
+const char* take_digits(const char* p, const char* end, std::uint64_t& digits) {
+  for (; p != end && is_digit(*p); ++p) digits = digits * 10 + static_cast<std::uint64_t>(*p - '0');
+  return p;
+}
+
+/// [eE][+-]digits at `p`; false if there is something else.
+bool take_exponent(const char* p, const char* end, Decimal& d) {
+  if (p == end) return true;
+  if (*p != 'e' && *p != 'E') return false;
+  ++p;
+  const bool negative = p != end && *p == '-';
+  if (p != end && (*p == '-' || *p == '+')) ++p;
+  if (p == end) return false;
+  long e = 0;
+  for (; p != end; ++p) {
+    if (!is_digit(*p)) return false;
+    e = std::min(e * 10 + (*p - '0'), 1000000L);
+  }
+  d.exponent += negative ? -e : e;
+  return true;
+}
+
+bool take_apart(std::string_view text, bool comma_allowed, Decimal& d) {
+  const char* first = text.data();
+  const char* const end = first + text.size();
+  if (first != end && (*first == '-' || *first == '+')) d.negative = *first++ == '-';
+  const char* p = take_digits(first, end, d.digits);
+  d.count = p - first;
+  if (p != end && (*p == '.' || (comma_allowed && *p == ','))) {
+    d.mark = *p == '.' ? DecimalMark::point : DecimalMark::comma;
+    first = ++p;
+    p = take_digits(first, end, d.digits);
+    d.count += p - first;
+    d.exponent = first - p;
+  }
+  return d.count > 0 && take_exponent(p, end, d);
+}
+
+/// Every digit counts here, so the library does it; the text is known to be well formed.
+double slow_value(std::string_view text, const Decimal& d) {
+  std::string plain(text.front() == '+' ? text.substr(1) : text);
+  std::replace(plain.begin(), plain.end(), ',', '.');
+  double value = 0.0;
+  const auto [ptr, error] =
+      std::from_chars(plain.data(), plain.data() + plain.size(), value, std::chars_format::general);
+  if (error == std::errc{}) return value;
+  // Too large or too small for a double: the place of the first significant digit tells which.
+  long zeros = 0;
+  for (const char c : plain) {
+    if (c >= '1' && c <= '9') break;
+    if (c == '0') ++zeros;
+  }
+  const bool large = d.count - zeros + d.exponent > 0;
+  return large ? std::numeric_limits<double>::infinity() : 0.0;
+}
+
+}  // namespace
+
+Number parse_number(std::string_view text, bool comma_allowed) {
+  Decimal d;
+  if (!take_apart(text, comma_allowed, d)) {
+    const auto kind = means_not_taken(text) ? Number::Kind::not_taken : Number::Kind::bad;
+    return {kind, DecimalMark::none, 0.0};
+  }
+  double value = 0.0;
+  // Both factors are exact in a double, so the one operation rounds once (W. D. Clinger, How to
+  // read floating point numbers accurately, PLDI 1990).
+  constexpr std::uint64_t exact = 1ULL << 53U;
+  if (d.count <= 19 && d.digits <= exact && d.exponent >= -22 && d.exponent <= 22) {
+    value = static_cast<double>(d.digits);
+    value = d.exponent < 0 ? value / power_of_ten[static_cast<std::size_t>(-d.exponent)]
+                           : value * power_of_ten[static_cast<std::size_t>(d.exponent)];
+    if (d.negative) value = -value;
+  } else {
+    value = slow_value(text, d);
+  }
+  const auto kind = std::fabs(value) < sentinel ? Number::Kind::taken : Number::Kind::not_taken;
+  return {kind, d.mark, value + 0.0};  // + 0.0: no negative zero
+}
+
+std::uint32_t parse_run(std::string_view text) {
+  std::uint64_t run = 0;
+  if (text.empty()) return 0;
+  for (const char c : text) {
+    if (!is_digit(c)) return 0;
+    run = run * 10 + static_cast<std::uint64_t>(c - '0');
+    if (run > std::numeric_limits<std::uint32_t>::max()) return 0;
+  }
+  return static_cast<std::uint32_t>(run);
+}
+
+namespace {
+
+/// A field in quotes that open at `open`; gives where it ends, npos if it is not well formed.
+std::size_t quoted_end(std::string_view line, std::size_t open, char separator,
+                       std::string_view& field) {
+  std::size_t close = line.find('"', open + 1);
+  while (close != line.npos && close + 1 < line.size() && line[close + 1] == '"')
+    close = line.find('"', close + 2);
+  if (close == line.npos) return line.npos;
+  field = trimmed(line.substr(open + 1, close - open - 1));
+  std::size_t end = close + 1;
+  while (end < line.size() && line[end] == ' ') ++end;
+  return end == line.size() || line[end] == separator ? end : line.npos;
+}
+
+}  // namespace
+
+bool split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
+  fields.clear();
+  const char* const end = line.data() + line.size();
+  for (const char* p = line.data();; ++p) {
+    while (p != end && *p == ' ') ++p;
+    if (p != end && *p == '"') {
+      std::string_view field;
+      const auto after =
+          quoted_end(line, static_cast<std::size_t>(p - line.data()), separator, field);
+      if (after == line.npos) return false;
+      fields.push_back(field);
+      p = line.data() + after;
+    } else {
+      const char* const first = p;
+      while (p != end && *p != separator) ++p;
+      fields.push_back(trimmed({first, static_cast<std::size_t>(p - first)}));
+    }
+    if (p == end) return true;
+  }
+}
+
+bool is_utf8(std::string_view text) {
+  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned c = at(i);
+    if (c < 0x80) {
+      ++i;
+      continue;
+    }
+    const std::size_t more = c >= 0xF0 ? 3 : c >= 0xE0 ? 2 : 1;
+    if (c < 0xC2 || c > 0xF4 || i + more >= text.size()) return false;
+    for (std::size_t k = 1; k <= more; ++k)
+      if ((at(i + k) & 0xC0U) != 0x80) return false;
+    const unsigned second = at(i + 1);
+    // Overlong forms, surrogates, beyond U+10FFFF (RFC 3629 section 4).
+    if ((c == 0xE0 && second < 0xA0) || (c == 0xED && second > 0x9F) ||
+        (c == 0xF0 && second < 0x90) || (c == 0xF4 && second > 0x8F))
+      return false;
+    i += more + 1;
+  }
+  return true;
+}
+
+std::string shown(std::string_view text) {
+  constexpr std::size_t most = 40;
+  constexpr std::string_view hex = "0123456789ABCDEF";
+  std::string_view part = text.substr(0, most);
+  // A cut must not leave half a character.
+  while (part.size() < text.size() && !part.empty() &&
+         (static_cast<unsigned char>(text[part.size()]) & 0xC0U) == 0x80)
+    part.remove_suffix(1);
+  const bool readable = is_utf8(part);
+  std::string out = "\"";
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(part[i]);
+    // U+0080..U+009F are control characters too.
+    const bool control = byte == 0xC2 && readable && static_cast<unsigned char>(part[i + 1]) < 0xA0;
+    if ((byte >= 0x20 && byte < 0x7F) || (byte >= 0x80 && readable && !control)) {
+      out += part[i];
+      continue;
+    }
+    const std::size_t last = control ? i + 1 : i;
+    for (; i <= last; ++i) {
+      out += "\\x";
+      out += hex[static_cast<unsigned char>(part[i]) >> 4U];
+      out += hex[static_cast<unsigned char>(part[i]) & 15U];
+    }
+    --i;
+  }
+  return out + (part.size() < text.size() ? "...\"" : "\"");
+}
+
+namespace {
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      const std::size_t replace = diagonal + (a[i] == b[k] ? 0 : 1);
+      diagonal = row[k + 1];
+      row[k + 1] = std::min({replace, row[k] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string_view nearest(std::string_view name, const std::vector<std::string_view>& names) {
+  name = name.substr(0, 64);
+  return *std::min_element(names.begin(), names.end(), [&](auto a, auto b) {
+    return edit_distance(name, a) < edit_distance(name, b);
+  });
+}
+
+}  // namespace nonio::csv

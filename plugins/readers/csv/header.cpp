@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "header.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "fields.h"
+
+namespace nonio::csv {
+namespace {
+
+enum class Measures : std::uint8_t { neither, length, angle };
+
+struct Known {
+  std::string_view name;
+  Role role;
+  Measures measures = Measures::neither;
+  bool position = false;
+};
+
+constexpr std::array<Known, 13> known = {{
+    {"run", Role::run},
+    {"direction", Role::direction},
+    {"target_mm", Role::target, Measures::length},
+    {"target_deg", Role::target, Measures::angle},
+    {"deviation_um", Role::reading, Measures::length},
+    {"deviation_arcsec", Role::reading, Measures::angle},
+    {"position_mm", Role::reading, Measures::length, true},
+    {"position_deg", Role::reading, Measures::angle, true},
+    {"time_s", Role::time},
+    {"material_c", Role::material},
+    {"air_c", Role::air},
+    {"pressure_hpa", Role::pressure},
+    {"humidity_pct", Role::humidity},
+}};
+
+const Known* find(std::string_view name) {
+  const auto it = std::find_if(known.begin(), known.end(), [&](auto& k) { return k.name == name; });
+  return it == known.end() ? nullptr : &*it;
+}
+
+tl::unexpected<Error> fail_at(std::string_view column, std::string message) {
+  Error error{std::move(message)};
+  if (is_utf8(column)) error.column = column.substr(0, 80);
+  return fail(std::move(error));
+}
+
+tl::unexpected<Error> unknown_column(std::string_view name, std::size_t number) {
+  if (name.empty())
+    return fail("column " + std::to_string(number) +
+                " of the header row has no name; is there a separator too many?");
+  if (parse_number(name, true).kind == Number::Kind::taken)
+    return fail("expected a header row with the names of the columns, found the number " +
+                shown(name));
+  std::vector<std::string_view> names;
+  for (const Known& k : known) names.push_back(k.name);
+  return fail_at(name, "unknown column " + shown(name) + "; did you mean \"" +
+                           std::string(nearest(name, names)) + "\"?");
+}
+
+/// A unit that does not belong to this kind of axis.
+std::optional<Error> wrong_unit(const Known& column, const Expectation& e) {
+  const bool target = column.role == Role::target;
+  const bool angle = target ? e.rotary : e.angular_reading();
+  if (column.measures == Measures::neither || (column.measures == Measures::angle) == angle)
+    return std::nullopt;
+  const std::string want = target            ? e.target()
+                           : column.position ? std::string(angle ? "position_deg" : "position_mm")
+                                             : e.deviation();
+  std::string why = "axis \"" + e.axis + "\" is " + (e.rotary ? "rotary" : "linear");
+  if (e.straightness && !target) why = "the deviation of a straightness is a length";
+  Error error{"wrong unit: found column \"" + std::string(column.name) + "\", but " + why +
+              "; expected \"" + want + "\""};
+  error.column = column.name;
+  return error;
+}
+
+std::optional<Error> missing_column(const Header& header, const Expectation& e) {
+  std::string missing;
+  if (!header.has(Role::run))
+    missing = "\"run\"";
+  else if (!header.has(Role::direction))
+    missing = "\"direction\"";
+  else if (!header.has(Role::target))
+    missing = "\"" + e.target() + "\"";
+  else if (!header.has(Role::reading)) {
+    missing = "\"" + e.deviation() + "\"";
+    if (!e.straightness) missing += e.rotary ? " (or \"position_deg\")" : " (or \"position_mm\")";
+  }
+  if (missing.empty()) return std::nullopt;
+  std::string found;
+  for (const std::string& name : header.names) found += (found.empty() ? "" : ", ") + name;
+  return Error{"missing column: expected " + missing + ", found " + found};
+}
+
+/// A role that a column before `name` has already.
+tl::unexpected<Error> twice(const std::string& before, std::string_view name) {
+  if (before == name)
+    return fail_at(name, "column \"" + before + "\" occurs twice; expected it once");
+  return fail_at(name, "columns \"" + before + "\" and \"" + std::string(name) +
+                           "\" say the same thing; expected only one of them");
+}
+
+}  // namespace
+
+bool Header::has(Role role) const {
+  return std::find(roles.begin(), roles.end(), role) != roles.end();
+}
+
+std::size_t known_names(std::string_view row, char separator) {
+  std::vector<std::string_view> names;
+  if (!split(row, separator, names)) return 0;
+  return static_cast<std::size_t>(std::count_if(
+      names.begin(), names.end(), [](std::string_view name) { return find(name) != nullptr; }));
+}
+
+char find_separator(std::string_view row) {
+  char best = ',';
+  for (const char separator : {';', '\t'})
+    if (known_names(row, separator) > known_names(row, best)) best = separator;
+  return best;
+}
+
+Expected<Header> parse_header(std::string_view row, const Expectation& e) {
+  Header header;
+  header.separator = find_separator(row);
+  std::vector<std::string_view> names;
+  if (!split(row, header.separator, names))
+    return fail("header row: a quote is not closed, or something stands behind it");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Known* column = find(names[i]);
+    if (column == nullptr) return unknown_column(names[i], i + 1);
+    const auto same = std::find(header.roles.begin(), header.roles.end(), column->role);
+    if (same != header.roles.end())
+      return twice(header.names[static_cast<std::size_t>(same - header.roles.begin())], names[i]);
+    if (auto error = wrong_unit(*column, e)) return fail(std::move(*error));
+    if (column->position && e.straightness)
+      return fail_at(names[i],
+                     "a position along the axis says nothing of its straightness; expected \"" +
+                         e.deviation() + "\"");
+    header.roles.push_back(column->role);
+    header.names.emplace_back(names[i]);
+    header.reading_is_position |= column->position;
+  }
+  if (auto error = missing_column(header, e)) return fail(std::move(*error));
+  return header;
+}
+
+}  // namespace nonio::csv

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "csv.h"
+
+NONIO_PLUGIN(registry) {
+  nonio::Reader reader;
+  reader.info = {"csv", "1.0", "Readings of an axis or a straightness as comma-separated values."};
+  reader.recognises = nonio::csv::recognises;
+  reader.reads = nonio::csv::reads;
+  reader.read = nonio::csv::read;
+  registry.add(std::move(reader));
+}
