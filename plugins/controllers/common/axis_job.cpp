@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "axis_job.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+
+#include "nonio/sdk/format.h"
+
+namespace nonio::controllers {
+namespace {
+
+using AxisSettings = std::map<std::string, double, std::less<>>;
+
+std::optional<double> number_of(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+std::vector<std::string_view> split(std::string_view text) {
+  std::vector<std::string_view> parts;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t start = text.find_first_not_of(" \t", i);
+    if (start == std::string_view::npos) break;
+    const std::size_t end = std::min(text.find_first_of(" \t", start), text.size());
+    parts.push_back(text.substr(start, end - start));
+    i = end;
+  }
+  return parts;
+}
+
+std::set<std::string> full_keys(std::initializer_list<std::string_view> keys) {
+  std::set<std::string> out;
+  for (std::string_view k : keys) {
+    if (k.back() == ':') {
+      out.emplace(k.substr(0, k.size() - 1));
+    } else {
+      out.insert(std::string(k) + "_mm");
+      out.insert(std::string(k) + "_deg");
+    }
+  }
+  return out;
+}
+
+std::string joined(const std::set<std::string>& words) {
+  std::string out;
+  for (const std::string& w : words) out += (out.empty() ? "" : ", ") + w;
+  return out;
+}
+
+// One entry of option `axes`: "X reference_mm=0 step_mm=50".
+Expected<void> take_entry(const std::string& entry, const std::set<std::string>& keys,
+                          std::map<std::string, AxisSettings>& out) {
+  const auto parts = split(entry);
+  if (parts.empty()) return fail("option axes: an empty entry");
+  AxisSettings& settings = out[std::string(parts.front())];
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const std::size_t equals = parts[i].find('=');
+    const std::string key(parts[i].substr(0, equals));
+    const auto value =
+        equals == std::string_view::npos ? std::nullopt : number_of(parts[i].substr(equals + 1));
+    if (keys.count(key) == 0)
+      return fail("option axes, \"" + entry + "\": no setting " + key + "; there are " +
+                  joined(keys));
+    if (!value)
+      return fail("option axes, \"" + entry + "\": wanted " + key + "=NUMBER, found " +
+                  std::string(parts[i]));
+    settings[key] = *value;
+  }
+  return {};
+}
+
+Expected<std::map<std::string, AxisSettings>> settings_of_axes(const OutputInput& input,
+                                                               const std::set<std::string>& keys) {
+  std::map<std::string, AxisSettings> out;
+  for (const std::string& entry : input.options.texts("axes"))
+    if (auto taken = take_entry(entry, keys, out); !taken)
+      return tl::unexpected<Error>(taken.error());
+  std::set<std::string> known;
+  for (const Axis& a : input.campaign.machine.axes) known.insert(a.name);
+  for (const Measurement& m : input.campaign.measurements)
+    if (m.kind == "axis") known.insert(m.axis);
+  for (const auto& [axis, settings] : out)
+    if (known.count(axis) == 0)
+      return fail("option axes: no axis " + axis + "; there are " + joined(known));
+  return out;
+}
+
+std::vector<std::string> about(const OutputInput& input, const AxisJob& job) {
+  const Machine& m = input.campaign.machine;
+  std::vector<std::string> lines;
+  lines.push_back("machine: " + plain(m.maker) + " " + plain(m.model) + ", serial " +
+                  plain(m.serial));
+  lines.push_back("axis " + plain(job.axis) + ", measurement " + plain(job.measurement) + ", " +
+                  plain(input.campaign.date.empty() ? "no date" : input.campaign.date) +
+                  ", campaign " + plain(input.campaign.id));
+  lines.push_back("measured from " + with_unit(job, job.curve.position.front(), 4) + " to " +
+                  with_unit(job, job.curve.position.back(), 4) + ", " +
+                  std::to_string(job.curve.position.size()) + " targets");
+  lines.push_back(
+      "for a control in which table and backlash of this axis were off while it was measured");
+  return lines;
+}
+
+std::vector<std::string> drift_of(const Results& results, const std::string& measurement) {
+  std::vector<std::string> ids;
+  for (const auto& a : results.analyses)
+    for (const Finding& f : a.evaluation.findings) {
+      const bool here = a.measurement == measurement || f.measurement == measurement;
+      if (here && f.id.rfind("drift.", 0) == 0 &&
+          std::find(ids.begin(), ids.end(), f.id) == ids.end())
+        ids.push_back(f.id);
+    }
+  return ids;
+}
+
+std::size_t place_of(const Machine& machine, const std::string& axis) {
+  for (std::size_t i = 0; i < machine.axes.size(); ++i)
+    if (machine.axes[i].name == axis) return i + 1;
+  return machine.axes.size() + 1;
+}
+
+AxisJob job_of(const OutputInput& input, const Measurement& m, const math::AxisTest& test) {
+  AxisJob job;
+  job.axis = m.axis;
+  job.measurement = m.id;
+  job.stem = file_part(m.axis);
+  job.number = place_of(input.campaign.machine, m.axis);
+  job.rotary = test.rotary;
+  job.curve = math::error_curve(test);
+  if (job.rotary) job.turn = math::closed_turn(job.curve);
+  job.reversal = math::assess_reversal(test);
+  job.drift = drift_of(input.results, m.id);
+  if (!job.curve.position.empty()) job.about = about(input, job);
+  return job;
+}
+
+void say_what_was_left_out(const AxisJob& job, OutputResult& result) {
+  if (job.curve.left_out > 0)
+    result.notes.push_back("axis " + job.axis + ": " + std::to_string(job.curve.left_out) +
+                           " targets that were not reached from both directions are left out");
+  if (!job.curve.bidirectional())
+    result.notes.push_back("axis " + job.axis + ": measured from " +
+                           (job.curve.plus.empty() ? "minus" : "plus") +
+                           " only; the table is of that direction and says nothing of backlash");
+  else if (job.reversal.kind == math::Reversal::Kind::unknown)
+    result.notes.push_back("axis " + job.axis +
+                           ": whether the reversal is constant could not be judged");
+}
+
+// Two measurements of one axis (before, after): each has its own files, and the user chooses.
+Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
+  std::map<std::string, std::size_t> count;
+  for (const AxisJob& j : jobs) ++count[j.axis];
+  std::set<std::string> stems, told;
+  std::map<std::size_t, std::string> numbers;
+  for (AxisJob& j : jobs) {
+    const std::string& owner = numbers.emplace(j.number, j.axis).first->second;
+    if (owner != j.axis)
+      return fail("axes " + owner + " and " + j.axis + " would both be axis number " +
+                  std::to_string(j.number) + ": set axes = [\"" + j.axis + " number=...\"]");
+    if (count[j.axis] > 1) {
+      j.stem += "-" + file_part(j.measurement);
+      if (told.insert(j.axis).second)
+        result.findings.push_back(
+            {"table.two-measurements",
+             false,
+             {{"measurements", static_cast<double>(count[j.axis]), Quantity::count}},
+             {{"axis", j.axis}},
+             j.measurement,
+             "Load the table of one measurement only."});
+    }
+    if (!stems.insert(j.stem).second)
+      return fail("measurements " + j.measurement +
+                  " and another one would write the same file: give them ids that differ in "
+                  "letters, digits, '.' or '_'");
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<double> AxisJob::setting(std::string_view name) const {
+  const auto it = settings.find(name);
+  return it == settings.end() ? std::nullopt : std::optional(it->second);
+}
+
+std::optional<double> AxisJob::position_setting(std::string_view name) const {
+  const auto value = setting(std::string(name) + (rotary ? "_deg" : "_mm"));
+  return value ? std::optional(*value / per_si()) : std::nullopt;
+}
+
+Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
+                                         std::initializer_list<std::string_view> keys,
+                                         OutputResult& result) {
+  auto settings = settings_of_axes(input, full_keys(keys));
+  if (!settings) return tl::unexpected<Error>(settings.error());
+  std::vector<AxisJob> jobs;
+  const auto& measurements = input.campaign.measurements;
+  for (std::size_t i = 0; i < std::min(measurements.size(), input.observations.size()); ++i) {
+    const Measurement& m = measurements[i];
+    if (m.kind != "axis" || input.observations[i].size() == 0) continue;
+    AxisJob job = job_of(input, m, math::AxisTest::arrange(input.observations[i]));
+    if (job.curve.position.size() < 2) {
+      result.findings.push_back(
+          {"table.too-few-targets",
+           true,
+           {{"targets", static_cast<double>(job.curve.position.size()), Quantity::count}},
+           {{"axis", m.axis}},
+           m.id,
+           "A table needs two targets, each from every direction measured."});
+      continue;
+    }
+    if (const auto it = settings->find(m.axis); it != settings->end()) job.settings = it->second;
+    if (const auto n = job.setting("number")) {
+      if (!(*n >= 1.0 && *n <= 99.0 && *n == std::floor(*n)))
+        return fail("option axes, axis " + m.axis + ": number must be a whole number from 1 to 99");
+      job.number = static_cast<std::size_t>(*n);
+    }
+    say_what_was_left_out(job, result);
+    jobs.push_back(std::move(job));
+  }
+  if (auto named = name_files(jobs, result); !named) return tl::unexpected<Error>(named.error());
+  return jobs;
+}
+
+Option axes_option(std::string keys) {
+  return {"axes", std::vector<std::string>{}, "",
+          "Settings of one axis, such as \"X step_mm=50\"; there are " + std::move(keys) + "."};
+}
+
+std::vector<Option> step_options() {
+  return {{"step_mm", 0.0, "mm", "Distance of the points on linear axes; 0: chosen.", {}, 0.0},
+          {"step_deg", 0.0, "deg", "Distance of the points on rotary axes; 0: chosen.", {}, 0.0}};
+}
+
+double wished_step(const AxisJob& job, const Settings& options) {
+  if (const auto step = job.position_setting("step")) return *step;
+  return options.number(job.rotary ? "step_deg" : "step_mm") / job.per_si();
+}
+
+bool refused(const AxisJob& job, bool directions, OutputResult& result) {
+  if (job.reversal.kind != math::Reversal::Kind::not_constant || directions) return false;
+  const Quantity q = deviation_of(job.rotary);
+  result.findings.push_back(
+      {"table.refused-reversal",
+       true,
+       {{"mean", job.reversal.mean, q}, {"max", job.reversal.largest, q}},
+       {{"axis", job.axis}},
+       job.measurement,
+       "The reversal changes along the axis: no single backlash value removes it. Look at the "
+       "mechanics first; tables for each direction (directions = true) are a palliative."});
+  return true;
+}
+
+std::vector<std::string> drift_warning(const AxisJob& job, OutputResult& result) {
+  if (job.drift.empty()) return {};
+  std::string ids;
+  for (const std::string& id : job.drift) ids += (ids.empty() ? "" : ", ") + id;
+  result.findings.push_back({"table.unstable-axis",
+                             true,
+                             {},
+                             {{"axis", job.axis}, {"drift", ids}},
+                             job.measurement,
+                             "The axis was not stable while it was measured: measure it again "
+                             "before this table is loaded."});
+  return {"WARNING: the axis drifted while it was measured (" + ids +
+          "); do not load this table before the cause is found"};
+}
+
+std::string reversal_words(const AxisJob& job, bool directions) {
+  if (!job.curve.bidirectional()) return "measured from one direction only: no backlash value";
+  const std::string mean = deviation_words(job, job.curve.mean_reversal());
+  if (directions)
+    return "mean reversal B = " + mean +
+           ": contained in the two directions of the table; set the backlash parameter to 0";
+  return "mean reversal B = " + mean +
+         ": backlash parameter = " + with_unit(job, job.backlash(), 6) +
+         " (opposite sign, lost motion is positive)";
+}
+
+void predict(const AxisJob& job, const math::Correction& correction, OutputResult& result) {
+  const math::MeanDeviations was = math::before(job.curve);
+  const math::MeanDeviations will = math::after(job.curve, correction);
+  const Quantity q = deviation_of(job.rotary);
+  const auto add = [&](const char* name, double before, double after) {
+    if (std::isfinite(before) && std::isfinite(after))
+      result.predictions.push_back({job.measurement, name, before, after, q});
+  };
+  const bool both = job.curve.bidirectional();
+  add(both ? "E" : (job.curve.plus.empty() ? "E-" : "E+"), was.E(), will.E());
+  add("B", was.B(), will.B());
+  add("M", was.M(), will.M());
+  if (!(will.E() < was.E()))
+    result.findings.push_back({"table.no-gain",
+                               true,
+                               {{"before", was.E(), q}, {"after", will.E(), q}},
+                               {{"axis", job.axis}},
+                               job.measurement,
+                               "This table would not make the axis better."});
+}
+
+double reference_position(const AxisJob& job, double first, double last) {
+  return job.position_setting("reference").value_or(std::clamp(0.0, first, last));
+}
+
+std::string plain(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    if ((u & 0xC0U) == 0x80U) continue;  // the rest of a UTF-8 character
+    out += u < 0x20 || u > 0x7E ? '?' : c;
+  }
+  return out;
+}
+
+std::string file_part(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const bool ok = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+                    c == '_' || c == '-' || (c == '.' && !out.empty());
+    out += ok ? c : '_';
+  }
+  return out.empty() ? "_" : out;
+}
+
+std::string decimal(double value, int decimals) {
+  std::string text = fixed_text(value, decimals);
+  while (text.size() > 2 && text.back() == '0' && text[text.size() - 2] != '.') text.pop_back();
+  return text;
+}
+
+std::string signed_decimal(double value, int decimals) {
+  const std::string text = fixed_text(value, decimals);
+  return text.empty() || text.front() == '-' ? text : "+" + text;
+}
+
+std::string with_unit(const AxisJob& job, double si, int decimals) {
+  return decimal(si * job.per_si(), decimals) + " " + std::string(job.unit());
+}
+
+std::string deviation_words(const AxisJob& job, double si) {
+  const Unit unit = unit_of(deviation_of(job.rotary));
+  return decimal(si * unit.per_si, 3) + " " + std::string(unit.symbol);
+}
+
+}  // namespace nonio::controllers

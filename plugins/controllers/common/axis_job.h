@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/math/compensation.h"
+#include "nonio/math/reversal.h"
+#include "nonio/sdk/plugin.h"
+
+/// What every writer of controller tables does alike: find the axes, refuse what no table can
+/// mend, predict what is left. Compiled into each plugin; a plugin has no part of another.
+namespace nonio::controllers {
+
+/// One measured axis of which a table is to be written. SI.
+struct AxisJob {
+  std::string axis, measurement;
+  std::string stem;        ///< of file names; with the measurement where an axis has two of them
+  std::size_t number = 1;  ///< its place among the machine's axes, from 1
+  bool rotary = false;
+  math::ErrorCurve curve;                ///< as measured
+  std::optional<math::ErrorCurve> turn;  ///< of a rotary axis measured over the whole turn
+  math::Reversal reversal;
+  std::map<std::string, double, std::less<>> settings;  ///< of this axis: option `axes`
+  std::vector<std::string> drift;                       ///< ids of the findings that say so
+  std::vector<std::string> about;                       ///< machine, axis, date: plain ASCII lines
+
+  const math::ErrorCurve& table_curve() const { return turn ? *turn : curve; }
+  /// The value that goes into the backlash parameter: positive for lost motion.
+  double backlash() const { return curve.bidirectional() ? 0.0 - curve.mean_reversal() : 0.0; }
+  /// Printed units per SI: mm per m, or deg per rad.
+  double per_si() const { return rotary ? deg_per_rad : 1e3; }
+  std::string_view unit() const { return rotary ? "deg" : "mm"; }
+  /// A length or angle of this axis' settings in SI: "first" reads first_mm or first_deg.
+  std::optional<double> position_setting(std::string_view name) const;
+  std::optional<double> setting(std::string_view name) const;
+};
+
+/// The axis measurements with readings, in the campaign's order. `keys` are the settings that
+/// option `axes` takes for one axis: "reference" stands for reference_mm and reference_deg, a
+/// name with ':' at its end for a plain number. Findings and notes go to `result`.
+Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
+                                         std::initializer_list<std::string_view> keys,
+                                         OutputResult& result);
+
+/// The declaration of that option, with the keys in its help.
+Option axes_option(std::string keys);
+/// step_mm and step_deg.
+std::vector<Option> step_options();
+/// The step for this axis from its settings or the options; 0: not said.
+double wished_step(const AxisJob& job, const Settings& options);
+
+/// True, with a finding, where one value cannot compensate the reversal and no direction tables
+/// are asked for.
+bool refused(const AxisJob& job, bool directions, OutputResult& result);
+
+/// Lines for a table of an axis that was not stable while it was measured; empty otherwise.
+std::vector<std::string> drift_warning(const AxisJob& job, OutputResult& result);
+/// How the reversal was dealt with, for the words beside a table.
+std::string reversal_words(const AxisJob& job, bool directions);
+
+/// E, B and M before and after, the latter with `correction` as read back from the bytes written.
+/// A table that makes the mean deviations worse gives a finding.
+void predict(const AxisJob& job, const math::Correction& correction, OutputResult& result);
+
+/// Where the entry of the table is to be zero: the axis' setting `reference`, else 0 if the
+/// table has it, else its nearest end.
+double reference_position(const AxisJob& job, double first, double last);
+
+/// Printable ASCII on one line, whatever the manifest says.
+std::string plain(std::string_view text);
+/// For file names.
+std::string file_part(std::string_view text);
+/// Fixed decimals, zeros at the end left out down to one.
+std::string decimal(double value, int decimals);
+/// Fixed decimals with a sign in any case.
+std::string signed_decimal(double value, int decimals);
+/// In the axis' unit with it: "12.5 mm".
+std::string with_unit(const AxisJob& job, double si, int decimals);
+/// "8.143 um" or "1.2 arcsec".
+std::string deviation_words(const AxisJob& job, double si);
+
+}  // namespace nonio::controllers

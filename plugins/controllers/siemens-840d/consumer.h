@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/math/compensation.h"
+#include "nonio/sdk/error.h"
+
+/// The control as the manual describes it: reads the files and says what it then does to an axis.
+/// Shares nothing with the code that writes them.
+namespace nonio::siemens {
+
+struct Machine {
+  std::string axis = "AX1";          ///< as the files name it
+  int measuring_system = 0;          ///< the active one
+  bool rotary = false;               ///< file values are deg, else mm
+  std::size_t encoder_points = 200;  ///< MD38000
+  std::size_t cec_points = 200;      ///< MD18342
+};
+
+/// After these files are loaded and the functions enabled. m or rad.
+Expected<math::Correction> load(const std::vector<std::string_view>& files, const Machine& machine);
+
+}  // namespace nonio::siemens
