@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <set>
+
+#include "nonio/reports/number.h"
+#include "nonio/reports/text.h"
+#include "nonio/sdk/format.h"
+#include "report.h"
+
+namespace nonio::pdf_report {
+
+using namespace reports;
+
+std::string symbol(std::string_view name) {
+  std::string out(name);
+  if (out.size() > 1 && (out.back() == '+' || out.back() == '-')) {
+    const bool plus = out.back() == '+';
+    out.pop_back();
+    out += plus ? "↑" : "↓";
+  }
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
+
+namespace {
+
+/// The same thing found by two analyses is said once; attention before information.
+std::vector<const Finding*> findings_of(const std::vector<const Results::Analysed*>& analyses) {
+  std::vector<const Finding*> out;
+  for (const auto* analysed : analyses)
+    for (const Finding& f : analysed->evaluation.findings) {
+      const auto same = std::find_if(out.begin(), out.end(),
+                                     [&](const Finding* known) { return known->id == f.id; });
+      if (same == out.end())
+        out.push_back(&f);
+      else if (f.attention && !(*same)->attention)
+        *same = &f;
+    }
+  std::stable_partition(out.begin(), out.end(), [](const Finding* f) { return f->attention; });
+  return out;
+}
+
+std::string heading_of(const Source& source, const Measured& m) {
+  const Wording& words = source.words;
+  const Measurement& measurement = m.measurement;
+  const auto ids = [&](const std::string& heading) {
+    return measurement.id == measurement.axis
+               ? heading
+               : words.get("measurement.of", {{"heading", heading}, {"id", measurement.id}});
+  };
+  if (measurement.kind == "axis")
+    return ids(words.get(m.rotary ? "measurement.rotary" : "measurement.linear",
+                         {{"axis", measurement.axis}}));
+  if (measurement.kind == "straightness")
+    return ids(words.get("measurement.straightness",
+                         {{"axis", measurement.axis}, {"lateral", measurement.lateral}}));
+  return words.get("measurement.other", {{"id", measurement.id}, {"kind", measurement.kind}});
+}
+
+/// "Material 19.8 to 20.3 °C.", or nothing.
+std::string temperatures(const Source& source, const char* key, const std::vector<double>& values) {
+  double low = 1e9, high = -1e9;
+  for (const double v : values)
+    if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+  if (low > high) return {};
+  const auto text = [&](double v) {
+    return printed_number(v, Quantity::temperature, 1, source.language());
+  };
+  return " " + source.words.get(key, {{"from", text(low)}, {"to", text(high)}});
+}
+
+/// How the test was made, as the readings show it.
+std::string test_of(const Source& source, const Measured& m) {
+  const Observations& o = m.observations;
+  if (o.axes.empty() || o.size() == 0) return source.words.get("measurement.unread");
+  const auto& axis = o.axes.front();
+  std::vector<double> targets = axis.position;
+  std::sort(targets.begin(), targets.end());
+  targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
+  std::vector<std::uint32_t> runs = o.run;
+  std::sort(runs.begin(), runs.end());
+  const auto run_count = std::unique(runs.begin(), runs.end()) - runs.begin();
+  bool plus = false, minus = false;
+  for (const std::int8_t a : axis.approach) plus |= a > 0, minus |= a < 0;
+  const Quantity q = position_of(axis.rotary);
+  const int decimals = decimals_for({targets.front(), targets.back()}, q, 4);
+  const auto position = [&](double p) { return printed_number(p, q, decimals, source.language()); };
+  std::string text =
+      source.words.get(run_count == 1 ? "measurement.test_one" : "measurement.test",
+                       {{"targets", std::to_string(targets.size())},
+                        {"from", position(targets.front())},
+                        {"to", position(targets.back())},
+                        {"unit", unit_text(q)},
+                        {"runs", std::to_string(run_count)},
+                        {"directions", source.words.get(plus && minus ? "measurement.both"
+                                                        : minus       ? "measurement.minus"
+                                                                      : "measurement.plus")}});
+  if (o.missing > 0)
+    text += " " + source.words.get("measurement.missing", {{"count", std::to_string(o.missing)}});
+  return text + temperatures(source, "measurement.material", o.material) +
+         temperatures(source, "measurement.air", o.air);
+}
+
+void add_measurements(const Source& source, Blocks& blocks) {
+  for (const Measured& m : measured(source)) {
+    const std::string field = "measurement " + m.measurement.id;
+    blocks.push_back({Heading{heading_of(source, m), 1}, field});
+    blocks.push_back({Paragraph{test_of(source, m), Paragraph::Look::small}, field});
+    for (const std::string& part : source.look.measurement) {
+      if (part == "results") add_results(source, m, blocks);
+      if (part == "plots") add_plots(source, m, blocks);
+      if (part == "findings") add_findings(source, m, blocks);
+      if (part == "targets") add_targets(source, m, blocks);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Measured> measured(const Source& source) {
+  static const Observations nothing;
+  std::vector<Measured> out;
+  const Campaign& campaign = source.in.campaign;
+  for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
+    const Measurement& measurement = campaign.measurements[i];
+    const Observations& observations =
+        i < source.in.observations.size() ? source.in.observations[i] : nothing;
+    const Axis* axis = campaign.machine.axis(measurement.axis);
+    Measured m{measurement, observations, axis != nullptr && axis->rotary, {}, {}};
+    for (const Results::Analysed& a : source.in.results.analyses)
+      if (a.measurement == measurement.id) m.analyses.push_back(&a);
+    m.findings = findings_of(m.analyses);
+    out.push_back(std::move(m));
+  }
+  return out;
+}
+
+Document compose(const Source& source) {
+  const Campaign& campaign = source.in.campaign;
+  const Wording& words = source.words;
+  const std::string machine = campaign.machine.model +
+                              (campaign.machine.serial.empty() ? "" : " ") +
+                              campaign.machine.serial;
+  Document document;
+  document.style = source.look.style;
+  document.language = source.language();
+  document.date = campaign.date;
+  document.title = words.get("title") + " " + campaign.id;
+  document.author = campaign.laboratory.name;
+  document.subject = machine;
+  document.head = words.get("head", {{"title", words.get("title")},
+                                     {"id", campaign.id},
+                                     {"machine", machine},
+                                     {"laboratory", campaign.laboratory.name},
+                                     {"date", campaign.date}});
+  document.foot = words.get(
+      "foot",
+      {{"id", campaign.id}, {"date", campaign.date}, {"laboratory", campaign.laboratory.name}});
+  document.page_of = words.get("page_of");
+  for (const std::string& block : source.look.blocks) {
+    if (block == "title") add_title(source, document.blocks);
+    if (block == "identity") add_identity(source, document.blocks);
+    if (block == "status") add_status(source, document.blocks);
+    if (block == "measurements") add_measurements(source, document.blocks);
+    if (block == "tables") add_tables(source, document.blocks);
+    if (block == "notes") add_notes(source, document.blocks);
+  }
+  return document;
+}
+
+}  // namespace nonio::pdf_report

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "nonio/reports/number.h"
+#include "nonio/reports/text.h"
+#include "nonio/sdk/format.h"
+#include "report.h"
+
+namespace nonio::pdf_report {
+
+using namespace reports;
+
+void add_title(const Source& source, Blocks& blocks) {
+  const Laboratory& laboratory = source.in.campaign.laboratory;
+  if (!laboratory.name.empty())
+    blocks.push_back({Paragraph{laboratory.name, Paragraph::Look::bold}, "laboratory.name"});
+  std::string below = laboratory.address;
+  for (const std::string& part : {laboratory.country, laboratory.accreditation})
+    if (!part.empty()) below += (below.empty() ? "" : " · ") + part;
+  if (!below.empty())
+    blocks.push_back({Paragraph{below, Paragraph::Look::muted}, "laboratory.address"});
+  if (!laboratory.name.empty()) blocks.push_back({Spacer{6}});
+  blocks.push_back({Heading{source.words.get("title"), 0}, "title"});
+  blocks.push_back({Paragraph{source.words.get("subtitle"), Paragraph::Look::muted}, "subtitle"});
+  blocks.push_back({Spacer{6}});
+}
+
+namespace {
+
+std::string instrument_U(const Source& source, const Instrument& i) {
+  std::string text;
+  const auto add = [&](const std::optional<double>& value, Quantity q, const char* times) {
+    if (!value) return;
+    const double shown = printed(*value, q);
+    text += (text.empty() ? "" : " + ") + localised(short_text(shown, 3), source.language()) + " " +
+            unit_text(q) + times;
+  };
+  add(i.U_fixed, Quantity::deviation, "");
+  add(i.U_per_length, Quantity::deviation_per_length, " · L");
+  if (i.U_angle) {
+    if (!text.empty()) text += "; ";
+    text += localised(short_text(printed(*i.U_angle, Quantity::angular_deviation), 3),
+                      source.language()) +
+            unit_text(Quantity::angular_deviation);
+  }
+  return text;
+}
+
+}  // namespace
+
+void add_identity(const Source& source, Blocks& blocks) {
+  const Campaign& c = source.in.campaign;
+  const Wording& w = source.words;
+  const auto label = [&](const char* key) { return w.get(std::string("identity.") + key); };
+  const std::string structure =
+      c.machine.structure.empty()
+          ? ""
+          : w.get_or("structure." + c.machine.structure, c.machine.structure);
+  Grid campaign{label("campaign"),
+                {{label("id"), c.id, "campaign.id"},
+                 {label("date"), c.date, "campaign.date"},
+                 {label("customer"), c.customer, "campaign.customer"},
+                 {label("site"), c.site, "campaign.site"},
+                 {label("operator"), c.operator_name, "campaign.operator"},
+                 {label("authoriser"), c.laboratory.authoriser, "laboratory.authoriser"}}};
+  Grid machine{label("machine"),
+               {{label("maker"), c.machine.maker, "machine.maker"},
+                {label("model"), c.machine.model, "machine.model"},
+                {label("serial"), c.machine.serial, "machine.serial"},
+                {label("structure"), structure, "machine.structure"},
+                {label("control"), c.machine.control, "machine.control"}}};
+  const Instrument& i = c.instrument;
+  Grid instrument{label("instrument"),
+                  {{label("maker"), i.maker, "instrument.maker"},
+                   {label("model"), i.model, "instrument.model"},
+                   {label("serial"), i.serial, "instrument.serial"},
+                   {label("calibrated"), i.calibrated, "instrument.calibrated"},
+                   {label("certificate"), i.certificate, "instrument.certificate"},
+                   {label("uncertainty"), instrument_U(source, i), "instrument.U"}}};
+  const auto empty = [](const Grid::Row& row) { return row.value.empty(); };
+  if (std::all_of(instrument.rows.begin(), instrument.rows.end(), empty))
+    instrument.rows = {{label("model"), label("not_given"), "instrument"}};
+  if (std::all_of(machine.rows.begin(), machine.rows.end(), empty))
+    machine.rows = {{label("model"), label("not_given"), "machine"}};
+  blocks.push_back({Columns{{{{std::move(campaign), "campaign"}},
+                             {{std::move(machine), "machine"}},
+                             {{std::move(instrument), "instrument"}}},
+                            {0.36, 0.29, 0.35}},
+                    "identity"});
+}
+
+namespace {
+
+void add_conformity(const Source& source, std::vector<std::string>& lines) {
+  const Wording& w = source.words;
+  for (const Conformity& c : source.in.results.conformity) {
+    if (c.decision == Decision::conforms) continue;
+    const Value* value = nullptr;
+    for (const Results::Analysed& a : source.in.results.analyses)
+      if (a.plugin == c.plugin && a.measurement == c.measurement)
+        for (const Value& v : a.evaluation.values)
+          if (v.name == c.name) value = &v;
+    const Printed shown =
+        value != nullptr ? printed_result(value->value, value->U, c.quantity, source.language())
+                         : Printed{"–", ""};
+    const std::string what =
+        w.get(c.decision == Decision::does_not_conform ? "status.does_not_conform"
+                                                       : "status.cannot_be_decided",
+              {{"name", symbol(c.name)},
+               {"value", shown.value},
+               {"unit", unit_text(c.quantity)},
+               {"tolerance",
+                localised(short_text(printed(c.tolerance, c.quantity), 4), source.language())},
+               {"reason", w.get_or("results." + c.reason, c.reason)}});
+    lines.push_back(
+        w.get("status.of_measurement", {{"measurement", c.measurement}, {"what", what}}));
+  }
+}
+
+}  // namespace
+
+void add_status(const Source& source, Blocks& blocks) {
+  const Results& results = source.in.results;
+  const Wording& w = source.words;
+  Status status;
+  for (const Error& e : results.errors)
+    status.lines.push_back(visible_text(
+        (e.file.empty() ? "" : e.file + (e.line > 0 ? ":" + std::to_string(e.line) : "") + ": ") +
+            e.message,
+        source.fonts));
+  if (!status.lines.empty()) {
+    status.level = Level::failed;
+    status.text = w.get("status.failed");
+    blocks.push_back({std::move(status), "errors"});
+    status = {};
+  }
+  add_conformity(source, status.lines);
+  for (const Measured& m : measured(source)) {
+    for (const Finding* f : m.findings)
+      if (f->attention)
+        status.lines.push_back(
+            w.get("status.of_measurement",
+                  {{"measurement", m.measurement.id},
+                   {"what",
+                    typeset(finding_text(source.in.templates, source.language(), *f, "title"))}}));
+    if (m.observations.size() == 0 && results.errors.empty())
+      status.lines.push_back(
+          w.get("status.of_measurement",
+                {{"measurement", m.measurement.id}, {"what", w.get("measurement.unread")}}));
+  }
+  for (const Results::Written& output : results.outputs)
+    for (const Finding& f : output.result.findings)
+      if (f.attention)
+        status.lines.push_back(w.get(
+            output.result.artifacts.empty() ? "status.refused" : "status.of_measurement",
+            {{"output", output.plugin},
+             {"measurement", output.plugin},
+             {"what", typeset(finding_text(source.in.templates, source.language(), f, "title"))}}));
+  if (status.lines.empty() && !results.errors.empty()) return;
+  status.level = status.lines.empty() ? Level::good : Level::attention;
+  status.text = w.get(status.lines.empty() ? "status.ok" : "status.attention");
+  blocks.push_back({std::move(status), "status"});
+}
+
+}  // namespace nonio::pdf_report

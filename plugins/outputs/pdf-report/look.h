@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "nonio/reports/document.h"
+#include "nonio/sdk/settings.h"
+
+namespace nonio::pdf_report {
+
+/// A template: templates/<name>.toml, checked.
+struct Look {
+  std::vector<std::string> blocks, measurement, plots;
+  int plots_per_row = 2;
+  std::string regular, bold;  ///< names of the font files
+  reports::Style style;
+};
+
+/// An unknown key or block, a missing key or one of the wrong kind is an error that names file and
+/// key.
+Expected<Look> read_look(const Templates&, const std::string& name);
+
+/// The template's two fonts, parsed and compressed once in a process.
+Expected<std::shared_ptr<const reports::Fonts>> fonts_of(const Templates&, const Look&);
+
+}  // namespace nonio::pdf_report

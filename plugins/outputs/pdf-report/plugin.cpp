@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The report of a campaign as a PDF, for people. What it says and shows is in templates/.
+#include "nonio/sdk/plugin.h"
+
+#include "report.h"
+
+namespace nonio::pdf_report {
+namespace {
+
+constexpr const char* default_template = "report";
+
+bool applies(const Campaign&) { return true; }
+
+void prepare(const Templates& templates) {
+  if (const auto look = read_look(templates, default_template)) (void)fonts_of(templates, *look);
+}
+
+Expected<OutputResult> write(const OutputInput& in) {
+  const std::string language = in.options.text("language", "en");
+  const auto look = read_look(in.templates, in.options.text("template", default_template));
+  if (!look) return fail(look.error());
+  const auto fonts = fonts_of(in.templates, *look);
+  if (!fonts) return fail(fonts.error());
+  const Wording words(in.templates, language);
+  const reports::Document document = compose({in, *look, words, **fonts});
+  if (const auto complete = words.complete(); !complete) return fail(complete.error());
+  auto bytes = reports::pdf(document, **fonts);
+  if (!bytes) return fail(bytes.error());
+  OutputResult result;
+  result.artifacts.push_back(
+      {language == "en" ? "report.pdf" : "report-" + language + ".pdf", std::move(*bytes)});
+  return result;
+}
+
+}  // namespace
+}  // namespace nonio::pdf_report
+
+NONIO_PLUGIN(registry) {
+  nonio::Output output;
+  output.info = {
+      "pdf-report",
+      "1.0.0",
+      "The campaign's report as a PDF with plots, in English or Italian.",
+      {{"language", std::string("en"), "", "Language of the report.", {"en", "it"}},
+       {"template", std::string("report"), "", "Name of the template: templates/<name>.toml."}}};
+  output.stage = nonio::Output::Stage::document;
+  output.applies = nonio::pdf_report::applies;
+  output.write = nonio::pdf_report::write;
+  output.prepare = nonio::pdf_report::prepare;
+  registry.add(std::move(output));
+}

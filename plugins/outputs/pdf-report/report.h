@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "look.h"
+#include "nonio/sdk/plugin.h"
+#include "wording.h"
+
+namespace nonio::pdf_report {
+
+/// What every part of the report is made from.
+struct Source {
+  const OutputInput& in;
+  const Look& look;
+  const Wording& words;
+  const reports::Fonts& fonts;
+
+  const std::string& language() const { return words.language(); }
+};
+
+using Blocks = std::vector<reports::Block>;
+
+/// One measurement with all that is known of it.
+struct Measured {
+  const Measurement& measurement;
+  const Observations& observations;
+  bool rotary = false;
+  std::vector<const Results::Analysed*> analyses;
+  std::vector<const Finding*> findings;  ///< each id once, what needs attention first
+};
+std::vector<Measured> measured(const Source&);
+
+/// "A+" as the standards print it: "A↑".
+std::string symbol(std::string_view name);
+
+/// Title and status (with what needs attention), campaign, machine, instrument.
+void add_title(const Source&, Blocks&);
+void add_identity(const Source&, Blocks&);
+void add_status(const Source&, Blocks&);
+
+void add_results(const Source&, const Measured&, Blocks&);
+void add_targets(const Source&, const Measured&, Blocks&);
+void add_plots(const Source&, const Measured&, Blocks&);
+void add_findings(const Source&, const Measured&, Blocks&);
+
+void add_tables(const Source&, Blocks&);
+void add_notes(const Source&, Blocks&);
+
+/// A finding as the document shows it.
+reports::Block note_of(const Source&, const Finding&);
+
+/// The whole document.
+reports::Document compose(const Source&);
+
+}  // namespace nonio::pdf_report

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/reports/number.h"
+#include "nonio/sdk/format.h"
+#include "report.h"
+
+namespace nonio::pdf_report {
+
+using namespace reports;
+
+namespace {
+
+const Value* value_of(const Measured& m, std::string_view name) {
+  for (const auto* a : m.analyses)
+    for (const Value& v : a->evaluation.values)
+      if (v.name == name) return &v;
+  return nullptr;
+}
+
+const Conformity* conformity_of(const Source& source, const Results::Analysed& a,
+                                const std::string& name) {
+  for (const Conformity& c : source.in.results.conformity)
+    if (c.measurement == a.measurement && c.plugin == a.plugin && c.name == name) return &c;
+  return nullptr;
+}
+
+Table::Cell decision_cell(const Source& source, const Conformity* c) {
+  if (c == nullptr) return {""};
+  switch (c->decision) {
+    case Decision::conforms:
+      return {source.words.get("results.conforms"), false, Level::good};
+    case Decision::does_not_conform:
+      return {source.words.get("results.does_not_conform"), true, Level::failed};
+    case Decision::cannot_be_decided:
+      break;
+  }
+  return {source.words.get("results.cannot_be_decided"), true, Level::attention};
+}
+
+std::string tolerance_text(const Source& source, const Conformity* c) {
+  return c == nullptr
+             ? ""
+             : localised(short_text(printed(c->tolerance, c->quantity), 4), source.language());
+}
+
+/// What a table of values has room and reason for.
+struct Shape {
+  bool meaning = false, U = false, decision = false, own_units = false;
+  std::string unit;
+};
+
+Shape shape_of(const Source& source, const Results::Analysed& a) {
+  Shape s;
+  const auto& values = a.evaluation.values;
+  s.unit = values.empty() ? "" : unit_text(values.front().quantity);
+  for (const Value& v : values) {
+    s.meaning |= !source.words.get_or("value." + v.name, "").empty();
+    s.U |= v.U.has_value();
+    s.decision |= conformity_of(source, a, v.name) != nullptr;
+    s.own_units |= unit_text(v.quantity) != s.unit;
+  }
+  return s;
+}
+
+std::string analysis_title(const Source& source, const Results::Analysed& a) {
+  return source.words.get_or("analysis." + a.plugin, a.plugin);
+}
+
+Block value_table(const Source& source, const Results::Analysed& a) {
+  const Wording& w = source.words;
+  const Shape shape = shape_of(source, a);
+  Table table;
+  table.title = analysis_title(source, a);
+  const auto column = [&](const char* key, bool number, bool with_unit) {
+    table.columns.push_back({w.get(key), with_unit && !shape.own_units ? shape.unit : "", number});
+  };
+  column("results.symbol", false, false);
+  if (shape.meaning) column("results.meaning", false, false);
+  column("results.value", true, true);
+  if (shape.U) column("results.uncertainty", true, true);
+  if (shape.decision) column("results.tolerance", true, true);
+  if (shape.own_units) table.columns.push_back({"", "", false});
+  if (shape.decision) column("results.decision", false, false);
+  for (const Value& v : a.evaluation.values) {
+    const Printed shown = printed_result(v.value, v.U, v.quantity, source.language());
+    const Conformity* c = conformity_of(source, a, v.name);
+    std::vector<Table::Cell> row = {{symbol(v.name), true}};
+    if (shape.meaning) row.push_back({w.get_or("value." + v.name, "")});
+    row.push_back({shown.value});
+    if (shape.U) row.push_back({shown.U.empty() ? "–" : shown.U});
+    if (shape.decision) row.push_back({tolerance_text(source, c)});
+    if (shape.own_units) row.push_back({unit_text(v.quantity)});
+    if (shape.decision) row.push_back(decision_cell(source, c));
+    table.rows.push_back(std::move(row));
+  }
+  return {std::move(table), "results of " + a.plugin + ", measurement " + a.measurement};
+}
+
+/// ISO 230-2 and VDI/DGQ 3441 side by side: the same readings, different numbers.
+void add_what_is_hidden(const Source& source, const Measured& m, Blocks& blocks) {
+  const Wording& w = source.words;
+  std::vector<std::string> lines;
+  const auto text = [&](const Value* v) {
+    return printed_result(v->value, v->U, v->quantity, source.language()).value;
+  };
+  const Value *plus = value_of(m, "R+"), *minus = value_of(m, "R-"), *ps = value_of(m, "Ps_max");
+  if (plus != nullptr && minus != nullptr && ps != nullptr) {
+    const double small = std::min(plus->value, minus->value);
+    const double ratio = std::max(plus->value, minus->value) / small;
+    if (small > 0 && ratio >= 1.05)
+      lines.push_back(w.get("results.hides_repeatability",
+                            {{"plus", text(plus)},
+                             {"minus", text(minus)},
+                             {"ps", text(ps)},
+                             {"unit", unit_text(plus->quantity)},
+                             {"ratio", localised(short_text(ratio, 2), source.language())}}));
+  }
+  const Value *B = value_of(m, "B"), *mean = value_of(m, "B_mean");
+  const Value *U_mean = value_of(m, "U_mean"), *U_max = value_of(m, "U_max");
+  if (B != nullptr && mean != nullptr && U_mean != nullptr && U_max != nullptr)
+    lines.push_back(w.get("results.hides_reversal", {{"mean", text(mean)},
+                                                     {"largest", text(B)},
+                                                     {"u_mean", text(U_mean)},
+                                                     {"u_max", text(U_max)},
+                                                     {"unit", unit_text(B->quantity)}}));
+  if (lines.empty()) return;
+  if (value_of(m, "M") != nullptr && value_of(m, "Pa") != nullptr)
+    lines.push_back(w.get("results.hides_same"));
+  blocks.push_back({Heading{w.get("results.hides"), 2}, "results.hides"});
+  for (const std::string& line : lines)
+    blocks.push_back({Paragraph{line, Paragraph::Look::small}, "results.hides"});
+}
+
+}  // namespace
+
+void add_results(const Source& source, const Measured& m, Blocks& blocks) {
+  std::vector<Blocks> parts;
+  for (const auto* a : m.analyses)
+    if (!a->evaluation.values.empty()) parts.push_back({value_table(source, *a)});
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i != 0 || parts.size() < 2) {
+      std::move(parts[i].begin(), parts[i].end(), std::back_inserter(blocks));
+      continue;
+    }
+    add_what_is_hidden(source, m, parts[1]);
+    const bool decisions = shape_of(source, *m.analyses[0]).decision;
+    blocks.push_back({Columns{{std::move(parts[0]), std::move(parts[1])},
+                              decisions ? std::vector{0.6, 0.4} : std::vector{0.55, 0.45}},
+                      "results"});
+    ++i;
+  }
+}
+
+namespace {
+
+/// The columns of several analyses over the same targets, in one table.
+struct Joined {
+  const PointTable* base;
+  std::vector<const PointTable::Column*> columns;
+};
+
+std::vector<Joined> joined_points(const Measured& m) {
+  std::vector<Joined> out;
+  for (const auto* a : m.analyses) {
+    const PointTable& points = a->evaluation.points;
+    if (points.columns.empty() || points.columns.front().values.empty()) continue;
+    Joined* into = nullptr;
+    for (Joined& j : out)
+      if (j.base->columns.front().values == points.columns.front().values) into = &j;
+    if (into == nullptr) into = &out.emplace_back(Joined{&points, {}});
+    for (const PointTable::Column& c : points.columns) {
+      const bool known =
+          std::any_of(into->columns.begin(), into->columns.end(),
+                      [&](const PointTable::Column* k) { return k->name == c.name; });
+      if (!known) into->columns.push_back(&c);
+    }
+  }
+  return out;
+}
+
+bool all_missing(const PointTable::Column& c) {
+  return std::none_of(c.values.begin(), c.values.end(), [](double v) { return std::isfinite(v); });
+}
+
+/// The number of approaches if it is the same everywhere, else nothing.
+std::optional<double> common_count(const Joined& joined) {
+  std::optional<double> n;
+  for (const auto* c : joined.columns) {
+    if (c->quantity != Quantity::count) continue;
+    for (const double v : c->values) {
+      if (n && *n != v) return {};
+      n = v;
+    }
+  }
+  return n;
+}
+
+}  // namespace
+
+void add_targets(const Source& source, const Measured& m, Blocks& blocks) {
+  const Wording& w = source.words;
+  for (const Joined& joined : joined_points(m)) {
+    const auto n = common_count(joined);
+    Table table;
+    table.title = w.get("targets.title");
+    if (n)
+      table.title += " (" + w.get("targets.number") + " = " +
+                     printed_number(*n, Quantity::count, 0, source.language()) + ")";
+    std::vector<const PointTable::Column*> shown;
+    std::vector<int> decimals;
+    for (const auto* c : joined.columns) {
+      if ((n && c->quantity == Quantity::count) || all_missing(*c)) continue;
+      const bool target = c == joined.columns.front();
+      const std::string title = target && c->name == "target"
+                                    ? w.get("targets.target")
+                                    : w.get_or("column." + c->name, symbol(c->name));
+      table.columns.push_back({title, unit_text(c->quantity), true});
+      shown.push_back(c);
+      decimals.push_back(target                           ? decimals_for(c->values, c->quantity, 4)
+                         : c->quantity == Quantity::count ? 0
+                                                          : 3);
+    }
+    for (std::size_t i = 0; i < joined.base->columns.front().values.size(); ++i) {
+      std::vector<Table::Cell> row;
+      for (std::size_t k = 0; k < shown.size(); ++k)
+        row.push_back({i < shown[k]->values.size()
+                           ? printed_number(shown[k]->values[i], shown[k]->quantity, decimals[k],
+                                            source.language())
+                           : "–"});
+      table.rows.push_back(std::move(row));
+    }
+    blocks.push_back({std::move(table), "targets of measurement " + m.measurement.id});
+  }
+}
+
+}  // namespace nonio::pdf_report

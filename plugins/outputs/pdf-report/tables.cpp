@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <set>
+
+#include "nonio/reports/number.h"
+#include "nonio/reports/text.h"
+#include "nonio/sdk/format.h"
+#include "report.h"
+
+namespace nonio::pdf_report {
+
+using namespace reports;
+
+Block note_of(const Source& source, const Finding& f) {
+  const auto part = [&](const char* name) {
+    return typeset(finding_text(source.in.templates, source.language(), f, name));
+  };
+  return {Note{f.attention ? Level::attention : Level::info, part("title"), part("says"),
+               part("advice")},
+          "finding " + f.id};
+}
+
+void add_findings(const Source& source, const Measured& m, Blocks& blocks) {
+  if (m.findings.empty()) return;
+  blocks.push_back({Heading{source.words.get("findings.title"), 2}, "findings.title"});
+  for (const Finding* f : m.findings) blocks.push_back(note_of(source, *f));
+}
+
+namespace {
+
+std::string file_names(const OutputResult& result) {
+  std::string out;
+  for (const Artifact& a : result.artifacts) out += (out.empty() ? "" : ", ") + a.name;
+  return out;
+}
+
+Table predictions(const Source& source) {
+  const Wording& w = source.words;
+  Table table;
+  table.columns = {{w.get("tables.output"), "", false},
+                   {w.get("tables.file"), "", false},
+                   {w.get("tables.measurement"), "", false},
+                   {w.get("tables.name"), "", false},
+                   {w.get("tables.before"), "", true},
+                   {w.get("tables.after"), "", true},
+                   {"", "", false}};
+  for (const Results::Written& output : source.in.results.outputs) {
+    bool first = true;
+    for (const Prediction& p : output.result.predictions) {
+      table.rows.push_back({{first ? output.plugin : "", true},
+                            {first ? file_names(output.result) : ""},
+                            {p.measurement},
+                            {symbol(p.name)},
+                            {printed_number(p.before, p.quantity, 2, source.language())},
+                            {printed_number(p.after, p.quantity, 2, source.language())},
+                            {unit_text(p.quantity)}});
+      first = false;
+    }
+  }
+  return table;
+}
+
+/// Controllers' tables are told from other outputs by what they say.
+bool speaks(const OutputResult& r) {
+  return !r.predictions.empty() || !r.findings.empty() || !r.notes.empty();
+}
+
+}  // namespace
+
+void add_tables(const Source& source, Blocks& blocks) {
+  const Wording& w = source.words;
+  const auto& outputs = source.in.results.outputs;
+  if (std::none_of(outputs.begin(), outputs.end(),
+                   [](const auto& output) { return speaks(output.result); }))
+    return;
+  blocks.push_back({Heading{w.get("tables.title"), 1}, "tables.title"});
+  if (Table table = predictions(source); !table.rows.empty()) {
+    blocks.push_back({std::move(table), "tables"});
+    blocks.push_back({Paragraph{w.get("tables.predicted"), Paragraph::Look::muted}, "tables"});
+  }
+  for (const Results::Written& output : outputs) {
+    if (!output.result.findings.empty() && output.result.artifacts.empty())
+      blocks.push_back(
+          {Heading{w.get("tables.refused", {{"output", output.plugin}}), 2}, "tables"});
+    for (const Finding& f : output.result.findings) {
+      Block block = note_of(source, f);
+      auto& note = std::get<Note>(block.what);
+      if (!f.measurement.empty())
+        note.title =
+            w.get("status.of_measurement", {{"measurement", f.measurement}, {"what", note.title}});
+      blocks.push_back(std::move(block));
+    }
+    for (const std::string& note : output.result.notes)
+      blocks.push_back(
+          {Paragraph{visible_text(w.get("tables.note", {{"output", output.plugin}, {"note", note}}),
+                                  source.fonts),
+                     Paragraph::Look::small},
+           "note of " + output.plugin});
+  }
+}
+
+void add_notes(const Source& source, Blocks& blocks) {
+  const Wording& w = source.words;
+  const Results& results = source.in.results;
+  blocks.push_back({Heading{w.get("notes.title"), 1}, "notes.title"});
+  bool with_U = false, without_U = false;
+  std::set<std::string> said;
+  std::vector<std::string> notes;
+  for (const Results::Analysed& a : results.analyses) {
+    for (const Value& v : a.evaluation.values) (v.U ? with_U : without_U) = true;
+    for (const std::string& note : a.evaluation.notes)
+      if (said.insert(note).second) notes.push_back(note);
+  }
+  for (const std::string& note : results.notes)
+    if (said.insert(note).second) notes.push_back(note);
+  if (with_U) notes.push_back(w.get("notes.uncertainty"));
+  if (without_U) notes.push_back(w.get("notes.no_uncertainty"));
+  if (!results.conformity.empty()) notes.push_back(w.get("notes.decision"));
+  notes.push_back(w.get("notes.sign"));
+  notes.push_back(w.get("notes.items"));
+  for (const std::string& note : notes)
+    blocks.push_back(
+        {Paragraph{typeset(visible_text(note, source.fonts)), Paragraph::Look::small}, "notes"});
+  blocks.push_back({Paragraph{w.get("end"), Paragraph::Look::muted}, "end"});
+}
+
+}  // namespace nonio::pdf_report

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wording.h"
+
+#include <array>
+
+namespace nonio::pdf_report {
+
+Wording::Wording(const Templates& templates, std::string language)
+    : language_(std::move(language)) {
+  const auto it = templates.tables.find("words/" + language_ + "/report");
+  if (it != templates.tables.end()) settings_ = &it->second;
+}
+
+const std::string* Wording::find(std::string_view key) const {
+  if (settings_ == nullptr) return nullptr;
+  const auto it = settings_->values.find(key);
+  return it == settings_->values.end() ? nullptr : std::get_if<std::string>(&it->second);
+}
+
+std::string Wording::get(std::string_view key) const {
+  const std::string* text = find(key);
+  if (text == nullptr && missing_.empty()) missing_ = key;
+  return text != nullptr ? *text : std::string();
+}
+
+std::string Wording::get(std::string_view key, Places places) const {
+  const std::string text = get(key);
+  std::string out;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t close = text[i] == '{' ? text.find('}', i) : std::string::npos;
+    bool found = false;
+    if (close != std::string::npos)
+      for (const auto& [name, value] : places)
+        if (name == std::string_view(text).substr(i + 1, close - i - 1)) {
+          out += value;
+          found = true;
+        }
+    if (found)
+      i = close + 1;
+    else
+      out += text[i++];
+  }
+  return out;
+}
+
+std::string Wording::get_or(std::string_view key, std::string otherwise) const {
+  const std::string* text = find(key);
+  return text != nullptr ? *text : std::move(otherwise);
+}
+
+Expected<void> Wording::complete() const {
+  const std::string file = "templates/words/" + language_ + "/report.toml";
+  if (settings_ == nullptr) return fail(Error{"the words of this language are missing", file});
+  if (!missing_.empty()) return fail(Error{"the key \"" + missing_ + "\" is missing", file});
+  return {};
+}
+
+namespace {
+
+bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool digit(char c) { return c >= '0' && c <= '9'; }
+
+}  // namespace
+
+std::string typeset(std::string_view s) {
+  struct Unit {
+    std::string_view plain, printed;
+  };
+  constexpr std::array<Unit, 5> units = {
+      {{" um", " µm"}, {" arcsec", "″"}, {" degC", " °C"}, {" deg", "°"}, {" urad", " µrad"}}};
+  std::string out;
+  for (std::size_t i = 0; i < s.size();) {
+    bool done = false;
+    for (const Unit& unit : units) {
+      const std::size_t end = i + unit.plain.size();
+      if (i == 0 || !digit(s[i - 1]) || s.substr(i, unit.plain.size()) != unit.plain ||
+          (end < s.size() && letter(s[end])))
+        continue;
+      out += unit.printed;
+      i = end;
+      done = true;
+      break;
+    }
+    if (done) continue;
+    const bool sign = s[i] == '-' && i + 1 < s.size() && digit(s[i + 1]) &&
+                      (i == 0 || s[i - 1] == ' ' || s[i - 1] == '(');
+    if (sign)
+      out += "\u2212";
+    else
+      out += s[i];
+    ++i;
+  }
+  return out;
+}
+
+}  // namespace nonio::pdf_report

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "nonio/sdk/error.h"
+#include "nonio/sdk/settings.h"
+
+namespace nonio::pdf_report {
+
+/// The words of templates/words/<language>/report.toml. A word that is missing is remembered, and
+/// the report then fails.
+class Wording {
+ public:
+  using Places = std::initializer_list<std::pair<std::string_view, std::string_view>>;
+
+  Wording(const Templates&, std::string language);
+
+  const std::string& language() const { return language_; }
+  std::string get(std::string_view key) const;
+  /// With `{name}` replaced.
+  std::string get(std::string_view key, Places places) const;
+  /// `otherwise` where there is no word: for names that other plugins make.
+  std::string get_or(std::string_view key, std::string otherwise) const;
+
+  Expected<void> complete() const;
+
+ private:
+  const std::string* find(std::string_view key) const;
+  const Settings* settings_ = nullptr;
+  std::string language_;
+  mutable std::string missing_;
+};
+
+/// Units and signs of a plugin's sentence as they are printed: "-8.1 um" becomes "−8.1 µm".
+std::string typeset(std::string_view sentence);
+
+}  // namespace nonio::pdf_report
