@@ -4,7 +4,7 @@
 #include <Poco/Environment.h>
 #include <poll.h>
 #include <sys/mman.h>
-#include <sys/pidfd.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -67,6 +67,9 @@ struct Worker {
   Clock::time_point deadline;
   SharedWords stage;
 };
+
+/// glibc 2.36 declares pidfd_open without C linkage.
+int open_pidfd(pid_t pid) { return static_cast<int>(::syscall(SYS_pidfd_open, pid, 0)); }
 
 constexpr int store_failed = 3;  // exit status of a worker that could not write
 
@@ -133,7 +136,7 @@ class Runner {
     ::setpgid(pid, pid);
     const auto limit = std::chrono::duration_cast<Clock::duration>(
         std::chrono::duration<double>(context_.site.limits.seconds));
-    workers_.push_back({pid, ::pidfd_open(pid, 0), index, Clock::now() + limit, std::move(stage)});
+    workers_.push_back({pid, open_pidfd(pid), index, Clock::now() + limit, std::move(stage)});
   }
 
   [[noreturn]] void work(std::size_t index, SharedWords& stage) const {

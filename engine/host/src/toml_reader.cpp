@@ -16,11 +16,12 @@ std::uint64_t line_of_node(const toml::node& node) { return node.source().begin.
 Expected<toml::table> parse_toml(std::string_view text, const std::string& file) {
   if (text.find('\0') != std::string_view::npos)
     return fail(Error{"not a TOML file: it contains a zero byte", file});
-  toml::parse_result parsed = toml::parse(text);
-  if (parsed) return std::move(parsed).table();
-  const toml::parse_error& e = parsed.error();
-  return fail(
-      Error{"not valid TOML: " + std::string(e.description()), file, e.source().begin.line});
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& e) {
+    return fail(
+        Error{"not valid TOML: " + std::string(e.description()), file, e.source().begin.line});
+  }
 }
 
 std::string type_name(const toml::node& node) {
