@@ -71,6 +71,7 @@ std::optional<Error> not_text(std::string_view line) {
 /// reserving too much costs address space and no memory, too little one more copy.
 std::size_t estimated_rows(std::string_view bytes, std::size_t columns) {
   constexpr std::size_t window = 4096, windows = 64;
+  if (bytes.empty()) return 0;
   const std::size_t shortest = 2 * columns;  // of a row: a character and a separator a field
   const std::size_t pieces = bytes.size() <= window * windows ? 1 : windows;
   const std::size_t length = pieces == 1 ? bytes.size() : window;

@@ -233,7 +233,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     for (std::size_t k = 0; k < b.size(); ++k) {
       const std::size_t replace = diagonal + (a[i] == b[k] ? 0 : 1);
       diagonal = row[k + 1];
-      row[k + 1] = std::min({replace, row[k] + 1, diagonal + 1});
+      row[k + 1] = std::min(replace, std::min(row[k], diagonal) + 1);
     }
   }
   return row.back();
@@ -242,10 +242,18 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string_view nearest(std::string_view name, const std::vector<std::string_view>& names) {
-  name = name.substr(0, 64);
-  return *std::min_element(names.begin(), names.end(), [&](auto a, auto b) {
-    return edit_distance(name, a) < edit_distance(name, b);
-  });
+  name = name.substr(0, 24);  // longer than any name of a column
+  std::string_view best = names.front();
+  std::size_t least = edit_distance(name, best);
+  for (const std::string_view candidate : names) {
+    const std::size_t a = name.size(), b = candidate.size();
+    if ((a > b ? a - b : b - a) >= least) continue;  // the distance is at least that
+    const std::size_t distance = edit_distance(name, candidate);
+    if (distance >= least) continue;
+    least = distance;
+    best = candidate;
+  }
+  return best;
 }
 
 }  // namespace nonio::csv

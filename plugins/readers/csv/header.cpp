@@ -42,7 +42,8 @@ const Known* find(std::string_view name) {
 
 tl::unexpected<Error> fail_at(std::string_view column, std::string message) {
   Error error{std::move(message)};
-  if (is_utf8(column)) error.column = column.substr(0, 80);
+  // A name that cannot be shown as it is stands in the message only.
+  if (shown(column) == "\"" + std::string(column) + "\"") error.column = column;
   return fail(std::move(error));
 }
 

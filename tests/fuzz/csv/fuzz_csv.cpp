@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any bytes give observations that hold together, or an error in readable words.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+#include <set>
+#include <string>
+#include <string_view>
+#include <tuple>
+
+#include "csv.h"
+#include "fields.h"
+
+namespace {
+
+void must(bool holds, const char* what) {
+  if (holds) return;
+  std::cerr << "does not hold: " << what << std::endl;
+  std::abort();
+}
+
+void check_error(const nonio::Error& error, std::string_view bytes) {
+  must(!error.message.empty(), "an error has words");
+  must(error.message.size() < 1000, "an error is short");
+  must(nonio::csv::is_utf8(error.message) && nonio::csv::is_utf8(error.column), "words are UTF-8");
+  for (const std::string* words : {&error.message, &error.column})
+    for (const char c : *words)
+      must(static_cast<unsigned char>(c) >= 0x20, "words have no control characters");
+  must(error.line <= bytes.size() + 1, "a line is a line of the file");
+}
+
+void check_column(const std::vector<double>& column, std::size_t size) {
+  must(column.empty() || column.size() == size, "columns are of one size");
+  for (const double x : column) must(std::isnan(x) || std::fabs(x) < 1e19, "no mark is a value");
+}
+
+void check_observations(const nonio::Observations& obs, std::string_view bytes) {
+  const std::size_t n = obs.size();
+  must(n > 0 && n + obs.missing <= bytes.size(), "there are readings, and no more than rows");
+  must(obs.axes.size() == 1 && obs.lines.size() == 1, "one axis, one line");
+  must(obs.run.size() == n && obs.source_line.size() == n, "run and line of each reading");
+  must(obs.axes[0].position.size() == n && obs.axes[0].approach.size() == n,
+       "target of each reading");
+  std::set<std::tuple<std::uint32_t, int, double>> keys;
+  for (std::size_t i = 0; i < n; ++i) {
+    must(std::isfinite(obs.deviation[i]) && std::isfinite(obs.axes[0].position[i]), "finite");
+    must(obs.run[i] >= 1 && std::abs(obs.axes[0].approach[i]) == 1, "run and direction");
+    must(keys.emplace(obs.run[i], obs.axes[0].approach[i], obs.axes[0].position[i]).second,
+         "a reading is there once");
+    must(i == 0 || obs.source_line[i] > obs.source_line[i - 1], "in the order of the file");
+  }
+  for (const auto* column : {&obs.time, &obs.material, &obs.air, &obs.pressure, &obs.humidity})
+    check_column(*column, n);
+}
+
+struct World {
+  nonio::Campaign campaign;
+  nonio::Measurement linear, rotary, straightness;
+  nonio::Settings options;
+
+  World() {
+    nonio::Axis x, c;
+    x.name = "X";
+    c.name = "C";
+    c.rotary = true;
+    campaign.machine.axes = {x, c};
+    linear.kind = rotary.kind = "axis";
+    straightness.kind = "straightness";
+    straightness.lateral = "Y";
+    linear.axis = straightness.axis = "X";
+    rotary.axis = "C";
+  }
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const World world;
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  nonio::csv::recognises(bytes);
+  // The file says by its columns, or in a comment, what it is to be.
+  const bool deg = bytes.find("_deg") != bytes.npos;
+  const bool straight = bytes.find("#straightness") != bytes.npos;
+  const nonio::Measurement& measurement = deg        ? world.rotary
+                                          : straight ? world.straightness
+                                                     : world.linear;
+  const auto read = nonio::csv::read({bytes, world.campaign, measurement, world.options, {}});
+  if (read)
+    check_observations(*read, bytes);
+  else
+    check_error(read.error(), bytes);
+  return 0;
+}
