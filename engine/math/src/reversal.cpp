@@ -6,8 +6,8 @@
 //                   s of single readings about the means of their target and their pass
 //   does it exist?  t = B_mean/u(B_mean), level 1 %; u from the scatter of the run-wise differences
 //                   b_j (what a pass shares does not average out over targets), pooled with the
-//                   scatter of single readings where the runs show no more than that (level 25 %,
-//                   T. A. Bancroft 1964, Biometrics 20, p. 427: when to pool)
+//                   scatter of single readings where the runs show no more than that (when to pool:
+//                   T. A. Bancroft 1964, Biometrics 20, p. 427)
 // With one run there is no scatter; then the spread of B_i over the targets bounds it from above.
 #include "nonio/math/reversal.h"
 
@@ -24,7 +24,9 @@ namespace nonio::math {
 namespace {
 
 constexpr double level = 0.01;
-constexpr double pooling_level = 0.25;
+// Runs are pooled with single readings if this level does not tell them apart; a pair of runs tells
+// nearly nothing by itself (one degree of freedom) and is given the benefit of the doubt.
+constexpr double pooling_level = 0.5, pooling_level_of_pair = 0.05;
 constexpr double tolerated_share = 0.5;  // of the largest |B_i| that one value may leave behind
 constexpr double negligible = 1e-12;     // m or rad: rounding, not a machine
 
@@ -80,7 +82,7 @@ Estimate scatter_of_mean(const AxisTest& test, const PassModel& model) {
   single.variance /= sized(test.targets.size());
   if (passes.dof <= 0.0 || single.dof <= 0.0) return passes.dof > 0.0 ? passes : Estimate{};
   const double p = f_upper(passes.variance / single.variance, passes.dof, single.dof);
-  if (p < pooling_level) return passes;
+  if (p < (passes.dof > 1.0 ? pooling_level : pooling_level_of_pair)) return passes;
   const double dof = passes.dof + single.dof;
   return {(passes.variance * passes.dof + single.variance * single.dof) / dof, dof};
 }

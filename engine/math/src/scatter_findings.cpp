@@ -2,10 +2,11 @@
 //
 // Scatter of the two directions, suspected readings, and the target that stands apart.
 //
-// repeatability.asymmetric: F = V+/V-, V the variance of readings about the means of their targets.
-//   V = (P - 1)/f MS_pass + f_e/f MS_e, f = N - m: what the P passes share, and single readings.
-//   Its degrees of freedom after F. E. Satterthwaite 1946, Biometrics Bulletin 2, p. 110.
-//   Two-sided, 1 %; s ratio >= 1.5; both also without the largest residual of each direction.
+// repeatability.asymmetric: F tests between the directions, two-sided, of the scatter of single
+//   readings (about the means of their target and pass) and of the scatter of the passes (what
+//   their readings share; P - 1 degrees of freedom, whatever the number of targets). 0.5 % each, 1
+//   % in all; the ratio of the whole standard deviations >= 1.5; both also without the largest
+//   residual of each direction.
 // reading.suspect: externally studentized residual t = e/(s sqrt(1 - h)), s without that reading,
 // of
 //   the model of pass_model.h; R. D. Cook, S. Weisberg 1982, Residuals and Influence in Regression,
@@ -32,7 +33,9 @@ constexpr double level = 0.01;
 constexpr double rounding = 1e-10;  // m or rad: less is no machine's scatter
 
 struct SideScatter {
-  double variance = 0.0, dof = 0.0;
+  double variance = 0.0;  // of readings about the means of their targets
+  double single = 0.0, single_dof = 0.0;
+  double pass = 0.0, pass_dof = 0.0;
   double s() const { return std::sqrt(variance); }
 };
 
@@ -49,9 +52,9 @@ SideScatter scatter_of(const PassModel& m, std::size_t d) {
   const double f = static_cast<double>(side.readings) - static_cast<double>(side.targets);
   const double f_pass = static_cast<double>(side.passes) - 1.0;
   if (f <= 0.0 || f_pass <= 0.0) return {};
-  const double of_pass = std::max(0.0, squares - side.squares) / f;  // share times mean square
-  const double of_single = side.squares / f;
-  return {squares / f, joined_dof(of_pass, f_pass, of_single, std::max(side.dof, 1.0))};
+  const double of_passes = std::max(0.0, squares - side.squares);
+  return {squares / f, side.dof > 0.0 ? side.variance() : 0.0, side.dof, of_passes / f_pass,
+          f_pass};
 }
 
 struct Asymmetry {
@@ -63,12 +66,14 @@ struct Asymmetry {
 Asymmetry asymmetry_of(const PassModel& m) {
   Asymmetry a;
   for (std::size_t d = 0; d < 2; ++d) a.side[d] = scatter_of(m, d);
-  if (a.side[0].dof <= 0.0 || a.side[1].dof <= 0.0) return a;
+  if (a.side[0].pass_dof <= 0.0 || a.side[1].pass_dof <= 0.0) return a;
   const std::size_t wide = a.side[0].variance >= a.side[1].variance ? 0 : 1;
   const SideScatter &more = a.side[wide], &less = a.side[1 - wide];
   if (more.s() < rounding) return a;
   a.ratio = more.s() / less.s();
-  a.p = std::min(1.0, 2.0 * f_upper(more.variance / less.variance, more.dof, less.dof));
+  const double single = f_upper(more.single / less.single, more.single_dof, less.single_dof);
+  const double pass = f_upper(more.pass / less.pass, more.pass_dof, less.pass_dof);
+  a.p = std::min(1.0, 4.0 * std::min(single, pass));  // two tests, two sides
   return a;
 }
 
@@ -217,7 +222,10 @@ Worst worst_of(const Curve& c) {
     largest = vq * vq / vv;
     const double height = vq / vv;
     const double t_value = height * std::sqrt(vv) / std::sqrt(rest / others);
-    worst = {t, height, std::min(1.0, static_cast<double>(m) * t_two_sided(t_value, others))};
+    // Neighbouring q_i share readings: correlated by -2/3 and 1/6, so that their squares are worth
+    // 1/(1 + 2 (4/9 + 1/36)) = 18/35 of as many free ones.
+    const double dof = others * 18.0 / 35.0;
+    worst = {t, height, std::min(1.0, static_cast<double>(m) * t_two_sided(t_value, dof))};
   }
   return worst;
 }
