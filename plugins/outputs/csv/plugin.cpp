@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// values.csv and one file of points for each analysis, for spreadsheets.
+#include "nonio/sdk/plugin.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "nonio/sdk/format.h"
+
+namespace nonio {
+namespace {
+
+/// Empty where the value is not known.
+std::string number(double si, Quantity quantity) {
+  if (!std::isfinite(si)) return {};
+  std::array<char, 40> buffer{};
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), printed(si, quantity)).ptr;
+  return {buffer.data(), end};
+}
+
+/// A field that is text: quoted where RFC 4180 asks for it. A spreadsheet takes text that starts
+/// with one of = + - @ (or with a tab or CR before it) for a formula; an apostrophe stops that.
+std::string text(std::string_view words) {
+  std::string field(words);
+  if (!field.empty() && std::string_view("=+-@\t\r").find(field.front()) != std::string_view::npos)
+    field.insert(0, 1, '\'');
+  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
+  std::string quoted = "\"";
+  for (const char c : field) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+void add_row(std::string& out, const std::vector<std::string>& fields) {
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (i > 0) out += ',';
+    out += fields[i];
+  }
+  out += '\n';
+}
+
+const char* words_of(Decision decision) {
+  switch (decision) {
+    case Decision::conforms:
+      return "conforms";
+    case Decision::does_not_conform:
+      return "does not conform";
+    case Decision::cannot_be_decided:
+      break;
+  }
+  return "cannot be decided";
+}
+
+bool belongs(const Conformity& c, const Results::Analysed& a, std::string_view name) {
+  return c.measurement == a.measurement && c.plugin == a.plugin && c.name == name;
+}
+
+std::vector<std::string> value_row(const Results& results, const Results::Analysed& a,
+                                   const Value& v) {
+  std::vector<std::string> row = {text(a.measurement),
+                                  text(a.plugin),
+                                  text(v.name),
+                                  number(v.value, v.quantity),
+                                  text(unit_of(v.quantity).symbol),
+                                  v.U ? number(*v.U, v.quantity) : "",
+                                  "",
+                                  ""};
+  for (const Conformity& c : results.conformity)
+    if (belongs(c, a, v.name)) {
+      row[6] = number(c.tolerance, c.quantity);
+      row[7] = words_of(c.decision);
+    }
+  return row;
+}
+
+/// A tolerance whose value could not be given is a row too: nobody should miss it.
+void add_undecided(std::string& out, const Results& results) {
+  for (const Conformity& c : results.conformity) {
+    const bool has_value =
+        std::any_of(results.analyses.begin(), results.analyses.end(), [&](const auto& a) {
+          const auto& values = a.evaluation.values;
+          return std::any_of(values.begin(), values.end(),
+                             [&](const Value& v) { return belongs(c, a, v.name); });
+        });
+    if (!has_value)
+      add_row(out, {text(c.measurement), text(c.plugin), text(c.name), "",
+                    text(unit_of(c.quantity).symbol), "", number(c.tolerance, c.quantity),
+                    words_of(c.decision)});
+  }
+}
+
+std::string values_file(const Results& results) {
+  std::string out = "measurement,plugin,name,value,unit,U,tolerance,decision\n";
+  for (const Results::Analysed& a : results.analyses)
+    for (const Value& v : a.evaluation.values) add_row(out, value_row(results, a, v));
+  add_undecided(out, results);
+  return out;
+}
+
+std::string points_file(const PointTable& points) {
+  std::string out;
+  std::vector<std::string> row;
+  std::size_t rows = 0;
+  for (const PointTable::Column& c : points.columns) {
+    row.push_back(text(c.name + std::string(unit_of(c.quantity).suffix)));
+    rows = std::max(rows, c.values.size());
+  }
+  add_row(out, row);
+  for (std::size_t i = 0; i < rows; ++i) {
+    row.clear();
+    for (const PointTable::Column& c : points.columns)
+      row.push_back(i < c.values.size() ? number(c.values[i], c.quantity) : "");
+    add_row(out, row);
+  }
+  return out;
+}
+
+/// A plain file name that no artifact has yet.
+std::string file_name(const Results::Analysed& a, const std::vector<Artifact>& others) {
+  const auto plain = [](std::string part) {
+    for (char& c : part)
+      if (std::string_view("/\\:*?\"<>| ").find(c) != std::string_view::npos ||
+          static_cast<unsigned char>(c) < 0x20)
+        c = '_';
+    return part;
+  };
+  const std::string base = "points-" + plain(a.measurement) + "-" + plain(a.plugin);
+  std::string name = base + ".csv";
+  const auto taken = [&] {
+    return std::any_of(others.begin(), others.end(),
+                       [&](const Artifact& o) { return o.name == name; });
+  };
+  for (int k = 2; taken(); ++k) name = base + "-" + std::to_string(k) + ".csv";
+  return name;
+}
+
+Expected<OutputResult> write(const OutputInput& input) {
+  OutputResult result;
+  result.artifacts.push_back({"values.csv", values_file(input.results)});
+  for (const Results::Analysed& a : input.results.analyses)
+    if (!a.evaluation.points.columns.empty())
+      result.artifacts.push_back(
+          {file_name(a, result.artifacts), points_file(a.evaluation.points)});
+  return result;
+}
+
+}  // namespace
+}  // namespace nonio
+
+NONIO_PLUGIN(registry) {
+  nonio::Output output;
+  output.info = {"csv", "1.0", "Values and points by target as CSV files, for spreadsheets."};
+  output.applies = [](const nonio::Campaign&) { return true; };
+  output.write = nonio::write;
+  registry.add(std::move(output));
+}
