@@ -1,0 +1,370 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""prove_table.py WRITER PLUGIN
+
+An invented axis is wrong by a known function, another one in each direction. Nonio's plugin writes
+its table; LinuxCNC itself, without display and real-time kernel, loads it and goes to the targets
+from both sides. The axis stands at motor + error(motor): it must be at the target, to 0.1 um.
+
+Exit status: 0 shown, 1 not so, 77 LinuxCNC is not here.
+"""
+import ctypes
+import json
+import math
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+PROGRAMS = ["linuxcncsvr", "rtapi_app", "halcmd", "io", "milltask"]
+TARGETS = [20.0 * i for i in range(12)]  # mm
+TOLERANCE = 1e-4  # mm
+PYTHON = "/usr/bin/python3"  # LinuxCNC's modules belong to it
+SHARED_KEYS = {1001, 1002, 1003, 1004, 1005, 0x48414C32, 0x90280A48, 0x48484C34}
+
+
+def error(x, direction):
+    """actual - motor in mm: sines on a slope; the reversal changes along the axis"""
+    common = 0.012 * math.sin(x / 60.0) + 6e-5 * x
+    return common + (0.006 + 0.003 * math.cos(x / 45.0) if direction > 0 else
+                     -0.005 - 0.002 * math.sin(x / 30.0))
+
+
+INI = """[EMC]
+VERSION = 1.1
+MACHINE = table
+[DISPLAY]
+DISPLAY = none
+[TASK]
+TASK = milltask
+CYCLE_TIME = 0.001
+[RS274NGC]
+PARAMETER_FILE = parameters
+RS274NGC_STARTUP_CODE = G21 G40 G49 G80 G90
+[EMCMOT]
+EMCMOT = motmod
+COMM_TIMEOUT = 4
+SERVO_PERIOD = 1000000
+[EMCIO]
+EMCIO = io
+CYCLE_TIME = 0.01
+TOOL_TABLE = tools
+[KINS]
+KINEMATICS = trivkins coordinates=X
+JOINTS = 1
+[TRAJ]
+COORDINATES = X
+LINEAR_UNITS = mm
+ANGULAR_UNITS = degree
+DEFAULT_LINEAR_VELOCITY = 1000
+MAX_LINEAR_VELOCITY = 1000
+MAX_LINEAR_ACCELERATION = 5000
+[AXIS_X]
+MIN_LIMIT = -100
+MAX_LIMIT = 500
+MAX_VELOCITY = 1000
+MAX_ACCELERATION = 5000
+[JOINT_0]
+TYPE = LINEAR
+MIN_LIMIT = -100
+MAX_LIMIT = 500
+MAX_VELOCITY = 1000
+MAX_ACCELERATION = 5000
+FERROR = 1000
+MIN_FERROR = 1000
+HOME_SEQUENCE = 0
+COMP_FILE = table.comp
+COMP_FILE_TYPE = {type}
+"""
+
+HAL = """loadrt homemod
+loadrt trivkins coordinates=X
+loadrt motmod servo_period_nsec=1000000 num_joints=1
+addf motion-command-handler servo-thread
+addf motion-controller servo-thread
+net motor joint.0.motor-pos-cmd => joint.0.motor-pos-fb
+net chain iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
+"""
+
+
+# ---- inside: one LinuxCNC, from start to stop, in the current folder
+
+class Controller:
+    def __init__(self):
+        ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)  # orphans come to us, to be ended by their id
+        self.log = open("log", "ab", 0)
+
+    def program(self, name):
+        # LinuxCNC's own launcher ends programs by name; ours have another one
+        if not os.path.islink("nonio-" + name):
+            os.symlink(shutil.which(name), "nonio-" + name)
+        return os.path.abspath("nonio-" + name)
+
+    def call(self, *words):
+        subprocess.run(words, check=True, timeout=30, stdin=subprocess.DEVNULL, stdout=self.log,
+                       stderr=self.log)
+
+    def start(self):
+        self.call(self.program("linuxcncsvr"), "-ini", "machine.ini")
+        subprocess.Popen([self.program("rtapi_app"), "load", "tpmod"], stdin=subprocess.DEVNULL,
+                         stdout=self.log, stderr=self.log)
+        self.wait("rtapi_app", lambda: b"tpmod" in subprocess.run(
+            ["halcmd", "-s", "list", "comp"], stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE, stderr=self.log).stdout)
+        self.call("halcmd", "loadusr", "-Wn", "iocontrol", self.program("io"), "-ini",
+                  "machine.ini")
+        self.call("halcmd", "-i", "machine.ini", "-f", "machine.hal")
+        self.call("halcmd", "start")  # before milltask, which waits for the servo thread
+        self.call("halcmd", "loadusr", "-Wn", "inihal", self.program("milltask"), "-ini",
+                  "machine.ini")
+        import hal
+        import linuxcnc
+        self.hal, self.api = hal, linuxcnc
+        self.component = hal.component("nonio")
+        self.component.ready()
+        self.wait("milltask", self.connect)
+
+    def connect(self):
+        try:
+            self.status, self.command = self.api.stat(), self.api.command()
+            self.errors = self.api.error_channel()
+            self.status.poll()
+            return self.status.joints == 1
+        except self.api.error:
+            return False
+
+    def wait(self, what, condition, seconds=20):
+        end = time.monotonic() + seconds
+        while not condition():
+            if time.monotonic() > end:
+                raise RuntimeError("timeout: " + what)
+            time.sleep(0.005)
+
+    def polled(self, attribute):
+        self.status.poll()
+        return getattr(self.status, attribute)
+
+    def make_ready(self):
+        c, api = self.command, self.api
+        for state in (api.STATE_ESTOP_RESET, api.STATE_ON):
+            c.state(state)
+            c.wait_complete(5)
+        self.wait("machine on", lambda: self.polled("task_state") == api.STATE_ON)
+        c.mode(api.MODE_MANUAL)
+        c.wait_complete(5)
+        c.teleop_enable(0)
+        c.wait_complete(5)
+        c.home(0)  # on the spot: motor 0 is joint 0
+        self.wait("homing", lambda: self.polled("homed")[0])
+        c.mode(api.MODE_MDI)
+        c.wait_complete(5)
+
+    def pins(self, *names):
+        return [self.hal.get_value("joint.0." + n) for n in names]
+
+    def go(self, x):
+        self.command.mdi("G53 G0 X%.9f" % x)
+        if self.command.wait_complete(20) != self.api.RCS_DONE:
+            raise RuntimeError("no move to %g: %s" % (x, self.errors.poll()))
+        still = [time.monotonic(), None]
+
+        def settled():  # the correction is ramped in, moves do not wait for it
+            now = self.pins("motor-pos-cmd", "vel-cmd", "backlash-corr", "backlash-filt")
+            if now != still[1] or now[1] != 0.0 or now[2] != now[3]:
+                still[:] = [time.monotonic(), now]
+            return time.monotonic() - still[0] > 0.02
+
+        self.wait("standstill at %g" % x, settled)
+
+    def visit(self):
+        rows = []
+        for direction, targets in ((+1, TARGETS), (-1, TARGETS[::-1])):
+            for x in targets:
+                self.go(x - 5.0 * direction)
+                self.go(x)
+                commanded, motor, offset = self.pins("pos-cmd", "motor-pos-cmd", "motor-offset")
+                rows.append([x, direction, commanded, motor - offset])
+        said = self.errors.poll()
+        return {"rows": rows, "errors": [said[1]] if said else []}
+
+    def children(self):
+        parents, found = {}, [os.getpid()]
+        for p in filter(str.isdigit, os.listdir("/proc")):
+            try:
+                with open("/proc/%s/stat" % p) as f:
+                    fields = f.read().rsplit(")", 1)[1].split()
+            except OSError:
+                continue
+            if fields[0] != "Z":
+                parents.setdefault(int(fields[1]), []).append(int(p))
+        for p in found:
+            found += parents.get(p, [])
+        return found[1:]
+
+    def end(self, ids, how, seconds):
+        for p in ids:
+            try:
+                os.kill(p, how)
+            except ProcessLookupError:
+                pass
+        end = time.monotonic() + seconds
+        while set(ids) & set(self.children()) and time.monotonic() < end:
+            time.sleep(0.01)
+        try:
+            while os.waitpid(-1, os.WNOHANG)[0]:
+                pass
+        except ChildProcessError:
+            pass
+
+    def stop(self):
+        def is_real_time(p):
+            try:
+                with open("/proc/%d/comm" % p) as f:
+                    return "rtapi" in f.read()
+            except OSError:
+                return False
+        if hasattr(self, "component"):
+            self.component.exit()
+        self.end([p for p in self.children() if not is_real_time(p)], signal.SIGTERM, 4)
+        for words in (["halcmd", "stop"], ["halcmd", "unload", "all"],
+                      [self.program("rtapi_app"), "exit"]):
+            try:
+                self.call(*words)
+            except (subprocess.SubprocessError, OSError) as problem:
+                self.log.write(("%s\n" % problem).encode())
+        self.end(self.children(), 0, 3)  # the answer to "exit"
+        self.end(self.children(), signal.SIGTERM, 3)
+        self.end(self.children(), signal.SIGKILL, 3)
+
+
+def inside():
+    controller, result = Controller(), {}
+    try:
+        controller.start()
+        controller.make_ready()
+        result = controller.visit()
+    except (Exception, SystemExit) as problem:
+        result = {"problem": "%s: %s" % (type(problem).__name__, problem)}
+    finally:
+        controller.stop()
+    with open("result.json", "w") as f:
+        json.dump(result, f)
+
+
+# ---- outside: the table, the folder, the namespaces, the verdict
+
+def namespaces():
+    """a command that gives a private System V IPC, network and set of processes, if allowed"""
+    for user in ([], ["--user", "--map-current-user"]):
+        words = ["unshare"] + user + ["--ipc", "--net", "--pid", "--fork", "--kill-child",
+                                      "--mount-proc"]
+        if shutil.which("unshare") and subprocess.run(
+                words + ["true"], stderr=subprocess.DEVNULL).returncode == 0:
+            return words
+    return []
+
+
+def left_behind(kind):
+    """ids of LinuxCNC's System V "shm" or "sem": its keys are the same for every instance"""
+    with open("/proc/sysvipc/" + kind) as f:
+        rows = [line.split() for line in f][1:]
+    return {r[1] for r in rows if int(r[0]) & 0xFFFFFFFF in SHARED_KEYS}
+
+
+def die_with_parent():
+    ctypes.CDLL(None).prctl(1, signal.SIGTERM, 0, 0, 0)  # PR_SET_PDEATHSIG
+
+
+def skip(words):
+    print("skipped: " + words)
+    sys.exit(77)
+
+
+def run(table, file_type, private):
+    folder = tempfile.mkdtemp(prefix="nonio-linuxcnc-")
+    sockets = tempfile.mkdtemp(prefix="nonio-rt-")
+    there = {kind: left_behind(kind) for kind in ("shm", "sem")}
+    try:
+        for name, text in (("table.comp", table), ("machine.ini", INI.format(type=file_type)),
+                           ("machine.hal", HAL), ("tools", ""), ("parameters", "")):
+            with open(os.path.join(folder, name), "w") as f:
+                f.write(text)
+        environment = {"PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "HOME": folder,
+                       "INI_FILE_NAME": "machine.ini",
+                       "RTAPI_FIFO_PATH": os.path.join(sockets, "fifo")}
+        if os.getuid() == 0:  # rtapi_app does not run as root, but as another user
+            environment["RTAPI_UID"] = "65534"
+            os.chown(sockets, 65534, -1)
+        with open(os.path.join(folder, "inside.log"), "wb") as log:
+            child = subprocess.Popen(private + [PYTHON, os.path.abspath(__file__), "--inside"],
+                                     cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+                                     stdout=log, stderr=log, preexec_fn=die_with_parent)
+            try:
+                child.wait(80)
+            except BaseException as reason:  # also when this test is told to end
+                child.terminate()
+                try:
+                    child.wait(15)
+                except subprocess.TimeoutExpired:
+                    child.kill()
+                    child.wait()
+                if not isinstance(reason, subprocess.TimeoutExpired):
+                    raise
+        try:
+            with open(os.path.join(folder, "result.json")) as f:
+                return json.load(f)
+        except OSError:
+            return {"problem": "no result"}
+    finally:
+        if not private:
+            for kind, option in (("shm", "-m"), ("sem", "-s")):
+                for number in left_behind(kind) - there[kind]:
+                    subprocess.run(["ipcrm", option, number], stderr=subprocess.DEVNULL)
+        shutil.rmtree(sockets, ignore_errors=True)
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def judge(file_type, result):
+    if "problem" in result or result["errors"]:
+        print("type %d: %s" % (file_type, result.get("problem", result.get("errors"))))
+        return False
+    left = [(abs(motor + error(motor, d) - commanded), x, d)
+            for x, d, commanded, motor in result["rows"]]
+    moved = max(abs(motor - commanded) for _, _, commanded, motor in result["rows"])
+    worst = max(left)
+    print("type %d: %d targets and directions, corrections up to %.4f mm, |actual - commanded| up "
+          "to %.7f mm (at %g mm, %+d)" % (file_type, len(left), moved, *worst))
+    return len(left) == 2 * len(TARGETS) and moved > 0.015 and all(
+        l[0] <= TOLERANCE for l in left)
+
+
+def main():
+    if len(sys.argv) != 3:
+        print(__doc__)
+        return 2
+    missing = [p for p in PROGRAMS if not shutil.which(p)]
+    modules = subprocess.run([PYTHON, "-c", "import linuxcnc, hal"], stderr=subprocess.DEVNULL)
+    if missing or modules.returncode != 0:
+        skip("LinuxCNC is not installed (%s)" % (", ".join(missing) or "its Python modules"))
+    private = namespaces()
+    if not private and left_behind("shm"):
+        skip("another LinuxCNC is running, and the kernel gives no private namespaces")
+    lines = ["%r %r %r" % (x, error(x, +1) * 1e3, error(x, -1) * 1e3) for x in TARGETS]
+    good = True
+    for file_type in (0, 1):
+        table = subprocess.run([sys.argv[1], sys.argv[2], str(file_type)], input="\n".join(lines),
+                               stdout=subprocess.PIPE, text=True, check=True).stdout
+        result = run(table, file_type, private)
+        good = judge(file_type, result) and good
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    if sys.argv[1:] == ["--inside"]:
+        inside()
+    else:
+        sys.exit(main())

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <iostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "nonio/math/compensation.h"
+#include "nonio/sdk/plugin.h"
+
+/// Invented axes and the plugins as they were built.
+namespace workshop {
+
+using namespace nonio;
+
+inline constexpr double um = 1e-6, mm = 1e-3;
+inline constexpr double deg = 1.0 / deg_per_rad, arcsec = 1.0 / arcsec_per_rad;
+
+struct OneOutput final : Registry {
+  Output output;
+  void add(Reader) override {}
+  void add(Effect) override {}
+  void add(Analysis) override {}
+  void add(Output o) override { output = std::move(o); }
+};
+
+inline Output plugin(const char* path) {
+  void* library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) throw std::runtime_error(dlerror());
+  const auto* entry = static_cast<const PluginEntry*>(dlsym(library, "nonio_plugin"));
+  OneOutput registry;
+  entry->add_to(registry);
+  return registry.output;
+}
+
+inline void print_seed(std::uint32_t seed) { std::cout << "seed " << seed << '\n'; }
+
+inline Output siemens_plugin() { return plugin(plugin_siemens_840d); }
+inline Output heidenhain_plugin() { return plugin(plugin_heidenhain_tnc); }
+inline Output fanuc_plugin() { return plugin(plugin_fanuc); }
+inline Output linuxcnc_plugin() { return plugin(plugin_linuxcnc); }
+
+using Options = std::map<std::string, Setting>;
+
+/// Defaults as declared, then the given ones; an undeclared or differently typed one is a mistake
+/// of the test.
+inline Settings settings(const Output& output, const Options& given) {
+  Settings s;
+  for (const Option& o : output.info.options) s.values[o.name] = o.otherwise;
+  for (const auto& [name, value] : given) {
+    EXPECT_EQ(s.values.count(name), 1U) << "undeclared option " << name;
+    EXPECT_EQ(s.values[name].index(), value.index()) << name;
+    s.values[name] = value;
+  }
+  return s;
+}
+
+using Curve = std::function<double(double)>;
+
+/// One measured axis of a campaign. SI.
+struct Measured {
+  std::string axis = "X";
+  std::string id = "X";
+  bool rotary = false;
+  std::vector<double> targets;
+  Curve plus, minus;  ///< empty: not measured
+  int runs = 1;
+  double scatter = 0.0;
+  std::uint32_t seed = 1;
+};
+
+struct Bench {
+  Campaign campaign;
+  std::vector<Observations> observations;
+  Results results;
+  Templates templates;
+
+  Bench() {
+    campaign.id = "test";
+    campaign.date = "2026-11-21";
+    campaign.machine.maker = "Acme";
+    campaign.machine.model = "M 1";
+    campaign.machine.serial = "007";
+  }
+  explicit Bench(const Measured& m) : Bench() { add(m); }
+
+  void add(const Measured& m) {
+    if (campaign.machine.axis(m.axis) == nullptr) {
+      Axis a;
+      a.name = m.axis;
+      a.rotary = m.rotary;
+      campaign.machine.axes.push_back(a);
+    }
+    Measurement entry;
+    entry.id = m.id;
+    entry.kind = "axis";
+    entry.axis = m.axis;
+    campaign.measurements.push_back(entry);
+    Observations o;
+    o.measurement = m.id;
+    o.angular = m.rotary;
+    o.axes.push_back({m.axis, m.rotary, {}, {}});
+    std::mt19937 random(m.seed);
+    std::normal_distribution<double> scatter(0.0, 1.0);
+    for (int run = 1; run <= m.runs; ++run)
+      for (const int direction : {1, -1}) {
+        const Curve& e = direction > 0 ? m.plus : m.minus;
+        if (!e) continue;
+        for (const double x : m.targets) {
+          o.axes[0].position.push_back(x);
+          o.axes[0].approach.push_back(static_cast<std::int8_t>(direction));
+          o.deviation.push_back(e(x) + m.scatter * scatter(random));
+          o.run.push_back(static_cast<std::uint32_t>(run));
+        }
+      }
+    observations.push_back(std::move(o));
+  }
+
+  Expected<OutputResult> write(const Output& output, const Options& options = {}) const {
+    const Settings s = settings(output, options);
+    return output.write({campaign, observations, results, s, templates});
+  }
+};
+
+inline std::string file(const OutputResult& r, const std::string& name) {
+  for (const Artifact& a : r.artifacts)
+    if (a.name == name) return a.bytes;
+  ADD_FAILURE() << "no file " << name;
+  return {};
+}
+
+inline bool has_file(const OutputResult& r, const std::string& name) {
+  for (const Artifact& a : r.artifacts)
+    if (a.name == name) return true;
+  return false;
+}
+
+inline const Finding* finding(const OutputResult& r, const std::string& id) {
+  for (const Finding& f : r.findings)
+    if (f.id == id) return &f;
+  return nullptr;
+}
+
+inline const Prediction& prediction(const OutputResult& r, const std::string& name) {
+  static const Prediction none;
+  for (const Prediction& p : r.predictions)
+    if (p.name == name) return p;
+  ADD_FAILURE() << "no prediction of " << name;
+  return none;
+}
+
+inline std::vector<double> even(double first, double step, int n) {
+  std::vector<double> x;
+  for (int i = 0; i < n; ++i) x.push_back(first + step * i);
+  return x;
+}
+
+/// A smooth curve with a pitch error of its own: some sines and a slope.
+inline Curve random_curve(std::mt19937& random, double length, double size) {
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  std::vector<std::array<double, 3>> waves;
+  for (int k = 1; k <= 3; ++k)
+    waves.push_back({size * u(random) / k, k * 3.0 / length, 6 * u(random)});
+  const double slope = size * u(random) / length, zero = size * u(random);
+  return [=](double x) {
+    double e = zero + slope * x;
+    for (const auto& w : waves) e += w[0] * std::sin(w[1] * x + w[2]);
+    return e;
+  };
+}
+
+inline std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t end = std::min(text.find('\n', i), text.size());
+    out.push_back(text.substr(i, end - i));
+    i = end + 1;
+  }
+  return out;
+}
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+inline math::ErrorCurve curve_of(const Bench& b, std::size_t i = 0) {
+  return math::error_curve(math::AxisTest::arrange(b.observations[i]));
+}
+
+}  // namespace workshop
