@@ -27,10 +27,12 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-// Mean range of n normal values in units of their standard deviation (control chart constant d2;
-// L. H. C. Tippett 1925, Biometrika 17, p. 364); tests/unit/math recomputes it by integration.
-constexpr std::array<double, 11> d_n = {none,  none,  1.128, 1.693, 2.059, 2.326,
-                                        2.534, 2.704, 2.847, 2.970, 3.078};
+// Mean range of n normal values in units of their standard deviation, the integral of
+// 1 - Phi^n - (1 - Phi)^n (L. H. C. Tippett 1925, Biometrika 17, p. 364); tests/unit/math computes
+// it again. Tables print three digits: 1.128, 1.693, 2.059, 2.326, ...
+constexpr std::array<double, 11> d_n = {
+    none,           none,           1.128379167096, 1.692568750643, 2.058750746008, 2.325928947281,
+    2.534412721223, 2.704356751214, 2.847200612091, 2.970026324418, 3.077505461670};
 
 double deviation_of_side(const std::vector<double>& x, StandardDeviation how) {
   if (how == StandardDeviation::direct) return standard_deviation(x);

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "axis_builder.h"
+#include "nonio/math/axis_analysis.h"
+#include "nonio/math/axis_findings.h"
+#include "nonio/math/reversal.h"
+
+namespace nonio::math {
+namespace {
+
+constexpr double um = 1e-6;
+
+const Finding* find(const std::vector<Finding>& findings, const std::string& id) {
+  for (const Finding& f : findings)
+    if (f.id == id) return &f;
+  return nullptr;
+}
+
+// Noise-free readings, as a simulation gives them: no test may stumble over 0/0.
+TEST(Findings, WithoutAnyScatter) {
+  made::Random random(1);
+  made::Plan plan{{0.0, 0.11, 0.19, 0.31, 0.43, 0.5}, 5};
+  const auto lost = made::arranged(
+      plan, [](double x, int d, std::uint32_t) { return 3e-5 * x + (d > 0 ? -8 * um : 0.0); }, {},
+      random);
+  EXPECT_EQ(assess_reversal(lost).kind, Reversal::Kind::lost_motion);
+  std::vector<Finding> findings;
+  drift_findings(lost, findings);
+  reversal_findings(lost, findings);
+  scatter_findings(lost, findings);
+  ASSERT_EQ(findings.size(), 1U) << findings.front().id;
+  EXPECT_EQ(findings[0].id, "reversal.lost-motion");
+
+  const auto still = made::arranged(
+      plan, [](double, int, std::uint32_t) { return 0.0; }, {}, random);
+  EXPECT_EQ(assess_reversal(still).kind, Reversal::Kind::none);
+  findings.clear();
+  drift_findings(still, findings);
+  reversal_findings(still, findings);
+  scatter_findings(still, findings);
+  EXPECT_TRUE(findings.empty());
+}
+
+// A significant reversal that is small against A is told, not shouted.
+TEST(Findings, ATinyReversalIsNoReasonToAct) {
+  made::Random random(2);
+  made::Plan plan{{0.0, 0.11, 0.19, 0.31, 0.43, 0.5}, 5};
+  for (const double B : {-1 * um, -20 * um}) {
+    std::vector<Finding> findings;
+    const auto test = made::arranged(
+        plan, [&](double x, int d, std::uint32_t) { return 4e-5 * x + (d > 0 ? B : 0.0); },
+        {0.05 * um}, random);
+    reversal_findings(test, findings);
+    const Finding* f = find(findings, "reversal.lost-motion");
+    ASSERT_NE(f, nullptr);
+    EXPECT_EQ(f->attention, B < -10 * um);
+  }
+}
+
+// ISO R+ 4.516 against R- 1.756 and the like: s of one direction more than twice the other's.
+TEST(Findings, OneWildReadingIsNoDirection) {
+  made::Random random(3);
+  made::Plan plan{{0.0, 0.11, 0.19, 0.31, 0.43, 0.5}, 5};
+  auto o = made::observe(
+      plan, [](double, int, std::uint32_t) { return 0.0; }, {0.3 * um}, random);
+  EXPECT_FALSE(scatter_is_asymmetric(AxisTest::arrange(o)));
+  o.deviation[4] += 8 * um;
+  EXPECT_FALSE(scatter_is_asymmetric(AxisTest::arrange(o)));
+}
+
+TEST(Findings, RotaryEvidenceIsAngular) {
+  made::Random random(4);
+  made::Plan plan{{0.0, 0.7, 1.6, 2.5, 3.1, 4.0, 4.8, 5.5}, 5};
+  plan.rotary = true;
+  std::vector<Finding> findings;
+  reversal_findings(made::arranged(
+                        plan, [](double a, int d, std::uint32_t) { return d * 2e-5 * std::sin(a); },
+                        {um}, random),
+                    findings);
+  const Finding* f = find(findings, "reversal.elastic");
+  ASSERT_NE(f, nullptr);
+  EXPECT_EQ(f->evidence.at(0).quantity, Quantity::angular_deviation);
+  EXPECT_NEAR(f->evidence.at(0).value, 2e-5, 1e-6);
+}
+
+TEST(Findings, TargetsAreNamedByTheirPosition) {
+  Observations o;
+  for (const double x : {0.1, 1.23456, 0.15}) made::add(o, x, 1, 0.0, 1);
+  const AxisTest t = AxisTest::arrange(o);
+  EXPECT_EQ(target_list(t, {0, 1, 2}), "100; 150; 1234.56 mm");
+}
+
+TEST(Budget, WhatIsMissingIsNamedByItsKey) {
+  Observations o;
+  for (const double x : {0.0, 1.0}) made::add(o, x, 1, 0.0, 1);
+  Campaign c;
+  c.machine.axes.push_back({});
+  c.machine.axes[0].name = "X";
+  c.instrument.U_fixed = 1e-7;
+  c.environment.drift = 1e-6;
+  const auto of = uncertainty_budget(c, "X", AxisTest::arrange(o));
+  EXPECT_FALSE(of.budget);
+  const Finding f = budget_finding(of, false);
+  EXPECT_EQ(f.id, "uncertainty.no-data");
+  EXPECT_EQ(f.texts.at(0).second,
+            "instrument.U_per_m_um, environment.misalignment_mm, "
+            "environment.temperature_range_K, environment.temperature_difference_K, "
+            "environment.expansion_range_um_per_m_K, machine.axes.X.expansion_um_per_m_K");
+}
+
+struct Given {
+  Campaign campaign;
+  Measurement measurement;
+  Observations observations;
+  Settings options;
+  AnalysisInput input() const { return {campaign, measurement, observations, options}; }
+};
+
+Given linear() {
+  Given g;
+  g.measurement.axis = "X";
+  g.measurement.kind = "axis";
+  for (const double x : {0.0, 1.0}) made::add(g.observations, x, 1, 0.0, 1);
+  return g;
+}
+
+TEST(Analysis, RefusesWhatIsNotAnAxisTest) {
+  Given g = linear();
+  EXPECT_TRUE(begin_axis_analysis(g.input()));
+  g.measurement.axis = "Y";
+  const auto other = begin_axis_analysis(g.input());
+  ASSERT_FALSE(other);
+  EXPECT_EQ(other.error().message, "wanted the readings of axis 'Y', found those of 'X'");
+  g = linear();
+  g.observations.angular = true;
+  EXPECT_FALSE(begin_axis_analysis(g.input()));
+  g = linear();
+  for (auto& approach : g.observations.axes[0].approach) approach = 0;
+  EXPECT_FALSE(begin_axis_analysis(g.input()));
+  EXPECT_FALSE(begin_axis_analysis(Given{}.input()));
+}
+
+}  // namespace
+}  // namespace nonio::math
