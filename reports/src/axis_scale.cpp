@@ -15,14 +15,16 @@ double round_step(double raw, bool degrees) {
     for (const double step : {15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0})
       if (raw > 10.0 && raw <= step) return step;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
-  for (const double step : {1.0, 2.0, 5.0})
+  for (const double step : {1.0, 2.0, 2.5, 5.0})
     if (raw <= step * power * (1.0 + 1e-9)) return step * power;
   return 10.0 * power;
 }
 
 std::string label(double value, double step, double largest, std::string_view language) {
   const bool plain = largest < 1e7 && step > 1e-6;
-  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
+  int decimals = 0;
+  for (double s = step; decimals < 9 && std::fabs(s - std::nearbyint(s)) > 1e-6 * s; s *= 10.0)
+    ++decimals;
   std::string text =
       localised(plain ? fixed_text(value, decimals) : short_text(value, 3), language);
   for (std::size_t at = 0; (at = text.find('-', at)) != std::string::npos; at += 3)

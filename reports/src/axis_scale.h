@@ -16,8 +16,8 @@ struct AxisScale {
   double at(double value) const { return (value - from) / (to - from); }  ///< 0 to 1
 };
 
-/// From `low` to `high` with about `count` ticks at 1, 2 or 5 times a power of ten, or at parts of
-/// a turn (`degrees`).
+/// From `low` to `high` with about `count` ticks at 1, 2, 2.5 or 5 times a power of ten, or at
+/// parts of a turn (`degrees`).
 AxisScale axis_scale(double low, double high, int count, bool degrees, std::string_view language);
 
 }  // namespace nonio::reports

@@ -121,7 +121,7 @@ Expected<Laid> lay(const Paragraph& paragraph, double width, const Context& cont
   if (!text) return fail(text.error());
   Laid out;
   add_text(out.pieces, *text, 0, paragraph.look == Look::muted ? style.muted : style.text);
-  out.pieces.back().gap = 3;
+  out.pieces.back().gap = small ? 1.5 : 3;
   return out;
 }
 

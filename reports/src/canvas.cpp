@@ -118,9 +118,14 @@ void Canvas::leave() {
 }
 
 void Canvas::show(bool bold, double size, std::span<const Glyph> glyphs) {
-  ops += bold ? "/F2 " : "/F1 ";
-  number(size);
-  ops += "Tf (";
+  if (bold != state_.bold || size != state_.size) {
+    ops += bold ? "/F2 " : "/F1 ";
+    number(size);
+    ops += "Tf ";
+    state_.bold = bold;
+    state_.size = size;
+  }
+  ops += '(';
   for (const Glyph& g : glyphs)
     for (const int byte : {g.id >> 8, g.id & 0xFF}) {
       const char c = static_cast<char>(byte);

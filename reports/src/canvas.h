@@ -48,7 +48,8 @@ class Canvas {
     Colour fill{-1, -1, -1}, stroke{-1, -1, -1};
     double width = -1;
     Dash dash = Dash::solid;
-    bool see_through = false;
+    bool see_through = false, bold = false;
+    double size = -1;  ///< of the font
   };
   void number(double value);
   void colour(Colour, const char* op);

@@ -75,14 +75,12 @@ std::string unit_text(Quantity quantity) {
       return "µm";
     case Quantity::angle:
       return "°";
-    case Quantity::angular_deviation:
-      return "″";
     case Quantity::small_angle:
       return "µrad";
     case Quantity::deviation_per_length:
       return "µm/m";
     case Quantity::deviation_per_angle:
-      return "″/°";
+      return "arcsec/°";
     case Quantity::expansion:
       return "µm/(m·K)";
     case Quantity::temperature:

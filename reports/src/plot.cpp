@@ -116,11 +116,13 @@ void draw_line(Canvas& canvas, const Frame& frame, const Curve& curve) {
     if (any) canvas.stroke();
     canvas.line(curve.width);
   }
+  const double spacing = frame.w / static_cast<double>(std::max<std::size_t>(1, curve.x.size()));
+  const double apart = spacing < 1.8 * curve.marker_size ? 14.0 : 0.0;  // of dense points some
   double last = -1e9;
   for (const auto& part : parts)
     for (const Point& p : part) {
       if (curve.marker == Marker::none && part.size() > 1) break;
-      if (std::fabs(p.x - last) < 1.5 * curve.marker_size) continue;
+      if (std::fabs(p.x - last) < apart) continue;
       last = p.x;
       draw_marker(canvas, curve.marker == Marker::none ? Marker::dot : curve.marker, p.x, p.y,
                   curve.marker_size, curve.colour);
@@ -153,7 +155,8 @@ void draw_band(Canvas& canvas, const Frame& frame, const Curve& curve) {
 
 void draw_bars(Canvas& canvas, const Frame& frame, const Curve& curve) {
   canvas.stroke_colour(curve.colour);
-  canvas.line(curve.width);
+  const double spacing = frame.w / static_cast<double>(std::max<std::size_t>(1, curve.x.size()));
+  canvas.line(std::min(curve.width, std::max(0.1, 0.5 * spacing)));
   bool any = false;
   for (std::size_t i = 0; i < curve.x.size() && i < curve.y.size() && i < curve.y2.size(); ++i) {
     if (!drawable(curve.x[i]) || !drawable(curve.y[i]) || !drawable(curve.y2[i])) continue;

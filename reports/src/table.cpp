@@ -152,7 +152,7 @@ class TableSetter {
     for (std::size_t first = 0; first < lines; first += each) {
       Canvas canvas;
       const double leading = style.small * 1.3;
-      const double above = first == 0 ? 1.0 : 0.0, below = first + each >= lines ? 1.0 : 0.0;
+      const double above = first == 0 ? 0.5 : 0.0, below = first + each >= lines ? 0.5 : 0.0;
       const double height = leading * static_cast<double>(each) + above + below;
       if (r % 2 == 1) canvas.filled(0, -height, width_, height, style.shade);
       double x = 0;

@@ -76,7 +76,7 @@ Expected<Glyphs> shape(std::string_view text, const Font& font, std::string_view
     const std::uint16_t id = c == not_utf8 || is_control(c) ? 0 : font.glyph(c);
     if (id == 0) return fail(unprintable(text, at, c, field));
     const bool space = c == U' ';
-    out.push_back({id, font.advance[id], space, space || c == U'-' || c == U'/' || c == U'\u2013'});
+    out.push_back({id, font.advance[id], space, space || c == U'-' || c == U'\u2013'});
   }
   return out;
 }

@@ -22,6 +22,15 @@ std::string symbol(std::string_view name) {
   return out;
 }
 
+std::string plain_number(const Source& source, double si, Quantity q) {
+  std::string text = short_text(printed(si, q), 4);
+  if (text.find('.') != std::string::npos && text.find('e') == std::string::npos) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+  }
+  return localised(text, source.language());
+}
+
 namespace {
 
 /// The same thing found by two analyses is said once; attention before information.

@@ -351,6 +351,7 @@ void add_plots(const Source& source, const Measured& m, Blocks& blocks) {
     if (kind == "reversal") add(reversal_plot(source, m));
     if (kind == "series") series_plots(source, m, plots);
   }
+  if (!plots.empty()) blocks.push_back({Spacer{4}});
   const std::string field = "plots of measurement " + m.measurement.id;
   const auto per_row = static_cast<std::size_t>(source.look.plots_per_row);
   for (std::size_t i = 0; i < plots.size(); i += per_row) {

@@ -10,18 +10,31 @@ namespace nonio::pdf_report {
 
 using namespace reports;
 
+namespace {
+
+const std::vector<double> identity_shares = {0.36, 0.29, 0.35};
+const std::vector<double> title_shares = {0.66, 0.34};  // the laboratory above the instrument
+
+}  // namespace
+
 void add_title(const Source& source, Blocks& blocks) {
   const Laboratory& laboratory = source.in.campaign.laboratory;
+  Blocks title = {{Heading{source.words.get("title"), 0}, "title"},
+                  {Paragraph{source.words.get("subtitle"), Paragraph::Look::muted}, "subtitle"}};
+  Blocks by;
   if (!laboratory.name.empty())
-    blocks.push_back({Paragraph{laboratory.name, Paragraph::Look::bold}, "laboratory.name"});
+    by.push_back({Paragraph{laboratory.name, Paragraph::Look::bold}, "laboratory.name"});
   std::string below = laboratory.address;
-  for (const std::string& part : {laboratory.country, laboratory.accreditation})
-    if (!part.empty()) below += (below.empty() ? "" : " · ") + part;
+  if (!laboratory.country.empty()) below += (below.empty() ? "" : " · ") + laboratory.country;
   if (!below.empty())
-    blocks.push_back({Paragraph{below, Paragraph::Look::muted}, "laboratory.address"});
-  if (!laboratory.name.empty()) blocks.push_back({Spacer{6}});
-  blocks.push_back({Heading{source.words.get("title"), 0}, "title"});
-  blocks.push_back({Paragraph{source.words.get("subtitle"), Paragraph::Look::muted}, "subtitle"});
+    by.push_back({Paragraph{below, Paragraph::Look::muted}, "laboratory.address"});
+  if (!laboratory.accreditation.empty())
+    by.push_back(
+        {Paragraph{laboratory.accreditation, Paragraph::Look::muted}, "laboratory.accreditation"});
+  if (by.empty())
+    std::move(title.begin(), title.end(), std::back_inserter(blocks));
+  else
+    blocks.push_back({Columns{{std::move(title), std::move(by)}, title_shares}, "title"});
   blocks.push_back({Spacer{6}});
 }
 
@@ -31,16 +44,14 @@ std::string instrument_U(const Source& source, const Instrument& i) {
   std::string text;
   const auto add = [&](const std::optional<double>& value, Quantity q, const char* times) {
     if (!value) return;
-    const double shown = printed(*value, q);
-    text += (text.empty() ? "" : " + ") + localised(short_text(shown, 3), source.language()) + " " +
-            unit_text(q) + times;
+    text +=
+        (text.empty() ? "" : " + ") + plain_number(source, *value, q) + " " + unit_text(q) + times;
   };
   add(i.U_fixed, Quantity::deviation, "");
   add(i.U_per_length, Quantity::deviation_per_length, " · L");
   if (i.U_angle) {
     if (!text.empty()) text += "; ";
-    text += localised(short_text(printed(*i.U_angle, Quantity::angular_deviation), 3),
-                      source.language()) +
+    text += plain_number(source, *i.U_angle, Quantity::angular_deviation) + " " +
             unit_text(Quantity::angular_deviation);
   }
   return text;
@@ -85,7 +96,7 @@ void add_identity(const Source& source, Blocks& blocks) {
   blocks.push_back({Columns{{{{std::move(campaign), "campaign"}},
                              {{std::move(machine), "machine"}},
                              {{std::move(instrument), "instrument"}}},
-                            {0.36, 0.29, 0.35}},
+                            identity_shares},
                     "identity"});
 }
 
@@ -109,8 +120,7 @@ void add_conformity(const Source& source, std::vector<std::string>& lines) {
               {{"name", symbol(c.name)},
                {"value", shown.value},
                {"unit", unit_text(c.quantity)},
-               {"tolerance",
-                localised(short_text(printed(c.tolerance, c.quantity), 4), source.language())},
+               {"tolerance", plain_number(source, c.tolerance, c.quantity)},
                {"reason", w.get_or("results." + c.reason, c.reason)}});
     lines.push_back(
         w.get("status.of_measurement", {{"measurement", c.measurement}, {"what", what}}));

@@ -35,6 +35,9 @@ std::vector<Measured> measured(const Source&);
 /// "A+" as the standards print it: "A↑".
 std::string symbol(std::string_view name);
 
+/// A given number, tolerance or uncertainty: as short as it is, "20" and not "20.00".
+std::string plain_number(const Source&, double si, Quantity);
+
 /// Title and status (with what needs attention), campaign, machine, instrument.
 void add_title(const Source&, Blocks&);
 void add_identity(const Source&, Blocks&);

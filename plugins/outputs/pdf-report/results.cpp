@@ -40,9 +40,7 @@ Table::Cell decision_cell(const Source& source, const Conformity* c) {
 }
 
 std::string tolerance_text(const Source& source, const Conformity* c) {
-  return c == nullptr
-             ? ""
-             : localised(short_text(printed(c->tolerance, c->quantity), 4), source.language());
+  return c == nullptr ? "" : plain_number(source, c->tolerance, c->quantity);
 }
 
 /// What a table of values has room and reason for.
@@ -126,8 +124,6 @@ void add_what_is_hidden(const Source& source, const Measured& m, Blocks& blocks)
                                                      {"u_max", text(U_max)},
                                                      {"unit", unit_text(B->quantity)}}));
   if (lines.empty()) return;
-  if (value_of(m, "M") != nullptr && value_of(m, "Pa") != nullptr)
-    lines.push_back(w.get("results.hides_same"));
   blocks.push_back({Heading{w.get("results.hides"), 2}, "results.hides"});
   for (const std::string& line : lines)
     blocks.push_back({Paragraph{line, Paragraph::Look::small}, "results.hides"});
@@ -147,7 +143,7 @@ void add_results(const Source& source, const Measured& m, Blocks& blocks) {
     add_what_is_hidden(source, m, parts[1]);
     const bool decisions = shape_of(source, *m.analyses[0]).decision;
     blocks.push_back({Columns{{std::move(parts[0]), std::move(parts[1])},
-                              decisions ? std::vector{0.6, 0.4} : std::vector{0.55, 0.45}},
+                              decisions ? std::vector{0.62, 0.38} : std::vector{0.55, 0.45}},
                       "results"});
     ++i;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "nonio/reports/number.h"
@@ -34,28 +35,57 @@ std::string file_names(const OutputResult& result) {
   return out;
 }
 
+/// A row for each table of a measurement, with each result before and after.
+struct Row {
+  const Results::Written* output;
+  std::string measurement;
+  std::map<std::string, const Prediction*> by_name;
+};
+
+std::vector<Row> prediction_rows(const Source& source, std::vector<std::string>& names) {
+  std::vector<Row> rows;
+  for (const Results::Written& output : source.in.results.outputs)
+    for (const Prediction& p : output.result.predictions) {
+      if (rows.empty() || rows.back().output != &output || rows.back().measurement != p.measurement)
+        rows.push_back({&output, p.measurement, {}});
+      rows.back().by_name[p.name] = &p;
+      if (std::find(names.begin(), names.end(), p.name) == names.end()) names.push_back(p.name);
+    }
+  return rows;
+}
+
 Table predictions(const Source& source) {
   const Wording& w = source.words;
+  std::vector<std::string> names;
+  const std::vector<Row> rows = prediction_rows(source, names);
+  std::set<std::string> units;
+  for (const Row& row : rows)
+    for (const auto& [name, p] : row.by_name) units.insert(unit_text(p->quantity));
+  const bool own_units = units.size() > 1;
   Table table;
   table.columns = {{w.get("tables.output"), "", false},
                    {w.get("tables.file"), "", false},
-                   {w.get("tables.measurement"), "", false},
-                   {w.get("tables.name"), "", false},
-                   {w.get("tables.before"), "", true},
-                   {w.get("tables.after"), "", true},
-                   {"", "", false}};
-  for (const Results::Written& output : source.in.results.outputs) {
-    bool first = true;
-    for (const Prediction& p : output.result.predictions) {
-      table.rows.push_back({{first ? output.plugin : "", true},
-                            {first ? file_names(output.result) : ""},
-                            {p.measurement},
-                            {symbol(p.name)},
-                            {printed_number(p.before, p.quantity, 2, source.language())},
-                            {printed_number(p.after, p.quantity, 2, source.language())},
-                            {unit_text(p.quantity)}});
-      first = false;
+                   {w.get("tables.measurement"), "", false}};
+  for (const std::string& name : names)
+    table.columns.push_back(
+        {symbol(name), w.get("tables.change", {{"unit", own_units ? "" : *units.begin()}}), true});
+  for (const Row& row : rows) {
+    const bool first = &row == &rows.front() || (&row)[-1].output != row.output;
+    std::vector<Table::Cell> cells = {{first ? row.output->plugin : "", true},
+                                      {first ? file_names(row.output->result) : ""},
+                                      {row.measurement}};
+    for (const std::string& name : names) {
+      const auto p = row.by_name.find(name);
+      const auto number = [&](double v) {
+        return printed_number(v, p->second->quantity, 2, source.language());
+      };
+      cells.push_back(p == row.by_name.end()
+                          ? Table::Cell{"–"}
+                          : Table::Cell{number(p->second->before) + " → " +
+                                        number(p->second->after) +
+                                        (own_units ? " " + unit_text(p->second->quantity) : "")});
     }
+    table.rows.push_back(std::move(cells));
   }
   return table;
 }
@@ -102,7 +132,7 @@ void add_tables(const Source& source, Blocks& blocks) {
 void add_notes(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
   const Results& results = source.in.results;
-  blocks.push_back({Heading{w.get("notes.title"), 1}, "notes.title"});
+  blocks.push_back({Heading{w.get("notes.title"), 2}, "notes.title"});
   bool with_U = false, without_U = false;
   std::set<std::string> said;
   std::vector<std::string> notes;

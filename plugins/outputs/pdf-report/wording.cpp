@@ -66,8 +66,8 @@ std::string typeset(std::string_view s) {
   struct Unit {
     std::string_view plain, printed;
   };
-  constexpr std::array<Unit, 5> units = {
-      {{" um", " µm"}, {" arcsec", "″"}, {" degC", " °C"}, {" deg", "°"}, {" urad", " µrad"}}};
+  constexpr std::array<Unit, 4> units = {
+      {{" um", " µm"}, {" degC", " °C"}, {" deg", "°"}, {" urad", " µrad"}}};
   std::string out;
   for (std::size_t i = 0; i < s.size();) {
     bool done = false;

@@ -27,7 +27,7 @@ std::string printed_number(double si, Quantity, int decimals, std::string_view l
 /// The decimals (at most `most`) that show every one of the values fully, for columns of targets.
 int decimals_for(const std::vector<double>& si, Quantity, int most);
 
-/// The unit as a person writes it: µm, °, ″.
+/// The unit as a person writes it: µm, °, arcsec.
 std::string unit_text(Quantity);
 
 }  // namespace nonio::reports
