@@ -283,7 +283,14 @@ class CampaignRun {
     for (const Results::Analysed& a : out_.results.analyses)
       for (const Value& v : a.evaluation.values) {
         if (a.measurement != measurement || v.name != name) continue;
-        Conformity c{measurement, axis.name, a.plugin, name, tolerance, v.quantity, {}, {}};
+        Conformity c{.measurement = measurement,
+                     .axis = axis.name,
+                     .plugin = a.plugin,
+                     .name = name,
+                     .tolerance = tolerance,
+                     .quantity = v.quantity,
+                     .decision = Decision::cannot_be_decided,
+                     .reason = {}};
         if (v.U) {
           c.decision = decide(std::fabs(v.value), *v.U, tolerance);
           if (c.decision == Decision::cannot_be_decided) c.reason = "near-limit";

@@ -71,6 +71,8 @@ struct Worker {
 /// glibc 2.36 declares pidfd_open without C linkage.
 int open_pidfd(pid_t pid) { return static_cast<int>(::syscall(SYS_pidfd_open, pid, 0)); }
 
+/// The last words of a worker that did everything; a plugin that calls exit(0) does not say them.
+constexpr const char* stored_words = "stored";
 constexpr int store_failed = 3;  // exit status of a worker that could not write
 
 class Runner {
@@ -148,7 +150,7 @@ class Runner {
     stage.set("writing the results");
     const auto stored =
         store(options_.out, evaluated, context_, {c.folder, night_.number, c.reason, false});
-    if (!stored) stage.set(stored.error().message);
+    stage.set(stored ? stored_words : stored.error().message);
     ::_exit(stored ? 0 : store_failed);
   }
 
@@ -192,6 +194,7 @@ class Runner {
     if (end.words == "exit status " + std::to_string(store_failed))
       return lost(worker.campaign, stage);
     if (!end.well) return lost(worker.campaign, stage + ": " + end.words);
+    if (stage != stored_words) return lost(worker.campaign, stage + ": ended the process");
     const auto record = read_record(options_.out / c.id);
     if (!record)
       return lost(worker.campaign, "its record cannot be read: " + record.error().message);

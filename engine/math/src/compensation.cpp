@@ -263,7 +263,7 @@ Expected<Grid> choose_grid(const std::vector<double>& position, const GridRule& 
                 ", behind the last target " + plan.text(plan.to));
   std::vector<std::int64_t> knots;
   for (double x : position) knots.push_back(whole(x, rule.unit));
-  const auto step = rule.step > 0.0 ? wished_step(plan) : chosen_step(plan, knots);
+  const auto step = rule.step != 0.0 ? wished_step(plan) : chosen_step(plan, knots);
   if (!step) return tl::unexpected<Error>(step.error());
   Grid grid;
   grid.step = static_cast<double>(*step) * rule.unit;

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""bench.py NONIO [--campaigns 1000] [--unchanged 10000]: what the nightly run costs, beside a Python
+pipeline with the same outputs in the same run. Prints a table; asserts nothing."""
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).parent
+
+
+def timed(command, cores):
+    """Wall seconds, CPU seconds and the largest memory in MB of the main process, on `cores` cores."""
+    began = time.monotonic()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                               preexec_fn=lambda: os.sched_setaffinity(0, set(range(cores))))
+    _, status, usage = os.wait4(process.pid, 0)
+    wall = time.monotonic() - began
+    cpu = usage.ru_utime + usage.ru_stime
+    if os.waitstatus_to_exitcode(status) > 1:
+        sys.exit(f"{command} failed: {status}")
+    return wall, cpu, usage.ru_maxrss / 1024
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("nonio")
+    parser.add_argument("--campaigns", type=int, default=1000)
+    parser.add_argument("--unchanged", type=int, default=10000)
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="nonio-bench-") as folder:
+        root = pathlib.Path(folder)
+        site, n = root / "site", args.campaigns
+        subprocess.run([sys.executable, HERE / "make_site.py", site, str(n)], check=True)
+        run = [args.nonio, "run", site, "--quiet", "--out"]
+        rows = []
+        one, _, memory = timed([*run, root / "one", "--jobs", "1"], 1)
+        rows.append(("nonio, one worker on one core", n / one, memory))
+        peer, _, peer_memory = timed([sys.executable, HERE / "peer.py", site, root / "peer"], 1)
+        rows.append(("Python pipeline on one core", n / peer, peer_memory))
+        two, _, memory2 = timed([*run, root / "two", "--jobs", "2"], 2)
+        rows.append(("nonio, two workers on two cores", n / two, memory2))
+        for name, rate, mb in rows:
+            print(f"{name:36} {rate:8.1f} campaigns/s   {mb:6.1f} MB")
+        print(f"nonio against Python, per core: {peer / one:.1f} times")
+        print(f"two workers against one: {one / two:.2f} times")
+        sample = root / "one" / "bench-000000"
+        print("outputs of one campaign:", json.dumps({p.name: p.stat().st_size for p in sorted(sample.iterdir())}))
+        small, _, small_memory = timed([*run, root / "one", "--jobs", "1"], 2)
+        print(f"{n} unchanged: {small:.2f} s, {small_memory:.1f} MB")
+        if args.unchanged:
+            big = root / "big"
+            subprocess.run([sys.executable, HERE / "make_site.py", big, str(args.unchanged)], check=True)
+            command = [args.nonio, "run", big, "--quiet", "--out", root / "bigout"]
+            _, _, first_memory = timed(command, 2)
+            seconds, _, again_memory = timed(command, 2)
+            print(f"{args.unchanged} campaigns: {first_memory:.1f} MB in the first run; "
+                  f"unchanged: {seconds:.2f} s, {again_memory:.1f} MB")
+
+
+if __name__ == "__main__":
+    main()

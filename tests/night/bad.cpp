@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// An analysis and an output that misbehave in the way that the option `how` names.
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "nonio/sdk/plugin.h"
+
+namespace {
+
+using namespace nonio;
+
+void leak() {
+  for (std::vector<char*> kept; kept.size() < 10'000;) {  // 10 GB
+    auto* block = new char[1'000'000];
+    for (int i = 0; i < 1'000'000; i += 4096) block[i] = 1;
+    kept.push_back(block);
+  }
+}
+
+void misbehave(const std::string& how) {
+  if (how == "segfault") std::raise(SIGSEGV);
+  if (how == "abort") std::abort();
+  if (how == "exit") std::_Exit(0);
+  if (how == "loop")
+    for (volatile bool on = true; on;) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  if (how == "throw") throw std::runtime_error("thrown on purpose");
+  if (how == "throw-int") throw 7;
+  if (how == "leak") leak();
+}
+
+Expected<Evaluation> analyse(const AnalysisInput& in) {
+  const std::string how = in.options.text("how");
+  misbehave(how);
+  Evaluation e;
+  if (how == "nan")
+    e.values.push_back({"A", std::numeric_limits<double>::quiet_NaN(), Quantity::deviation});
+  if (how == "error") return fail("an error on purpose");
+  return e;
+}
+
+Expected<OutputResult> write(const OutputInput& in) {
+  const std::string how = in.options.text("how");
+  misbehave(how);
+  OutputResult result;
+  if (how == "escape") result.artifacts.push_back({"../escaped.txt", "x"});
+  if (how == "absolute") result.artifacts.push_back({"/tmp/escaped.txt", "x"});
+  if (how == "overwrite") result.artifacts.push_back({"results.json", "x"});
+  if (how == "twice") result.artifacts = {{"a.txt", "1"}, {"a.txt", "2"}};
+  return result;
+}
+
+const std::vector<Option> options = {{"how", std::string("well"), "", "What to do wrong"}};
+
+}  // namespace
+
+NONIO_PLUGIN(registry) {
+  registry.add(Analysis{{"bad-analysis", "1", "Misbehaves", options},
+                        [](const Campaign&, const Measurement&) { return true; },
+                        analyse});
+  registry.add(Output{{"bad-output", "1", "Misbehaves", options},
+                      Output::Stage::document,
+                      [](const Campaign&) { return true; },
+                      write,
+                      nullptr});
+}

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A plugin that misbehaves costs its campaign, never the night."""
+import os
+import unittest
+
+from nightly import PLUGINS, NightTest, tree
+
+
+class Isolation(NightTest):
+    def bad(self, kind, how):
+        """A campaign whose `kind` of plugin does `how`."""
+        run = '[run]\nanalyses = ["iso230-2", "bad-analysis"]\noutputs = ["json", "bad-output"]\n'
+        self.campaign(f"{kind}-{how}", run=run, extra=f'[options.bad-{kind}]\nhow = "{how}"\n')
+        return f"{kind}-{how}"
+
+    def test_each_misbehaviour_is_one_failed_campaign(self):
+        expected = {
+            ("analysis", "segfault"): "analysis bad-analysis (measurement X): signal 11",
+            ("analysis", "abort"): "signal 6",
+            ("analysis", "exit"): "analysis bad-analysis (measurement X): ended the process",
+            ("analysis", "loop"): "no end within the limit of 3 s",
+            ("analysis", "throw"): "analysis bad-analysis threw an exception: thrown on purpose",
+            ("analysis", "throw-int"): "threw an exception of an unknown kind",
+            ("analysis", "leak"): "out of memory",
+            ("analysis", "nan"): "analysis bad-analysis gave a value A that is not a number",
+            ("analysis", "error"): "analysis bad-analysis: an error on purpose",
+            ("output", "segfault"): "output bad-output: signal 11",
+            ("output", "escape"): 'the file name "../escaped.txt"',
+            ("output", "absolute"): 'the file name "/tmp/escaped.txt"',
+            ("output", "overwrite"): 'the file name "results.json"',
+            ("output", "twice"): 'the file name "a.txt", which is already taken',
+        }
+        good_run = '[run]\nanalyses = ["iso230-2"]\noutputs = ["json"]\n'
+        for name in ("good-1", "good-2"):
+            self.campaign(name, run=good_run)
+        (self.site / "site.toml").write_text("[limits]\nseconds = 3\nmemory_MB = 1000\n")
+        self.run_nonio("--plugin-path", str(PLUGINS / "bad"), expect=0)
+        alone = {k: v for k, v in tree(self.out).items() if k.startswith("good") and "run.json" not in k}
+
+        names = {self.bad(*what): words for what, words in expected.items()}
+        other = self.root / "other"
+        self.run_nonio("--plugin-path", str(PLUGINS / "bad"), out=other, expect=1)
+        self.assertEqual(sorted(self.ids("failed", other)), sorted(names))
+        self.assertEqual(sorted(self.ids("done", other)), ["good-1", "good-2"])
+        for name, words in names.items():
+            results = self.results(name, other)
+            self.assertEqual(results["status"], "failed")
+            self.assertIn(words, results["errors"][0]["message"])
+        together = {k: v for k, v in tree(other).items() if k.startswith("good") and "run.json" not in k}
+        self.assertEqual(alone, together)
+        self.assertFalse([p for p in other.rglob("*") if "escaped" in p.name])
+        self.assertFalse(os.path.exists("/tmp/escaped.txt"))
+
+    def test_wrong_abi_is_refused_before_any_call(self):
+        self.campaign("a")
+        done = self.run_nonio("--plugin-path", str(PLUGINS / "wrong_abi"), expect=0)
+        self.assertIn('was built for "nonio-sdk 0; another compiler"', done.stderr)
+
+    def test_crash_while_loading_is_refused(self):
+        self.campaign("a")
+        done = self.run_nonio("--plugin-path", str(PLUGINS / "dies_on_load"), expect=0)
+        self.assertIn("did not survive loading: signal 11", done.stderr)
+
+    def test_duplicate_name_names_both_files(self):
+        self.campaign("a")
+        done = self.run_nonio("--plugin-path", str(PLUGINS / "twin"), expect=2)
+        self.assertIn("two plugins are the analysis iso230-2", done.stderr)
+        self.assertIn("test_twin.so", done.stderr)
+        self.assertIn("iso230-2.so", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

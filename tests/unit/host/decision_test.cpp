@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "nonio/host/evaluate.h"
+#include "nonio/host/nearest.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio {
+
+TEST(Decision, UpperLimitAfterIso14253) {
+  using host::decide;
+  EXPECT_EQ(decide(8.0, 1.0, 10.0), Decision::conforms);
+  EXPECT_EQ(decide(9.0, 1.0, 10.0), Decision::conforms);  // y = USL - U
+  EXPECT_EQ(decide(9.5, 1.0, 10.0), Decision::cannot_be_decided);
+  EXPECT_EQ(decide(11.0, 1.0, 10.0), Decision::cannot_be_decided);  // y = USL + U
+  EXPECT_EQ(decide(11.1, 1.0, 10.0), Decision::does_not_conform);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(decide(nan, 1.0, 10.0), Decision::cannot_be_decided);
+  EXPECT_EQ(decide(8.0, nan, 10.0), Decision::cannot_be_decided);
+}
+
+TEST(Format, PrintedGivesBackTheDecimalThatWasRead) {
+  EXPECT_EQ(printed(25.2 * 1e-3, Quantity::length), 25.2);
+  EXPECT_EQ(printed(90.0 / deg_per_rad, Quantity::angle), 90.0);
+  EXPECT_EQ(printed(-0.0, Quantity::length), 0.0);
+}
+
+TEST(Format, ShortTextHasNoExponentWhereNobodyExpectsOne) {
+  EXPECT_EQ(short_text(0.0), "0.00");
+  EXPECT_EQ(short_text(5.5784), "5.58");
+  EXPECT_EQ(short_text(-12.34), "-12.3");
+  EXPECT_EQ(short_text(1234.5), "1234");
+  EXPECT_EQ(short_text(1e-7), "1.00e-07");
+  EXPECT_EQ(fixed_text(-0.0004, 3), "0.000");
+}
+
+TEST(Suggestion, NearestOrNothing) {
+  EXPECT_EQ(host::suggestion("struture", {"structure", "serial"}), " (nearest: \"structure\")");
+  EXPECT_EQ(host::suggestion("qqqqqq", {"structure", "serial"}), "");
+}
+
+}  // namespace nonio

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/host/manifest.h"
+
+#include <gtest/gtest.h>
+
+namespace nonio::host {
+
+namespace {
+
+const std::string whole = R"(format = 1
+[campaign]
+id = "a-1"
+date = 2026-11-03
+[machine]
+structure = "gantry"
+[machine.axes.Y]
+kind = "linear"
+travel = [0.0, 500.0]
+screw_pitch_mm = 20.0
+expansion_um_per_m_K = 11.5
+tolerance_um = { A = 15.0, "R+" = 6 }
+[machine.axes.C]
+kind = "rotary"
+teeth = 120
+[instrument]
+U_fixed_um = 0.2
+calibrated = 2026-02-01
+[environment]
+drift_um = 0.5
+[[measurement]]
+id = "Y"
+kind = "axis"
+axis = "Y"
+file = "y.csv"
+[run]
+analyses = ["iso230-2"]
+[options.iso230-2]
+edition = 2006
+)";
+
+/// The message that a manifest with `bad` in place of `good` gets, with its line in front.
+std::string complaint(const std::string& good, const std::string& bad) {
+  std::string text = whole;
+  const std::size_t at = text.find(good);
+  EXPECT_NE(at, std::string::npos) << good;
+  text.replace(at, good.size(), bad);
+  const auto parsed = parse_manifest(text, "campaign.toml");
+  if (parsed) return "accepted";
+  std::string all;
+  for (const Error& e : parsed.error()) all += std::to_string(e.line) + ": " + e.message + "\n";
+  return all;
+}
+
+}  // namespace
+
+TEST(Manifest, EverythingArrivesInSi) {
+  const auto m = parse_manifest(whole, "campaign.toml");
+  ASSERT_TRUE(m);
+  EXPECT_EQ(m->campaign.id, "a-1");
+  EXPECT_EQ(m->campaign.date, "2026-11-03");
+  ASSERT_EQ(m->campaign.machine.axes.size(), 2u);
+  const Axis& y = m->campaign.machine.axes[0];  // in the order of the file, not of the alphabet
+  EXPECT_EQ(y.name, "Y");
+  EXPECT_DOUBLE_EQ(y.travel->second, 0.5);
+  EXPECT_DOUBLE_EQ(*y.screw_pitch, 0.020);
+  EXPECT_DOUBLE_EQ(*y.expansion, 11.5e-6);
+  EXPECT_DOUBLE_EQ(y.tolerance.at("A"), 15e-6);
+  EXPECT_DOUBLE_EQ(y.tolerance.at("R+"), 6e-6);
+  EXPECT_EQ(*m->campaign.machine.axes[1].teeth, 120);
+  EXPECT_DOUBLE_EQ(*m->campaign.environment.drift, 0.5e-6);
+  EXPECT_EQ(m->options.at("iso230-2").at("edition").line, 31u);
+}
+
+TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
+  struct Row {
+    const char *good, *bad, *wanted;
+  };
+  for (const Row& r : std::initializer_list<Row>{
+           {"structure = ", "struture = ",
+            "6: unknown key machine.struture (nearest: \"structure\")"},
+           {"\"gantry\"", "\"portal\"", "6: machine.structure: wanted one of gantry"},
+           {"id = \"a-1\"", "id = \"A 1\"", "3: campaign.id: wanted a-z"},
+           {"id = \"a-1\"", "", "campaign.id is missing"},
+           {"id = \"a-1\"", "id = 7",
+            "3: campaign.id: wanted a text in quotes, found a whole number"},
+           {"date = 2026-11-03", "date = \"3.11.2026\"",
+            "4: campaign.date: wanted a date without quotes"},
+           {"travel = [0.0, 500.0]", "travel = [500.0, 0.0]",
+            "9: machine.axes.Y.travel: wanted two"},
+           {"screw_pitch_mm = 20.0", "screw_pitch_mm = nan",
+            "10: machine.axes.Y.screw_pitch_mm: wanted a finite"},
+           {"screw_pitch_mm = 20.0", "screw_pitch_mm = \"20\"", "wanted a number, found a text"},
+           {"teeth = 120", "teeth = 0", "15: machine.axes.C.teeth: wanted a number above 0"},
+           {"A = 15.0", "A = -1", "tolerance above 0"},
+           {"kind = \"axis\"", "kind = \"axes\"", "(nearest: \"axis\")"},
+           {"axis = \"Y\"\n", "", "measurement.axis: is missing"},
+           {"format = 1", "format = 2", "1: format: wanted 1, found 2"},
+           {"format = 1", "", "format: is missing"},
+           {"[[measurement]]", "[measurement]",
+            "measurement: wanted tables, each headed [[measurement]]"},
+           {"[run]", "[ruin]", "28: unknown key ruin (nearest: \"run\")"},
+           {"edition = 2006", "edition = ", "31: not valid TOML"},
+           {"U_fixed_um = 0.2", "U_fixed_um = -0.2",
+            "17: instrument.U_fixed_um: wanted a number that is not negative"},
+       }) {
+    const std::string found = complaint(r.good, r.bad);
+    EXPECT_NE(found.find(r.wanted), std::string::npos)
+        << r.bad << "\ngot: " << found << "wanted: " << r.wanted;
+  }
+}
+
+TEST(Manifest, AllErrorsAtOnce) {
+  const auto m = parse_manifest("format = 1\nnonsense = 2\n[campaign]\nid = 3\n", "campaign.toml");
+  ASSERT_FALSE(m);
+  EXPECT_EQ(m.error().size(), 3u);  // the key, the id, no measurement
+}
+
+TEST(Manifest, SalvagesTheIdOfABrokenFile) {
+  EXPECT_EQ(salvage_id("format = 1\n[campaign]\n  id = \"x.1\" # c\n[machine\n"), "x.1");
+  EXPECT_EQ(salvage_id("[campaign]\ndate = 1\n[other]\nid = \"x\"\n"), "");
+  EXPECT_EQ(salvage_id("[campaign]\nid = \"../x\"\n"), "");
+  EXPECT_EQ(salvage_id(""), "");
+}
+
+TEST(Manifest, SiteFile) {
+  const auto site =
+      parse_site("[limits]\nseconds = 5\nmemory_MB = 512\n[signing]\nkey = 1\n", "site.toml");
+  ASSERT_TRUE(site);
+  EXPECT_EQ(site->limits.seconds, 5.0);
+  ASSERT_EQ(site->notes.size(), 1u);
+  EXPECT_NE(site->notes[0].find("line 4"), std::string::npos) << site->notes[0];
+  EXPECT_FALSE(parse_site("[limits]\nsecond = 5\n", "site.toml"));
+}
+
+TEST(Options, DefaultsSiteCampaignInThisOrder) {
+  Info info{"p",
+            "1",
+            "",
+            {{"n", 2.0, "mm", "", {}, 0.0, 10.0},
+             {"word", std::string("a"), "", "", {"a", "b"}, {}, {}}}};
+  const auto raw = [](Setting s) {
+    return RawOptions{{"p", {{"n", RawOption{std::move(s), "f", 3}}}}};
+  };
+  EXPECT_EQ(settle_options(info, {}, {})->number("n"), 2.0);
+  EXPECT_EQ(settle_options(info, raw(3.0), {})->number("n"), 3.0);
+  EXPECT_EQ(settle_options(info, raw(3.0), raw(std::int64_t{4}))->number("n"), 4.0);
+  const auto high = settle_options(info, {}, raw(11.0));
+  ASSERT_FALSE(high);
+  EXPECT_EQ(high.error()[0].message,
+            "options.p.n: wanted at least 0.00000 and at most 10.0000, found 11.0000");
+  EXPECT_EQ(high.error()[0].line, 3u);
+  const auto kind = settle_options(info, {}, raw(std::string("x")));
+  ASSERT_FALSE(kind);
+  EXPECT_EQ(kind.error()[0].message, "options.p.n: wanted a number, found a text");
+  const auto word =
+      settle_options(info, {}, {{"p", {{"word", RawOption{std::string("c"), "f", 1}}}}});
+  ASSERT_FALSE(word);
+  const auto unknown = settle_options(info, {}, {{"p", {{"wort", RawOption{1.0, "f", 1}}}}});
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error()[0].message, "unknown option options.p.wort (nearest: \"word\")");
+}
+
+}  // namespace nonio::host
