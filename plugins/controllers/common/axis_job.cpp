@@ -101,8 +101,11 @@ std::vector<std::string> about(const OutputInput& input, const AxisJob& job) {
   lines.push_back("measured from " + with_unit(job, job.curve.position.front(), 4) + " to " +
                   with_unit(job, job.curve.position.back(), 4) + ", " +
                   std::to_string(job.curve.position.size()) + " targets");
-  lines.push_back(
-      "for a control in which table and backlash of this axis were off while it was measured");
+  lines.push_back(job.present_backlash() == 0.0
+                      ? "for a control in which table and backlash of this axis were off while it "
+                        "was measured"
+                      : "for a control in which the table of this axis was off and its backlash " +
+                            with_unit(job, job.present_backlash(), 6) + " while it was measured");
   return lines;
 }
 
@@ -135,7 +138,6 @@ AxisJob job_of(const OutputInput& input, const Measurement& m, const math::AxisT
   if (job.rotary) job.turn = math::closed_turn(job.curve);
   job.reversal = math::assess_reversal(test);
   job.drift = drift_of(input.results, m.id);
-  if (!job.curve.position.empty()) job.about = about(input, job);
   return job;
 }
 
@@ -221,6 +223,7 @@ Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
         return fail("option axes, axis " + m.axis + ": number must be a whole number from 1 to 99");
       job.number = static_cast<std::size_t>(*n);
     }
+    job.about = about(input, job);
     say_what_was_left_out(job, result);
     jobs.push_back(std::move(job));
   }
@@ -277,13 +280,33 @@ std::string reversal_words(const AxisJob& job, bool directions) {
   const std::string mean = deviation_words(job, job.curve.mean_reversal());
   if (directions)
     return "mean reversal B = " + mean +
-           ": contained in the two directions of the table; set the backlash parameter to 0";
+           ": contained in the two directions of the table; backlash parameter = " +
+           with_unit(job, job.present_backlash(), 6) + ", as while it was measured";
   return "mean reversal B = " + mean +
          ": backlash parameter = " + with_unit(job, job.backlash(), 6) +
          " (opposite sign, lost motion is positive)";
 }
 
-void predict(const AxisJob& job, const math::Correction& correction, OutputResult& result) {
+void doubt_positive_reversal(const AxisJob& job, OutputResult& result) {
+  if (job.reversal.kind != math::Reversal::Kind::over_compensated ||
+      job.settings.count("backlash_mm") || job.settings.count("backlash_deg"))
+    return;
+  result.findings.push_back(
+      {"table.positive-reversal",
+       true,
+       {{"mean", job.reversal.mean, deviation_of(job.rotary)}},
+       {{"axis", job.axis}, {"setting", job.rotary ? "backlash_deg" : "backlash_mm"}},
+       job.measurement,
+       "The control very likely compensates backlash already. Say how much (axes = [\"" + job.axis +
+           (job.rotary ? " backlash_deg" : " backlash_mm") +
+           "=...\"]), so that the new value is the present one less the excess."});
+}
+
+void predict(const AxisJob& job, const math::Correction& whole, OutputResult& result) {
+  const double present = job.present_backlash();
+  const math::Correction correction = [&](double x, int direction) {
+    return whole(x, direction) - (direction > 0 ? present / 2.0 : -present / 2.0);
+  };
   const math::MeanDeviations was = math::before(job.curve);
   const math::MeanDeviations will = math::after(job.curve, correction);
   const Quantity q = deviation_of(job.rotary);

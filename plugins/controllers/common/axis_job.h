@@ -31,8 +31,12 @@ struct AxisJob {
   std::vector<std::string> about;                       ///< machine, axis, date: plain ASCII lines
 
   const math::ErrorCurve& table_curve() const { return turn ? *turn : curve; }
-  /// The value that goes into the backlash parameter: positive for lost motion.
-  double backlash() const { return curve.bidirectional() ? 0.0 - curve.mean_reversal() : 0.0; }
+  /// What the control's backlash parameter held while the axis was measured; setting `backlash`.
+  double present_backlash() const { return position_setting("backlash").value_or(0.0); }
+  /// What goes into it now: positive for lost motion.
+  double backlash() const {
+    return curve.bidirectional() ? present_backlash() - curve.mean_reversal() : present_backlash();
+  }
   /// Printed units per SI: mm per m, or deg per rad.
   double per_si() const { return rotary ? deg_per_rad : 1e3; }
   std::string_view unit() const { return rotary ? "deg" : "mm"; }
@@ -64,7 +68,12 @@ std::vector<std::string> drift_warning(const AxisJob& job, OutputResult& result)
 /// How the reversal was dealt with, for the words beside a table.
 std::string reversal_words(const AxisJob& job, bool directions);
 
-/// E, B and M before and after, the latter with `correction` as read back from the bytes written.
+/// A finding where the axis goes too far at reversal and nobody said what the control compensates
+/// already: the value written then replaces one that it should have lowered.
+void doubt_positive_reversal(const AxisJob& job, OutputResult& result);
+
+/// E, B and M before and after, the latter with `correction` as read back from the bytes written;
+/// it is the whole of what the control adds, the present backlash value is taken off here.
 /// A table that makes the mean deviations worse gives a finding.
 void predict(const AxisJob& job, const math::Correction& correction, OutputResult& result);
 

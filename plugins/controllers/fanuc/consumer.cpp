@@ -142,7 +142,7 @@ Expected<math::Correction> load(std::string_view text, const Machine& machine) {
 
   const auto lost = p.find(1851);
   const double backlash =
-      lost == p.end() ? 0.0 : static_cast<double>(lost->second) * machine.detection;
+      lost == p.end() ? machine.backlash : static_cast<double>(lost->second) * machine.detection;
   const double pulse = static_cast<double>(p.at(3623)) * machine.detection;
   return math::Correction([=, up = *plus, down = minus](double x, int direction) {
     if (turn) {

@@ -20,6 +20,7 @@ struct Machine {
   std::int64_t least = -7, most = 7;  ///< what one number holds
   bool bidirectional = false;         ///< 3605#0, set by hand
   bool returns_towards_plus = true;   ///< direction of reference return
+  double backlash = 0.0;  ///< what 1851 amounts to if the text does not set it, m or rad
 };
 
 Expected<math::Correction> load(std::string_view text, const Machine& machine);

@@ -98,10 +98,10 @@ Table table_of(const AxisJob& job, const Grid& grid, const Choices& choices, boo
   const auto at_reference = [&](const std::vector<double>& values) {
     return math::ErrorCurve::at(curve.position, values, t.reference);
   };
+  t.backlash = std::llround((directions ? job.present_backlash() : job.backlash()) /
+                            choices.detection(job.rotary));
   if (!directions) {
-    const auto absolute = pulses(curve, curve.mean, grid, at_reference(curve.mean), pulse);
-    t.plus = numbers_of(absolute, turn);
-    t.backlash = std::llround(job.backlash() / choices.detection(job.rotary));
+    t.plus = numbers_of(pulses(curve, curve.mean, grid, at_reference(curve.mean), pulse), turn);
     return t;
   }
   // Zero where the axis returns to reference; 3627 is what the other direction has there.
@@ -185,7 +185,7 @@ std::string parameter_text(const AxisJob& job, const Table& t) {
     out += "N" + std::to_string(number) + "A" + std::to_string(job.number) + "P" +
            std::to_string(value) + "\n";
   };
-  if (job.curve.bidirectional()) parameter(1851, t.both ? 0 : t.backlash);
+  if (job.curve.bidirectional()) parameter(1851, t.backlash);
   parameter(3620, t.reference_number);
   parameter(3621, t.low);
   parameter(3622, t.high);
@@ -230,7 +230,7 @@ std::string words(const AxisJob& job, const Table& t, const Choices& choices,
   if (t.both)
     line("3626 = " + std::to_string(t.negative_low) + ", 3627 = " + std::to_string(t.opposite));
   if (job.curve.bidirectional())
-    line("1851 = " + std::to_string(t.both ? 0 : t.backlash) +
+    line("1851 = " + std::to_string(t.backlash) +
          "; 1852 the same where rapid traverse has its own (1800#4)");
   line(
       "save the present parameters and pitch data first; power off and on after loading, then "
@@ -249,6 +249,7 @@ fanuc::Machine consumer_of(const AxisJob& job, const Table& t, const Choices& ch
   m.most = choices.most();
   m.bidirectional = t.both;
   m.returns_towards_plus = choices.returns_towards_plus;
+  m.backlash = job.present_backlash();
   return m;
 }
 
@@ -270,6 +271,7 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
   if (!correction)
     return fail("axis " + job.axis +
                 ": the table written cannot be read back: " + correction.error().message);
+  if (!directions && job.curve.bidirectional()) controllers::doubt_positive_reversal(job, result);
   controllers::predict(job, *correction, result);
   result.artifacts.push_back(std::move(load));
   result.artifacts.push_back(std::move(text));
@@ -307,8 +309,8 @@ Choices choices_of(const Settings& o) {
 Expected<OutputResult> write(const OutputInput& input) {
   OutputResult result;
   const Choices choices = choices_of(input.options);
-  const auto jobs =
-      controllers::axis_jobs(input, {"number:", "reference_number:", "step", "reference"}, result);
+  const auto jobs = controllers::axis_jobs(
+      input, {"number:", "reference_number:", "step", "reference", "backlash"}, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   Numbering numbering;
   for (const AxisJob& job : *jobs)
@@ -357,8 +359,8 @@ std::vector<Option> options() {
   list.push_back(
       unit("interval_unit_arcsec", 3.6, "arcsec", "Unit of 3624 and 3625 on rotary axes."));
   list.push_back(controllers::axes_option(
-      "number (controlled axis), reference_number (3620), step_mm, step_deg, reference_mm, "
-      "reference_deg"));
+      "number (controlled axis), reference_number (3620), step_mm, reference_mm, backlash_mm (1851 "
+      "while measured), and the same with _deg"));
   return list;
 }
 

@@ -133,7 +133,7 @@ std::string words(const AxisJob& job, const Choices& choices, bool directions,
        std::string(job.unit()));
   line(controllers::reversal_words(job, directions));
   if (job.curve.bidirectional()) {
-    const double value = directions ? 0.0 : job.backlash() * job.per_si();
+    const double value = (directions ? job.present_backlash() : job.backlash()) * job.per_si();
     line(choices.listed()
              ? "CfgAxisComp/backLash (401802), positive where the encoder leads the table:"
              : "backlash machine parameter of the axis (MP710 or MP750), positive where the "
@@ -159,11 +159,13 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
   Artifact com{stem + ".COM", com_table(job, rows_of(job, *at, directions), axes, choices)};
   Artifact text{stem + ".txt", words(job, choices, directions, com.name, warning)};
 
-  heidenhain::Machine control{controllers::plain(job.axis), job.rotary, choices.max_points, 0.0};
+  heidenhain::Machine control{controllers::plain(job.axis), job.rotary, choices.max_points,
+                              job.present_backlash() * job.per_si()};
   if (job.curve.bidirectional()) {
     const auto backlash = heidenhain::backlash_entered(text.bytes);
     if (!backlash) return tl::unexpected<Error>(backlash.error());
     control.backlash = *backlash;
+    if (!directions) controllers::doubt_positive_reversal(job, result);
   }
   const auto correction = heidenhain::load(com.bytes, control);
   if (!correction)
@@ -236,7 +238,7 @@ Expected<OutputResult> write(const OutputInput& input) {
   const auto choices = choices_of(input.options);
   if (!choices) return tl::unexpected<Error>(choices.error());
   const auto jobs =
-      controllers::axis_jobs(input, {"number:", "step", "first", "reference"}, result);
+      controllers::axis_jobs(input, {"step", "first", "reference", "backlash"}, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   std::vector<const AxisJob*> written;
   for (const AxisJob& job : *jobs) {
@@ -272,8 +274,8 @@ std::vector<Option> options() {
   list.push_back(
       {"max_points", std::int64_t{256}, "", "Rows of one .COM table.", {}, 2.0, 10000.0});
   list.push_back(controllers::axes_option(
-      "step_mm, step_deg, first_mm, first_deg, reference_mm, reference_deg (where the table is "
-      "made zero; else nowhere)"));
+      "step_mm, first_mm, reference_mm (where the table is made zero; else nowhere), backlash_mm "
+      "(the parameter while measured), and the same with _deg"));
   return list;
 }
 

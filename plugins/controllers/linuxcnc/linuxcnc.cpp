@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "axis_job.h"
@@ -58,7 +59,8 @@ double deviation(const AxisJob& job, const std::vector<double>& values, double x
   return math::ErrorCurve::at(position, values, next_turn ? x - full : x);
 }
 
-// Three numbers a line and nothing else: the reader stops at anything that is not.
+// Three numbers a line and nothing else: the reader stops at anything that is not. A BACKLASH that
+// was in force while the axis was measured falls away beside a table: its half comes back here.
 std::string comp_file(const AxisJob& job, const std::vector<double>& at, const Choices& choices) {
   const double scale = choices.per_si(job);
   const auto& up = job.curve.plus.empty() ? job.curve.minus : job.curve.plus;
@@ -66,8 +68,9 @@ std::string comp_file(const AxisJob& job, const std::vector<double>& at, const C
   std::string out;
   for (const double x : at) {
     out += fixed_text(x * scale, digits);
-    for (const auto* e : {&up, &down}) {
-      const double d = deviation(job, *e, x);
+    for (const int direction : {1, -1}) {
+      const double half = direction * job.present_backlash() / 2.0;
+      const double d = deviation(job, direction > 0 ? up : down, x) - half;
       out += " " + fixed_text((choices.type == 0 ? x + d : 0.0 - d) * scale, digits);
     }
     out += "\n";
@@ -105,7 +108,8 @@ std::string words(const AxisJob& job, const std::string& comp, const Choices& ch
   line(job.curve.bidirectional()
            ? "mean reversal B = " + controllers::deviation_words(job, job.curve.mean_reversal()) +
                  ": contained in the two columns; BACKLASH is ignored beside a table"
-           : "measured from one direction only: both columns are the same; BACKLASH is ignored "
+           : "measured from one direction only: both columns have its deviation; BACKLASH is "
+             "ignored "
              "beside a table");
   line(
       "do not put comments or blank lines into the file: the controller stops reading there "
@@ -119,6 +123,9 @@ std::string words(const AxisJob& job, const std::string& comp, const Choices& ch
 
 Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Choices& choices,
                           OutputResult& result) {
+  if (const double joint = job.setting("joint").value_or(0.0);
+      joint < 0.0 || joint > 15.0 || joint != std::floor(joint))
+    return fail("option axes, axis " + job.axis + ": joint must be a whole number from 0 to 15");
   const auto at = positions(job, input);
   if (!at) return tl::unexpected<Error>(at.error());
   const std::string stem = "linuxcnc-" + job.stem;
@@ -140,7 +147,7 @@ Expected<OutputResult> write(const OutputInput& input) {
   OutputResult result;
   const Choices choices{static_cast<int>(input.options.integer("type")),
                         input.options.text("units", "mm") == "inch"};
-  const auto jobs = controllers::axis_jobs(input, {"number:", "joint:", "step", "first"}, result);
+  const auto jobs = controllers::axis_jobs(input, {"joint:", "step", "first", "backlash"}, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   for (const AxisJob& job : *jobs)
     if (auto done = write_axis(job, input, choices, result); !done)
@@ -165,8 +172,8 @@ std::vector<Option> options() {
                   1.0});
   list.push_back({"units", std::string("mm"), "", "LINEAR_UNITS of the machine.", {"mm", "inch"}});
   list.push_back(controllers::axes_option(
-      "joint (else the axis' place in the manifest, from 0), step_mm, step_deg, first_mm, "
-      "first_deg"));
+      "joint (else the axis' place in the manifest, from 0), step_mm, first_mm, backlash_mm "
+      "(BACKLASH while measured), and the same with _deg"));
   return list;
 }
 

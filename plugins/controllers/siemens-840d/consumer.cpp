@@ -184,7 +184,7 @@ Expected<math::Correction> load(const std::vector<std::string_view>& files,
       return tl::unexpected<Error>(done.error());
   const std::string mine = std::to_string(machine.measuring_system) + "," + machine.axis;
   std::vector<Table> active;
-  double backlash = 0.0;
+  double backlash = machine.backlash;
   if (const auto it = memory.encoder.find(mine); it != memory.encoder.end())
     active.push_back(it->second);
   for (const auto& [number, table] : memory.cec)

@@ -19,6 +19,7 @@ struct Machine {
   bool rotary = false;               ///< file values are deg, else mm
   std::size_t encoder_points = 200;  ///< MD38000
   std::size_t cec_points = 200;      ///< MD18342
+  double backlash = 0.0;             ///< MD32450 as it is if no file sets it, mm or deg
 };
 
 /// After these files are loaded and the functions enabled. m or rad.

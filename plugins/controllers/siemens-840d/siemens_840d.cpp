@@ -96,7 +96,7 @@ std::string direction_tables(const AxisJob& job, const Grid& grid, const Choices
   out += comments({"mean of both directions zero at " + controllers::with_unit(job, reference, 4),
                    controllers::reversal_words(job, true),
                    "MD18342[t] >= " + std::to_string(grid.points) +
-                       "; enable MD32710 of the axis and SD41300[t]; MD32450 = 0"});
+                       "; enable MD32710 of the axis and SD41300[t]"});
   std::int64_t number = choices.first_cec_table + 2 * (static_cast<std::int64_t>(job.number) - 1);
   for (const int direction : {1, -1}) {
     const std::string t = std::to_string(number++);
@@ -126,11 +126,14 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
     files.push_back({stem + "-CEC.ini", direction_tables(job, *grid, choices, reference, warning)});
   } else {
     files.push_back({stem + "-EEC.ini", encoder_table(job, *grid, choices, reference, warning)});
-    if (job.curve.bidirectional())
+    if (job.curve.bidirectional()) {
       files.push_back({stem + "-backlash.ini", backlash_file(job, choices, warning)});
+      controllers::doubt_positive_reversal(job, result);
+    }
   }
-  siemens::Machine control{axis_name(job), static_cast<int>(choices.measuring_system), job.rotary,
-                           choices.max_points, choices.max_points};
+  siemens::Machine control{axis_name(job),     static_cast<int>(choices.measuring_system),
+                           job.rotary,         choices.max_points,
+                           choices.max_points, job.present_backlash() * job.per_si()};
   std::vector<std::string_view> bytes;
   for (const Artifact& f : files) bytes.push_back(f.bytes);
   const auto correction = siemens::load(bytes, control);
@@ -160,7 +163,7 @@ Expected<OutputResult> write(const OutputInput& input) {
       o.flag("directions"), o.integer("measuring_system"), o.integer("first_cec_table"),
       static_cast<std::size_t>(o.integer("max_points", 200)), o.flag("quoted_axes")};
   const auto jobs =
-      controllers::axis_jobs(input, {"number:", "step", "first", "reference"}, result);
+      controllers::axis_jobs(input, {"number:", "step", "first", "reference", "backlash"}, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   for (const AxisJob& job : *jobs)
     if (auto done = write_axis(job, input, choices, result); !done)
@@ -196,8 +199,10 @@ std::vector<Option> options() {
                   0.0,
                   120.0});
   list.push_back({"quoted_axes", false, "", "CEC axes as \"AX1\" (newer) and not as (AX1)."});
-  list.push_back(controllers::axes_option(
-      "number (n of AXn), step_mm, step_deg, first_mm, first_deg, reference_mm, reference_deg"));
+  list.push_back(
+      controllers::axes_option("number (n of AXn), step_mm, first_mm, reference_mm, backlash_mm "
+                               "(MD32450 while measured), and "
+                               "the same with _deg"));
   return list;
 }
 

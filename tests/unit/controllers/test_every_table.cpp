@@ -241,6 +241,55 @@ TEST(EveryTable, OneDirectionOnly) {
   }
 }
 
+// A control that compensates 10 um already, and still 3 um lost: 13 um go into the parameter.
+TEST(EveryTable, PresentBacklashIsCounted) {
+  Measured m;
+  m.targets = even(0.0, 50 * mm, 11);
+  m.plus = [](double x) { return 5 * um * std::sin(12 * x); };
+  m.minus = [p = m.plus](double x) { return p(x) + 3 * um; };
+  const Bench b(m);
+  const Setting present = std::vector<std::string>{"X backlash_mm=0.010"};
+  auto all = kinds();
+  for (const Kind& k : with_directions()) all.push_back(k);
+  for (Kind& k : all) {
+    k.options["axes"] = present;
+    const auto r = b.write(k.output(), k.options);
+    ASSERT_TRUE(r) << k.name << ": " << r.error().message;
+    EXPECT_LE(prediction(*r, "E").after, 2.5 * k.resolution + 0.01 * um) << k.name;
+    EXPECT_NEAR(prediction(*r, "B").before, 3 * um, 1e-12);
+  }
+  const auto s = b.write(siemens_plugin(), {{"axes", present}});
+  EXPECT_TRUE(contains(file(*s, "siemens-840d-X-backlash.ini"), "$MA_BACKLASH[0,AX1]=0.013\n"));
+  const auto f = b.write(fanuc_plugin(), {{"axes", present}});
+  EXPECT_TRUE(contains(file(*f, "fanuc-X.prm"), "N1851A1P13\n"));
+  const auto h = b.write(heidenhain_plugin(), {{"axes", present}});
+  EXPECT_TRUE(contains(file(*h, "heidenhain-tnc-X.txt"), "backLash = +0.0130\n"));
+  // LinuxCNC drops its BACKLASH beside a table: -5 um of it come into one column, +5 into the other
+  const auto l = b.write(linuxcnc_plugin(), {{"axes", present}});
+  EXPECT_EQ(lines(file(*l, "linuxcnc-X.comp"))[0], "0.00000000 -0.00500000 0.00800000");
+}
+
+// Over-travel at reversal: nearly always a value that is too large already.
+TEST(EveryTable, PositiveReversalIsDoubted) {
+  Measured m;
+  m.targets = even(0.0, 50 * mm, 11);
+  m.plus = [](double) { return 4 * um; };
+  m.minus = [](double) { return 0.0; };
+  m.runs = 5;
+  m.scatter = 0.1 * um;
+  for (const auto& output : {siemens_plugin(), heidenhain_plugin(), fanuc_plugin()}) {
+    const auto r = Bench(m).write(output);
+    ASSERT_TRUE(r);
+    const Finding* f = finding(*r, "table.positive-reversal");
+    ASSERT_NE(f, nullptr) << output.info.name;
+    EXPECT_NEAR(f->evidence[0].value, 4 * um, 0.2 * um);
+    const auto said =
+        Bench(m).write(output, {{"axes", std::vector<std::string>{"X backlash_mm=0.006"}}});
+    ASSERT_TRUE(said);
+    EXPECT_EQ(finding(*said, "table.positive-reversal"), nullptr);
+  }
+}
+
 TEST(EveryTable, StraightnessAndEmptyMeasurementsAreNotPitch) {
   for (const Kind& k : kinds()) {
     std::mt19937 random(15);
@@ -270,6 +319,7 @@ TEST(EveryTable, SettingsOfOneAxisAreChecked) {
   EXPECT_TRUE(contains(message("X step_mm=5,5"), "wanted step_mm=NUMBER"));
   EXPECT_TRUE(contains(message("X step_mm"), "wanted step_mm=NUMBER"));
   EXPECT_TRUE(contains(message("X number=1.5"), "whole number"));
+  EXPECT_TRUE(contains(message("X backlash=1"), "no setting backlash;"));
   EXPECT_TRUE(contains(message("X step_mm=nan"), "wanted step_mm=NUMBER"));
 }
 
