@@ -77,6 +77,9 @@ inline std::string words(const Templates& templates, std::string_view language,
 inline std::string evidence_text(const Number& n) {
   const double value = printed(n.value, n.quantity);
   if (n.quantity == Quantity::count) return fixed_text(value, 0);
+  const bool deviation =
+      n.quantity == Quantity::deviation || n.quantity == Quantity::angular_deviation;
+  if (deviation && std::fabs(value) < 5e-4) return fixed_text(0.0, 3);  // no exponent for rounding
   if (n.quantity != Quantity::length && n.quantity != Quantity::angle) return short_text(value);
   std::string text = fixed_text(value, 4);
   text.erase(text.find_last_not_of('0') + 1);
