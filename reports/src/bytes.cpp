@@ -6,17 +6,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <memory>
 
 namespace nonio::reports {
 
 std::string deflated(std::string_view bytes, int level) {
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
-  std::string out(size, '\0');
-  const int status = compress2(reinterpret_cast<Bytef*>(out.data()), &size,
-                               reinterpret_cast<const Bytef*>(bytes.data()),
+  const auto buffer = std::make_unique_for_overwrite<Bytef[]>(size);
+  const int status = compress2(buffer.get(), &size, reinterpret_cast<const Bytef*>(bytes.data()),
                                static_cast<uLong>(bytes.size()), level);
-  out.resize(status == Z_OK ? size : 0);
-  return out;
+  return status == Z_OK ? std::string(reinterpret_cast<const char*>(buffer.get()), size) : "";
 }
 
 void append_int(std::string& out, long long value) {

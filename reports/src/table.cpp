@@ -54,11 +54,13 @@ class TableSetter {
   std::string name_of(std::size_t c) const {
     std::string name(field_);
     if (!table_.title.empty()) name += (name.empty() ? "" : ", ") + table_.title;
-    return c < table_.columns.size() ? name + ", " + table_.columns[c].title : name;
+    return name + ", " + table_.columns[c].title;
   }
 
   Expected<void> shape_all() {
     const std::size_t n = table_.columns.size();
+    std::vector<std::string> names;
+    for (std::size_t c = 0; c < n; ++c) names.push_back(name_of(c));
     std::vector<double> natural(n, 0.0), least(n, 0.0);
     const double size = context_.style.small;
     const auto measure = [&](std::size_t c, const Glyphs& text) {
@@ -67,9 +69,9 @@ class TableSetter {
       least[c] = std::max(least[c], std::min(word, 0.4 * width_) + 2 * pad);
     };
     for (std::size_t c = 0; c < n; ++c) {
-      auto title = shape(table_.columns[c].title, context_.fonts.bold, name_of(c));
+      auto title = shape(table_.columns[c].title, context_.fonts.bold, names[c]);
       if (!title) return fail(title.error());
-      auto unit = shape(table_.columns[c].unit, context_.fonts.regular, name_of(c));
+      auto unit = shape(table_.columns[c].unit, context_.fonts.regular, names[c]);
       if (!unit) return fail(unit.error());
       measure(c, *title);
       measure(c, *unit);
@@ -79,7 +81,7 @@ class TableSetter {
     for (const auto& row : table_.rows) {
       Cells cells;
       for (std::size_t c = 0; c < n && c < row.size(); ++c) {
-        auto text = shape(row[c].text, context_.font(row[c].bold), name_of(c));
+        auto text = shape(row[c].text, context_.font(row[c].bold), names[c]);
         if (!text) return fail(text.error());
         measure(c, *text);
         cells.text.push_back(std::move(*text));

@@ -97,6 +97,18 @@ bool speaks(const OutputResult& r) {
 
 }  // namespace
 
+namespace {
+
+/// Whether the measurement's own findings have already said it.
+bool already_said(const Source& source, const Finding& f) {
+  for (const Results::Analysed& a : source.in.results.analyses)
+    for (const Finding& known : a.evaluation.findings)
+      if (known.id == f.id && a.measurement == f.measurement) return true;
+  return false;
+}
+
+}  // namespace
+
 void add_tables(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
   const auto& outputs = source.in.results.outputs;
@@ -115,6 +127,7 @@ void add_tables(const Source& source, Blocks& blocks) {
     for (const Finding& f : output.result.findings) {
       Block block = note_of(source, f);
       auto& note = std::get<Note>(block.what);
+      if (already_said(source, f)) note.says = note.advice = "";
       if (!f.measurement.empty())
         note.title =
             w.get("status.of_measurement", {{"measurement", f.measurement}, {"what", note.title}});
@@ -133,24 +146,29 @@ void add_notes(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
   const Results& results = source.in.results;
   blocks.push_back({Heading{w.get("notes.title"), 2}, "notes.title"});
+  const auto add = [&](const std::string& text) {
+    if (!text.empty())
+      blocks.push_back(
+          {Paragraph{typeset(visible_text(text, source.fonts)), Paragraph::Look::small}, "notes"});
+  };
+  for (const std::string& note : results.notes) add(note);
   bool with_U = false, without_U = false;
   std::set<std::string> said;
-  std::vector<std::string> notes;
+  std::string methods;
   for (const Results::Analysed& a : results.analyses) {
     for (const Value& v : a.evaluation.values) (v.U ? with_U : without_U) = true;
     for (const std::string& note : a.evaluation.notes)
-      if (said.insert(note).second) notes.push_back(note);
+      if (said.insert(note).second) methods += (methods.empty() ? "" : " · ") + note;
   }
-  for (const std::string& note : results.notes)
-    if (said.insert(note).second) notes.push_back(note);
-  if (with_U) notes.push_back(w.get("notes.uncertainty"));
-  if (without_U) notes.push_back(w.get("notes.no_uncertainty"));
-  if (!results.conformity.empty()) notes.push_back(w.get("notes.decision"));
-  notes.push_back(w.get("notes.sign"));
-  notes.push_back(w.get("notes.items"));
-  for (const std::string& note : notes)
-    blocks.push_back(
-        {Paragraph{typeset(visible_text(note, source.fonts)), Paragraph::Look::small}, "notes"});
+  add(methods);
+  std::string ours;
+  const auto say = [&](const char* key) { ours += (ours.empty() ? "" : " ") + w.get(key); };
+  if (with_U) say("notes.uncertainty");
+  if (without_U) say("notes.no_uncertainty");
+  if (!results.conformity.empty()) say("notes.decision");
+  say("notes.sign");
+  say("notes.items");
+  add(ours);
   blocks.push_back({Paragraph{w.get("end"), Paragraph::Look::muted}, "end"});
 }
 

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <zlib.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+/// As much of a PDF reader as the tests need: the pages' texts, through the fonts' ToUnicode.
+namespace nonio::fixtures {
+
+inline std::string inflated(const std::string& bytes) {
+  std::string out(4 << 20, '\0');
+  uLongf size = out.size();
+  if (uncompress(reinterpret_cast<Bytef*>(out.data()), &size,
+                 reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()) != Z_OK)
+    return {};
+  out.resize(size);
+  return out;
+}
+
+inline std::vector<std::string> streams(const std::string& pdf) {
+  std::vector<std::string> out;
+  for (std::size_t at = 0; (at = pdf.find("stream\r\n", at)) != std::string::npos;) {
+    at += 8;
+    const std::size_t end = pdf.find("\nendstream", at);
+    out.push_back(inflated(pdf.substr(at, end - at)));
+    at = end;
+  }
+  return out;
+}
+
+using ToUnicode = std::map<unsigned, std::string>;
+
+inline ToUnicode to_unicode(const std::string& cmap) {
+  ToUnicode out;
+  for (std::size_t at = 0; (at = cmap.find("\n<", at)) != std::string::npos; ++at) {
+    if (at + 15 > cmap.size() || cmap.compare(at + 6, 3, "> <") != 0) continue;
+    const unsigned glyph = static_cast<unsigned>(std::stoul(cmap.substr(at + 2, 4), nullptr, 16));
+    const unsigned c = static_cast<unsigned>(std::stoul(cmap.substr(at + 9, 4), nullptr, 16));
+    std::string text;
+    if (c < 0x80) {
+      text += static_cast<char>(c);
+    } else if (c < 0x800) {
+      text += static_cast<char>(0xC0 | c >> 6);
+      text += static_cast<char>(0x80 | (c & 0x3F));
+    } else {
+      text += static_cast<char>(0xE0 | c >> 12);
+      text += static_cast<char>(0x80 | (c >> 6 & 0x3F));
+      text += static_cast<char>(0x80 | (c & 0x3F));
+    }
+    out[glyph] = text;
+  }
+  return out;
+}
+
+/// The texts of a page, one a line, in the order in which they are drawn.
+inline std::string texts(const std::string& content, const ToUnicode& regular,
+                         const ToUnicode& bold) {
+  std::string out;
+  bool is_bold = false;
+  for (std::size_t i = 0; i + 4 < content.size(); ++i) {
+    if (content.compare(i, 3, "/F1") == 0) is_bold = false;
+    if (content.compare(i, 3, "/F2") == 0) is_bold = true;
+    if (content[i] != '(') continue;
+    std::string bytes;
+    for (++i; i < content.size() && content[i] != ')'; ++i) {
+      if (content[i] == '\\')
+        ++i, bytes += content[i] == 'r' ? '\r' : content[i];
+      else
+        bytes += content[i];
+    }
+    for (std::size_t k = 0; k + 1 < bytes.size(); k += 2) {
+      const unsigned glyph =
+          static_cast<unsigned char>(bytes[k]) << 8 | static_cast<unsigned char>(bytes[k + 1]);
+      const ToUnicode& map = is_bold ? bold : regular;
+      const auto it = map.find(glyph);
+      out += it == map.end() ? "\uFFFD" : it->second;
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+struct PdfText {
+  std::vector<std::string> pages;
+  std::string all() const {
+    std::string out;
+    for (const auto& page : pages) out += page;
+    return out;
+  }
+};
+
+/// Of the PDFs that this project writes: two fonts, regular first; pages in order.
+inline PdfText read_pdf(const std::string& pdf) {
+  std::vector<ToUnicode> maps;
+  std::vector<std::string> contents;
+  for (const std::string& stream : streams(pdf))
+    if (stream.find("begincmap") != std::string::npos)
+      maps.push_back(to_unicode(stream));
+    else if (stream.find(" Tj ET") != std::string::npos)
+      contents.push_back(stream);
+  PdfText out;
+  if (maps.size() != 2) return out;
+  for (const std::string& content : contents) out.pages.push_back(texts(content, maps[0], maps[1]));
+  return out;
+}
+
+}  // namespace nonio::fixtures

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <limits>
+
+#include "fixtures.h"
+#include "nonio/reports/document.h"
+#include "nonio/reports/text.h"
+#include "pdf_reader.h"
+
+namespace nonio::reports {
+namespace {
+
+std::shared_ptr<const Fonts> fonts() {
+  const Templates templates = fixtures::read_templates(NONIO_TEMPLATES);
+  const std::string regular = "fonts/LiberationSans-Regular.ttf",
+                    bold = "fonts/LiberationSans-Bold.ttf";
+  auto fonts = shared_fonts(templates.files.at(regular), regular, templates.files.at(bold), bold);
+  EXPECT_TRUE(fonts) << fonts.error().message;
+  return fonts ? *fonts : nullptr;
+}
+
+Document of(std::vector<Block> blocks) {
+  Document document;
+  document.title = "T";
+  document.head = "head";
+  document.foot = "foot";
+  document.page_of = "page {page} of {pages}";
+  document.blocks = std::move(blocks);
+  return document;
+}
+
+fixtures::PdfText pages_of(const Document& document) {
+  const auto bytes = pdf(document, *fonts());
+  EXPECT_TRUE(bytes) << bytes.error().message;
+  return bytes ? fixtures::read_pdf(*bytes) : fixtures::PdfText{};
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += what.size()) ++n;
+  return n;
+}
+
+TEST(Fonts, HaveWhatEuropeanNamesAndMetrologyNeed) {
+  const auto f = fonts();
+  EXPECT_TRUE(
+      check_text("àéîõüßçñøåæœšžčřůłőąęţșğı ΆΈάόώΩμσ ЁёЖяїґ µ°±−–…″′→↑↓≤≥≈·×²³€№„“”’•", *f, "all"));
+}
+
+TEST(Fonts, WhatIsNoFontIsRefused) {
+  EXPECT_FALSE(parse_font("", "x.ttf"));
+  EXPECT_FALSE(parse_font("%PDF-1.7", "x.ttf"));
+  const std::string whole = fonts()->regular.bytes;
+  for (std::size_t size = 0; size < whole.size(); size += 97)
+    if (parse_font(whole.substr(0, size), "x.ttf")) {
+      EXPECT_GT(size, whole.size() / 4) << "a font cut to " << size << " bytes was accepted";
+    }
+}
+
+TEST(Text, WhatCannotBePrintedNamesCharacterAndField) {
+  struct Line {
+    const char *text, *says;
+  };
+  const Line lines[] = {{"校准", "\"校\" (U+6821)"}, {"a\tb", "control character U+0009"},
+                        {"a\xffz", "byte 0xFF"},     {"a\xc0\x80", "byte 0xC0"},
+                        {"e\u0301", "U+0301"},       {"\U0001F600", "U+1F600"}};
+  for (const Line& l : lines) {
+    const auto bytes = pdf(of({{Paragraph{l.text}, "campaign.customer"}}), *fonts());
+    ASSERT_FALSE(bytes) << l.text;
+    EXPECT_NE(bytes.error().message.find(l.says), std::string::npos) << bytes.error().message;
+    EXPECT_NE(bytes.error().message.find("campaign.customer"), std::string::npos);
+  }
+  EXPECT_EQ(visible_text("a校\xff\n", *fonts()), "a<U+6821><0xFF> ");
+}
+
+TEST(Text, ComesBackAsItWent) {
+  const std::string text = "Łódź (Ωμέγα) \\ Ёлка 4,5 µm – 3″";
+  EXPECT_NE(pages_of(of({{Paragraph{text}}})).all().find(text), std::string::npos);
+  // a minus sign comes back as what a spreadsheet understands
+  EXPECT_NE(pages_of(of({{Paragraph{"\u22128.143"}}})).all().find("-8.143"), std::string::npos);
+}
+
+TEST(Layout, LongTextsWrapAndLoseNothing) {
+  std::string words;
+  for (int i = 0; i < 3000; ++i) words += "w" + std::to_string(i) + " ";
+  const auto text = pages_of(of({{Paragraph{words}}}));
+  EXPECT_GT(text.pages.size(), 2U);
+  for (int i = 0; i < 3000; i += 7)
+    EXPECT_NE(text.all().find("w" + std::to_string(i)), std::string::npos) << i;
+  const auto one = pages_of(of({{Grid{"", {{"label", std::string(5000, 'x'), "f"}}}}}));
+  EXPECT_EQ(count(one.all(), "x"), 5000U);
+}
+
+TEST(Layout, TablesBreakOverPagesWithTheirHeader) {
+  Table table;
+  table.title = "Title";
+  table.columns = {{"Column-A", "mm", true}, {"Column-B", "", false}};
+  for (int i = 0; i < 300; ++i) table.rows.push_back({{"row" + std::to_string(i) + "."}, {"text"}});
+  const auto text = pages_of(of({{Heading{"Heading"}}, {table}}));
+  ASSERT_GT(text.pages.size(), 3U);
+  for (std::size_t p = 0; p < text.pages.size(); ++p) {
+    EXPECT_EQ(count(text.pages[p], "Column-A"), 1U) << "page " << p + 1;
+    EXPECT_EQ(count(text.pages[p],
+                    "page " + std::to_string(p + 1) + " of " + std::to_string(text.pages.size())),
+              1U);
+    EXPECT_EQ(count(text.pages[p], "head\n"), p == 0 ? 0U : 1U);
+  }
+  for (int i = 0; i < 300; ++i) EXPECT_EQ(count(text.all(), "row" + std::to_string(i) + "."), 1U);
+}
+
+TEST(Layout, AHeadingDoesNotStayBehindAlone) {
+  for (int lines = 40; lines < 80; ++lines) {
+    std::vector<Block> blocks;
+    for (int i = 0; i < lines; ++i) blocks.push_back({Paragraph{"line"}});
+    blocks.push_back({Heading{"Heading"}});
+    blocks.push_back({Note{Level::info, "note title", "says", "advice"}});
+    const auto text = pages_of(of(std::move(blocks)));
+    for (const std::string& page : text.pages)
+      EXPECT_EQ(count(page, "Heading"), count(page, "advice")) << lines;
+  }
+}
+
+TEST(Layout, ARowThatIsLongerThanAPageIsDivided) {
+  Table table;
+  table.columns = {{"A", "", false}};
+  table.rows = {{{"before"}}, {{std::string(40000, 'x')}}, {{"after"}}};
+  const auto text = pages_of(of({{table}}));
+  EXPECT_GT(text.pages.size(), 2U);
+  EXPECT_EQ(count(text.all(), "x"), 40000U);
+  EXPECT_EQ(count(text.all(), "after"), 1U);
+}
+
+TEST(Plots, BearEveryNumber) {
+  const double inf = std::numeric_limits<double>::infinity();
+  const double largest = std::numeric_limits<double>::max();
+  for (const std::vector<double>& y : {std::vector<double>{1e308, -1e308, 1},
+                                       {largest, largest, largest},
+                                       {NAN, NAN, NAN},
+                                       {inf, -inf, 0},
+                                       {0, 0, 0},
+                                       {1e-300, 0, -1e-300},
+                                       {1e9, 1e9 + 1e-6, 1e9},
+                                       {}}) {
+    Plot plot;
+    plot.title = "plot";
+    plot.empty_text = "nothing";
+    using Kind = Plot::Curve::Kind;
+    for (const Kind kind : {Kind::line, Kind::band, Kind::bars}) {
+      Plot::Curve curve;
+      curve.kind = kind;
+      curve.x = {0, 1, 2};
+      curve.y = y;
+      curve.y2 = y;
+      curve.marker = Marker::up;
+      plot.curves.push_back(curve);
+    }
+    const auto bytes = pdf(of({{plot}}), *fonts());
+    ASSERT_TRUE(bytes) << bytes.error().message;
+    for (const std::string& content : fixtures::streams(*bytes)) {
+      if (content.find(" Tj ET") == std::string::npos) continue;
+      for (const char* wrong : {"nan", "inf", "e+"})
+        EXPECT_EQ(content.find(wrong), std::string::npos) << wrong;
+    }
+  }
+}
+
+TEST(Pdf, TheSameBytesTwice) {
+  const auto f = fonts();
+  Document document = of({{Heading{"Heading"}}, {Paragraph{"text"}}});
+  document.date = "2026-11-03";
+  const auto one = pdf(document, *f), two = pdf(document, *f);
+  ASSERT_TRUE(one && two);
+  EXPECT_EQ(*one, *two);
+  EXPECT_NE(one->find("D:20261103"), std::string::npos);
+  EXPECT_EQ(one->find("/ID"), std::string::npos);
+  document.date = "2026-13-45";  // no date: none is written
+  EXPECT_TRUE(pdf(document, *f));
+}
+
+}  // namespace
+}  // namespace nonio::reports

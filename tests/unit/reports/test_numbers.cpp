@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "nonio/reports/number.h"
+
+namespace nonio::reports {
+namespace {
+
+struct Line {
+  double value;
+  std::optional<double> U;
+  Quantity quantity;
+  const char* language;
+  const char *text, *U_text;
+};
+
+TEST(Rounding, ValueToThePlaceOfTwoDigitsOfU) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const Line lines[] = {
+      {11.9647e-6, 1.94e-6, Quantity::deviation, "en", "12.0", "1.9"},
+      {11.9647e-6, 0.1949e-6, Quantity::deviation, "en", "11.96", "0.19"},
+      {11.9647e-6, 0.0996e-6, Quantity::deviation, "en", "11.96", "0.10"},
+      {11.9647e-6, 9.96e-6, Quantity::deviation, "en", "12", "10"},
+      {1234.4e-6, 123e-6, Quantity::deviation, "en", "1230", "120"},
+      {-8.1434e-6, 0.19e-6, Quantity::deviation, "it", "\u22128,14", "0,19"},
+      {-0.001e-6, 0.19e-6, Quantity::deviation, "en", "0.00", "0.19"},
+      {4.51649e-6, {}, Quantity::deviation, "en", "4.516", ""},
+      {4.51649e-6, {}, Quantity::deviation, "it", "4,516", ""},
+      {5.58 / arcsec_per_rad, {}, Quantity::angular_deviation, "en", "5.580", ""},
+      {4.5e-6, 0.0, Quantity::deviation, "en", "4.500", ""},
+      {4.5e-6, none, Quantity::deviation, "en", "4.500", ""},
+      {none, {}, Quantity::deviation, "en", "–", ""},
+      {1e308, {}, Quantity::deviation, "en", "–", ""},
+      {1e300, 1e299, Quantity::deviation, "en", "1.000e+306", "1.000e+305"},
+      {5, {}, Quantity::count, "en", "5", ""},
+  };
+  for (const Line& l : lines) {
+    const Printed shown = printed_result(l.value, l.U, l.quantity, l.language);
+    EXPECT_EQ(shown.value, l.text) << l.value;
+    EXPECT_EQ(shown.U, l.U_text) << l.value;
+  }
+}
+
+TEST(Rounding, ColumnsOfTargetsShowEveryDigitTheyHave) {
+  EXPECT_EQ(decimals_for({0.0, 0.1, 2.0}, Quantity::length, 4), 0);
+  EXPECT_EQ(decimals_for({0.0, 0.0963, 2.0}, Quantity::length, 4), 1);
+  EXPECT_EQ(decimals_for({1.0 / 3.0}, Quantity::length, 4), 4);
+  EXPECT_EQ(decimals_for({30.0 / deg_per_rad, 270.0 / deg_per_rad}, Quantity::angle, 4), 0);
+  EXPECT_EQ(decimals_for({1e308, std::nan("")}, Quantity::length, 4), 0);
+}
+
+}  // namespace
+}  // namespace nonio::reports
