@@ -99,6 +99,11 @@ def standard_cycle(places, mean_plus, mean_minus, s_plus, s_minus, noise, shift=
     return rows
 
 
+def behind(mean, reversal, noise, spread=140):
+    """Means of the - passes for B_i around `reversal`: B_i = mean(+) - mean(-)."""
+    return [y - reversal + round(spread * noise.normal()) for y in mean]
+
+
 def even(values, s):
     return [s for _ in values]
 
@@ -291,7 +296,7 @@ def parallel_drift():
     noise = Noise(104)
     places = targets(noise, 0.0, 800.0, 11)
     mean = smooth(noise, 1800, len(places))
-    rows = standard_cycle(places, mean, [y + 1400 for y in mean], drawn(places, noise, 380.0),
+    rows = standard_cycle(places, mean, behind(mean, -1400, noise), drawn(places, noise, 380.0),
                           drawn(places, noise, 380.0), noise,
                           shift=lambda place, step: round(0.075 * 1000 * step))
     with_temperature(rows, 24, lambda t: 0.0001 * t)
@@ -315,7 +320,7 @@ def wedge_drift():
     def grow(place, step):
         return round(1000 * 11.5 * (place / 1000.0) * warming * 20.0 * step)
 
-    rows = standard_cycle(places, mean, [y + 1800 for y in mean], drawn(places, noise, 420.0),
+    rows = standard_cycle(places, mean, behind(mean, -1800, noise), drawn(places, noise, 420.0),
                           drawn(places, noise, 420.0), noise, shift=grow)
     with_temperature(rows, 20, lambda t: warming * t)
     story = ["The passes open like a fan: nothing at the clamped end, more and more along the travel.",
@@ -353,7 +358,7 @@ def italian_export():
     noise = Noise(107)
     places = targets(noise, 0.0, 600.0, 9)
     mean = smooth(noise, 4100, len(places))
-    rows = standard_cycle(places, mean, [y + 2600 for y in mean], drawn(places, noise, 450.0),
+    rows = standard_cycle(places, mean, behind(mean, -2600, noise), drawn(places, noise, 450.0),
                           drawn(places, noise, 450.0), noise)
     for step, row in enumerate(rows):
         row["material_c"] = "%.1f" % (20.3 + 0.1 * math.sin(step / 15.0))
@@ -413,7 +418,7 @@ def tolerances():
 
 
 def one_direction():
-    noise = Noise(110)
+    noise = Noise(1110)
     places = targets(noise, 0.0, 700.0, 9)
     mean = smooth(noise, 2700, len(places))
     rows = standard_cycle(places, mean, mean, drawn(places, noise, 500.0),
@@ -433,7 +438,7 @@ def missing_and_misread():
     noise = Noise(111)
     places = targets(noise, 0.0, 900.0, 10)
     mean = smooth(noise, 3000, len(places))
-    rows = standard_cycle(places, mean, [y + 1200 for y in mean], drawn(places, noise, 480.0),
+    rows = standard_cycle(places, mean, behind(mean, -1200, noise), drawn(places, noise, 480.0),
                           drawn(places, noise, 480.0), noise)
     for step, mark in ((23, "-1e20"), (24, ""), (57, "n/a")):
         rows[step]["deviation"] = mark
@@ -454,11 +459,11 @@ def straightness():
     places = targets(noise, 0.0, 1000.0, 11)
     m = len(places)
     mean = smooth(noise, 2600, m)
-    rows = standard_cycle(places, mean, [y + 1500 for y in mean], drawn(places, noise, 400.0),
+    rows = standard_cycle(places, mean, behind(mean, -1500, noise), drawn(places, noise, 400.0),
                           drawn(places, noise, 400.0), noise)
     bow = [round(6500 * (1.0 - (2.0 * x / 1000.0 - 1.0) ** 2)) + round(300 * noise.normal())
            for x in places]
-    lateral = standard_cycle(places, bow, [y + 250 for y in bow], drawn(places, noise, 350.0),
+    lateral = standard_cycle(places, bow, behind(bow, -250, noise), drawn(places, noise, 350.0),
                              drawn(places, noise, 350.0), noise)
     story = ["Two measurements of one axis: its positions, and its straightness in the direction of Y (a bow of",
              "about 6.5 um). The straightness has a file of the same form and names its direction."]

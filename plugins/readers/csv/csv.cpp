@@ -171,7 +171,7 @@ Error Rows::bad_number(std::size_t column) const {
   std::string message = "expected a number, found " + shown(text);
   if (!header_.comma_allowed() && parse_number(text, true).kind == Number::Kind::taken)
     message += "; a decimal comma needs \";\" or a tab between the fields";
-  else if (text.find_first_of(".,' ") != text.npos && text.find_first_of("0123456789") != text.npos)
+  else if (!text.empty() && text.find_first_not_of("0123456789.,' ") == text.npos)
     message += " (no thousands separators, one decimal mark)";
   return at(column, std::move(message));
 }

@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The samples are what their generator makes, and evaluate to the figures that they promise.
+
+The evaluation here knows nothing of the program: the formulas of ISO 230-2:2014 (k = 2) and
+VDI/DGQ 3441 written down once more.
+"""
+import csv
+import filecmp
+import importlib.util
+import io
+import os
+import statistics
+import sys
+import tempfile
+import unittest
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+SAMPLES = os.path.normpath(os.path.join(ROOT, "samples"))
+SITE = os.path.join(SAMPLES, "site")
+
+
+def files_below(folder):
+    return sorted(os.path.relpath(os.path.join(base, name), folder)
+                  for base, _, names in os.walk(folder) for name in names)
+
+
+def readings(campaign, file):
+    """{target: {"+": [...], "-": [...]}} in the order of the runs; missing ones left out."""
+    with open(os.path.join(SITE, campaign, file), encoding="utf-8-sig", newline="") as opened:
+        lines = [line for line in opened.read().splitlines() if not line.startswith("#")]
+    separator = ";" if ";" in lines[0] else ","
+    out = {}
+    for row in csv.DictReader(io.StringIO("\n".join(lines)), delimiter=separator):
+        target = row.get("target_mm") or row.get("target_deg")
+        deviation = row.get("deviation_um", row.get("deviation_arcsec"))
+        point = out.setdefault(float(target.replace(",", ".")), {"+": [], "-": []})
+        if deviation not in ("", "n/a") and abs(float(deviation.replace(",", "."))) < 1e19:
+            point[row["direction"]].append(float(deviation.replace(",", ".")))
+    return dict(sorted(out.items()))
+
+
+def evaluated(campaign, file):
+    points = readings(campaign, file).values()
+    mean = {d: [statistics.fmean(p[d]) for p in points] for d in "+-"}
+    s = {d: [statistics.stdev(p[d]) for p in points] for d in "+-"}
+    B_i = [a - b for a, b in zip(mean["+"], mean["-"])]
+    S_j = [(a + b) / 2.0 for a, b in zip(s["+"], s["-"])]
+    both = mean["+"] + mean["-"]
+    upper = [m + 2.0 * x for d in "+-" for m, x in zip(mean[d], s[d])]
+    lower = [m - 2.0 * x for d in "+-" for m, x in zip(mean[d], s[d])]
+    return {"R+": 4.0 * max(s["+"]), "R-": 4.0 * max(s["-"]),
+            "B": max(abs(b) for b in B_i), "B_mean": statistics.fmean(B_i),
+            "E": max(both) - min(both), "A": max(upper) - min(lower),
+            "Ps_max": 6.0 * max(S_j), "Ps_mean": 6.0 * statistics.fmean(S_j),
+            "U_max": max(abs(b) for b in B_i), "U_mean": statistics.fmean(abs(b) for b in B_i)}
+
+
+def pass_means(campaign, file):
+    """Mean deviation of each pass over the targets, in the order in which they were taken."""
+    points = readings(campaign, file)
+    runs = len(next(iter(points.values()))["+"])
+    return [statistics.fmean(p[d][run] for p in points.values()) for run in range(runs) for d in "+-"]
+
+
+class Samples(unittest.TestCase):
+    def expect(self, found, wanted, decimals):
+        for name, text in wanted.items():
+            self.assertEqual("%.*f" % (decimals, found[name] + 0.0), text, name)
+
+    def test_generator_gives_the_same_bytes(self):
+        path = os.path.join(SAMPLES, "make_samples.py")
+        spec = importlib.util.spec_from_file_location("make_samples", path)
+        maker = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(maker)
+        with tempfile.TemporaryDirectory() as folder:
+            argv, sys.argv = sys.argv, [path, folder]
+            try:
+                maker.main()
+            finally:
+                sys.argv = argv
+            self.assertEqual(files_below(folder), files_below(SITE))
+            for name in files_below(SITE):
+                self.assertTrue(filecmp.cmp(os.path.join(folder, name), os.path.join(SITE, name),
+                                            shallow=False), name)
+
+    def test_every_file_says_that_it_is_constructed(self):
+        for name in files_below(SITE):
+            with open(os.path.join(SITE, name), encoding="utf-8-sig") as opened:
+                first = opened.readline().lower()
+            word = "costruite" if "esportazione" in name else "constructed"
+            if name == "site.toml":
+                word = "sample"
+            self.assertIn(word, first, name)
+
+    def test_asymmetric_repeatability(self):
+        self.expect(evaluated("01-asymmetric-repeatability", "x.csv"),
+                    {"R+": "4.516", "R-": "1.756", "Ps_max": "4.275", "Ps_mean": "3.195"}, 3)
+
+    def test_constant_reversal(self):
+        self.expect(evaluated("02-constant-reversal", "z.csv"),
+                    {"B_mean": "-8.143", "B": "8.943", "U_mean": "8.143", "U_max": "8.943"}, 3)
+
+    def test_opposed_sinusoids(self):
+        found = evaluated("03-opposed-sinusoids", "c.csv")
+        self.expect(found, {"B": "5.58", "U_mean": "2.47", "U_max": "5.58"}, 2)
+        self.assertLess(abs(found["B_mean"]), 0.005)
+
+    def test_parallel_drift_moves_every_pass_up(self):
+        means = pass_means("04-drift-parallel", "y.csv")
+        for direction in (means[0::2], means[1::2]):
+            steps = [b - a for a, b in zip(direction, direction[1:])]
+            self.assertGreater(min(steps), 1.0)
+            self.assertLess(max(steps) - min(steps), 0.8)
+
+    def test_wedge_grows_along_the_travel(self):
+        points = list(readings("05-drift-wedge", "x.csv").values())
+        near = points[0]["+"][4] - points[0]["+"][0]
+        far = points[-1]["+"][4] - points[-1]["+"][0]
+        self.assertLess(abs(near), 4.0)
+        self.assertGreater(far, 20.0)
+
+    def test_long_axis_has_one_run_and_250_mm_between_targets(self):
+        points = readings("06-long-axis", "x.csv")
+        self.assertTrue(all(len(p["+"]) == 1 and len(p["-"]) == 1 for p in points.values()))
+        places = list(points)
+        self.assertGreater(places[-1] - places[0], 14000.0)
+        self.assertAlmostEqual((places[-1] - places[0]) / (len(places) - 1), 250.0, delta=5.0)
+
+    def test_italian_export(self):
+        with open(os.path.join(SITE, "07-italian-spreadsheet", "esportazione.csv"), "rb") as opened:
+            data = opened.read()
+        self.assertTrue(data.startswith(b"\xef\xbb\xbf"))
+        self.assertEqual(data.count(b"\n"), data.count(b"\r\n"))
+        self.assertGreater(data.count(b"\r\n"), 90)
+        rows = [line for line in data.splitlines()[1:] if not line.startswith(b"#")]
+        self.assertTrue(all(b";" in row and b"." not in row for row in rows))
+
+    def test_broken_file_is_broken_in_one_place(self):
+        with open(os.path.join(SITE, "08-broken-file", "x.csv"), encoding="utf-8") as opened:
+            lines = opened.read().split("\n")
+        self.assertEqual([i + 1 for i, line in enumerate(lines[3:], 3) if "O" in line], [17])
+
+    def test_tolerances_give_three_answers(self):
+        found = evaluated("09-tolerances", "x.csv")
+        self.assertLess(found["A"], 22.0 - 3.0)
+        self.assertGreater(found["B"], 3.0 + 1.0)
+        self.assertLess(abs(found["E"] - 12.0), 1.0)
+
+    def test_one_direction_has_no_other(self):
+        self.assertTrue(all(len(p["+"]) == 5 and not p["-"]
+                            for p in readings("10-one-direction", "z.csv").values()))
+
+    def test_missing_and_misread(self):
+        points = readings("11-missing-and-misread", "x.csv").values()
+        self.assertEqual(sum(5 - len(p[d]) for p in points for d in "+-"), 3)
+        far = [x for p in points for d in "+-" for x in p[d] if abs(x - statistics.median(p[d])) > 5.0]
+        self.assertEqual(len(far), 1)
+
+    def test_straightness_bows(self):
+        points = list(readings("12-straightness", "x-in-y.csv").values())
+        middle = statistics.fmean(points[len(points) // 2]["+"])
+        self.assertGreater(middle - statistics.fmean(points[0]["+"]), 4.0)
+        self.assertGreater(middle - statistics.fmean(points[-1]["+"]), 4.0)
+
+
+if __name__ == "__main__":
+    unittest.main()
