@@ -18,7 +18,7 @@ class Isolation(NightTest):
             ("analysis", "segfault"): "analysis bad-analysis (measurement X): signal 11",
             ("analysis", "abort"): "signal 6",
             ("analysis", "exit"): "analysis bad-analysis (measurement X): ended the process",
-            ("analysis", "loop"): "no end within the limit of 3 s",
+            ("analysis", "loop"): "no end within the limit of 6 s",
             ("analysis", "throw"): "analysis bad-analysis threw an exception: thrown on purpose",
             ("analysis", "throw-int"): "threw an exception of an unknown kind",
             ("analysis", "leak"): "out of memory",
@@ -33,7 +33,7 @@ class Isolation(NightTest):
         good_run = '[run]\nanalyses = ["iso230-2"]\noutputs = ["json"]\n'
         for name in ("good-1", "good-2"):
             self.campaign(name, run=good_run)
-        (self.site / "site.toml").write_text("[limits]\nseconds = 3\nmemory_MB = 1000\n")
+        (self.site / "site.toml").write_text("[limits]\nseconds = 6\nmemory_MB = 300\n")
         self.run_nonio("--plugin-path", str(PLUGINS / "bad"), expect=0)
         alone = {k: v for k, v in tree(self.out).items() if k.startswith("good") and "run.json" not in k}
 

@@ -19,7 +19,7 @@ def readings(seed, runs=5, targets=6):
     for run in range(1, runs + 1):
         for direction in "+-":
             for i in range(targets)[:: 1 if direction == "+" else -1]:
-                lost = -4.0 if direction == "-" else 0.0
+                lost = 4.0 if direction == "-" else 0.0
                 rows.append(f"{run},{direction},{i * 50 + i * i},{rng.gauss(i + lost, 0.5):.3f}")
     return "\n".join(rows) + "\n"
 

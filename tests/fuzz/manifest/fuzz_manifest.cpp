@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any bytes as campaign.toml, site.toml and a template: an answer or errors, never a crash.
+#include <cstdint>
+#include <cstdlib>
+
+#include "nonio/host/manifest.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace nonio;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const auto manifest = host::parse_manifest(text, "campaign.toml");
+  if (manifest) {
+    // What was accepted keeps what every later stage relies on.
+    if (!host::is_campaign_id(manifest->campaign.id) || manifest->campaign.measurements.empty())
+      std::abort();
+    const Info plugin{
+        "p",
+        "1",
+        "",
+        {{"n", 1.0, "", "", {}, 0.0, 2.0}, {"t", std::string("a"), "", "", {"a"}, {}, {}}}};
+    (void)host::settle_options(plugin, {}, manifest->options);
+  } else if (manifest.error().empty()) {
+    std::abort();
+  }
+  (void)host::parse_site(text, "site.toml");
+  (void)host::parse_settings(text, "x.toml");
+  const std::string id = host::salvage_id(text);
+  if (!id.empty() && !host::is_campaign_id(id)) std::abort();
+  return 0;
+}

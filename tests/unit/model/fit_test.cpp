@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/model/fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace nonio::model {
+
+namespace {
+
+/// d = zero + a x with the columns x and, for an alias, 2 x.
+Effect line_effect(bool alias) {
+  Effect e;
+  e.info = {alias ? "double" : "line", "1", "", {}};
+  e.linear = {{"a", "", Quantity::number}};
+  e.columns = alias ? [](const Observations& o, const Axis&,
+                         const std::vector<double>&) -> Expected<std::vector<std::vector<double>>> {
+    std::vector<double> x = o.axes[0].position;
+    for (double& v : x) v *= 2.0;
+    return std::vector<std::vector<double>>{x};
+  }
+  : [](const Observations& o, const Axis&,
+       const std::vector<double>&) -> Expected<std::vector<std::vector<double>>> {
+      return std::vector<std::vector<double>>{o.axes[0].position};
+    };
+  return e;
+}
+
+Observations points(std::vector<double> x, std::vector<double> y) {
+  Observations o;
+  o.axes = {{"X", false, std::move(x), {}}};
+  o.lines = {{"1", {1, 0, 0}}};
+  o.deviation = std::move(y);
+  return o;
+}
+
+}  // namespace
+
+// x = 0..4, y = 1, 3, 2, 5, 4: by hand slope 4/5, intercept 7/5, residual sum of squares 18/5,
+// s^2 = 6/5, u(a) = sqrt(s^2/10) = sqrt(3/25).
+TEST(Fit, StraightLineByHand) {
+  const Effect line = line_effect(false);
+  const auto f = fit(points({0, 1, 2, 3, 4}, {1, 3, 2, 5, 4}), {{&line, Axis{.name = "X"}}});
+  ASSERT_TRUE(f) << f.error().message;
+  EXPECT_EQ(f->parameters[0].name, "line:X a");
+  EXPECT_NEAR(f->parameters[0].value, 0.8, 1e-14);
+  EXPECT_NEAR(f->zero[0], 1.4, 1e-14);
+  EXPECT_NEAR(f->parameters[0].u, std::sqrt(0.12), 1e-14);
+  EXPECT_NEAR(f->rms, std::sqrt(3.6 / 5.0), 1e-14);
+  EXPECT_EQ(f->redundancy, 3u);
+}
+
+TEST(Fit, EachLineHasItsOwnZero) {
+  const Effect line = line_effect(false);
+  Observations o = points({0, 1, 2, 0, 1, 2}, {10, 11, 12, -5, -4, -3});
+  o.lines.push_back({"2", {1, 0, 0}});
+  o.line = {0, 0, 0, 1, 1, 1};
+  const auto f = fit(o, {{&line, Axis{.name = "X"}}});
+  ASSERT_TRUE(f);
+  EXPECT_NEAR(f->parameters[0].value, 1.0, 1e-13);
+  EXPECT_NEAR(f->zero[0], 10.0, 1e-13);
+  EXPECT_NEAR(f->zero[1], -5.0, 1e-13);
+}
+
+TEST(Fit, InseparableParametersAreNamedNotGuessed) {
+  const Effect line = line_effect(false), alias = line_effect(true);
+  const auto f = fit(points({0, 1, 2, 3}, {0, 1, 2, 4}),
+                     {{&line, Axis{.name = "X"}}, {&alias, Axis{.name = "X"}}});
+  ASSERT_FALSE(f);
+  EXPECT_NE(f.error().message.find("line:X a, double:X a"), std::string::npos) << f.error().message;
+}
+
+TEST(Fit, TooFewReadings) {
+  const Effect line = line_effect(false);
+  EXPECT_FALSE(fit(points({0, 1}, {0, 1}), {{&line, Axis{.name = "X"}}}));
+}
+
+}  // namespace nonio::model
