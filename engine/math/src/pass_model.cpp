@@ -14,17 +14,22 @@ struct Sums {  // of one pass, for the line through its residuals
   double n = 0, z = 0, zz = 0, r = 0, zr = 0;
 };
 
+void keep_distinct(std::vector<std::uint32_t>& x) {
+  std::sort(x.begin(), x.end());
+  x.erase(std::unique(x.begin(), x.end()), x.end());
+}
+
 std::vector<std::uint32_t> runs_of(const AxisTest& test) {
   std::vector<std::uint32_t> runs;
+  std::size_t limit = 4096;
   for (const auto& reading : test.readings()) {
     if (!runs.empty() && runs.back() == reading.run) continue;
     runs.push_back(reading.run);
-    if (runs.size() < 4096) continue;
-    std::sort(runs.begin(), runs.end());
-    runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+    if (runs.size() < limit) continue;
+    keep_distinct(runs);
+    limit = std::max(limit, 2 * runs.size());
   }
-  std::sort(runs.begin(), runs.end());
-  runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+  keep_distinct(runs);
   return runs;
 }
 
@@ -147,7 +152,9 @@ PassModel fit_passes(const AxisTest& test, bool slopes, std::span<const std::siz
   double size = 0.0;
   for (const double e : m.e)
     if (!std::isnan(e)) size = std::max(size, std::fabs(e));
-  constexpr int most_rounds = 60;  // unequal runs converge geometrically
+  // Equal runs need one round, unequal ones converge geometrically; millions of readings get fewer.
+  const double readings = static_cast<double>(m.e.size());
+  const int most_rounds = static_cast<int>(std::clamp(2e8 / std::max(readings, 1.0), 4.0, 60.0));
   for (int round = 0; round < most_rounds; ++round) {
     take_passes(test, m, slopes);
     if (take_target_means(test, m) <= 1e-9 * size) break;
