@@ -257,8 +257,11 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
                           Numbering& numbering, OutputResult& result) {
   const bool directions = choices.directions && job.curve.bidirectional();
   if (controllers::refused(job, directions, result)) return {};
-  const auto& position = job.table_curve().position;
-  const double reference = controllers::reference_position(job, position.front(), position.back());
+  // Where it is shifts the whole table, so the nearest end of what was measured will not do.
+  const double reference = job.position_setting("reference").value_or(0.0);
+  if (!job.position_setting("reference"))
+    result.notes.push_back("axis " + job.axis + ": the reference position is taken to be at 0 " +
+                           std::string(job.unit()) + " of the targets");
   const auto grid = grid_of(job, input, choices, reference);
   if (!grid) return tl::unexpected<Error>(grid.error());
   Table table = table_of(job, *grid, choices, directions, reference);

@@ -366,7 +366,6 @@ TEST(EveryModel, SeesAFlippedSign) {
   nonio::fanuc::Machine control;
   control.least = -128;
   control.most = 127;
-  control.reference = std::clamp(0.0, curve.position.front(), curve.position.back());
   const std::string prm = file(*f, "fanuc-X.prm");
   EXPECT_LT(E_after(curve, nonio::fanuc::load(prm, control)), was);
   wrong.clear();

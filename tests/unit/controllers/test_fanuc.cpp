@@ -89,6 +89,22 @@ TEST(Fanuc, ReferenceAtTheEnds) {
   }
 }
 
+// Unlike a zero offset, a wrong reference position shifts the table along the axis: it is machine
+// zero unless it is said, also where the measured range does not begin there.
+TEST(Fanuc, ReferenceIsMachineZeroOutsideOfTheRangeToo) {
+  const auto m = axis(
+      even(100 * mm, 50 * mm, 5), [](double x) { return x * 40e-6; }, -3 * um);
+  const auto r = Bench(m).write(fanuc_plugin(), {{"reference_number", std::int64_t{10}}});
+  ASSERT_TRUE(r) << r.error().message;
+  const auto n = numbers(file(*r, "fanuc-X.prm"));
+  EXPECT_EQ(n.at(3620), 10);
+  EXPECT_EQ(n.at(3622), 16);  // 0 to 300 mm in parts of 50
+  EXPECT_EQ(n.at(10011), 0);  // 0..50: the end holds
+  EXPECT_EQ(n.at(10012), 0);
+  EXPECT_EQ(n.at(10013), -2);  // 100..150 mm
+  EXPECT_LT(prediction(*r, "E").after, 0.6 * um);
+}
+
 // Reference 60, 45 deg: the last number is 68, 60 repeats it, and the turn adds up to zero.
 TEST(Fanuc, TurnOfThePrintedExample) {
   Measured m = axis(
