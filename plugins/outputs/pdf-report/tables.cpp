@@ -168,8 +168,8 @@ void add_notes(const Source& source, Blocks& blocks) {
   if (!results.conformity.empty()) say("notes.decision");
   say("notes.sign");
   say("notes.items");
+  say("end");
   add(ours);
-  blocks.push_back({Paragraph{w.get("end"), Paragraph::Look::muted}, "end"});
 }
 
 }  // namespace nonio::pdf_report
