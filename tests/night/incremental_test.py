@@ -45,7 +45,7 @@ class Incremental(NightTest):
              {"a": "file x.csv changed"}),
             (lambda: (a / "campaign.toml").write_text((a / "campaign.toml").read_text() + "# more\n"),
              {"a": "campaign.toml changed"}),
-            (lambda: shutil.rmtree(self.out / "b"), {"b": "no result yet"}),
+            (lambda: shutil.rmtree(self.out / "b"), {"b": "no earlier result"}),
             (lambda: (self.out / "b" / "values.csv").unlink(), {"b": "values.csv is missing from the output"}),
             (lambda: (self.site / "site.toml").write_text("[limits]\nseconds = 60\n"),
              dict.fromkeys("abc", "site.toml changed")),
@@ -70,11 +70,11 @@ class Incremental(NightTest):
 
     def test_reason_stands_beside_the_result(self):
         self.run_nonio(expect=0)
-        self.assertEqual(json.loads((self.out / "a" / "run.json").read_text())["reason"], "no result yet")
+        self.assertEqual(json.loads((self.out / "a" / "run.json").read_text())["reason"], "no earlier result")
 
     def test_dry_run_says_and_does_nothing(self):
         done = self.run_nonio("--dry-run", expect=0)
-        self.assertIn("to do  a: no result yet", done.stdout)
+        self.assertIn("to do  a: no earlier result", done.stdout)
         self.assertFalse(self.out.exists())
         self.run_nonio(expect=0)
         before = tree(self.out)

@@ -20,8 +20,8 @@ constexpr std::string_view leftover_suffix = ".nonio-tmp";
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Descriptor& operator=(Descriptor&&) = delete;
   ~Descriptor() {
     if (fd_ >= 0) ::close(fd_);
   }
@@ -37,8 +37,9 @@ tl::unexpected<Error> system_error(std::string_view what, const fs::path& path) 
   return fail(std::string(what) + " " + path.string() + ": " + std::strerror(code));
 }
 
-Expected<void> write_new(const fs::path& path, std::string_view bytes) {
-  const Descriptor file(
+/// Made and filled, not yet flushed; the system is told to begin writing.
+Expected<Descriptor> write_new(const fs::path& path, std::string_view bytes) {
+  Descriptor file(
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0644));
   if (!file) return system_error("cannot write", path);
   while (!bytes.empty()) {
@@ -47,8 +48,8 @@ Expected<void> write_new(const fs::path& path, std::string_view bytes) {
     if (n < 0) return system_error("cannot write", path);
     bytes.remove_prefix(static_cast<std::size_t>(n));
   }
-  if (::fsync(file.get()) != 0) return system_error("cannot flush", path);
-  return {};
+  ::sync_file_range(file.get(), 0, 0, SYNC_FILE_RANGE_WRITE);
+  return file;
 }
 
 Expected<void> flush_folder(const fs::path& folder) {
@@ -112,28 +113,53 @@ bool is_artifact_name(std::string_view name) {
   return true;
 }
 
+namespace {
+
+fs::path temporary(const fs::path& folder, const std::string& name) {
+  return folder / ("." + name + std::string(leftover_suffix));
+}
+
+/// All files under their temporary names, on disk. They are filled before the first is flushed, so
+/// that the file system can write them together: one journal commit instead of one for each.
+Expected<void> write_temporaries(const fs::path& folder, const std::vector<Artifact>& files) {
+  std::vector<Descriptor> open;
+  for (const Artifact& file : files) {
+    auto written = write_new(temporary(folder, file.name), file.bytes);
+    if (!written) return fail(written.error());
+    open.push_back(std::move(*written));
+  }
+  for (std::size_t i = 0; i < open.size(); ++i)
+    if (::fsync(open[i].get()) != 0) return system_error("cannot flush", folder / files[i].name);
+  return {};
+}
+
+Expected<void> rename_all(const fs::path& folder, const std::vector<Artifact>& files) {
+  const std::size_t last = files.size() - 1;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string& name = files[i].name;
+    // The others are under their names for good before the last one is.
+    if (i == last && i != 0)
+      if (auto flushed = flush_folder(folder); !flushed) return flushed;
+    if (::rename(temporary(folder, name).c_str(), (folder / name).c_str()) != 0)
+      return system_error("cannot write", folder / name);
+  }
+  return flush_folder(folder);
+}
+
+}  // namespace
+
 Expected<void> publish(const fs::path& folder, const std::vector<Artifact>& files) {
+  if (files.empty()) return {};
   std::error_code error;
   const bool is_new = fs::create_directories(folder, error);
   if (error) return fail("cannot make the folder " + folder.string() + ": " + error.message());
   if (is_new)
     if (auto flushed = flush_folder(folder.parent_path()); !flushed) return flushed;
-  const auto temporary = [&](const Artifact& f) {
-    return folder / ("." + f.name + std::string(leftover_suffix));
-  };
-  for (const Artifact& file : files) {
-    if (auto written = write_new(temporary(file), file.bytes); !written) {
-      for (const Artifact& f : files) fs::remove(temporary(f), error);
-      return written;
-    }
-  }
-  for (const Artifact& file : files)
-    if (::rename(temporary(file).c_str(), (folder / file.name).c_str()) != 0) {
-      auto failed = system_error("cannot write", folder / file.name);
-      for (const Artifact& f : files) fs::remove(temporary(f), error);
-      return failed;
-    }
-  return flush_folder(folder);
+  auto done = write_temporaries(folder, files);
+  if (done) done = rename_all(folder, files);
+  if (!done)
+    for (const Artifact& file : files) fs::remove(temporary(folder, file.name), error);
+  return done;
 }
 
 Expected<void> remove_files(const fs::path& folder, const std::vector<std::string>& names) {

@@ -62,11 +62,11 @@ Expected<void> store(const fs::path& out, const Evaluated& e, const Context& con
           is_artifact_name(name))
         stale.push_back(name);
   }
+  files.push_back({record_name, to_json(record)});
   remove_leftovers(folder);
-  if (auto done = remove_files(folder, {record_name}); !done) return done;
-  if (auto done = publish(folder, files); !done) return done;
+  stale.insert(stale.begin(), record_name);
   if (auto done = remove_files(folder, stale); !done) return done;
-  return publish(folder, {{record_name, to_json(record)}});
+  return publish(folder, files);
 }
 
 }  // namespace nonio::host

@@ -63,7 +63,7 @@ class Look {
     const auto text = read_file(in_.site / folder / manifest_name);
     if (!text) {
       state.id = folder_id(folder);
-      state.reason = "no result yet";
+      state.reason = "no earlier result";
       return state;
     }
     const std::string digest = sha256(*text);
@@ -96,7 +96,7 @@ class Look {
   void judge(CampaignState& state, const std::optional<Record>& record,
              const std::string& manifest_digest) const {
     if (!record) {
-      state.reason = "no result yet";
+      state.reason = "no earlier result";
       return;
     }
     const bool tonight = record->night == in_.night;
