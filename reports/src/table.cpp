@@ -66,7 +66,8 @@ class TableSetter {
     const auto measure = [&](std::size_t c, const Glyphs& text) {
       const double all = width_of(text) * size, word = widest_word(text) * size;
       natural[c] = std::max(natural[c], all + 2 * pad);
-      least[c] = std::max(least[c], std::min(word, 0.4 * width_) + 2 * pad);
+      const double whole = table_.columns[c].number ? all : word;  // numbers stay in one line
+      least[c] = std::max(least[c], std::min(whole, 0.4 * width_) + 2 * pad);
     };
     for (std::size_t c = 0; c < n; ++c) {
       auto title = shape(table_.columns[c].title, context_.fonts.bold, names[c]);

@@ -92,8 +92,9 @@ std::string test_of(const Source& source, const Measured& m) {
   bool plus = false, minus = false;
   for (const std::int8_t a : axis.approach) plus |= a > 0, minus |= a < 0;
   const Quantity q = position_of(axis.rotary);
-  const int decimals = decimals_for({targets.front(), targets.back()}, q, 4);
-  const auto position = [&](double p) { return printed_number(p, q, decimals, source.language()); };
+  const auto position = [&](double p) {
+    return printed_number(p, q, decimals_for({p}, q, 4), source.language());
+  };
   std::string text =
       source.words.get(run_count == 1 ? "measurement.test_one" : "measurement.test",
                        {{"targets", std::to_string(targets.size())},

@@ -176,15 +176,18 @@ std::vector<Joined> joined_points(const Measured& m) {
   return out;
 }
 
+/// A direction that was not measured has no values, and counts of 0.
 bool all_missing(const PointTable::Column& c) {
-  return std::none_of(c.values.begin(), c.values.end(), [](double v) { return std::isfinite(v); });
+  const bool count = c.quantity == Quantity::count;
+  return std::none_of(c.values.begin(), c.values.end(),
+                      [&](double v) { return std::isfinite(v) && !(count && v == 0); });
 }
 
 /// The number of approaches if it is the same everywhere, else nothing.
 std::optional<double> common_count(const Joined& joined) {
   std::optional<double> n;
   for (const auto* c : joined.columns) {
-    if (c->quantity != Quantity::count) continue;
+    if (c->quantity != Quantity::count || all_missing(*c)) continue;
     for (const double v : c->values) {
       if (n && *n != v) return {};
       n = v;

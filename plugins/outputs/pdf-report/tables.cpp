@@ -63,12 +63,12 @@ Table predictions(const Source& source) {
     for (const auto& [name, p] : row.by_name) units.insert(unit_text(p->quantity));
   const bool own_units = units.size() > 1;
   Table table;
+  table.title = w.get("tables.change");
   table.columns = {{w.get("tables.output"), "", false},
                    {w.get("tables.file"), "", false},
                    {w.get("tables.measurement"), "", false}};
   for (const std::string& name : names)
-    table.columns.push_back(
-        {symbol(name), w.get("tables.change", {{"unit", own_units ? "" : *units.begin()}}), true});
+    table.columns.push_back({symbol(name), own_units ? "" : *units.begin(), true});
   for (const Row& row : rows) {
     const bool first = &row == &rows.front() || (&row)[-1].output != row.output;
     std::vector<Table::Cell> cells = {{first ? row.output->plugin : "", true},
@@ -133,12 +133,16 @@ void add_tables(const Source& source, Blocks& blocks) {
             w.get("status.of_measurement", {{"measurement", f.measurement}, {"what", note.title}});
       blocks.push_back(std::move(block));
     }
+    std::string notes;
     for (const std::string& note : output.result.notes)
+      notes += (notes.empty() ? "" : " · ") + note;
+    if (!notes.empty())
       blocks.push_back(
-          {Paragraph{visible_text(w.get("tables.note", {{"output", output.plugin}, {"note", note}}),
-                                  source.fonts),
+          {Paragraph{typeset(visible_text(
+                         w.get("tables.note", {{"output", output.plugin}, {"note", notes}}),
+                         source.fonts)),
                      Paragraph::Look::small},
-           "note of " + output.plugin});
+           "notes of " + output.plugin});
   }
 }
 
