@@ -6,7 +6,7 @@
 
 namespace nonio::reports {
 
-/// In zlib's format; level 1 (fast) to 9 (small).
+/// In zlib's format; level 1 (fast) to 12 (small).
 std::string deflated(std::string_view bytes, int level);
 
 /// Decimal digits of an integer.

@@ -165,8 +165,8 @@ Expected<Font> parse_font(std::string bytes, std::string_view name) {
   for (std::uint16_t& g : font.glyphs)
     if (g >= glyphs) g = 0;
   font.widths = widths_array(font.advance);
-  font.to_unicode_deflated = deflated(to_unicode(font), 9);
-  font.file_deflated = deflated(bytes, 9);
+  font.to_unicode_deflated = deflated(to_unicode(font), 12);
+  font.file_deflated = deflated(bytes, 12);
   font.bytes = std::move(bytes);
   return font;
 }

@@ -23,7 +23,7 @@ MAY = {
 HOMES = {
     "Poco/": {"engine/host"}, "boost/dll": {"engine/host"}, "boost/math": {"engine/math"},
     "boost/": {"engine/host", "engine/math"}, "toml++": {"engine/host"}, "hpdf": {"reports"},
-    "zlib": {"reports"}, "CLI/": {"engine/app"}, "nlohmann": {"engine/host", "engine/app", "plugins/outputs"},
+    "libdeflate": {"reports"}, "CLI/": {"engine/app"}, "nlohmann": {"engine/host", "engine/app", "plugins/outputs"},
     "Eigen": {"engine/math", "engine/model", "plugins/analyses", "plugins/effects"}, "tl/": {"engine/sdk"},
 }
 

@@ -2,10 +2,13 @@
 #include "nonio/host/digest.h"
 
 #include <Poco/Crypto/DigestEngine.h>
+#include <Poco/Crypto/OpenSSLInitializer.h>
 
 namespace nonio::host {
 
 std::string sha256(std::string_view bytes) {
+  // Kept, because the last engine to go would shut OpenSSL down and the next one seed it anew.
+  static const Poco::Crypto::OpenSSLInitializer open_ssl;
   Poco::Crypto::DigestEngine engine("SHA256");
   // In parts: the engine takes an unsigned length.
   constexpr std::size_t part = std::size_t{1} << 30;
