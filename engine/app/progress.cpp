@@ -33,8 +33,8 @@ std::size_t terminal_width() {
 std::string message_of(const host::CampaignState& c) {
   if (c.errors.empty()) return c.reason;
   const Error& e = c.errors.front();
-  return e.file + (e.line != 0 ? ":" + std::to_string(e.line) : "") + (e.file.empty() ? "" : ": ") +
-         e.message;
+  return e.file + (e.line != 0 ? ":" + std::to_string(e.line) : "") +
+         (e.column.empty() ? "" : " (" + e.column + ")") + (e.file.empty() ? "" : ": ") + e.message;
 }
 
 }  // namespace

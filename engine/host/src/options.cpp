@@ -87,7 +87,7 @@ Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
     for (const auto& [name, raw] : of_plugin->second) {
       const std::string place = "options." + plugin.name + "." + name;
       const auto option = std::find_if(plugin.options.begin(), plugin.options.end(),
-                                       [&](const Option& o) { return o.name == name; });
+                                       [&, &n = name](const Option& o) { return o.name == n; });
       if (option == plugin.options.end()) {
         errors.push_back(
             Error{"unknown option " + place + suggestion(name, known), raw.file, raw.line});

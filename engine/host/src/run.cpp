@@ -229,7 +229,8 @@ class Runner {
 
   void finish(CampaignState& c, const Record& record) {
     c.action = Action::done;
-    take_over_record(c, record);
+    c.status = record.status;
+    c.errors = record.errors;
     events_.finished(c);
   }
 
@@ -328,9 +329,9 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
     night.end = Night::End::interrupted;
     return night;
   }
+  auto [text, json] = summary(night, options.out, options.version);
   const auto written =
-      publish(options.out, {{"summary.txt", summary_text(night, options.version)},
-                            {"summary.json", summary_json(night, options.version)}});
+      publish(options.out, {{"summary.txt", std::move(text)}, {"summary.json", std::move(json)}});
   // The campaigns are safe; the night stays open, and the next run ends it.
   if (!written)
     night.error = written.error().message;

@@ -24,33 +24,20 @@ std::string first_error(const CampaignState& c) {
   return where(c.errors.front()) + (more == 0 ? "" : " (and " + std::to_string(more) + " more)");
 }
 
-std::string attention_words(const CampaignState& c) {
-  std::string text;
-  for (const KnownFinding& f : c.attention)
-    text +=
-        (text.empty() ? "" : "; ") + (f.measurement.empty() ? "" : f.measurement + ": ") + f.title;
-  return text.empty() ? "see its notes" : text;
-}
-
-/// The campaigns of one heading, each with what stands beside it.
-struct Section {
+/// One list of the summary, as text for a person and as lines of JSON for a program. It grows entry
+/// by entry, so that the findings of all campaigns are never in memory together.
+struct List {
   const char* name;
-  std::vector<std::pair<const CampaignState*, std::string>> entries;
-};
+  std::size_t count = 0;
+  std::string text{}, json{};
 
-std::vector<Section> sections(const Night& night) {
-  Section done{"done", {}}, unchanged{"unchanged", {}}, attention{"attention", {}},
-      failed{"failed", {}};
-  for (const CampaignState& c : night.campaigns) {
-    if (c.status == "failed") {
-      failed.entries.emplace_back(&c, first_error(c));
-      continue;
-    }
-    (c.action == Action::done ? done : unchanged).entries.emplace_back(&c, c.reason);
-    if (c.status == "attention") attention.entries.emplace_back(&c, attention_words(c));
+  void add(const std::string& line, const Json& entry) {
+    text += "  " + line + "\n";
+    json += (count == 0 ? "\n  " : ",\n  ") +
+            entry.dump(-1, ' ', false, Json::error_handler_t::replace);
+    ++count;
   }
-  return {std::move(done), std::move(unchanged), std::move(attention), std::move(failed)};
-}
+};
 
 Json entry_json(const CampaignState& c, const std::string& reason) {
   Json json = {{"id", c.id}, {"folder", c.folder}, {"status", c.status}, {"reason", reason}};
@@ -62,12 +49,80 @@ Json entry_json(const CampaignState& c, const std::string& reason) {
   return json;
 }
 
-Json finding_json(const CampaignState& c, const KnownFinding& f) {
-  return {{"campaign", c.id},
-          {"measurement", f.measurement},
-          {"id", f.id},
-          {"severity", f.attention ? "attention" : "info"},
-          {"title", f.title}};
+struct Lists {
+  List done{"done"}, unchanged{"unchanged"}, attention{"attention"}, failed{"failed"},
+      fresh{"new_findings"};
+  std::string fresh_text;  // of those that ask for attention
+
+  void add(const CampaignState& c, const std::filesystem::path& out) {
+    if (c.status == "failed")
+      return failed.add(c.id + ": " + first_error(c), entry_json(c, first_error(c)));
+    const bool is_done = c.action == Action::done;
+    (is_done ? done : unchanged)
+        .add(is_done ? c.id + ": " + c.reason : c.id, entry_json(c, c.reason));
+    const auto record = read_record(out / c.id);
+    if (!record) return;
+    if (c.status == "attention") {
+      std::string words;
+      for (const KnownFinding& f : record->findings)
+        if (f.attention)
+          words += (words.empty() ? "" : "; ") +
+                   (f.measurement.empty() ? "" : f.measurement + ": ") + f.title;
+      if (words.empty()) words = "see the notes in its results.json";
+      attention.add(c.id + ": " + words, entry_json(c, words));
+    }
+    if (!is_done) return;
+    for (const KnownFinding& f : record->findings)
+      if (std::none_of(record->previous.begin(), record->previous.end(),
+                       [&](const KnownFinding& p) { return p.same(f); }))
+        add_fresh(c, f);
+  }
+
+ private:
+  void add_fresh(const CampaignState& c, const KnownFinding& f) {
+    const std::string line =
+        c.id + (f.measurement.empty() ? "" : ", " + f.measurement) + ": " + f.title;
+    fresh.add(line, {{"campaign", c.id},
+                     {"measurement", f.measurement},
+                     {"id", f.id},
+                     {"severity", f.attention ? "attention" : "info"},
+                     {"title", f.title}});
+    if (f.attention) fresh_text += "  " + line + "\n";
+  }
+};
+
+std::string text_of(const Night& night, const Lists& lists, const std::string& version) {
+  const auto n = [](std::size_t count) { return std::to_string(count); };
+  std::string text = "Nonio " + version + ": " + n(night.campaigns.size()) +
+                     " campaigns: " + n(lists.done.count) + " done, " + n(lists.unchanged.count) +
+                     " unchanged, " + n(lists.failed.count) + " failed; " +
+                     n(lists.attention.count) + " ask for attention\n";
+  // What somebody must act on comes first.
+  const auto section = [&](const char* heading, const std::string& body) {
+    if (!body.empty()) text += std::string("\n") + heading + "\n" + body;
+  };
+  section("FAILED", lists.failed.text);
+  section("ATTENTION", lists.attention.text);
+  section("NEW SINCE THE LAST RUN", lists.fresh_text);
+  section("DONE, AND WHY", lists.done.text);
+  section("UNCHANGED", lists.unchanged.text);
+  std::string notes;
+  for (const std::string& note : night.notes) notes += "  " + note + "\n";
+  section("NOTES", notes);
+  return text;
+}
+
+std::string json_of(const Night& night, const Lists& lists, const std::string& version) {
+  Json counts = {{"campaigns", night.campaigns.size()}};
+  std::string body;
+  for (const List* l :
+       {&lists.done, &lists.unchanged, &lists.attention, &lists.failed, &lists.fresh}) {
+    if (l != &lists.fresh) counts[l->name] = l->count;
+    body += std::string(",\n \"") + l->name + "\": [" + l->json + (l->count == 0 ? "]" : "\n ]");
+  }
+  return "{\n \"schema\": \"nonio-summary/1\",\n \"nonio\": " + Json(version).dump() +
+         ",\n \"counts\": " + counts.dump() + body + ",\n \"notes\": " +
+         Json(night.notes).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n}\n";
 }
 
 }  // namespace
@@ -77,58 +132,10 @@ bool Night::any_failed() const {
                      [](const CampaignState& c) { return c.status == "failed"; });
 }
 
-std::string summary_json(const Night& night, const std::string& version) {
-  Json json = {{"schema", "nonio-summary/1"}, {"nonio", version}};
-  Json counts = {{"campaigns", night.campaigns.size()}};
-  Json lists = Json::object();
-  for (const Section& s : sections(night)) {
-    counts[s.name] = s.entries.size();
-    Json list = Json::array();
-    for (const auto& [c, reason] : s.entries) list.push_back(entry_json(*c, reason));
-    lists[s.name] = std::move(list);
-  }
-  json["counts"] = std::move(counts);
-  for (auto& [name, list] : lists.items()) json[name] = std::move(list);
-  Json fresh = Json::array();
-  for (const CampaignState& c : night.campaigns)
-    for (const KnownFinding& f : c.new_findings) fresh.push_back(finding_json(c, f));
-  json["new_findings"] = std::move(fresh);
-  if (!night.notes.empty()) json["notes"] = night.notes;
-  return dump(json);
-}
-
-std::string summary_text(const Night& night, const std::string& version) {
-  const std::vector<Section> all = sections(night);
-  std::string text =
-      "Nonio " + version + ": " + std::to_string(night.campaigns.size()) + " campaigns: ";
-  for (const Section& s : all) {
-    if (s.name == std::string("attention")) continue;
-    text += std::to_string(s.entries.size()) + " " + s.name +
-            (s.name == std::string("failed") ? "" : ", ");
-  }
-  text += "; " + std::to_string(all[2].entries.size()) + " ask for attention\n";
-  // What somebody must act on comes first.
-  for (const std::size_t k : {std::size_t{3}, std::size_t{2}}) {
-    if (all[k].entries.empty()) continue;
-    text += k == 3 ? "\nFAILED\n" : "\nATTENTION\n";
-    for (const auto& [c, words_of] : all[k].entries) text += "  " + c->id + ": " + words_of + "\n";
-  }
-  std::string fresh;
-  for (const CampaignState& c : night.campaigns)
-    for (const KnownFinding& f : c.new_findings)
-      if (f.attention)
-        fresh += "  " + c.id + (f.measurement.empty() ? "" : ", " + f.measurement) + ": " +
-                 f.title + "\n";
-  if (!fresh.empty()) text += "\nNEW SINCE THE LAST RUN\n" + fresh;
-  for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
-    if (all[k].entries.empty()) continue;
-    text += k == 0 ? "\nDONE\n" : "\nUNCHANGED\n";
-    for (const auto& [c, reason] : all[k].entries)
-      text += "  " + c->id + (k == 0 ? ": " + reason : "") + "\n";
-  }
-  if (!night.notes.empty()) text += "\nNOTES\n";
-  for (const std::string& note : night.notes) text += "  " + note + "\n";
-  return text;
+Summary summary(const Night& night, const std::filesystem::path& out, const std::string& version) {
+  Lists lists;
+  for (const CampaignState& c : night.campaigns) lists.add(c, out);
+  return {text_of(night, lists, version), json_of(night, lists, version)};
 }
 
 }  // namespace nonio::host

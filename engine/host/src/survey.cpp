@@ -104,22 +104,10 @@ class Look {
     if (!state.reason.empty()) return;
     state.action = tonight ? CampaignState::Action::done : CampaignState::Action::unchanged;
     state.reason = tonight ? record->reason : "nothing changed";
-    take_over(state, *record, tonight);
+    state.status = record->status;
+    state.errors = record->errors;
   }
 
- public:
-  static void take_over(CampaignState& state, const Record& record, bool tonight) {
-    state.status = record.status;
-    state.errors = record.errors;
-    for (const KnownFinding& f : record.findings) {
-      if (f.attention) state.attention.push_back(f);
-      const bool known = std::any_of(record.previous.begin(), record.previous.end(),
-                                     [&](const KnownFinding& p) { return p.same(f); });
-      if (tonight && !known) state.new_findings.push_back(f);
-    }
-  }
-
- private:
   std::string changes(const CampaignState& state, const Record& record,
                       const std::string& manifest_digest) const {
     std::vector<std::string> why;
@@ -171,8 +159,6 @@ void fail_collisions(std::vector<CampaignState>& states) {
         states[k].errors = {Error{"campaign.id \"" + states[k].id + "\" is used by " + folders +
                                       "; wanted one id for one campaign",
                                   manifest_name}};
-        states[k].attention.clear();
-        states[k].new_findings.clear();
       }
     }
     i = end;
@@ -201,10 +187,6 @@ Expected<std::vector<CampaignState>> survey(const SurveyInput& input) {
                    [](const CampaignState& a, const CampaignState& b) { return a.id < b.id; });
   fail_collisions(states);
   return states;
-}
-
-void take_over_record(CampaignState& state, const Record& record) {
-  Look::take_over(state, record, true);
 }
 
 }  // namespace nonio::host

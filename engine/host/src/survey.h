@@ -20,7 +20,4 @@ struct SurveyInput {
 /// ids collide come out failed, with an error that names all their folders.
 Expected<std::vector<CampaignState>> survey(const SurveyInput& input);
 
-/// Fills in what the record of a campaign done tonight says.
-void take_over_record(CampaignState& state, const Record& record);
-
 }  // namespace nonio::host

@@ -11,11 +11,46 @@ namespace {
 
 std::uint64_t line_of_node(const toml::node& node) { return node.source().begin.line; }
 
+/// The line of the first byte outside ASCII that stands in neither a string nor a comment; 0 if
+/// there is none. TOML 1.0 has no place for one, and toml++ 3.3 has undefined behaviour for some of
+/// them.
+std::uint64_t stray_character(std::string_view text) {
+  std::uint64_t line = 1;
+  std::string_view closing;  // of the string or comment that is open
+  for (std::size_t i = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; i < text.size(); ++i) {
+    const std::string_view rest = text.substr(i);
+    if (rest[0] == '\n') {
+      ++line;
+      if (closing.size() == 1) closing = {};
+    } else if (!closing.empty()) {
+      if (rest[0] == '\\' && closing[0] == '"') {
+        if (rest.size() > 1 && rest[1] != '\n') ++i;
+      } else if (rest.starts_with(closing)) {
+        i += closing.size() - 1;
+        closing = {};
+      }
+    } else if (rest.starts_with("\"\"\"") || rest.starts_with("'''")) {
+      closing = rest.substr(0, 3);
+      i += 2;
+    } else if (rest[0] == '"' || rest[0] == '\'') {
+      closing = rest.substr(0, 1);
+    } else if (rest[0] == '#') {
+      closing = "\n";
+    } else if (static_cast<unsigned char>(rest[0]) >= 0x80) {
+      return line;
+    }
+  }
+  return 0;
+}
+
 }  // namespace
 
 Expected<toml::table> parse_toml(std::string_view text, const std::string& file) {
   if (text.find('\0') != std::string_view::npos)
     return fail(Error{"not a TOML file: it contains a zero byte", file});
+  if (const std::uint64_t line = stray_character(text); line != 0)
+    return fail(
+        Error{"not valid TOML: a letter outside a-z 0-9 _ - needs quotes around it", file, line});
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& e) {

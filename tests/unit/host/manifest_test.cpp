@@ -100,6 +100,11 @@ TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
             "measurement: wanted tables, each headed [[measurement]]"},
            {"[run]", "[ruin]", "26: unknown key ruin (nearest: \"run\")"},
            {"edition = 2006", "edition = ", "29: not valid TOML"},
+           {"edition = 2006", "\xD2\x89 = 1", "29: not valid TOML: a letter outside"},
+           {"id = \"a-1\"",
+            "id = \"a-1\" # \xC3\xA8\nsite = '\xC3\xA8'\noperator = "
+            "\"\"\"\xC3\xA8\n\\\"\"\"\"\nteh = 1",
+            "7: unknown key campaign.teh"},
            {"U_fixed_um = 0.2", "U_fixed_um = -0.2",
             "17: instrument.U_fixed_um: wanted a number that is not negative"},
        }) {

@@ -21,7 +21,8 @@ struct RunOptions {
   std::string version;
 };
 
-/// One campaign of the night, as it is known so far.
+/// One campaign of the night, as it is known so far. Small: there may be very many. What its record
+/// holds (findings) is read again for the summary.
 struct CampaignState {
   std::string id;
   std::string folder;  ///< relative to the site
@@ -29,8 +30,6 @@ struct CampaignState {
   std::string reason;  ///< why it is to do, or why not
   std::string status;  ///< ok, attention, failed; empty while it is to do
   std::vector<Error> errors;
-  std::vector<KnownFinding> attention;     ///< findings that ask for somebody
-  std::vector<KnownFinding> new_findings;  ///< not there in the night before
 };
 
 /// What the run tells while it goes on.
