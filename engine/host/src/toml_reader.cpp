@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toml_reader.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "nonio/host/nearest.h"
@@ -11,46 +12,88 @@ namespace {
 
 std::uint64_t line_of_node(const toml::node& node) { return node.source().begin.line; }
 
-/// The line of the first byte outside ASCII that stands in neither a string nor a comment; 0 if
-/// there is none. TOML 1.0 has no place for one, and toml++ 3.3 has undefined behaviour for some of
-/// them.
-std::uint64_t stray_character(std::string_view text) {
-  std::uint64_t line = 1;
-  std::string_view closing;  // of the string or comment that is open
-  for (std::size_t i = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; i < text.size(); ++i) {
-    const std::string_view rest = text.substr(i);
-    if (rest[0] == '\n') {
-      ++line;
-      if (closing.size() == 1) closing = {};
-    } else if (!closing.empty()) {
-      if (rest[0] == '\\' && closing[0] == '"') {
-        if (rest.size() > 1 && rest[1] != '\n') ++i;
-      } else if (rest.starts_with(closing)) {
-        i += closing.size() - 1;
-        closing = {};
+bool is_bare_key_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+         c == '_';
+}
+
+/// What toml++ 3.3 meets with undefined behaviour instead of an error: a byte outside ASCII that
+/// stands in neither a string nor a comment, and a table header that begins with no key.
+class Precheck {
+ public:
+  explicit Precheck(std::string_view text) : text_(text) {}
+
+  /// The complaint, or "" if the parser may have the text; `line` is where the reading stopped.
+  std::string run(std::uint64_t& line) {
+    line = 1;
+    bool line_begins = true;
+    for (at_ = text_.starts_with("\xEF\xBB\xBF") ? 3 : 0; at_ < text_.size(); ++at_) {
+      const char c = text_[at_];
+      if (c == '\n') {
+        ++line;
+        line_begins = true;
+        if (closing_.size() == 1) closing_ = {};
+        continue;
+      }
+      const bool header = line_begins && c == '[' && depth_ == 0 && closing_.empty();
+      if (c != ' ' && c != '\t') line_begins = false;
+      if (header && !key_follows()) return "wanted the name of a table after [";
+      if (!step(c)) return "a letter outside a-z 0-9 _ - needs quotes around it";
+    }
+    return {};
+  }
+
+ private:
+  bool key_follows() const {
+    std::size_t i = at_ + 1;
+    const auto skip_blanks = [&] { i = std::min(text_.find_first_not_of(" \t", i), text_.size()); };
+    skip_blanks();
+    if (i < text_.size() && text_[i] == '[') {
+      ++i;
+      skip_blanks();
+    }
+    return i == text_.size() || is_bare_key_character(text_[i]) || text_[i] == '"' ||
+           text_[i] == '\'';
+  }
+
+  bool step(char c) {
+    const std::string_view rest = text_.substr(at_);
+    if (!closing_.empty()) {
+      if (c == '\\' && closing_[0] == '"') {
+        if (rest.size() > 1 && rest[1] != '\n') ++at_;
+      } else if (rest.starts_with(closing_)) {
+        at_ += closing_.size() - 1;
+        closing_ = {};
       }
     } else if (rest.starts_with("\"\"\"") || rest.starts_with("'''")) {
-      closing = rest.substr(0, 3);
-      i += 2;
-    } else if (rest[0] == '"' || rest[0] == '\'') {
-      closing = rest.substr(0, 1);
-    } else if (rest[0] == '#') {
-      closing = "\n";
-    } else if (static_cast<unsigned char>(rest[0]) >= 0x80) {
-      return line;
+      closing_ = rest.substr(0, 3);
+      at_ += 2;
+    } else if (c == '"' || c == '\'') {
+      closing_ = rest.substr(0, 1);
+    } else if (c == '#') {
+      closing_ = "\n";
+    } else if (c == '[') {
+      ++depth_;
+    } else if (c == ']') {
+      depth_ = std::max(0, depth_ - 1);
     }
+    return !closing_.empty() || static_cast<unsigned char>(c) < 0x80;
   }
-  return 0;
-}
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::string_view closing_;  // of the string or comment that is open
+  int depth_ = 0;             // of brackets
+};
 
 }  // namespace
 
 Expected<toml::table> parse_toml(std::string_view text, const std::string& file) {
   if (text.find('\0') != std::string_view::npos)
     return fail(Error{"not a TOML file: it contains a zero byte", file});
-  if (const std::uint64_t line = stray_character(text); line != 0)
-    return fail(
-        Error{"not valid TOML: a letter outside a-z 0-9 _ - needs quotes around it", file, line});
+  std::uint64_t line = 0;
+  if (const std::string complaint = Precheck(text).run(line); !complaint.empty())
+    return fail(Error{"not valid TOML: " + complaint, file, line});
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& e) {
