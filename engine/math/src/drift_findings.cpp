@@ -133,6 +133,7 @@ void drift_findings(const AxisTest& test, std::vector<Finding>& findings) {
       turn.found && std::fabs(wedge) > scatter && std::fabs(wedge) >= 0.25 * largest;
   const bool is_parallel = shift.found && std::fabs(shift.total) > scatter &&
                            (!is_wedge || common > std::max(scatter, 0.5 * std::fabs(wedge)));
+  const std::size_t runs = model.passes.size() / 2;  // one pass each way
   const auto finding = [&](const char* id, double total, const Trend& trend, double per_run) {
     return FindingBuilder(id, true, test.rotary)
         .deviation("total", total)
@@ -140,7 +141,7 @@ void drift_findings(const AxisTest& test, std::vector<Finding>& findings) {
         .slope("wedge", turn.total)
         .deviation("scatter", scatter)
         .number("p", trend.p, Quantity::probability)
-        .count("runs", static_cast<double>(model.passes.size() / 2))
+        .count("runs", static_cast<double>(runs))
         .done();
   };
   if (is_parallel) findings.push_back(finding("drift.parallel", shift.total, shift, shift.per_run));
