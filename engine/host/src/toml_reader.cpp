@@ -38,12 +38,20 @@ class Precheck {
       const bool header = line_begins && c == '[' && depth_ == 0 && closing_.empty();
       if (c != ' ' && c != '\t') line_begins = false;
       if (header && !key_follows()) return "wanted the name of a table after [";
+      if (quote_within_word()) return "a quote in the middle of a word";
       if (!step(c)) return "a letter outside a-z 0-9 _ - needs quotes around it";
     }
     return {};
   }
 
  private:
+  /// There toml++ goes on in the word, and may meet in it what stands in a string here.
+  bool quote_within_word() const {
+    const bool opens = closing_.empty() && (text_[at_] == '"' || text_[at_] == '\'');
+    return opens && at_ > 0 &&
+           std::string_view(" \t\r\n=,[{.\xBF").find(text_[at_ - 1]) == std::string_view::npos;
+  }
+
   bool key_follows() const {
     std::size_t i = at_ + 1;
     const auto skip_blanks = [&] { i = std::min(text_.find_first_not_of(" \t", i), text_.size()); };
