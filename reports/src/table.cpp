@@ -7,28 +7,40 @@
 namespace nonio::reports {
 namespace {
 
-constexpr double pad = 3;  // left and right of a cell
+constexpr double pad = 3;           // left and right of a cell
+constexpr double rounding = 0.001;  // of a width, so that what just fits is not divided
 
 struct Cells {
   std::vector<Glyphs> text;
   std::vector<bool> bold;
 };
 
-/// Widths of the columns: what each needs, if there is room, and what is left over shared out;
-/// else its widest word and a share of the rest.
-std::vector<double> column_widths(const std::vector<double>& natural,
-                                  const std::vector<double>& least, double width) {
-  const double sum = std::accumulate(natural.begin(), natural.end(), 0.0);
-  const double sum_least = std::accumulate(least.begin(), least.end(), 0.0);
-  std::vector<double> out(natural.size());
-  for (std::size_t c = 0; c < out.size(); ++c) {
-    if (sum <= width)
-      out[c] = natural[c] + (width - sum) / static_cast<double>(out.size());
-    else if (sum_least <= width)
-      out[c] = least[c] + (natural[c] - least[c]) * (width - sum_least) / (sum - sum_least);
-    else
-      out[c] = width * least[c] / sum_least;
+/// What the columns ask for: all in one line; no word divided; no number divided.
+struct Needs {
+  std::vector<double> natural, least, numbers;
+};
+
+/// Widths of the columns: what each needs, if there is room, and what is left over shared out; else
+/// its widest word and a share of the rest. Where even that is too much, words give way to numbers.
+std::vector<double> column_widths(const Needs& needs, double width) {
+  const auto sum = [](const std::vector<double>& v) {
+    return std::accumulate(v.begin(), v.end(), 0.0);
+  };
+  const auto between = [&](const std::vector<double>& low, const std::vector<double>& high) {
+    const double share = (width - sum(low)) / (sum(high) - sum(low));
+    std::vector<double> out;
+    for (std::size_t c = 0; c < low.size(); ++c) out.push_back(low[c] + (high[c] - low[c]) * share);
+    return out;
+  };
+  std::vector<double> out = needs.natural;
+  if (const double all = sum(out); all <= width) {
+    for (double& w : out) w += (width - all) / static_cast<double>(out.size());
+    return out;
   }
+  if (sum(needs.least) <= width) return between(needs.least, needs.natural);
+  if (sum(needs.numbers) <= width) return between(needs.numbers, needs.least);
+  out = needs.numbers;
+  for (double& w : out) w *= width / sum(needs.numbers);
   return out;
 }
 
@@ -61,21 +73,25 @@ class TableSetter {
     const std::size_t n = table_.columns.size();
     std::vector<std::string> names;
     for (std::size_t c = 0; c < n; ++c) names.push_back(name_of(c));
-    std::vector<double> natural(n, 0.0), least(n, 0.0);
-    const double size = context_.style.small;
-    const auto measure = [&](std::size_t c, const Glyphs& text) {
+    const std::vector<double> margins(n, 2 * pad + context_.style.small);
+    Needs needs{margins, margins, margins};
+    const auto measure = [&](std::size_t c, const Glyphs& text, bool number) {
+      const auto ask = [&](std::vector<double>& of, double room) {
+        of[c] = std::max(of[c], room + 2 * pad + rounding);
+      };
+      const double size = context_.style.small, most = 0.4 * width_;
       const double all = width_of(text) * size, word = widest_word(text) * size;
-      natural[c] = std::max(natural[c], all + 2 * pad);
-      const double whole = table_.columns[c].number ? all : word;  // numbers stay in one line
-      least[c] = std::max(least[c], std::min(whole, 0.4 * width_) + 2 * pad);
+      ask(needs.natural, all);
+      ask(needs.least, std::min(number ? all : word, most));
+      if (number) ask(needs.numbers, std::min(all, most));
     };
     for (std::size_t c = 0; c < n; ++c) {
       auto title = shape(table_.columns[c].title, context_.fonts.bold, names[c]);
       if (!title) return fail(title.error());
       auto unit = shape(table_.columns[c].unit, context_.fonts.regular, names[c]);
       if (!unit) return fail(unit.error());
-      measure(c, *title);
-      measure(c, *unit);
+      measure(c, *title, false);
+      measure(c, *unit, false);
       titles_.push_back(std::move(*title));
       units_.push_back(std::move(*unit));
     }
@@ -84,13 +100,13 @@ class TableSetter {
       for (std::size_t c = 0; c < n && c < row.size(); ++c) {
         auto text = shape(row[c].text, context_.font(row[c].bold), names[c]);
         if (!text) return fail(text.error());
-        measure(c, *text);
+        measure(c, *text, table_.columns[c].number);
         cells.text.push_back(std::move(*text));
         cells.bold.push_back(row[c].bold);
       }
       rows_.push_back(std::move(cells));
     }
-    widths_ = column_widths(natural, least, width_);
+    widths_ = column_widths(needs, width_);
     return {};
   }
 

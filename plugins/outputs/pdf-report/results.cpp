@@ -131,22 +131,24 @@ void add_what_is_hidden(const Source& source, const Measured& m, Blocks& blocks)
 
 }  // namespace
 
+/// Two tables stand side by side; with tolerances and decisions they need the whole width.
 void add_results(const Source& source, const Measured& m, Blocks& blocks) {
   std::vector<Blocks> parts;
-  for (const auto* a : m.analyses)
-    if (!a->evaluation.values.empty()) parts.push_back({value_table(source, *a)});
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (i != 0 || parts.size() < 2) {
-      std::move(parts[i].begin(), parts[i].end(), std::back_inserter(blocks));
-      continue;
-    }
-    add_what_is_hidden(source, m, parts[1]);
-    const bool decisions = shape_of(source, *m.analyses[0]).decision;
-    blocks.push_back({Columns{{std::move(parts[0]), std::move(parts[1])},
-                              decisions ? std::vector{0.62, 0.38} : std::vector{0.55, 0.45}},
-                      "results"});
-    ++i;
+  bool decisions = false;
+  for (const auto* a : m.analyses) {
+    if (a->evaluation.values.empty()) continue;
+    parts.push_back({value_table(source, *a)});
+    if (parts.size() <= 2) decisions |= shape_of(source, *a).decision;
   }
+  if (parts.size() > 1) add_what_is_hidden(source, m, parts[1]);
+  std::size_t next = 0;
+  if (parts.size() > 1 && !decisions) {
+    blocks.push_back(
+        {Columns{{std::move(parts[0]), std::move(parts[1])}, {0.55, 0.45}}, "results"});
+    next = 2;
+  }
+  for (; next < parts.size(); ++next)
+    std::move(parts[next].begin(), parts[next].end(), std::back_inserter(blocks));
 }
 
 namespace {
