@@ -108,6 +108,22 @@ TEST(Layout, TablesBreakOverPagesWithTheirHeader) {
   for (int i = 0; i < 300; ++i) EXPECT_EQ(count(text.all(), "row" + std::to_string(i) + "."), 1U);
 }
 
+TEST(Layout, WordsGiveWayToNumbersWhereATableIsTooNarrow) {
+  Table table;
+  table.columns = {{"Unbreakableword", "", false},
+                   {"Toleranceofthevalue", "µm", true},
+                   {"Another", "µm", true},
+                   {"Third", "µm", true},
+                   {"Undecidednesses", "", false}};
+  table.rows = {
+      {{"Withoutanyhyphen"}, {"123.4567"}, {"765.4321"}, {"234.5678"}, {"nonconforming"}}};
+  Columns pair{{{{table}}, {{table}}, {{table}}}};
+  const std::string text = "\n" + pages_of(of({{pair}})).all();
+  for (const char* number : {"\n123.4567\n", "\n765.4321\n", "\n234.5678\n"})
+    EXPECT_EQ(count(text, number), 3U) << number;
+  EXPECT_EQ(count(text, "\nWithoutanyhyphen\n"), 0U) << "the table is not too narrow";
+}
+
 TEST(Layout, AHeadingDoesNotStayBehindAlone) {
   for (int lines = 40; lines < 80; ++lines) {
     std::vector<Block> blocks;

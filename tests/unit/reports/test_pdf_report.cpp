@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fixtures.h"
+#include "nonio/reports/number.h"
 #include "pdf_reader.h"
 
 namespace nonio::fixtures {
@@ -69,18 +70,52 @@ TEST_F(PdfReport, SaysWhatTheResultsSay) {
   table.result.predictions = {{"X", "E", 11.9e-6, 1.2e-6}};
   c.results.outputs.push_back(table);
   const std::string en = text(c), it = text(c, "it");
-  for (const char* what :
-       {"Calibration report", "Officine Rossi S.r.l.", "FP 12", "LX 80", "does not conform",
-        "conforms", "Constant lost motion", "some-control-X.txt", "11.90 → 1.20", "VDI/DGQ 3441"})
+  for (const char* what : {"Calibration report", "Officine Rossi S.r.l.", "FP 12", "LX 80",
+                           "does not conform", "conforms", "Lost motion at reversal",
+                           "some-control-X.txt", "11.90 → 1.20", "VDI/DGQ 3441"})
     EXPECT_TRUE(has(en, what)) << what;
   for (const char* what : {"Rapporto di taratura", "non conforme", "11,90 → 1,20", "Asse X"})
     EXPECT_TRUE(has(it, what)) << what;
 }
 
+/// A text drawn in one line, not divided: a whole line of the page's texts.
+bool has_line(const std::string& text, const std::string& line) {
+  return has("\n" + text, "\n" + line + "\n");
+}
+
+TEST_F(PdfReport, NoCellOfAValuesTableWithTolerancesIsDivided) {
+  Case c = usual();
+  decide(c, "iso230-2", "A", 1.25e-6, Decision::does_not_conform);
+  decide(c, "vdi-dgq-3441", "P", 20.75e-6, Decision::conforms);
+  decide(c, "vdi-dgq-3441", "U_max", 3.25e-6, Decision::cannot_be_decided);
+  for (auto& a : c.results.analyses)
+    for (Value& v : a.evaluation.values) v.U = 0.19e-6;
+  for (const std::string language : {"en", "it"}) {
+    const std::string report = text(c, language), mark = language == "it" ? "," : ".";
+    for (const std::string n : {"1|25", "20|75", "3|25", "0|19"}) {
+      std::string number = n;
+      number.replace(number.find('|'), 1, mark);
+      EXPECT_TRUE(has_line(report, number)) << language << ": " << number;
+    }
+    const auto& words = templates.tables.at("words/" + language + "/report").values;
+    for (const char* key : {"symbol", "meaning", "value", "uncertainty", "tolerance", "decision",
+                            "conforms", "does_not_conform", "cannot_be_decided"}) {
+      const auto word = std::get<std::string>(words.at("results." + std::string(key)));
+      EXPECT_TRUE(has_line(report, word)) << language << ": " << word;
+    }
+    for (const auto& a : c.results.analyses)
+      for (const Value& v : a.evaluation.values) {
+        auto printed = reports::printed_result(v.value, v.U, v.quantity, language).value;
+        if (printed.starts_with("−")) printed.replace(0, 3, "-");  // the font's glyph of both
+        EXPECT_TRUE(has_line(report, printed)) << language << ": " << v.name << " " << printed;
+      }
+  }
+}
+
 TEST_F(PdfReport, AFindingOfTwoAnalysesIsSaidOnce) {
   const std::string report = text(usual());
   // once in the status at the top, once among the findings
-  EXPECT_EQ(occurrences(report, "Constant lost motion"), 2U);
+  EXPECT_EQ(occurrences(report, "Lost motion at reversal"), 2U);
 }
 
 TEST_F(PdfReport, TheSameBytesWithAndWithoutPreparation) {
