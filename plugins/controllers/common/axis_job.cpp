@@ -52,6 +52,15 @@ std::string joined(const std::set<std::string>& words) {
   return out;
 }
 
+std::string list_of(const std::vector<std::string>& words, std::string_view between) {
+  std::string out;
+  for (const std::string& w : words) {
+    if (!out.empty()) out += between;
+    out += w;
+  }
+  return out;
+}
+
 // One entry of option `axes`: "X reference_mm=0 step_mm=50".
 Expected<void> take_entry(const std::string& entry, const std::set<std::string>& keys,
                           std::map<std::string, AxisSettings>& out) {
@@ -121,6 +130,32 @@ std::vector<std::string> drift_of(const Results& results, const std::string& mea
   return ids;
 }
 
+std::optional<double> evidence_of(const Finding& f, std::string_view name) {
+  for (const Number& n : f.evidence)
+    if (n.name == name) return n.value;
+  return std::nullopt;
+}
+
+// Each reading once, however many analyses suspect it.
+std::vector<std::string> suspects_of(const Results& results, const AxisJob& job) {
+  std::vector<std::string> readings;
+  for (const auto& a : results.analyses)
+    for (const Finding& f : a.evaluation.findings) {
+      if (f.id != "reading.suspect" ||
+          (a.measurement != job.measurement && f.measurement != job.measurement))
+        continue;
+      const auto target = evidence_of(f, "target"), run = evidence_of(f, "run");
+      std::string text = target ? with_unit(job, *target, 4) : "?";
+      if (run) text += " (run " + fixed_text(*run, 0);
+      for (const auto& [name, value] : f.texts)
+        if (run && name == "direction") text += ", " + plain(value);
+      if (run) text += ")";
+      if (std::find(readings.begin(), readings.end(), text) == readings.end())
+        readings.push_back(text);
+    }
+  return readings;
+}
+
 std::size_t place_of(const Machine& machine, const std::string& axis) {
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
     if (machine.axes[i].name == axis) return i + 1;
@@ -138,6 +173,7 @@ AxisJob job_of(const OutputInput& input, const Measurement& m, const math::AxisT
   if (job.rotary) job.turn = math::closed_turn(job.curve);
   job.reversal = math::assess_reversal(test);
   job.drift = drift_of(input.results, m.id);
+  job.suspects = suspects_of(input.results, job);
   return job;
 }
 
@@ -260,10 +296,10 @@ bool refused(const AxisJob& job, bool directions, OutputResult& result) {
   return true;
 }
 
-std::vector<std::string> drift_warning(const AxisJob& job, OutputResult& result) {
-  if (job.drift.empty()) return {};
-  std::string ids;
-  for (const std::string& id : job.drift) ids += (ids.empty() ? "" : ", ") + id;
+namespace {
+
+std::string drift_warning(const AxisJob& job, OutputResult& result) {
+  const std::string ids = list_of(job.drift, ", ");
   result.findings.push_back({"table.unstable-axis",
                              true,
                              {},
@@ -271,8 +307,46 @@ std::vector<std::string> drift_warning(const AxisJob& job, OutputResult& result)
                              job.measurement,
                              "The axis was not stable while it was measured: measure it again "
                              "before this table is loaded."});
-  return {"WARNING: the axis drifted while it was measured (" + ids +
-          "); do not load this table before the cause is found"};
+  return "WARNING: the axis drifted while it was measured (" + ids +
+         "); do not load this table before the cause is found";
+}
+
+std::string suspect_warning(const AxisJob& job, OutputResult& result) {
+  const std::string readings = list_of(job.suspects, "; ");
+  result.findings.push_back(
+      {"table.suspect-reading",
+       true,
+       {{"readings", static_cast<double>(job.suspects.size()), Quantity::count}},
+       {{"axis", job.axis}, {"which", readings}},
+       job.measurement,
+       "The table follows readings that do not belong to the others: look at the record of the "
+       "test before this table is loaded."});
+  return "WARNING: the table contains suspect readings at " + readings +
+         "; do not load this table before they are explained";
+}
+
+// The F test says that the reversal varies, and one value leaves more than a quarter of it.
+void doubt_uneven_reversal(const AxisJob& job, OutputResult& result) {
+  constexpr double level = 0.01, share = 0.25;
+  const math::Reversal& r = job.reversal;
+  if (!(r.p_varies < level) || !(r.largest_left > share * r.largest)) return;
+  const Quantity q = deviation_of(job.rotary);
+  result.findings.push_back({"table.uneven-reversal",
+                             true,
+                             {{"mean", r.mean, q}, {"left", r.largest_left, q}},
+                             {{"axis", job.axis}},
+                             job.measurement,
+                             "The reversal varies along the axis more than the readings scatter: "
+                             "the single backlash value leaves a part of it."});
+}
+
+}  // namespace
+
+std::vector<std::string> warnings(const AxisJob& job, OutputResult& result) {
+  std::vector<std::string> lines;
+  if (!job.drift.empty()) lines.push_back(drift_warning(job, result));
+  if (!job.suspects.empty()) lines.push_back(suspect_warning(job, result));
+  return lines;
 }
 
 std::string reversal_words(const AxisJob& job, bool directions) {
@@ -287,7 +361,8 @@ std::string reversal_words(const AxisJob& job, bool directions) {
          " (opposite sign, lost motion is positive)";
 }
 
-void doubt_positive_reversal(const AxisJob& job, OutputResult& result) {
+void doubt_backlash(const AxisJob& job, OutputResult& result) {
+  doubt_uneven_reversal(job, result);
   if (job.reversal.kind != math::Reversal::Kind::over_compensated ||
       job.settings.count("backlash_mm") || job.settings.count("backlash_deg"))
     return;

@@ -28,6 +28,7 @@ struct AxisJob {
   math::Reversal reversal;
   std::map<std::string, double, std::less<>> settings;  ///< of this axis: option `axes`
   std::vector<std::string> drift;                       ///< ids of the findings that say so
+  std::vector<std::string> suspects;                    ///< readings: "190.0 mm (run 3, +)"
   std::vector<std::string> about;                       ///< machine, axis, date: plain ASCII lines
 
   const math::ErrorCurve& table_curve() const { return turn ? *turn : curve; }
@@ -63,14 +64,16 @@ double wished_step(const AxisJob& job, const Settings& options);
 /// are asked for.
 bool refused(const AxisJob& job, bool directions, OutputResult& result);
 
-/// Lines for a table of an axis that was not stable while it was measured; empty otherwise.
-std::vector<std::string> drift_warning(const AxisJob& job, OutputResult& result);
+/// Lines for a table of an axis that was not stable while it was measured, or of readings that
+/// do not belong to the others; empty otherwise.
+std::vector<std::string> warnings(const AxisJob& job, OutputResult& result);
 /// How the reversal was dealt with, for the words beside a table.
 std::string reversal_words(const AxisJob& job, bool directions);
 
-/// A finding where the axis goes too far at reversal and nobody said what the control compensates
-/// already: the value written then replaces one that it should have lowered.
-void doubt_positive_reversal(const AxisJob& job, OutputResult& result);
+/// For a single backlash value. A finding where the axis goes too far at reversal and nobody said
+/// what the control compensates already: the value written then replaces one that it should have
+/// lowered. Another one where the reversal varies and the value leaves much of it.
+void doubt_backlash(const AxisJob& job, OutputResult& result);
 
 /// E, B and M before and after, the latter with `correction` as read back from the bytes written;
 /// it is the whole of what the control adds, the present backlash value is taken off here.

@@ -15,6 +15,8 @@ using controllers::AxisJob;
 using math::Grid;
 using Integers = std::vector<std::int64_t>;
 
+constexpr std::int64_t most_magnification = 100;
+
 struct Choices {
   bool directions, extended, returns_towards_plus;
   std::size_t max_points;
@@ -113,27 +115,43 @@ Table table_of(const AxisJob& job, const Grid& grid, const Choices& choices, boo
   return t;
 }
 
-Expected<void> check_range(const AxisJob& job, const Table& t, const Choices& choices) {
-  std::int64_t largest = 0, where = 0;
+struct Outside {
+  std::int64_t largest = 0, where = 0;  // 0: all numbers are in range
+};
+
+Outside outside_range(const Table& t, const Choices& choices) {
+  Outside out;
   for (const Integers* list : {&t.plus, &t.minus})
     for (std::size_t i = 0; i < list->size(); ++i) {
       const std::int64_t v = (*list)[i];
       const bool outside = v < choices.least() || v > choices.most();
-      if (outside && std::abs(v) > std::abs(largest)) {
-        largest = v;
-        where = t.low + static_cast<std::int64_t>(i);
-      }
+      if (outside && std::abs(v) > std::abs(out.largest))
+        out = {v, t.low + static_cast<std::int64_t>(i)};
     }
-  if (largest != 0) {
-    const std::int64_t larger =
-        (std::abs(largest) * t.magnification + choices.most() - 1) / choices.most() + 1;
-    return fail("axis " + job.axis + ": number " + std::to_string(where) +
-                " would need an increment of " + std::to_string(largest) + ", the control takes " +
-                std::to_string(choices.least()) + ".." + std::to_string(choices.most()) +
-                ": set magnification = " + std::to_string(std::max(larger, t.magnification + 1)) +
-                " or a smaller " + (job.rotary ? "step_deg" : "step_mm") +
-                (choices.extended ? "" : ", or extended = true if the control takes -128..127"));
-  }
+  return out;
+}
+
+// The way out of a table that is out of range, tried before it is advised.
+std::string range_advice(const AxisJob& job, const Grid& grid, Choices choices, const Table& t) {
+  const std::string extended =
+      choices.extended ? "" : ", or set extended = true if the control takes -128..127";
+  for (++choices.magnification; choices.magnification <= most_magnification;
+       ++choices.magnification)
+    if (outside_range(table_of(job, grid, choices, t.both, t.reference), choices).largest == 0)
+      return "set magnification = " + std::to_string(choices.magnification) + " or a smaller " +
+             (job.rotary ? "step_deg" : "step_mm") + extended;
+  return "magnification = " + std::to_string(most_magnification) +
+         ", the largest, is not enough either: the axis must be mended or measured again" +
+         extended;
+}
+
+Expected<void> check_range(const AxisJob& job, const Table& t, const Grid& grid,
+                           const Choices& choices) {
+  if (const Outside out = outside_range(t, choices); out.largest != 0)
+    return fail("axis " + job.axis + ": number " + std::to_string(out.where) +
+                " would need an increment of " + std::to_string(out.largest) +
+                ", the control takes " + std::to_string(choices.least()) + ".." +
+                std::to_string(choices.most()) + ": " + range_advice(job, grid, choices, t));
   if (std::abs(t.backlash) > 9999)
     return fail("axis " + job.axis + ": parameter 1851 would be " + std::to_string(t.backlash) +
                 ", the control takes -9999..9999: set a larger detection_unit_um");
@@ -266,15 +284,15 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
   if (!grid) return tl::unexpected<Error>(grid.error());
   Table table = table_of(job, *grid, choices, directions, reference);
   if (auto placed = numbering.place(job, table, *grid, choices); !placed) return placed;
-  if (auto fits = check_range(job, table, choices); !fits) return fits;
-  const auto warning = controllers::drift_warning(job, result);
+  if (auto fits = check_range(job, table, *grid, choices); !fits) return fits;
+  const auto warning = controllers::warnings(job, result);
   Artifact load{"fanuc-" + job.stem + ".prm", parameter_text(job, table)};
   Artifact text{"fanuc-" + job.stem + ".txt", words(job, table, choices, warning)};
   const auto correction = fanuc::load(load.bytes, consumer_of(job, table, choices));
   if (!correction)
     return fail("axis " + job.axis +
                 ": the table written cannot be read back: " + correction.error().message);
-  if (!directions && job.curve.bidirectional()) controllers::doubt_positive_reversal(job, result);
+  if (!directions && job.curve.bidirectional()) controllers::doubt_backlash(job, result);
   controllers::predict(job, *correction, result);
   result.artifacts.push_back(std::move(load));
   result.artifacts.push_back(std::move(text));
@@ -350,7 +368,7 @@ std::vector<Option> options() {
                   "Direction in which the axis returns to reference.",
                   {"+", "-"}});
   list.push_back(whole("max_points", 128, "Numbers of one axis.", 3, 1024));
-  list.push_back(whole("magnification", 1, "Parameter 3623.", 1, 100));
+  list.push_back(whole("magnification", 1, "Parameter 3623.", 1, most_magnification));
   list.push_back(whole("reference_number", -1,
                        "Parameter 3620; -1: the next free numbers are taken.", -1, 1535));
   list.push_back(whole("negative_numbers", 3000,

@@ -155,7 +155,7 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
   const auto at = positions(job, input, choices);
   if (!at) return tl::unexpected<Error>(at.error());
   const std::string stem = "heidenhain-tnc-" + job.stem;
-  const auto warning = controllers::drift_warning(job, result);
+  const auto warning = controllers::warnings(job, result);
   Artifact com{stem + ".COM", com_table(job, rows_of(job, *at, directions), axes, choices)};
   Artifact text{stem + ".txt", words(job, choices, directions, com.name, warning)};
 
@@ -165,7 +165,7 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
     const auto backlash = heidenhain::backlash_entered(text.bytes);
     if (!backlash) return tl::unexpected<Error>(backlash.error());
     control.backlash = *backlash;
-    if (!directions) controllers::doubt_positive_reversal(job, result);
+    if (!directions) controllers::doubt_backlash(job, result);
   }
   const auto correction = heidenhain::load(com.bytes, control);
   if (!correction)

@@ -129,7 +129,7 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
   const auto at = positions(job, input);
   if (!at) return tl::unexpected<Error>(at.error());
   const std::string stem = "linuxcnc-" + job.stem;
-  const auto warning = controllers::drift_warning(job, result);
+  const auto warning = controllers::warnings(job, result);
   Artifact comp{stem + ".comp", comp_file(job, *at, choices)};
   const linuxcnc::Machine control{choices.type, choices.per_si(job), most_lines};
   const auto correction = linuxcnc::load(comp.bytes, control);

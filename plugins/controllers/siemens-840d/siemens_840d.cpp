@@ -119,7 +119,7 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
   const auto grid = grid_of(job, input, choices);
   if (!grid) return tl::unexpected<Error>(grid.error());
   const double reference = controllers::reference_position(job, grid->first, grid->last());
-  const auto warning = controllers::drift_warning(job, result);
+  const auto warning = controllers::warnings(job, result);
   const std::string stem = "siemens-840d-" + job.stem;
   std::vector<Artifact> files;
   if (directions) {
@@ -128,7 +128,7 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
     files.push_back({stem + "-EEC.ini", encoder_table(job, *grid, choices, reference, warning)});
     if (job.curve.bidirectional()) {
       files.push_back({stem + "-backlash.ini", backlash_file(job, choices, warning)});
-      controllers::doubt_positive_reversal(job, result);
+      controllers::doubt_backlash(job, result);
     }
   }
   siemens::Machine control{axis_name(job),     static_cast<int>(choices.measuring_system),

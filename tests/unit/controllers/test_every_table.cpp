@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <clocale>
 #include <locale>
+#include <numbers>
 
 #include "fanuc/consumer.h"
 #include "heidenhain-tnc/consumer.h"
@@ -199,6 +200,85 @@ TEST(EveryTable, WarnsOfDrift) {
     const auto calm = b.write(k.output(), k.options);
     ASSERT_TRUE(calm);
     EXPECT_EQ(finding(*calm, "table.unstable-axis"), nullptr) << k.name;
+  }
+}
+
+TEST(EveryTable, WarnsOfSuspectReadingsEachOnce) {
+  for (const Kind& k : kinds()) {
+    std::mt19937 random(9);
+    Bench b(random_axis(random, false));
+    for (const char* plugin : {"iso230-2", "vdi-dgq-3441"}) {
+      Results::Analysed a;
+      a.plugin = plugin;
+      a.measurement = "X";
+      Finding suspect;
+      suspect.id = "reading.suspect";
+      suspect.measurement = "X";
+      suspect.evidence.push_back({"run", 3.0, Quantity::count});
+      suspect.evidence.push_back({"target", 190 * mm, position_of(false)});
+      suspect.texts.emplace_back("direction", "-");
+      a.evaluation.findings.push_back(suspect);
+      b.results.analyses.push_back(a);
+    }
+    const auto r = b.write(k.output(), k.options);
+    ASSERT_TRUE(r);
+    const Finding* f = finding(*r, "table.suspect-reading");
+    ASSERT_NE(f, nullptr) << k.name;
+    EXPECT_TRUE(f->attention);
+    EXPECT_EQ(f->evidence.at(0).value, 1.0) << k.name;
+    EXPECT_EQ(f->texts.at(1).second, "190.0 mm (run 3, -)");
+    bool warned = false;
+    for (const Artifact& artifact : r->artifacts)
+      warned = warned || contains(artifact.bytes,
+                                  "WARNING: the table contains suspect readings at 190.0 mm (run "
+                                  "3, -)");
+    EXPECT_TRUE(warned) << k.name;
+    EXPECT_EQ(r->predictions.size(), 3U) << k.name;
+    for (auto& a : b.results.analyses) a.measurement = a.evaluation.findings[0].measurement = "Y";
+    const auto calm = b.write(k.output(), k.options);
+    ASSERT_TRUE(calm);
+    EXPECT_EQ(finding(*calm, "table.suspect-reading"), nullptr) << k.name;
+  }
+}
+
+// B = -10 um -/+ the swing: of 4 um one value leaves 4 of 14, of 2 um only 2 of 12.
+TEST(EveryTable, SaysWhatOneValueLeavesOfAnUnevenReversal) {
+  for (const Kind& k : kinds())
+    for (const double swing : {4 * um, 2 * um}) {
+      Measured m;
+      m.targets = even(0.0, 50 * mm, 9);
+      m.plus = [](double) { return 0.0; };
+      m.minus = [swing](double x) {
+        return 10 * um + swing * std::cos(x / (50 * mm) * std::numbers::pi / 2);
+      };
+      m.runs = 5;
+      m.scatter = 0.05 * um;
+      Bench b(m);
+      const auto r = b.write(k.output(), k.options);
+      ASSERT_TRUE(r) << r.error().message;
+      const Finding* f = finding(*r, "table.uneven-reversal");
+      const bool one_value = std::string(k.name) != "linuxcnc";  // its columns have both
+      ASSERT_EQ(f != nullptr, one_value && swing > 3 * um) << k.name;
+      EXPECT_EQ(r->predictions.size(), 3U) << k.name;
+      if (f == nullptr) continue;
+      EXPECT_TRUE(f->attention);
+      EXPECT_EQ(f->evidence.at(0).name, "mean");
+      EXPECT_NEAR(f->evidence[0].value, -10.5 * um, 0.6 * um);
+      EXPECT_EQ(f->evidence.at(1).name, "left");
+      EXPECT_NEAR(f->evidence[1].value, 4 * um, 0.6 * um);
+    }
+  for (const Kind& k : with_directions()) {
+    Measured m;
+    m.targets = even(0.0, 50 * mm, 9);
+    m.plus = [](double) { return 0.0; };
+    m.minus = [](double x) {
+      return 10 * um + 4 * um * std::cos(x / (50 * mm) * std::numbers::pi / 2);
+    };
+    m.runs = 5;
+    m.scatter = 0.05 * um;
+    const auto r = Bench(m).write(k.output(), k.options);
+    ASSERT_TRUE(r) << r.error().message;
+    EXPECT_EQ(finding(*r, "table.uneven-reversal"), nullptr) << k.name;
   }
 }
 

@@ -139,6 +139,29 @@ TEST(Fanuc, IncrementsOutOfRangeAreAnErrorWithASuggestionThatWorks) {
   EXPECT_TRUE(Bench(m).write(fanuc_plugin(), {{"extended", true}}));
 }
 
+// 600 um in an interval fit 7 x 86 and more, 900 um do not fit 7 x 100: nothing over 100 is
+// advised.
+TEST(Fanuc, AdvisesNoMagnificationThatTheOptionRefuses) {
+  for (const double slope : {6e-3, 9e-3}) {
+    const auto m = axis(
+        even(0.0, 100 * mm, 6), [slope](double x) { return x * slope; }, -6 * um);
+    const auto r = Bench(m).write(fanuc_plugin());
+    ASSERT_FALSE(r);
+    const std::string& said = r.error().message;
+    if (slope > 7e-3) {
+      EXPECT_TRUE(contains(said, "mended or measured again")) << said;
+      EXPECT_FALSE(contains(said, "set magnification")) << said;
+      EXPECT_FALSE(Bench(m).write(fanuc_plugin(), {{"magnification", std::int64_t{100}}}));
+      continue;
+    }
+    const std::size_t at = said.find("set magnification = ");
+    ASSERT_NE(at, std::string::npos) << said;
+    const std::int64_t advised = std::stoll(said.substr(at + 20));
+    EXPECT_LE(advised, 100);
+    EXPECT_TRUE(Bench(m).write(fanuc_plugin(), {{"magnification", advised}}));
+  }
+}
+
 TEST(Fanuc, MagnificationScalesThePulses) {
   const auto m = axis(
       even(0.0, 100 * mm, 6), [](double x) { return x * 300e-6; }, -6 * um);
