@@ -55,7 +55,8 @@ bool read_cmap(const Reader& r, std::size_t cmap, std::vector<std::uint16_t>& gl
       const std::size_t range_at = first_at + 4 * segments;
       const std::uint32_t range = r.u16(range_at);
       for (std::uint32_t c = first; c <= last && c != 0xFFFF && r.ok(); ++c) {
-        std::uint32_t glyph = range == 0 ? c : r.u16(range_at + range + 2 * (c - first));
+        std::uint32_t glyph =
+            range == 0 ? c : r.u16(range_at + range + std::size_t{2} * (c - first));
         if (glyph != 0 || range == 0) glyph = (glyph + delta) & 0xFFFF;
         if (glyph == 0) continue;
         if (c >= glyphs.size()) glyphs.resize(c + 1);

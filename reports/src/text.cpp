@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include "nonio/reports/text.h"
 
@@ -119,7 +120,7 @@ double widest_word(const Glyphs& glyphs) {
 }
 
 std::vector<TextLine> wrap(const Glyphs& glyphs, double width) {
-  const auto limit = static_cast<long>(width * 1000.0 + 0.5);
+  const auto limit = std::lround(width * 1000.0);
   std::vector<TextLine> lines;
   std::size_t begin = 0;
   while (begin < glyphs.size()) {

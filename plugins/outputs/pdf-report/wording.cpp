@@ -45,7 +45,8 @@ std::string Wording::get(std::string_view key, Places places) const {
 
 std::string Wording::get_or(std::string_view key, std::string otherwise) const {
   const std::string* text = find(key);
-  return text != nullptr ? *text : std::move(otherwise);
+  if (text != nullptr) return *text;
+  return otherwise;
 }
 
 Expected<void> Wording::complete() const {

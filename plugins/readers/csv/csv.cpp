@@ -344,7 +344,8 @@ Expected<void> read_rows(const ReadInput& input, Lines& lines, const Header& hea
     if (line.size() > longest_line || !rows.add(line, lines.number())) {
       // Bytes that are no text explain a bad field better than the field does.
       error = not_text(line);
-      return fail(error ? std::move(*error) : rows.error());
+      if (error) return fail(std::move(*error));
+      return fail(rows.error());
     }
     if (input.done_with && lines.offset() - reported >= report_every)
       input.done_with(reported = lines.offset());
