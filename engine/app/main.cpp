@@ -52,7 +52,9 @@ void add_common(CLI::App& verb, Common& common) {
           "A folder with more plugins; may be given several times. NONIO_PLUGIN_PATH holds\n"
           "such folders too, with ':' between them.")
       ->check(CLI::ExistingDirectory)
-      ->take_all();
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
   verb.add_flag("--json", common.json, "Machine-readable output on stdout, one JSON object a line");
   verb.add_flag("--quiet", common.quiet, "No progress; only what went wrong");
 }
@@ -131,6 +133,8 @@ int run(host::RunOptions options, const Common& common) {
     std::cerr << "nonio run: " << night.error << "\n";
     return exit_failed;
   }
+  // What a night before has already said is said again: a failed campaign is never silent.
+  if (!common.json && !options.dry_run) progress.still_failed(night);
   if (options.dry_run)
     print_plan(night, common.json);
   else if (!common.quiet || common.json)
@@ -248,7 +252,9 @@ int main(int argc, char** argv) {
           "--templates", common.template_paths,
           "A folder laid over the installed templates; SITE/templates is, without being named")
       ->check(CLI::ExistingDirectory)
-      ->take_all();
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
   add_common(*run_verb, common);
   run_verb->footer(
       "A campaign is done again only if something it depends on has changed: its files, "
@@ -267,6 +273,10 @@ int main(int argc, char** argv) {
   }
   if (plugins_verb->parsed()) return list_plugins(common);
   options.site = site;
+  if (out.empty()) {
+    std::cerr << "nonio run: --out is empty; wanted a folder\n";
+    return exit_usage;
+  }
   options.out = fs::absolute(out);
   return run(options, common);
 }

@@ -113,6 +113,12 @@ void Progress::clear() {
   if (bar_ && drawn_once_) std::cerr << "\r\033[K";
 }
 
+void Progress::still_failed(const host::Night& night) {
+  for (const host::CampaignState& c : night.campaigns)
+    if (c.status == "failed" && c.action == host::CampaignState::Action::unchanged)
+      std::cerr << "failed    " << c.id << " (unchanged): " << message_of(c) << "\n";
+}
+
 void Progress::end() {
   if (bar_ && drawn_once_) std::cerr << "\n";
 }

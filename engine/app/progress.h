@@ -17,6 +17,8 @@ class Progress {
   host::RunEvents events();
   /// Ends the bar's line.
   void end();
+  /// Names the campaigns that failed and were not done again.
+  void still_failed(const host::Night& night);
 
  private:
   void note(const std::string& message);

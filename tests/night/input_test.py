@@ -73,6 +73,59 @@ class Input(NightTest):
         self.assertIn('site.toml:2: unknown key limits.second (nearest: "seconds")', done.stderr)
         self.assertFalse(self.out.exists())
 
+    def test_results_are_never_written_among_the_readings(self):
+        folder = self.campaign("a", run='[run]\noutputs = ["csv"]\n')
+        (folder / "values.csv").write_text("mine")
+        for out in (self.site, folder, folder / "below"):
+            done = self.run_nonio(out=out, expect=2)
+            self.assertIn("wanted another folder", done.stderr)
+        self.run_nonio(out=self.site.parent, expect=0)  # beside it is fine
+        self.assertEqual((folder / "values.csv").read_text(), "mine")
+
+    def test_a_pipe_does_not_stop_the_night(self):
+        for name in ("x.csv", "campaign.toml"):
+            folder = self.campaign("bad-" + name[0])
+            (folder / name).unlink()
+            os.mkfifo(folder / name)
+        self.campaign("good")
+        self.run_nonio(expect=1)
+        self.assertEqual(self.ids("done"), ["good"])
+        self.assertIn("not a file", self.errors("bad-x")[0]["message"])
+        self.run_nonio(expect=1)
+
+    def test_a_folder_without_an_id_gives_way(self):
+        self.campaign("A B", text="nonsense")
+        self.campaign("one", campaign_id="a-b")
+        self.run_nonio(expect=1)
+        self.assertEqual(self.ids("done"), ["a-b"])
+        self.assertEqual(self.ids("failed"), ["a-b.2"])
+
+    def test_unknown_control_names_the_nearest(self):
+        self.campaign("a", text=manifest("a").replace('model = "M"', 'control = "siemens-840"'))
+        self.run_nonio(expect=1)
+        self.assertIn('nearest: "siemens-840d"', self.errors("a")[0]["message"])
+
+    def test_a_linked_campaign_is_not_passed_over_in_silence(self):
+        self.campaign("a")
+        (self.root / "elsewhere").mkdir()
+        (self.root / "elsewhere" / "campaign.toml").write_text(manifest("linked"))
+        os.symlink(self.root / "elsewhere", self.site / "link")
+        self.assertIn("the campaign link is a link", self.run_nonio(expect=0).stderr)
+
+    def test_quiet_still_names_a_campaign_that_stays_failed(self):
+        self.campaign("a", text="nonsense")
+        self.run_nonio("--quiet", expect=1)
+        self.assertIn("failed    a", self.run_nonio("--quiet", expect=1).stderr)
+
+    def test_empty_output_name(self):
+        import subprocess
+        from nightly import NONIO
+        done = subprocess.run([NONIO, "run", str(self.site), "--out", ""], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        done = subprocess.run([NONIO, "run", "--plugin-path", str(self.root), str(self.site), "--out",
+                               str(self.out)], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_empty_site(self):
         self.run_nonio(expect=0)
         self.assertEqual(self.summary()["counts"]["campaigns"], 0)

@@ -7,6 +7,7 @@
 
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
+#include "nonio/host/nearest.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::host {
@@ -314,6 +315,7 @@ class CampaignRun {
     auto outputs = chosen(context_.plugins->outputs(), "output", manifest_.run.outputs,
                           context_.site.run.outputs);
     const bool all = !manifest_.run.outputs && !context_.site.run.outputs;
+    check_control();
     if (failed()) return;
     std::stable_partition(outputs.begin(), outputs.end(),
                           [](const Output* o) { return o->stage == Output::Stage::table; });
@@ -325,6 +327,19 @@ class CampaignRun {
       if (!output->applies(out_.campaign)) continue;
       if (const auto options = settle(output->info)) write_output(*output, *options);
     }
+  }
+
+  void check_control() {
+    const std::string& control = out_.campaign.machine.control;
+    std::vector<std::string> tables;
+    for (const Output& o : context_.plugins->outputs())
+      if (o.stage == Output::Stage::table) tables.push_back(o.info.name);
+    if (control.empty() || std::find(tables.begin(), tables.end(), control) != tables.end()) return;
+    std::string list;
+    for (const std::string& name : tables) list += (list.empty() ? "" : ", ") + name;
+    report(Error{"machine.control: no output writes tables for \"" + control + "\"" +
+                     suggestion(control, tables) + "; there are " + list,
+                 manifest_name});
   }
 
   void write_output(const Output& output, const Settings& options) {

@@ -61,7 +61,8 @@ Expected<void> flush_folder(const fs::path& folder) {
 }  // namespace
 
 Expected<MappedFile> MappedFile::open(const fs::path& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // Without waiting: a named pipe must not stop the night.
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   struct stat info {};
   if (!file || ::fstat(file.get(), &info) != 0) return system_error("cannot read", path);
   if (!S_ISREG(info.st_mode)) return fail("cannot read " + path.string() + ": not a file");
@@ -86,8 +87,27 @@ void MappedFile::release(std::size_t offset) const {
   if (whole != 0) ::madvise(const_cast<char*>(data_), whole, MADV_DONTNEED);
 }
 
+Expected<void> read_parts(const fs::path& path, const std::function<void(std::string_view)>& take) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  struct stat info {};
+  if (!file || ::fstat(file.get(), &info) != 0) return system_error("cannot read", path);
+  if (!S_ISREG(info.st_mode)) return fail("cannot read " + path.string() + ": not a file");
+  std::string buffer(std::min<std::size_t>(static_cast<std::size_t>(info.st_size) + 1, 1 << 20),
+                     '\0');
+  for (;;) {
+    const ssize_t n = ::read(file.get(), buffer.data(), buffer.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return system_error("cannot read", path);
+    if (n == 0) return {};
+    take(std::string_view(buffer).substr(0, static_cast<std::size_t>(n)));
+  }
+}
+
 Expected<std::string> read_file(const fs::path& path) {
-  return MappedFile::open(path).map([](const MappedFile& f) { return std::string(f.bytes()); });
+  std::string bytes;
+  const auto read = read_parts(path, [&](std::string_view part) { bytes += part; });
+  if (!read) return fail(read.error());
+  return bytes;
 }
 
 Expected<fs::path> path_inside(const fs::path& base, const std::string& relative) {

@@ -308,8 +308,10 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
     TableReader reader = source.reader(*table, "limits");
     site.limits.seconds = reader.number("seconds").value_or(site.limits.seconds);
     site.limits.memory_MB = reader.number("memory_MB").value_or(site.limits.memory_MB);
-    if (!(site.limits.seconds > 0.0)) reader.error("seconds", "wanted a number above 0");
-    if (!(site.limits.memory_MB >= 64.0)) reader.error("memory_MB", "wanted 64 or more");
+    if (!(site.limits.seconds > 0.0 && site.limits.seconds <= 1e6))
+      reader.error("seconds", "wanted a number above 0 and at most 1000000");
+    if (!(site.limits.memory_MB >= 64.0 && site.limits.memory_MB <= 1e9))
+      reader.error("memory_MB", "wanted 64 or more, and at most 1000000000");
     reader.finish();
   }
   site.run = read_run(source, top.table("run"));

@@ -251,6 +251,19 @@ std::string all_of(const std::vector<Error>& errors) {
   return text;
 }
 
+/// Results are never written among the files of a campaign, which they could replace.
+std::string unfit_output(const fs::path& site, const fs::path& out) {
+  std::error_code error;
+  const fs::path root = fs::weakly_canonical(site, error);
+  fs::path folder = fs::weakly_canonical(out, error);
+  if (folder == root) return "the output folder is the site itself; wanted another folder";
+  for (; folder != folder.parent_path(); folder = folder.parent_path())
+    if (fs::exists(folder / manifest_name, error))
+      return "the output folder lies in the campaign " + folder.string() +
+             "; wanted another folder";
+  return {};
+}
+
 /// Campaigns whose ids collide get a failed result in the one folder that they all claim.
 void store_collisions(const RunOptions& options, const Context& context, const NightState& night,
                       std::vector<CampaignState>& campaigns) {
@@ -282,6 +295,8 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   std::error_code error;
   if (!fs::is_directory(options.site, error))
     return refuse("there is no site folder " + options.site.string());
+  if (const std::string why = unfit_output(options.site, options.out); !why.empty())
+    return refuse(why);
   Context context;
   context.version = options.version;
   auto site = read_site(options.site, context.site_sha256);
@@ -313,9 +328,12 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   }
   const auto state = begin_night(options.out, options.force, options.dry_run);
   if (!state) return refuse(state.error().message);
-  auto campaigns = survey({options.site, options.out, context, state->number, state->force});
+  const std::size_t notes_so_far = night.notes.size();
+  auto campaigns =
+      survey({options.site, options.out, context, state->number, state->force, night.notes});
   if (!campaigns) return refuse(campaigns.error().message);
   night.campaigns = std::move(*campaigns);
+  for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);
   const auto is_todo = [](const CampaignState& c) {
     return c.action == Action::todo && c.status.empty();
   };

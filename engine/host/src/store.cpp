@@ -36,6 +36,9 @@ std::vector<KnownFinding> known_findings(const Results& results, const Templates
 Expected<void> store(const fs::path& out, const Evaluated& e, const Context& context,
                      const StoreNote& note) {
   const fs::path folder = out / e.campaign.id;
+  if (std::error_code error; fs::exists(folder / manifest_name, error))
+    return fail("the output folder " + folder.string() +
+                " is itself a campaign; nothing was written");
   Record record;
   record.folder = note.folder;
   record.night = note.night;

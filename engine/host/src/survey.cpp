@@ -19,7 +19,8 @@ namespace {
 
 /// Folders with a manifest, relative to the site, in order. Links are not followed: a campaign is
 /// what lies in the site. Hidden folders and the output folder are left out.
-Expected<std::vector<std::string>> find_campaigns(const fs::path& site, const fs::path& out) {
+Expected<std::vector<std::string>> find_campaigns(const fs::path& site, const fs::path& out,
+                                                  std::vector<std::string>& notes) {
   std::vector<std::string> folders;
   std::error_code error;
   const fs::path own_output = fs::weakly_canonical(out, error);
@@ -32,7 +33,11 @@ Expected<std::vector<std::string>> find_campaigns(const fs::path& site, const fs
     if (error) return fail("cannot read the site " + site.string() + ": " + error.message());
     std::error_code ignored;
     const std::string name = it->path().filename().string();
-    if (it->is_directory(ignored) && !it->is_symlink(ignored)) {
+    if (it->is_symlink(ignored) && it->is_directory(ignored)) {
+      if (fs::exists(it->path() / manifest_name, ignored))
+        notes.push_back("the campaign " + it->path().lexically_relative(root).generic_string() +
+                        " is a link and is not followed: a campaign lies in the site itself");
+    } else if (it->is_directory(ignored)) {
       if (name.starts_with('.') || it->path() == own_output) it.disable_recursion_pending();
     } else if (name == manifest_name && it.depth() > 0) {
       folders.push_back(it->path().parent_path().lexically_relative(root).generic_string());
@@ -64,6 +69,7 @@ class Look {
     if (!text) {
       state.id = folder_id(folder);
       state.reason = "no earlier result";
+      state.named_by_folder = true;
       return state;
     }
     const std::string digest = sha256(*text);
@@ -73,6 +79,7 @@ class Look {
       // The quick look is only believed where a full one said the same before.
       if (const auto manifest = parse_manifest(*text, manifest_name); manifest)
         state.id = manifest->campaign.id;
+      state.named_by_folder = state.id.empty();
       if (state.id.empty()) state.id = folder_id(folder);
       record = record_of(state.id);
     }
@@ -134,14 +141,26 @@ class Look {
   void look_at_file(const CampaignState& state, const std::string& name, const std::string& digest,
                     std::vector<std::string>& why) const {
     const auto path = path_inside(in_.site / state.folder, name);
-    const auto file = path ? MappedFile::open(*path) : fail(path.error());
-    const std::string now = file ? sha256(file->bytes()) : absent;
-    if (now != digest) why.push_back("file " + name + (file ? " changed" : " is gone"));
+    const auto now = path ? sha256_of_file(*path) : fail(path.error());
+    if (now.value_or(absent) != digest)
+      why.push_back("file " + name + (now ? " changed" : " is gone"));
   }
 
   const SurveyInput& in_;
   Inputs shared_;
 };
+
+/// A name taken from a folder gives way to an id that a manifest claims, and to another such name.
+void give_way(std::vector<CampaignState>& states) {
+  std::set<std::string> taken;
+  for (const CampaignState& s : states)
+    if (!s.named_by_folder) taken.insert(s.id);
+  for (CampaignState& s : states) {
+    if (!s.named_by_folder) continue;
+    const std::string name = s.id;
+    for (int n = 2; !taken.insert(s.id).second; ++n) s.id = name + "." + std::to_string(n);
+  }
+}
 
 /// Different campaigns with one id: none of them may claim the output folder.
 void fail_collisions(std::vector<CampaignState>& states) {
@@ -168,7 +187,7 @@ void fail_collisions(std::vector<CampaignState>& states) {
 }  // namespace
 
 Expected<std::vector<CampaignState>> survey(const SurveyInput& input) {
-  const auto folders = find_campaigns(input.site, input.out);
+  const auto folders = find_campaigns(input.site, input.out, input.notes);
   if (!folders) return fail(folders.error());
   std::vector<CampaignState> states(folders->size());
   const Look look(input);
@@ -183,6 +202,7 @@ Expected<std::vector<CampaignState>> survey(const SurveyInput& input) {
     for (unsigned i = 1; i < Poco::Environment::processorCount(); ++i) helpers.emplace_back(work);
     work();
   }
+  give_way(states);
   std::stable_sort(states.begin(), states.end(),
                    [](const CampaignState& a, const CampaignState& b) { return a.id < b.id; });
   fail_collisions(states);

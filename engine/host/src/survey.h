@@ -14,6 +14,7 @@ struct SurveyInput {
   const Context& context;
   std::uint64_t night;  ///< the one that is being done
   bool force;
+  std::vector<std::string>& notes;  ///< what was passed over, for the summary
 };
 
 /// All campaigns of a site, by id, each with what is to be done with it and why. Campaigns whose

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,10 @@ class MappedFile {
   std::size_t size_;
 };
 
+/// A file in parts of up to a megabyte. Unlike a mapping it bears that the file is cut short by
+/// somebody else meanwhile, so the main process reads in this way only.
+Expected<void> read_parts(const std::filesystem::path& path,
+                          const std::function<void(std::string_view)>& take);
 Expected<std::string> read_file(const std::filesystem::path& path);
 
 /// `relative` below `base`, with every link resolved; an error if it would lead outside.
@@ -38,10 +43,10 @@ Expected<std::filesystem::path> path_inside(const std::filesystem::path& base,
 /// Whether an artifact may have this name: a plain visible file name that the host does not use.
 bool is_artifact_name(std::string_view name);
 
-/// Writes files that appear whole or not at all: under a temporary name, fsync, rename, fsync of the
-/// folder. All are complete on disk before the first one is renamed, and all others have their names
-/// on disk before the last one gets its own: whoever sees the last file may rely on the others. On an
-/// error the temporary files are gone. Folders that are missing are made.
+/// Writes files that appear whole or not at all: under a temporary name, fsync, rename, fsync of
+/// the folder. All are complete on disk before the first one is renamed, and all others have their
+/// names on disk before the last one gets its own: whoever sees the last file may rely on the
+/// others. On an error the temporary files are gone. Folders that are missing are made.
 Expected<void> publish(const std::filesystem::path& folder, const std::vector<Artifact>& files);
 
 /// Removes files (those that are there) and fsyncs the folder.

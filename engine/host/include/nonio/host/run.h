@@ -25,7 +25,8 @@ struct RunOptions {
 /// holds (findings) is read again for the summary.
 struct CampaignState {
   std::string id;
-  std::string folder;  ///< relative to the site
+  std::string folder;            ///< relative to the site
+  bool named_by_folder = false;  ///< its manifest gives no id
   enum class Action { todo, done, unchanged } action = Action::todo;
   std::string reason;  ///< why it is to do, or why not
   std::string status;  ///< ok, attention, failed; empty while it is to do
