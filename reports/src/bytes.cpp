@@ -15,7 +15,8 @@ std::string deflated(std::string_view bytes, int level) {
       libdeflate_alloc_compressor(level), &libdeflate_free_compressor);
   if (!compressor) return "";
   std::string out(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
-  out.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), out.data(), out.size()));
+  out.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), out.data(),
+                                      out.size()));
   return out;
 }
 
