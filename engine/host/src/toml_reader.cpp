@@ -292,7 +292,7 @@ const toml::array* TableReader::tables(const char* key) {
 
 std::string TableReader::choice(const char* key, const std::vector<std::string>& allowed,
                                 bool required) {
-  const std::string value = text(key, required);
+  std::string value = text(key, required);
   if (value.empty()) return value;
   std::string list;
   for (const std::string& a : allowed) {
