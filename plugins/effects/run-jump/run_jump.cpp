@@ -24,20 +24,25 @@ static std::vector<double> thinned(std::vector<double> instants, std::size_t mos
   return kept;
 }
 
-/// Between successive readings of a line; where a pass ends (another run or direction) first.
+/// Between readings of a line that follow each other in time; where a pass ends (another run or
+/// direction follows) rather than within one.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
   constexpr std::size_t most_ends = 300, most_others = 100;
   const auto r = readings_of(o, axis);
   if (!r) return {};
+  const auto line = [&](std::size_t i) { return o.line.empty() ? 0 : o.line[i]; };
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < o.size(); ++i)
+    if (r->moved[i]) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(line(a), r->t[a]) < std::pair(line(b), r->t[b]);
+  });
   std::vector<double> ends, others;
-  std::map<std::uint32_t, std::size_t> last;  // reading of each line
-  for (std::size_t i = 0; i < o.size(); ++i) {
-    if (!r->moved[i]) continue;
-    const auto [at, first] = last.try_emplace(o.line.empty() ? 0 : o.line[i], i);
-    const std::size_t before = std::exchange(at->second, i);
-    if (first || !(r->t[i] > r->t[before])) continue;
-    const bool end = r->d[i] != r->d[before] || (!o.run.empty() && o.run[i] != o.run[before]);
-    (end ? ends : others).push_back(r->t[before] + (r->t[i] - r->t[before]) / 2.0);
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const std::size_t a = order[k - 1], b = order[k];
+    if (line(a) != line(b) || !(r->t[b] > r->t[a])) continue;
+    const bool end = r->d[a] != r->d[b] || (!o.run.empty() && o.run[a] != o.run[b]);
+    (end ? ends : others).push_back(r->t[a] + (r->t[b] - r->t[a]) / 2.0);
   }
   std::vector<double> instants = thinned(std::move(ends), most_ends);
   const std::vector<double> more = thinned(std::move(others), most_others);
