@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <numbers>
+#include <sstream>
 
+#include "nonio/host/manifest.h"
 #include "nonio/host/plugins.h"
 #include "nonio/sdk/axis_readings.h"
 
@@ -183,6 +186,29 @@ TEST(Effects, WhatATableCanTakeAway) {
                        kind == "backlash" || kind == "eccentricity" || kind == "harmonic2" ||
                        kind == "gear-mesh";
     EXPECT_EQ(effect(kind).compensable, table) << kind;
+  }
+}
+
+TEST(Effects, EveryOneHasACardInEveryLanguage) {
+  for (const char* language : {"en", "it"}) {
+    const std::string file = std::string(NONIO_WORDS) + "/" + language + "/effects.toml";
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    const auto words = host::parse_settings(text.str(), file);
+    ASSERT_TRUE(words) << words.error().message;
+    std::size_t wanted = 0;
+    const auto expect = [&](const std::string& name) {
+      ++wanted;
+      EXPECT_FALSE(words->text(name).empty()) << language << " " << name;
+    };
+    for (const auto& kind : kinds) {
+      for (const char* part : {"title", "is", "size", "looks", "alike", "cure"})
+        expect("effect." + kind + "." + part);
+      for (const auto& p : effect(kind).linear) expect("effect." + kind + ".parameter." + p.name);
+      for (const auto& s : effect(kind).shapes)
+        expect("effect." + kind + ".parameter." + s.parameter.name);
+    }
+    EXPECT_EQ(words->values.size(), wanted) << "words for what is not there";
   }
 }
 
