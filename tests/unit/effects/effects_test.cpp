@@ -95,13 +95,13 @@ struct ByHand {
 
 void PrintTo(const ByHand& c, std::ostream* out) { *out << c.kind; }
 
-class Formula : public testing::TestWithParam<ByHand> {};
+class ByHandTest : public testing::TestWithParam<ByHand> {};
 
 }  // namespace
 
 // Linear: 0, 0.4, 1.0 m; p = -0.5, -0.1, 0.5; d = +, +, -; t = 0, 60, 180 s; K = -0.2, -0.1, 0.3.
 // Rotary: 0, 90, 210 deg; p = -105, -15, 105 deg.
-TEST_P(Formula, ByHandWithZeroWhereTheAxisStood) {
+TEST_P(ByHandTest, ZeroWhereTheAxisStood) {
   const ByHand& c = GetParam();
   const Axis axis = c.turns ? rotary(6) : linear();
   const double unit = c.turns ? pi / 180.0 : 1.0;
@@ -125,7 +125,7 @@ TEST_P(Formula, ByHandWithZeroWhereTheAxisStood) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Effects, Formula,
+    Effects, ByHandTest,
     testing::Values(
         ByHand{"scale", false, {}, {{-0.5, -0.1, 0.5}}},
         ByHand{"backlash", false, {}, {{0.5, 0.5, -0.5}}},
