@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "json_values.h"
-#include "nonio/host/digest.h"
 
 namespace nonio::host {
 
@@ -139,11 +138,13 @@ Json conformity_json(const Conformity& c) {
 }
 
 /// One entry for each file; what the plugin predicts, finds and notes stands once, in `tables`.
-void put_outputs(Json& json, const std::vector<Results::Written>& outputs) {
+void put_outputs(Json& json, const std::vector<Results::Written>& outputs,
+                 const std::vector<RecordedFile>& recorded) {
   Json files = Json::array(), tables = Json::array();
+  auto file = recorded.begin();
   for (const Results::Written& w : outputs) {
-    for (const Artifact& a : w.result.artifacts)
-      files.push_back({{"plugin", w.plugin}, {"file", a.name}, {"sha256", sha256(a.bytes)}});
+    for (std::size_t i = 0; i < w.result.artifacts.size(); ++i, ++file)
+      files.push_back({{"plugin", w.plugin}, {"file", file->name}, {"sha256", file->sha256}});
     if (w.result.predictions.empty() && w.result.findings.empty() && w.result.notes.empty())
       continue;
     Json one = {{"plugin", w.plugin}, {"version", w.version}};
@@ -177,7 +178,8 @@ const char* to_text(Decision decision) {
   return "cannot be decided";
 }
 
-std::string results_json(const Evaluated& e, const Context& context) {
+std::string results_json(const Evaluated& e, const Context& context,
+                         const std::vector<RecordedFile>& files) {
   Json json = {{"schema", "nonio-results/1"},
                {"nonio", context.version},
                {"campaign", campaign_json(e.campaign)},
@@ -194,20 +196,9 @@ std::string results_json(const Evaluated& e, const Context& context) {
     for (const Conformity& c : e.results.conformity) conformity.push_back(conformity_json(c));
     json["conformity"] = std::move(conformity);
   }
-  put_outputs(json, e.results.outputs);
+  put_outputs(json, e.results.outputs, files);
   if (!e.results.notes.empty()) json["notes"] = e.results.notes;
   return dump(json);
-}
-
-std::string failed_results_json(const std::string& id, const std::vector<Error>& errors) {
-  Json list = Json::array();
-  for (const Error& error : errors) list.push_back(to_json(error));
-  return dump(Json{{"schema", "nonio-results/1"},
-                   {"campaign", Json{{"id", id}}},
-                   {"status", "failed"},
-                   {"errors", std::move(list)},
-                   {"analyses", Json::array()},
-                   {"outputs", Json::array()}});
 }
 
 }  // namespace nonio::host
