@@ -344,9 +344,7 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
     night.end = Night::End::interrupted;
     return night;
   }
-  auto [text, json] = summary(night, options.out, options.version);
-  const auto written =
-      publish(options.out, {{"summary.txt", std::move(text)}, {"summary.json", std::move(json)}});
+  const auto written = write_summary(night, options.out, options.version);
   // The campaigns are safe; the night stays open, and the next run ends it.
   if (!written)
     night.error = written.error().message;
