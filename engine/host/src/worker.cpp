@@ -34,7 +34,7 @@ std::size_t memory_held() {
 }
 
 [[noreturn]] void serve(const Worker::Task& task, int channel, double memory_MB,
-                        SharedWords& stage) {
+                        SharedWords& stage) noexcept {
   settle_child();
   limit_memory(memory_MB);
   const std::size_t at_start = memory_held();
