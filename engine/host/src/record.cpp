@@ -35,9 +35,9 @@ Record record_of(const Json& json) {
   r.retry = json.at("retry").get<bool>();
   for (const auto& [name, digest] : json.at("inputs").items())
     r.inputs.emplace_back(name, digest.get<std::string>());
-  for (const Json& f : json.at("files"))
-    r.files.push_back({f.at("file").get<std::string>(), f.at("size").get<std::uint64_t>(),
-                       f.at("sha256").get<std::string>()});
+  for (const auto& [name, size_and_digest] : json.at("files").items())
+    r.files.push_back({name, size_and_digest.at(0).get<std::uint64_t>(),
+                       size_and_digest.at(1).get<std::string>()});
   for (const Json& e : json.at("errors"))
     r.errors.push_back({e.at("message").get<std::string>(), e.value("file", std::string()),
                         e.value("line", std::uint64_t{0}), e.value("column", std::string())});
@@ -51,9 +51,8 @@ Record record_of(const Json& json) {
 std::string to_json(const Record& r) {
   Json inputs = Json::object();
   for (const auto& [name, digest] : r.inputs) inputs[name] = digest;
-  Json files = Json::array();
-  for (const RecordedFile& f : r.files)
-    files.push_back({{"file", f.name}, {"size", f.size}, {"sha256", f.sha256}});
+  Json files = Json::object();
+  for (const RecordedFile& f : r.files) files[f.name] = {f.size, f.sha256};
   Json errors = Json::array();
   for (const Error& e : r.errors) errors.push_back(to_json(e));
   return dump(Json{{"schema", "nonio-run/2"},
