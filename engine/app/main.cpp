@@ -35,8 +35,11 @@ struct Common {
     if (const char* path = std::getenv("NONIO_PLUGIN_PATH"))
       for (const std::string& p : CLI::detail::split(path, ':'))
         if (!p.empty()) folders.push_back(fs::absolute(p));
-    folders.push_back((program_folder() / NONIO_PLUGINS_FROM_PROGRAM).lexically_normal());
+    folders.push_back(own_plugins());
     return folders;
+  }
+  static fs::path own_plugins() {
+    return (program_folder() / NONIO_PLUGINS_FROM_PROGRAM).lexically_normal();
   }
   std::vector<fs::path> template_folders() const {
     std::vector<fs::path> folders{
@@ -112,6 +115,7 @@ void print_summary(const host::Night& night, const fs::path& out, bool json) {
 
 int run(host::RunOptions options, const Common& common) {
   options.plugin_folders = common.plugin_folders();
+  options.own_plugins = Common::own_plugins();
   options.template_folders = common.template_folders();
   options.version = NONIO_VERSION;
   struct sigaction action {};
