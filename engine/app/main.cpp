@@ -9,6 +9,7 @@
 #include "nonio/host/plugins.h"
 #include "nonio/host/run.h"
 #include "progress.h"
+#include "simulate_verb.h"
 
 namespace fs = std::filesystem;
 using namespace nonio;
@@ -270,12 +271,18 @@ int main(int argc, char** argv) {
       cli.add_subcommand("plugins", "What is loaded, with its options, and what was refused");
   add_common(*plugins_verb, common);
 
+  app::SimulateVerb simulate;
+  CLI::App* simulate_verb = simulate.add_to(cli);
+  add_common(*simulate_verb, common);
+
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return cli.exit(e) == 0 ? exit_done : exit_usage;
   }
   if (plugins_verb->parsed()) return list_plugins(common);
+  if (simulate_verb->parsed())
+    return simulate.run(common.plugin_folders(), common.json, common.quiet);
   options.site = site;
   if (out.empty()) {
     std::cerr << "nonio run: --out is empty; wanted a folder\n";
