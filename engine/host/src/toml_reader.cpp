@@ -18,7 +18,8 @@ bool is_bare_key_character(char c) {
 }
 
 /// What toml++ 3.3 meets with undefined behaviour instead of an error: a byte outside ASCII that
-/// stands in neither a string nor a comment, and a table header that begins with no key.
+/// stands in neither a string nor a comment, or where a text goes on after a backslash; and a table
+/// header that begins with no key.
 class Precheck {
  public:
   explicit Precheck(std::string_view text) : text_(text) {}
@@ -39,6 +40,9 @@ class Precheck {
       if (c != ' ' && c != '\t') line_begins = false;
       if (header && !key_follows()) return "wanted the name of a table after [";
       if (quote_within_word()) return "a quote in the middle of a word";
+      if (goes_on_outside_ascii())
+        return "after \\ and blanks a text in \"\"\" cannot go on with a letter outside ASCII here: "
+               "leave the \\ out, or break the line elsewhere";
       if (!step(c)) return "a letter outside a-z 0-9 _ - needs quotes around it";
     }
     return {};
@@ -50,6 +54,13 @@ class Precheck {
     const bool opens = closing_.empty() && (text_[at_] == '"' || text_[at_] == '\'');
     return opens && at_ > 0 &&
            std::string_view(" \t\r\n=,[{.\xBF").find(text_[at_ - 1]) == std::string_view::npos;
+  }
+
+  /// There toml++ asks whether it is one more blank to skip, which it knows of few such letters.
+  bool goes_on_outside_ascii() const {
+    if (text_[at_] != '\\' || closing_ != "\"\"\"") return false;
+    const std::size_t next = text_.find_first_not_of(" \t\r\n", at_ + 1);
+    return next != std::string_view::npos && static_cast<unsigned char>(text_[next]) >= 0x80;
   }
 
   bool key_follows() const {
