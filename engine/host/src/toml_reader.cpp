@@ -41,7 +41,8 @@ class Precheck {
       if (header && !key_follows()) return "wanted the name of a table after [";
       if (quote_within_word()) return "a quote in the middle of a word";
       if (goes_on_outside_ascii())
-        return "after \\ and blanks a text in \"\"\" cannot go on with a letter outside ASCII here: "
+        return "after \\ and blanks a text in \"\"\" cannot go on with a letter outside ASCII "
+               "here: "
                "leave the \\ out, or break the line elsewhere";
       if (!step(c)) return "a letter outside a-z 0-9 _ - needs quotes around it";
     }
