@@ -77,19 +77,17 @@ class Precheck {
   }
 
   bool step(char c) {
-    const std::string_view rest = text_.substr(at_);
     if (!closing_.empty()) {
       if (c == '\\' && closing_[0] == '"') {
-        if (rest.size() > 1 && rest[1] != '\n') ++at_;
-      } else if (rest.starts_with(closing_)) {
+        if (at_ + 1 < text_.size() && text_[at_ + 1] != '\n') ++at_;
+      } else if (c == closing_[0] && text_.substr(at_).starts_with(closing_)) {
         at_ += closing_.size() - 1;
         closing_ = {};
       }
-    } else if (rest.starts_with("\"\"\"") || rest.starts_with("'''")) {
-      closing_ = rest.substr(0, 3);
-      at_ += 2;
     } else if (c == '"' || c == '\'') {
-      closing_ = rest.substr(0, 1);
+      const bool three = text_.substr(at_).starts_with(std::string(3, c));
+      closing_ = text_.substr(at_, three ? 3 : 1);
+      at_ += closing_.size() - 1;
     } else if (c == '#') {
       closing_ = "\n";
     } else if (c == '[') {
