@@ -34,9 +34,11 @@ class Precheck {
         ++line;
         line_begins = true;
         if (closing_.size() == 1) closing_ = {};
+        if (open_.empty()) wants_value_ = false;
+        in_word_ = false;
         continue;
       }
-      const bool header = line_begins && c == '[' && depth_ == 0 && closing_.empty();
+      const bool header = line_begins && c == '[' && open_.empty() && closing_.empty();
       if (c != ' ' && c != '\t') line_begins = false;
       if (header && !key_follows()) return "wanted the name of a table after [";
       if (quote_within_word()) return "a quote in the middle of a word";
@@ -53,8 +55,9 @@ class Precheck {
   /// There toml++ goes on in the word, and may meet in it what stands in a string here.
   bool quote_within_word() const {
     const bool opens = closing_.empty() && (text_[at_] == '"' || text_[at_] == '\'');
-    return opens && at_ > 0 &&
-           std::string_view(" \t\r\n=,[{.\xBF").find(text_[at_ - 1]) == std::string_view::npos;
+    return opens &&
+           (in_word_ || (at_ > 0 && std::string_view(" \t\r\n=,[{.\xBF").find(text_[at_ - 1]) ==
+                                        std::string_view::npos));
   }
 
   /// There toml++ asks whether it is one more blank to skip, which it knows of few such letters.
@@ -90,18 +93,36 @@ class Precheck {
       at_ += closing_.size() - 1;
     } else if (c == '#') {
       closing_ = "\n";
-    } else if (c == '[') {
-      ++depth_;
-    } else if (c == ']') {
-      depth_ = std::max(0, depth_ - 1);
+    } else {
+      step_outside(c);
     }
     return !closing_.empty() || static_cast<unsigned char>(c) < 0x80;
+  }
+
+  /// Outside strings and comments: keys or values, and whether a value without quotes has begun.
+  void step_outside(char c) {
+    if (std::string_view(" \t\r,]}").find(c) != std::string_view::npos) {
+      in_word_ = false;
+      if (c == ',') wants_value_ = !open_.empty() && open_.back() == '[';
+      if ((c == ']' || c == '}') && !open_.empty()) open_.pop_back();
+    } else if (in_word_) {
+      return;
+    } else if (c == '=') {
+      wants_value_ = true;
+    } else if (c == '[' || c == '{') {
+      // A bracket where a key is wanted is that of a table's header: keys stand in it.
+      open_ += wants_value_ ? c : '{';
+      wants_value_ = open_.back() == '[';
+    } else {
+      in_word_ = wants_value_;
+    }
   }
 
   std::string_view text_;
   std::size_t at_ = 0;
   std::string_view closing_;  // of the string or comment that is open
-  int depth_ = 0;             // of brackets
+  std::string open_;          // brackets: [ holds values, { keys
+  bool wants_value_ = false, in_word_ = false;
 };
 
 }  // namespace
