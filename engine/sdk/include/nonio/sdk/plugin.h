@@ -58,25 +58,35 @@ struct Reader {
   Expected<Observations> (*read)(const ReadInput&) = nullptr;
 };
 
-/// One physical cause of deviation: observations -> one column for each linear parameter.
+/// One physical cause of deviation: observations -> one column for each linear parameter. Rows in
+/// which the axis did not move are 0 (`readings_of` in sdk/axis_readings.h gives what a column
+/// needs).
 struct Effect {
+  using Columns = std::vector<std::vector<double>>;
   struct Parameter {
     std::string name;
     std::string help;
     Quantity quantity = Quantity::number;
+    Quantity rotary = quantity;  ///< the same on a rotary axis
   };
-  struct Shape {  ///< a parameter that is searched: a period, a time constant, an instant
+  /// A parameter that is searched: a period, a time constant, an instant, a number of knots.
+  struct Shape {
     Parameter parameter;
-    double (*from)(const Observations&, const Axis&) = nullptr;
-    double (*to)(const Observations&, const Axis&) = nullptr;
+    /// Where to look, ascending, in SI; one value if it is known (a period in the manifest). Empty
+    /// if these readings cannot show the effect.
+    std::function<std::vector<double>(const Observations&, const Axis&)> grid;
+    bool continuous = true;  ///< the best value lies between those of the grid
   };
-  Info info;  ///< name: the kind without the axis, "backlash"
-  std::vector<Parameter> linear;
+  Info info;                      ///< name: the kind without the axis, "backlash"
+  std::vector<Parameter> linear;  ///< of a curve: one, which stands for all of its columns
   std::vector<Shape> shapes;
-  bool (*applies)(const Observations&, const Axis&) = nullptr;
-  /// Columns of length observations.size(), one for each of `linear`, of unit 1/unit of parameter.
-  Expected<std::vector<std::vector<double>>> (*columns)(const Observations&, const Axis&,
-                                                        const std::vector<double>& shape) = nullptr;
+  bool curve = false;        ///< smooth: as many columns as its first shape asks for
+  bool compensable = false;  ///< a table in the controller can take it away
+  std::function<bool(const Observations&, const Axis&)> applies;
+  /// Columns of length observations.size(), of unit 1/unit of the parameter times the deviation's.
+  std::function<Expected<Columns>(const Observations&, const Axis&,
+                                  const std::vector<double>& shape)>
+      columns;
 };
 
 struct AnalysisInput {
@@ -130,7 +140,7 @@ class Registry {
   ~Registry() = default;
 };
 
-inline constexpr int sdk_version = 1;
+inline constexpr int sdk_version = 2;
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
@@ -154,7 +164,7 @@ inline constexpr int sdk_version = 1;
 #endif
 
 /// Everything that must agree before a plugin may be called.
-#define NONIO_ABI_TAG "nonio-sdk 1; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
+#define NONIO_ABI_TAG "nonio-sdk 2; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
 
 /// The one exported symbol, `nonio_plugin`. Plain: the host reads the tag before it calls anything.
 struct PluginEntry {

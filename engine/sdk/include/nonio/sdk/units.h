@@ -24,6 +24,11 @@ enum class Quantity {
   temperature,             ///< degC
   temperature_difference,  ///< K
   time,                    ///< s
+  deviation_per_time,      ///< m/s, printed in um/h
+  angle_per_time,          ///< rad/s, printed in arcsec/h
+  growth,                  ///< 1/s, printed in um/(m h)
+  angular_growth,          ///< 1/s, printed in arcsec/(deg h)
+  angular_expansion,       ///< 1/K, printed in arcsec/(deg K)
 };
 
 struct Unit {
@@ -64,6 +69,16 @@ constexpr Unit unit_of(Quantity q) {
       return {"K", "_K", 1.0};
     case Quantity::time:
       return {"s", "_s", 1.0};
+    case Quantity::deviation_per_time:
+      return {"um/h", "_um_per_h", 3600e6};
+    case Quantity::angle_per_time:
+      return {"arcsec/h", "_arcsec_per_h", 3600.0 * arcsec_per_rad};
+    case Quantity::growth:
+      return {"um/(m h)", "_um_per_m_h", 3600e6};
+    case Quantity::angular_growth:
+      return {"arcsec/(deg h)", "_arcsec_per_deg_h", 3600.0 * 3600.0};
+    case Quantity::angular_expansion:
+      return {"arcsec/(deg K)", "_arcsec_per_deg_K", 3600.0};
   }
   return {"", "", 1.0};
 }

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nonio/model/fit.h"
+#include "nonio/sdk/campaign.h"
+
+/// The model against the measurements: how well, where not, and which effect is missing.
+/// docs/model.md has the statistics. Everything here is SI and free of words: people read
+/// sentences made from it by templates/words.
+namespace nonio::model {
+
+/// Measurements that are explained together: they sense the same axes in the same unit.
+struct Part {
+  std::vector<std::string> measurements;  ///< ids
+  std::vector<Axis> axes;
+  Observations table;  ///< a line for each measurement, named by it
+};
+
+/// Measurements of axes, one part for each axis, in their order; others are left out.
+std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observations>& read);
+
+/// All effects that apply to a part.
+std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects);
+
+/// The effects that a model names; an unknown kind or axis is an error with the nearest name.
+/// Effects of axes that other parts hold are left out.
+Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
+                                     const std::vector<std::string>& names,
+                                     const std::vector<Effect>& effects);
+
+/// Scatter of repeated readings of one target in one direction, after what a whole pass shares
+/// (its own zero and slope) is taken out: no model of the catalogue is in it.
+struct NoiseFloor {
+  double s = 0.0;    ///< m or rad
+  double u = 0.0;    ///< its standard uncertainty, s / sqrt(2 dof)
+  double dof = 0.0;  ///< degrees of freedom
+};
+
+/// F-test of the model against the cell means.
+struct LackOfFit {
+  double F = 0.0, p = 1.0, dof1 = 0.0, dof2 = 0.0;
+};
+
+/// Where something is left. `where` is one of direction, position, run, time, temperature,
+/// screw-phase, angle, or two of them joined by " x " ("direction x time").
+struct Place {
+  std::string where;
+  double share = 0.0;  ///< of the sum of squares of what is left, less what noise would give
+  double p = 1.0;      ///< F-test, corrected for the number of places looked at
+  double rms = 0.0;    ///< of that part, m or rad
+  /// Where it is largest, if it sits at one place: a target (m or rad), a run, an instant (s).
+  std::optional<double> at{};
+  Quantity at_quantity = Quantity::number;
+};
+
+/// A reading that contradicts its neighbours; kept, with weight 0, until the user excludes it.
+struct Suspect {
+  std::size_t row = 0;  ///< of the part's table
+  double residual = 0.0;
+  double t = 0.0;                   ///< studentised
+  double minimal_detectable = 0.0;  ///< an error here below this would not have been seen, m or rad
+};
+
+struct Comparison {
+  Fit fit;
+  double largest = 0.0;  ///< largest residual in size, with its sign
+  std::size_t largest_row = 0;
+  std::optional<double> cv_rms{};     ///< of runs left out one at a time; absent with one run
+  std::vector<double> cv_residual{};  ///< of each reading, predicted without its run
+  std::optional<NoiseFloor> floor{};
+  std::optional<LackOfFit> lack_of_fit{};
+  std::vector<Place> places{};  ///< all that were looked at, largest share first
+  std::vector<Suspect> suspects{};
+  bool fails() const;  ///< something is left in some place
+};
+
+/// A place is said to fail below this p.
+inline constexpr double place_p = 0.01;
+
+struct Candidate {
+  Term term;            ///< with the shapes found
+  bool visible = true;  ///< false: these readings cannot show it
+  std::string why;      ///< if not: "aliased" with the model or the targets; "no-temperature", ...
+  double rms = 0.0;     ///< with it added to the model
+  std::optional<double> cv_rms{};
+  double p = 1.0;      ///< chance that noise alone gives such a candidate anywhere in this search
+  double score = 0.0;  ///< 2 ln of the evidence for it; <= 0: none
+  std::vector<Parameter> parameters;
+  std::vector<std::string> aliases;  ///< these readings cannot tell them from this one
+  double minimal_detectable = 0.0;   ///< rms of the smallest one that would be found, m or rad
+};
+
+/// A further measurement that would tell the effects of an alias group apart.
+struct Plan {
+  std::string id;            ///< "pause", "more-runs", "pendulum", "offset-targets", "temperature"
+  std::size_t readings = 0;  ///< to be taken
+  double power = 0.0;        ///< distance of the two explanations in standard deviations
+  std::string one, other;    ///< the two effects
+};
+
+struct Verdict {
+  enum class Kind { missing, nothing, unknown, unrepeatable };
+  Kind kind = Kind::nothing;
+  std::string effect;           ///< of missing
+  double false_alarms = 0.0;    ///< measured rate: noise alone, this model, this catalogue
+  std::size_t trials = 0;       ///< behind it
+  double suspects_share = 0.0;  ///< of the readings
+};
+
+struct Explanation {
+  Comparison comparison;
+  std::vector<Candidate> candidates;  ///< best first
+  std::vector<std::string> together;  ///< what the best explanation adds to the model
+  std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
+  std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
+  Verdict verdict;
+};
+
+Expected<Comparison> compare(const Part& part, const std::vector<Term>& model);
+
+/// `seed` is for the shuffles behind the false-alarm rate.
+Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
+                              const std::vector<Term>& catalogue, std::uint64_t seed = 1);
+
+}  // namespace nonio::model
