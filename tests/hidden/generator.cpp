@@ -113,7 +113,6 @@ void measure(Hidden& h, const Cycle& c) {
     if (misread) e += by, h.misread.push_back(i);
     h.table.deviation.push_back(std::round(e / resolution) * resolution);
   }
-  h.table.u.assign(c.size(), 0.0);
 }
 
 }  // namespace
