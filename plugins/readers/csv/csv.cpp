@@ -44,7 +44,7 @@ class Lines {
   std::uint64_t number_ = 0;
 };
 
-Number count(const char* name, std::uint64_t n) {
+nonio::Number count(const char* name, std::uint64_t n) {
   return {name, static_cast<double>(n), Quantity::count};
 }
 

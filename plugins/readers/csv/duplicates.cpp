@@ -134,7 +134,9 @@ Expected<void> settle_duplicates(Observations& obs, std::vector<Key>& not_taken)
   if (worst) return fail(contradiction(obs, worst->first, worst->second));
   obs.missing = count_missing(obs, rows, not_taken);
   if (dropped == 0) return {};
-  const auto count = [](const char* name, double n) { return Number{name, n, Quantity::count}; };
+  const auto count = [](const char* name, double n) {
+    return nonio::Number{name, n, Quantity::count};
+  };
   obs.notes.push_back({"csv.repeated-rows",
                        {count("rows", static_cast<double>(dropped)),
                         count("line", obs.source_line[first_dropped])}});

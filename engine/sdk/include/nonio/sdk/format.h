@@ -96,10 +96,13 @@ inline std::string words(const Templates& templates, std::string_view language,
   return {};
 }
 
-/// The number of a finding in a sentence: counts are whole, positions keep their digits.
+/// The number of a finding in a sentence: counts are whole, positions keep their digits, and a
+/// probability is "p = 0.0021" down to what nobody can picture.
 inline std::string evidence_text(const Number& n) {
   const double value = printed(n.value, n.quantity);
   if (n.quantity == Quantity::count) return fixed_text(value, 0);
+  if (n.quantity == Quantity::probability)
+    return value < 1e-4 ? "p < 0.0001" : "p = " + short_text(value, 2);
   const bool deviation =
       n.quantity == Quantity::deviation || n.quantity == Quantity::angular_deviation;
   if (deviation && std::fabs(value) < 5e-4) return fixed_text(0.0, 3);  // no exponent for rounding
