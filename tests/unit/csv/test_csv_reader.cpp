@@ -493,9 +493,9 @@ TEST(Csv, RecognisesItsHeader) {
        {""s, "1,2,3\n"s, "# only\n"s, "HEADER::\r\nFile Type: 1\r\n"s, "\0\0\0run,\0"s, "{}"s})
     EXPECT_FALSE(recognises(no)) << no;
   // To be refused with a word for it, whatever the order of the bytes.
-  for (const std::string& utf16 :
+  for (const std::string& wide :
        {"\xFF\xFEr\0u\0n\0,\0x\0\n\0"s, "\xFE\xFF\0r\0u\0n\0;\0x"s, "r\0u\0n\0,\0"s})
-    EXPECT_TRUE(recognises(utf16));
+    EXPECT_TRUE(recognises(wide));
 }
 
 TEST(Csv, ReadsItsKinds) {
