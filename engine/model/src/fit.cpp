@@ -1,115 +1,301 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/model/fit.h"
 
-#include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "design.h"
+#include "workbench.h"
 
 namespace nonio::model {
 
 namespace {
 
+// Filip (NIST StRD), the hardest polynomial of the yardsticks, passes; columns that agree to
+// twelve digits do not.
+constexpr double rank_threshold = 1e-12;
+
 struct Design {
-  Eigen::MatrixXd columns;  // line zeros first
-  Eigen::VectorXd weight;   // 1/u, or 1
-  std::vector<Parameter> parameters;
+  MatrixXd a;                      // rows times root weights; zeros of lines first, then terms
   std::vector<std::string> names;  // of all columns
+  std::vector<Index> first;        // first column of each term, and the end
 };
 
-Expected<Design> build(const Observations& o, const std::vector<Term>& terms) {
-  const auto n = static_cast<Eigen::Index>(o.size());
-  const auto lines = static_cast<Eigen::Index>(o.line.empty() ? 1 : o.lines.size());
+Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms,
+                           const VectorXd& root) {
+  const auto n = static_cast<Index>(o.size());
+  const auto lines = static_cast<Index>(lines_of(o));
+  std::vector<MatrixXd> blocks;
   Design d;
-  std::vector<std::vector<double>> columns;
+  Index columns = lines;
+  for (Index k = 0; k < lines; ++k) d.names.push_back("the zero of line " + std::to_string(k + 1));
   for (const Term& term : terms) {
-    auto made = term.effect->columns(o, term.axis, term.shape);
-    if (!made) return fail(made.error());
-    if (made->size() != term.effect->linear.size())
-      return fail("effect " + term.effect->info.name +
-                  " gave another number of columns than it declares");
-    for (std::size_t k = 0; k < made->size(); ++k) {
-      if ((*made)[k].size() != o.size())
-        return fail("effect " + term.effect->info.name + " gave a column of another length");
-      const Effect::Parameter& p = term.effect->linear[k];
-      d.parameters.push_back(
-          {term.effect->info.name + ":" + term.axis.name + " " + p.name, 0.0, 0.0, p.quantity});
-      columns.push_back(std::move((*made)[k]));
-    }
+    auto block = columns_of(o, term, term.shape);
+    if (!block) return fail(block.error());
+    d.first.push_back(columns);
+    columns += block->cols();
+    for (Index k = 0; k < block->cols(); ++k) d.names.push_back(term.name());
+    blocks.push_back(std::move(*block));
   }
-  d.columns.setZero(n, lines + static_cast<Eigen::Index>(columns.size()));
-  d.weight.setOnes(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    d.columns(i, o.line.empty() ? 0 : static_cast<Eigen::Index>(o.line[row])) = 1.0;
-    for (std::size_t k = 0; k < columns.size(); ++k)
-      d.columns(i, lines + static_cast<Eigen::Index>(k)) = columns[k][row];
-    if (!o.u.empty()) d.weight(i) = 1.0 / o.u[row];
-  }
-  for (Eigen::Index k = 0; k < lines; ++k)
-    d.names.push_back("zero of line " + std::to_string(k + 1));
-  for (const Parameter& p : d.parameters) d.names.push_back(p.name);
+  d.first.push_back(columns);
+  d.a.setZero(n, columns);
+  for (Index i = 0; i < n; ++i)
+    d.a(i, static_cast<Index>(line_of(o, static_cast<std::size_t>(i)))) = root(i);
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    d.a.middleCols(d.first[t], blocks[t].cols()) = root.asDiagonal() * blocks[t];
   return d;
 }
 
-/// The columns of the first null direction of a rank-deficient design.
-std::string inseparable(const Eigen::MatrixXd& scaled, const std::vector<std::string>& names) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd direction = svd.matrixV().col(scaled.cols() - 1).cwiseAbs();
+/// The names in the first null direction of a rank-deficient design.
+std::string inseparable(const MatrixXd& scaled, const std::vector<std::string>& names) {
+  const Eigen::JacobiSVD<MatrixXd> svd(scaled.transpose() * scaled, Eigen::ComputeThinV);
+  const VectorXd direction = svd.matrixV().col(scaled.cols() - 1).cwiseAbs();
   std::string text;
-  for (Eigen::Index k = 0; k < direction.size(); ++k)
-    if (direction(k) > 0.05 * direction.maxCoeff())
-      text += (text.empty() ? "" : ", ") + names[static_cast<std::size_t>(k)];
+  for (Index k = 0; k < direction.size(); ++k) {
+    const std::string& name = names[static_cast<std::size_t>(k)];
+    if (direction(k) > 0.05 * direction.maxCoeff() && text.find(name) == std::string::npos)
+      text += (text.empty() ? "" : ", ") + name;
+  }
   return text;
+}
+
+struct Solution {
+  VectorXd x, residual;  // residual without weights
+  MatrixXd cofactor;     // (A^T W A)^-1
+  double squares = 0.0;  // weighted
+};
+
+Expected<Solution> solve(const Design& d, const VectorXd& y, const VectorXd& root) {
+  const Index unknowns = d.a.cols();
+  VectorXd scale = d.a.colwise().norm().transpose();
+  for (Index k = 0; k < unknowns; ++k)
+    if (!(scale(k) > 0.0))
+      return fail("the readings cannot show " + d.names[static_cast<std::size_t>(k)]);
+  const MatrixXd a = d.a * scale.cwiseInverse().asDiagonal();
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(a);
+  qr.setThreshold(rank_threshold);
+  if (qr.rank() < unknowns)
+    return fail("the readings cannot tell these apart: " + inseparable(a, d.names));
+  Solution s;
+  const VectorXd weighted = root.cwiseProduct(y);
+  VectorXd scaled = qr.solve(weighted);
+  scaled += qr.solve(weighted - a * scaled);  // one step of refinement
+  s.x = scaled.cwiseQuotient(scale);
+  const VectorXd left = weighted - a * scaled;
+  s.squares = left.squaredNorm();
+  s.residual = left;
+  for (Index i = 0; i < left.size(); ++i) {
+    if (root(i) > 0.0) s.residual(i) = left(i) / root(i);
+  }
+  // (A^T A)^-1 = P R^-1 R^-T P^T
+  const MatrixXd r_inverse = qr.matrixR()
+                                 .topLeftCorner(unknowns, unknowns)
+                                 .triangularView<Eigen::Upper>()
+                                 .solve(MatrixXd::Identity(unknowns, unknowns));
+  const MatrixXd half = scale.cwiseInverse().asDiagonal() * (qr.colsPermutation() * r_inverse);
+  s.cofactor = half * half.transpose();
+  return s;
+}
+
+/// Weighted sum of squares with these shapes; infinite where there is none.
+double squares_with(const Observations& o, const std::vector<Term>& terms, const VectorXd& root,
+                    const VectorXd& y) {
+  const auto d = design_of(o, terms, root);
+  if (!d) return std::numeric_limits<double>::infinity();
+  const VectorXd weighted = root.cwiseProduct(y);
+  const Eigen::HouseholderQR<MatrixXd> qr(d->a);
+  VectorXd rotated = qr.householderQ().transpose() * weighted;
+  return rotated.tail(rotated.size() - d->a.cols()).squaredNorm();
+}
+
+/// Golden section between the neighbours of a grid's best value.
+void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std::size_t k,
+            const VectorXd& root, const VectorXd& y) {
+  const std::vector<double> grid = terms[t].effect->shapes[k].grid(o, terms[t].axis);
+  double& value = terms[t].shape[k];
+  const auto above = std::upper_bound(grid.begin(), grid.end(), value * (1.0 + 1e-12));
+  const auto below = std::lower_bound(grid.begin(), grid.end(), value * (1.0 - 1e-12));
+  double low = below == grid.begin() ? value : *std::prev(below);
+  double high = above == grid.end() ? value : *above;
+  if (!(low < high)) return;
+  const auto at = [&](double x) {
+    value = x;
+    return squares_with(o, terms, root, y);
+  };
+  constexpr double golden = 0.6180339887498949;  // (sqrt(5) - 1)/2
+  const double start = value, squares = at(start);
+  double a = high - golden * (high - low), b = low + golden * (high - low);
+  double fa = at(a), fb = at(b);
+  for (int step = 0; step < 40 && high - low > 1e-7 * std::fabs(high); ++step) {
+    if (fa < fb) {
+      high = b, b = a, fb = fa, a = high - golden * (high - low), fa = at(a);
+    } else {
+      low = a, a = b, fa = fb, b = low + golden * (high - low), fb = at(b);
+    }
+  }
+  value = at((low + high) / 2.0) <= squares ? (low + high) / 2.0 : start;
+}
+
+/// Shapes that were not given: the grid's best.
+Expected<void> start_shapes(const Observations& o, std::vector<Term>& terms,
+                            const std::vector<char>& searched, const std::vector<double>& weight) {
+  if (std::find(searched.begin(), searched.end(), 1) == searched.end()) return {};
+  const Workbench bench(o, terms, weight);
+  auto best = bench.best_shapes();
+  if (!best) return fail(best.error());
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    if (searched[t]) terms[t].shape = (*best)[t];
+  return {};
+}
+
+void refine_shapes(const Observations& o, std::vector<Term>& terms,
+                   const std::vector<char>& searched, const VectorXd& root, const VectorXd& y) {
+  std::size_t continuous = 0;
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    for (const Effect::Shape& shape : terms[t].effect->shapes)
+      continuous += searched[t] && shape.continuous;
+  for (std::size_t round = 0; round < (continuous > 1 ? 2U : 1U); ++round)
+    for (std::size_t t = 0; t < terms.size(); ++t)
+      for (std::size_t k = 0; searched[t] && k < terms[t].shape.size(); ++k)
+        if (terms[t].effect->shapes[k].continuous) refine(o, terms, t, k, root, y);
+}
+
+/// Derivative of a term's part by its shape k, by central differences.
+Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::size_t k,
+                                const VectorXd& linear) {
+  const double step = 1e-4 * std::max(std::fabs(term.shape[k]), 1e-12);
+  std::vector<double> up = term.shape, down = term.shape;
+  up[k] += step;
+  down[k] -= step;
+  const auto above = columns_of(o, term, up), below = columns_of(o, term, down);
+  if (!above) return fail(above.error());
+  if (!below) return fail(below.error());
+  if (above->cols() != linear.size() || below->cols() != linear.size())
+    return fail(term.name() + ": the number of columns changes with a continuous shape");
+  return VectorXd((*above - *below) * linear / (2.0 * step));
+}
+
+void name_parameters(Fit& out) {
+  for (const Term& term : out.terms) {
+    const auto k = static_cast<std::size_t>(
+        term.effect->curve ? std::lround(term.shape.empty() ? 0.0 : term.shape[0])
+                           : static_cast<long>(term.effect->linear.size()));
+    for (std::size_t i = 0; i < k; ++i) {
+      const Effect::Parameter& p = term.effect->linear[term.effect->curve ? 0 : i];
+      out.parameters.push_back({term.name(),
+                                term.effect->curve ? p.name + std::to_string(i + 1) : p.name, 0.0,
+                                0.0, quantity_of(p, term.axis), false});
+    }
+    for (std::size_t i = 0; i < term.shape.size(); ++i) {
+      const Effect::Parameter& p = term.effect->shapes[i].parameter;
+      out.parameters.push_back({term.name(), p.name, term.shape[i],
+                                std::numeric_limits<double>::quiet_NaN(), quantity_of(p, term.axis),
+                                true});
+    }
+  }
+}
+
+/// Covariance of the linear parameters and of the shapes that were searched, linearised: columns
+/// of the design and the derivatives by the shapes together.
+void fill_covariance(Fit& out, const Observations& o, Design design, const Solution& s,
+                     const std::vector<char>& searched, const VectorXd& root) {
+  std::vector<Index> place(out.parameters.size(), -1);  // row of the cofactor matrix
+  Index row = design.first.front(), extra = 0;
+  std::size_t at = 0;
+  const Index plain = design.a.cols();
+  for (std::size_t t = 0; t < out.terms.size(); ++t) {
+    const Term& term = out.terms[t];
+    const Index k = design.first[t + 1] - design.first[t];
+    for (Index i = 0; i < k; ++i) place[at++] = row++;
+    for (std::size_t i = 0; i < term.shape.size(); ++i, ++at) {
+      if (!searched[t] || !term.effect->shapes[i].continuous) continue;
+      const auto column = shape_column(o, term, i, s.x.segment(design.first[t], k));
+      if (!column || !(column->norm() > 0.0)) continue;
+      design.a.conservativeResize(Eigen::NoChange, plain + extra + 1);
+      design.a.col(plain + extra) = root.cwiseProduct(*column);
+      design.names.push_back(term.name() + " " + out.parameters[at].name);
+      place[at] = plain + extra++;
+    }
+  }
+  MatrixXd cofactor = s.cofactor;
+  if (extra > 0) {
+    const VectorXd y = VectorXd::Zero(design.a.rows());
+    if (auto joint = solve(design, y, root))
+      cofactor = std::move(joint->cofactor);
+    else  // a shape without a maximum of its own: known no better than its grid
+      for (Index& p : place)
+        if (p >= plain) p = -1;
+    out.redundancy -= std::min(out.redundancy, static_cast<std::size_t>(extra));
+  }
+  const std::size_t p = out.parameters.size();
+  out.correlation.assign(p, std::vector<double>(p, 0.0));
+  for (std::size_t i = 0; i < p; ++i) {
+    out.correlation[i][i] = 1.0;
+    if (place[i] < 0) continue;
+    out.parameters[i].u = std::sqrt(cofactor(place[i], place[i]));
+    for (std::size_t k = 0; k < p; ++k)
+      if (place[k] >= 0)
+        out.correlation[i][k] =
+            cofactor(place[i], place[k]) /
+            std::sqrt(cofactor(place[i], place[i]) * cofactor(place[k], place[k]));
+  }
 }
 
 }  // namespace
 
-Expected<Fit> fit(const Observations& o, const std::vector<Term>& terms) {
-  auto design = build(o, terms);
+Expected<Fit> fit(const Observations& o, std::vector<Term> terms, std::vector<double> weight) {
+  std::vector<char> searched;
+  for (const Term& term : terms)
+    searched.push_back(term.shape.empty() && !term.effect->shapes.empty());
+  if (auto found = start_shapes(o, terms, searched, weight); !found) return fail(found.error());
+  return fit_near(o, std::move(terms), searched, std::move(weight));
+}
+
+Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
+                       const std::vector<char>& searched, std::vector<double> weight) {
+  const VectorXd root = root_weights(o, weight);
+  const VectorXd y =
+      Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.deviation.size()));
+  refine_shapes(o, terms, searched, root, y);
+  auto design = design_of(o, terms, root);
   if (!design) return fail(design.error());
-  const Eigen::Index n = design->columns.rows(), unknowns = design->columns.cols();
-  if (n <= unknowns)
-    return fail(std::to_string(n) + " readings cannot determine " + std::to_string(unknowns) +
-                " unknowns");
-  const Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(o.deviation.data(), n);
-  Eigen::MatrixXd a = design->weight.asDiagonal() * design->columns;
-  const Eigen::VectorXd scale = a.colwise().norm().cwiseMax(1e-300).transpose();
-  a = a * scale.cwiseInverse().asDiagonal();
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
-  qr.setThreshold(1e-9);
-  if (qr.rank() < unknowns)
-    return fail("the readings cannot tell these apart: " + inseparable(a, design->names));
-  const Eigen::VectorXd x = qr.solve(design->weight.asDiagonal() * y).cwiseQuotient(scale);
-  const Eigen::VectorXd residual = y - design->columns * x;
+  const auto used = static_cast<Index>((root.array() > 0.0).count());
+  if (used <= design->a.cols())
+    return fail(std::to_string(used) + " readings cannot determine " +
+                std::to_string(design->a.cols()) + " unknowns");
+  const auto s = solve(*design, y, root);
+  if (!s) return fail(s.error());
 
   Fit out;
-  out.redundancy = static_cast<std::size_t>(n - unknowns);
-  out.rms = std::sqrt(residual.squaredNorm() / static_cast<double>(n));
-  out.residual.assign(residual.data(), residual.data() + n);
-  // (A^T A)^-1 = P R^-1 R^-T P^T
-  const Eigen::MatrixXd r_inverse = qr.matrixR()
-                                        .topLeftCorner(unknowns, unknowns)
-                                        .triangularView<Eigen::Upper>()
-                                        .solve(Eigen::MatrixXd::Identity(unknowns, unknowns));
-  const Eigen::MatrixXd half = qr.colsPermutation() * r_inverse;
-  Eigen::MatrixXd covariance = half * half.transpose();
-  if (o.u.empty()) covariance *= residual.squaredNorm() / static_cast<double>(out.redundancy);
-  covariance = scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
-
-  const Eigen::Index lines = unknowns - static_cast<Eigen::Index>(design->parameters.size());
-  out.zero.assign(x.data(), x.data() + lines);
-  out.parameters = std::move(design->parameters);
-  const std::size_t p = out.parameters.size();
-  out.correlation.assign(p, std::vector<double>(p, 1.0));
-  for (std::size_t i = 0; i < p; ++i) {
-    const Eigen::Index row = lines + static_cast<Eigen::Index>(i);
-    out.parameters[i].value = x(row);
-    out.parameters[i].u = std::sqrt(covariance(row, row));
-    for (std::size_t k = 0; k < p; ++k) {
-      const Eigen::Index column = lines + static_cast<Eigen::Index>(k);
-      const double both = std::sqrt(covariance(row, row) * covariance(column, column));
-      out.correlation[i][k] = both > 0.0 ? covariance(row, column) / both : (i == k ? 1.0 : 0.0);
-    }
+  out.terms = std::move(terms);
+  out.weight = weight.empty() ? std::vector<double>(o.size(), 1.0) : std::move(weight);
+  out.redundancy = static_cast<std::size_t>(used - design->a.cols());
+  const Index lines = design->first.front();
+  out.zero.assign(s->x.data(), s->x.data() + lines);
+  // A reading of weight 0 has a residual too: what it is away from the model.
+  VectorXd residual = y;
+  for (Index i = 0; i < y.size(); ++i)
+    residual(i) -= s->x(static_cast<Index>(line_of(o, static_cast<std::size_t>(i))));
+  for (std::size_t t = 0; t < out.terms.size(); ++t) {
+    const auto block = columns_of(o, out.terms[t], out.terms[t].shape);
+    if (!block) return fail(block.error());
+    const VectorXd part = *block * s->x.segment(design->first[t], block->cols());
+    residual -= part;
+    out.part.emplace_back(part.data(), part.data() + part.size());
   }
+  out.residual.assign(residual.data(), residual.data() + residual.size());
+  name_parameters(out);
+  Index column = lines;
+  for (Parameter& p : out.parameters)
+    if (!p.shape) p.value = s->x(column++);
+  fill_covariance(out, o, std::move(*design), *s, searched, root);
+  double sum = 0.0;
+  for (const double w : out.weight) sum += w;
+  out.rms = std::sqrt(s->squares / sum);
+  out.s = out.redundancy > 0 ? std::sqrt(s->squares / static_cast<double>(out.redundancy)) : 0.0;
+  for (Parameter& p : out.parameters) p.u *= out.s;
   return out;
 }
 

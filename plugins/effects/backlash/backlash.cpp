@@ -7,16 +7,12 @@ using namespace nonio;
 
 static bool applies(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
-  return r && std::any_of(r->d.begin(), r->d.end(), [](double d) { return d > 0.0; }) &&
-         std::any_of(r->d.begin(), r->d.end(), [](double d) { return d < 0.0; });
+  return r && from_both_directions(*r);
 }
 
 static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
                                          const std::vector<double>&) {
-  auto r = readings_of(o, axis);
-  if (!r) return fail(r.error());
-  for (double& d : r->d) d *= 0.5;
-  return Effect::Columns{std::move(r->d)};
+  return columns_of(o, axis, [](const AxisReadings& r, std::size_t i) { return r.d[i] / 2.0; });
 }
 
 NONIO_PLUGIN(registry) {

@@ -9,6 +9,7 @@
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/observations.h"
+#include "nonio/sdk/plugin.h"
 
 namespace nonio {
 
@@ -93,6 +94,40 @@ inline Expected<AxisReadings> readings_of(const Observations& o, const Axis& axi
   detail::fill_times(o, r);
   detail::fill_temperatures(o, r);
   return r;
+}
+
+inline bool from_both_directions(const AxisReadings& r) {
+  return std::any_of(r.d.begin(), r.d.end(), [](double d) { return d > 0.0; }) &&
+         std::any_of(r.d.begin(), r.d.end(), [](double d) { return d < 0.0; });
+}
+
+/// The positions that were measured, each once, ascending, from the middle of the stretch. What
+/// lies nearer than 1e-9 of the length is one target.
+inline std::vector<double> targets_of(const AxisReadings& r) {
+  std::vector<double> targets;
+  for (std::size_t i = 0; i < r.p.size(); ++i)
+    if (r.moved[i] && std::isfinite(r.p[i])) targets.push_back(r.p[i]);
+  std::sort(targets.begin(), targets.end());
+  const double near = 1e-9 * r.length;
+  targets.erase(std::unique(targets.begin(), targets.end(),
+                            [near](double a, double b) { return b - a <= near; }),
+                targets.end());
+  return targets;
+}
+
+/// A column for each of `values`, which are called as value(readings, row) for the rows in which
+/// the axis moved; the others are 0.
+template <class... Values>
+Expected<Effect::Columns> columns_of(const Observations& o, const Axis& axis, Values... values) {
+  const auto r = readings_of(o, axis);
+  if (!r) return fail(r.error());
+  Effect::Columns columns(sizeof...(values), std::vector<double>(o.size(), 0.0));
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    if (!r->moved[i]) continue;
+    std::size_t k = 0;
+    ((columns[k++][i] = values(*r, i)), ...);
+  }
+  return columns;
 }
 
 }  // namespace nonio

@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: Apache-2.0
+// How well `explain` finds what the second generator (tests/hidden) has hidden:
+//   bench_hidden one|several|complete|outside COUNT SEED [--verbose] [--plugins FOLDER]
+//                [--write FOLDER]
+// Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio explain --auto` does.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "hidden/generator.h"
+#include "nonio/host/plugins.h"
+#include "nonio/model/explain.h"
+#include "nonio/sdk/format.h"
+
+namespace fs = std::filesystem;
+using namespace nonio;
+using hidden::Hidden;
+using hidden::Kind;
+using model::Verdict;
+
+namespace {
+
+constexpr int most_steps = 8;
+
+struct Arguments {
+  Kind kind = Kind::one;
+  std::uint64_t count = 0, seed = 0;
+  bool verbose = false;
+  fs::path plugins, write;
+};
+
+struct Step {
+  model::Explanation said;
+  double cpu = 0.0;                  ///< s
+  std::vector<std::string> aliases;  ///< of the effect that the verdict names
+};
+
+struct Followed {
+  std::vector<Step> steps;         ///< never empty if `error` is
+  std::vector<std::string> added;  ///< in order
+  std::string error;
+};
+
+double cpu_seconds() {
+  std::timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+bool holds(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+Expected<Step> step(const model::Part& part, const Machine& machine,
+                    const std::vector<std::string>& names, const std::vector<Effect>& effects) {
+  const auto terms = model::terms_of(part, machine, names, effects);
+  if (!terms) return fail(terms.error());
+  const auto all = model::catalogue(part, effects);
+  const double before = cpu_seconds();
+  auto said = model::explain(part, *terms, all);
+  if (!said) return fail(said.error());
+  Step done{std::move(*said), cpu_seconds() - before, {}};
+  for (const model::Candidate& c : done.said.candidates)
+    if (c.term.name() == done.said.verdict.effect) done.aliases = c.aliases;
+  return done;
+}
+
+Followed follow(const Hidden& h, const std::vector<Effect>& effects) {
+  Followed f;
+  const auto parts = model::parts_of(h.campaign, {h.table});
+  if (parts.size() != 1) return {{}, {}, "not one part"};
+  std::vector<std::string> names = h.truth.model;
+  while (f.added.size() <= most_steps) {
+    auto next = step(parts[0], h.campaign.machine, names, effects);
+    if (!next) {
+      f.error = next.error().message;
+      break;
+    }
+    f.steps.push_back(std::move(*next));
+    const Verdict& verdict = f.steps.back().said.verdict;
+    if (verdict.kind != Verdict::Kind::missing || holds(names, verdict.effect)) break;
+    names.push_back(verdict.effect);
+    f.added.push_back(verdict.effect);
+  }
+  return f;
+}
+
+const char* to_text(Verdict::Kind kind) {
+  switch (kind) {
+    case Verdict::Kind::missing:
+      return "missing";
+    case Verdict::Kind::nothing:
+      return "nothing";
+    case Verdict::Kind::unknown:
+      return "unknown";
+    case Verdict::Kind::unrepeatable:
+      break;
+  }
+  return "unrepeatable";
+}
+
+/// Share with its 95 % interval by Wilson's score.
+struct Tally {
+  std::uint64_t yes = 0, of = 0;
+  void add(bool value) { yes += value ? 1 : 0, ++of; }
+};
+
+void print(const std::string& what, const Tally& t) {
+  if (t.of == 0) return;
+  const double n = static_cast<double>(t.of), p = static_cast<double>(t.yes) / n, z = 1.959964;
+  const double middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
+  const double half = z / (1.0 + z * z / n) * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
+  std::printf("  %-52s %5llu of %5llu  %6.2f %%  (%5.1f .. %5.1f)\n", what.c_str(),
+              static_cast<unsigned long long>(t.yes), static_cast<unsigned long long>(t.of),
+              100.0 * p, 100.0 * std::max(0.0, middle - half),
+              100.0 * std::min(1.0, middle + half));
+}
+
+/// Each hidden effect found by its name, or within the alias group that was said, and nothing else.
+bool all_and_nothing_else(const Hidden& h, const Followed& f) {
+  std::vector<std::string> open = h.truth.hidden;
+  for (std::size_t k = 0; k < f.added.size(); ++k) {
+    const auto same = std::find(open.begin(), open.end(), f.added[k]);
+    const auto alias = std::find_if(open.begin(), open.end(), [&](const std::string& name) {
+      return holds(f.steps[k].aliases, name);
+    });
+    if (same != open.end())
+      open.erase(same);
+    else if (alias != open.end())
+      open.erase(alias);
+    else
+      return false;
+  }
+  return open.empty();
+}
+
+/// Standard deviation of the noise that was drawn, of sound readings.
+double drawn_noise(const Hidden& h) {
+  std::vector<char> sound(h.table.size(), 1);
+  for (const std::size_t row : h.misread) sound[row] = 0;
+  double n = 0.0, mean = 0.0, square = 0.0;
+  for (int pass = 0; pass < 2; ++pass)
+    for (std::size_t i = 0; i < h.table.size(); ++i) {
+      if (!sound[i]) continue;
+      double e = h.table.deviation[i];
+      for (const auto& cause : h.causes) e -= cause[i];
+      if (pass == 0)
+        n += 1.0, mean += e;
+      else
+        square += (e - mean / n) * (e - mean / n);
+    }
+  return std::sqrt(square / (n - 1.0));
+}
+
+/// The place named first; of what is unrepeatable only the verdict counts.
+bool place_is_right(const Hidden& h, const model::Explanation& said) {
+  if (h.truth.verdict == "unrepeatable") return true;
+  if (said.fails.empty() || !holds(h.truth.places, said.fails.front().where)) return false;
+  if (!h.truth.at || !said.fails.front().at) return true;
+  const double reach = 0.5 * h.scenario.length / static_cast<double>(h.scenario.targets);
+  return std::fabs(*said.fails.front().at - *h.truth.at) < reach;
+}
+
+struct Score {
+  Tally answered, right, kind, floor, wrong_name, place, alias, ends, noise, above_floor, values;
+  std::map<std::string, Tally> of_effect, of_value;
+  std::map<std::string, Tally> named_of;  ///< outside: `missing`, by cause
+  double false_alarms = 0.0, cpu = 0.0, cpu_most = 0.0;
+  std::uint64_t explains = 0, readings = 0, with_rate = 0;
+  std::vector<std::uint64_t> failed;
+};
+
+void score_values(Score& score, const Hidden& h, const model::Fit& fit) {
+  for (const hidden::TrueValue& truth : h.truth.values)
+    for (const model::Parameter& p : fit.parameters) {
+      if (p.effect != truth.effect || p.name != truth.name) continue;
+      const bool in = std::fabs(p.value - truth.value) <= 2.0 * p.u;
+      score.values.add(in);
+      score.of_value[truth.effect.substr(0, truth.effect.find(':')) + " " + p.name].add(in);
+    }
+}
+
+void score_fit(Score& score, const Hidden& h, const model::Comparison& c) {
+  const double ratio = c.fit.s / drawn_noise(h);
+  score.noise.add(ratio > 0.95 && ratio < 1.05);
+  if (c.floor) score.above_floor.add(c.fit.rms <= 1.05 * c.floor->s);
+  if (c.floor) score.floor.add(std::fabs(c.floor->s - h.scenario.noise) <= 2.0 * c.floor->u);
+  score_values(score, h, c.fit);
+}
+
+/// Whether the campaign was explained as it had to be.
+bool judge(Score& score, const Hidden& h, const Followed& f) {
+  score.answered.add(f.error.empty());
+  if (f.steps.empty()) return false;
+  const model::Explanation &first = f.steps.front().said, &last = f.steps.back().said;
+  const bool named = first.verdict.kind == Verdict::Kind::missing;
+  bool right = false, wrong = named;
+  if (h.scenario.kind == Kind::one || h.scenario.kind == Kind::several) {
+    const bool by_name = named && holds(h.truth.hidden, first.verdict.effect);
+    const bool by_alias = named && std::any_of(h.truth.hidden.begin(), h.truth.hidden.end(),
+                                               [&](const std::string& name) {
+                                                 return holds(f.steps[0].aliases, name);
+                                               });
+    const bool all = all_and_nothing_else(h, f);
+    right = h.scenario.kind == Kind::one ? by_name || by_alias : all;
+    wrong = named && !by_name && !by_alias;
+    score.alias.add(!by_name && by_alias);
+    score.place.add(all);
+    score.ends.add(last.verdict.kind == Verdict::Kind::nothing);
+    for (const std::string& name : h.truth.hidden)
+      score.of_effect[name.substr(0, name.find(':'))].add(
+          h.scenario.kind == Kind::one ? right : holds(f.added, name));
+    std::vector<std::string> exact = f.added, wanted = h.truth.hidden;
+    std::sort(exact.begin(), exact.end());
+    std::sort(wanted.begin(), wanted.end());
+    if (exact == wanted) score_fit(score, h, last.comparison);
+  } else {
+    right = to_text(first.verdict.kind) == h.truth.verdict;
+    if (h.scenario.kind == Kind::complete) {
+      score_fit(score, h, first.comparison);
+      for (const std::string& name : h.truth.model)
+        score.of_effect[name.substr(0, name.find(':'))].add(right);
+    } else {
+      const std::string cause = hidden::to_text(h.scenario.hidden.front().source);
+      const bool listed = std::any_of(
+          first.fails.begin(), first.fails.end(),
+          [&](const model::Place& place) { return holds(h.truth.places, place.where); });
+      score.kind.add(right);
+      if (h.truth.verdict == "unknown") score.place.add(right && listed);
+      score.named_of[cause].add(named);
+      right = right && place_is_right(h, first);
+      score.of_effect[cause].add(right);
+    }
+  }
+  score.right.add(right);
+  score.wrong_name.add(wrong);
+  return right;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& w : words) text += (text.empty() ? "" : " ") + w;
+  return text.empty() ? "-" : text;
+}
+
+void tell(const Hidden& h, const Followed& f, std::uint64_t seed) {
+  const hidden::Scenario& s = h.scenario;
+  std::printf("seed %llu: %s, %zu%s targets, %u runs, %s%s%s, %zu misread\n",
+              static_cast<unsigned long long>(seed), s.rotary ? "rotary" : "linear", s.targets,
+              s.even ? " even" : "", s.runs, s.timed ? "times" : "no times",
+              s.temperatures ? ", temperatures" : "", s.pitch_known ? ", period known" : "",
+              h.misread.size());
+  for (const auto* pieces : {&s.model, &s.hidden})
+    for (const hidden::Piece& p : *pieces)
+      std::printf("    %s %s (%s), %.1f\n", pieces == &s.model ? "model " : "hidden",
+                  hidden::to_text(p.source), hidden::kind_of(p.source).c_str(), p.size);
+  for (const Step& step : f.steps) {
+    const model::Explanation& e = step.said;
+    std::printf("  said %s %s; rms %.2f, floor %.2f, drawn %.2f of the noise\n",
+                to_text(e.verdict.kind), e.verdict.effect.c_str(), e.comparison.fit.rms / s.noise,
+                e.comparison.floor ? e.comparison.floor->s / s.noise : NAN,
+                drawn_noise(h) / s.noise);
+    std::printf("    together: %s\n", joined(e.together).c_str());
+    for (std::size_t k = 0; k < std::min<std::size_t>(3, e.candidates.size()); ++k)
+      std::printf("    %-20s score %8.1f p %.2g rms %.2f aliases %s\n",
+                  e.candidates[k].term.name().c_str(), e.candidates[k].score, e.candidates[k].p,
+                  e.candidates[k].rms / s.noise, joined(e.candidates[k].aliases).c_str());
+    for (std::size_t k = 0; k < std::min<std::size_t>(3, e.fails.size()); ++k)
+      std::printf("    left in %-24s share %.2f p %.2g\n", e.fails[k].where.c_str(),
+                  e.fails[k].share, e.fails[k].p);
+  }
+  if (!f.error.empty()) std::printf("  error: %s\n", f.error.c_str());
+}
+
+void print_score(const Score& s, Kind kind) {
+  print("answered without an error", s.answered);
+  if (kind == Kind::one) print("named first, or its alias group", s.right);
+  if (kind == Kind::one || kind == Kind::several) {
+    print("  of these by an alias group", s.alias);
+    print("all found and nothing else", s.place);
+    print("first verdict: missing, with a wrong name", s.wrong_name);
+    print("ends with: nothing", s.ends);
+  }
+  if (kind == Kind::complete) print("verdict: nothing", s.right);
+  if (kind == Kind::outside) {
+    print("right verdict", s.kind);
+    print("right verdict, and the right place named first", s.right);
+    print("unknown, and the right place named anywhere", s.place);
+    print("first verdict: missing, which is wrong", s.wrong_name);
+  }
+  print("s within 5 % of the noise that was drawn", s.noise);
+  print("rms at most 1.05 times the floor of the repeats", s.above_floor);
+  print("floor of the repeats within 2 u of the true noise", s.floor);
+  print("true value within 2 u", s.values);
+  for (const auto& [name, tally] : s.of_value) print("    " + name, tally);
+  std::printf(" by effect or cause\n");
+  for (const auto& [name, tally] : s.of_effect) print("    " + name, tally);
+  if (kind == Kind::outside) std::printf(" said to be missing, by cause\n");
+  for (const auto& [name, tally] : s.named_of) print("    " + name, tally);
+  const double n = static_cast<double>(std::max<std::uint64_t>(1, s.explains));
+  std::printf("  %llu explanations, %.0f readings in the mean, %.1f ms of CPU each, at most %.1f\n",
+              static_cast<unsigned long long>(s.explains), static_cast<double>(s.readings) / n,
+              1e3 * s.cpu / n, 1e3 * s.cpu_most);
+  if (s.with_rate > 0)
+    std::printf("  printed false-alarm rate in the mean: %.4f\n",
+                s.false_alarms / static_cast<double>(s.with_rate));
+  if (!s.failed.empty()) {
+    std::printf("  failed seeds:");
+    for (const std::uint64_t seed : s.failed)
+      std::printf(" %llu", static_cast<unsigned long long>(seed));
+    std::printf("\n");
+  }
+}
+
+std::optional<std::uint64_t> whole(const std::string& text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return {};
+  return value;
+}
+
+std::optional<Arguments> arguments(const std::vector<std::string>& words) {
+  const std::map<std::string, Kind> kinds = {{"one", Kind::one},
+                                             {"several", Kind::several},
+                                             {"complete", Kind::complete},
+                                             {"outside", Kind::outside}};
+  if (words.size() < 3 || kinds.count(words[0]) == 0) return {};
+  const auto count = whole(words[1]), seed = whole(words[2]);
+  if (!count || !seed) return {};
+  Arguments a{kinds.at(words[0]), *count, *seed, false, {}, {}};
+  std::error_code error;
+  a.plugins = fs::read_symlink("/proc/self/exe", error).parent_path() / NONIO_PLUGINS_FROM_PROGRAM;
+  for (std::size_t i = 3; i < words.size(); ++i) {
+    if (words[i] == "--verbose")
+      a.verbose = true;
+    else if (words[i] == "--plugins" && i + 1 < words.size())
+      a.plugins = words[++i];
+    else if (words[i] == "--write" && i + 1 < words.size())
+      a.write = words[++i];
+    else
+      return {};
+  }
+  return a;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto a = arguments({argv + 1, argv + argc});
+  if (!a) {
+    std::fprintf(stderr,
+                 "bench_hidden one|several|complete|outside COUNT SEED [--verbose]\n"
+                 "             [--plugins FOLDER] [--write FOLDER]\n");
+    return 2;
+  }
+  host::Plugins plugins;
+  plugins.load({a->plugins.lexically_normal()});
+  if (plugins.effects().empty()) {
+    std::fprintf(stderr, "bench_hidden: no effect in %s\n", a->plugins.c_str());
+    return 2;
+  }
+  Score score;
+  for (std::uint64_t seed = a->seed; seed < a->seed + a->count; ++seed) {
+    const Hidden h = hidden::generate(hidden::random_scenario(a->kind, seed));
+    if (!a->write.empty()) {
+      const fs::path folder = a->write / h.campaign.id;
+      if (const auto done = hidden::write(h, folder, folder.string() + ".truth.json"); !done) {
+        std::fprintf(stderr, "bench_hidden: %s\n", done.error().message.c_str());
+        return 1;
+      }
+    }
+    const Followed f = follow(h, plugins.effects());
+    const bool right = judge(score, h, f);
+    for (const Step& s : f.steps) {
+      score.cpu += s.cpu, score.cpu_most = std::max(score.cpu_most, s.cpu), ++score.explains;
+      score.readings += h.table.size();
+      if (s.said.verdict.trials == 0) continue;
+      score.false_alarms += s.said.verdict.false_alarms, ++score.with_rate;
+    }
+    if (!right) score.failed.push_back(seed);
+    if (!right && a->verbose) tell(h, f, seed);
+  }
+  std::printf("seeds %llu .. %llu (Wilson 95 %%)\n", static_cast<unsigned long long>(a->seed),
+              static_cast<unsigned long long>(a->seed + a->count - 1));
+  print_score(score, a->kind);
+  return 0;
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "nonio/sdk/error.h"
+
+namespace nonio::math {
+
+/// Smooth curves without constant and slope, for what a straight line leaves (pitch curve,
+/// straightness): values at `x` of `knots` basis functions, one vector for each.
+///
+/// Cubic splines on `knots` equally spaced knots, the first and the last at the ends of `targets`,
+/// have knots + 2 free values; taking out constant and slope leaves `knots`. Over the targets (each
+/// once, ascending) the functions sum to zero, are orthogonal to x and to each other and have an
+/// rms of 1: the rms of a curve is the root of the sum of squares of its coefficients. Outside the
+/// targets the last polynomial goes on.
+///
+/// Fails if there are fewer than 2 knots, or if the targets lie so that they do not determine
+/// every function (a gap over several knots).
+/// Source: de Boor, A Practical Guide to Splines (2001), IX (B-splines), XIII (Schoenberg-Whitney).
+Expected<std::vector<std::vector<double>>> smooth_basis(const std::vector<double>& x,
+                                                        const std::vector<double>& targets,
+                                                        int knots);
+
+}  // namespace nonio::math

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/math/spline.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace nonio::math {
+
+namespace {
+
+struct Knots {
+  double first, step;
+  int intervals;
+};
+
+/// The four cubic B-splines on equally spaced knots that are not zero at x, and the interval of x:
+/// with s = 0..1 the place in it, (1-s)^3/6, (3s^3-6s^2+4)/6, (-3s^3+3s^2+3s+1)/6, s^3/6.
+std::pair<int, std::array<double, 4>> b_splines(const Knots& knots, double x) {
+  const double at = (x - knots.first) / knots.step;
+  const double last = knots.intervals - 1;
+  const double interval = at >= 0.0 ? std::min(std::floor(at), last) : 0.0;  // NaN: the first
+  const double s = at - interval, r = 1.0 - s;
+  return {static_cast<int>(interval),
+          {r * r * r / 6.0, ((3.0 * s - 6.0) * s * s + 4.0) / 6.0,
+           (((-3.0 * s + 3.0) * s + 3.0) * s + 1.0) / 6.0, s * s * s / 6.0}};
+}
+
+Eigen::MatrixXd b_spline_matrix(const Knots& knots, const std::vector<double>& x) {
+  Eigen::MatrixXd b = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(x.size()),
+                                            static_cast<Eigen::Index>(knots.intervals) + 3);
+  for (Eigen::Index i = 0; i < b.rows(); ++i) {
+    const auto [interval, values] = b_splines(knots, x[static_cast<std::size_t>(i)]);
+    for (int k = 0; k < 4; ++k) b(i, interval + k) = values[static_cast<std::size_t>(k)];
+  }
+  return b;
+}
+
+/// Coefficients of the basis: B-splines times N span what is orthogonal to constant and slope over
+/// the targets; R, of the QR of that, makes it orthonormal.
+Expected<Eigen::MatrixXd> coefficients(const Eigen::MatrixXd& b,
+                                       const std::vector<double>& targets) {
+  Eigen::MatrixXd line(b.rows(), 2);
+  line.col(0).setOnes();
+  line.col(1) = Eigen::Map<const Eigen::VectorXd>(targets.data(), b.rows());
+  line.col(1).array() -= line.col(1).mean();
+  line.col(1) /= line.col(1).cwiseAbs().maxCoeff();
+  const Eigen::MatrixXd constraint = b.transpose() * line;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> split(constraint);
+  const Eigen::MatrixXd n =
+      Eigen::MatrixXd(split.householderQ() * Eigen::MatrixXd::Identity(b.cols(), b.cols()))
+          .rightCols(b.cols() - 2);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(b * n);
+  const Eigen::MatrixXd r = qr.matrixQR().topRows(n.cols()).triangularView<Eigen::Upper>();
+  const Eigen::VectorXd size = r.diagonal().cwiseAbs();
+  if (!(size.minCoeff() > 1e-6 * size.maxCoeff()))
+    return fail("the targets lie so that they do not determine a curve of " +
+                std::to_string(n.cols()) + " knots");
+  // X = N R^-1: X^T solves R^T X^T = N^T.
+  const Eigen::MatrixXd x =
+      r.transpose().triangularView<Eigen::Lower>().solve(n.transpose()).transpose();
+  return Eigen::MatrixXd(x * std::sqrt(static_cast<double>(b.rows())));
+}
+
+}  // namespace
+
+Expected<std::vector<std::vector<double>>> smooth_basis(const std::vector<double>& x,
+                                                        const std::vector<double>& targets,
+                                                        int knots) {
+  if (knots < 2)
+    return fail("a smooth curve needs 2 knots or more, found " + std::to_string(knots));
+  if (targets.size() < static_cast<std::size_t>(knots) + 2)
+    return fail(std::to_string(targets.size()) + " targets do not determine a curve of " +
+                std::to_string(knots) + " knots");
+  const double length = targets.back() - targets.front();
+  if (!(length > 0.0) || !std::isfinite(length))
+    return fail("a smooth curve needs targets at different positions");
+  const Knots grid{targets.front(), length / (knots - 1), knots - 1};
+  const auto c = coefficients(b_spline_matrix(grid, targets), targets);
+  if (!c) return fail(c.error());
+  std::vector<std::vector<double>> out(static_cast<std::size_t>(knots),
+                                       std::vector<double>(x.size()));
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const auto [interval, values] = b_splines(grid, x[i]);
+    const Eigen::RowVectorXd row =
+        Eigen::Map<const Eigen::RowVector4d>(values.data()) * c->middleRows(interval, 4);
+    for (int k = 0; k < knots; ++k) out[static_cast<std::size_t>(k)][i] = row(k);
+  }
+  return out;
+}
+
+}  // namespace nonio::math

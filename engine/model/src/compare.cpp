@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "nonio/math/distributions.h"
+#include "places.h"
+#include "thin.h"
+
+namespace nonio::model {
+
+bool Comparison::fails() const {
+  return std::any_of(places.begin(), places.end(),
+                     [](const Place& place) { return place.p < place_p; });
+}
+
+std::vector<double> weights_without(std::size_t readings, const std::vector<Suspect>& suspects) {
+  std::vector<double> weight(readings, 1.0);
+  for (const Suspect& s : suspects) weight[s.row] = 0.0;
+  return weight;
+}
+
+std::vector<double> cross_validated(const Observations& o, const std::vector<Term>& terms,
+                                    const std::vector<double>& weight) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Index>> runs;
+  std::map<std::uint32_t, int> of_line;
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    auto& rows = runs[{line_of(o, i), o.run.empty() ? 1 : o.run[i]}];
+    if (rows.empty()) ++of_line[line_of(o, i)];
+    rows.push_back(static_cast<Index>(i));
+  }
+  if (std::none_of(of_line.begin(), of_line.end(), [](const auto& l) { return l.second > 1; }))
+    return {};
+  const auto n = static_cast<Index>(o.size()), lines = static_cast<Index>(lines_of(o));
+  MatrixXd a = MatrixXd::Zero(n, lines);
+  for (Index i = 0; i < n; ++i)
+    a(i, static_cast<Index>(line_of(o, static_cast<std::size_t>(i)))) = 1.0;
+  for (const Term& term : terms) {
+    const auto block = columns_of(o, term, term.shape);
+    if (!block) return {};
+    a.conservativeResize(Eigen::NoChange, a.cols() + block->cols());
+    a.rightCols(block->cols()) = *block;
+  }
+  const VectorXd scale = a.colwise().norm().cwiseMax(1e-300).transpose();
+  a = a * scale.cwiseInverse().asDiagonal();
+  const VectorXd y = Eigen::Map<const VectorXd>(o.deviation.data(), n);
+  const VectorXd root = root_weights(o, weight);
+  const MatrixXd wa = root.asDiagonal() * a;
+  const MatrixXd normal = wa.transpose() * wa;
+  const VectorXd right = wa.transpose() * root.cwiseProduct(y);
+  std::vector<double> out(o.size(), std::numeric_limits<double>::quiet_NaN());
+  for (const auto& [run, rows] : runs) {
+    if (of_line[run.first] < 2) continue;
+    const MatrixXd here = wa(rows, Eigen::all);
+    const VectorXd wy = root.cwiseProduct(y)(rows);
+    const Eigen::LDLT<MatrixXd> ldlt(normal - here.transpose() * here);
+    if (ldlt.info() != Eigen::Success ||
+        !(ldlt.vectorD().minCoeff() > 1e-10 * ldlt.vectorD().maxCoeff()))
+      continue;
+    const VectorXd x = ldlt.solve(right - here.transpose() * wy);
+    for (const Index i : rows) out[static_cast<std::size_t>(i)] = y(i) - a.row(i).dot(x);
+  }
+  return out;
+}
+
+std::optional<double> rms_of(const std::vector<double>& residual,
+                             const std::vector<double>& weight) {
+  double sum = 0.0, weights = 0.0;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (!std::isfinite(residual[i])) continue;
+    sum += weight[i] * residual[i] * residual[i];
+    weights += weight[i];
+  }
+  if (!(weights > 0.0)) return std::nullopt;
+  return std::sqrt(sum / weights);
+}
+
+namespace {
+
+std::optional<LackOfFit> lack_of_fit(const Fit& fit, const Saturated& repeats, double squares) {
+  if (!(repeats.dof >= 3.0)) return std::nullopt;
+  LackOfFit out;
+  out.dof1 = static_cast<double>(fit.redundancy) - repeats.dof;
+  out.dof2 = repeats.dof;
+  if (!(out.dof1 >= 1.0)) return std::nullopt;
+  out.F = (squares - repeats.squares) / out.dof1 / (repeats.squares / repeats.dof);
+  out.p = math::f_upper(out.F, out.dof1, out.dof2);
+  return out;
+}
+
+/// Orthonormal columns of a fit, with root weights and without the zeros of lines.
+MatrixXd basis_of(const Observations& o, const std::vector<Term>& terms, const VectorXd& root) {
+  MatrixXd a(static_cast<Index>(o.size()), 0);
+  for (const Term& term : terms) {
+    const auto block = columns_of(o, term, term.shape);
+    if (!block) continue;
+    a.conservativeResize(Eigen::NoChange, a.cols() + block->cols());
+    a.rightCols(block->cols()) = root.asDiagonal() * *block;
+  }
+  if (a.cols() == 0) return a;
+  take_out_zeros(o, root, a);
+  a = a * a.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal();
+  const Eigen::HouseholderQR<MatrixXd> qr(a);
+  return qr.householderQ() * MatrixXd::Identity(a.rows(), a.cols());
+}
+
+}  // namespace
+
+Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
+                         std::vector<Suspect> suspects) {
+  const Observations& o = part.table;
+  Comparison out;
+  out.suspects = std::move(suspects);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    squares += fit.weight[i] * fit.residual[i] * fit.residual[i];
+    if (fit.weight[i] > 0.0 && std::fabs(fit.residual[i]) > std::fabs(out.largest)) {
+      out.largest = fit.residual[i];
+      out.largest_row = i;
+    }
+  }
+  const Saturated saturated = saturate(repeats, fit.residual, fit.weight);
+  out.floor = noise_floor(saturated);
+  out.lack_of_fit = lack_of_fit(fit, saturated, squares);
+  out.cv_residual = cross_validated(o, fit.terms, fit.weight);
+  out.cv_rms = rms_of(out.cv_residual, fit.weight);
+  const VectorXd root = root_weights(o, fit.weight);
+  const VectorXd residual = root.cwiseProduct(
+      Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(o.size())));
+  if (o.size() <= thin_beyond) {
+    const MatrixXd basis = basis_of(o, fit.terms, root);
+    out.places = places_of(
+        {part, repeats, root, residual, basis, static_cast<double>(fit.redundancy), out.floor});
+  }
+  out.fit = std::move(fit);
+  return out;
+}
+
+std::vector<Place> seats_in(const Part& part, const Repeats& repeats,
+                            const Comparison& comparison) {
+  const Fit& fit = comparison.fit;
+  const VectorXd root = root_weights(part.table, fit.weight);
+  const VectorXd residual = root.cwiseProduct(
+      Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(fit.residual.size())));
+  const MatrixXd basis = basis_of(part.table, fit.terms, root);
+  return seats_of({part, repeats, root, residual, basis, static_cast<double>(fit.redundancy),
+                   comparison.floor});
+}
+
+Expected<Comparison> compare(const Part& part, const std::vector<Term>& model) {
+  if (part.table.size() == 0) return fail("there are no readings of an axis to compare with");
+  const Repeats repeats(part.table);
+  auto suspects = suspects_of(part.table, repeats, part.table.deviation);
+  auto weight = weights_without(part.table.size(), suspects);
+  auto fitted = fit(part.table, model, std::move(weight));
+  if (!fitted) return fail(fitted.error());
+  return comparison_of(part, repeats, std::move(*fitted), std::move(suspects));
+}
+
+}  // namespace nonio::model

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Dense>
+#include <string>
+#include <vector>
+
+#include "nonio/model/fit.h"
+
+namespace nonio::model {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Line of a reading: readings of one line share one unknown zero.
+inline std::uint32_t line_of(const Observations& o, std::size_t i) {
+  return o.line.empty() ? 0 : o.line[i];
+}
+inline std::size_t lines_of(const Observations& o) { return o.line.empty() ? 1 : o.lines.size(); }
+
+/// The effect's columns, n x k; an error if the plugin gave anything else.
+Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
+                              const std::vector<double>& shape);
+
+/// All combinations of the grids of a term's shapes, one empty combination if it has none; a shape
+/// that the term has already is kept. Empty if the readings cannot show the effect.
+std::vector<std::vector<double>> shapes_of(const Observations& o, const Term& term);
+
+/// Square root of the weight of each reading: sqrt(weight) * (mean u)/u.
+VectorXd root_weights(const Observations& o, const std::vector<double>& weight);
+
+/// Takes from each column its weighted mean in every line: what an unknown zero of each line takes.
+/// Rows come in multiplied by their root weights and stay so.
+void take_out_zeros(const Observations& o, const VectorXd& root_weight, MatrixXd& columns);
+
+/// Quantity of a parameter on this axis.
+inline Quantity quantity_of(const Effect::Parameter& p, const Axis& axis) {
+  return axis.rotary ? p.rotary : p.quantity;
+}
+
+/// `fit` with shapes that are near their best already: `searched` says whose are looked for
+/// between the neighbours on their grids.
+Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
+                       const std::vector<char>& searched, std::vector<double> weight);
+
+}  // namespace nonio::model

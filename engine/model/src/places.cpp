@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "nonio/math/distributions.h"
+#include "nonio/sdk/axis_readings.h"
+
+namespace nonio::model {
+
+namespace {
+
+/// Columns that vary with one factor only; `repeated`: told by differences between repeats of one
+/// cell (time, run, temperature), else by the cells themselves (position, direction, phase).
+struct Factor {
+  std::string name;
+  MatrixXd columns;
+  bool repeated = false;
+  std::vector<double> levels{};  // of dummies: target, run
+  Quantity quantity = Quantity::number;
+};
+
+constexpr Index most_bins = 40;
+
+MatrixXd dummies(const std::vector<std::size_t>& level, std::size_t levels) {
+  MatrixXd out = MatrixXd::Zero(static_cast<Index>(level.size()), static_cast<Index>(levels));
+  for (std::size_t i = 0; i < level.size(); ++i)
+    out(static_cast<Index>(i), static_cast<Index>(level[i])) = 1.0;
+  return out;
+}
+
+/// Distinct values, at most `most_bins` of them: beyond, neighbours share a bin.
+Factor binned(std::string name, const std::vector<double>& value, Quantity quantity) {
+  const std::set<double> distinct(value.begin(), value.end());
+  const std::size_t in_bin =
+      (distinct.size() + most_bins - 1) / static_cast<std::size_t>(most_bins);
+  std::map<double, std::size_t> bin;
+  Factor f{std::move(name), {}, false, {}, quantity};
+  for (const double v : distinct) {
+    const std::size_t b = bin.size() / in_bin;
+    bin[v] = b;
+    if (b == f.levels.size()) f.levels.push_back(v);
+  }
+  std::vector<std::size_t> level;
+  for (const double v : value) level.push_back(bin[v]);
+  f.columns = dummies(level, f.levels.size());
+  return f;
+}
+
+MatrixXd waves(const VectorXd& angle, int orders) {
+  MatrixXd out(angle.size(), 2 * orders);
+  for (int k = 0; k < orders; ++k) {
+    out.col(2 * k) = (angle * (k + 1)).array().sin();
+    out.col(2 * k + 1) = (angle * (k + 1)).array().cos();
+  }
+  return out;
+}
+
+VectorXd map(const std::vector<double>& v) {
+  return Eigen::Map<const VectorXd>(v.data(), static_cast<Index>(v.size()));
+}
+
+MatrixXd times(const MatrixXd& columns, const VectorXd& by) { return by.asDiagonal() * columns; }
+
+/// Factors of the first axis that moves, and the products of two of them.
+class Factors {
+ public:
+  Factors(const Part& part, const Repeats& repeats) {
+    const Observations& o = part.table;
+    if (part.axes.empty()) return;
+    const Axis& axis = part.axes.front();
+    const auto read = readings_of(o, axis);
+    if (!read) return;
+    const AxisReadings& r = *read;
+    const VectorXd d = map(r.d), p = map(r.p) / std::max(r.length / 2.0, 1e-12);
+    position_ = p;
+    add({"direction", d, false});
+    add(binned("position", r.theta, position_of(axis.rotary)));
+    if (axis.screw_pitch)
+      add({"screw-phase", waves(map(r.theta) * (2.0 * std::numbers::pi / *axis.screw_pitch), 2)});
+    if (axis.rotary) add({"angle", waves(map(r.theta), 3)});
+    pair("direction", "position", times(column("position"), d), false);
+    if (axis.screw_pitch) pair("direction", "screw-phase", times(column("screw-phase"), d), false);
+    if (axis.rotary) pair("direction", "angle", times(column("angle"), d), false);
+    if (repeats.passes <= repeats.sides) return;  // nothing is repeated
+    std::vector<double> run(o.run.begin(), o.run.end());
+    Factor runs = binned("run", run, Quantity::count);
+    runs.repeated = true;
+    add(std::move(runs));
+    const auto orders = static_cast<int>(std::min<std::size_t>(2 * repeats.passes, 16));
+    MatrixXd slow(d.size(), orders);
+    const VectorXd phase = map(r.t) * (std::numbers::pi / std::max(r.duration, 1e-12));
+    for (int k = 0; k < orders; ++k) slow.col(k) = (phase * (k + 1)).array().cos();
+    add({"time", slow, true});
+    const MatrixXd slowest = slow.leftCols(std::min(orders, 4));
+    pair("direction", "time", times(slowest, d), true);
+    pair("position", "time", times(slowest, p), true);
+    pair("direction", "run", times(column("run"), d), true);
+    pair("position", "run", times(column("run"), p), true);
+    if (!r.temperature) return;
+    const VectorXd K = map(r.K);
+    MatrixXd warmth(d.size(), 2);
+    warmth.col(0) = K;
+    warmth.col(1) = K.cwiseAbs2();
+    add({"temperature", warmth, true});
+    pair("position", "temperature", times(K, p), true);
+    pair("direction", "temperature", times(K, d), true);
+  }
+
+  const std::vector<Factor>& all() const { return all_; }
+  /// A pair with its first factor; of direction and position, the cells, all of both.
+  MatrixXd whole(const Factor& f) const {
+    if (!is_pair(f)) return f.columns;
+    const std::size_t x = f.name.find(" x ");
+    const MatrixXd& first = column(f.name.substr(0, x));
+    MatrixXd main = first.cols() == 1 ? first : position_;
+    if (!f.repeated) {
+      const MatrixXd& second = column(f.name.substr(x + 3));
+      main.conservativeResize(Eigen::NoChange, main.cols() + second.cols());
+      main.rightCols(second.cols()) = second;
+    }
+    MatrixXd out(f.columns.rows(), f.columns.cols() + main.cols());
+    out << main, f.columns;
+    return out;
+  }
+  const MatrixXd& column(const std::string& name) const {
+    return std::find_if(all_.begin(), all_.end(), [&](const Factor& f) { return f.name == name; })
+        ->columns;
+  }
+  static bool is_pair(const Factor& f) { return f.name.find(" x ") != std::string::npos; }
+
+ private:
+  void add(Factor f) { all_.push_back(std::move(f)); }
+  void pair(const std::string& a, const std::string& b, MatrixXd columns, bool repeated) {
+    all_.push_back({a + " x " + b, std::move(columns), repeated});
+  }
+  std::vector<Factor> all_;
+  MatrixXd position_;  // from -1 to 1
+};
+
+/// Mean of each cell taken out of each column (rows times root weights).
+void take_out_cells(const Repeats& r, const VectorXd& root, MatrixXd& columns) {
+  MatrixXd sum = MatrixXd::Zero(static_cast<Index>(r.cells), columns.cols());
+  VectorXd weight = VectorXd::Zero(static_cast<Index>(r.cells));
+  for (Index i = 0; i < columns.rows(); ++i) {
+    const auto c = static_cast<Index>(r.cell[static_cast<std::size_t>(i)]);
+    sum.row(c) += root(i) * columns.row(i);
+    weight(c) += root(i) * root(i);
+  }
+  for (Index c = 0; c < sum.rows(); ++c)
+    if (weight(c) > 0.0) sum.row(c) /= weight(c);
+  for (Index i = 0; i < columns.rows(); ++i)
+    columns.row(i) -= root(i) * sum.row(static_cast<Index>(r.cell[static_cast<std::size_t>(i)]));
+}
+
+MatrixXd orthonormal(MatrixXd columns) {
+  const VectorXd norm = columns.colwise().norm().transpose();
+  if (columns.cols() == 0 || !(norm.maxCoeff() > 0.0)) return MatrixXd(columns.rows(), 0);
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(columns / norm.maxCoeff());
+  qr.setThreshold(1e-4);
+  return qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
+}
+
+/// Orthonormal columns of every factor: without zeros of lines, without what the model can say,
+/// pairs without their factors.
+std::vector<MatrixXd> bases_of(const Factors& factors, const Part& part, const Repeats& repeats,
+                               const VectorXd& root, const MatrixXd& model) {
+  std::vector<MatrixXd> out;
+  std::map<std::string, MatrixXd> single;
+  for (const Factor& f : factors.all()) {
+    MatrixXd columns = root.asDiagonal() * f.columns;
+    take_out_zeros(part.table, root, columns);
+    if (f.repeated) take_out_cells(repeats, root, columns);
+    const VectorXd before = columns.colwise().norm().transpose();
+    if (model.cols() > 0) columns -= model * (model.transpose() * columns);
+    if (Factors::is_pair(f))
+      for (const std::string& name :
+           {f.name.substr(0, f.name.find(" x ")), f.name.substr(f.name.find(" x ") + 3)})
+        if (single[name].cols() > 0) columns -= single[name] * (single[name].transpose() * columns);
+    // A column that the model says already leaves rounding, not a direction.
+    for (Index k = 0; k < columns.cols(); ++k)
+      if (!(columns.col(k).norm() > 1e-3 * before(k))) columns.col(k).setZero();
+    MatrixXd basis = orthonormal(std::move(columns));
+    if (!Factors::is_pair(f)) single[f.name] = basis;
+    out.push_back(std::move(basis));
+  }
+  return out;
+}
+
+/// The level of a factor of dummies that holds most of its sum of squares, if one does.
+void find_level(const Factor& f, const Leftover& left, double s2, Place& place) {
+  if (f.levels.size() < 3) return;
+  double most = 0.0, total = 0.0, p_most = 1.0;
+  for (Index k = 0; k < f.columns.cols(); ++k) {
+    const VectorXd column = left.root_weight.cwiseProduct(f.columns.col(k));
+    const double norm = column.norm();
+    if (!(norm > 0.0)) continue;
+    const double sum = column.dot(left.residual) / norm;
+    total += sum * sum;
+    if (sum * sum <= most) continue;
+    most = sum * sum;
+    place.at = f.levels[static_cast<std::size_t>(k)];
+    p_most = math::t_two_sided(sum / std::sqrt(s2), left.floor ? left.floor->dof : left.dof) *
+             static_cast<double>(f.levels.size());
+  }
+  place.at_quantity = f.quantity;
+  if (most < 0.5 * total) place.at.reset();
+  place.p = std::min(place.p, 2.0 * p_most);
+}
+
+}  // namespace
+
+std::vector<Place> places_of(const Leftover& left) {
+  const Factors factors(left.part, left.repeats);
+  const auto bases = bases_of(factors, left.part, left.repeats, left.root_weight, left.basis);
+  const double squares = left.residual.squaredNorm();
+  std::vector<Place> places;
+  for (std::size_t f = 0; f < bases.size(); ++f) {
+    const auto k = static_cast<double>(bases[f].cols());
+    if (k == 0.0) continue;
+    const double here = (bases[f].transpose() * left.residual).squaredNorm();
+    const bool known = left.floor && left.floor->dof >= 8.0;
+    const double dof = known ? left.floor->dof : left.dof - k;
+    if (!(dof >= 3.0)) continue;
+    const double s2 = known ? left.floor->s * left.floor->s : (squares - here) / dof;
+    Place place;
+    place.where = factors.all()[f].name;
+    place.p = math::f_upper(here / k / s2, k, dof);
+    const double excess = std::max(here - k * s2, 0.0);
+    place.share = squares > 0.0 ? excess / squares : 0.0;
+    place.rms = std::sqrt(excess / static_cast<double>(left.residual.size()));
+    find_level(factors.all()[f], left, s2, place);
+    places.push_back(std::move(place));
+  }
+  for (Place& place : places) place.p = std::min(1.0, place.p * static_cast<double>(places.size()));
+  std::stable_sort(places.begin(), places.end(),
+                   [](const Place& a, const Place& b) { return a.share > b.share; });
+  return places;
+}
+
+std::vector<Place> seats_of(const Leftover& left) {
+  const Factors factors(left.part, left.repeats);
+  const double n = static_cast<double>(left.residual.size());
+  const double squares = left.residual.squaredNorm();
+  std::vector<MatrixXd> bases;
+  for (const Factor& f : factors.all()) {
+    MatrixXd columns = left.root_weight.asDiagonal() * factors.whole(f);
+    take_out_zeros(left.part.table, left.root_weight, columns);
+    if (left.basis.cols() > 0) columns -= left.basis * (left.basis.transpose() * columns);
+    bases.push_back(orthonormal(std::move(columns)));
+  }
+  VectorXd rest = left.residual;
+  std::vector<Place> seats;
+  while (seats.size() < 3) {
+    std::size_t best = bases.size();
+    double gain = 0.0, fall = 0.0;
+    for (std::size_t f = 0; f < bases.size(); ++f) {
+      const auto k = static_cast<double>(bases[f].cols());
+      if (k == 0.0 || k >= left.dof / 2.0) continue;
+      const double here = (bases[f].transpose() * rest).squaredNorm();
+      const double value = -n * std::log1p(-std::min(here / rest.squaredNorm(), 1.0 - 1e-12)) -
+                           k * std::log(n) - 10.0;  // 10: one place in a hundred by chance
+      if (value > gain) best = f, gain = value, fall = here;
+    }
+    if (best == bases.size()) break;
+    Place seat;
+    seat.where = factors.all()[best].name;
+    seat.share = fall / squares;
+    seat.rms = std::sqrt(fall / n);
+    const auto k = static_cast<double>(bases[best].cols());
+    const double dof = left.dof - k;
+    seat.p = math::f_upper(fall / k / ((rest.squaredNorm() - fall) / dof), k, dof) *
+             static_cast<double>(bases.size());
+    Leftover now{left.part, left.repeats, left.root_weight, rest, left.basis, left.dof, left.floor};
+    find_level(factors.all()[best], now, (rest.squaredNorm() - fall) / dof, seat);
+    seats.push_back(std::move(seat));
+    const MatrixXd chosen = bases[best];
+    rest -= chosen * (chosen.transpose() * rest);
+    for (MatrixXd& basis : bases) {
+      if (basis.cols() == 0) continue;
+      basis -= chosen * (chosen.transpose() * basis);
+      basis = orthonormal(std::move(basis));
+    }
+  }
+  return seats;
+}
+
+std::vector<std::string> factors_of(const Part& part, const Repeats& repeats,
+                                    const VectorXd& root_weight, const VectorXd& signal) {
+  const Factors factors(part, repeats);
+  const auto bases = bases_of(factors, part, repeats, root_weight, MatrixXd(signal.size(), 0));
+  std::vector<std::string> out;
+  for (std::size_t f = 0; f < bases.size(); ++f)
+    if ((bases[f].transpose() * signal).squaredNorm() > 0.05 * signal.squaredNorm())
+      out.push_back(factors.all()[f].name);
+  return out;
+}
+
+}  // namespace nonio::model

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "nonio/math/distributions.h"
+
+namespace nonio::model {
+
+namespace {
+
+using State = Workbench::State;
+
+constexpr std::size_t side_by_side = 4;
+constexpr int most_effects_added = 7;
+
+std::set<std::size_t> effects_of(const Workbench& bench, const State& s) {
+  std::set<std::size_t> out;
+  for (const std::size_t b : s.blocks) out.insert(bench.effect_of(b));
+  return out;
+}
+
+/// All states with one more effect, best first, one for each set of effects.
+std::vector<State> grown(const Workbench& bench, const std::vector<State>& level) {
+  std::vector<State> next;
+  std::set<std::set<std::size_t>> seen;
+  for (const State& s : level) {
+    const VectorXd gains = bench.gains(s);
+    for (std::size_t e = 0; e < bench.instances().size(); ++e) {
+      if (bench.holds(s, e)) continue;
+      std::set<std::size_t> effects = effects_of(bench, s);
+      effects.insert(e);
+      if (seen.contains(effects)) continue;
+      State more = bench.with(s, gains, e);
+      if (more.blocks.size() == s.blocks.size()) continue;
+      seen.insert(std::move(effects));
+      next.push_back(std::move(more));
+    }
+  }
+  std::stable_sort(next.begin(), next.end(),
+                   [](const State& a, const State& b) { return a.criterion < b.criterion; });
+  if (next.size() > side_by_side) next.resize(side_by_side);
+  for (State& s : next) s = bench.settled(std::move(s));
+  return next;
+}
+
+/// One effect dropped, or exchanged for another, if that is better.
+bool improve(const Workbench& bench, const State& start, State& best) {
+  const auto fixed = effects_of(bench, start);
+  for (const std::size_t e : effects_of(bench, best)) {
+    if (fixed.contains(e)) continue;
+    const State rest = bench.settled(bench.without(best, e));
+    if (rest.criterion < best.criterion - 1e-9) {
+      best = rest;
+      return true;
+    }
+    const VectorXd gains = bench.gains(rest);
+    for (std::size_t other = 0; other < bench.instances().size(); ++other) {
+      if (other == e || bench.holds(rest, other)) continue;
+      State changed = bench.with(rest, gains, other);
+      if (changed.criterion < best.criterion + 3.0) changed = bench.settled(std::move(changed));
+      if (changed.criterion < best.criterion - 1e-9) {
+        best = std::move(changed);
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+State best_explanation(const Workbench& bench, const State& start) {
+  State best = start;
+  std::vector<State> level{start};
+  int without_gain = 0;
+  for (int depth = 0; depth < most_effects_added && without_gain < 2; ++depth) {
+    level = grown(bench, level);
+    if (level.empty()) break;
+    std::stable_sort(level.begin(), level.end(),
+                     [](const State& a, const State& b) { return a.criterion < b.criterion; });
+    if (level.front().criterion < best.criterion - 1e-9) {
+      best = level.front();
+      without_gain = 0;
+    } else {
+      ++without_gain;
+    }
+  }
+  for (int step = 0; step < 20 && improve(bench, start, best); ++step) {
+  }
+  return best;
+}
+
+double p_of(const Workbench& bench, const State& state, std::size_t effect) {
+  const State rest = bench.without(state, effect);
+  const auto k = static_cast<double>(state.parameters - rest.parameters);
+  const double dof =
+      bench.readings() - static_cast<double>(bench.zeros()) - static_cast<double>(state.parameters);
+  if (!(state.squares > 0.0)) return 0.0;
+  return math::f_upper((rest.squares - state.squares) / k / (state.squares / dof), k, dof);
+}
+
+double Chance::corrected(double p) const {
+  return -std::expm1(trials * std::log1p(-std::min(p, 1.0)));
+}
+
+namespace {
+
+constexpr std::size_t stretch = 5;  // readings whose sign is flipped together
+
+MatrixXd shuffled(const VectorXd& residual, const std::vector<std::uint32_t>& pass,
+                  std::size_t shuffles, std::uint64_t seed) {
+  std::vector<std::size_t> block(pass.size());
+  std::vector<std::size_t> in_pass, current;
+  std::size_t blocks = 0;
+  for (std::size_t i = 0; i < pass.size(); ++i) {
+    if (pass[i] >= in_pass.size()) in_pass.resize(pass[i] + 1, 0), current.resize(pass[i] + 1, 0);
+    if (in_pass[pass[i]]++ % stretch == 0) current[pass[i]] = blocks++;
+    block[i] = current[pass[i]];
+  }
+  std::mt19937_64 random(seed);
+  MatrixXd out(residual.size(), static_cast<Index>(shuffles));
+  std::vector<double> sign(blocks);
+  for (Index s = 0; s < out.cols(); ++s) {
+    for (double& x : sign) x = (random() >> 63) != 0 ? 1.0 : -1.0;
+    for (Index i = 0; i < out.rows(); ++i)
+      out(i, s) = sign[block[static_cast<std::size_t>(i)]] * residual(i);
+  }
+  return out;
+}
+
+/// One effect added to a complete model in every shuffle: its p, and whether the criterion falls.
+struct Added {
+  std::vector<double> p;
+  std::vector<char> better;
+};
+
+class ChanceOf {
+ public:
+  ChanceOf(const Workbench& bench, const State& complete, const MatrixXd& noise)
+      : bench_(bench),
+        columns_(bench.columns_of_state(complete)),
+        llt_(bench.gram()(columns_, columns_)),
+        products_(bench.columns().transpose() * noise),
+        squares_(noise.colwise().squaredNorm().transpose()) {
+    if (!columns_.empty()) {
+      z_ = products_(columns_, Eigen::all);
+      llt_.matrixL().solveInPlace(z_);
+      squares_ -= z_.colwise().squaredNorm().transpose();
+    }
+    dof_ = bench.readings() - static_cast<double>(bench.zeros() + complete.parameters);
+  }
+
+  Added add(std::size_t effect) const {
+    const Workbench::Instance& instance = bench_.instances()[effect];
+    const Index shuffles = products_.cols();
+    Added out{std::vector<double>(static_cast<std::size_t>(shuffles), 1.0),
+              std::vector<char>(static_cast<std::size_t>(shuffles), 0)};
+    VectorXd best = VectorXd::Constant(shuffles, 0.0), fall_of_best = VectorXd::Zero(shuffles);
+    VectorXd k_of_best = VectorXd::Ones(shuffles);
+    for (const std::size_t b : instance.blocks) {
+      const Workbench::Block& block = bench_.blocks()[b];
+      MatrixXd s = bench_.gram().block(block.first, block.first, block.count, block.count);
+      MatrixXd t = products_.middleRows(block.first, block.count);
+      if (!columns_.empty()) {
+        MatrixXd w = bench_.gram()(columns_, Eigen::seqN(block.first, block.count));
+        llt_.matrixL().solveInPlace(w);
+        s.noalias() -= w.transpose() * w;
+        t.noalias() -= w.transpose() * z_;
+      }
+      const Eigen::LLT<MatrixXd> llt(s);
+      if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > 1e-4)) continue;
+      llt.matrixL().solveInPlace(t);
+      const bool searched = instance.blocks.size() > 1 && !instance.term.effect->curve;
+      const double price = bench_.price(effect, block.count);
+      const double k = static_cast<double>(block.count) +
+                       (searched ? static_cast<double>(instance.term.effect->shapes.size()) : 0.0);
+      for (Index i = 0; i < shuffles; ++i) {
+        const double fall = t.col(i).squaredNorm();
+        // Fall of the criterion, less the price: how the search itself would choose.
+        const double value =
+            -bench_.readings() * std::log1p(-std::min(fall / squares_(i), 1.0 - 1e-12)) - price;
+        if (fall_of_best(i) > 0.0 && value <= best(i)) continue;
+        best(i) = value;
+        fall_of_best(i) = fall;
+        k_of_best(i) = k;
+      }
+    }
+    for (Index i = 0; i < shuffles; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      out.better[at] = best(i) > 0.0 && fall_of_best(i) > 0.0;
+      const double dof = dof_ - k_of_best(i);
+      out.p[at] =
+          math::f_upper(fall_of_best(i) / k_of_best(i) / ((squares_(i) - fall_of_best(i)) / dof),
+                        k_of_best(i), dof);
+    }
+    return out;
+  }
+
+ private:
+  const Workbench& bench_;
+  std::vector<Index> columns_;
+  Eigen::LLT<MatrixXd> llt_;
+  MatrixXd products_, z_;
+  VectorXd squares_;
+  double dof_ = 0.0;
+};
+
+}  // namespace
+
+Chance measure_chance(const Workbench& bench, const State& complete,
+                      const std::vector<std::uint32_t>& pass, std::uint64_t seed) {
+  constexpr std::size_t shuffles = 200;
+  VectorXd residual = bench.y();
+  const MatrixXd basis = bench.basis(complete);
+  residual -= basis * (basis.transpose() * residual);
+  const ChanceOf of(bench, complete, shuffled(residual, pass, shuffles, seed));
+  std::vector<double> least(shuffles, 1.0), least_better(shuffles, 1.0);
+  for (std::size_t e = 0; e < bench.instances().size(); ++e) {
+    if (bench.holds(complete, e)) continue;
+    const Added added = of.add(e);
+    for (std::size_t i = 0; i < shuffles; ++i) {
+      least[i] = std::min(least[i], added.p[i]);
+      if (added.better[i]) least_better[i] = std::min(least_better[i], added.p[i]);
+    }
+  }
+  // The smallest of m independent p: -ln(1 - p) is exponential with rate m.
+  double sum = 0.0;
+  for (const double p : least) sum -= std::log1p(-std::min(p, 1.0 - 1e-12));
+  Chance out;
+  out.shuffles = shuffles;
+  out.trials = std::max(static_cast<double>(shuffles) / std::max(sum, 1e-12), 1.0);
+  for (const double p : least_better) out.false_alarms += p < 1.0 && out.corrected(p) < named_below;
+  return out;
+}
+
+}  // namespace nonio::model

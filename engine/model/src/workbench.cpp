@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workbench.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace nonio::model {
+
+namespace {
+// Of a column of unit length, what must be left when the others are taken out.
+constexpr double independent = 1e-7;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+bool varies_with_target_only(const MatrixXd& columns, const std::vector<std::uint32_t>& target) {
+  if (target.empty()) return false;
+  std::vector<Index> first(target.size(), -1);
+  for (Index i = 0; i < columns.rows(); ++i) {
+    Index& row = first[target[static_cast<std::size_t>(i)]];
+    if (row < 0)
+      row = i;
+    else if (columns.row(i) != columns.row(row))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Index Workbench::unknowns_of(const Block& block) const {
+  const Instance& instance = instances_[block.effect];
+  const bool searched = instance.blocks.size() > 1 && !instance.term.effect->curve;
+  return block.count + (searched ? static_cast<Index>(instance.term.effect->shapes.size()) : 0);
+}
+
+Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
+                     const std::vector<double>& weight, const std::vector<std::uint32_t>& target)
+    : target_(target) {
+  most_of_position_ = std::numeric_limits<Index>::max();
+  if (!target_.empty()) {
+    const std::uint32_t targets = *std::max_element(target_.begin(), target_.end()) + 1;
+    most_of_position_ = static_cast<Index>(std::ceil(0.6 * (targets - 1.0)));
+  }
+  root_ = root_weights(o, weight);
+  used_ = static_cast<double>((root_.array() > 0.0).count());
+  zeros_ = static_cast<Index>(lines_of(o));
+  MatrixXd y = root_.cwiseProduct(
+      Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.size())));
+  take_out_zeros(o, root_, y);
+  y_ = y.col(0);
+  std::vector<MatrixXd> parts;
+  for (const Term& term : terms) {
+    instances_.push_back({term, {}, {}, 0.0});
+    add(o, instances_.size() - 1, parts);
+  }
+  Index columns = 0;
+  for (const MatrixXd& part : parts) columns += part.cols();
+  x_.resize(y_.size(), columns);
+  columns = 0;
+  for (const MatrixXd& part : parts) {
+    x_.middleCols(columns, part.cols()) = part;
+    columns += part.cols();
+  }
+  gram_.setZero(columns, columns);
+  gram_.selfadjointView<Eigen::Lower>().rankUpdate(x_.transpose());
+  gram_.triangularView<Eigen::StrictlyUpper>() = gram_.transpose();
+  xy_ = x_.transpose() * y_;
+  yy_ = y_.squaredNorm();
+}
+
+void Workbench::add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts) {
+  Instance& instance = instances_[effect];
+  const auto shapes = shapes_of(o, instance.term);
+  Index at = parts.empty() ? 0 : blocks_.back().first + blocks_.back().count;
+  for (const std::vector<double>& shape : shapes) {
+    auto columns = columns_of(o, instance.term, shape);
+    if (!columns) {
+      instance.error = columns.error().message;
+      continue;
+    }
+    MatrixXd part = root_.asDiagonal() * *columns;
+    const VectorXd before = part.colwise().norm().transpose();
+    take_out_zeros(o, root_, part);
+    const VectorXd after = part.colwise().norm().transpose();
+    if (part.cols() == 0 || !(after.array() > 1e-9 * before.array()).all()) continue;
+    part = part * after.cwiseInverse().asDiagonal();
+    instance.blocks.push_back(blocks_.size());
+    blocks_.push_back({effect, shape, at, part.cols(), varies_with_target_only(*columns, target_)});
+    at += part.cols();
+    parts.push_back(std::move(part));
+  }
+  // Neighbours on a grid are alike: about a third of its values are independent.
+  const auto tried = static_cast<double>(instance.blocks.size());
+  instance.cost_of_shape =
+      tried > 1.0 ? 2.0 * std::log(std::max(instance.term.effect->curve ? tried : tried / 3.0, 2.0))
+                  : 0.0;
+}
+
+double Workbench::price(std::size_t effect, Index columns) const {
+  const Instance& instance = instances_[effect];
+  const auto searched =
+      static_cast<double>(instance.blocks.size() > 1 && !instance.term.effect->curve
+                              ? instance.term.effect->shapes.size()
+                              : 0);
+  return (static_cast<double>(columns) + searched) * std::log(used_) + instance.cost_of_shape +
+         2.0 * std::log(static_cast<double>(std::max<std::size_t>(instances_.size(), 2)));
+}
+
+double Workbench::criterion(double squares, double price) const {
+  return used_ * std::log(std::max(squares, 1e-300) / used_) + price;
+}
+
+std::vector<Index> Workbench::columns_of_state(const State& state) const {
+  std::vector<Index> columns;
+  for (const std::size_t b : state.blocks)
+    for (Index k = 0; k < blocks_[b].count; ++k) columns.push_back(blocks_[b].first + k);
+  return columns;
+}
+
+Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
+  State out;
+  out.blocks = std::move(blocks);
+  const std::vector<Index> columns = columns_of_state(out);
+  double price_sum = 0.0;
+  for (const std::size_t b : out.blocks) {
+    price_sum += price(blocks_[b].effect, blocks_[b].count);
+    out.parameters += unknowns_of(blocks_[b]);
+  }
+  out.squares = yy_;
+  if (!columns.empty()) {
+    const MatrixXd g = gram_(columns, columns);
+    const Eigen::LLT<MatrixXd> llt(g);
+    const VectorXd z = llt.matrixL().solve(xy_(columns));
+    const bool sound = llt.info() == Eigen::Success && z.allFinite() &&
+                       llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent);
+    out.squares = sound ? std::max(yy_ - z.squaredNorm(), 0.0) : nan;
+  }
+  out.criterion = std::isnan(out.squares) ? std::numeric_limits<double>::infinity()
+                                          : criterion(out.squares, price_sum);
+  return out;
+}
+
+namespace {
+
+/// t^T S^-1 t of one block; NaN if S is not safely positive definite.
+double fall_of(const MatrixXd& s, const VectorXd& t) {
+  const Eigen::LLT<MatrixXd> llt(s);
+  if (llt.info() != Eigen::Success ||
+      !(llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent)))
+    return nan;
+  return llt.matrixL().solve(t).squaredNorm();
+}
+
+double fall_of_two(double aa, double ab, double bb, double ta, double tb) {
+  if (!(aa > independent)) return nan;
+  const double l = ab / aa, rest = bb - l * ab;
+  if (!(rest > independent)) return nan;
+  const double second = tb - l * ta;
+  return ta * ta / aa + second * second / rest;
+}
+
+}  // namespace
+
+Workbench::Projection Workbench::projection(const State& state) const {
+  const std::vector<Index> columns = columns_of_state(state);
+  Projection out{Eigen::LLT<MatrixXd>(gram_(columns, columns)), columns, {}};
+  if (!columns.empty()) out.z = out.llt.matrixL().solve(xy_(columns));
+  return out;
+}
+
+void Workbench::add_falls(const Projection& p, std::size_t effect, VectorXd& fall) const {
+  const Instance& instance = instances_[effect];
+  if (instance.blocks.empty()) return;
+  const Index first = blocks_[instance.blocks.front()].first;
+  const Block& last = blocks_[instance.blocks.back()];
+  const Index count = last.first + last.count - first;
+  MatrixXd w(static_cast<Index>(p.columns.size()), count);
+  VectorXd left = xy_.segment(first, count);
+  if (!p.columns.empty()) {
+    w = gram_(p.columns, Eigen::seqN(first, count));
+    p.llt.matrixL().solveInPlace(w);
+    left.noalias() -= w.transpose() * p.z;
+  }
+  for (const std::size_t b : instance.blocks) {
+    const Block& block = blocks_[b];
+    const Index at = block.first - first;
+    double& here = fall(static_cast<Index>(b));
+    if (block.count == 1) {
+      const double s = 1.0 - w.col(at).squaredNorm();
+      here = s > independent ? left(at) * left(at) / s : nan;
+    } else if (block.count == 2) {
+      here = fall_of_two(1.0 - w.col(at).squaredNorm(),
+                         gram_(block.first, block.first + 1) - w.col(at).dot(w.col(at + 1)),
+                         1.0 - w.col(at + 1).squaredNorm(), left(at), left(at + 1));
+    } else {
+      const auto part = w.middleCols(at, block.count);
+      MatrixXd s = gram_.block(block.first, block.first, block.count, block.count);
+      s.noalias() -= part.transpose() * part;
+      here = fall_of(s, left.segment(at, block.count));
+    }
+  }
+}
+
+VectorXd Workbench::gains(const State& state) const {
+  VectorXd fall = VectorXd::Constant(static_cast<Index>(blocks_.size()), nan);
+  const Projection p = projection(state);
+  for (std::size_t e = 0; e < instances_.size(); ++e) add_falls(p, e, fall);
+  return fall;
+}
+
+VectorXd Workbench::gains(const State& state, std::size_t effect) const {
+  VectorXd fall = VectorXd::Constant(static_cast<Index>(blocks_.size()), nan);
+  add_falls(projection(state), effect, fall);
+  return fall;
+}
+
+Workbench::State Workbench::with(const State& state, const VectorXd& gains,
+                                 std::size_t effect) const {
+  std::size_t best = blocks_.size();
+  double least = std::numeric_limits<double>::infinity();
+  Index of_position = 0;
+  for (const std::size_t b : state.blocks)
+    if (blocks_[b].of_position) of_position += unknowns_of(blocks_[b]);
+  for (const std::size_t b : instances_[effect].blocks) {
+    const double fall = gains(static_cast<Index>(b));
+    if (std::isnan(fall)) continue;
+    if (blocks_[b].of_position && of_position + unknowns_of(blocks_[b]) > most_of_position_)
+      continue;
+    const double c =
+        criterion(std::max(state.squares - fall, 1e-12 * yy_), price(effect, blocks_[b].count));
+    if (c < least) least = c, best = b;
+  }
+  if (best == blocks_.size()) return state;
+  std::vector<std::size_t> blocks = state.blocks;
+  blocks.push_back(best);
+  return this->state(std::move(blocks));
+}
+
+bool Workbench::holds(const State& state, std::size_t effect) const {
+  return std::any_of(state.blocks.begin(), state.blocks.end(),
+                     [&](std::size_t b) { return blocks_[b].effect == effect; });
+}
+
+Workbench::State Workbench::without(const State& state, std::size_t effect) const {
+  std::vector<std::size_t> blocks;
+  for (const std::size_t b : state.blocks)
+    if (blocks_[b].effect != effect) blocks.push_back(b);
+  return this->state(std::move(blocks));
+}
+
+Workbench::State Workbench::settled(State state) const {
+  for (int round = 0; round < 4; ++round) {
+    bool better = false;
+    for (std::size_t i = 0; i < state.blocks.size(); ++i) {
+      const std::size_t effect = blocks_[state.blocks[i]].effect;
+      if (instances_[effect].blocks.size() < 2) continue;
+      const State rest = without(state, effect);
+      State again = with(rest, gains(rest, effect), effect);
+      if (again.blocks.size() != state.blocks.size()) continue;
+      std::rotate(again.blocks.begin() + static_cast<std::ptrdiff_t>(i), again.blocks.end() - 1,
+                  again.blocks.end());
+      if (!(again.criterion < state.criterion - 1e-9)) continue;
+      state = std::move(again);
+      better = true;
+    }
+    if (!better) break;
+  }
+  return state;
+}
+
+Expected<std::vector<std::vector<double>>> Workbench::best_shapes() const {
+  State all;
+  all.squares = yy_;
+  for (std::size_t e = 0; e < instances_.size(); ++e) {
+    if (instances_[e].blocks.empty())
+      return fail(instances_[e].error.empty()
+                      ? "the readings cannot show " + instances_[e].term.name()
+                      : instances_[e].error);
+    const State next = with(all, gains(all, e), e);
+    if (next.blocks.size() == all.blocks.size()) {
+      std::string names;
+      for (const Instance& i : instances_) names += (names.empty() ? "" : ", ") + i.term.name();
+      return fail("the readings cannot tell these apart: " + names);
+    }
+    all = next;
+  }
+  all = settled(std::move(all));
+  std::vector<std::vector<double>> shapes(instances_.size());
+  for (const std::size_t b : all.blocks) shapes[blocks_[b].effect] = blocks_[b].shape;
+  return shapes;
+}
+
+MatrixXd Workbench::basis(const State& state) const {
+  const std::vector<Index> columns = columns_of_state(state);
+  if (columns.empty()) return MatrixXd(y_.size(), 0);
+  const Eigen::HouseholderQR<MatrixXd> qr(x_(Eigen::all, columns));
+  return qr.householderQ() * MatrixXd::Identity(y_.size(), static_cast<Index>(columns.size()));
+}
+
+}  // namespace nonio::model

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "design.h"
+
+namespace nonio::model {
+
+/// Every effect of a search with every value of its shapes, as columns of unit length from which
+/// the zeros of the lines are taken out, and all their scalar products: a set of effects is then
+/// judged without touching the readings again.
+class Workbench {
+ public:
+  /// Columns first .. first + count of an effect with one value of its shapes.
+  struct Block {
+    std::size_t effect;
+    std::vector<double> shape;
+    Index first, count;
+    bool of_position;  ///< the same at every reading of a target
+  };
+  struct Instance {
+    Term term;
+    std::vector<std::size_t> blocks;  ///< none: the readings cannot show it
+    std::string error;
+    double cost_of_shape = 0.0;  ///< 2 ln of the number of independent values of its shapes
+  };
+  /// Blocks in the order in which they came in, with what they leave.
+  struct State {
+    std::vector<std::size_t> blocks;
+    double squares = 0.0;  ///< left, weighted
+    Index parameters = 0;  ///< linear ones and searched shapes, without zeros
+    double criterion =
+        0.0;  ///< n ln(squares/n) + price of parameters, shapes and names; small is good
+  };
+
+  /// `target` of each reading: sets whose columns of position alone come near to one free value per
+  /// target are not looked at. Empty: all are.
+  Workbench(const Observations& o, const std::vector<Term>& terms,
+            const std::vector<double>& weight, const std::vector<std::uint32_t>& target = {});
+
+  const std::vector<Instance>& instances() const { return instances_; }
+  const std::vector<Block>& blocks() const { return blocks_; }
+  const MatrixXd& columns() const { return x_; }
+  const VectorXd& y() const { return y_; }
+  const VectorXd& root_weight() const { return root_; }
+  double readings() const { return used_; }
+  Index zeros() const { return zeros_; }
+
+  State state(std::vector<std::size_t> blocks) const;
+  /// For each block the fall of `squares` if it is added; NaN if it adds no independent column.
+  VectorXd gains(const State& state) const;
+  /// The same for the blocks of one effect only; NaN elsewhere.
+  VectorXd gains(const State& state, std::size_t effect) const;
+  /// The state with the best block of this effect added, or nothing that can be added (blocks as
+  /// before).
+  State with(const State& state, const VectorXd& gains, std::size_t effect) const;
+  /// Each effect's shapes looked for again while the others stay, until nothing improves.
+  State settled(State state) const;
+  bool holds(const State& state, std::size_t effect) const;
+  std::size_t effect_of(std::size_t block) const { return blocks_[block].effect; }
+  /// The state without one effect.
+  State without(const State& state, std::size_t effect) const;
+
+  /// Shapes of all effects together, one after the other until nothing improves.
+  Expected<std::vector<std::vector<double>>> best_shapes() const;
+
+  /// n x q orthonormal basis of a state's columns (without the zeros).
+  MatrixXd basis(const State& state) const;
+
+  /// Columns of a state's blocks in `columns()`.
+  std::vector<Index> columns_of_state(const State& state) const;
+  const MatrixXd& gram() const { return gram_; }
+
+  /// Price of an effect with so many linear columns.
+  double price(std::size_t effect, Index columns) const;
+
+ private:
+  Index unknowns_of(const Block& block) const;
+  void add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts);
+  struct Projection {
+    Eigen::LLT<MatrixXd> llt;
+    std::vector<Index> columns;
+    VectorXd z;
+  };
+  Projection projection(const State& state) const;
+  void add_falls(const Projection& projection, std::size_t effect, VectorXd& fall) const;
+  double criterion(double squares, double price) const;
+
+  std::vector<Instance> instances_;
+  std::vector<Block> blocks_;
+  MatrixXd x_, gram_;
+  VectorXd y_, root_, xy_;
+  double yy_ = 0.0, used_ = 0.0;
+  std::vector<std::uint32_t> target_;
+  Index most_of_position_ = 0;  // columns and searched shapes
+  Index zeros_ = 0;
+};
+
+}  // namespace nonio::model

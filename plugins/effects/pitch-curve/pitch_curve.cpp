@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// deviation = sum c_k s_k(p); s_k: smooth basis of cubic splines without constant and slope
+// (nonio/math/spline.h), dimensionless, rms 1 over the targets; p: position from the middle of the
+// measured stretch, m or rad; c_k: m or rad.
+#include "nonio/math/spline.h"
+#include "nonio/sdk/axis_readings.h"
+#include "nonio/sdk/plugin.h"
+
+using namespace nonio;
+
+/// Numbers of knots: at most 10, and at least two targets for each free value, so that the curve
+/// cannot follow single targets.
+static std::vector<double> grid(const Observations& o, const Axis& axis) {
+  constexpr int fewest = 3, most = 10;
+  const auto r = readings_of(o, axis);
+  if (!r) return {};
+  const std::vector<double> targets = targets_of(*r);
+  const int last = static_cast<int>(std::min<std::size_t>(targets.size() / 2, most + 1)) - 1;
+  std::vector<double> knots;
+  for (int k = fewest; k <= last && math::smooth_basis({}, targets, k); ++k) knots.push_back(k);
+  return knots;
+}
+
+static bool applies(const Observations& o, const Axis& axis) { return !grid(o, axis).empty(); }
+
+static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
+                                         const std::vector<double>& shape) {
+  if (shape.size() != 1 || !(shape[0] >= 2.0 && shape[0] <= 1000.0))
+    return fail("pitch-curve: wanted a number of knots, 2 to 1000");
+  const auto r = readings_of(o, axis);
+  if (!r) return fail(r.error());
+  auto columns = math::smooth_basis(r->p, targets_of(*r), static_cast<int>(std::lround(shape[0])));
+  if (!columns) return fail("pitch-curve: " + columns.error().message);
+  for (auto& column : *columns)
+    for (std::size_t i = 0; i < column.size(); ++i)
+      if (!r->moved[i]) column[i] = 0.0;
+  return columns;
+}
+
+NONIO_PLUGIN(registry) {
+  registry.add(Effect{.info = {"pitch-curve", "1.0.0",
+                               "Smooth pitch error of screw or scale, without constant and slope"},
+                      .linear = {{"s", "rms of the curve over the targets", Quantity::deviation,
+                                  Quantity::angular_deviation}},
+                      .shapes = {{{"knots", "knots of the spline", Quantity::count}, grid, false}},
+                      .curve = true,
+                      .compensable = true,
+                      .applies = applies,
+                      .columns = columns});
+}

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// deviation = w p (1 - exp(-t/tau)); p: position from the middle of the measured stretch, m or rad;
+// t: time since the first reading of its line, s; tau: time constant, s; w: m/m or rad/rad.
+#include "nonio/sdk/axis_readings.h"
+#include "nonio/sdk/plugin.h"
+
+using namespace nonio;
+
+static bool applies(const Observations& o, const Axis& axis) {
+  const auto r = readings_of(o, axis);
+  return r && r->length > 0.0 && r->duration > 0.0;
+}
+
+/// Time constants in equal ratios. Below a fortieth of the test it is over after a few readings,
+/// above one and a half of it it is the straight line of growth-drift.
+static std::vector<double> grid(const Observations& o, const Axis& axis) {
+  constexpr int count = 14;
+  constexpr double shortest = 1.0 / 40.0, longest = 1.5;  // of the duration
+  const auto r = readings_of(o, axis);
+  if (!r || !(r->duration > 0.0)) return {};
+  std::vector<double> taus;
+  for (int k = 0; k < count; ++k)
+    taus.push_back(r->duration * shortest * std::pow(longest / shortest, k / (count - 1.0)));
+  return taus;
+}
+
+static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
+                                         const std::vector<double>& shape) {
+  if (shape.size() != 1 || !(shape[0] > 0.0))
+    return fail("warm-up: wanted a time constant above 0");
+  return columns_of(o, axis, [tau = shape[0]](const AxisReadings& r, std::size_t i) {
+    return -r.p[i] * std::expm1(-r.t[i] / tau);
+  });
+}
+
+NONIO_PLUGIN(registry) {
+  registry.add(Effect{.info = {"warm-up", "1.0.0",
+                               "Screw or scale warms and levels off: growth with a time constant"},
+                      .linear = {{"w", "final growth of the slope", Quantity::deviation_per_length,
+                                  Quantity::deviation_per_angle}},
+                      .shapes = {{{"tau", "time constant", Quantity::time}, grid}},
+                      .applies = applies,
+                      .columns = columns});
+}

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hidden/generator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "catalogue.h"
+
+namespace nonio::hidden {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Campaign campaign_of(const Scenario& s, const Truth& truth) {
+  Campaign campaign;
+  campaign.id = "hidden-" + std::to_string(s.seed);
+  campaign.customer = "Simulated";
+  Axis axis;
+  axis.name = s.rotary ? "C" : "X";
+  axis.rotary = s.rotary;
+  if (s.pitch_known && s.rotary) axis.teeth = s.teeth;
+  if (s.pitch_known && !s.rotary) axis.screw_pitch = s.pitch;
+  campaign.machine.axes.push_back(axis);
+  Measurement m;
+  m.id = axis.name;
+  m.kind = "axis";
+  m.axis = axis.name;
+  m.file = "readings.csv";
+  campaign.measurements.push_back(m);
+  campaign.model = truth.model;
+  return campaign;
+}
+
+Observations table_of(const Scenario& s, const Cycle& c) {
+  Observations o;
+  o.measurement = s.rotary ? "C" : "X";
+  o.angular = s.rotary;
+  Observations::AxisColumn column;
+  column.axis = o.measurement;
+  column.rotary = s.rotary;
+  column.position = c.position;
+  for (const double d : c.d) column.approach.push_back(d > 0.0 ? std::int8_t{1} : std::int8_t{-1});
+  o.axes.push_back(std::move(column));
+  o.lines.push_back({o.measurement, {s.rotary ? 0.0 : 1.0, 0.0, 0.0}});
+  o.run = c.run;
+  for (std::size_t i = 0; i < c.size(); ++i)
+    o.source_line.push_back(static_cast<std::uint32_t>(i + 2));
+  if (s.timed) o.time = c.t;
+  if (s.temperatures) o.material = c.material;
+  return o;
+}
+
+/// Where something outside the catalogue shows; the best first.
+std::vector<std::string> places_of(Source source, bool rotary) {
+  const std::string position = rotary ? "angle" : "position";
+  switch (source) {
+    case Source::dent:
+      return {position, "position"};
+    case Source::sawtooth:
+      return {position, "position", "screw-phase"};
+    case Source::creeping_reversal:
+      return {"direction x time", "direction x run", "direction"};
+    case Source::zero_walk:
+      return {"time", "run"};
+    case Source::travel_hysteresis:
+      return {"direction x " + position, "direction x position", "direction"};
+    case Source::wild_run:
+      return {"run"};
+    default:
+      return {};
+  }
+}
+
+std::string verdict_of(const Scenario& s) {
+  if (s.hidden.empty()) return "nothing";
+  const Source first = s.hidden.front().source;
+  if (first == Source::wild_run || first == Source::contradiction) return "unrepeatable";
+  return kind_of(first).empty() ? "unknown" : "missing";
+}
+
+/// Adds what is true of one cause to the truth.
+void state(Truth& truth, const Piece& piece, const Cause& cause, const Cycle& c,
+           const Scenario& s) {
+  const std::string kind = kind_of(piece.source);
+  if (kind.empty()) {
+    truth.places = places_of(piece.source, s.rotary);
+    truth.at = cause.at;
+    return;
+  }
+  Columns columns = best_columns(kind, cause.deviation, c, s);
+  columns.insert(columns.begin(), std::vector<double>(c.size(), 1.0));
+  const Projection fitted = project(cause.deviation, columns);
+  const std::vector<std::string> names = parameters_of(kind);
+  const std::string effect = kind + (s.rotary ? ":C" : ":X");
+  for (std::size_t k = 0; k < names.size(); ++k)
+    truth.values.push_back({effect, names[k], fitted.coefficient[k + 1]});
+  truth.imperfection.push_back(kind == "pitch-curve" ? std::numeric_limits<double>::quiet_NaN()
+                                                     : rms_about_mean(fitted.left) / s.noise);
+}
+
+void measure(Hidden& h, const Cycle& c) {
+  const Scenario& s = h.scenario;
+  Random noise(s.seed, 4), wrong(s.seed, 5);
+  const double zero = noise.uniform(-10.0, 10.0) * s.noise;
+  const double resolution = s.rotary ? pi / 180.0 / 3600.0 * 1e-4 : 1e-10;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    double e = zero + s.noise * noise.normal();
+    for (const auto& cause : h.causes) e += cause[i];
+    const bool misread = wrong.flag(s.misread);
+    const double by = wrong.sign() * wrong.uniform(8.0, 40.0) * s.noise;
+    if (misread) e += by, h.misread.push_back(i);
+    h.table.deviation.push_back(std::round(e / resolution) * resolution);
+  }
+}
+
+}  // namespace
+
+Hidden generate(const Scenario& s) {
+  const Cycle c = cycle_of(s);
+  Hidden h;
+  h.scenario = s;
+  h.truth.verdict = verdict_of(s);
+  const std::string axis = s.rotary ? ":C" : ":X";
+  std::uint64_t stream = 10;
+  const auto add = [&](const Piece& piece, std::vector<std::string>& names) {
+    Cause cause =
+        simulate_sized(piece.source, c, s, Random(s.seed, stream++), piece.size * s.noise);
+    if (const std::string kind = kind_of(piece.source); !kind.empty()) names.push_back(kind + axis);
+    state(h.truth, piece, cause, c, s);
+    h.causes.push_back(std::move(cause.deviation));
+  };
+  for (const Piece& piece : s.model) add(piece, h.truth.model);
+  for (const Piece& piece : s.hidden) add(piece, h.truth.hidden);
+  h.campaign = campaign_of(s, h.truth);
+  h.table = table_of(s, c);
+  measure(h, c);
+  return h;
+}
+
+}  // namespace nonio::hidden

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nonio/sdk/campaign.h"
+#include "nonio/sdk/error.h"
+#include "nonio/sdk/observations.h"
+
+/// Campaigns whose hidden effects come from physics and geometry, not from the basis functions of
+/// the effect plugins, so that the tests of `explain` do not prove what they put in.
+///
+/// What is not hidden, because the readings could not show it (`random_scenario` draws again):
+///  - a lead error or a worm mesh that the targets meet at about the same phase, or so slowly
+///    moving that it looks like a smooth pitch curve;
+///  - a period that the manifest does not give and that is shorter than 0.6 of the mean distance of
+///    uneven targets, or than 2.3 distances of even ones, or longer than a third of the stretch;
+///  - a measured temperature that runs along with time;
+///  - two causes that act alike: warm-up, growth and temperature exclude each other;
+///  - an effect that, beside the others of its campaign, stands out by less than
+///    `seen_from` standard deviations, or less than `told_from` from its look-alike (a warm-up from
+///    a steady growth, a jump from a drift);
+///  - a slip within the first or last tenth of the readings;
+///  - something outside the catalogue that the catalogue can nearly describe (a random walk that
+///    happens to be a jump).
+/// Idealised so that a name of the catalogue is the truth: screws stand at the middle of the
+/// stretch and start cold at the first reading; the controller's backlash value takes out the
+/// constant part of a wind-up; the shop is at 20 degC in the mean. Measurements without times have
+/// no pauses, so that the order of the readings is nearly the time.
+namespace nonio::hidden {
+
+inline constexpr double seen_from = 7.0;
+inline constexpr double told_from = 5.0;
+
+/// Physical causes. Beside each the kind of the catalogue, or "outside".
+enum class Source {
+  wrong_scale,         ///< laser out of line, or wrong pitch: scale
+  ground_pitch,        ///< pitch errors of grinding, accumulated: pitch-curve
+  lead_error,          ///< once per revolution of the screw, not quite a sine: periodic
+  lost_motion,         ///< play and friction of a nut, as a play operator: backlash
+  preload_loss,        ///< nut whose second flank has come free: backlash
+  screw_wind_up,       ///< friction against the stiffness of a long screw: backlash-slope
+  dead_path_air,       ///< refractive index of the uncompensated path: zero-drift
+  leaning_instrument,  ///< stand that warms slowly: zero-drift
+  screw_heating,       ///< heat equation in a screw that levels off: warm-up
+  slow_heating,        ///< two bodies much slower than the measurement: growth-drift
+  wrong_expansion,     ///< coefficient wrong, temperature follows the room: temperature
+  optics_slip,         ///< step with a short creep: run-jump
+  eccentric_scale,     ///< exact geometry: eccentricity
+  tilted_scale,        ///< exact geometry: harmonic2
+  worm_mesh,           ///< tooth error, not quite a sine: gear-mesh
+  unbalance_wind_up,   ///< friction that follows a rotating weight: elastic-reversal
+  dent,                ///< outside: one target
+  creeping_reversal,   ///< outside: lost motion that grows from zero
+  sawtooth,            ///< outside: a scale of sections that do not meet
+  zero_walk,           ///< outside: random walk of the zero
+  travel_hysteresis,   ///< outside: reversal that depends on the travel since turning
+  wild_run,            ///< unrepeatable: one run scatters much more
+  contradiction,       ///< unrepeatable: readings fall into one of two states
+};
+const char* to_text(Source source);
+/// Kind of the catalogue, "scale"; empty if outside.
+std::string kind_of(Source source);
+
+enum class Kind {
+  one,       ///< one hidden effect, 3.5 to 9 times the noise
+  several,   ///< two or three, 1.6 to 4 times the noise, 1 % misreadings
+  complete,  ///< the model holds all that is there
+  outside,   ///< something outside the catalogue, beside up to two effects of the model
+};
+
+struct Piece {
+  Source source;
+  double size;  ///< RMS of its noiseless deviation, mean taken out, in units of the noise
+};
+
+/// One campaign as it is to be made.
+struct Scenario {
+  Kind kind = Kind::one;
+  std::uint64_t seed = 0;
+  bool rotary = false;
+  std::size_t targets = 21;
+  double length = 1.0;  ///< of the measured stretch, m; 2 pi on a rotary axis
+  bool even = false;    ///< targets at equal distances
+  std::uint32_t runs = 3;
+  bool timed = true;
+  bool temperatures = false;  ///< the readings have a material temperature
+  double dwell = 4.0;         ///< at each target, s
+  double feed = 0.1;          ///< m/s or rad/s
+  double pause = 0.0;         ///< before each further run, s; 0 if not timed
+  double pitch = 0.01;        ///< of the screw, m
+  bool pitch_known = true;    ///< the manifest gives pitch or teeth
+  int teeth = 90;
+  double noise = 5e-7;        ///< standard deviation of a reading, m or rad
+  double misread = 0.0;       ///< share of readings that are wrong by 8 to 40 times the noise
+  std::vector<Piece> model;   ///< causes that the campaign's model holds already
+  std::vector<Piece> hidden;  ///< causes that it does not
+};
+
+/// Random, the same for the same seed; nothing in it that the readings cannot show.
+Scenario random_scenario(Kind kind, std::uint64_t seed);
+
+/// What is true of a parameter of the catalogue: least squares of its columns on the noiseless
+/// deviation of that cause alone.
+struct TrueValue {
+  std::string effect, name;  ///< "backlash:X", "b"
+  double value = 0.0;        ///< SI
+};
+
+struct Truth {
+  std::vector<std::string> model, hidden;  ///< effects, "backlash:X"
+  std::string verdict;                     ///< missing, nothing, unknown, unrepeatable
+  std::vector<std::string> places;         ///< outside: each of these is right; the best first
+  std::optional<double> at;                ///< where it sits, m, rad or s
+  std::vector<TrueValue> values;
+  /// What the named effects leave of their causes, RMS in units of the noise; NaN where that takes
+  /// a search (pitch-curve).
+  std::vector<double> imperfection;
+};
+
+struct Hidden {
+  Scenario scenario;
+  Campaign campaign;  ///< one measurement, axis X or C; model as in the truth
+  Observations table;
+  std::vector<std::vector<double>> causes;  ///< noiseless deviation of model, then of hidden pieces
+  std::vector<std::size_t> misread;         ///< rows
+  Truth truth;
+};
+
+Hidden generate(const Scenario& scenario);
+
+/// campaign.toml and readings into `folder`, the truth into the file `truth` (JSON).
+Expected<void> write(const Hidden& hidden, const std::filesystem::path& folder,
+                     const std::filesystem::path& truth);
+
+}  // namespace nonio::hidden

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "catalogue.h"
+
+namespace nonio::hidden {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+const std::vector<Source>& sources(bool rotary) {
+  static const std::vector<Source> linear = {
+      Source::wrong_scale,   Source::ground_pitch,       Source::lead_error,
+      Source::lost_motion,   Source::preload_loss,       Source::screw_wind_up,
+      Source::dead_path_air, Source::leaning_instrument, Source::screw_heating,
+      Source::slow_heating,  Source::wrong_expansion,    Source::optics_slip};
+  static const std::vector<Source> turning = {Source::lost_motion,      Source::leaning_instrument,
+                                              Source::optics_slip,      Source::eccentric_scale,
+                                              Source::tilted_scale,     Source::worm_mesh,
+                                              Source::unbalance_wind_up};
+  return rotary ? turning : linear;
+}
+
+const std::vector<Source>& outside_sources() {
+  static const std::vector<Source> all = {
+      Source::dent,         Source::creeping_reversal, Source::sawtooth,
+      Source::zero_walk,    Source::travel_hysteresis, Source::wild_run,
+      Source::contradiction};
+  return all;
+}
+
+bool warms(const std::string& kind) {
+  return kind == "warm-up" || kind == "growth-drift" || kind == "temperature";
+}
+
+/// `n` causes of different kinds, none physically one with another.
+std::vector<Piece> pieces(Random& random, bool rotary, std::size_t n, double least, double most) {
+  std::vector<Piece> chosen;
+  while (chosen.size() < n) {
+    const Source source = sources(rotary)[random.below(sources(rotary).size())];
+    const std::string kind = kind_of(source);
+    const bool clashes = std::any_of(chosen.begin(), chosen.end(), [&](const Piece& p) {
+      const std::string other = kind_of(p.source);
+      return other == kind || (warms(other) && warms(kind));
+    });
+    if (!clashes) chosen.push_back({source, random.uniform(least, most)});
+  }
+  return chosen;
+}
+
+/// A screw of the manifest, or an unknown drive (rack and pinion) of a period that a search among
+/// the targets can find.
+void draw_pitch(Scenario& s, Random& random) {
+  if (s.pitch_known) {
+    const double pitches[] = {0.005, 0.008, 0.010, 0.016, 0.020, 0.040};
+    s.pitch = pitches[random.below(6)];
+    return;
+  }
+  const double intervals = static_cast<double>(s.targets - 1), step = s.length / intervals;
+  const double longest = std::min(5.0, intervals / 3.2);
+  s.pitch = std::round(random.spread(s.even ? 2.3 : 0.6, longest) * step * 1e4) * 1e-4;
+}
+
+void draw_cycle(Scenario& s, Random& random) {
+  s.rotary = random.flag(0.35);
+  s.targets = s.rotary ? random.whole(12, 36) : random.whole(11, 31);
+  s.length = s.rotary ? 2.0 * pi : std::round(random.spread(300.0, 3000.0) / 10.0) / 100.0;
+  s.even = random.flag(0.2);
+  s.runs = static_cast<std::uint32_t>(random.whole(2, 5));
+  s.timed = !random.flag(s.kind == Kind::several ? 1.0 / 3.0 : 0.2);
+  s.dwell = random.uniform(4.0, 10.0);
+  s.feed = s.length / random.uniform(10.0, 40.0);
+  s.pause = s.timed && random.flag(0.5) ? random.uniform(20.0, 180.0) : 0.0;
+  s.pitch_known = random.flag(0.5);
+  draw_pitch(s, random);
+  const int teeth[] = {60, 72, 90, 96, 120, 144, 180};
+  s.teeth = teeth[random.below(7)];
+  s.noise =
+      s.rotary ? random.spread(0.1, 1.0) * pi / 180.0 / 3600.0 : random.spread(0.2, 1.5) * 1e-6;
+}
+
+void draw_causes(Scenario& s, Random& random) {
+  switch (s.kind) {
+    case Kind::one:
+      s.hidden = pieces(random, s.rotary, 1, 3.5, 9.0);
+      break;
+    case Kind::several:
+      s.hidden = pieces(random, s.rotary, random.whole(2, 3), 1.6, 4.0);
+      s.misread = 0.01;
+      break;
+    case Kind::complete:
+      s.model = pieces(random, s.rotary, random.whole(1, 4), 1.6, 9.0);
+      s.misread = random.flag(0.5) ? 0.01 : 0.0;
+      break;
+    case Kind::outside:
+      s.model = pieces(random, s.rotary, random.below(3), 1.6, 6.0);
+      s.hidden = {
+          {outside_sources()[random.below(outside_sources().size())], random.uniform(2.5, 6.0)}};
+      break;
+  }
+}
+
+bool any_of(const Scenario& s, Source source) {
+  const auto is = [&](const Piece& p) { return p.source == source; };
+  return std::any_of(s.model.begin(), s.model.end(), is) ||
+         std::any_of(s.hidden.begin(), s.hidden.end(), is);
+}
+
+}  // namespace
+
+Scenario random_scenario(Kind kind, std::uint64_t seed) {
+  // A cause is drawn once and the cycle around it again, so that those that are hard to show are
+  // not rarer than others.
+  Scenario causes;
+  causes.kind = kind;
+  {
+    Random random(seed, 1000 + static_cast<std::uint64_t>(kind));
+    draw_cycle(causes, random);
+    draw_causes(causes, random);
+  }
+  for (std::uint64_t attempt = 0;; ++attempt) {
+    Random random(seed, 2000 + 8 * attempt + static_cast<std::uint64_t>(kind));
+    Scenario s = causes;
+    do draw_cycle(s, random);
+    while (s.rotary != causes.rotary);
+    s.seed = seed * 1000 + attempt;
+    // Causes that no cycle shows together are drawn anew.
+    if (attempt > 0 && attempt % 20 == 0) draw_causes(causes, random), s = causes;
+    if (any_of(s, Source::wild_run)) s.runs = std::max<std::uint32_t>(s.runs, 3);
+    if (any_of(s, Source::worm_mesh)) s.pitch_known = true;
+    s.temperatures = any_of(s, Source::wrong_expansion) || (s.timed && random.flag(0.3));
+    if (shown(s)) return s;
+  }
+}
+
+}  // namespace nonio::hidden
