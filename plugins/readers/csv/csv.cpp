@@ -356,14 +356,16 @@ Expected<void> read_rows(const ReadInput& input, Lines& lines, const Header& hea
 
 }  // namespace
 
-/// UTF-16 is recognised to be refused with a word for it.
+/// UTF-16 is recognised, to be refused with a word for it: Latin letters in it have a zero byte
+/// each, all before them or all behind.
 bool recognises(std::string_view head) {
   std::string narrow;
-  if (const auto zeros = std::count(head.begin(), head.end(), '\0'); zeros > 0) {
+  if (const std::size_t first = head.find('\0'); first != head.npos) {
+    for (std::size_t i = first + 1; i < head.size(); i += 2)
+      if (head[i] == '\0') return false;
     const bool marked = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
     narrow = head.substr(marked ? 2 : 0);
     std::erase(narrow, '\0');
-    if (2 * narrow.size() > head.size()) return false;  // every second byte of Latin letters is 0
     head = narrow;
   }
   Lines lines(head);
