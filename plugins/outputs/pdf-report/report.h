@@ -48,6 +48,15 @@ void add_targets(const Source&, const Measured&, Blocks&);
 void add_plots(const Source&, const Measured&, Blocks&);
 void add_findings(const Source&, const Measured&, Blocks&);
 
+/// What controllers' tables have to say; what several of them say alike once, with all their names.
+struct TableFinding {
+  const Finding* finding;
+  std::string outputs;
+  bool refused;  ///< no file was written
+};
+std::vector<TableFinding> table_findings(const Source&);
+std::string title_of(const Source&, const TableFinding&);
+
 void add_tables(const Source&, Blocks&);
 void add_notes(const Source&, Blocks&);
 
