@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "names.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
@@ -52,6 +53,16 @@ class CampaignRun {
  private:
   bool failed() const { return !out_.results.errors.empty(); }
   void report(Error error) { out_.results.errors.push_back(std::move(error)); }
+  void locate(Error& error, const std::string& plugin = {}) const {
+    host::locate(error, manifest_.lines, context_.site.lines, plugin);
+  }
+  /// An error that a key of the manifest is to blame for.
+  Error at(std::string key, const std::string& message) const {
+    Error error{key + ": " + message};
+    error.key = std::move(key);
+    locate(error);
+    return error;
+  }
 
   bool read_manifest() {
     stage_("reading campaign.toml");
@@ -91,9 +102,8 @@ class CampaignRun {
     const auto path = path_inside(folder_, m.file);
     const auto file = path ? MappedFile::open(*path) : fail(path.error());
     note_input(m.file, file ? sha256(file->bytes()) : absent);
-    if (!path)
-      return fail(Error{"measurement \"" + m.id + "\": " + path.error().message, manifest_name});
-    if (!file) return fail(Error{"measurement \"" + m.id + "\": " + file.error().message, m.file});
+    if (!path) return fail(at("measurement." + m.id + ".file", path.error().message));
+    if (!file) return fail(at("measurement." + m.id + ".file", file.error().message));
     const auto reader = choose_reader(m, file->bytes());
     if (!reader) return fail(reader.error());
     if (*reader == nullptr) return {};
@@ -114,8 +124,11 @@ class CampaignRun {
     if (auto sound = check(*observations); !sound)
       return fail(who + " gave " + sound.error().message);
     into = std::move(*observations);
-    for (const std::string& note : into.notes)
-      out_.results.notes.push_back("measurement " + m.id + ": " + note);
+    word(into.notes);
+    for (Remark note : into.notes) {
+      note.measurement = m.id;
+      out_.results.notes.push_back(std::move(note));
+    }
     return {};
   }
 
@@ -133,10 +146,11 @@ class CampaignRun {
       for (const Reader& r : readers)
         if (r.info.name == m.reader) return &r;
       return fail(
-          Error{"measurement \"" + m.id + "\": " + context_.plugins->absence("reader", m.reader),
-                manifest_name});
+          at("measurement." + m.id + ".reader", context_.plugins->absence("reader", m.reader)));
     }
     bool any = false;
+    if (bytes.find_first_not_of(" \t\r\n") == bytes.npos)
+      return fail(Error{"expected readings, found an empty file", m.file});
     for (const Reader& r : readers) {
       if (!r.reads(m.kind)) continue;
       any = true;
@@ -148,8 +162,8 @@ class CampaignRun {
                 "the format of an installed reader (`nonio plugins`)",
                 m.file});
     unread_.push_back(m.id);
-    out_.results.notes.push_back("measurement " + m.id + ": no installed plugin reads kind \"" +
-                                 m.kind + "\"; it is not evaluated");
+    out_.results.notes.push_back({"measurement.unread", {}, {{"kind", m.kind}}, m.id});
+    word(out_.results.notes);
     return nullptr;
   }
 
@@ -181,6 +195,7 @@ class CampaignRun {
   /// The plugins that are asked for, or all; a name that is not there is an error.
   template <class Plugin>
   std::vector<const Plugin*> chosen(const std::vector<Plugin>& all, const char* kind,
+                                    const char* key,
                                     const std::optional<std::vector<std::string>>& campaign,
                                     const std::optional<std::vector<std::string>>& site) {
     std::vector<const Plugin*> out;
@@ -193,7 +208,7 @@ class CampaignRun {
       const auto found = std::find_if(all.begin(), all.end(),
                                       [&](const Plugin& p) { return p.info.name == name; });
       if (found == all.end())
-        report(Error{std::string("run: ") + context_.plugins->absence(kind, name), manifest_name});
+        report(at(key, context_.plugins->absence(kind, name)));
       else if (std::find(out.begin(), out.end(), &*found) == out.end())
         out.push_back(&*found);
     }
@@ -201,9 +216,9 @@ class CampaignRun {
   }
 
   void analyse() {
-    const auto analyses = chosen(context_.plugins->analyses(), "analysis", manifest_.run.analyses,
-                                 context_.site.run.analyses);
-    check_option_owners();
+    const auto analyses = chosen(context_.plugins->analyses(), "analysis", "run.analyses",
+                                 manifest_.run.analyses, context_.site.run.analyses);
+    for (Error& e : ownerless_options(manifest_.options, *context_.plugins)) report(std::move(e));
     for (std::size_t i = 0; i < observations_.size(); ++i) {
       const Measurement& m = out_.campaign.measurements[i];
       if (observations_[i].size() == 0) continue;
@@ -220,32 +235,17 @@ class CampaignRun {
           if (auto sound = check(*evaluation); !sound)
             evaluation = fail(who + " gave " + sound.error().message);
         if (!evaluation) {
+          locate(evaluation.error(), analysis->info.name);
           if (evaluation.error().file.empty()) evaluation.error().file = m.file;
           report(std::move(evaluation.error()));
           continue;
         }
         for (Finding& f : evaluation->findings) f.measurement = m.id;
+        word(evaluation->notes);
         out_.results.analyses.push_back(
             {analysis->info.name, analysis->info.version, m.id, std::move(*evaluation)});
       }
     }
-  }
-
-  /// `[options.x]` for an x that no plugin is would otherwise be ignored in silence.
-  void check_option_owners() {
-    for (const RawOptions* options :
-         std::initializer_list<const RawOptions*>{&manifest_.options, &context_.site.options})
-      for (const auto& [name, values] : *options) {
-        const auto owns = [&, &n = name](const auto& p) { return p.info.name == n; };
-        const Plugins& all = *context_.plugins;
-        if (std::any_of(all.readers().begin(), all.readers().end(), owns) ||
-            std::any_of(all.analyses().begin(), all.analyses().end(), owns) ||
-            std::any_of(all.outputs().begin(), all.outputs().end(), owns) || values.empty())
-          continue;
-        const RawOption& first = values.begin()->second;
-        report(
-            Error{"options." + name + ": there is no plugin of that name", first.file, first.line});
-      }
   }
 
   static Expected<void> check(const Evaluation& e) {
@@ -304,6 +304,10 @@ class CampaignRun {
     return found;
   }
 
+  void word(std::vector<Remark>& notes) const {
+    for (Remark& note : notes) note.english = remark_text(context_.templates, "en", note);
+  }
+
   /// results.json speaks English; documents look the words up in their own language.
   void fill_advice() {
     for (Results::Analysed& a : out_.results.analyses)
@@ -312,8 +316,8 @@ class CampaignRun {
   }
 
   void write_outputs() {
-    auto outputs = chosen(context_.plugins->outputs(), "output", manifest_.run.outputs,
-                          context_.site.run.outputs);
+    auto outputs = chosen(context_.plugins->outputs(), "output", "run.outputs",
+                          manifest_.run.outputs, context_.site.run.outputs);
     const bool all = !manifest_.run.outputs && !context_.site.run.outputs;
     check_control();
     if (failed()) return;
@@ -325,7 +329,9 @@ class CampaignRun {
           control != output->info.name)
         continue;
       if (!output->applies(out_.campaign)) continue;
-      if (const auto options = settle(output->info)) write_output(*output, *options);
+      const bool asked =
+          !all || output->stage != Output::Stage::table || control == output->info.name;
+      if (const auto options = settle(output->info)) write_output(*output, *options, asked);
     }
   }
 
@@ -337,22 +343,35 @@ class CampaignRun {
     if (control.empty() || std::find(tables.begin(), tables.end(), control) != tables.end()) return;
     std::string list;
     for (const std::string& name : tables) list += (list.empty() ? "" : ", ") + name;
-    report(Error{"machine.control: no output writes tables for \"" + control + "\"" +
-                     suggestion(control, tables) + "; there are " + list,
-                 manifest_name});
+    report(at("machine.control", "no output writes tables for \"" + control + "\"" +
+                                     suggestion(control, tables) + "; there are " + list));
   }
 
-  void write_output(const Output& output, const Settings& options) {
+  /// Without `asked` a table that the control cannot have is worth a finding, not the campaign: it
+  /// was tried only because nobody said which control the machine has.
+  void write_output(const Output& output, const Settings& options, bool asked) {
     const std::string who = "output " + output.info.name;
     stage_(who);
     auto result = guarded(who, [&] {
-      return output.write(
-          {out_.campaign, observations_, out_.results, options, context_.templates});
+      auto written =
+          output.write({out_.campaign, observations_, out_.results, options, context_.templates});
+      if (!written && !asked && written.error().key.empty()) {
+        const std::string why = std::move(written.error().message);
+        written = OutputResult();
+        written->findings.push_back({.id = "table.not-written",
+                                     .attention = true,
+                                     .texts = {{"output", output.info.name}, {"why", why}}});
+      }
+      return written;
     });
     if (result)
       if (auto sound = check(*result); !sound)
         result = fail(who + " gave " + sound.error().message);
-    if (!result) return report(std::move(result.error()));
+    if (!result) {
+      locate(result.error(), output.info.name);
+      return report(std::move(result.error()));
+    }
+    word(result->notes);
     for (Finding& f : result->findings)
       f.advice = finding_text(context_.templates, "en", f, "advice");
     for (const Artifact& a : result->artifacts) names_.insert(a.name);

@@ -37,6 +37,14 @@ Json campaign_json(const Campaign& c) {
   return json;
 }
 
+Json notes_json(const std::vector<Remark>& notes) {
+  Json json = Json::array();
+  for (const Remark& note : notes)
+    json.push_back((note.measurement.empty() ? "" : "measurement " + note.measurement + ": ") +
+                   note.english);
+  return json;
+}
+
 Json value_json(const Value& v, const std::string& measurement, const std::string& plugin,
                 const std::vector<Conformity>& conformity) {
   Json json = {{"value", printed(v.value, v.quantity)}, {"unit", unit_of(v.quantity).symbol}};
@@ -121,7 +129,7 @@ Json analysis_json(const Results::Analysed& a, const std::vector<Conformity>& co
   }
   if (!a.evaluation.series.empty()) json["series"] = series_json(a.evaluation.series);
   json["findings"] = findings_json(a.evaluation.findings, false);
-  if (!a.evaluation.notes.empty()) json["notes"] = a.evaluation.notes;
+  if (!a.evaluation.notes.empty()) json["notes"] = notes_json(a.evaluation.notes);
   return json;
 }
 
@@ -156,7 +164,7 @@ void put_outputs(Json& json, const std::vector<Results::Written>& outputs) {
                              {"unit", unit_of(p.quantity).symbol}});
     if (!predictions.empty()) one["predictions"] = std::move(predictions);
     one["findings"] = findings_json(w.result.findings, true);
-    if (!w.result.notes.empty()) one["notes"] = w.result.notes;
+    if (!w.result.notes.empty()) one["notes"] = notes_json(w.result.notes);
     tables.push_back(std::move(one));
   }
   json["outputs"] = std::move(files);
@@ -195,7 +203,7 @@ std::string results_json(const Evaluated& e, const Context& context) {
     json["conformity"] = std::move(conformity);
   }
   put_outputs(json, e.results.outputs);
-  if (!e.results.notes.empty()) json["notes"] = e.results.notes;
+  if (!e.results.notes.empty()) json["notes"] = notes_json(e.results.notes);
   return dump(json);
 }
 

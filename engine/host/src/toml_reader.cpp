@@ -182,8 +182,11 @@ std::string TableReader::text(const char* key, bool required) {
     return {};
   }
   for (const char c : *value)
-    if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') {
-      error(key, "contains a control character");
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      error(key,
+            std::string("wanted one line of text, found ") + (c == '\n'   ? "a line break"
+                                                              : c == '\t' ? "a tab"
+                                                                          : "a control character"));
       return {};
     }
   if (required && value->empty()) error(key, "is empty");

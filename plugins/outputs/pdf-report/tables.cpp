@@ -99,6 +99,10 @@ bool speaks(const OutputResult& r) {
 
 namespace {
 
+std::string remark(const Source& source, const Remark& note) {
+  return remark_text(source.in.templates, source.language(), note);
+}
+
 /// Whether the measurement's own findings have already said it.
 bool already_said(const Source& source, const Finding& f) {
   for (const Results::Analysed& a : source.in.results.analyses)
@@ -134,8 +138,8 @@ void add_tables(const Source& source, Blocks& blocks) {
       blocks.push_back(std::move(block));
     }
     std::string notes;
-    for (const std::string& note : output.result.notes)
-      notes += (notes.empty() ? "" : " · ") + note;
+    for (const Remark& note : output.result.notes)
+      notes += (notes.empty() ? "" : " ") + remark(source, note);
     if (!notes.empty())
       blocks.push_back(
           {Paragraph{typeset(visible_text(
@@ -155,14 +159,17 @@ void add_notes(const Source& source, Blocks& blocks) {
       blocks.push_back(
           {Paragraph{typeset(visible_text(text, source.fonts)), Paragraph::Look::small}, "notes"});
   };
-  for (const std::string& note : results.notes) add(note);
+  for (const Remark& note : results.notes)
+    add(w.get("status.of_measurement",
+              {{"measurement", note.measurement}, {"what", remark(source, note)}}));
   bool with_U = false, without_U = false;
   std::set<std::string> said;
   std::string methods;
   for (const Results::Analysed& a : results.analyses) {
     for (const Value& v : a.evaluation.values) (v.U ? with_U : without_U) = true;
-    for (const std::string& note : a.evaluation.notes)
-      if (said.insert(note).second) methods += (methods.empty() ? "" : " · ") + note;
+    for (const Remark& note : a.evaluation.notes)
+      if (said.insert(remark(source, note)).second)
+        methods += (methods.empty() ? "" : " ") + remark(source, note);
   }
   add(methods);
   std::string ours;
