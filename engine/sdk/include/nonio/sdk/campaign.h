@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "nonio/sdk/units.h"
 
 namespace nonio {
 
@@ -64,6 +67,17 @@ struct Measurement {
   std::string file;
   std::string reader;                      ///< empty: chosen by content
   std::map<std::string, double> from, to;  ///< ends of a diagonal, m
+  std::vector<std::uint32_t> exclude{};    ///< lines of the file whose readings do not count
+};
+
+/// One change of the model, as it was noted when it was made.
+struct ModelStep {
+  std::string effect;
+  bool added = true;  ///< else dropped
+  Quantity quantity = Quantity::deviation;
+  /// m or rad; absent where that model could not be fitted.
+  std::optional<double> rms_before, rms_after;
+  std::optional<double> cv_before, cv_after, floor;  ///< left-out runs; noise floor
 };
 
 struct Campaign {
@@ -74,6 +88,8 @@ struct Campaign {
   Laboratory laboratory;
   std::vector<Measurement> measurements;
   std::vector<std::string> model;  ///< effects, `kind:axis`
+  bool compensate_model = false;   ///< tables take what the model says, not the readings' means
+  std::vector<ModelStep> model_history;  ///< oldest first
 };
 
 }  // namespace nonio
