@@ -296,7 +296,9 @@ class Explainer {
       const VectorXd part = Eigen::Map<const VectorXd>(
           best_fit_.fit.part[t].data(), static_cast<Index>(best_fit_.fit.part[t].size()));
       const VectorXd centred = part.array() - part.mean();
-      const double rms2 = centred.squaredNorm() / static_cast<double>(part.size());
+      // What it alone can say: effects that cancel each other may both be large.
+      const double rms2 =
+          (bench_->without(best_, index_of(name)).squares - best_.squares) / bench_->readings();
       const auto works_in = factors_of(part_, repeats_, bench_->root_weight(),
                                        bench_->root_weight().cwiseProduct(centred));
       for (const Place& place : serious)
@@ -315,29 +317,60 @@ class Explainer {
     return out;
   }
 
-  bool contradictory() const {
-    if (out_.verdict.suspects_share > 0.06) return true;
-    // One run with a scatter of its own.
+  /// Readings of which half lie on one side and half on the other of a gap: no noise does that.
+  bool two_valued() const {
+    double n = 0.0, second = 0.0, fourth = 0.0;
+    for (std::size_t i = 0; i < weight_.size(); ++i) {
+      if (!(weight_[i] > 0.0)) continue;
+      const double e2 = best_fit_.fit.residual[i] * best_fit_.fit.residual[i];
+      n += 1.0, second += e2, fourth += e2 * e2;
+    }
+    // Excess kurtosis: 0 of normal noise, -1.2 of rounding, -2 of two values.
+    return n >= 40.0 && second > 0.0 && n * fourth / (second * second) - 3.0 < -1.3;
+  }
+
+  /// One run with a scatter of its own.
+  std::optional<Place> wild_run() const {
     std::vector<std::vector<double>> of_run;
     for (std::size_t i = 0; i < part_.table.size(); ++i) {
       const std::size_t run = part_.table.run.empty() ? 0 : part_.table.run[i];
       if (run >= of_run.size()) of_run.resize(run + 1);
-      if (weight_[i] > 0.0) of_run[run].push_back(best_fit_.fit.residual[i]);
+      of_run[run].push_back(best_fit_.fit.residual[i]);
     }
-    double all = 0.0, n = 0.0;
-    for (const auto& e : of_run)
-      for (const double x : e) all += x * x, ++n;
-    const double runs = static_cast<double>(
-        std::count_if(of_run.begin(), of_run.end(), [](const auto& e) { return !e.empty(); }));
+    double all = 0.0, n = 0.0, runs = 0.0;
     for (const auto& e : of_run) {
-      const auto k = static_cast<double>(e.size());
-      if (k < 6.0 || n - k < 6.0) continue;
-      double squares = 0.0;
-      for (const double x : e) squares += x * x;
-      const double F = squares / k / ((all - squares) / (n - k));
-      if (F > 5.0 && math::f_upper(F, k, n - k) * runs < 1e-4) return true;
+      for (const double x : e) all += x * x, ++n;
+      runs += e.empty() ? 0.0 : 1.0;
     }
-    return false;
+    std::optional<Place> worst;
+    for (std::size_t run = 0; run < of_run.size(); ++run) {
+      const auto k = static_cast<double>(of_run[run].size());
+      if (k < 6.0 || n - k < 6.0) continue;
+      // By its median, so that one misread value makes no wild run.
+      std::vector<double> size;
+      double squares = 0.0;
+      for (const double x : of_run[run]) size.push_back(std::fabs(x)), squares += x * x;
+      const double s = 1.4826 * math::median(size);
+      std::vector<double> others;
+      for (std::size_t r = 0; r < of_run.size(); ++r)
+        if (r != run)
+          for (const double x : of_run[r]) others.push_back(std::fabs(x));
+      const double s_others = 1.4826 * math::median(others);
+      const double F = s * s / (s_others * s_others);
+      // A median knows a scatter as well as 0.37 times as many squares do.
+      const double p = math::f_upper(F, 0.37 * k, 0.37 * (n - k)) * runs;
+      if (F < 4.0 || p > 1e-4 || (worst && p >= worst->p)) continue;
+      worst = Place{"run", squares / all, p, s, static_cast<double>(run), Quantity::count};
+    }
+    return worst;
+  }
+
+  bool contradictory() {
+    if (const auto run = wild_run()) {
+      out_.fails.insert(out_.fails.begin(), *run);
+      return true;
+    }
+    return out_.verdict.suspects_share > 0.06 || two_valued();
   }
 
   void judge() {
@@ -366,7 +399,10 @@ class Explainer {
                              best_fit_.fit.s);
     } else if (!serious.empty()) {
       v.kind = Verdict::Kind::unknown;
-      out_.fails = serious;
+      if (auto seats = seats_in(part_, repeats_, out_.comparison); !seats.empty())
+        out_.fails = std::move(seats);
+      else
+        out_.fails = serious;
     }
   }
 
