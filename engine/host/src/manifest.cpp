@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "formula_reader.h"
 #include "nonio/host/nearest.h"
 #include "toml_reader.h"
 
@@ -307,6 +308,7 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
     TableReader reader = source.reader(*model, "model");
     if (auto effects = reader.texts("effects")) campaign.model = std::move(*effects);
     campaign.compensate_model = reader.choice("compensate", {"readings", "model"}) == "model";
+    campaign.formulas = read_formulas(reader, campaign.machine, file, source.errors);
     reader.finish();
   }
   manifest.run = read_run(source, top.table("run"));

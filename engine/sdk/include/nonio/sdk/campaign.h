@@ -70,14 +70,17 @@ struct Measurement {
   std::vector<std::uint32_t> exclude{};    ///< lines of the file whose readings do not count
 };
 
-/// One change of the model, as it was noted when it was made.
-struct ModelStep {
-  std::string effect;
-  bool added = true;  ///< else dropped
-  Quantity quantity = Quantity::deviation;
-  /// m or rad; absent where that model could not be fitted.
-  std::optional<double> rms_before, rms_after;
-  std::optional<double> cv_before, cv_after, floor;  ///< left-out runs; noise floor
+/// An effect of the user's own, without compiling.
+struct Formula {
+  struct Parameter {
+    std::string name;
+    Quantity quantity = Quantity::number;
+    double start = 0.0;                                ///< SI
+    std::optional<std::pair<double, double>> range{};  ///< SI; absent: it enters linearly
+  };
+  std::string name, axis, expression;
+  std::vector<Parameter> parameters;
+  std::uint64_t line = 0;  ///< of the manifest, where the expression stands
 };
 
 struct Campaign {
@@ -89,7 +92,7 @@ struct Campaign {
   std::vector<Measurement> measurements;
   std::vector<std::string> model;  ///< effects, `kind:axis`
   bool compensate_model = false;   ///< tables take what the model says, not the readings' means
-  std::vector<ModelStep> model_history;  ///< oldest first
+  std::vector<Formula> formulas;
 };
 
 }  // namespace nonio
