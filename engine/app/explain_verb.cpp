@@ -107,7 +107,7 @@ class Explain {
   OpenCampaign open_;
   std::optional<host::ModelWords> words_;
   std::vector<host::Explained> all_;
-  std::vector<ModelStep> steps_;
+  std::vector<host::ModelStep> steps_;
   std::vector<std::string> warnings_;
   std::vector<Error> errors_;
   bool failed_ = false;

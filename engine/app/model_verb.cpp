@@ -25,6 +25,11 @@ int show(const ModelOptions& options, const Common& common) {
     tell(text_of(parts.error()));
     return exit_usage;
   }
+  const auto history = host::read_history(open.folder);
+  if (!history) {
+    tell(text_of(history.error()));
+    return exit_failed;
+  }
   const host::ModelWords words(open.place->context.templates, "en");
   std::vector<host::Compared> all;
   std::vector<Error> errors = open.read.errors;
@@ -41,7 +46,7 @@ int show(const ModelOptions& options, const Common& common) {
     std::cout << host::compare_json(all, open.campaign(), words, {}, errors);
   } else {
     for (const host::Compared& one : all) print_model(std::cout, one, words);
-    print_history(std::cout, open.campaign());
+    print_history(std::cout, *history);
   }
   return errors.empty() ? exit_done : exit_failed;
 }

@@ -124,7 +124,7 @@ void print_verdict(std::ostream& out, const host::Explained& e, const host::Mode
         << x.verdict.trials << " shuffles of what is left\n";
 }
 
-void print_bars(std::ostream& out, const ModelStep& step) {
+void print_bars(std::ostream& out, const host::ModelStep& step) {
   const double whole = std::max(
       {step.rms_before.value_or(0.0), step.rms_after.value_or(0.0), step.floor.value_or(0.0)});
   const Quantity q = step.quantity;
@@ -197,7 +197,7 @@ void print_explanation(std::ostream& out, const host::Explained& e, const Campai
 }
 
 void print_change(std::ostream& out, const host::Change& change, const host::ModelWords& words) {
-  const ModelStep& step = change.step;
+  const host::ModelStep& step = change.step;
   out << step.effect << (step.added ? " added" : " dropped") << "; the model is now "
       << (change.effects.empty() ? "empty" : host::listed(change.effects)) << "\n";
   if (!change.no_before.empty()) out << "  before: " << change.no_before << "\n";
@@ -218,13 +218,13 @@ void print_change(std::ostream& out, const host::Change& change, const host::Mod
     out << "  warning: " << warning << "\n";
 }
 
-void print_history(std::ostream& out, const Campaign& campaign) {
-  if (campaign.model_history.empty()) return;
+void print_history(std::ostream& out, const std::vector<host::ModelStep>& history) {
+  if (history.empty()) return;
   out << "history\n";
   double whole = 0.0;
-  for (const ModelStep& step : campaign.model_history)
+  for (const host::ModelStep& step : history)
     whole = std::max({whole, step.rms_before.value_or(0.0), step.rms_after.value_or(0.0)});
-  for (const ModelStep& step : campaign.model_history)
+  for (const host::ModelStep& step : history)
     out << "  " << padded((step.added ? "+ " : "- ") + step.effect, 24)
         << (step.rms_after ? bar(*step.rms_after, whole, bar_width, step.floor) + " " +
                                  with_unit(*step.rms_after, step.quantity)

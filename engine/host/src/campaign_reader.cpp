@@ -9,7 +9,8 @@
 #include "names.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
-#include "nonio/host/model_history.h"
+#include "nonio/host/formula.h"
+#include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::host {
@@ -26,7 +27,7 @@ class CampaignReader {
     out_.effects = context_.plugins->effects();
     if (read_manifest()) {
       read_measurements();
-      read_history();
+      add_formulas();
     }
     for (Observations& o : out_.observations) word(o.notes);
     word(out_.notes);
@@ -184,22 +185,42 @@ class CampaignReader {
     return {};
   }
 
-  /// Its changes are an input of documents that draw them.
-  void read_history() {
-    if (campaign().model.empty()) return;
-    const auto text = read_file(folder_ / history_name);
-    std::error_code error;
-    const bool there = fs::exists(folder_ / history_name, error);
-    note_input(history_name, text ? sha256(*text) : absent);
-    if (!text) {
-      if (there) report(Error{text.error().message, history_name});
-      return;
+  /// The campaign's own effects join those of the plugins.
+  void add_formulas() {
+    const auto parts = model::parts_of(campaign(), out_.observations);
+    for (const Formula& formula : campaign().formulas) {
+      const auto blame = [&](const std::string& why) {
+        report(
+            Error{"model.formula \"" + formula.name + "\": " + why, manifest_name, formula.line});
+      };
+      const auto same_name = [&](const Effect& e) { return e.info.name == formula.name; };
+      if (std::any_of(out_.effects.begin(), out_.effects.end(), same_name)) {
+        blame("an effect of the catalogue has this name");
+        continue;
+      }
+      const Axis& axis = *campaign().machine.axis(formula.axis);  // the manifest was checked
+      auto effect = formula_effect(formula, axis);
+      if (!effect) {
+        blame(effect.error().message);
+        continue;
+      }
+      if (const std::string why = copied(parts, axis, *effect); !why.empty())
+        blame(why);
+      else
+        out_.effects.push_back(std::move(*effect));
     }
-    auto steps = parse_history(*text);
-    if (steps)
-      out_.manifest->campaign.model_history = std::move(*steps);
-    else
-      report(std::move(steps.error()));
+  }
+
+  std::string copied(const std::vector<model::Part>& parts, const Axis& axis,
+                     const Effect& effect) const {
+    for (const model::Part& part : parts) {
+      if (part.axes.front().name != axis.name || !effect.applies(part.table, axis)) continue;
+      const auto same = copy_of(part.table, axis, effect, out_.effects);
+      if (!same) return same.error().message;
+      if (*same == "zero") return "it says no more than the zero of a measurement";
+      if (!same->empty()) return "it says the same as " + *same + " on these readings";
+    }
+    return {};
   }
 
   std::optional<Settings> settle(const Info& info) {

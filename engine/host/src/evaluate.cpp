@@ -139,7 +139,8 @@ class CampaignRun {
     stage_("analysis " + std::string(model_fit_name));
     auto fitted = model_fit(read_, context_);
     if (!fitted) return report(std::move(fitted.error()));
-    for (Results::Analysed& one : *fitted) {
+    out_.results.models = std::move(fitted->models);
+    for (Results::Analysed& one : fitted->analyses) {
       for (Finding& f : one.evaluation.findings) f.measurement = one.measurement;
       word(one.evaluation.notes);
       out_.results.analyses.push_back(std::move(one));

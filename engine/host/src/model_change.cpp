@@ -98,7 +98,6 @@ Expected<Change> change_model(const fs::path& folder, ReadCampaign& read, const 
   change.step = step_of(change, effect, add);
   if (auto written = write(folder, read, change.step); !written) return fail(written.error());
   campaign.model = change.effects;
-  campaign.model_history.push_back(change.step);
   if (const auto text = read_file(folder / manifest_name))
     read.inputs.front().second = sha256(*text);
   return change;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "nonio/host/model_json.h"
@@ -42,8 +43,7 @@ std::vector<Value> values_of(const model::Comparison& c, Quantity q) {
 
 class Findings {
  public:
-  Findings(const PartModel& part, const Campaign& campaign, const Templates& templates)
-      : part_(part), campaign_(campaign), words_(templates, "en") {}
+  Findings(const PartModel& part, const Campaign& campaign) : part_(part), campaign_(campaign) {}
 
   std::vector<Finding> of(const model::Explanation& e) {
     verdict(e);
@@ -56,12 +56,9 @@ class Findings {
 
  private:
   void verdict(const model::Explanation& e) {
-    const Kind kind = e.verdict.kind;
-    if (kind == Kind::nothing) return;
-    Finding f{"model." + std::string(to_text(kind)), true, {}, {}};
-    f.texts.emplace_back("what", words_.verdict(e, part_));
-    if (kind == Kind::missing) f.texts.emplace_back("effect", e.verdict.effect);
-    f.evidence.push_back({"rms", e.comparison.fit.rms, part_.deviation()});
+    if (e.verdict.kind == Kind::nothing) return;
+    Finding f = verdict_finding(e, part_);
+    f.id = "model." + std::string(to_text(e.verdict.kind));
     out_.push_back(std::move(f));
   }
 
@@ -70,8 +67,8 @@ class Findings {
                                     [](const auto& place) { return place.p < model::place_p; });
     if (worst == c.places.end()) return;
     Finding f{"model.fails", true, {}, {{"where", worst->where}}};
-    f.texts.emplace_back("what", words_.place(*worst, part_.axis().rotary));
     f.evidence = {{"share", worst->share, Quantity::ratio},
+                  {"percent", std::round(100.0 * worst->share), Quantity::count},
                   {"p", worst->p, Quantity::probability},
                   {"rms", c.fit.rms, part_.deviation()}};
     if (worst->at && std::isfinite(*worst->at))
@@ -92,12 +89,74 @@ class Findings {
 
   const PartModel& part_;
   const Campaign& campaign_;
-  ModelWords words_;
   std::vector<Finding> out_;
 };
 
 Finding cannot_fit(const std::string& reason) {
   return {"model.cannot-fit", true, {}, {{"reason", reason}}};
+}
+
+void put_readings(ModelFit& out, const Observations& o) {
+  const auto& axis = o.axes.front();
+  out.measurement = o.line;
+  out.source_line = o.source_line;
+  out.run = o.run;
+  out.target = axis.position;
+  out.direction = axis.approach;
+  out.time = o.time;
+  out.temperature = o.material;
+  out.deviation = o.deviation;
+}
+
+void put_fit(ModelFit& out, const model::Comparison& c) {
+  const model::Fit& fit = c.fit;
+  out.residual = fit.residual;
+  out.weight = fit.weight;
+  out.cv_residual = c.cv_residual;
+  for (std::size_t t = 0; t < fit.terms.size(); ++t)
+    out.effects.push_back({fit.terms[t].name(), fit.terms[t].effect->compensable, fit.part[t]});
+  for (const model::Parameter& p : fit.parameters)
+    out.parameters.push_back({p.effect, p.name, p.value,
+                              std::isfinite(p.u) ? std::optional(p.u) : std::nullopt, p.quantity,
+                              p.shape});
+  out.correlation = fit.correlation;
+  if (c.floor) {
+    out.floor = c.floor->s;
+    out.floor_u = c.floor->u;
+  }
+  for (const model::Suspect& s : c.suspects) out.suspects.push_back({s.row, s.minimal_detectable});
+}
+
+/// The error as the model grows in its order; a step that cannot be fitted alone is left out.
+void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& whole) {
+  PartModel grown = part;
+  for (std::size_t n = 0; n < part.terms.size(); ++n) {
+    grown.terms.assign(part.terms.begin(), part.terms.begin() + static_cast<std::ptrdiff_t>(n));
+    if (const auto c = compare_part(grown))
+      out.steps.push_back({n == 0 ? "" : grown.terms.back().name(), c->fit.rms, c->cv_rms});
+  }
+  out.steps.push_back(
+      {part.terms.empty() ? "" : part.terms.back().name(), whole.fit.rms, whole.cv_rms});
+}
+
+/// The value that documents draw.
+ModelFit value_of(const PartModel& part, const model::Explanation& e) {
+  const Axis& axis = part.axis();
+  ModelFit out;
+  out.part = out.axis = axis.name;
+  out.measurements = part.part.measurements;
+  out.rotary = axis.rotary;
+  out.angular = part.part.table.angular;
+  if (axis.rotary && axis.teeth)
+    out.period = 2.0 * std::numbers::pi / static_cast<double>(*axis.teeth);
+  else
+    out.period = axis.screw_pitch;
+  put_readings(out, part.part.table);
+  put_fit(out, e.comparison);
+  put_steps(out, part, e.comparison);
+  out.says = {verdict_finding(e, part)};
+  for (const model::Place& place : e.fails) out.says.push_back(place_finding(place, axis.rotary));
+  return out;
 }
 
 /// Rows that give each target, once from each direction.
@@ -138,12 +197,11 @@ Remark compensated(const PartModel& part, const std::vector<std::string>& effect
 
 }  // namespace
 
-Expected<std::vector<Results::Analysed>> model_fit(const ReadCampaign& read,
-                                                   const Context& context) {
+Expected<ModelFits> model_fit(const ReadCampaign& read, const Context& context) {
   const Campaign& campaign = read.manifest->campaign;
   const auto parts = part_models(read, campaign.model);
   if (!parts) return fail(parts.error());
-  std::vector<Results::Analysed> out;
+  ModelFits out;
   for (const PartModel& part : *parts) {
     Results::Analysed one{model_fit_name, context.version, part.part.measurements.front(), {}};
     Evaluation& evaluation = one.evaluation;
@@ -154,11 +212,12 @@ Expected<std::vector<Results::Analysed>> model_fit(const ReadCampaign& read,
            {{"measurements", listed(part.part.measurements)}, {"axis", part.axis().name}}});
     if (const auto e = explain_part(part, 1)) {
       evaluation.values = values_of(e->comparison, part.deviation());
-      evaluation.findings = Findings(part, campaign, context.templates).of(*e);
+      evaluation.findings = Findings(part, campaign).of(*e);
+      out.models.push_back(value_of(part, *e));
     } else {
       evaluation.findings = {cannot_fit(e.error().message)};
     }
-    out.push_back(std::move(one));
+    out.analyses.push_back(std::move(one));
   }
   return out;
 }

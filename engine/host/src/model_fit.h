@@ -13,10 +13,14 @@ namespace nonio::host {
 
 inline constexpr const char* model_fit_name = "model-fit";
 
+struct ModelFits {
+  std::vector<Results::Analysed> analyses;
+  std::vector<ModelFit> models;  ///< of those that could be fitted
+};
+
 /// One entry for each axis with readings, under its first measurement. A model that cannot be
 /// fitted is a finding; one that names what does not exist is an error.
-Expected<std::vector<Results::Analysed>> model_fit(const ReadCampaign& read,
-                                                   const Context& context);
+Expected<ModelFits> model_fit(const ReadCampaign& read, const Context& context);
 
 /// What a table takes where the manifest says compensate = "model": for each target and direction
 /// that was measured, one reading that is the sum of the model's compensable effects. None of an

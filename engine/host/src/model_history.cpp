@@ -2,6 +2,7 @@
 #include "nonio/host/model_history.h"
 
 #include "json_values.h"
+#include "nonio/host/files.h"
 
 namespace nonio::host {
 
@@ -64,6 +65,14 @@ Expected<std::vector<ModelStep>> parse_history(std::string_view text) {
     }
   }
   return steps;
+}
+
+Expected<std::vector<ModelStep>> read_history(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (!std::filesystem::exists(folder / history_name, error)) return std::vector<ModelStep>{};
+  const auto text = read_file(folder / history_name);
+  if (!text) return fail(text.error());
+  return parse_history(*text);
 }
 
 }  // namespace nonio::host

@@ -54,12 +54,41 @@ std::string ModelWords::says(const std::string& id, std::vector<Number> numbers,
                       "says");
 }
 
+Finding place_finding(const model::Place& place, bool rotary) {
+  return {.id = "place." + place.where,
+          .evidence = {percent("share", place.share),
+                       {"rms", place.rms, deviation_of(rotary)},
+                       {"p", place.p, Quantity::probability}},
+          .texts = {{"where", place.where}}};
+}
+
+Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
+  const model::Verdict& v = e.verdict;
+  const Quantity q = part.deviation();
+  Finding f{.id = "verdict." + id_of(v.kind), .attention = v.kind != Kind::nothing};
+  f.evidence = {{"rms", e.comparison.fit.rms, q}, percent("suspects", v.suspects_share)};
+  if (e.comparison.floor) f.evidence.push_back({"floor", e.comparison.floor->s, q});
+  f.texts = {{"axis", part.axis().name}, {"effect", v.effect}};
+  f.measurement = part.part.measurements.front();
+  if (v.kind == Kind::missing && !e.candidates.empty()) {
+    const model::Candidate& c = e.candidates.front();
+    f.evidence.push_back({"after", c.rms, q});
+    if (!c.aliases.empty()) {
+      f.id = "verdict.missing-or-alias";
+      f.texts.emplace_back("aliases", listed(c.aliases));
+    }
+  }
+  if (v.kind == Kind::nothing && !e.comparison.floor) f.id = "verdict.nothing-without-floor";
+  return f;
+}
+
 std::string ModelWords::place(const model::Place& place, bool rotary) const {
-  const std::vector<Number> numbers = {percent("share", place.share),
-                                       {"rms", place.rms, deviation_of(rotary)},
-                                       {"p", place.p, Quantity::probability}};
-  std::string text = says("place." + place.where, numbers, {});
-  if (text.empty()) text = says("place.other", numbers, {{"where", place.where}});
+  Finding f = place_finding(place, rotary);
+  std::string text = finding_text(templates_, language_, f, "says");
+  if (text.empty()) {
+    f.id = "place.other";
+    text = finding_text(templates_, language_, f, "says");
+  }
   const std::string at = where_largest(place, language_);
   if (at.empty()) return text;
   const std::string largest = says("place.largest." + place.where, {}, {{"at", at}});
@@ -67,25 +96,10 @@ std::string ModelWords::place(const model::Place& place, bool rotary) const {
 }
 
 std::string ModelWords::verdict(const model::Explanation& e, const PartModel& part) const {
-  const model::Verdict& v = e.verdict;
-  const Quantity q = part.deviation();
-  std::vector<Number> numbers = {{"rms", e.comparison.fit.rms, q},
-                                 percent("suspects", v.suspects_share)};
-  if (e.comparison.floor) numbers.push_back({"floor", e.comparison.floor->s, q});
-  std::vector<std::pair<std::string, std::string>> texts = {{"axis", part.axis().name},
-                                                            {"effect", v.effect}};
-  if (!e.fails.empty()) texts.emplace_back("fails", place(e.fails.front(), part.axis().rotary));
-  if (v.kind == Kind::missing && !e.candidates.empty()) {
-    const model::Candidate& c = e.candidates.front();
-    numbers.push_back({"after", c.rms, q});
-    if (!c.aliases.empty()) {
-      texts.emplace_back("aliases", listed(c.aliases));
-      return says("verdict.missing-or-alias", numbers, texts);
-    }
-  }
-  if (v.kind == Kind::nothing && !e.comparison.floor)
-    return says("verdict.nothing-without-floor", numbers, texts);
-  return says("verdict." + id_of(v.kind), numbers, texts);
+  std::string text = finding_text(templates_, language_, verdict_finding(e, part), "says");
+  if (e.verdict.kind == Kind::unknown && !e.fails.empty())
+    text += " " + place(e.fails.front(), part.axis().rotary);
+  return text;
 }
 
 std::string ModelWords::candidate(const model::Candidate& c, const PartModel& part,

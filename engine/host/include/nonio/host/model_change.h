@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "nonio/host/campaign_model.h"
+#include "nonio/host/model_history.h"
 
 namespace nonio::host {
 

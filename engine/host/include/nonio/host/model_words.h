@@ -37,6 +37,10 @@ class ModelWords {
   std::string language_;
 };
 
+/// The same as findings, for documents in any language: ids "verdict.*" and "place.*".
+Finding verdict_finding(const model::Explanation& explanation, const PartModel& part);
+Finding place_finding(const model::Place& place, bool rotary);
+
 /// "12.5 mm", "run 3": where a place is largest; "" if it is not at one place.
 std::string where_largest(const model::Place& place, const std::string& language);
 
