@@ -84,9 +84,13 @@ Expected<std::vector<PartModel>> part_models(const ReadCampaign& read,
   std::vector<PartModel> parts;
   for (model::Part& part : model::parts_of(campaign, read.observations)) {
     auto terms = model::terms_of(part, campaign.machine, effects, read.effects);
-    if (!terms) return at_effects(terms.error().message);
     auto catalogue = model::catalogue(part, read.effects);
-    parts.push_back({std::move(part), std::move(*terms), std::move(catalogue)});
+    PartModel one{std::move(part), {}, std::move(catalogue), {}};
+    if (terms)
+      one.terms = std::move(*terms);
+    else
+      one.unfit = terms.error().message;
+    parts.push_back(std::move(one));
   }
   return parts;
 }
@@ -116,10 +120,12 @@ std::vector<std::string> below_uncertainty(const model::Fit& fit) {
 }
 
 Expected<model::Comparison> compare_part(const PartModel& part) {
+  if (!part.unfit.empty()) return fail(part.unfit);
   return guarded("axis " + part.axis().name, [&] { return model::compare(part.part, part.terms); });
 }
 
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed) {
+  if (!part.unfit.empty()) return fail(part.unfit);
   return guarded("axis " + part.axis().name,
                  [&] { return model::explain(part.part, part.terms, part.catalogue, seed); });
 }

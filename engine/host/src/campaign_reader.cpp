@@ -102,8 +102,8 @@ class CampaignReader {
     }
     if (auto sound = check(*observations); !sound)
       return fail(who + " gave " + sound.error().message);
+    if (auto excluded = exclude(m, *observations); !excluded) return excluded;
     into = std::move(*observations);
-    if (auto excluded = exclude(m, into); !excluded) return excluded;
     for (Remark note : into.notes) {
       note.measurement = m.id;
       out_.notes.push_back(std::move(note));

@@ -51,6 +51,8 @@ class Findings {
     suspects(e.comparison);
     if (const auto small = below_uncertainty(e.comparison.fit); !small.empty())
       out_.push_back({"model.below-uncertainty", false, {}, {{"effects", listed(small)}}});
+    for (Finding& f : out_)
+      std::erase_if(f.evidence, [](const Number& n) { return !std::isfinite(n.value); });
     return std::move(out_);
   }
 

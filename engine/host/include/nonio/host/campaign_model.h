@@ -15,6 +15,7 @@ namespace nonio::host {
 struct PartModel {
   model::Part part;
   std::vector<model::Term> terms, catalogue;
+  std::string unfit;  ///< why these readings cannot show the model; "" if they can
 
   const Axis& axis() const { return part.axes.front(); }
   Quantity deviation() const { return deviation_of(axis().rotary); }
@@ -36,8 +37,8 @@ ReadingPlace place_of(const PartModel& part, const Campaign& campaign, std::size
 std::vector<std::string> model_mistakes(const std::vector<std::string>& effects,
                                         const ReadCampaign& read);
 
-/// One entry for each axis with readings. `effects` is the model, usually that of the manifest. An
-/// error carries the line of [model] effects.
+/// One entry for each axis with readings. `effects` is the model, usually that of the manifest. The
+/// error is a mistake in it, with the line of [model] effects.
 Expected<std::vector<PartModel>> part_models(const ReadCampaign& read,
                                              const std::vector<std::string>& effects);
 
