@@ -22,8 +22,12 @@ std::vector<fs::path> Common::plugin_folders() const {
   if (const char* path = std::getenv("NONIO_PLUGIN_PATH"))
     for (const std::string& p : CLI::detail::split(path, ':'))
       if (!p.empty()) folders.push_back(fs::absolute(p));
-  folders.push_back((program_folder() / NONIO_PLUGINS_FROM_PROGRAM).lexically_normal());
+  folders.push_back(own_plugins());
   return folders;
+}
+
+fs::path Common::own_plugins() {
+  return (program_folder() / NONIO_PLUGINS_FROM_PROGRAM).lexically_normal();
 }
 
 std::vector<fs::path> Common::template_folders() const {

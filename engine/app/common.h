@@ -19,6 +19,7 @@ struct Common {
   /// Given on the command line, then from the environment, then beside the program.
   std::vector<std::filesystem::path> plugin_folders() const;
   std::vector<std::filesystem::path> template_folders() const;
+  static std::filesystem::path own_plugins();
 };
 
 /// --plugin-path, --json, --quiet.

@@ -9,6 +9,7 @@
 #include "nonio/host/plugins.h"
 #include "nonio/host/run.h"
 #include "progress.h"
+#include "simulate_verb.h"
 
 namespace fs = std::filesystem;
 using namespace nonio;
@@ -70,6 +71,7 @@ void print_summary(const host::Night& night, const fs::path& out, bool json) {
 
 int run(host::RunOptions options, const Common& common) {
   options.plugin_folders = common.plugin_folders();
+  options.own_plugins = Common::own_plugins();
   options.template_folders = common.template_folders();
   options.version = NONIO_VERSION;
   struct sigaction action {};
@@ -222,6 +224,10 @@ int main(int argc, char** argv) {
   add_explain_verb(cli, common, outcome);
   add_model_verb(cli, common, outcome);
 
+  app::SimulateVerb simulate;
+  CLI::App* simulate_verb = simulate.add_to(cli);
+  add_common(*simulate_verb, common);
+
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -229,6 +235,8 @@ int main(int argc, char** argv) {
   }
   if (outcome) return *outcome;
   if (plugins_verb->parsed()) return list_plugins(common);
+  if (simulate_verb->parsed())
+    return simulate.run(common.plugin_folders(), common.json, common.quiet);
   options.site = site;
   if (out.empty()) {
     std::cerr << "nonio run: --out is empty; wanted a folder\n";

@@ -223,6 +223,14 @@ std::optional<int> TableReader::whole(const char* key) {
   return static_cast<int>(*value);
 }
 
+std::optional<bool> TableReader::flag(const char* key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const auto value = node->value_exact<bool>();
+  if (!value) wrong_type(key, *node, "true or false");
+  return value;
+}
+
 std::string TableReader::date(const char* key) {
   const toml::node* node = find(key);
   if (node == nullptr) return {};

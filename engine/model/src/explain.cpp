@@ -55,7 +55,7 @@ class Explainer {
  private:
   Expected<void> search() {
     weight_ = weights_without(part_.table.size(), suspects_);
-    bench_.emplace(part_.table, terms_, weight_);
+    bench_.emplace(part_.table, terms_, weight_, repeats_.target);
     State start = bench_->state({});
     for (std::size_t e = 0; e < model_.size(); ++e) {
       const State next = bench_->with(start, bench_->gains(start, e), e);
@@ -317,25 +317,52 @@ class Explainer {
     return out;
   }
 
-  /// Readings of which half lie on one side and half on the other of a gap: no noise does that.
+  /// Repeats of one target fall into two groups with nothing between them: no noise does that.
   bool two_valued() const {
-    double n = 0.0, second = 0.0, fourth = 0.0;
-    for (std::size_t i = 0; i < weight_.size(); ++i) {
-      if (!(weight_[i] > 0.0)) continue;
-      const double e2 = best_fit_.fit.residual[i] * best_fit_.fit.residual[i];
-      n += 1.0, second += e2, fourth += e2 * e2;
+    std::vector<std::pair<double, std::uint32_t>> e;  // residual and cell
+    for (std::size_t i = 0; i < weight_.size(); ++i)
+      if (weight_[i] > 0.0) e.emplace_back(best_fit_.fit.residual[i], repeats_.cell[i]);
+    if (e.size() < 40) return false;
+    std::sort(e.begin(), e.end());
+    const auto n = static_cast<double>(e.size());
+    double sum = 0.0, squares = 0.0;
+    for (const auto& [x, cell] : e) sum += x, squares += x * x;
+    double left = 0.0, best = 0.0;
+    std::size_t split = 0;
+    for (std::size_t i = 0; i + 1 < e.size(); ++i) {
+      left += e[i].first;
+      const double k = static_cast<double>(i + 1);
+      if (k < 0.1 * n || k > 0.9 * n) continue;
+      const double apart = left / k - (sum - left) / (n - k);
+      const double between = apart * apart * k * (n - k) / n;
+      const double within = (squares - sum * sum / n - between) / n;
+      // Of normal noise 7, of evenly spread noise 12.
+      if (apart * apart / within > best) best = apart * apart / within, split = i + 1;
     }
-    // Excess kurtosis: 0 of normal noise, -1.2 of rounding, -2 of two values.
-    return n >= 40.0 && second > 0.0 && n * fourth / (second * second) - 3.0 < -1.3;
+    if (best < 18.0) return false;
+    std::vector<int> side(repeats_.cells, 0);
+    for (std::size_t i = 0; i < e.size(); ++i) side[e[i].second] |= i < split ? 1 : 2;
+    const auto mixed = std::count(side.begin(), side.end(), 3);
+    return static_cast<double>(mixed) > 0.25 * static_cast<double>(repeats_.cells);
+  }
+
+  /// Residuals of the best explanation without what a whole pass shares.
+  std::vector<double> within_passes() const {
+    Repeats alone =
+        repeats_;  // every reading a cell of its own would leave nothing: one cell a pass
+    alone.cell = alone.pass;
+    alone.cells = alone.passes;
+    return saturate(alone, best_fit_.fit.residual, weight_).e;
   }
 
   /// One run with a scatter of its own.
   std::optional<Place> wild_run() const {
     std::vector<std::vector<double>> of_run;
+    const std::vector<double> e_of = within_passes();
     for (std::size_t i = 0; i < part_.table.size(); ++i) {
       const std::size_t run = part_.table.run.empty() ? 0 : part_.table.run[i];
       if (run >= of_run.size()) of_run.resize(run + 1);
-      of_run[run].push_back(best_fit_.fit.residual[i]);
+      of_run[run].push_back(e_of[i]);
     }
     double all = 0.0, n = 0.0, runs = 0.0;
     for (const auto& e : of_run) {

@@ -92,9 +92,7 @@ class Factors {
     Factor runs = binned("run", run, Quantity::count);
     runs.repeated = true;
     add(std::move(runs));
-    // Slower than the cycle of the test, so that a position is not taken for a time.
-    const auto orders = static_cast<int>(std::clamp<std::size_t>(
-        2 * repeats.passes / std::max<std::size_t>(repeats.sides, 1) - 1, 1, 10));
+    const auto orders = static_cast<int>(std::min<std::size_t>(2 * repeats.passes, 16));
     MatrixXd slow(d.size(), orders);
     const VectorXd phase = map(r.t) * (std::numbers::pi / std::max(r.duration, 1e-12));
     for (int k = 0; k < orders; ++k) slow.col(k) = (phase * (k + 1)).array().cos();
@@ -115,11 +113,17 @@ class Factors {
   }
 
   const std::vector<Factor>& all() const { return all_; }
-  /// A pair with what does not vary with its second factor.
+  /// A pair with its first factor; of direction and position, the cells, all of both.
   MatrixXd whole(const Factor& f) const {
     if (!is_pair(f)) return f.columns;
-    const MatrixXd& first = column(f.name.substr(0, f.name.find(" x ")));
-    const MatrixXd& main = first.cols() == 1 ? first : position_;
+    const std::size_t x = f.name.find(" x ");
+    const MatrixXd& first = column(f.name.substr(0, x));
+    MatrixXd main = first.cols() == 1 ? first : position_;
+    if (!f.repeated) {
+      const MatrixXd& second = column(f.name.substr(x + 3));
+      main.conservativeResize(Eigen::NoChange, main.cols() + second.cols());
+      main.rightCols(second.cols()) = second;
+    }
     MatrixXd out(f.columns.rows(), f.columns.cols() + main.cols());
     out << main, f.columns;
     return out;
