@@ -2,6 +2,7 @@
 #include "nonio/host/manifest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -190,6 +191,11 @@ Measurement read_measurement(Source& source, const toml::table& table) {
   if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
     reader.error("lateral", "wanted another axis than " + m.axis +
                                 ", which moves: along it the deviation is one of positioning");
+  for (const double line : reader.numbers("exclude").value_or(std::vector<double>{}))
+    if (line >= 1.0 && line <= 4e9 && line == std::floor(line))
+      m.exclude.push_back(static_cast<std::uint32_t>(line));
+    else
+      reader.error("exclude", "wanted line numbers of the file, whole and from 1");
   const bool spans = m.kind == "diagonal" || m.kind == "step-diagonal";
   for (const auto& [key, ends] : {std::pair{"from", &m.from}, std::pair{"to", &m.to}}) {
     for (const auto& [axis, position] : reader.number_table(key, mm)) (*ends)[axis] = position;
@@ -301,6 +307,7 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
   if (const toml::table* model = top.table("model")) {
     TableReader reader = source.reader(*model, "model");
     if (auto effects = reader.texts("effects")) campaign.model = std::move(*effects);
+    campaign.compensate_model = reader.choice("compensate", {"readings", "model"}) == "model";
     campaign.formulas = read_formulas(reader, campaign.machine, file, source.errors);
     reader.finish();
   }

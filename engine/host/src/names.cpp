@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "model_fit.h"
+
 namespace nonio::host {
 
 namespace {
@@ -18,7 +20,7 @@ void check_names(const std::vector<Plugin>& all, const char* kind, const std::st
                  std::vector<Error>& errors) {
   if (!names) return;
   for (const std::string& name : *names) {
-    if (has(all, name)) continue;
+    if (has(all, name) || name == model_fit_name) continue;
     Error error{key + ": " + context.plugins->absence(kind, name)};
     error.key = key;
     locate(error, {}, context.site.lines);

@@ -291,6 +291,7 @@ std::optional<std::vector<std::string>> TableReader::texts(const char* key) {
 std::optional<std::vector<double>> TableReader::numbers(const char* key) {
   const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;
+  if (node->is_array() && node->as_array()->empty()) return std::vector<double>{};
   const auto setting = node->is_array() ? to_setting(*node) : std::nullopt;
   if (!setting || !std::holds_alternative<std::vector<double>>(*setting)) {
     wrong_type(key, *node, "a list of numbers");

@@ -159,7 +159,9 @@ std::size_t place_of(const Machine& machine, const std::string& axis) {
   return machine.axes.size() + 1;
 }
 
-AxisJob job_of(const OutputInput& input, const Measurement& m, const math::AxisTest& test) {
+AxisJob job_of(const OutputInput& input, std::size_t index) {
+  const Measurement& m = input.campaign.measurements[index];
+  const math::AxisTest test = math::AxisTest::arrange(input.observations[index]);
   AxisJob job;
   job.axis = m.axis;
   job.measurement = m.id;
@@ -167,6 +169,8 @@ AxisJob job_of(const OutputInput& input, const Measurement& m, const math::AxisT
   job.number = place_of(input.campaign.machine, m.axis);
   job.rotary = test.rotary;
   job.curve = math::error_curve(test);
+  if (input.measured != nullptr && index < input.measured->size())
+    job.measured = math::error_curve(math::AxisTest::arrange((*input.measured)[index]));
   if (job.rotary) job.turn = math::closed_turn(job.curve);
   job.reversal = math::assess_reversal(test);
   job.drift = drift_of(test);
@@ -243,7 +247,7 @@ Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
   for (std::size_t i = 0; i < std::min(measurements.size(), input.observations.size()); ++i) {
     const Measurement& m = measurements[i];
     if (m.kind != "axis" || input.observations[i].size() == 0) continue;
-    AxisJob job = job_of(input, m, math::AxisTest::arrange(input.observations[i]));
+    AxisJob job = job_of(input, i);
     if (job.curve.position.size() < 2) {
       result.findings.push_back(
           {"table.too-few-targets",
@@ -384,15 +388,16 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
   const math::Correction correction = [&](double x, int direction) {
     return whole(x, direction) - (direction > 0 ? present / 2.0 : -present / 2.0);
   };
-  const math::MeanDeviations was = math::before(job.curve);
-  const math::MeanDeviations will = math::after(job.curve, correction);
+  const math::ErrorCurve& curve = job.measured ? *job.measured : job.curve;
+  const math::MeanDeviations was = math::before(curve);
+  const math::MeanDeviations will = math::after(curve, correction);
   const Quantity q = deviation_of(job.rotary);
   const auto add = [&](const char* name, double before, double after) {
     if (std::isfinite(before) && std::isfinite(after))
       result.predictions.push_back({job.measurement, name, before, after, q});
   };
-  const bool both = job.curve.bidirectional();
-  add(both ? "E" : (job.curve.plus.empty() ? "E-" : "E+"), was.E(), will.E());
+  const bool both = curve.bidirectional();
+  add(both ? "E" : (curve.plus.empty() ? "E-" : "E+"), was.E(), will.E());
   add("B", was.B(), will.B());
   add("M", was.M(), will.M());
   if (!(will.E() < was.E()))

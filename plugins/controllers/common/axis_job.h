@@ -23,8 +23,9 @@ struct AxisJob {
   std::string stem;        ///< of file names; with the measurement where an axis has two of them
   std::size_t number = 1;  ///< its place among the machine's axes, from 1
   bool rotary = false;
-  math::ErrorCurve curve;                ///< as measured
-  std::optional<math::ErrorCurve> turn;  ///< of a rotary axis measured over the whole turn
+  math::ErrorCurve curve;                    ///< to be compensated: as measured, or the model's
+  std::optional<math::ErrorCurve> measured;  ///< as measured, where `curve` is the model's
+  std::optional<math::ErrorCurve> turn;      ///< of a rotary axis measured over the whole turn
   math::Reversal reversal;
   std::map<std::string, double, std::less<>> settings;  ///< of this axis: option `axes`
   std::vector<std::string> drift;     ///< ids of the findings that ask for attention
