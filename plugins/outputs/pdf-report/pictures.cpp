@@ -3,13 +3,11 @@
 // The page of residuals. Its nine pictures have the same places whatever the data are, so that the
 // eye learns where to look; one whose data are not there says so in its frame.
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 
 #include "nonio/reports/number.h"
+#include "nonio/reports/residuals.h"
 #include "nonio/sdk/format.h"
-#include "picture_data.h"
 #include "report.h"
 
 namespace nonio::pdf_report {
@@ -18,10 +16,6 @@ using namespace reports;
 using Curve = Plot::Curve;
 
 namespace {
-
-bool any_finite(const std::vector<double>& values) {
-  return std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-}
 
 std::vector<double> scaled(std::vector<double> values, double factor) {
   for (double& v : values) v *= factor;
@@ -53,9 +47,39 @@ class Pictures {
     range_ = {(low - edge) * per_si_, (high + edge) * per_si_};
   }
 
-  std::array<Plot, 9> all() const {
-    return {position(),    reversal(),  time(),   run(),     phase(),
-            temperature(), predicted(), normal(), left_out()};
+  Plot draw(Picture picture, const PictureWords& said) const {
+    Plot plot = frame(said);
+    if (!said.none.empty()) return plot;
+    switch (picture) {
+      case Picture::position:
+        position(plot);
+        break;
+      case Picture::reversal:
+        reversal(plot);
+        break;
+      case Picture::time:
+        time(plot, said.x_per_si);
+        break;
+      case Picture::run:
+        run(plot);
+        break;
+      case Picture::phase:
+        residuals(plot, phase_of(fit_, period_of(fit_)), said.x_per_si);
+        break;
+      case Picture::temperature:
+        residuals(plot, fit_.temperature, said.x_per_si);
+        break;
+      case Picture::predicted:
+        predicted(plot);
+        break;
+      case Picture::normal:
+        normal(plot);
+        break;
+      case Picture::left_out:
+        scatter(plot, scaled(fit_.target, said.x_per_si), scaled(fit_.cv_residual, per_si_));
+        break;
+    }
+    return plot;
   }
 
   std::string legend() const {
@@ -73,31 +97,19 @@ class Pictures {
   }
 
  private:
-  /// A frame with its words; `over` is the title of the horizontal axis.
-  Plot frame(const std::string& name, std::string over) const {
+  Plot frame(const PictureWords& said) const {
     Plot plot;
-    plot.title = words_.get("picture." + name + ".title");
-    plot.x_title = std::move(over);
-    plot.y_title = words_.get("picture.residual", {{"unit", unit_text(deviation_)}});
+    plot.title = said.title;
+    plot.x_title = said.x;
+    plot.y_title = said.y;
+    plot.degrees = said.degrees;
     plot.language = source_.language();
-    plot.empty_text = words_.get("picture.no_readings");
+    plot.empty_text = said.none;
     plot.range = range_;
     if (fit_.floor) {
       const double half = 2 * *fit_.floor * per_si_;
       plot.belts.push_back({-half, half, style_.rule});
     }
-    return plot;
-  }
-
-  std::string along() const {
-    return source_.words.get("plot.position",
-                             {{"axis", fit_.axis}, {"unit", unit_text(position_)}});
-  }
-
-  /// Nothing but the reason why.
-  static Plot without(Plot plot, std::string why) {
-    plot.curves.clear();
-    plot.empty_text = std::move(why);
     return plot;
   }
 
@@ -145,9 +157,7 @@ class Pictures {
     line(plot, scaled(mean.x, per_si), scaled(mean.y, per_si_), style_.text);
   }
 
-  Plot position() const {
-    Plot plot = frame("position", along());
-    plot.degrees = fit_.rotary;
+  void position(Plot& plot) const {
     const double across = unit_of(position_).per_si;
     scatter(plot, scaled(fit_.target, across), scaled(fit_.residual, per_si_));
     for (const int d : {+1, -1, 0}) {
@@ -158,17 +168,12 @@ class Pictures {
                    : style_.accent,
            d < 0 ? Dash::dashed : Dash::solid);
     }
-    return plot;
   }
 
-  Plot reversal() const {
-    Plot plot = frame("reversal", along());
-    plot.y_title = words_.get("picture.reversal.y", {{"unit", unit_text(deviation_)}});
-    plot.degrees = fit_.rotary;
+  void reversal(Plot& plot) const {
     plot.range.reset();
     plot.belts.clear();
     const Reversal r = reversal_of(fit_);
-    if (r.values.x.empty()) return without(std::move(plot), words_.get("picture.reversal.none"));
     const auto x = scaled(r.values.x, unit_of(position_).per_si);
     if (fit_.floor) {
       Curve band;
@@ -187,90 +192,36 @@ class Pictures {
     values.marker = Marker::dot;
     values.marker_size = 1.8;
     plot.curves.push_back(std::move(values));
-    return plot;
   }
 
-  Plot time() const {
-    double first = INFINITY, last = -INFINITY;
-    for (const double t : fit_.time)
-      if (std::isfinite(t)) first = std::min(first, t), last = std::max(last, t);
-    const double span = last - first;
-    const auto [unit, per_si] = span > 7200  ? std::pair("h", 1.0 / 3600)
-                                : span > 300 ? std::pair("min", 1.0 / 60)
-                                             : std::pair("s", 1.0);
-    Plot plot = frame("time", words_.get("picture.time.x", {{"unit", unit}}));
-    if (!(first <= last)) return without(std::move(plot), words_.get("picture.time.none"));
+  void time(Plot& plot, double per_si) const {
     std::vector<double> t = fit_.time;
+    double first = INFINITY;
+    for (const double v : t)
+      if (std::isfinite(v)) first = std::min(first, v);
     for (double& v : t) v -= first;
     residuals(plot, t, per_si);
-    return plot;
   }
 
-  Plot run() const {
-    Plot plot = frame("run", words_.get("picture.run.x"));
+  void run(Plot& plot) const {
     plot.whole = true;
-    if (fit_.run.empty()) return without(std::move(plot), words_.get("picture.run.none"));
     scatter(plot, {fit_.run.begin(), fit_.run.end()}, scaled(fit_.residual, per_si_));
     const Trace mean = mean_by_run(fit_);
     line(plot, mean.x, scaled(mean.y, per_si_), style_.text);
-    return plot;
   }
 
-  Plot phase() const {
-    const bool turn = fit_.rotary && !fit_.period;
-    const std::string name = !fit_.rotary ? "phase" : turn ? "angle" : "mesh";
-    Plot plot = frame(name, words_.get("picture." + name + ".x", {{"unit", unit_text(position_)}}));
-    plot.degrees = turn;
-    if (!turn && !(fit_.period && *fit_.period > 0))
-      return without(std::move(plot), words_.get("picture.phase.none"));
-    const double period = turn ? 2 * std::numbers::pi : *fit_.period;
-    const auto x = phase_of(fit_, period);
-    if (one_phase(x, period))
-      return without(
-          std::move(plot),
-          words_.get("picture.phase.one", {{"period", plain_number(source_, period, position_)},
-                                           {"unit", unit_text(position_)}}));
-    residuals(plot, x, unit_of(position_).per_si);
-    return plot;
-  }
-
-  Plot temperature() const {
-    Plot plot = frame("temperature", words_.get("picture.temperature.x"));
-    if (!any_finite(fit_.temperature))
-      return without(std::move(plot), words_.get("picture.temperature.none"));
-    residuals(plot, fit_.temperature, 1.0);
-    return plot;
-  }
-
-  Plot predicted() const {
-    Plot plot =
-        frame("predicted", words_.get("picture.predicted.x", {{"unit", unit_text(deviation_)}}));
+  void predicted(Plot& plot) const {
     std::vector<double> x = fit_.deviation;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] -= fit_.residual[i];
     residuals(plot, x, per_si_);
-    return plot;
   }
 
-  Plot normal() const {
-    Plot plot = frame("normal", words_.get("picture.normal.x"));
+  void normal(Plot& plot) const {
     const Normal n = normal_plot(fit_);
     scatter(plot, n.values.x, scaled(n.values.y, per_si_), n.row);
-    if (fit_.floor && !n.values.x.empty()) {
-      const double low = n.values.x.front(), high = n.values.x.back(), s = *fit_.floor * per_si_;
-      line(plot, {low, high}, {low * s, high * s}, style_.text, Dash::dashed);
-    }
-    return plot;
-  }
-
-  Plot left_out() const {
-    Plot plot = frame("left-out", along());
-    plot.y_title = words_.get("picture.left-out.y", {{"unit", unit_text(deviation_)}});
-    plot.degrees = fit_.rotary;
-    if (!any_finite(fit_.cv_residual))
-      return without(std::move(plot), words_.get("picture.left-out.none"));
-    scatter(plot, scaled(fit_.target, unit_of(position_).per_si),
-            scaled(fit_.cv_residual, per_si_));
-    return plot;
+    if (!fit_.floor) return;
+    const double low = n.values.x.front(), high = n.values.x.back(), s = *fit_.floor * per_si_;
+    line(plot, {low, high}, {low * s, high * s}, style_.text, Dash::dashed);
   }
 
   const Source& source_;
@@ -298,17 +249,14 @@ void add_pictures(const Source& source, const ModelFit& fit, Blocks& blocks) {
   const double captions = 3 * (4 * 1.3 * style.small + 7);
   const double height =
       (page_room(style) - 2 * style.heading - 18 - 4 * style.small - captions) / 3;
-  constexpr std::array names = {"position",    "reversal",  "time",   "run",     "phase",
-                                "temperature", "predicted", "normal", "left-out"};
-  auto plots = pictures.all();
-  for (std::size_t i = 0; i < plots.size(); i += per_row) {
+  const auto said = picture_words(fit, source.pictures);
+  for (std::size_t i = 0; i < said.size(); i += per_row) {
     Columns row;
     for (std::size_t k = i; k < i + per_row; ++k) {
-      plots[k].height = height;
-      const bool turn = std::string_view(names[k]) == "phase" && fit.rotary;
-      const std::string says = std::string("picture.") + (turn ? "angle" : names[k]) + ".says";
-      row.parts.push_back({{std::move(plots[k]), field},
-                           {Paragraph{source.pictures.get(says), Paragraph::Look::muted}, field}});
+      Plot plot = pictures.draw(static_cast<Picture>(k), said[k]);
+      plot.height = height;
+      row.parts.push_back(
+          {{std::move(plot), field}, {Paragraph{said[k].says, Paragraph::Look::muted}, field}});
     }
     blocks.push_back({std::move(row), field});
   }

@@ -1,13 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <array>
+#include <string>
 #include <vector>
 
+#include "nonio/reports/wording.h"
 #include "nonio/sdk/results.h"
 
-/// The numbers behind the pictures of residuals. SI.
-namespace nonio::pdf_report {
+/// The words and numbers behind the nine pictures of residuals. SI.
+namespace nonio::reports {
+
+/// The pictures in the order that never changes.
+enum class Picture {
+  position,
+  reversal,
+  time,
+  run,
+  phase,
+  temperature,
+  predicted,
+  normal,
+  left_out
+};
+
+/// What one of them says; `none`: why there is nothing to draw, empty if there is something.
+struct PictureWords {
+  std::string title, x, y, says, none;
+  std::string time_unit{};  ///< of the third: s, min or h
+  double x_per_si = 1.0;  ///< what x is multiplied by before it is printed
+  bool degrees = false;   ///< x is an angle of the turn
+};
+/// The words are those of templates/words/<language>/pictures.toml.
+std::array<PictureWords, 9> picture_words(const ModelFit&, const Wording&);
+
+/// The period of the fifth picture: screw pitch, tooth, or a whole turn; 0 if it is not known.
+double period_of(const ModelFit&);
 
 /// A curve, or points.
 struct Trace {
@@ -37,9 +65,6 @@ Reversal reversal_of(const ModelFit&);
 /// Position within one period, 0 <= phase < period, of each reading.
 std::vector<double> phase_of(const ModelFit&, double period);
 
-/// Whether all readings lie within 2 % of the period of each other, so that nothing is to be seen.
-bool one_phase(const std::vector<double>& phase, double period);
-
 /// Ordered residuals over the quantiles of the normal distribution at (i - 1/2)/n; of many all the
 /// outer ones and some of the inner ones. `row`: the readings.
 struct Normal {
@@ -48,4 +73,4 @@ struct Normal {
 };
 Normal normal_plot(const ModelFit&);
 
-}  // namespace nonio::pdf_report
+}  // namespace nonio::reports
