@@ -139,6 +139,7 @@ class BarSetter {
       auto text = set_line(context_, bar.text, false, size_ - 0.5, 0.3 * width_, field_);
       if (!text) return fail(text.error());
       canvas_.fill_colour(style_.text);
+      if (chart_.line) end = std::max(end, at(chart_.line->at + chart_.line->half));
       text->draw(canvas_, 0, end + 3, y + 0.9);
     }
     y_ -= row_height();

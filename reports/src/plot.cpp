@@ -199,11 +199,15 @@ std::vector<Point> scattered(const Frame& frame, const Curve& curve, double plac
 }
 
 void draw_points(Canvas& canvas, const Frame& frame, const Curve& curve) {
-  constexpr std::size_t many = 600;
-  const auto points = scattered(frame, curve, curve.x.size() > many ? 1.0 : 0.05);
-  if (points.size() > many) return canvas.dots(points, 0.55 * curve.marker_size, curve.colour);
-  for (const auto& [x, y] : points)
-    draw_marker(canvas, curve.marker, x, y, curve.marker_size, curve.colour);
+  constexpr std::size_t many = 1000;
+  if (curve.x.size() > many) {
+    const double diameter = 0.8 * curve.marker_size;
+    return canvas.dots(scattered(frame, curve, diameter), diameter, curve.colour);
+  }
+  for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i)
+    if (drawable(curve.x[i]) && drawable(curve.y[i]))
+      draw_marker(canvas, curve.marker, frame.px(curve.x[i]), frame.py(curve.y[i]),
+                  curve.marker_size, curve.colour);
 }
 
 class PlotSetter {

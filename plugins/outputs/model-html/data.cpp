@@ -68,12 +68,22 @@ std::string column(const std::vector<T>& values, const std::vector<std::size_t>&
   });
 }
 
+/// A sample by this order falls in step with nothing that a test cycle repeats (the finaliser of
+/// SplitMix64: Steele, Lea, Flood, OOPSLA 2014).
+std::uint64_t scrambled(std::size_t row) {
+  std::uint64_t z = row + 0x9e3779b97f4a7c15U;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
+  return z ^ (z >> 31);
+}
+
 std::string words_of(const Source& source) {
   Object out;
   for (const char* name : {"rms_now", "without", "reading", "deviation", "model", "residual",
                            "time", "temperature", "line", "suspect", "reversal"})
     out.text(name, source.words.get(std::string("page.") + name));
   out.text("no_readings", source.words.get("picture.no_readings"));
+  out.text("one_direction", source.words.get("picture.reversal.none"));
   return out.done();
 }
 
@@ -105,17 +115,19 @@ Kept kept_readings(const ModelFit& fit) {
   std::iota(kept.rows.begin(), kept.rows.end(), std::size_t{0});
   kept.counted.assign(fit.size(), 1);
   if (fit.size() <= most_readings) return kept;
-  constexpr std::size_t largest = most_readings / 10;
-  const std::size_t step = (fit.size() - 1) / (most_readings - largest) + 1;
+  constexpr std::size_t largest = most_readings / 100;
   std::vector<std::size_t> order = kept.rows;
-  std::nth_element(order.begin(), order.begin() + largest, order.end(),
-                   [&](std::size_t a, std::size_t b) {
-                     const double x = std::fabs(fit.residual[a]), y = std::fabs(fit.residual[b]);
-                     return x > y || (x == y && a < b);
-                   });
+  const auto first = [&](std::size_t n, const auto& key) {
+    std::nth_element(
+        order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n), order.end(),
+        [&](std::size_t a, std::size_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
+    return std::vector(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n));
+  };
   std::map<std::size_t, char> rows;
-  for (std::size_t i = 0; i < largest; ++i) rows[order[i]] = 0;
-  for (std::size_t i = 0; i < fit.size(); i += step) rows[i] = 1;
+  for (const std::size_t i :
+       first(largest, [&](std::size_t row) { return -std::fabs(fit.residual[row]); }))
+    rows[i] = 0;
+  for (const std::size_t i : first(most_readings - largest, scrambled)) rows[i] = 1;
   kept = {};
   for (const auto& [row, counted] : rows) kept.rows.push_back(row), kept.counted.push_back(counted);
   return kept;

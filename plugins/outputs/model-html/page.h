@@ -20,8 +20,8 @@ struct Source {
 
 inline constexpr std::size_t most_readings = 20000;
 
-/// The readings that the page holds: all, or of many every k-th, and with them those with the
-/// largest residuals, which are drawn but do not count in RMS and means.
+/// The readings that the page holds: all, or of many a sample, and with it those with the largest
+/// residuals, which are drawn but do not count in RMS and means.
 struct Kept {
   std::vector<std::size_t> rows;
   std::vector<char> counted;

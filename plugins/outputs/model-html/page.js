@@ -8,7 +8,7 @@
   const wrong = new Map(data.suspects);
   const out = {e: new Set(), d: new Set(), r: new Set()};
   const runs = [...new Set(data.run)].sort((a, b) => a - b);
-  let residual = data.residual, shown = [], range = [0, 1], pictures = [], marked = -1;
+  let residual = data.residual, shown = [], range = [0, 1], pictures = [], marked = -1, printing = false;
 
   const text = (template, places) =>
     template.replace(/\{(\w+)\}/g, (all, name) => (name in places ? places[name] : all));
@@ -101,7 +101,7 @@
       const figure = document.getElementById("picture-" + k);
       this.svg = figure.querySelector("svg");
       this.svg.replaceChildren();
-      const width = Math.max(220, Math.round(figure.clientWidth) || 320), height = 230;
+      const width = printing ? 240 : Math.max(220, Math.round(figure.clientWidth) || 320), height = 230;
       this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
       Object.assign(this, {k, x: 46, y: 6, w: width - 52, h: height - 44, points: []});
       const said = data.pictures[k];
@@ -137,7 +137,7 @@
       put(svg, "rect", {class: "frame", x, y, width: w, height: h});
       put(svg, "text", {x: x + w / 2, y: y + h + 31, "text-anchor": "middle"}, said.x);
       put(svg, "text", {transform: `translate(11 ${y + h / 2}) rotate(-90)`, "text-anchor": "middle"}, said.y);
-      if (this.empty) put(svg, "text", {x: x + w / 2, y: y + h / 2, "text-anchor": "middle"}, words.no_readings);
+      if (this.empty) put(svg, "text", {x: x + w / 2, y: y + h / 2 - 8, "text-anchor": "middle"}, this.k === 1 ? words.one_direction : words.no_readings);
     }
     own_band() { return this.k === 1; }
     line(xs, ys, look) {
@@ -258,7 +258,7 @@
     return z;
   }
   function by_normal() {
-    const order = shown.slice().sort((a, b) => residual[a] - residual[b]), m = order.length;
+    const order = shown.filter((i) => data.weight[i] > 0 || wrong.has(i)).sort((a, b) => residual[a] - residual[b]), m = order.length;
     const outer = 300, step = m > 1600 ? Math.floor((m - 2 * outer) / 1000) : 1;
     const kept = [], zs = [];
     order.forEach((i, j) => {
@@ -300,7 +300,7 @@
     });
     const now = rms(), all = out.e.size === 0;
     document.getElementById("rms").textContent =
-      (finite(now) ? text(words.rms_now, {rms: number(now, 2), unit: data.unit, count: shown.length}) : words.no_readings) +
+      (finite(now) ? text(words.rms_now, {rms: number(now, 2), unit: data.unit, count: shown.filter((i) => data.weight[i] > 0 || wrong.has(i)).length}) : words.no_readings) +
       (all ? "" : " " + text(words.without, {effects: [...out.e].sort().map((e) => data.effects[e].name).join(", ")}));
     mark(marked);
   }
@@ -417,6 +417,11 @@
     recall();
     draw();
   });
+  for (const [event, now] of [["beforeprint", true], ["afterprint", false]])
+    window.addEventListener(event, () => {
+      printing = now;
+      draw();
+    });
   recall();
   draw();
 })();

@@ -189,8 +189,10 @@ class Pictures {
     values.x = x;
     values.y = scaled(r.values.y, per_si_);
     values.colour = style_.accent;
+    plot.curves.push_back(values);
+    values.kind = Curve::Kind::points;
     values.marker = Marker::dot;
-    values.marker_size = 1.8;
+    values.marker_size = 1.6;
     plot.curves.push_back(std::move(values));
   }
 
@@ -245,10 +247,11 @@ void add_pictures(const Source& source, const ModelFit& fit, Blocks& blocks) {
   blocks.push_back(
       {Heading{source.pictures.get("picture.heading", {{"part", fit.part}}), 1}, field});
   blocks.push_back({Paragraph{pictures.legend(), Paragraph::Look::small}, field});
-  // What heading, legend and captions of up to four lines need is not there for the plots.
-  const double captions = 3 * (4 * 1.3 * style.small + 7);
-  const double height =
-      (page_room(style) - 2 * style.heading - 18 - 4 * style.small - captions) / 3;
+  // What heading, legend, captions of up to three lines and gaps need is not there for the plots.
+  constexpr double between = 7;
+  const double heading = 9 + 1.3 * style.heading + 6, legend = 3 * 1.3 * style.small + 2;
+  const double around = 5 + 3 * 1.3 * style.small + 2 + between;
+  const double height = (page_room(style) - heading - legend) / 3 - around;
   const auto said = picture_words(fit, source.pictures);
   for (std::size_t i = 0; i < said.size(); i += per_row) {
     Columns row;
@@ -259,6 +262,7 @@ void add_pictures(const Source& source, const ModelFit& fit, Blocks& blocks) {
           {{std::move(plot), field}, {Paragraph{said[k].says, Paragraph::Look::muted}, field}});
     }
     blocks.push_back({std::move(row), field});
+    blocks.push_back({Spacer{between}});
   }
 }
 
