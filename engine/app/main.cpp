@@ -9,6 +9,7 @@
 #include "nonio/host/plugins.h"
 #include "nonio/host/run.h"
 #include "progress.h"
+#include "simulate_verb.h"
 
 namespace fs = std::filesystem;
 using namespace nonio;
@@ -35,8 +36,11 @@ struct Common {
     if (const char* path = std::getenv("NONIO_PLUGIN_PATH"))
       for (const std::string& p : CLI::detail::split(path, ':'))
         if (!p.empty()) folders.push_back(fs::absolute(p));
-    folders.push_back((program_folder() / NONIO_PLUGINS_FROM_PROGRAM).lexically_normal());
+    folders.push_back(own_plugins());
     return folders;
+  }
+  static fs::path own_plugins() {
+    return (program_folder() / NONIO_PLUGINS_FROM_PROGRAM).lexically_normal();
   }
   std::vector<fs::path> template_folders() const {
     std::vector<fs::path> folders{
@@ -112,6 +116,7 @@ void print_summary(const host::Night& night, const fs::path& out, bool json) {
 
 int run(host::RunOptions options, const Common& common) {
   options.plugin_folders = common.plugin_folders();
+  options.own_plugins = Common::own_plugins();
   options.template_folders = common.template_folders();
   options.version = NONIO_VERSION;
   struct sigaction action {};
@@ -266,12 +271,18 @@ int main(int argc, char** argv) {
       cli.add_subcommand("plugins", "What is loaded, with its options, and what was refused");
   add_common(*plugins_verb, common);
 
+  app::SimulateVerb simulate;
+  CLI::App* simulate_verb = simulate.add_to(cli);
+  add_common(*simulate_verb, common);
+
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return cli.exit(e) == 0 ? exit_done : exit_usage;
   }
   if (plugins_verb->parsed()) return list_plugins(common);
+  if (simulate_verb->parsed())
+    return simulate.run(common.plugin_folders(), common.json, common.quiet);
   options.site = site;
   if (out.empty()) {
     std::cerr << "nonio run: --out is empty; wanted a folder\n";

@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "formula_reader.h"
 #include "nonio/host/nearest.h"
 #include "toml_reader.h"
 
@@ -282,6 +283,7 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
   if (const toml::table* model = top.table("model")) {
     TableReader reader = source.reader(*model, "model");
     if (auto effects = reader.texts("effects")) campaign.model = std::move(*effects);
+    campaign.formulas = read_formulas(reader, campaign.machine, file, source.errors);
     reader.finish();
   }
   manifest.run = read_run(source, top.table("run"));

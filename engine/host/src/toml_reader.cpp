@@ -18,7 +18,8 @@ bool is_bare_key_character(char c) {
 }
 
 /// What toml++ 3.3 meets with undefined behaviour instead of an error: a byte outside ASCII that
-/// stands in neither a string nor a comment, and a table header that begins with no key.
+/// stands in neither a string nor a comment, or where a text goes on after a backslash; and a table
+/// header that begins with no key.
 class Precheck {
  public:
   explicit Precheck(std::string_view text) : text_(text) {}
@@ -33,12 +34,18 @@ class Precheck {
         ++line;
         line_begins = true;
         if (closing_.size() == 1) closing_ = {};
+        if (open_.empty()) wants_value_ = false;
+        in_word_ = false;
         continue;
       }
-      const bool header = line_begins && c == '[' && depth_ == 0 && closing_.empty();
+      const bool header = line_begins && c == '[' && open_.empty() && closing_.empty();
       if (c != ' ' && c != '\t') line_begins = false;
       if (header && !key_follows()) return "wanted the name of a table after [";
       if (quote_within_word()) return "a quote in the middle of a word";
+      if (goes_on_outside_ascii())
+        return "after \\ and blanks a text in \"\"\" cannot go on with a letter outside ASCII "
+               "here: "
+               "leave the \\ out, or break the line elsewhere";
       if (!step(c)) return "a letter outside a-z 0-9 _ - needs quotes around it";
     }
     return {};
@@ -48,8 +55,16 @@ class Precheck {
   /// There toml++ goes on in the word, and may meet in it what stands in a string here.
   bool quote_within_word() const {
     const bool opens = closing_.empty() && (text_[at_] == '"' || text_[at_] == '\'');
-    return opens && at_ > 0 &&
-           std::string_view(" \t\r\n=,[{.\xBF").find(text_[at_ - 1]) == std::string_view::npos;
+    return opens &&
+           (in_word_ || (at_ > 0 && std::string_view(" \t\r\n=,[{.\xBF").find(text_[at_ - 1]) ==
+                                        std::string_view::npos));
+  }
+
+  /// There toml++ asks whether it is one more blank to skip, which it knows of few such letters.
+  bool goes_on_outside_ascii() const {
+    if (text_[at_] != '\\' || closing_ != "\"\"\"") return false;
+    const std::size_t next = text_.find_first_not_of(" \t\r\n", at_ + 1);
+    return next != std::string_view::npos && static_cast<unsigned char>(text_[next]) >= 0x80;
   }
 
   bool key_follows() const {
@@ -65,33 +80,49 @@ class Precheck {
   }
 
   bool step(char c) {
-    const std::string_view rest = text_.substr(at_);
     if (!closing_.empty()) {
       if (c == '\\' && closing_[0] == '"') {
-        if (rest.size() > 1 && rest[1] != '\n') ++at_;
-      } else if (rest.starts_with(closing_)) {
+        if (at_ + 1 < text_.size() && text_[at_ + 1] != '\n') ++at_;
+      } else if (c == closing_[0] && text_.substr(at_).starts_with(closing_)) {
         at_ += closing_.size() - 1;
         closing_ = {};
       }
-    } else if (rest.starts_with("\"\"\"") || rest.starts_with("'''")) {
-      closing_ = rest.substr(0, 3);
-      at_ += 2;
     } else if (c == '"' || c == '\'') {
-      closing_ = rest.substr(0, 1);
+      const bool three = text_.substr(at_).starts_with(std::string(3, c));
+      closing_ = text_.substr(at_, three ? 3 : 1);
+      at_ += closing_.size() - 1;
     } else if (c == '#') {
       closing_ = "\n";
-    } else if (c == '[') {
-      ++depth_;
-    } else if (c == ']') {
-      depth_ = std::max(0, depth_ - 1);
+    } else {
+      step_outside(c);
     }
     return !closing_.empty() || static_cast<unsigned char>(c) < 0x80;
+  }
+
+  /// Outside strings and comments: keys or values, and whether a value without quotes has begun.
+  void step_outside(char c) {
+    if (std::string_view(" \t\r,]}").find(c) != std::string_view::npos) {
+      in_word_ = false;
+      if (c == ',') wants_value_ = !open_.empty() && open_.back() == '[';
+      if ((c == ']' || c == '}') && !open_.empty()) open_.pop_back();
+    } else if (in_word_) {
+      return;
+    } else if (c == '=') {
+      wants_value_ = true;
+    } else if (c == '[' || c == '{') {
+      // A bracket where a key is wanted is that of a table's header: keys stand in it.
+      open_ += wants_value_ ? c : '{';
+      wants_value_ = open_.back() == '[';
+    } else {
+      in_word_ = wants_value_;
+    }
   }
 
   std::string_view text_;
   std::size_t at_ = 0;
   std::string_view closing_;  // of the string or comment that is open
-  int depth_ = 0;             // of brackets
+  std::string open_;          // brackets: [ holds values, { keys
+  bool wants_value_ = false, in_word_ = false;
 };
 
 }  // namespace
@@ -218,6 +249,14 @@ std::optional<int> TableReader::whole(const char* key) {
     return std::nullopt;
   }
   return static_cast<int>(*value);
+}
+
+std::optional<bool> TableReader::flag(const char* key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const auto value = node->value_exact<bool>();
+  if (!value) wrong_type(key, *node, "true or false");
+  return value;
 }
 
 std::string TableReader::date(const char* key) {

@@ -139,6 +139,17 @@ Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
   return out;
 }
 
+std::vector<Place> seats_in(const Part& part, const Repeats& repeats,
+                            const Comparison& comparison) {
+  const Fit& fit = comparison.fit;
+  const VectorXd root = root_weights(part.table, fit.weight);
+  const VectorXd residual = root.cwiseProduct(
+      Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(fit.residual.size())));
+  const MatrixXd basis = basis_of(part.table, fit.terms, root);
+  return seats_of({part, repeats, root, residual, basis, static_cast<double>(fit.redundancy),
+                   comparison.floor});
+}
+
 Expected<Comparison> compare(const Part& part, const std::vector<Term>& model) {
   if (part.table.size() == 0) return fail("there are no readings of an axis to compare with");
   const Repeats repeats(part.table);

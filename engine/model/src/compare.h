@@ -13,6 +13,9 @@ std::vector<double> weights_without(std::size_t readings, const std::vector<Susp
 Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
                          std::vector<Suspect> suspects);
 
+/// Where what a fit leaves sits.
+std::vector<Place> seats_in(const Part& part, const Repeats& repeats, const Comparison& comparison);
+
 /// Each run left out in turn: what the others, with the shapes as they are, predict of it. NaN for
 /// readings of a run that the others cannot predict; empty with one run.
 std::vector<double> cross_validated(const Observations& o, const std::vector<Term>& terms,

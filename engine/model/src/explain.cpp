@@ -55,7 +55,7 @@ class Explainer {
  private:
   Expected<void> search() {
     weight_ = weights_without(part_.table.size(), suspects_);
-    bench_.emplace(part_.table, terms_, weight_);
+    bench_.emplace(part_.table, terms_, weight_, repeats_.target);
     State start = bench_->state({});
     for (std::size_t e = 0; e < model_.size(); ++e) {
       const State next = bench_->with(start, bench_->gains(start, e), e);
@@ -296,7 +296,9 @@ class Explainer {
       const VectorXd part = Eigen::Map<const VectorXd>(
           best_fit_.fit.part[t].data(), static_cast<Index>(best_fit_.fit.part[t].size()));
       const VectorXd centred = part.array() - part.mean();
-      const double rms2 = centred.squaredNorm() / static_cast<double>(part.size());
+      // What it alone can say: effects that cancel each other may both be large.
+      const double rms2 =
+          (bench_->without(best_, index_of(name)).squares - best_.squares) / bench_->readings();
       const auto works_in = factors_of(part_, repeats_, bench_->root_weight(),
                                        bench_->root_weight().cwiseProduct(centred));
       for (const Place& place : serious)
@@ -315,29 +317,87 @@ class Explainer {
     return out;
   }
 
-  bool contradictory() const {
-    if (out_.verdict.suspects_share > 0.06) return true;
-    // One run with a scatter of its own.
+  /// Repeats of one target fall into two groups with nothing between them: no noise does that.
+  bool two_valued() const {
+    std::vector<std::pair<double, std::uint32_t>> e;  // residual and cell
+    for (std::size_t i = 0; i < weight_.size(); ++i)
+      if (weight_[i] > 0.0) e.emplace_back(best_fit_.fit.residual[i], repeats_.cell[i]);
+    if (e.size() < 40) return false;
+    std::sort(e.begin(), e.end());
+    const auto n = static_cast<double>(e.size());
+    double sum = 0.0, squares = 0.0;
+    for (const auto& [x, cell] : e) sum += x, squares += x * x;
+    double left = 0.0, best = 0.0;
+    std::size_t split = 0;
+    for (std::size_t i = 0; i + 1 < e.size(); ++i) {
+      left += e[i].first;
+      const double k = static_cast<double>(i + 1);
+      if (k < 0.1 * n || k > 0.9 * n) continue;
+      const double apart = left / k - (sum - left) / (n - k);
+      const double between = apart * apart * k * (n - k) / n;
+      const double within = (squares - sum * sum / n - between) / n;
+      // Of normal noise 7, of evenly spread noise 12.
+      if (apart * apart / within > best) best = apart * apart / within, split = i + 1;
+    }
+    if (best < 18.0) return false;
+    std::vector<int> side(repeats_.cells, 0);
+    for (std::size_t i = 0; i < e.size(); ++i) side[e[i].second] |= i < split ? 1 : 2;
+    const auto mixed = std::count(side.begin(), side.end(), 3);
+    return static_cast<double>(mixed) > 0.25 * static_cast<double>(repeats_.cells);
+  }
+
+  /// Residuals of the best explanation without what a whole pass shares.
+  std::vector<double> within_passes() const {
+    Repeats alone =
+        repeats_;  // every reading a cell of its own would leave nothing: one cell a pass
+    alone.cell = alone.pass;
+    alone.cells = alone.passes;
+    return saturate(alone, best_fit_.fit.residual, weight_).e;
+  }
+
+  /// One run with a scatter of its own.
+  std::optional<Place> wild_run() const {
     std::vector<std::vector<double>> of_run;
+    const std::vector<double> e_of = within_passes();
     for (std::size_t i = 0; i < part_.table.size(); ++i) {
       const std::size_t run = part_.table.run.empty() ? 0 : part_.table.run[i];
       if (run >= of_run.size()) of_run.resize(run + 1);
-      if (weight_[i] > 0.0) of_run[run].push_back(best_fit_.fit.residual[i]);
+      of_run[run].push_back(e_of[i]);
     }
-    double all = 0.0, n = 0.0;
-    for (const auto& e : of_run)
-      for (const double x : e) all += x * x, ++n;
-    const double runs = static_cast<double>(
-        std::count_if(of_run.begin(), of_run.end(), [](const auto& e) { return !e.empty(); }));
+    double all = 0.0, n = 0.0, runs = 0.0;
     for (const auto& e : of_run) {
-      const auto k = static_cast<double>(e.size());
-      if (k < 6.0 || n - k < 6.0) continue;
-      double squares = 0.0;
-      for (const double x : e) squares += x * x;
-      const double F = squares / k / ((all - squares) / (n - k));
-      if (F > 5.0 && math::f_upper(F, k, n - k) * runs < 1e-4) return true;
+      for (const double x : e) all += x * x, ++n;
+      runs += e.empty() ? 0.0 : 1.0;
     }
-    return false;
+    std::optional<Place> worst;
+    for (std::size_t run = 0; run < of_run.size(); ++run) {
+      const auto k = static_cast<double>(of_run[run].size());
+      if (k < 6.0 || n - k < 6.0) continue;
+      // By its median, so that one misread value makes no wild run.
+      std::vector<double> size;
+      double squares = 0.0;
+      for (const double x : of_run[run]) size.push_back(std::fabs(x)), squares += x * x;
+      const double s = 1.4826 * math::median(size);
+      std::vector<double> others;
+      for (std::size_t r = 0; r < of_run.size(); ++r)
+        if (r != run)
+          for (const double x : of_run[r]) others.push_back(std::fabs(x));
+      const double s_others = 1.4826 * math::median(others);
+      const double F = s * s / (s_others * s_others);
+      // A median knows a scatter as well as 0.37 times as many squares do.
+      const double p = math::f_upper(F, 0.37 * k, 0.37 * (n - k)) * runs;
+      if (F < 4.0 || p > 1e-4 || (worst && p >= worst->p)) continue;
+      worst = Place{"run", squares / all, p, s, static_cast<double>(run), Quantity::count};
+    }
+    return worst;
+  }
+
+  bool contradictory() {
+    if (const auto run = wild_run()) {
+      out_.fails.insert(out_.fails.begin(), *run);
+      return true;
+    }
+    return out_.verdict.suspects_share > 0.06 || two_valued();
   }
 
   void judge() {
@@ -366,7 +426,10 @@ class Explainer {
                              best_fit_.fit.s);
     } else if (!serious.empty()) {
       v.kind = Verdict::Kind::unknown;
-      out_.fails = serious;
+      if (auto seats = seats_in(part_, repeats_, out_.comparison); !seats.empty())
+        out_.fails = std::move(seats);
+      else
+        out_.fails = serious;
     }
   }
 

@@ -78,6 +78,7 @@ class Factors {
     if (!read) return;
     const AxisReadings& r = *read;
     const VectorXd d = map(r.d), p = map(r.p) / std::max(r.length / 2.0, 1e-12);
+    position_ = p;
     add({"direction", d, false});
     add(binned("position", r.theta, position_of(axis.rotary)));
     if (axis.screw_pitch)
@@ -91,9 +92,7 @@ class Factors {
     Factor runs = binned("run", run, Quantity::count);
     runs.repeated = true;
     add(std::move(runs));
-    // Slower than the cycle of the test, so that a position is not taken for a time.
-    const auto orders = static_cast<int>(std::clamp<std::size_t>(
-        2 * repeats.passes / std::max<std::size_t>(repeats.sides, 1) - 1, 1, 10));
+    const auto orders = static_cast<int>(std::min<std::size_t>(2 * repeats.passes, 16));
     MatrixXd slow(d.size(), orders);
     const VectorXd phase = map(r.t) * (std::numbers::pi / std::max(r.duration, 1e-12));
     for (int k = 0; k < orders; ++k) slow.col(k) = (phase * (k + 1)).array().cos();
@@ -114,6 +113,21 @@ class Factors {
   }
 
   const std::vector<Factor>& all() const { return all_; }
+  /// A pair with its first factor; of direction and position, the cells, all of both.
+  MatrixXd whole(const Factor& f) const {
+    if (!is_pair(f)) return f.columns;
+    const std::size_t x = f.name.find(" x ");
+    const MatrixXd& first = column(f.name.substr(0, x));
+    MatrixXd main = first.cols() == 1 ? first : position_;
+    if (!f.repeated) {
+      const MatrixXd& second = column(f.name.substr(x + 3));
+      main.conservativeResize(Eigen::NoChange, main.cols() + second.cols());
+      main.rightCols(second.cols()) = second;
+    }
+    MatrixXd out(f.columns.rows(), f.columns.cols() + main.cols());
+    out << main, f.columns;
+    return out;
+  }
   const MatrixXd& column(const std::string& name) const {
     return std::find_if(all_.begin(), all_.end(), [&](const Factor& f) { return f.name == name; })
         ->columns;
@@ -126,6 +140,7 @@ class Factors {
     all_.push_back({a + " x " + b, std::move(columns), repeated});
   }
   std::vector<Factor> all_;
+  MatrixXd position_;  // from -1 to 1
 };
 
 /// Mean of each cell taken out of each column (rows times root weights).
@@ -226,6 +241,53 @@ std::vector<Place> places_of(const Leftover& left) {
   std::stable_sort(places.begin(), places.end(),
                    [](const Place& a, const Place& b) { return a.share > b.share; });
   return places;
+}
+
+std::vector<Place> seats_of(const Leftover& left) {
+  const Factors factors(left.part, left.repeats);
+  const double n = static_cast<double>(left.residual.size());
+  const double squares = left.residual.squaredNorm();
+  std::vector<MatrixXd> bases;
+  for (const Factor& f : factors.all()) {
+    MatrixXd columns = left.root_weight.asDiagonal() * factors.whole(f);
+    take_out_zeros(left.part.table, left.root_weight, columns);
+    if (left.basis.cols() > 0) columns -= left.basis * (left.basis.transpose() * columns);
+    bases.push_back(orthonormal(std::move(columns)));
+  }
+  VectorXd rest = left.residual;
+  std::vector<Place> seats;
+  while (seats.size() < 3) {
+    std::size_t best = bases.size();
+    double gain = 0.0, fall = 0.0;
+    for (std::size_t f = 0; f < bases.size(); ++f) {
+      const auto k = static_cast<double>(bases[f].cols());
+      if (k == 0.0 || k >= left.dof / 2.0) continue;
+      const double here = (bases[f].transpose() * rest).squaredNorm();
+      const double value = -n * std::log1p(-std::min(here / rest.squaredNorm(), 1.0 - 1e-12)) -
+                           k * std::log(n) - 10.0;  // 10: one place in a hundred by chance
+      if (value > gain) best = f, gain = value, fall = here;
+    }
+    if (best == bases.size()) break;
+    Place seat;
+    seat.where = factors.all()[best].name;
+    seat.share = fall / squares;
+    seat.rms = std::sqrt(fall / n);
+    const auto k = static_cast<double>(bases[best].cols());
+    const double dof = left.dof - k;
+    seat.p = math::f_upper(fall / k / ((rest.squaredNorm() - fall) / dof), k, dof) *
+             static_cast<double>(bases.size());
+    Leftover now{left.part, left.repeats, left.root_weight, rest, left.basis, left.dof, left.floor};
+    find_level(factors.all()[best], now, (rest.squaredNorm() - fall) / dof, seat);
+    seats.push_back(std::move(seat));
+    const MatrixXd chosen = bases[best];
+    rest -= chosen * (chosen.transpose() * rest);
+    for (MatrixXd& basis : bases) {
+      if (basis.cols() == 0) continue;
+      basis -= chosen * (chosen.transpose() * basis);
+      basis = orthonormal(std::move(basis));
+    }
+  }
+  return seats;
 }
 
 std::vector<std::string> factors_of(const Part& part, const Repeats& repeats,

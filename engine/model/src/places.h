@@ -22,6 +22,11 @@ struct Leftover {
 /// Every place that these readings can show, with its share of what is left.
 std::vector<Place> places_of(const Leftover&);
 
+/// The fewest places that hold what is left: one after the other, each with all that its factors
+/// say together ("direction x time" with what is constant in time), as long as the evidence pays
+/// for their columns. For structure that no effect explains.
+std::vector<Place> seats_of(const Leftover&);
+
 /// The factors that a term's part varies with ("direction", "position", "time", ...), by the share
 /// of its sum of squares: those whose own share is at least a twentieth, or whose product with
 /// another is.

@@ -11,10 +11,35 @@ namespace {
 // Of a column of unit length, what must be left when the others are taken out.
 constexpr double independent = 1e-7;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+bool varies_with_target_only(const MatrixXd& columns, const std::vector<std::uint32_t>& target) {
+  if (target.empty()) return false;
+  std::vector<Index> first(target.size(), -1);
+  for (Index i = 0; i < columns.rows(); ++i) {
+    Index& row = first[target[static_cast<std::size_t>(i)]];
+    if (row < 0)
+      row = i;
+    else if (columns.row(i) != columns.row(row))
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
 
+Index Workbench::unknowns_of(const Block& block) const {
+  const Instance& instance = instances_[block.effect];
+  const bool searched = instance.blocks.size() > 1 && !instance.term.effect->curve;
+  return block.count + (searched ? static_cast<Index>(instance.term.effect->shapes.size()) : 0);
+}
+
 Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
-                     const std::vector<double>& weight) {
+                     const std::vector<double>& weight, const std::vector<std::uint32_t>& target)
+    : target_(target) {
+  most_of_position_ = std::numeric_limits<Index>::max();
+  if (!target_.empty()) {
+    const std::uint32_t targets = *std::max_element(target_.begin(), target_.end()) + 1;
+    most_of_position_ = static_cast<Index>(std::ceil(0.6 * (targets - 1.0)));
+  }
   root_ = root_weights(o, weight);
   used_ = static_cast<double>((root_.array() > 0.0).count());
   zeros_ = static_cast<Index>(lines_of(o));
@@ -59,7 +84,7 @@ void Workbench::add(const Observations& o, std::size_t effect, std::vector<Matri
     if (part.cols() == 0 || !(after.array() > 1e-9 * before.array()).all()) continue;
     part = part * after.cwiseInverse().asDiagonal();
     instance.blocks.push_back(blocks_.size());
-    blocks_.push_back({effect, shape, at, part.cols()});
+    blocks_.push_back({effect, shape, at, part.cols(), varies_with_target_only(*columns, target_)});
     at += part.cols();
     parts.push_back(std::move(part));
   }
@@ -98,10 +123,7 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
   double price_sum = 0.0;
   for (const std::size_t b : out.blocks) {
     price_sum += price(blocks_[b].effect, blocks_[b].count);
-    const Instance& instance = instances_[blocks_[b].effect];
-    out.parameters += blocks_[b].count;
-    if (instance.blocks.size() > 1 && !instance.term.effect->curve)
-      out.parameters += static_cast<Index>(instance.term.effect->shapes.size());
+    out.parameters += unknowns_of(blocks_[b]);
   }
   out.squares = yy_;
   if (!columns.empty()) {
@@ -195,9 +217,14 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
                                  std::size_t effect) const {
   std::size_t best = blocks_.size();
   double least = std::numeric_limits<double>::infinity();
+  Index of_position = 0;
+  for (const std::size_t b : state.blocks)
+    if (blocks_[b].of_position) of_position += unknowns_of(blocks_[b]);
   for (const std::size_t b : instances_[effect].blocks) {
     const double fall = gains(static_cast<Index>(b));
     if (std::isnan(fall)) continue;
+    if (blocks_[b].of_position && of_position + unknowns_of(blocks_[b]) > most_of_position_)
+      continue;
     const double c =
         criterion(std::max(state.squares - fall, 1e-12 * yy_), price(effect, blocks_[b].count));
     if (c < least) least = c, best = b;

@@ -18,6 +18,7 @@ class Workbench {
     std::size_t effect;
     std::vector<double> shape;
     Index first, count;
+    bool of_position;  ///< the same at every reading of a target
   };
   struct Instance {
     Term term;
@@ -34,8 +35,10 @@ class Workbench {
         0.0;  ///< n ln(squares/n) + price of parameters, shapes and names; small is good
   };
 
+  /// `target` of each reading: sets whose columns of position alone come near to one free value per
+  /// target are not looked at. Empty: all are.
   Workbench(const Observations& o, const std::vector<Term>& terms,
-            const std::vector<double>& weight);
+            const std::vector<double>& weight, const std::vector<std::uint32_t>& target = {});
 
   const std::vector<Instance>& instances() const { return instances_; }
   const std::vector<Block>& blocks() const { return blocks_; }
@@ -74,6 +77,7 @@ class Workbench {
   double price(std::size_t effect, Index columns) const;
 
  private:
+  Index unknowns_of(const Block& block) const;
   void add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts);
   struct Projection {
     Eigen::LLT<MatrixXd> llt;
@@ -89,6 +93,8 @@ class Workbench {
   MatrixXd x_, gram_;
   VectorXd y_, root_, xy_;
   double yy_ = 0.0, used_ = 0.0;
+  std::vector<std::uint32_t> target_;
+  Index most_of_position_ = 0;  // columns and searched shapes
   Index zeros_ = 0;
 };
 

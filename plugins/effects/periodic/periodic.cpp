@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // deviation = a sin(2 pi p/P) + b cos(2 pi p/P); p: position from the middle of the measured
 // stretch, m; P: period, m; a, b: m.
+#include <algorithm>
 #include <numbers>
 
 #include "nonio/sdk/axis_readings.h"
@@ -8,9 +9,15 @@
 
 using namespace nonio;
 
+/// ISO 3408-2:1991 table 1, nominal leads, and those of inch screws; m.
+constexpr double usual_leads[] = {0.0025, 0.003, 0.004, 0.005, 0.006,  0.008, 0.010, 0.012,
+                                  0.0127, 0.016, 0.020, 0.025, 0.0254, 0.032, 0.040};
+
 /// The period of the manifest, or fewer periods than half the targets (evenly spaced ones), or than
 /// twice the targets (uneven ones show shorter periods too); three at least over the stretch. The
-/// step is a quarter of the width of a spectral line, coarser beyond 240 periods.
+/// step is a quarter of the width of a spectral line, coarser beyond 240 periods. Below, uneven
+/// targets are searched for the usual leads of ball screws only, each with its spectral line: any
+/// period at all would find one that fits.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
   constexpr double most = 240.0, fewest_periods = 3.0;
   constexpr std::size_t fewest_targets = 8;
@@ -29,7 +36,13 @@ static std::vector<double> grid(const Observations& o, const Axis& axis) {
   std::vector<double> periods;
   for (int k = 0; fewest_periods + k * step < limit - step / 2.0; ++k)
     periods.push_back(r->length / (fewest_periods + k * step));
-  return {periods.rbegin(), periods.rend()};
+  const double shortest = periods.empty() ? r->length : periods.back();
+  for (const double lead : usual_leads)
+    if (!even && lead < shortest)
+      for (const double line : {0.125, 0.0, -0.125})
+        periods.push_back(lead * (1.0 + line * lead / r->length));
+  std::sort(periods.begin(), periods.end());
+  return periods;
 }
 
 static bool applies(const Observations& o, const Axis& axis) {

@@ -105,6 +105,15 @@ TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
             "id = \"a-1\" # \xC3\xA8\nsite = '\xC3\xA8'\noperator = "
             "\"\"\"\xC3\xA8\n\\\"\"\"\"\nteh = 1",
             "7: unknown key campaign.teh"},
+           {"id = \"a-1\"", "id = -x['\xC3\xA8']", "3: not valid TOML: a quote in the middle"},
+           {"id = \"a-1\"", "id = 1.'\xC3\xA8'", "3: not valid TOML: a quote in the middle"},
+           {"id = \"a-1\"", "id = -x='\xC3\xA8'", "3: not valid TOML: a quote in the middle"},
+           {"id = \"a-1\"", "id = \"\"\"a\\\n \xC3\xA8\"\"\"", "3: not valid TOML: after \\"},
+           {"id = \"a-1\"",
+            "id = \"a-1\"\nx = [{'\xC3\xA8' = '\xC3\xA8', "
+            "b.'\xC3\xA8'=['\xC3\xA8',\n-2.5,'\xC3\xA8']},"
+            "'\xC3\xA8', \"\"\"a\\\n b\xC3\xA8\"\"\"]",
+            "4: unknown key campaign.x"},
            {"U_fixed_um = 0.2", "U_fixed_um = -0.2",
             "17: instrument.U_fixed_um: wanted a number that is not negative"},
        }) {

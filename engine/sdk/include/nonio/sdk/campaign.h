@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "nonio/sdk/units.h"
 
 namespace nonio {
 
@@ -66,6 +69,19 @@ struct Measurement {
   std::map<std::string, double> from, to;  ///< ends of a diagonal, m
 };
 
+/// An effect of the user's own, without compiling.
+struct Formula {
+  struct Parameter {
+    std::string name;
+    Quantity quantity = Quantity::number;
+    double start = 0.0;                                ///< SI
+    std::optional<std::pair<double, double>> range{};  ///< SI; absent: it enters linearly
+  };
+  std::string name, axis, expression;
+  std::vector<Parameter> parameters;
+  std::uint64_t line = 0;  ///< of the manifest, where the expression stands
+};
+
 struct Campaign {
   std::string id, customer, site, operator_name, date;  ///< date as YYYY-MM-DD, or empty
   Machine machine;
@@ -74,6 +90,7 @@ struct Campaign {
   Laboratory laboratory;
   std::vector<Measurement> measurements;
   std::vector<std::string> model;  ///< effects, `kind:axis`
+  std::vector<Formula> formulas;
 };
 
 }  // namespace nonio
