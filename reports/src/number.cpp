@@ -83,6 +83,14 @@ std::string unit_text(Quantity quantity) {
       return "arcsec/°";
     case Quantity::expansion:
       return "µm/(m·K)";
+    case Quantity::deviation_per_time:
+      return "µm/h";
+    case Quantity::growth:
+      return "µm/(m·h)";
+    case Quantity::angular_growth:
+      return "arcsec/(°·h)";
+    case Quantity::angular_expansion:
+      return "arcsec/(°·K)";
     case Quantity::temperature:
       return "°C";
     default:

@@ -65,9 +65,10 @@ Expected<OutputResult> write(const OutputInput& in) {
   const auto fonts = fonts_of(in.templates, *look);
   if (!fonts) return fail(fonts.error());
   if (const auto sound = check_texts(in.campaign, **fonts); !sound) return fail(sound.error());
-  const Wording words(in.templates, language);
-  const reports::Document document = compose({in, *look, words, **fonts});
-  if (const auto complete = words.complete(); !complete) return fail(complete.error());
+  const Wording words(in.templates, language), pictures(in.templates, language, "pictures");
+  const reports::Document document = compose({in, *look, words, pictures, **fonts});
+  for (const Wording* asked : {&words, &pictures})
+    if (const auto complete = asked->complete(); !complete) return fail(complete.error());
   auto bytes = reports::pdf(document, **fonts);
   if (!bytes) return fail(bytes.error());
   OutputResult result;
