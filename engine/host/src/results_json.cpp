@@ -28,11 +28,13 @@ void put_texts(JsonWriter& json, const char* key,
   json.end_object();
 }
 
-void put_list(JsonWriter& json, const char* key, const std::vector<std::string>& texts) {
-  if (texts.empty()) return;
-  json.key(key);
+void put_notes(JsonWriter& json, const std::vector<Remark>& notes) {
+  if (notes.empty()) return;
+  json.key("notes");
   json.begin_array();
-  for (const std::string& text : texts) json.value(text);
+  for (const Remark& note : notes)
+    json.value((note.measurement.empty() ? "" : "measurement " + note.measurement + ": ") +
+               note.english);
   json.end_array();
 }
 
@@ -169,7 +171,7 @@ void put_analysis(JsonWriter& json, const Results::Analysed& a,
   put_points(json, a.evaluation.points);
   put_series(json, a.evaluation.series);
   put_findings(json, a.evaluation.findings, false);
-  put_list(json, "notes", a.evaluation.notes);
+  put_notes(json, a.evaluation.notes);
   json.end_object();
 }
 
@@ -239,7 +241,7 @@ void put_tables(JsonWriter& json, const std::vector<Results::Written>& outputs) 
     json.member("version", w.version);
     put_predictions(json, w.result.predictions);
     put_findings(json, w.result.findings, true);
-    put_list(json, "notes", w.result.notes);
+    put_notes(json, w.result.notes);
     json.end_object();
   }
   json.end_array();
@@ -278,7 +280,7 @@ std::string results_json(const Evaluated& e, const Context& context,
   put_conformity(json, e.results.conformity);
   put_files(json, e.results.outputs, files);
   put_tables(json, e.results.outputs);
-  put_list(json, "notes", e.results.notes);
+  put_notes(json, e.results.notes);
   json.end_object();
   return json.take();
 }

@@ -316,6 +316,8 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   for (const std::string& note : night.notes) events.note(note);
   context.plugins = &plugins;
   context.plugins_sha256 = plugins.digest();
+  if (const auto mistakes = site_mistakes(context); !mistakes.empty())
+    return refuse(all_of(mistakes));
 
   std::optional<OutputLock> lock;
   if (!options.dry_run) {

@@ -52,6 +52,15 @@ void add_targets(const Source&, const Measured&, Blocks&);
 void add_plots(const Source&, const Measured&, Blocks&);
 void add_findings(const Source&, const Measured&, Blocks&);
 
+/// What controllers' tables have to say; what several of them say alike once, with all their names.
+struct TableFinding {
+  const Finding* finding;
+  std::string outputs;
+  bool refused;  ///< no file was written
+};
+std::vector<TableFinding> table_findings(const Source&);
+std::string title_of(const Source&, const TableFinding&);
+
 /// How the models fit: verdict, parameters, the falling error, the page of residual pictures.
 void add_models(const Source&, Blocks&);
 /// Always the same nine, in the same places, together with their heading on one page.

@@ -28,8 +28,8 @@ enum class Picture {
 struct PictureWords {
   std::string title, x, y, says, none;
   std::string time_unit{};  ///< of the third: s, min or h
-  double x_per_si = 1.0;  ///< what x is multiplied by before it is printed
-  bool degrees = false;   ///< x is an angle of the turn
+  double x_per_si = 1.0;    ///< what x is multiplied by before it is printed
+  bool degrees = false;     ///< x is an angle of the turn
 };
 /// The words are those of templates/words/<language>/pictures.toml.
 std::array<PictureWords, 9> picture_words(const ModelFit&, const Wording&);

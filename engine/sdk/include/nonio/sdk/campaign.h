@@ -67,6 +67,7 @@ struct Measurement {
   std::string file;
   std::string reader;                      ///< empty: chosen by content
   std::map<std::string, double> from, to;  ///< ends of a diagonal, m
+  std::vector<std::uint32_t> exclude{};    ///< lines of the file whose readings do not count
 };
 
 /// An effect of the user's own, without compiling.
@@ -90,6 +91,7 @@ struct Campaign {
   Laboratory laboratory;
   std::vector<Measurement> measurements;
   std::vector<std::string> model;  ///< effects, `kind:axis`
+  bool compensate_model = false;   ///< tables take what the model says, not the readings' means
   std::vector<Formula> formulas;
 };
 

@@ -38,6 +38,17 @@ struct Finding {
   std::string advice{};
 };
 
+/// Something worth knowing that asks for nothing. Its words are the text `note.<id>` of
+/// templates/words, with places as a finding has them; `english` is for plugins without words
+/// there.
+struct Remark {
+  std::string id;
+  std::vector<Number> evidence{};
+  std::vector<std::pair<std::string, std::string>> texts{};
+  std::string measurement{};
+  std::string english{};
+};
+
 /// Values by target; NaN where one cannot be given.
 struct PointTable {
   struct Column {
@@ -69,7 +80,7 @@ struct Evaluation {
   PointTable points;
   std::vector<Series> series;
   std::vector<Finding> findings;
-  std::vector<std::string> notes;
+  std::vector<Remark> notes;
 };
 
 /// One result before a table is loaded, and as its consumer's model predicts it after.
@@ -90,7 +101,7 @@ struct OutputResult {
   std::vector<Artifact> artifacts;
   std::vector<Prediction> predictions;
   std::vector<Finding> findings;
-  std::vector<std::string> notes;  ///< what is only inferred about a format, for example
+  std::vector<Remark> notes;  ///< what is only inferred about a format, for example
 };
 
 /// ISO 14253-1 with an upper limit.
@@ -176,7 +187,7 @@ struct Results {
   std::vector<ModelFit> models;
   std::vector<Conformity> conformity;
   std::vector<Written> outputs;
-  std::vector<std::string> notes;
+  std::vector<Remark> notes;
 };
 
 }  // namespace nonio
