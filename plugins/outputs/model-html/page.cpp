@@ -51,10 +51,12 @@ std::string identity(const Source& source) {
 std::string notes(const Source& source) {
   std::string out;
   const auto says = [&](const Finding& f, const char* part) {
-    return html(finding_text(source.in.templates, source.words.language(), f, part));
+    return html(typeset(finding_text(source.in.templates, source.words.language(), f, part)));
   };
   for (const Finding& f : source.fit.says) {
-    std::string note = element("b", says(f, "title"));
+    std::string note, title = says(f, "title");
+    if (title != f.id || says(f, "says").empty())
+      note += element("b", title);  // a verdict has none
     for (const char* part : {"says", "advice"})
       if (const std::string text = says(f, part); !text.empty()) note += element("p", text);
     out += element("div", note, f.attention ? "class=\"note attention\"" : "class=\"note\"");
@@ -185,7 +187,7 @@ std::string choices(const Source& source) {
     out += "<div id=\"" + std::string(id) + "\"><span>" +
            html(source.words.get("page." + std::string(id))) + "</span></div>\n";
   out += "<p id=\"rms\"></p>\n" +
-         element("p", html(source.words.get("page.toggling")), "class=\"muted\"");
+         element("p", html(source.words.get("page.toggling")), "class=\"muted hint\"");
   return element("section", out, "id=\"choices\" hidden");
 }
 

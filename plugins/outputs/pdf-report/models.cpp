@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
@@ -17,6 +18,17 @@ constexpr double notable_correlation = 0.9;
 std::string unit_or_dash(Quantity q) {
   const std::string unit = unit_text(q);
   return unit.empty() ? "–" : unit;
+}
+
+/// A verdict is one sentence and has no title.
+Note note(const Source& source, const Finding& finding) {
+  const auto text = [&](const char* part) {
+    return typeset(finding_text(source.in.templates, source.language(), finding, part));
+  };
+  Note out{finding.attention ? Level::attention : Level::info, text("title"), text("says"),
+           text("advice")};
+  if (out.title == finding.id && !out.says.empty()) out.title = std::exchange(out.says, "");
+  return out;
 }
 
 void add_parameters(const Source& source, const ModelFit& fit, Blocks& blocks) {
@@ -106,7 +118,7 @@ void add_models(const Source& source, Blocks& blocks) {
     const std::string field = "model of " + fit.part;
     blocks.push_back(
         {Heading{source.pictures.get("model.heading", {{"part", fit.part}}), 1}, field});
-    for (const Finding& f : fit.says) blocks.push_back(note_of(source, f));
+    for (const Finding& f : fit.says) blocks.push_back({note(source, f), field});
     add_parameters(source, fit, blocks);
     add_falling_error(source, fit, blocks);
     add_pictures(source, fit, blocks);
