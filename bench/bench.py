@@ -1,29 +1,45 @@
 # SPDX-License-Identifier: Apache-2.0
 """bench.py NONIO [--campaigns 1000] [--unchanged 10000]: what the nightly run costs, beside a Python
-pipeline with the same outputs in the same run. Prints a table; asserts nothing."""
+pipeline with the same outputs in the same run. Prints a table; asserts nothing. TMPDIR says on which disk."""
 import argparse
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 HERE = pathlib.Path(__file__).parent
 
 
 def timed(command, cores):
-    """Wall seconds, CPU seconds and the largest memory in MB of the main process, on `cores` cores."""
+    """Wall seconds, CPU seconds with all children, and the largest memory in MB of the main process
+    alone, on `cores` cores."""
     began = time.monotonic()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                preexec_fn=lambda: os.sched_setaffinity(0, set(range(cores))))
+    largest, ended = [0.0], threading.Event()
+
+    def watch():
+        while not ended.wait(0.02):
+            try:
+                status = pathlib.Path(f"/proc/{process.pid}/status").read_text()
+            except OSError:
+                return
+            largest[0] = max([largest[0], *(int(s) / 1024 for s in re.findall(r"VmHWM:\s+(\d+)", status))])
+
+    watcher = threading.Thread(target=watch)
+    watcher.start()
     _, status, usage = os.wait4(process.pid, 0)
     wall = time.monotonic() - began
-    cpu = usage.ru_utime + usage.ru_stime
+    ended.set()
+    watcher.join()
     if os.waitstatus_to_exitcode(status) > 1:
         sys.exit(f"{command} failed: {status}")
-    return wall, cpu, usage.ru_maxrss / 1024
+    return wall, usage.ru_utime + usage.ru_stime, largest[0]
 
 
 def main():
@@ -38,15 +54,16 @@ def main():
         subprocess.run([sys.executable, HERE / "make_site.py", site, str(n)], check=True)
         run = [args.nonio, "run", site, "--quiet", "--out"]
         rows = []
-        one, _, memory = timed([*run, root / "one", "--jobs", "1"], 1)
+        one, one_cpu, memory = timed([*run, root / "one", "--jobs", "1"], 1)
         rows.append(("nonio, one worker on one core", n / one, memory))
-        peer, _, peer_memory = timed([sys.executable, HERE / "peer.py", site, root / "peer"], 1)
+        peer, peer_cpu, peer_memory = timed([sys.executable, HERE / "peer.py", site, root / "peer"], 1)
         rows.append(("Python pipeline on one core", n / peer, peer_memory))
         two, _, memory2 = timed([*run, root / "two", "--jobs", "2"], 2)
         rows.append(("nonio, two workers on two cores", n / two, memory2))
         for name, rate, mb in rows:
             print(f"{name:36} {rate:8.1f} campaigns/s   {mb:6.1f} MB")
-        print(f"nonio against Python, per core: {peer / one:.1f} times")
+        print(f"nonio against Python, per core: {peer / one:.1f} times (CPU time: {peer_cpu / one_cpu:.1f} times, "
+              f"{1e3 * one_cpu / n:.1f} against {1e3 * peer_cpu / n:.1f} ms)")
         print(f"two workers against one: {one / two:.2f} times")
         sample = root / "one" / "bench-000000"
         print("outputs of one campaign:", json.dumps({p.name: p.stat().st_size for p in sorted(sample.iterdir())}))

@@ -158,19 +158,17 @@ double drawn_noise(const Hidden& h) {
   return std::sqrt(square / (n - 1.0));
 }
 
+/// The place named first; of what is unrepeatable only the verdict counts.
 bool place_is_right(const Hidden& h, const model::Explanation& said) {
-  if (h.truth.places.empty()) return true;
+  if (h.truth.verdict == "unrepeatable") return true;
   if (said.fails.empty() || !holds(h.truth.places, said.fails.front().where)) return false;
   if (!h.truth.at || !said.fails.front().at) return true;
-  const hidden::Source source = h.scenario.hidden.front().source;
-  const double reach = source == hidden::Source::wild_run
-                           ? 0.5
-                           : 0.5 * h.scenario.length / static_cast<double>(h.scenario.targets);
+  const double reach = 0.5 * h.scenario.length / static_cast<double>(h.scenario.targets);
   return std::fabs(*said.fails.front().at - *h.truth.at) < reach;
 }
 
 struct Score {
-  Tally answered, right, wrong_name, place, alias, ends, noise, above_floor, values;
+  Tally answered, right, kind, floor, wrong_name, place, alias, ends, noise, above_floor, values;
   std::map<std::string, Tally> of_effect, of_value;
   std::map<std::string, Tally> named_of;  ///< outside: `missing`, by cause
   double false_alarms = 0.0, cpu = 0.0, cpu_most = 0.0;
@@ -192,6 +190,7 @@ void score_fit(Score& score, const Hidden& h, const model::Comparison& c) {
   const double ratio = c.fit.s / drawn_noise(h);
   score.noise.add(ratio > 0.95 && ratio < 1.05);
   if (c.floor) score.above_floor.add(c.fit.rms <= 1.05 * c.floor->s);
+  if (c.floor) score.floor.add(std::fabs(c.floor->s - h.scenario.noise) <= 2.0 * c.floor->u);
   score_values(score, h, c.fit);
 }
 
@@ -201,7 +200,7 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
   if (f.steps.empty()) return false;
   const model::Explanation &first = f.steps.front().said, &last = f.steps.back().said;
   const bool named = first.verdict.kind == Verdict::Kind::missing;
-  bool right = false;
+  bool right = false, wrong = named;
   if (h.scenario.kind == Kind::one || h.scenario.kind == Kind::several) {
     const bool by_name = named && holds(h.truth.hidden, first.verdict.effect);
     const bool by_alias = named && std::any_of(h.truth.hidden.begin(), h.truth.hidden.end(),
@@ -210,6 +209,7 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
                                                });
     const bool all = all_and_nothing_else(h, f);
     right = h.scenario.kind == Kind::one ? by_name || by_alias : all;
+    wrong = named && !by_name && !by_alias;
     score.alias.add(!by_name && by_alias);
     score.place.add(all);
     score.ends.add(last.verdict.kind == Verdict::Kind::nothing);
@@ -228,14 +228,18 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
         score.of_effect[name.substr(0, name.find(':'))].add(right);
     } else {
       const std::string cause = hidden::to_text(h.scenario.hidden.front().source);
-      score.place.add(right && place_is_right(h, first));
+      const bool listed = std::any_of(
+          first.fails.begin(), first.fails.end(),
+          [&](const model::Place& place) { return holds(h.truth.places, place.where); });
+      score.kind.add(right);
+      if (h.truth.verdict == "unknown") score.place.add(right && listed);
       score.named_of[cause].add(named);
       right = right && place_is_right(h, first);
       score.of_effect[cause].add(right);
     }
   }
   score.right.add(right);
-  score.wrong_name.add(named && !holds(h.truth.hidden, first.verdict.effect));
+  score.wrong_name.add(wrong);
   return right;
 }
 
@@ -285,11 +289,14 @@ void print_score(const Score& s, Kind kind) {
   }
   if (kind == Kind::complete) print("verdict: nothing", s.right);
   if (kind == Kind::outside) {
-    print("right verdict with the right place", s.right);
+    print("right verdict", s.kind);
+    print("right verdict, and the right place named first", s.right);
+    print("unknown, and the right place named anywhere", s.place);
     print("first verdict: missing, which is wrong", s.wrong_name);
   }
   print("s within 5 % of the noise that was drawn", s.noise);
   print("rms at most 1.05 times the floor of the repeats", s.above_floor);
+  print("floor of the repeats within 2 u of the true noise", s.floor);
   print("true value within 2 u", s.values);
   for (const auto& [name, tally] : s.of_value) print("    " + name, tally);
   std::printf(" by effect or cause\n");

@@ -1,63 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common.h"
 #include "nonio/host/plugins.h"
 #include "nonio/host/run.h"
 #include "progress.h"
+#include "simulate_verb.h"
 
 namespace fs = std::filesystem;
 using namespace nonio;
+using namespace nonio::app;
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-constexpr int exit_done = 0, exit_failed = 1, exit_usage = 2, exit_interrupted = 130;
-
-fs::path program_folder() {
-  std::error_code error;
-  const fs::path self = fs::read_symlink("/proc/self/exe", error);
-  return error ? fs::current_path() : self.parent_path();
-}
-
-struct Common {
-  std::vector<std::string> plugin_paths, template_paths;
-  bool json = false, quiet = false;
-
-  /// Given on the command line, then from the environment, then beside the program.
-  std::vector<fs::path> plugin_folders() const {
-    std::vector<fs::path> folders;
-    for (const std::string& p : plugin_paths) folders.push_back(fs::absolute(p));
-    if (const char* path = std::getenv("NONIO_PLUGIN_PATH"))
-      for (const std::string& p : CLI::detail::split(path, ':'))
-        if (!p.empty()) folders.push_back(fs::absolute(p));
-    folders.push_back((program_folder() / NONIO_PLUGINS_FROM_PROGRAM).lexically_normal());
-    return folders;
-  }
-  std::vector<fs::path> template_folders() const {
-    std::vector<fs::path> folders{
-        (program_folder() / NONIO_TEMPLATES_FROM_PROGRAM).lexically_normal()};
-    for (const std::string& p : template_paths) folders.push_back(fs::absolute(p));
-    return folders;
-  }
-};
-
-void add_common(CLI::App& verb, Common& common) {
-  verb.add_option(
-          "--plugin-path", common.plugin_paths,
-          "A folder with more plugins; may be given several times. NONIO_PLUGIN_PATH holds\n"
-          "such folders too, with ':' between them.")
-      ->check(CLI::ExistingDirectory)
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
-  verb.add_flag("--json", common.json, "Machine-readable output on stdout, one JSON object a line");
-  verb.add_flag("--quiet", common.quiet, "No progress; only what went wrong");
-}
 
 const char* to_text(host::CampaignState::Action action) {
   switch (action) {
@@ -112,6 +71,7 @@ void print_summary(const host::Night& night, const fs::path& out, bool json) {
 
 int run(host::RunOptions options, const Common& common) {
   options.plugin_folders = common.plugin_folders();
+  options.own_plugins = Common::own_plugins();
   options.template_folders = common.template_folders();
   options.version = NONIO_VERSION;
   struct sigaction action {};
@@ -247,14 +207,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1024));
   run_verb->add_flag("--force", options.force, "Do every campaign again, changed or not");
   run_verb->add_flag("--dry-run", options.dry_run, "Say what would be done and why; do nothing");
-  run_verb
-      ->add_option(
-          "--templates", common.template_paths,
-          "A folder laid over the installed templates; SITE/templates is, without being named")
-      ->check(CLI::ExistingDirectory)
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  add_templates(*run_verb, common);
   add_common(*run_verb, common);
   run_verb->footer(
       "A campaign is done again only if something it depends on has changed: its files, "
@@ -266,12 +219,24 @@ int main(int argc, char** argv) {
       cli.add_subcommand("plugins", "What is loaded, with its options, and what was refused");
   add_common(*plugins_verb, common);
 
+  Outcome outcome;
+  add_compare_verb(cli, common, outcome);
+  add_explain_verb(cli, common, outcome);
+  add_model_verb(cli, common, outcome);
+
+  app::SimulateVerb simulate;
+  CLI::App* simulate_verb = simulate.add_to(cli);
+  add_common(*simulate_verb, common);
+
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return cli.exit(e) == 0 ? exit_done : exit_usage;
   }
+  if (outcome) return *outcome;
   if (plugins_verb->parsed()) return list_plugins(common);
+  if (simulate_verb->parsed())
+    return simulate.run(common.plugin_folders(), common.json, common.quiet);
   options.site = site;
   if (out.empty()) {
     std::cerr << "nonio run: --out is empty; wanted a folder\n";

@@ -10,13 +10,15 @@
 namespace nonio::reports {
 namespace {
 
-double round_step(double raw, bool degrees) {
-  if (degrees)
+double round_step(double raw, Ticks ticks) {
+  if (ticks == Ticks::whole) raw = std::max(raw, 1.0);
+  if (ticks == Ticks::turn)
     for (const double step : {15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0})
       if (raw > 10.0 && raw <= step) return step;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
   for (const double step : {1.0, 2.0, 2.5, 5.0})
-    if (raw <= step * power * (1.0 + 1e-9)) return step * power;
+    if ((step != 2.5 || power > 1 || ticks != Ticks::whole) && raw <= step * power * (1.0 + 1e-9))
+      return step * power;
   return 10.0 * power;
 }
 
@@ -34,7 +36,7 @@ std::string label(double value, double step, double largest, std::string_view la
 
 }  // namespace
 
-AxisScale axis_scale(double low, double high, int count, bool degrees, std::string_view language) {
+AxisScale axis_scale(double low, double high, int count, Ticks ticks, std::string_view language) {
   AxisScale scale;
   const double largest = std::max(std::fabs(low), std::fabs(high));
   const double least = std::max(1e-3, 1e-6 * largest);  // below that the labels would be equal
@@ -45,7 +47,7 @@ AxisScale axis_scale(double low, double high, int count, bool degrees, std::stri
   }
   scale.from = low;
   scale.to = high;
-  const double step = round_step((high - low) / count, degrees);
+  const double step = round_step((high - low) / count, ticks);
   const double slack = 1e-6 * step;
   for (double k = std::ceil((low - slack) / step); k * step <= high + slack; ++k) {
     scale.ticks.push_back(k * step);

@@ -17,7 +17,8 @@ struct AxisScale {
 };
 
 /// From `low` to `high` with about `count` ticks at 1, 2, 2.5 or 5 times a power of ten, or at
-/// parts of a turn (`degrees`).
-AxisScale axis_scale(double low, double high, int count, bool degrees, std::string_view language);
+/// parts of a turn, or at whole numbers.
+enum class Ticks { decimal, turn, whole };
+AxisScale axis_scale(double low, double high, int count, Ticks ticks, std::string_view language);
 
 }  // namespace nonio::reports

@@ -223,6 +223,17 @@ Expected<Laid> lay(const Spacer& spacer, double, const Context&, std::string_vie
   return Laid{{{0.0, spacer.height, {}, false}}};
 }
 
+Expected<Laid> lay(const PageBreak&, double, const Context&, std::string_view) {
+  Piece piece;
+  piece.with_next = piece.new_page = true;
+  return Laid{{std::move(piece)}};
+}
+
+Expected<Laid> lay(const BarChart& chart, double width, const Context& context,
+                   std::string_view field) {
+  return lay_bars(chart, width, context, field);
+}
+
 Expected<Laid> lay(const Table& table, double width, const Context& context,
                    std::string_view field) {
   return lay_table(table, width, context, field);

@@ -94,6 +94,18 @@ void Canvas::circle(double x, double y, double radius) {
   curve_to(x + c, y - radius, x + radius, y - c, x + radius, y);
 }
 
+void Canvas::dots(std::span<const Point> points, double diameter, Colour c) {
+  stroke_colour(c);
+  line(diameter);
+  ops += "1 J\n";  // a line of no length with round caps is a dot (ISO 32000-1, 8.5.3.2)
+  for (const auto& [x, y] : points) {
+    move_to(x, y);
+    line_to(x, y);
+  }
+  stroke();
+  ops += "0 J\n";
+}
+
 void Canvas::segment(double x1, double y1, double x2, double y2) {
   move_to(x1, y1);
   line_to(x2, y2);

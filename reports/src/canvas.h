@@ -13,6 +13,9 @@ namespace nonio::reports {
 /// has not changed is not written again.
 class Canvas {
  public:
+  struct Point {
+    double x, y;
+  };
   std::string ops;
 
   void fill_colour(Colour);
@@ -25,6 +28,7 @@ class Canvas {
   void curve_to(double x1, double y1, double x2, double y2, double x3, double y3);
   void rectangle(double x, double y, double w, double h);
   void circle(double x, double y, double radius);
+  void dots(std::span<const Point>, double diameter, Colour);  ///< as small as they can be written
   void close() { ops += "h\n"; }
   void stroke() { ops += "S\n"; }
   void fill() { ops += "f\n"; }

@@ -29,7 +29,7 @@ class Pages {
         ++end;
       }
       if (height > room_ - head_) end = i + 1, height = pieces[i].height;  // longer than a page
-      if (y_ + height > room_ + 0.01 && y_ > top_of_page()) {
+      if ((y_ + height > room_ + 0.01 || pieces[i].new_page) && y_ > top_of_page()) {
         next_page();
         if (i > laid.rows_from)
           for (const Piece& piece : laid.repeated) put(piece);
@@ -100,10 +100,14 @@ Expected<void> add_heads_and_feet(std::vector<Canvas>& pages, const Document& do
 
 }  // namespace
 
+double page_room(const Style& style) {
+  return style.page_height - style.top - style.bottom - head_room - foot_room;
+}
+
 Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
   const Style& style = document.style;
   const double width = style.page_width - style.left - style.right;
-  const double room = style.page_height - style.top - style.bottom - head_room - foot_room;
+  const double room = page_room(style);
   if (!(width > 100 && room > 100))
     return fail("the page's margins leave no room: " + std::to_string(width) + " pt by " +
                 std::to_string(room) + " pt");

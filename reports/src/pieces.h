@@ -15,6 +15,7 @@ struct Piece {
   double gap = 0.0;  ///< below it, where something follows on the same page
   std::string ops{};
   bool with_next = false;  ///< not the last one on a page
+  bool new_page = false;   ///< first on its page
 };
 
 /// A block as strips; `repeated` stands again at the top of each further page that begins behind
@@ -61,6 +62,7 @@ Colour colour_of(const Style&, Level);
 
 Expected<Laid> lay_block(const Block&, double width, const Context&);
 Expected<Laid> lay_table(const Table&, double width, const Context&, std::string_view field);
+Expected<Laid> lay_bars(const BarChart&, double width, const Context&, std::string_view field);
 Expected<Laid> lay_plot(const Plot&, double width, const Context&, std::string_view field);
 
 }  // namespace nonio::reports

@@ -59,14 +59,18 @@ void draw_marker(Canvas& canvas, Marker marker, double x, double y, double r, Co
       canvas.circle(x, y, 0.8 * r);
       canvas.fill_and_stroke();
       return;
+    case Marker::around:
+      canvas.line(0.9);
+      canvas.circle(x, y, r);
+      canvas.stroke();
+      return;
   }
 }
 
+using Point = Canvas::Point;
+
 /// Points of one unbroken stretch; of many in the same place only the first, the extremes and the
 /// last, which look the same.
-struct Point {
-  double x, y;
-};
 void thin_out(std::vector<Point>& points) {
   constexpr double place = 0.4;
   if (points.size() < 400) return;
@@ -167,6 +171,45 @@ void draw_bars(Canvas& canvas, const Frame& frame, const Curve& curve) {
   if (any) canvas.stroke();
 }
 
+/// Readings as they lie; of many in one place the first, and the extremes of each column of places,
+/// so that a million of them make a light file that looks the same.
+std::vector<Point> scattered(const Frame& frame, const Curve& curve, double place) {
+  const auto cells = [place](double length) {
+    return static_cast<std::size_t>(std::max(0.0, length) / place) + 1;
+  };
+  const std::size_t columns = cells(frame.w), rows = cells(frame.h);
+  std::vector<char> taken(columns * rows, 0);
+  constexpr auto none = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> low(columns, none), high(columns, none);
+  std::vector<Point> all, out;
+  for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i) {
+    if (!drawable(curve.x[i]) || !drawable(curve.y[i])) continue;
+    const Point p{frame.px(curve.x[i]), frame.py(curve.y[i])};
+    const std::size_t c = std::min(cells(p.x - frame.x) - 1, columns - 1),
+                      r = std::min(cells(p.y - frame.y) - 1, rows - 1);
+    all.push_back(p);
+    if (low[c] == none || p.y < all[low[c]].y) low[c] = all.size() - 1;
+    if (high[c] == none || p.y > all[high[c]].y) high[c] = all.size() - 1;
+    if (taken[c * rows + r] == 0) out.push_back(p);
+    taken[c * rows + r] = 1;
+  }
+  for (std::size_t c = 0; c < columns; ++c)
+    if (low[c] != none) out.push_back(all[low[c]]), out.push_back(all[high[c]]);
+  return out;
+}
+
+void draw_points(Canvas& canvas, const Frame& frame, const Curve& curve) {
+  constexpr std::size_t many = 1000;
+  if (curve.x.size() > many) {
+    const double diameter = 0.8 * curve.marker_size;
+    return canvas.dots(scattered(frame, curve, diameter), diameter, curve.colour);
+  }
+  for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i)
+    if (drawable(curve.x[i]) && drawable(curve.y[i]))
+      draw_marker(canvas, curve.marker, frame.px(curve.x[i]), frame.py(curve.y[i]),
+                  curve.marker_size, curve.colour);
+}
+
 class PlotSetter {
  public:
   PlotSetter(const Plot& plot, double width, const Context& context, std::string_view field)
@@ -181,7 +224,7 @@ class PlotSetter {
     Expected<double> top = draw_title();
     if (top) top = draw_legend(*top);
     if (!top) return fail(top.error());
-    const double height = std::max(style_.plot_height, *top + 60);
+    const double height = std::max(plot_.height > 0 ? plot_.height : style_.plot_height, *top + 60);
     Range across, up;
     for (const Curve& curve : plot_.curves) {
       for (const double v : curve.x) across.add(v);
@@ -262,12 +305,19 @@ class PlotSetter {
 
   Expected<void> draw(double top, double height, Range across, Range up) {
     if (plot_.zero_line) up.add(0.0);
+    for (const Plot::Belt& belt : plot_.belts) up.add(belt.from), up.add(belt.to);
     for (const Plot::Span& span : plot_.spans) up.add(span.from), up.add(span.to);
     const double edge = (up.high - up.low) * 0.06, side = (across.high - across.low) * 0.025;
     Frame frame{};
+    if (plot_.range)
+      up.low = plot_.range->first, up.high = plot_.range->second;
+    else
+      up.low -= edge, up.high += edge;
+    const auto ticks = plot_.degrees ? Ticks::turn : plot_.whole ? Ticks::whole : Ticks::decimal;
     frame.across =
-        axis_scale(across.low - side, across.high + side, 7, plot_.degrees, plot_.language);
-    frame.up = axis_scale(up.low - edge, up.high + edge, 6, false, plot_.language);
+        axis_scale(across.low - side, across.high + side,
+                   std::clamp(static_cast<int>(width_ / 30), 2, 7), ticks, plot_.language);
+    frame.up = axis_scale(up.low, up.high, 6, Ticks::decimal, plot_.language);
     std::vector<SetText> labels;
     double label_width = 0;
     for (const std::string& label : frame.up.labels) {
@@ -290,12 +340,15 @@ class PlotSetter {
     for (const Curve& curve : plot_.curves) {
       if (curve.kind == Curve::Kind::bars) draw_bars(canvas_, frame, curve);
       if (curve.kind == Curve::Kind::line) draw_line(canvas_, frame, curve);
+      if (curve.kind == Curve::Kind::points) draw_points(canvas_, frame, curve);
     }
     canvas_.leave();
     return draw_spans(frame);
   }
 
   Expected<void> draw_axes(const Frame& f, const std::vector<SetText>& labels) {
+    for (const Plot::Belt& belt : plot_.belts)
+      canvas_.filled(f.x, f.py(belt.from), f.w, f.py(belt.to) - f.py(belt.from), belt.colour);
     canvas_.stroke_colour(style_.rule);
     canvas_.line(0.25);
     for (const double tick : f.up.ticks) canvas_.segment(f.x, f.py(tick), f.x + f.w, f.py(tick));

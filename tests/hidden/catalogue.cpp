@@ -24,9 +24,9 @@ Values made(const Cycle& c, F of_row) {
   return v;
 }
 
-Columns harmonic(const Cycle& c, double per_unit) {
-  return {made(c, [&](std::size_t i) { return std::sin(2.0 * pi * c.position[i] * per_unit); }),
-          made(c, [&](std::size_t i) { return std::cos(2.0 * pi * c.position[i] * per_unit); })};
+Columns harmonic(const Cycle& c, const Values& at, double per_unit) {
+  return {made(c, [&](std::size_t i) { return std::sin(2.0 * pi * at[i] * per_unit); }),
+          made(c, [&](std::size_t i) { return std::cos(2.0 * pi * at[i] * per_unit); })};
 }
 
 double square_left(const Values& signal, Columns columns) {
@@ -128,7 +128,7 @@ Columns best_columns(const std::string& kind, const Values& signal, const Cycle&
   const Values t = file_times(c, s);
   if (kind == "scale") return {c.p};
   if (kind == "pitch-curve") return powers(c, 2, 8);
-  if (kind == "periodic") return harmonic(c, 1.0 / s.pitch);
+  if (kind == "periodic") return harmonic(c, c.p, 1.0 / s.pitch);
   if (kind == "backlash") return {made(c, [&](std::size_t i) { return c.d[i] / 2.0; })};
   if (kind == "backlash-slope")
     return {made(c, [&](std::size_t i) { return c.d[i] * c.p[i] / 2.0; })};
@@ -140,11 +140,11 @@ Columns best_columns(const std::string& kind, const Values& signal, const Cycle&
     return {made(c, [&](std::size_t i) { return c.p[i] * (c.material[i] - mean); })};
   }
   if (kind == "run-jump") return best_jump(signal, c);
-  if (kind == "eccentricity") return harmonic(c, 1.0 / (2.0 * pi));
-  if (kind == "harmonic2") return harmonic(c, 2.0 / (2.0 * pi));
-  if (kind == "gear-mesh") return harmonic(c, s.teeth / (2.0 * pi));
+  if (kind == "eccentricity") return harmonic(c, c.position, 1.0 / (2.0 * pi));
+  if (kind == "harmonic2") return harmonic(c, c.position, 2.0 / (2.0 * pi));
+  if (kind == "gear-mesh") return harmonic(c, c.position, s.teeth / (2.0 * pi));
   if (kind == "elastic-reversal") {
-    Columns columns = harmonic(c, 1.0 / (2.0 * pi));
+    Columns columns = harmonic(c, c.position, 1.0 / (2.0 * pi));
     for (Values& column : columns)
       for (std::size_t i = 0; i < c.size(); ++i) column[i] *= c.d[i] / 2.0;
     return columns;
@@ -201,8 +201,8 @@ std::vector<Columns> look_alikes(const Made& m, const Cycle& c, const Scenario& 
   if (m.kind == "pitch-curve") {
     Values periods;
     for (int k = 0; k <= 100; ++k) periods.push_back(c.length / 6.0 * std::pow(9.0, k / 100.0));
-    rivals.push_back(
-        best_of(m.deviation, periods, [&](double period) { return harmonic(c, 1.0 / period); }));
+    rivals.push_back(best_of(m.deviation, periods,
+                             [&](double period) { return harmonic(c, c.p, 1.0 / period); }));
   }
   return rivals;
 }

@@ -61,11 +61,11 @@ std::vector<std::string> places_of(Source source, bool rotary) {
     case Source::sawtooth:
       return {position, "position", "screw-phase"};
     case Source::creeping_reversal:
-      return {"direction x time", "direction x run"};
+      return {"direction x time", "direction x run", "direction"};
     case Source::zero_walk:
       return {"time", "run"};
     case Source::travel_hysteresis:
-      return {"direction x " + position, "direction x position"};
+      return {"direction x " + position, "direction x position", "direction"};
     case Source::wild_run:
       return {"run"};
     default:

@@ -50,6 +50,19 @@ std::vector<Piece> pieces(Random& random, bool rotary, std::size_t n, double lea
   return chosen;
 }
 
+/// A screw of the manifest, or an unknown drive (rack and pinion) of a period that a search among
+/// the targets can find.
+void draw_pitch(Scenario& s, Random& random) {
+  if (s.pitch_known) {
+    const double pitches[] = {0.005, 0.008, 0.010, 0.016, 0.020, 0.040};
+    s.pitch = pitches[random.below(6)];
+    return;
+  }
+  const double intervals = static_cast<double>(s.targets - 1), step = s.length / intervals;
+  const double longest = std::min(5.0, intervals / 3.2);
+  s.pitch = std::round(random.spread(s.even ? 2.3 : 0.6, longest) * step * 1e4) * 1e-4;
+}
+
 void draw_cycle(Scenario& s, Random& random) {
   s.rotary = random.flag(0.35);
   s.targets = s.rotary ? random.whole(12, 36) : random.whole(11, 31);
@@ -60,9 +73,8 @@ void draw_cycle(Scenario& s, Random& random) {
   s.dwell = random.uniform(4.0, 10.0);
   s.feed = s.length / random.uniform(10.0, 40.0);
   s.pause = s.timed && random.flag(0.5) ? random.uniform(20.0, 180.0) : 0.0;
-  const double pitches[] = {0.005, 0.008, 0.010, 0.016, 0.020, 0.040};
-  s.pitch = pitches[random.below(6)];
   s.pitch_known = random.flag(0.5);
+  draw_pitch(s, random);
   const int teeth[] = {60, 72, 90, 96, 120, 144, 180};
   s.teeth = teeth[random.below(7)];
   s.noise =

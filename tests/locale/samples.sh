@@ -30,9 +30,15 @@ count=$(find "$work/plain" -name decimal-point.txt | wc -l)
     "found '$(numbers plain)' and '$(numbers comma)'"
   exit 1
 }
-# The results hold the digest of each file, hence of this one too: one is put for the other.
+# The results hold the digest of each file, hence of this one too, and run.json that of the results:
+# one is put for the other.
 digest() { printf '%s\n' "$1" | sha256sum | cut -d ' ' -f 1; }
-find "$work/comma" -name '*.json' -exec sed -i "s/$(digest 1,5)/$(digest 1.5)/" {} +
+digest_of() { sha256sum "$1" | cut -d ' ' -f 1; }
+for folder in "$work"/comma/*/; do
+  before=$(digest_of "$folder/results.json")
+  sed -i "s/$(digest 1,5)/$(digest 1.5)/" "$folder"/*.json
+  sed -i "s/$before/$(digest_of "$folder/results.json")/" "$folder/run.json"
+done
 find "$work/plain" "$work/comma" -name decimal-point.txt -delete
 diff -r "$work/plain" "$work/comma"
 echo "the same bytes in $(find "$work/comma" -type f | wc -l) files"

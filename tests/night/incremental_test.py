@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What has not changed is not done again; what has is, and says why."""
 import json
+import os
 import shutil
 import subprocess
 import unittest
@@ -47,6 +48,11 @@ class Incremental(NightTest):
              {"a": "campaign.toml changed"}),
             (lambda: shutil.rmtree(self.out / "b"), {"b": "no earlier result"}),
             (lambda: (self.out / "b" / "values.csv").unlink(), {"b": "values.csv is missing from the output"}),
+            (lambda: (values := self.out / "b" / "values.csv").write_text(values.read_text().replace("um", "mm")),
+             {"b": "values.csv was changed in the output"}),
+            (lambda: os.truncate(self.out / "c" / "results.json", 100),
+             {"c": "results.json was changed in the output"}),
+            (lambda: (self.out / "a" / "values.csv").touch(), {}),
             (lambda: (self.site / "site.toml").write_text("[limits]\nseconds = 60\n"),
              dict.fromkeys("abc", "site.toml changed")),
         )

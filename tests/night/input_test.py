@@ -3,7 +3,7 @@
 import os
 import unittest
 
-from nightly import NightTest, manifest
+from nightly import NightTest, manifest, readings
 
 
 class Input(NightTest):
@@ -46,6 +46,78 @@ class Input(NightTest):
         self.assertIn('nearest: "iso230-2"', self.errors("analysis")[0]["message"])
         self.assertIn('nearest: "edition"', self.errors("option")[0]["message"])
         self.assertIn("there is no plugin of that name", self.errors("owner")[0]["message"])
+
+    def place(self, campaign_id):
+        error = self.errors(campaign_id)[0]
+        return error["file"], error.get("line"), error["message"]
+
+    def test_every_mistake_of_a_manifest_names_its_line(self):
+        self.campaign("output", run='[run]\noutputs = ["jsno"]\n')
+        self.campaign("reader", text=manifest("reader").replace('file = "x.csv"', 'file = "x.csv"\nreader = "cvs"'))
+        self.campaign("file", text=manifest("file").replace("x.csv", "y.csv"))
+        self.campaign("axes", run='[run]\noutputs = ["fanuc"]\n[options.fanuc]\naxes = ["Q number=1"]\n')
+        self.campaign("customer", text=manifest("customer").replace(
+            "date = 2026-11-03", 'customer = "上海"'))
+        self.campaign("newline", text=manifest("newline").replace(
+            "date = 2026-11-03", 'customer = "a\\nb"'))
+        self.run_nonio(expect=1)
+        for name, line, words in (("output", 15, 'nearest: "json"'), ("reader", 14, "measurement.X.reader"),
+                                  ("file", 13, "measurement.X.file"), ("axes", 17, "no axis Q"),
+                                  ("customer", 4, "campaign.customer"), ("newline", 4, "a line break")):
+            file, found, message = self.place(name)
+            self.assertEqual((file, found), ("campaign.toml", line), name + ": " + message)
+            self.assertIn(words, message)
+
+    def test_mistakes_of_the_site_are_told_once_with_their_line(self):
+        self.campaign("a")
+        for text, line, words in (('[run]\nanalyses = ["iso230-3"]\n', 2, 'nearest: "iso230-2"'),
+                                  ('[run]\noutputs = [\n"jsn"]\n', 2, 'nearest: "json"'),
+                                  ("[options.nobody]\nx = 1\n", 2, "no plugin of that name"),
+                                  ("[options.iso230-2]\nedition = 2007\n", 2, "wanted one of")):
+            (self.site / "site.toml").write_text(text)
+            done = self.run_nonio(expect=2)
+            self.assertIn(f"site.toml:{line}: ", done.stderr)
+            self.assertIn(words, done.stderr)
+            self.assertFalse(self.out.exists())
+
+    def test_a_table_that_nobody_asked_for_does_not_fail_the_campaign(self):
+        small = "[options.siemens-840d]\nmax_points = 3\n"
+        self.campaign("any", extra=small)
+        self.campaign("asked", run='[run]\noutputs = ["siemens-840d"]\n', extra=small)
+        self.campaign("control", text=manifest("control").replace(
+            'model = "M"', 'control = "siemens-840d"') + small)
+        self.run_nonio(expect=1)
+        self.assertEqual(sorted(self.ids("failed")), ["asked", "control"])
+        self.assertIn("the control takes 3", self.errors("asked")[0]["message"])
+        results = self.results("any")
+        self.assertEqual((results["status"], results["errors"]), ("attention", []))
+        table = next(t for t in results["tables"] if t["plugin"] == "siemens-840d")
+        self.assertEqual([f["id"] for f in table["findings"]], ["table.not-written"])
+        self.assertIn("the control takes 3", table["findings"][0]["evidence"]["why"])
+        self.assertIn("report.pdf", [o["file"] for o in results["outputs"]])
+
+    def test_drift_reaches_the_tables_without_analyses(self):
+        folder = self.campaign("a", run='[run]\nanalyses = []\n')
+        rows = (folder / "x.csv").read_text().splitlines()
+        for i, row in enumerate(rows[1:], 1):
+            run, direction, target, deviation = row.split(",")
+            rows[i] = f"{run},{direction},{target},{float(deviation) + 6 * int(run):.3f}"
+        (folder / "x.csv").write_text("\n".join(rows) + "\n")
+        self.run_nonio(expect=0)
+        results = self.results("a")
+        self.assertEqual((results["status"], results["analyses"]), ("attention", []))
+        for table in results["tables"]:
+            found = {f["id"]: f["advice"] for f in table["findings"]}
+            self.assertIn("Do not compensate yet", found["table.unstable-axis"], table["plugin"])
+
+    def test_files_that_are_no_text_say_so(self):
+        cases = {"empty": (b"", "empty file"), "blank": (b"\n \r\n", "empty file"),
+                 "utf16": (readings(1).encode("utf-16"), "UTF-16")}
+        for name, (data, _) in cases.items():
+            (self.campaign(name) / "x.csv").write_bytes(data)
+        self.run_nonio(expect=1)
+        for name, (_, words) in cases.items():
+            self.assertIn(words, self.errors(name)[0]["message"])
 
     def test_a_kind_that_nobody_reads_leaves_the_others(self):
         ball = '[[measurement]]\nid = "C"\nkind = "ball-centres"\naxis = "C"\nfile = "x.csv"\n'

@@ -3,7 +3,7 @@
 import os
 import unittest
 
-from nightly import PLUGINS, NightTest, tree
+from nightly import PLUGINS, NightTest, manifest, tree
 
 
 class Isolation(NightTest):
@@ -52,6 +52,18 @@ class Isolation(NightTest):
         self.assertEqual(alone, together)
         self.assertFalse([p for p in other.rglob("*") if "escaped" in p.name])
         self.assertFalse(os.path.exists("/tmp/escaped.txt"))
+
+    @unittest.skipIf("NONIO_TEST_NO_MEMORY_LIMIT" in os.environ, "nothing stops the parser there")
+    def test_a_manifest_that_brings_its_parser_down(self):
+        (self.site / "site.toml").write_text("[limits]\nmemory_MB = 150\n")
+        keys = "".join(f"key{i} = 0\n" for i in range(500_000))
+        self.campaign("large", text=manifest("large", extra="[options.iso230-2]\n" + keys))
+        for name in "az":
+            self.campaign(name)
+        self.run_nonio(expect=1)
+        self.assertEqual(self.ids("failed"), ["large"])
+        self.assertIn("reading campaign.toml", self.results("large")["errors"][0]["message"])
+        self.assertEqual(self.ids("done"), ["a", "z"])
 
     def test_wrong_abi_is_refused_before_any_call(self):
         self.campaign("a")

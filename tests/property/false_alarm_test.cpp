@@ -23,6 +23,7 @@ struct Clean {
   double B;  // m or rad
   bool rotary;
   std::uint64_t seed;
+  bool closed = false;  ///< rotary: evenly over the turn, 0 and 360 deg both
 };
 
 void PrintTo(const Clean& c, std::ostream* out) { *out << c.name; }
@@ -41,6 +42,10 @@ TEST_P(FalseAlarms, AreRare) {
     plan.runs = c.runs;
     plan.rotary = c.rotary;
     plan.targets = made::spread_targets(random, c.targets, c.rotary ? 5.5 : 1.8);
+    if (c.closed)
+      for (std::size_t i = 0; i < c.targets; ++i)
+        plan.targets[i] =
+            2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(c.targets - 1);
     const auto truth = [&](double x, int d, std::uint32_t) {
       return (c.rotary ? 2e-6 * std::sin(3.0 * x) + 2e-6 * std::cos(2.0 * x) : smooth(x)) +
              (d > 0 ? c.B : 0.0);
@@ -50,6 +55,7 @@ TEST_P(FalseAlarms, AreRare) {
     math::drift_findings(test, findings);
     math::reversal_findings(test, findings);
     math::scatter_findings(test, findings);
+    math::turn_findings(test, findings);
     std::map<std::string, int> once;
     for (const Finding& f : findings) once[f.id] = 1;
     for (const auto& [id, one] : once) alarms[id] += one;
@@ -82,6 +88,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Clean{"four_runs", 30, 4, {1 * um, 2 * um, 0.2 * um}, 0, false, 20},
                     Clean{"rotary", 12, 5, {1 * um, 0, 0}, 10 * um, true, 21},
                     Clean{"rotary_no_reversal", 8, 5, {1 * um, 1 * um, 0}, 0, true, 22},
+                    Clean{"closed_turn", 13, 5, {1 * um, 0, 0}, -10 * um, true, 24, true},
+                    Clean{"closed_turn_offsets", 9, 3, {1 * um, 1 * um, 1 * um}, 0, true, 25, true},
+                    Clean{"closed_turn_many", 37, 5, {1 * um, 0, 0.3 * um}, 0, true, 26, true},
+                    Clean{"five_angles", 6, 5, {1 * um, 0, 0}, -10 * um, true, 27, true},
                     Clean{"one_run", 13, 1, {1 * um, 0, 0}, 0, false, 23}),
     [](const testing::TestParamInfo<Clean>& i) { return std::string(i.param.name); });
 

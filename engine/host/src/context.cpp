@@ -8,7 +8,7 @@ namespace nonio::host {
 namespace fs = std::filesystem;
 
 Checked<SiteFile> read_site(const fs::path& site, std::string& digest) {
-  const fs::path path = site / "site.toml";
+  const fs::path path = site / site_name;
   std::error_code error;
   if (!fs::exists(path, error)) {
     digest = sha256("");
@@ -17,7 +17,7 @@ Checked<SiteFile> read_site(const fs::path& site, std::string& digest) {
   const auto text = read_file(path);
   if (!text) return tl::unexpected(std::vector<Error>{text.error()});
   digest = sha256(*text);
-  return parse_site(*text, "site.toml");
+  return parse_site(*text, site_name);
 }
 
 namespace {

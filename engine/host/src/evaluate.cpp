@@ -5,7 +5,10 @@
 #include <cmath>
 #include <set>
 
-#include "nonio/host/digest.h"
+#include "guarded.h"
+#include "model_fit.h"
+#include "names.h"
+#include "nonio/host/campaign_reader.h"
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
 #include "nonio/sdk/format.h"
@@ -15,22 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Nobody throws on purpose; whatever a plugin does throw ends here, with its name.
-template <class Call>
-auto guarded(const std::string& who, const Call& call) -> decltype(call()) {
-  try {
-    auto result = call();
-    if (!result) result.error().message = who + ": " + result.error().message;
-    return result;
-  } catch (const std::bad_alloc&) {
-    return fail(who + ": out of memory (the limit for one campaign is in site.toml, [limits])");
-  } catch (const std::exception& e) {
-    return fail(who + " threw an exception: " + e.what());
-  } catch (...) {
-    return fail(who + " threw an exception of an unknown kind");
-  }
-}
-
 class CampaignRun {
  public:
   CampaignRun(const fs::path& folder, const Context& context, const Stage& stage)
@@ -38,9 +25,9 @@ class CampaignRun {
 
   Evaluated run(const std::string& id) {
     id_ = out_.campaign.id = id;
-    if (read_manifest()) {
-      read_measurements();
+    if (read()) {
       analyse();
+      fit_model();
       if (!failed()) hold_against_tolerances();
       fill_advice();
       if (!failed()) write_outputs();
@@ -52,127 +39,33 @@ class CampaignRun {
  private:
   bool failed() const { return !out_.results.errors.empty(); }
   void report(Error error) { out_.results.errors.push_back(std::move(error)); }
-
-  bool read_manifest() {
-    stage_("reading campaign.toml");
-    const auto text = read_file(folder_ / manifest_name);
-    if (!text) {
-      report(Error{text.error().message, manifest_name});
-      return false;
-    }
-    out_.inputs.emplace_back(manifest_name, sha256(*text));
-    auto manifest = parse_manifest(*text, manifest_name);
-    if (!manifest) {
-      out_.results.errors = std::move(manifest.error());
-      return false;
-    }
-    out_.campaign = std::move(manifest->campaign);
-    out_.campaign.laboratory = context_.site.laboratory;
-    manifest_ = std::move(*manifest);
-    if (out_.campaign.id != id_) {
-      report(Error{"the id changed while the campaign was read", manifest_name});
-      out_.campaign.id = id_;
-    }
-    return !failed();
+  void locate(Error& error, const std::string& plugin = {}) const {
+    host::locate(error, read_.manifest->lines, context_.site.lines, plugin);
+  }
+  /// An error that a key of the manifest is to blame for.
+  Error at(std::string key, const std::string& message) const {
+    Error error{key + ": " + message};
+    error.key = std::move(key);
+    locate(error);
+    return error;
   }
 
-  void read_measurements() {
-    observations_.resize(out_.campaign.measurements.size());
-    for (std::size_t i = 0; i < observations_.size(); ++i) {
-      const Measurement& m = out_.campaign.measurements[i];
-      auto read = read_measurement(m, observations_[i]);
-      if (read) continue;
-      if (read.error().file.empty()) read.error().file = m.file;
-      report(std::move(read.error()));
-    }
-  }
-
-  Expected<void> read_measurement(const Measurement& m, Observations& into) {
-    const auto path = path_inside(folder_, m.file);
-    const auto file = path ? MappedFile::open(*path) : fail(path.error());
-    note_input(m.file, file ? sha256(file->bytes()) : absent);
-    if (!path)
-      return fail(Error{"measurement \"" + m.id + "\": " + path.error().message, manifest_name});
-    if (!file) return fail(Error{"measurement \"" + m.id + "\": " + file.error().message, m.file});
-    const auto reader = choose_reader(m, file->bytes());
-    if (!reader) return fail(reader.error());
-    if (*reader == nullptr) return {};
-    const Info& info = (*reader)->info;
-    const auto options = settle(info);
-    if (!options) return {};
-    const std::string who = "reader " + info.name;
-    stage_(who + " (measurement " + m.id + ")");
-    auto observations = guarded(who, [&] {
-      return (*reader)->read({file->bytes(), out_.campaign, m, *options,
-                              [&](std::size_t offset) { file->release(offset); }});
-    });
-    if (!observations) {
-      Error error = observations.error();
-      if (error.message.starts_with(who + ": ")) error.message.erase(0, who.size() + 2);
-      return fail(std::move(error));
-    }
-    if (auto sound = check(*observations); !sound)
-      return fail(who + " gave " + sound.error().message);
-    into = std::move(*observations);
-    for (const std::string& note : into.notes)
-      out_.results.notes.push_back("measurement " + m.id + ": " + note);
-    return {};
-  }
-
-  void note_input(const std::string& name, const std::string& digest_now) {
-    for (const auto& [known, digest] : out_.inputs)
-      if (known == input_name(name)) return;
-    out_.inputs.emplace_back(input_name(name), digest_now);
-  }
-
-  /// The reader that is named, or the first that knows the content; none if no plugin reads this
-  /// kind of measurement at all, which is noted and leaves the others to be evaluated.
-  Expected<const Reader*> choose_reader(const Measurement& m, std::string_view bytes) {
-    const auto& readers = context_.plugins->readers();
-    if (!m.reader.empty()) {
-      for (const Reader& r : readers)
-        if (r.info.name == m.reader) return &r;
-      return fail(
-          Error{"measurement \"" + m.id + "\": " + context_.plugins->absence("reader", m.reader),
-                manifest_name});
-    }
-    bool any = false;
-    for (const Reader& r : readers) {
-      if (!r.reads(m.kind)) continue;
-      any = true;
-      if (r.recognises(bytes.substr(0, 4096))) return &r;
-    }
-    if (any)
-      return fail(
-          Error{"no reader knows the format of this file; wanted a CSV with a header row, or "
-                "the format of an installed reader (`nonio plugins`)",
-                m.file});
-    unread_.push_back(m.id);
-    out_.results.notes.push_back("measurement " + m.id + ": no installed plugin reads kind \"" +
-                                 m.kind + "\"; it is not evaluated");
-    return nullptr;
-  }
-
-  /// What every later stage relies on, whatever the reader did.
-  static Expected<void> check(const Observations& o) {
-    const std::size_t n = o.size();
-    const auto fits = [n](const auto& column) { return column.empty() || column.size() == n; };
-    bool sound = fits(o.u) && fits(o.run) && fits(o.line) && fits(o.source_line) && fits(o.time) &&
-                 fits(o.material) && fits(o.air) && fits(o.pressure) && fits(o.humidity);
-    for (const auto& axis : o.axes)
-      sound = sound && axis.position.size() == n && fits(axis.approach);
-    if (!sound) return fail("columns of different lengths");
-    const auto finite = [](double x) { return std::isfinite(x); };
-    if (!std::all_of(o.deviation.begin(), o.deviation.end(), finite))
-      return fail("a deviation that is not a number");
-    for (const auto& axis : o.axes)
-      if (!std::all_of(axis.position.begin(), axis.position.end(), finite))
-        return fail("a position that is not a number");
-    return {};
+  /// False if there is nothing to evaluate.
+  bool read() {
+    read_ = read_campaign(folder_, context_, stage_);
+    out_.inputs = std::move(read_.inputs);
+    out_.results.errors = std::move(read_.errors);
+    out_.results.notes = std::move(read_.notes);
+    if (!read_.manifest) return false;
+    out_.campaign = read_.manifest->campaign;
+    if (out_.campaign.id == id_) return true;
+    report(Error{"the id changed while the campaign was read", manifest_name});
+    out_.campaign.id = id_;
+    return false;
   }
 
   std::optional<Settings> settle(const Info& info) {
-    auto options = settle_options(info, context_.site.options, manifest_.options);
+    auto options = settle_options(info, context_.site.options, read_.manifest->options);
     if (options) return std::move(*options);
     for (Error& e : options.error()) report(std::move(e));
     return std::nullopt;
@@ -181,6 +74,7 @@ class CampaignRun {
   /// The plugins that are asked for, or all; a name that is not there is an error.
   template <class Plugin>
   std::vector<const Plugin*> chosen(const std::vector<Plugin>& all, const char* kind,
+                                    const char* key,
                                     const std::optional<std::vector<std::string>>& campaign,
                                     const std::optional<std::vector<std::string>>& site) {
     std::vector<const Plugin*> out;
@@ -190,10 +84,11 @@ class CampaignRun {
       return out;
     }
     for (const std::string& name : *names) {
+      if (name == model_fit_name) continue;
       const auto found = std::find_if(all.begin(), all.end(),
                                       [&](const Plugin& p) { return p.info.name == name; });
       if (found == all.end())
-        report(Error{std::string("run: ") + context_.plugins->absence(kind, name), manifest_name});
+        report(at(key, context_.plugins->absence(kind, name)));
       else if (std::find(out.begin(), out.end(), &*found) == out.end())
         out.push_back(&*found);
     }
@@ -201,12 +96,13 @@ class CampaignRun {
   }
 
   void analyse() {
-    const auto analyses = chosen(context_.plugins->analyses(), "analysis", manifest_.run.analyses,
-                                 context_.site.run.analyses);
-    check_option_owners();
-    for (std::size_t i = 0; i < observations_.size(); ++i) {
+    const auto analyses = chosen(context_.plugins->analyses(), "analysis", "run.analyses",
+                                 read_.manifest->run.analyses, context_.site.run.analyses);
+    for (Error& e : ownerless_options(read_.manifest->options, *context_.plugins))
+      report(std::move(e));
+    for (std::size_t i = 0; i < read_.observations.size(); ++i) {
       const Measurement& m = out_.campaign.measurements[i];
-      if (observations_[i].size() == 0) continue;
+      if (read_.observations[i].size() == 0) continue;
       for (const Analysis* analysis : analyses) {
         if (!analysis->applies(out_.campaign, m)) continue;
         const auto options = settle(analysis->info);
@@ -214,38 +110,41 @@ class CampaignRun {
         const std::string who = "analysis " + analysis->info.name;
         stage_(who + " (measurement " + m.id + ")");
         auto evaluation = guarded(who, [&] {
-          return analysis->analyse({out_.campaign, m, observations_[i], *options});
+          return analysis->analyse({out_.campaign, m, read_.observations[i], *options});
         });
         if (evaluation)
           if (auto sound = check(*evaluation); !sound)
             evaluation = fail(who + " gave " + sound.error().message);
         if (!evaluation) {
+          locate(evaluation.error(), analysis->info.name);
           if (evaluation.error().file.empty()) evaluation.error().file = m.file;
           report(std::move(evaluation.error()));
           continue;
         }
         for (Finding& f : evaluation->findings) f.measurement = m.id;
+        word(evaluation->notes);
         out_.results.analyses.push_back(
             {analysis->info.name, analysis->info.version, m.id, std::move(*evaluation)});
       }
     }
   }
 
-  /// `[options.x]` for an x that no plugin is would otherwise be ignored in silence.
-  void check_option_owners() {
-    for (const RawOptions* options :
-         std::initializer_list<const RawOptions*>{&manifest_.options, &context_.site.options})
-      for (const auto& [name, values] : *options) {
-        const auto owns = [&, &n = name](const auto& p) { return p.info.name == n; };
-        const Plugins& all = *context_.plugins;
-        if (std::any_of(all.readers().begin(), all.readers().end(), owns) ||
-            std::any_of(all.analyses().begin(), all.analyses().end(), owns) ||
-            std::any_of(all.outputs().begin(), all.outputs().end(), owns) || values.empty())
-          continue;
-        const RawOption& first = values.begin()->second;
-        report(
-            Error{"options." + name + ": there is no plugin of that name", first.file, first.line});
-      }
+  void fit_model() {
+    const auto& names =
+        read_.manifest->run.analyses ? read_.manifest->run.analyses : context_.site.run.analyses;
+    const bool asked = names
+                           ? std::find(names->begin(), names->end(), model_fit_name) != names->end()
+                           : !out_.campaign.model.empty();
+    if (!asked) return;
+    stage_("analysis " + std::string(model_fit_name));
+    auto fitted = model_fit(read_, context_);
+    if (!fitted) return report(std::move(fitted.error()));
+    out_.results.models = std::move(fitted->models);
+    for (Results::Analysed& one : fitted->analyses) {
+      for (Finding& f : one.evaluation.findings) f.measurement = one.measurement;
+      word(one.evaluation.notes);
+      out_.results.analyses.push_back(std::move(one));
+    }
   }
 
   static Expected<void> check(const Evaluation& e) {
@@ -304,6 +203,10 @@ class CampaignRun {
     return found;
   }
 
+  void word(std::vector<Remark>& notes) const {
+    for (Remark& note : notes) note.english = remark_text(context_.templates, "en", note);
+  }
+
   /// results.json speaks English; documents look the words up in their own language.
   void fill_advice() {
     for (Results::Analysed& a : out_.results.analyses)
@@ -312,20 +215,25 @@ class CampaignRun {
   }
 
   void write_outputs() {
-    auto outputs = chosen(context_.plugins->outputs(), "output", manifest_.run.outputs,
-                          context_.site.run.outputs);
-    const bool all = !manifest_.run.outputs && !context_.site.run.outputs;
+    auto outputs = chosen(context_.plugins->outputs(), "output", "run.outputs",
+                          read_.manifest->run.outputs, context_.site.run.outputs);
+    const bool all = !read_.manifest->run.outputs && !context_.site.run.outputs;
     check_control();
     if (failed()) return;
     std::stable_partition(outputs.begin(), outputs.end(),
                           [](const Output* o) { return o->stage == Output::Stage::table; });
+    if (out_.campaign.compensate_model)
+      for_tables_ = compensable_readings(read_, out_.results.notes);
+    word(out_.results.notes);
     for (const Output* output : outputs) {
       const std::string& control = out_.campaign.machine.control;
       if (all && output->stage == Output::Stage::table && !control.empty() &&
           control != output->info.name)
         continue;
       if (!output->applies(out_.campaign)) continue;
-      if (const auto options = settle(output->info)) write_output(*output, *options);
+      const bool asked =
+          !all || output->stage != Output::Stage::table || control == output->info.name;
+      if (const auto options = settle(output->info)) write_output(*output, *options, asked);
     }
   }
 
@@ -337,22 +245,46 @@ class CampaignRun {
     if (control.empty() || std::find(tables.begin(), tables.end(), control) != tables.end()) return;
     std::string list;
     for (const std::string& name : tables) list += (list.empty() ? "" : ", ") + name;
-    report(Error{"machine.control: no output writes tables for \"" + control + "\"" +
-                     suggestion(control, tables) + "; there are " + list,
-                 manifest_name});
+    report(at("machine.control", "no output writes tables for \"" + control + "\"" +
+                                     suggestion(control, tables) + "; there are " + list));
   }
 
-  void write_output(const Output& output, const Settings& options) {
+  static OutputResult without_model(const Output& output, const std::string& why) {
+    OutputResult nothing;
+    nothing.findings.push_back({.id = "table.no-model",
+                                .attention = true,
+                                .texts = {{"output", output.info.name}, {"why", why}}});
+    return nothing;
+  }
+
+  /// Without `asked` a table that the control cannot have is worth a finding, not the campaign: it
+  /// was tried only because nobody said which control the machine has.
+  void write_output(const Output& output, const Settings& options, bool asked) {
     const std::string who = "output " + output.info.name;
     stage_(who);
-    auto result = guarded(who, [&] {
-      return output.write(
-          {out_.campaign, observations_, out_.results, options, context_.templates});
+    const bool of_model = output.stage == Output::Stage::table && for_tables_;
+    auto result = guarded(who, [&]() -> Expected<OutputResult> {
+      if (of_model && !*for_tables_) return without_model(output, for_tables_->error().message);
+      auto written =
+          output.write({out_.campaign, of_model ? **for_tables_ : read_.observations, out_.results,
+                        options, context_.templates, of_model ? &read_.observations : nullptr});
+      if (!written && !asked && written.error().key.empty()) {
+        const std::string why = std::move(written.error().message);
+        written = OutputResult();
+        written->findings.push_back({.id = "table.not-written",
+                                     .attention = true,
+                                     .texts = {{"output", output.info.name}, {"why", why}}});
+      }
+      return written;
     });
     if (result)
       if (auto sound = check(*result); !sound)
         result = fail(who + " gave " + sound.error().message);
-    if (!result) return report(std::move(result.error()));
+    if (!result) {
+      locate(result.error(), output.info.name);
+      return report(std::move(result.error()));
+    }
+    word(result->notes);
     for (Finding& f : result->findings)
       f.advice = finding_text(context_.templates, "en", f, "advice");
     for (const Artifact& a : result->artifacts) names_.insert(a.name);
@@ -383,7 +315,7 @@ class CampaignRun {
       return std::any_of(findings.begin(), findings.end(),
                          [](const Finding& f) { return f.attention; });
     };
-    return !unread_.empty() ||
+    return !read_.unread.empty() ||
            std::any_of(out_.results.analyses.begin(), out_.results.analyses.end(),
                        [&](const auto& a) { return asks(a.evaluation.findings); }) ||
            std::any_of(out_.results.outputs.begin(), out_.results.outputs.end(),
@@ -397,9 +329,10 @@ class CampaignRun {
   const Stage& stage_;
   std::string id_;
   Evaluated out_;
-  Manifest manifest_;
-  std::vector<Observations> observations_;
-  std::vector<std::string> unread_;
+  ReadCampaign read_;
+  /// Where the manifest wants tables of the model and not of the readings; an error if there is
+  /// none.
+  std::optional<Expected<std::vector<Observations>>> for_tables_;
   std::set<std::string> names_;
 };
 

@@ -135,16 +135,12 @@ bool is_artifact_name(std::string_view name) {
 
 namespace {
 
-fs::path temporary(const fs::path& folder, const std::string& name) {
-  return folder / ("." + name + std::string(leftover_suffix));
-}
-
 /// All files under their temporary names, on disk. They are filled before the first is flushed, so
 /// that the file system can write them together: one journal commit instead of one for each.
 Expected<void> write_temporaries(const fs::path& folder, const std::vector<Artifact>& files) {
   std::vector<Descriptor> open;
   for (const Artifact& file : files) {
-    auto written = write_new(temporary(folder, file.name), file.bytes);
+    auto written = write_new(temporary_path(folder, file.name), file.bytes);
     if (!written) return fail(written.error());
     open.push_back(std::move(*written));
   }
@@ -153,32 +149,36 @@ Expected<void> write_temporaries(const fs::path& folder, const std::vector<Artif
   return {};
 }
 
-Expected<void> rename_all(const fs::path& folder, const std::vector<Artifact>& files) {
-  const std::size_t last = files.size() - 1;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const std::string& name = files[i].name;
+}  // namespace
+
+fs::path temporary_path(const fs::path& folder, const std::string& name) {
+  return folder / ("." + name + std::string(leftover_suffix));
+}
+
+Expected<void> rename_temporaries(const fs::path& folder, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
     // The others are under their names for good before the last one is.
-    if (i == last && i != 0)
+    if (&name == &names.back() && names.size() > 1)
       if (auto flushed = flush_folder(folder); !flushed) return flushed;
-    if (::rename(temporary(folder, name).c_str(), (folder / name).c_str()) != 0)
+    if (::rename(temporary_path(folder, name).c_str(), (folder / name).c_str()) != 0)
       return system_error("cannot write", folder / name);
   }
   return flush_folder(folder);
 }
-
-}  // namespace
 
 Expected<void> publish(const fs::path& folder, const std::vector<Artifact>& files) {
   if (files.empty()) return {};
   std::error_code error;
   const bool is_new = fs::create_directories(folder, error);
   if (error) return fail("cannot make the folder " + folder.string() + ": " + error.message());
-  if (is_new)
-    if (auto flushed = flush_folder(folder.parent_path()); !flushed) return flushed;
   auto done = write_temporaries(folder, files);
-  if (done) done = rename_all(folder, files);
+  // After the files: a journal that was committed for them holds the new folder already.
+  if (done && is_new) done = flush_folder(folder.parent_path());
+  std::vector<std::string> names;
+  for (const Artifact& file : files) names.push_back(file.name);
+  if (done) done = rename_temporaries(folder, names);
   if (!done)
-    for (const Artifact& file : files) fs::remove(temporary(folder, file.name), error);
+    for (const Artifact& file : files) fs::remove(temporary_path(folder, file.name), error);
   return done;
 }
 

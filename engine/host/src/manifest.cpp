@@ -2,9 +2,11 @@
 #include "nonio/host/manifest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
+#include "formula_reader.h"
 #include "nonio/host/nearest.h"
 #include "toml_reader.h"
 
@@ -186,6 +188,14 @@ Measurement read_measurement(Source& source, const toml::table& table) {
   m.lateral = reader.text("lateral");
   if (m.kind == "straightness" && m.lateral.empty())
     reader.error("lateral", "is missing: the axis in whose direction the deviation was measured");
+  if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
+    reader.error("lateral", "wanted another axis than " + m.axis +
+                                ", which moves: along it the deviation is one of positioning");
+  for (const double line : reader.numbers("exclude").value_or(std::vector<double>{}))
+    if (line >= 1.0 && line <= 4e9 && line == std::floor(line))
+      m.exclude.push_back(static_cast<std::uint32_t>(line));
+    else
+      reader.error("exclude", "wanted line numbers of the file, whole and from 1");
   const bool spans = m.kind == "diagonal" || m.kind == "step-diagonal";
   for (const auto& [key, ends] : {std::pair{"from", &m.from}, std::pair{"to", &m.to}}) {
     for (const auto& [axis, position] : reader.number_table(key, mm)) (*ends)[axis] = position;
@@ -257,6 +267,21 @@ void check_format(TableReader& top) {
                             ": this file is for another version of nonio");
 }
 
+void note_lines(const toml::table& table, const std::string& prefix, KeyLines& lines) {
+  for (const auto& [key, node] : table) {
+    const std::string name = prefix + std::string(key.str());
+    lines[name] = node.source().begin.line;
+    if (const toml::table* child = node.as_table()) note_lines(*child, name + ".", lines);
+    if (const toml::array* list = node.as_array())
+      for (const toml::node& item : *list)
+        if (const toml::table* child = item.as_table()) {
+          const std::string one = name + "." + (*child)["id"].value_or(std::string());
+          lines[one] = child->source().begin.line;
+          note_lines(*child, one + ".", lines);
+        }
+  }
+}
+
 }  // namespace
 
 bool is_campaign_id(std::string_view id) {
@@ -282,12 +307,15 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
   if (const toml::table* model = top.table("model")) {
     TableReader reader = source.reader(*model, "model");
     if (auto effects = reader.texts("effects")) campaign.model = std::move(*effects);
+    campaign.compensate_model = reader.choice("compensate", {"readings", "model"}) == "model";
+    campaign.formulas = read_formulas(reader, campaign.machine, file, source.errors);
     reader.finish();
   }
   manifest.run = read_run(source, top.table("run"));
   manifest.options = read_options(source, top.table("options"));
   top.finish();
   if (!source.errors.empty()) return tl::unexpected(std::move(source.errors));
+  note_lines(*root, "", manifest.lines);
   return manifest;
 }
 
@@ -322,6 +350,7 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
                            "] has no effect in this version");
   top.finish();
   if (!source.errors.empty()) return tl::unexpected(std::move(source.errors));
+  note_lines(*root, "", site.lines);
   return site;
 }
 

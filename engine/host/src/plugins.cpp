@@ -115,6 +115,14 @@ void Plugins::load_file(const fs::path& path) {
     file.refused = entry.error().message;
 }
 
+bool Plugins::all_from(const fs::path& folder) const {
+  std::error_code error;
+  const fs::path wanted = fs::canonical(folder, error);
+  return std::all_of(files_.begin(), files_.end(), [&](const PluginFile& f) {
+    return !f.refused.empty() || f.path.parent_path() == wanted;
+  });
+}
+
 std::string Plugins::digest() const {
   std::string all;
   for (const PluginFile& file : files_)

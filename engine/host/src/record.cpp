@@ -35,7 +35,9 @@ Record record_of(const Json& json) {
   r.retry = json.at("retry").get<bool>();
   for (const auto& [name, digest] : json.at("inputs").items())
     r.inputs.emplace_back(name, digest.get<std::string>());
-  r.files = json.at("files").get<std::vector<std::string>>();
+  for (const auto& [name, size_and_digest] : json.at("files").items())
+    r.files.push_back({name, size_and_digest.at(0).get<std::uint64_t>(),
+                       size_and_digest.at(1).get<std::string>()});
   for (const Json& e : json.at("errors"))
     r.errors.push_back({e.at("message").get<std::string>(), e.value("file", std::string()),
                         e.value("line", std::uint64_t{0}), e.value("column", std::string())});
@@ -49,16 +51,18 @@ Record record_of(const Json& json) {
 std::string to_json(const Record& r) {
   Json inputs = Json::object();
   for (const auto& [name, digest] : r.inputs) inputs[name] = digest;
+  Json files = Json::object();
+  for (const RecordedFile& f : r.files) files[f.name] = {f.size, f.sha256};
   Json errors = Json::array();
   for (const Error& e : r.errors) errors.push_back(to_json(e));
-  return dump(Json{{"schema", "nonio-run/1"},
+  return dump(Json{{"schema", "nonio-run/2"},
                    {"folder", r.folder},
                    {"night", r.night},
                    {"reason", r.reason},
                    {"status", r.status},
                    {"retry", r.retry},
                    {"inputs", std::move(inputs)},
-                   {"files", r.files},
+                   {"files", std::move(files)},
                    {"errors", std::move(errors)},
                    {"findings", findings_json(r.findings)},
                    {"previous_findings", findings_json(r.previous)}});
@@ -69,7 +73,7 @@ Expected<Record> read_record(const std::filesystem::path& campaign_output) {
   if (!file) return fail(file.error());
   try {
     const Json json = Json::parse(file->bytes());
-    if (json.at("schema") != "nonio-run/1") return fail("is of another version");
+    if (json.at("schema") != "nonio-run/2") return fail("is of another version");
     return record_of(json);
   } catch (const Json::exception& e) {
     return fail(std::string("is not a record: ") + e.what());

@@ -1,166 +1,250 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/host/results_json.h"
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <utility>
 
-#include "json_values.h"
-#include "nonio/host/digest.h"
+#include "json_writer.h"
+#include "nonio/sdk/format.h"
 
 namespace nonio::host {
 
 namespace {
 
-void put(Json& json, const char* key, const std::string& value) {
-  if (!value.empty()) json[key] = value;
+void put(JsonWriter& json, const char* key, const std::string& text) {
+  if (!text.empty()) json.member(key, text);
 }
 
-Json campaign_json(const Campaign& c) {
-  Json json = {{"id", c.id}};
+/// An object of the texts that are there; nothing if none is.
+void put_texts(JsonWriter& json, const char* key,
+               std::initializer_list<std::pair<const char*, const std::string&>> texts) {
+  if (std::all_of(texts.begin(), texts.end(), [](const auto& t) { return t.second.empty(); }))
+    return;
+  json.key(key);
+  json.begin_object();
+  for (const auto& [name, text] : texts) put(json, name, text);
+  json.end_object();
+}
+
+void put_notes(JsonWriter& json, const std::vector<Remark>& notes) {
+  if (notes.empty()) return;
+  json.key("notes");
+  json.begin_array();
+  for (const Remark& note : notes)
+    json.value((note.measurement.empty() ? "" : "measurement " + note.measurement + ": ") +
+               note.english);
+  json.end_array();
+}
+
+void put_campaign(JsonWriter& json, const Campaign& c) {
+  json.key("campaign");
+  json.begin_object();
+  json.member("id", c.id);
   put(json, "customer", c.customer);
   put(json, "site", c.site);
   put(json, "operator", c.operator_name);
   put(json, "date", c.date);
-  Json machine = Json::object();
-  put(machine, "maker", c.machine.maker);
-  put(machine, "model", c.machine.model);
-  put(machine, "serial", c.machine.serial);
-  put(machine, "structure", c.machine.structure);
-  put(machine, "control", c.machine.control);
-  if (!machine.empty()) json["machine"] = std::move(machine);
-  Json instrument = Json::object();
-  put(instrument, "maker", c.instrument.maker);
-  put(instrument, "model", c.instrument.model);
-  put(instrument, "serial", c.instrument.serial);
-  put(instrument, "calibrated", c.instrument.calibrated);
-  put(instrument, "certificate", c.instrument.certificate);
-  if (!instrument.empty()) json["instrument"] = std::move(instrument);
-  return json;
+  put_texts(json, "machine",
+            {{"maker", c.machine.maker},
+             {"model", c.machine.model},
+             {"serial", c.machine.serial},
+             {"structure", c.machine.structure},
+             {"control", c.machine.control}});
+  put_texts(json, "instrument",
+            {{"maker", c.instrument.maker},
+             {"model", c.instrument.model},
+             {"serial", c.instrument.serial},
+             {"calibrated", c.instrument.calibrated},
+             {"certificate", c.instrument.certificate}});
+  json.end_object();
 }
 
-Json value_json(const Value& v, const std::string& measurement, const std::string& plugin,
-                const std::vector<Conformity>& conformity) {
-  Json json = {{"value", printed(v.value, v.quantity)}, {"unit", unit_of(v.quantity).symbol}};
-  if (v.U) json["U"] = printed(*v.U, v.quantity);
+void put_error(JsonWriter& json, const Error& error) {
+  json.begin_object();
+  put(json, "file", error.file);
+  if (error.line != 0) json.member("line", error.line);
+  put(json, "column", error.column);
+  json.member("message", error.message);
+  json.end_object();
+}
+
+void put_value(JsonWriter& json, const Value& v, const Results::Analysed& a,
+               const std::vector<Conformity>& conformity) {
+  json.key(v.name);
+  json.begin_object();
+  json.member("value", printed(v.value, v.quantity));
+  json.member("unit", unit_of(v.quantity).symbol);
+  if (v.U) json.member("U", printed(*v.U, v.quantity));
   for (const Conformity& c : conformity)
-    if (c.measurement == measurement && c.plugin == plugin && c.name == v.name) {
-      json["tolerance"] = printed(c.tolerance, c.quantity);
-      json["decision"] = to_text(c.decision);
+    if (c.measurement == a.measurement && c.plugin == a.plugin && c.name == v.name) {
+      json.member("tolerance", printed(c.tolerance, c.quantity));
+      json.member("decision", to_text(c.decision));
     }
-  return json;
+  json.end_object();
 }
 
-Json number_json(double value, Quantity quantity) {
-  if (quantity == Quantity::count) return static_cast<std::int64_t>(std::llround(value));
-  return printed(value, quantity);
+void put_number(JsonWriter& json, double value, Quantity quantity) {
+  if (quantity == Quantity::count)
+    json.value(static_cast<std::int64_t>(std::llround(value)));
+  else
+    json.value(printed(value, quantity));
 }
 
-Json points_json(const PointTable& table) {
-  Json rows = Json::array();
-  const std::size_t n = table.columns.empty() ? 0 : table.columns.front().values.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    Json row = Json::object();
+void put_points(JsonWriter& json, const PointTable& table) {
+  if (table.columns.empty()) return;
+  json.key("point_units");
+  json.begin_object();
+  for (const PointTable::Column& c : table.columns) json.member(c.name, unit_of(c.quantity).symbol);
+  json.end_object();
+  json.key("points");
+  json.begin_array();
+  for (std::size_t i = 0; i < table.columns.front().values.size(); ++i) {
+    json.begin_object();
     for (const PointTable::Column& c : table.columns)
-      if (std::isfinite(c.values[i])) row[c.name] = number_json(c.values[i], c.quantity);
-    rows.push_back(std::move(row));
+      if (std::isfinite(c.values[i])) {
+        json.key(c.name);
+        put_number(json, c.values[i], c.quantity);
+      }
+    json.end_object();
   }
-  return rows;
+  json.end_array();
 }
 
-Json point_units_json(const PointTable& table) {
-  Json units = Json::object();
-  for (const PointTable::Column& c : table.columns) units[c.name] = unit_of(c.quantity).symbol;
-  return units;
-}
-
-Json series_json(const std::vector<Series>& all) {
-  Json json = Json::object();
+void put_series(JsonWriter& json, const std::vector<Series>& all) {
+  if (all.empty()) return;
+  const auto list = [&](const char* key, const std::vector<double>& values, Quantity q) {
+    json.key(key);
+    json.begin_array();
+    for (const double v : values) std::isfinite(v) ? json.value(printed(v, q)) : json.null();
+    json.end_array();
+  };
+  json.key("series");
+  json.begin_object();
   for (const Series& s : all) {
-    Json one = {{"over", s.over},
-                {"position_unit", unit_of(s.position_quantity).symbol},
-                {"unit", unit_of(s.quantity).symbol}};
-    const auto list = [](const std::vector<double>& values, Quantity q) {
-      Json out = Json::array();
-      for (const double v : values) out.push_back(std::isfinite(v) ? Json(printed(v, q)) : Json());
-      return out;
-    };
-    one["position"] = list(s.position, s.position_quantity);
-    one["value"] = list(s.value, s.quantity);
-    if (!s.U.empty()) one["U"] = list(s.U, s.quantity);
-    json[s.name] = std::move(one);
+    json.key(s.name);
+    json.begin_object();
+    json.member("over", s.over);
+    json.member("position_unit", unit_of(s.position_quantity).symbol);
+    json.member("unit", unit_of(s.quantity).symbol);
+    list("position", s.position, s.position_quantity);
+    list("value", s.value, s.quantity);
+    if (!s.U.empty()) list("U", s.U, s.quantity);
+    json.end_object();
   }
-  return json;
+  json.end_object();
 }
 
-Json finding_json(const Finding& f, bool with_measurement) {
-  Json json = {{"id", f.id}, {"severity", f.attention ? "attention" : "info"}};
-  if (with_measurement && !f.measurement.empty()) json["measurement"] = f.measurement;
-  Json evidence = Json::object();
-  for (const Number& n : f.evidence)
-    evidence[n.name + std::string(unit_of(n.quantity).suffix)] = number_json(n.value, n.quantity);
-  for (const auto& [key, words_of] : f.texts) evidence[key] = words_of;
-  json["evidence"] = std::move(evidence);
-  json["advice"] = f.advice;
-  return json;
-}
-
-Json findings_json(const std::vector<Finding>& findings, bool with_measurement) {
-  Json json = Json::array();
-  for (const Finding& f : findings) json.push_back(finding_json(f, with_measurement));
-  return json;
-}
-
-Json analysis_json(const Results::Analysed& a, const std::vector<Conformity>& conformity) {
-  Json json = {{"plugin", a.plugin}, {"version", a.version}, {"measurement", a.measurement}};
-  Json values = Json::object();
-  for (const Value& v : a.evaluation.values)
-    values[v.name] = value_json(v, a.measurement, a.plugin, conformity);
-  json["values"] = std::move(values);
-  if (!a.evaluation.points.columns.empty()) {
-    json["point_units"] = point_units_json(a.evaluation.points);
-    json["points"] = points_json(a.evaluation.points);
+void put_findings(JsonWriter& json, const std::vector<Finding>& findings, bool with_measurement) {
+  json.key("findings");
+  json.begin_array();
+  for (const Finding& f : findings) {
+    json.begin_object();
+    json.member("id", f.id);
+    json.member("severity", f.attention ? "attention" : "info");
+    if (with_measurement) put(json, "measurement", f.measurement);
+    json.key("evidence");
+    json.begin_object();
+    for (const Number& n : f.evidence) {
+      json.key(n.name + std::string(unit_of(n.quantity).suffix));
+      put_number(json, n.value, n.quantity);
+    }
+    for (const auto& [key, words_of] : f.texts) json.member(key, words_of);
+    json.end_object();
+    json.member("advice", f.advice);
+    json.end_object();
   }
-  if (!a.evaluation.series.empty()) json["series"] = series_json(a.evaluation.series);
-  json["findings"] = findings_json(a.evaluation.findings, false);
-  if (!a.evaluation.notes.empty()) json["notes"] = a.evaluation.notes;
-  return json;
+  json.end_array();
 }
 
-Json conformity_json(const Conformity& c) {
-  Json json = Json::object();
-  put(json, "measurement", c.measurement);
-  json["axis"] = c.axis;
-  put(json, "plugin", c.plugin);
-  json["name"] = c.name;
-  json["tolerance"] = printed(c.tolerance, c.quantity);
-  json["unit"] = unit_of(c.quantity).symbol;
-  json["decision"] = to_text(c.decision);
-  put(json, "reason", c.reason);
-  return json;
+void put_analysis(JsonWriter& json, const Results::Analysed& a,
+                  const std::vector<Conformity>& conformity) {
+  json.begin_object();
+  json.member("plugin", a.plugin);
+  json.member("version", a.version);
+  json.member("measurement", a.measurement);
+  json.key("values");
+  json.begin_object();
+  for (const Value& v : a.evaluation.values) put_value(json, v, a, conformity);
+  json.end_object();
+  put_points(json, a.evaluation.points);
+  put_series(json, a.evaluation.series);
+  put_findings(json, a.evaluation.findings, false);
+  put_notes(json, a.evaluation.notes);
+  json.end_object();
 }
 
-/// One entry for each file; what the plugin predicts, finds and notes stands once, in `tables`.
-void put_outputs(Json& json, const std::vector<Results::Written>& outputs) {
-  Json files = Json::array(), tables = Json::array();
+void put_conformity(JsonWriter& json, const std::vector<Conformity>& all) {
+  if (all.empty()) return;
+  json.key("conformity");
+  json.begin_array();
+  for (const Conformity& c : all) {
+    json.begin_object();
+    put(json, "measurement", c.measurement);
+    json.member("axis", c.axis);
+    put(json, "plugin", c.plugin);
+    json.member("name", c.name);
+    json.member("tolerance", printed(c.tolerance, c.quantity));
+    json.member("unit", unit_of(c.quantity).symbol);
+    json.member("decision", to_text(c.decision));
+    put(json, "reason", c.reason);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+void put_files(JsonWriter& json, const std::vector<Results::Written>& outputs,
+               const std::vector<RecordedFile>& files) {
+  json.key("outputs");
+  json.begin_array();
+  auto file = files.begin();
+  for (const Results::Written& w : outputs)
+    for (std::size_t i = 0; i < w.result.artifacts.size(); ++i, ++file) {
+      json.begin_object();
+      json.member("plugin", w.plugin);
+      json.member("file", file->name);
+      json.member("sha256", file->sha256);
+      json.end_object();
+    }
+  json.end_array();
+}
+
+void put_predictions(JsonWriter& json, const std::vector<Prediction>& predictions) {
+  if (predictions.empty()) return;
+  json.key("predictions");
+  json.begin_array();
+  for (const Prediction& p : predictions) {
+    json.begin_object();
+    json.member("measurement", p.measurement);
+    json.member("name", p.name);
+    json.member("before", printed(p.before, p.quantity));
+    json.member("predicted", printed(p.after, p.quantity));
+    json.member("unit", unit_of(p.quantity).symbol);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+/// What outputs predict, find and note stands once, not with each of their files.
+void put_tables(JsonWriter& json, const std::vector<Results::Written>& outputs) {
+  const auto silent = [](const Results::Written& w) {
+    return w.result.predictions.empty() && w.result.findings.empty() && w.result.notes.empty();
+  };
+  if (std::all_of(outputs.begin(), outputs.end(), silent)) return;
+  json.key("tables");
+  json.begin_array();
   for (const Results::Written& w : outputs) {
-    for (const Artifact& a : w.result.artifacts)
-      files.push_back({{"plugin", w.plugin}, {"file", a.name}, {"sha256", sha256(a.bytes)}});
-    if (w.result.predictions.empty() && w.result.findings.empty() && w.result.notes.empty())
-      continue;
-    Json one = {{"plugin", w.plugin}, {"version", w.version}};
-    Json predictions = Json::array();
-    for (const Prediction& p : w.result.predictions)
-      predictions.push_back({{"measurement", p.measurement},
-                             {"name", p.name},
-                             {"before", printed(p.before, p.quantity)},
-                             {"predicted", printed(p.after, p.quantity)},
-                             {"unit", unit_of(p.quantity).symbol}});
-    if (!predictions.empty()) one["predictions"] = std::move(predictions);
-    one["findings"] = findings_json(w.result.findings, true);
-    if (!w.result.notes.empty()) one["notes"] = w.result.notes;
-    tables.push_back(std::move(one));
+    if (silent(w)) continue;
+    json.begin_object();
+    json.member("plugin", w.plugin);
+    json.member("version", w.version);
+    put_predictions(json, w.result.predictions);
+    put_findings(json, w.result.findings, true);
+    put_notes(json, w.result.notes);
+    json.end_object();
   }
-  json["outputs"] = std::move(files);
-  if (!tables.empty()) json["tables"] = std::move(tables);
+  json.end_array();
 }
 
 }  // namespace
@@ -177,37 +261,28 @@ const char* to_text(Decision decision) {
   return "cannot be decided";
 }
 
-std::string results_json(const Evaluated& e, const Context& context) {
-  Json json = {{"schema", "nonio-results/1"},
-               {"nonio", context.version},
-               {"campaign", campaign_json(e.campaign)},
-               {"status", e.status}};
-  Json errors = Json::array();
-  for (const Error& error : e.results.errors) errors.push_back(to_json(error));
-  json["errors"] = std::move(errors);
-  Json analyses = Json::array();
-  for (const Results::Analysed& a : e.results.analyses)
-    analyses.push_back(analysis_json(a, e.results.conformity));
-  json["analyses"] = std::move(analyses);
-  if (!e.results.conformity.empty()) {
-    Json conformity = Json::array();
-    for (const Conformity& c : e.results.conformity) conformity.push_back(conformity_json(c));
-    json["conformity"] = std::move(conformity);
-  }
-  put_outputs(json, e.results.outputs);
-  if (!e.results.notes.empty()) json["notes"] = e.results.notes;
-  return dump(json);
-}
-
-std::string failed_results_json(const std::string& id, const std::vector<Error>& errors) {
-  Json list = Json::array();
-  for (const Error& error : errors) list.push_back(to_json(error));
-  return dump(Json{{"schema", "nonio-results/1"},
-                   {"campaign", Json{{"id", id}}},
-                   {"status", "failed"},
-                   {"errors", std::move(list)},
-                   {"analyses", Json::array()},
-                   {"outputs", Json::array()}});
+std::string results_json(const Evaluated& e, const Context& context,
+                         const std::vector<RecordedFile>& files) {
+  JsonWriter json;
+  json.begin_object();
+  json.member("schema", "nonio-results/1");
+  json.member("nonio", context.version);
+  put_campaign(json, e.campaign);
+  json.member("status", e.status);
+  json.key("errors");
+  json.begin_array();
+  for (const Error& error : e.results.errors) put_error(json, error);
+  json.end_array();
+  json.key("analyses");
+  json.begin_array();
+  for (const Results::Analysed& a : e.results.analyses) put_analysis(json, a, e.results.conformity);
+  json.end_array();
+  put_conformity(json, e.results.conformity);
+  put_files(json, e.results.outputs, files);
+  put_tables(json, e.results.outputs);
+  put_notes(json, e.results.notes);
+  json.end_object();
+  return json.take();
 }
 
 }  // namespace nonio::host

@@ -3,19 +3,13 @@
 
 #include <Poco/Environment.h>
 #include <malloc.h>
-#include <poll.h>
-#include <sys/mman.h>
-#include <sys/syscall.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <cstring>
 #include <iostream>
 
-#include "child.h"
 #include "context.h"
 #include "night_state.h"
 #include "nonio/host/files.h"
@@ -23,18 +17,18 @@
 #include "store.h"
 #include "summary.h"
 #include "survey.h"
+#include "worker.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Action = CampaignState::Action;
 
 volatile std::sig_atomic_t stop_requested = 0;
 
-/// Workers live for milliseconds: memory that is given back to the system is only faulted in again.
+/// Memory that a worker gives back to the system is only faulted in again for the next campaign.
 void keep_freed_memory() {
   constexpr int megabyte = 1 << 20;
   ::mallopt(M_MMAP_THRESHOLD, 32 * megabyte);
@@ -42,47 +36,10 @@ void keep_freed_memory() {
   ::mallopt(M_TOP_PAD, megabyte);
 }
 
-/// What a worker was doing, readable by its parent after its death.
-class SharedWords {
- public:
-  SharedWords()
-      : data_(static_cast<char*>(
-            ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0))) {}
-  SharedWords(SharedWords&& other) noexcept : data_(std::exchange(other.data_, nullptr)) {}
-  SharedWords& operator=(SharedWords&& other) noexcept {
-    std::swap(data_, other.data_);
-    return *this;
-  }
-  ~SharedWords() {
-    if (data_ != nullptr) ::munmap(data_, size);
-  }
-  bool valid() const { return data_ != MAP_FAILED; }
-  void set(const std::string& words_now) {
-    const std::size_t n = std::min(words_now.size(), size - 1);
-    std::memcpy(data_, words_now.data(), n);
-    data_[n] = '\0';
-  }
-  std::string get() const { return {data_, ::strnlen(data_, size)}; }
-
- private:
-  static constexpr std::size_t size = 4096;
-  char* data_;
-};
-
-struct Worker {
-  pid_t pid;
-  int pidfd;
-  std::size_t campaign;  // index
-  Clock::time_point deadline;
-  SharedWords stage;
-};
-
-/// glibc 2.36 declares pidfd_open without C linkage.
-int open_pidfd(pid_t pid) { return static_cast<int>(::syscall(SYS_pidfd_open, pid, 0)); }
-
-/// The last words of a worker that did everything; a plugin that calls exit(0) does not say them.
-constexpr const char* stored_words = "stored";
-constexpr int store_failed = 3;  // exit status of a worker that could not write
+/// A worker is replaced after so many campaigns: starting one is then cheap, and what plugins may
+/// leave behind in it does not grow old. Plugins from elsewhere than beside the program were not
+/// tested with it: one of them, and every campaign gets a process of its own.
+constexpr std::size_t campaigns_per_worker = 64;
 
 class Runner {
  public:
@@ -92,7 +49,9 @@ class Runner {
         events_(events),
         context_(context),
         night_(night),
-        campaigns_(campaigns) {}
+        campaigns_(campaigns),
+        campaigns_per_worker_(context.plugins->all_from(options.own_plugins) ? campaigns_per_worker
+                                                                             : 1) {}
 
   /// False if it was interrupted.
   bool run() {
@@ -100,18 +59,18 @@ class Runner {
     prepare_outputs();
     const std::size_t jobs =
         options_.jobs != 0 ? options_.jobs : Poco::Environment::processorCount();
-    std::size_t next = 0;
     while (stop_requested == 0) {
-      for (; workers_.size() < jobs && next < campaigns_.size() && stop_requested == 0; ++next)
-        if (campaigns_[next].action == Action::todo) start(next);
-      if (workers_.empty() && next >= campaigns_.size()) return true;
+      while (workers_.size() < jobs && stop_requested == 0) {
+        const auto campaign = next();
+        if (!campaign) break;
+        start(*campaign);
+      }
+      if (workers_.empty()) return true;
       wait();
     }
     for (Worker& w : workers_) {
-      ::kill(-w.pid, SIGKILL);
-      ::waitpid(w.pid, nullptr, 0);
-      ::close(w.pidfd);
-      remove_leftovers(options_.out / campaigns_[w.campaign].id);
+      w.end();
+      remove_leftovers(options_.out / campaigns_[w.campaign()].id);
     }
     return false;
   }
@@ -136,55 +95,109 @@ class Runner {
     }
   }
 
-  void start(std::size_t index) {
-    SharedWords stage;
-    if (!stage.valid()) return lost(index, "no memory for a worker");
-    stage.set("starting");
-    std::cout.flush();
-    std::cerr.flush();
-    const pid_t pid = ::fork();
-    if (pid < 0) return lost(index, std::string("no worker process: ") + std::strerror(errno));
-    if (pid == 0) work(index, stage);
-    ::setpgid(pid, pid);
-    const auto limit = std::chrono::duration_cast<Clock::duration>(
-        std::chrono::duration<double>(context_.site.limits.seconds));
-    workers_.push_back({pid, open_pidfd(pid), index, Clock::now() + limit, std::move(stage)});
+  /// The next campaign to do; those that get a second trial first.
+  std::optional<std::size_t> next() {
+    if (!again_.empty()) {
+      const std::size_t campaign = again_.back();
+      again_.pop_back();
+      return campaign;
+    }
+    while (next_ < campaigns_.size() && campaigns_[next_].action != Action::todo) ++next_;
+    return next_ < campaigns_.size() ? std::optional(next_++) : std::nullopt;
   }
 
-  [[noreturn]] void work(std::size_t index, SharedWords& stage) const {
-    settle_child();
-    limit_memory(context_.site.limits.memory_MB);
+  void start(std::size_t campaign) {
+    auto worker = Worker::start(
+        [this](std::size_t c, bool first, SharedWords& stage) { return work(c, first, stage); },
+        context_.site.limits.memory_MB);
+    if (!worker) return lost(campaign, worker.error().message);
+    workers_.push_back(std::move(*worker));
+    give(workers_.back(), campaign);
+  }
+
+  void give(Worker& worker, std::size_t campaign) const {
+    worker.give(campaign, std::chrono::duration_cast<Worker::Clock::duration>(
+                              std::chrono::duration<double>(context_.site.limits.seconds)));
+  }
+
+  /// In the worker's process.
+  Answer work(std::size_t index, bool first, SharedWords& stage) const {
     const CampaignState& c = campaigns_[index];
     const Evaluated evaluated = evaluate(options_.site / c.folder, c.id, context_,
                                          [&](const std::string& s) { stage.set(s); });
+    if (evaluated.status == "failed" && !first) return Answer::again;
     stage.set("writing the results");
     const auto stored =
         store(options_.out, evaluated, context_, {c.folder, night_.number, c.reason, false});
-    stage.set(stored ? stored_words : stored.error().message);
-    ::_exit(stored ? 0 : store_failed);
+    if (!stored) {
+      stage.set(stored.error().message);
+      return Answer::not_stored;
+    }
+    return evaluated.status == "failed"      ? Answer::failed
+           : evaluated.status == "attention" ? Answer::attention
+                                             : Answer::ok;
   }
 
   void wait() {
-    std::vector<pollfd> ends;
-    for (const Worker& w : workers_) ends.push_back({w.pidfd, POLLIN, 0});
-    ::poll(ends.data(), ends.size(), 100);
+    wait_for_answer(workers_);
     for (std::size_t i = workers_.size(); i-- > 0;) {
-      int status = 0;
-      const pid_t gone = ::waitpid(workers_[i].pid, &status, WNOHANG);
-      if (gone == workers_[i].pid)
-        ended(i, child_end(status));
-      else if (Clock::now() > workers_[i].deadline)
-        overdue(i);
+      Worker& worker = workers_[i];
+      bool goes_on = false;
+      if (const auto answer = worker.answer())
+        goes_on = take(worker, *answer);
+      else if (worker.overdue())
+        not_done(worker, "no end within the limit of " +
+                             short_number(context_.site.limits.seconds) +
+                             " s ([limits] seconds in site.toml)");
+      else
+        continue;
+      if (const auto campaign = goes_on ? next() : std::nullopt)
+        give(worker, *campaign);
+      else
+        workers_.erase(workers_.begin() + static_cast<std::ptrdiff_t>(i));
     }
     events_.tick();
   }
 
-  void overdue(std::size_t i) {
-    ::kill(-workers_[i].pid, SIGKILL);
-    ::waitpid(workers_[i].pid, nullptr, 0);
-    const auto seconds = short_number(context_.site.limits.seconds);
-    ended(i,
-          {false, "no end within the limit of " + seconds + " s ([limits] seconds in site.toml)"});
+  /// Whether the worker may do another campaign. It may not after one that failed, and it makes
+  /// room for a second trial, which is the first campaign of a new worker.
+  bool take(Worker& worker, Answer answer) {
+    switch (answer) {
+      case Answer::ok:
+      case Answer::attention:
+        finish(worker.campaign(), answer == Answer::ok ? "ok" : "attention", {});
+        return worker.given() < campaigns_per_worker_ && !worker.grown() && again_.empty();
+      case Answer::failed:
+        take_failed(worker.campaign());
+        return false;
+      case Answer::again:
+        again_.push_back(worker.campaign());
+        return false;
+      case Answer::not_stored:
+        not_done(worker, worker.stage());
+        return false;
+      case Answer::none:
+        break;
+    }
+    const std::string stage = worker.stage();
+    const ChildEnd end = worker.end();
+    not_done(worker, stage + ": " + (end.well ? "ended the process" : end.words));
+    return false;
+  }
+
+  /// Nobody pays for his predecessors: only what fails in a new process has failed.
+  void not_done(Worker& worker, const std::string& why) {
+    worker.end();
+    if (worker.given() > 1)
+      again_.push_back(worker.campaign());
+    else
+      lost(worker.campaign(), why);
+  }
+
+  void take_failed(std::size_t index) {
+    const auto record = read_record(options_.out / campaigns_[index].id);
+    if (!record) return lost(index, "its record cannot be read: " + record.error().message);
+    finish(index, record->status, record->errors);
   }
 
   static std::string short_number(double x) {
@@ -192,23 +205,6 @@ class Runner {
     s.erase(s.find_last_not_of('0') + 1);
     if (s.ends_with('.')) s.pop_back();
     return s;
-  }
-
-  void ended(std::size_t i, const ChildEnd& end) {
-    Worker worker = std::move(workers_[i]);
-    workers_.erase(workers_.begin() + static_cast<std::ptrdiff_t>(i));
-    ::kill(-worker.pid, SIGKILL);  // what a plugin may have left running
-    ::close(worker.pidfd);
-    CampaignState& c = campaigns_[worker.campaign];
-    const std::string stage = worker.stage.get();
-    if (end.words == "exit status " + std::to_string(store_failed))
-      return lost(worker.campaign, stage);
-    if (!end.well) return lost(worker.campaign, stage + ": " + end.words);
-    if (stage != stored_words) return lost(worker.campaign, stage + ": ended the process");
-    const auto record = read_record(options_.out / c.id);
-    if (!record)
-      return lost(worker.campaign, "its record cannot be read: " + record.error().message);
-    finish(c, *record);
   }
 
   /// The worker did not come back with results: the campaign is failed, and says why.
@@ -221,16 +217,14 @@ class Runner {
     const auto stored =
         store(options_.out, evaluated, context_, {c.folder, night_.number, c.reason, true});
     if (!stored) remove_leftovers(options_.out / c.id);
-    c.action = Action::done;
-    c.status = "failed";
-    c.errors = evaluated.results.errors;
-    events_.finished(c);
+    finish(index, "failed", std::move(evaluated.results.errors));
   }
 
-  void finish(CampaignState& c, const Record& record) {
+  void finish(std::size_t index, std::string status, std::vector<Error> errors) {
+    CampaignState& c = campaigns_[index];
     c.action = Action::done;
-    c.status = record.status;
-    c.errors = record.errors;
+    c.status = std::move(status);
+    c.errors = std::move(errors);
     events_.finished(c);
   }
 
@@ -239,6 +233,9 @@ class Runner {
   const Context& context_;
   const NightState& night_;
   std::vector<CampaignState>& campaigns_;
+  const std::size_t campaigns_per_worker_;
+  std::size_t next_ = 0;
+  std::vector<std::size_t> again_;  ///< get a second trial
   std::vector<Worker> workers_;
 };
 
@@ -319,6 +316,8 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   for (const std::string& note : night.notes) events.note(note);
   context.plugins = &plugins;
   context.plugins_sha256 = plugins.digest();
+  if (const auto mistakes = site_mistakes(context); !mistakes.empty())
+    return refuse(all_of(mistakes));
 
   std::optional<OutputLock> lock;
   if (!options.dry_run) {
@@ -347,9 +346,7 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
     night.end = Night::End::interrupted;
     return night;
   }
-  auto [text, json] = summary(night, options.out, options.version);
-  const auto written =
-      publish(options.out, {{"summary.txt", std::move(text)}, {"summary.json", std::move(json)}});
+  const auto written = write_summary(night, options.out, options.version);
   // The campaigns are safe; the night stays open, and the next run ends it.
   if (!written)
     night.error = written.error().message;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 #include "nonio/host/results_json.h"
 #include "nonio/sdk/format.h"
@@ -33,6 +34,12 @@ std::vector<KnownFinding> known_findings(const Results& results, const Templates
   return out;
 }
 
+namespace {
+
+RecordedFile recorded(const Artifact& a) { return {a.name, a.bytes.size(), sha256(a.bytes)}; }
+
+}  // namespace
+
 Expected<void> store(const fs::path& out, const Evaluated& e, const Context& context,
                      const StoreNote& note) {
   const fs::path folder = out / e.campaign.id;
@@ -53,17 +60,19 @@ Expected<void> store(const fs::path& out, const Evaluated& e, const Context& con
   std::vector<Artifact> files;
   for (const auto& w : e.results.outputs)
     files.insert(files.end(), w.result.artifacts.begin(), w.result.artifacts.end());
+  for (const Artifact& a : files) record.files.push_back(recorded(a));
   // Last, so that it never speaks of a file that is not there.
-  files.push_back({results_name, results_json(e, context)});
-  for (const Artifact& a : files) record.files.push_back(a.name);
+  files.push_back({results_name, results_json(e, context, record.files)});
+  record.files.push_back(recorded(files.back()));
 
   std::vector<std::string> stale;
   if (const auto old = read_record(folder)) {
     record.previous = old->night < note.night ? old->findings : old->previous;
-    for (const std::string& name : old->files)
-      if (std::find(record.files.begin(), record.files.end(), name) == record.files.end() &&
-          is_artifact_name(name))
-        stale.push_back(name);
+    for (const RecordedFile& f : old->files)
+      if (std::none_of(record.files.begin(), record.files.end(),
+                       [&](const RecordedFile& now) { return now.name == f.name; }) &&
+          is_artifact_name(f.name))
+        stale.push_back(f.name);
   }
   files.push_back({record_name, to_json(record)});
   remove_leftovers(folder);

@@ -4,8 +4,11 @@
 #include <algorithm>
 
 #include "json_values.h"
+#include "nonio/host/files.h"
+#include "spool.h"
 
 namespace nonio::host {
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -24,17 +27,18 @@ std::string first_error(const CampaignState& c) {
   return where(c.errors.front()) + (more == 0 ? "" : " (and " + std::to_string(more) + " more)");
 }
 
-/// One list of the summary, as text for a person and as lines of JSON for a program. It grows entry
-/// by entry, so that the findings of all campaigns are never in memory together.
+/// One list of the summary, as text for a person and as lines of JSON for a program.
 struct List {
+  List(const char* list_name, const fs::path& folder)
+      : name(list_name), text(Spool::in(folder)), json(Spool::in(folder)) {}
   const char* name;
   std::size_t count = 0;
-  std::string text{}, json{};
+  Spool text, json;
 
   void add(const std::string& line, const Json& entry) {
-    text += "  " + line + "\n";
-    json += (count == 0 ? "\n  " : ",\n  ") +
-            entry.dump(-1, ' ', false, Json::error_handler_t::replace);
+    text.add("  " + line + "\n");
+    json.add((count == 0 ? "\n  " : ",\n  ") +
+             entry.dump(-1, ' ', false, Json::error_handler_t::replace));
     ++count;
   }
 };
@@ -50,16 +54,23 @@ Json entry_json(const CampaignState& c, const std::string& reason) {
 }
 
 struct Lists {
-  List done{"done"}, unchanged{"unchanged"}, attention{"attention"}, failed{"failed"},
-      fresh{"new_findings"};
-  std::string fresh_text;  // of those that ask for attention
+  explicit Lists(const fs::path& folder)
+      : done("done", folder),
+        unchanged("unchanged", folder),
+        attention("attention", folder),
+        failed("failed", folder),
+        fresh("new_findings", folder),
+        fresh_text(Spool::in(folder)) {}
+  List done, unchanged, attention, failed, fresh;
+  Spool fresh_text;  // of those that ask for attention
 
-  void add(const CampaignState& c, const std::filesystem::path& out) {
+  void add(const CampaignState& c, const fs::path& out) {
     if (c.status == "failed")
       return failed.add(c.id + ": " + first_error(c), entry_json(c, first_error(c)));
     const bool is_done = c.action == Action::done;
     (is_done ? done : unchanged)
         .add(is_done ? c.id + ": " + c.reason : c.id, entry_json(c, c.reason));
+    if (!is_done && c.status == "ok") return;
     const auto record = read_record(out / c.id);
     if (!record) return;
     if (c.status == "attention") {
@@ -87,42 +98,45 @@ struct Lists {
                      {"id", f.id},
                      {"severity", f.attention ? "attention" : "info"},
                      {"title", f.title}});
-    if (f.attention) fresh_text += "  " + line + "\n";
+    if (f.attention) fresh_text.add("  " + line + "\n");
   }
 };
 
-std::string text_of(const Night& night, const Lists& lists, const std::string& version) {
+void write_text(Spool& out, const Night& night, Lists& lists, const std::string& version) {
   const auto n = [](std::size_t count) { return std::to_string(count); };
-  std::string text = "Nonio " + version + ": " + n(night.campaigns.size()) +
-                     " campaigns: " + n(lists.done.count) + " done, " + n(lists.unchanged.count) +
-                     " unchanged, " + n(lists.failed.count) + " failed; " +
-                     n(lists.attention.count) + " ask for attention\n";
+  out.add("Nonio " + version + ": " + n(night.campaigns.size()) + " campaigns: " +
+          n(lists.done.count) + " done, " + n(lists.unchanged.count) + " unchanged, " +
+          n(lists.failed.count) + " failed; " + n(lists.attention.count) + " ask for attention\n");
   // What somebody must act on comes first.
-  const auto section = [&](const char* heading, const std::string& body) {
-    if (!body.empty()) text += std::string("\n") + heading + "\n" + body;
+  const auto section = [&](const char* heading, Spool& body) {
+    if (body.empty()) return;
+    out.add(std::string("\n") + heading + "\n");
+    out.add(body);
   };
   section("FAILED", lists.failed.text);
   section("ATTENTION", lists.attention.text);
   section("NEW SINCE THE LAST RUN", lists.fresh_text);
   section("DONE, AND WHY", lists.done.text);
   section("UNCHANGED", lists.unchanged.text);
-  std::string notes;
-  for (const std::string& note : night.notes) notes += "  " + note + "\n";
-  section("NOTES", notes);
-  return text;
+  if (!night.notes.empty()) out.add("\nNOTES\n");
+  for (const std::string& note : night.notes) out.add("  " + note + "\n");
 }
 
-std::string json_of(const Night& night, const Lists& lists, const std::string& version) {
+void write_json(Spool& out, const Night& night, Lists& lists, const std::string& version) {
+  const std::initializer_list<List*> all{&lists.done, &lists.unchanged, &lists.attention,
+                                         &lists.failed, &lists.fresh};
   Json counts = {{"campaigns", night.campaigns.size()}};
-  std::string body;
-  for (const List* l :
-       {&lists.done, &lists.unchanged, &lists.attention, &lists.failed, &lists.fresh}) {
+  for (const List* l : all)
     if (l != &lists.fresh) counts[l->name] = l->count;
-    body += std::string(",\n \"") + l->name + "\": [" + l->json + (l->count == 0 ? "]" : "\n ]");
+  out.add("{\n \"schema\": \"nonio-summary/1\",\n \"nonio\": " + Json(version).dump() +
+          ",\n \"counts\": " + counts.dump());
+  for (List* l : all) {
+    out.add(std::string(",\n \"") + l->name + "\": [");
+    out.add(l->json);
+    out.add(l->count == 0 ? "]" : "\n ]");
   }
-  return "{\n \"schema\": \"nonio-summary/1\",\n \"nonio\": " + Json(version).dump() +
-         ",\n \"counts\": " + counts.dump() + body + ",\n \"notes\": " +
-         Json(night.notes).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n}\n";
+  out.add(",\n \"notes\": " +
+          Json(night.notes).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n}\n");
 }
 
 }  // namespace
@@ -132,10 +146,19 @@ bool Night::any_failed() const {
                      [](const CampaignState& c) { return c.status == "failed"; });
 }
 
-Summary summary(const Night& night, const std::filesystem::path& out, const std::string& version) {
-  Lists lists;
+Expected<void> write_summary(const Night& night, const fs::path& out, const std::string& version) {
+  const std::vector<std::string> names{"summary.txt", "summary.json"};
+  Spool text = Spool::at(temporary_path(out, names[0]));
+  Spool json = Spool::at(temporary_path(out, names[1]));
+  Lists lists(out);
   for (const CampaignState& c : night.campaigns) lists.add(c, out);
-  return {text_of(night, lists, version), json_of(night, lists, version)};
+  write_text(text, night, lists, version);
+  write_json(json, night, lists, version);
+  auto written = text.flush();
+  if (written) written = json.flush();
+  if (written) return rename_temporaries(out, names);
+  remove_leftovers(out);
+  return fail("cannot write the summary in " + out.string() + ": " + written.error().message);
 }
 
 }  // namespace nonio::host

@@ -8,12 +8,9 @@
 
 namespace nonio::host {
 
-struct Summary {
-  std::string text;  ///< summary.txt
-  std::string json;  ///< summary.json, schema nonio-summary/1
-};
-
-/// Of a complete night. The findings come from the campaigns' records in `out`, one at a time.
-Summary summary(const Night& night, const std::filesystem::path& out, const std::string& version);
+/// summary.txt and summary.json (schema nonio-summary/1) of a complete night, written into `out`.
+/// The findings come from the campaigns' records there, one at a time; the lists grow in files.
+Expected<void> write_summary(const Night& night, const std::filesystem::path& out,
+                             const std::string& version);
 
 }  // namespace nonio::host

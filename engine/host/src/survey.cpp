@@ -2,15 +2,19 @@
 #include "survey.h"
 
 #include <Poco/Environment.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <map>
+#include <mutex>
 #include <set>
 #include <thread>
 
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
+#include "worker.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -62,32 +66,39 @@ class Look {
  public:
   explicit Look(const SurveyInput& input) : in_(input), shared_(shared_inputs(input.context)) {}
 
-  CampaignState at(const std::string& folder) const {
-    CampaignState state;
-    state.folder = folder;
-    const auto text = read_file(in_.site / folder / manifest_name);
+  /// A first look, without reading the manifest in full: that is done where a full reading said the
+  /// same before. False if it has to be read.
+  bool at_first(CampaignState& state, std::string& manifest_digest) const {
+    const auto text = read_file(in_.site / state.folder / manifest_name);
     if (!text) {
-      state.id = folder_id(folder);
+      name_by_folder(state);
       state.reason = "no earlier result";
-      state.named_by_folder = true;
-      return state;
+      return true;
     }
-    const std::string digest = sha256(*text);
+    manifest_digest = sha256(*text);
     state.id = salvage_id(*text);
-    std::optional<Record> record = record_of(state.id);
-    if (!record || record->folder != folder || digest_of(*record, manifest_name) != digest) {
-      // The quick look is only believed where a full one said the same before.
-      if (const auto manifest = parse_manifest(*text, manifest_name); manifest)
-        state.id = manifest->campaign.id;
-      state.named_by_folder = state.id.empty();
-      if (state.id.empty()) state.id = folder_id(folder);
-      record = record_of(state.id);
-    }
-    judge(state, record, digest);
-    return state;
+    const auto record = record_of(state.id);
+    if (!record || record->folder != state.folder ||
+        digest_of(*record, manifest_name) != manifest_digest)
+      return false;
+    judge(state, record, manifest_digest);
+    return true;
+  }
+
+  /// With the id that a full reading gave; if it gave none, what the first look saw stays.
+  void again(CampaignState& state, const std::string& id,
+             const std::string& manifest_digest) const {
+    if (!id.empty()) state.id = id;
+    if (state.id.empty()) name_by_folder(state);
+    judge(state, record_of(state.id), manifest_digest);
   }
 
  private:
+  static void name_by_folder(CampaignState& state) {
+    state.id = folder_id(state.folder);
+    state.named_by_folder = true;
+  }
+
   std::optional<Record> record_of(const std::string& id) const {
     if (id.empty()) return std::nullopt;
     auto record = read_record(in_.out / id);
@@ -128,11 +139,7 @@ class Look {
     const std::string prefix = input_name("");
     for (const auto& [name, digest] : record.inputs)
       if (name.starts_with(prefix)) look_at_file(state, name.substr(prefix.size()), digest, why);
-    for (const std::string& name : record.files) {
-      std::error_code error;
-      if (!fs::exists(in_.out / state.id / name, error))
-        why.push_back(name + " is missing from the output");
-    }
+    look_at_outputs(state, record, why);
     std::string words;
     for (const std::string& w : why) words += (words.empty() ? "" : "; ") + w;
     return words;
@@ -146,9 +153,80 @@ class Look {
       why.push_back("file " + name + (now ? " changed" : " is gone"));
   }
 
+  /// A file of the right size that is not younger than the record was not touched since; of another
+  /// one the content decides.
+  void look_at_outputs(const CampaignState& state, const Record& record,
+                       std::vector<std::string>& why) const {
+    const fs::path folder = in_.out / state.id;
+    struct stat written {};
+    if (::stat((folder / record_name).c_str(), &written) != 0) return;
+    for (const RecordedFile& f : record.files) {
+      const fs::path path = folder / f.name;
+      struct stat now {};
+      if (::stat(path.c_str(), &now) != 0)
+        why.push_back(f.name + " is missing from the output");
+      else if (static_cast<std::uint64_t>(now.st_size) != f.size ||
+               (younger(now, written) && sha256_of_file(path).value_or(absent) != f.sha256))
+        why.push_back(f.name + " was changed in the output");
+    }
+  }
+
+  static bool younger(const struct stat& a, const struct stat& b) {
+    return std::pair(a.st_mtim.tv_sec, a.st_mtim.tv_nsec) >
+           std::pair(b.st_mtim.tv_sec, b.st_mtim.tv_nsec);
+  }
+
   const SurveyInput& in_;
   Inputs shared_;
 };
+
+/// The ids that manifests give, each read in full in a process that a parser may bring down or hold
+/// up without harm to the night; empty where there is none, or where the process did not come back.
+/// Such a campaign is tried again in its worker, which says what happened.
+std::vector<std::string> read_ids(const std::vector<fs::path>& manifests, const Limits& limits) {
+  std::vector<std::string> ids(manifests.size());
+  const auto read = [&](std::size_t i, bool, SharedWords& words) {
+    const auto text = read_file(manifests[i]);
+    const auto manifest = parse_manifest(text.value_or(""), manifest_name);
+    words.set(manifest ? manifest->campaign.id : "");
+    return Answer::ok;
+  };
+  const auto limit = std::chrono::duration_cast<Worker::Clock::duration>(
+      std::chrono::duration<double>(limits.seconds));
+  std::vector<Worker> workers;
+  for (std::size_t next = 0; next < ids.size() || !workers.empty();) {
+    while (workers.size() < Poco::Environment::processorCount() && next < ids.size()) {
+      auto worker = Worker::start(read, limits.memory_MB);
+      if (!worker) return ids;
+      workers.push_back(std::move(*worker));
+      workers.back().give(next++, limit);
+    }
+    wait_for_answer(workers);
+    for (std::size_t i = workers.size(); i-- > 0;) {
+      const auto answer = workers[i].answer();
+      if (!answer && !workers[i].overdue()) continue;
+      const bool well = answer == Answer::ok;
+      if (well) ids[workers[i].campaign()] = workers[i].stage();
+      if (well && !workers[i].grown() && next < ids.size())
+        workers[i].give(next++, limit);
+      else
+        workers.erase(workers.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
+  return ids;
+}
+
+/// Calls `work` for 0 to `count` - 1 on all cores; its threads are joined at the return, so that
+/// processes may be forked again.
+void for_all(std::size_t count, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next{0};
+  const auto run = [&] {
+    for (std::size_t i; (i = next.fetch_add(1)) < count;) work(i);
+  };
+  std::vector<std::jthread> helpers;
+  for (unsigned i = 1; i < Poco::Environment::processorCount(); ++i) helpers.emplace_back(run);
+  run();
+}
 
 /// A name taken from a folder gives way to an id that a manifest claims, and to another such name.
 void give_way(std::vector<CampaignState>& states) {
@@ -187,21 +265,29 @@ void fail_collisions(std::vector<CampaignState>& states) {
 }  // namespace
 
 Expected<std::vector<CampaignState>> survey(const SurveyInput& input) {
-  const auto folders = find_campaigns(input.site, input.out, input.notes);
+  auto folders = find_campaigns(input.site, input.out, input.notes);
   if (!folders) return fail(folders.error());
   std::vector<CampaignState> states(folders->size());
   const Look look(input);
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i; (i = next.fetch_add(1)) < folders->size();)
-      states[i] = look.at((*folders)[i]);
+  struct Unread {
+    std::size_t index;
+    std::string digest;
   };
-  {
-    // Joined before any campaign is forked.
-    std::vector<std::jthread> helpers;
-    for (unsigned i = 1; i < Poco::Environment::processorCount(); ++i) helpers.emplace_back(work);
-    work();
-  }
+  std::vector<Unread> unread;
+  std::mutex unread_guard;
+  for_all(states.size(), [&](std::size_t i) {
+    states[i].folder = std::move((*folders)[i]);
+    Unread one{i, {}};
+    if (look.at_first(states[i], one.digest)) return;
+    const std::lock_guard guard(unread_guard);
+    unread.push_back(std::move(one));
+  });
+  std::vector<fs::path> manifests;
+  for (const Unread& u : unread)
+    manifests.push_back(input.site / states[u.index].folder / manifest_name);
+  const auto ids = read_ids(manifests, input.context.site.limits);
+  for_all(unread.size(),
+          [&](std::size_t i) { look.again(states[unread[i].index], ids[i], unread[i].digest); });
   give_way(states);
   std::stable_sort(states.begin(), states.end(),
                    [](const CampaignState& a, const CampaignState& b) { return a.id < b.id; });

@@ -213,8 +213,11 @@ std::string TableReader::text(const char* key, bool required) {
     return {};
   }
   for (const char c : *value)
-    if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') {
-      error(key, "contains a control character");
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      error(key,
+            std::string("wanted one line of text, found ") + (c == '\n'   ? "a line break"
+                                                              : c == '\t' ? "a tab"
+                                                                          : "a control character"));
       return {};
     }
   if (required && value->empty()) error(key, "is empty");
@@ -251,6 +254,14 @@ std::optional<int> TableReader::whole(const char* key) {
   return static_cast<int>(*value);
 }
 
+std::optional<bool> TableReader::flag(const char* key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const auto value = node->value_exact<bool>();
+  if (!value) wrong_type(key, *node, "true or false");
+  return value;
+}
+
 std::string TableReader::date(const char* key) {
   const toml::node* node = find(key);
   if (node == nullptr) return {};
@@ -280,6 +291,7 @@ std::optional<std::vector<std::string>> TableReader::texts(const char* key) {
 std::optional<std::vector<double>> TableReader::numbers(const char* key) {
   const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;
+  if (node->is_array() && node->as_array()->empty()) return std::vector<double>{};
   const auto setting = node->is_array() ? to_setting(*node) : std::nullopt;
   if (!setting || !std::holds_alternative<std::vector<double>>(*setting)) {
     wrong_type(key, *node, "a list of numbers");

@@ -23,6 +23,7 @@ class TableReader {
   std::string text(const char* key, bool required = false);
   std::optional<double> number(const char* key, double scale = 1.0);
   std::optional<int> whole(const char* key);
+  std::optional<bool> flag(const char* key);
   std::string date(const char* key);
   std::optional<std::vector<std::string>> texts(const char* key);
   std::optional<std::vector<double>> numbers(const char* key);

@@ -10,18 +10,12 @@
 #include "nonio/sdk/format.h"
 
 namespace nonio::math {
-namespace {
-
-// A reversal below this share of the accuracy is worth knowing, not worth acting on.
-constexpr double share_of_A = 0.2;
-
-bool matters(const AxisTest& test, double reversal) {
+bool matters(const AxisTest& test, double size) {
+  constexpr double share = 0.2;
   const Iso230Result iso = evaluate_iso230_2(test, 2.0);
   const double whole = std::isnan(iso.A) ? iso.E : iso.A;
-  return !(reversal < share_of_A * whole);
+  return !(size < share * whole);
 }
-
-}  // namespace
 
 void reversal_findings(const AxisTest& test, std::vector<Finding>& findings) {
   using Kind = Reversal::Kind;
@@ -60,6 +54,7 @@ std::vector<Finding> axis_findings(const AxisTest& test, const Observations& o, 
   drift_findings(test, findings);
   reversal_findings(test, findings);
   scatter_findings(test, findings);
+  turn_findings(test, findings);
   plan_findings(test, o, axis, findings);
   return findings;
 }

@@ -8,6 +8,7 @@
 //              2/n!, 1.7 % for n = 5), and the line through the single passes significant at 1 %:
 //              a machine that warms up does not drift in a straight line
 //   and        the shift from the first run to the last exceeds the scatter of a single reading
+// A drift of less than a fifth of A is information: it is in the scatter already.
 // Parallel: the whole travel shifts. Wedge: the far end shifts, the near end does not.
 #include <algorithm>
 #include <cmath>
@@ -134,11 +135,14 @@ void drift_findings(const AxisTest& test, std::vector<Finding>& findings) {
   const bool is_parallel = shift.found && std::fabs(shift.total) > scatter &&
                            (!is_wedge || common > std::max(scatter, 0.5 * std::fabs(wedge)));
   const std::size_t runs = model.passes.size() / 2;  // one pass each way
+  // The directions of a run follow one another, so the mean shift of half a run is in B_mean.
+  const double in_B = std::fabs(shift.per_run) / 2.0;
   const auto finding = [&](const char* id, double total, const Trend& trend, double per_run) {
-    return FindingBuilder(id, true, test.rotary)
+    return FindingBuilder(id, matters(test, std::fabs(total)), test.rotary)
         .deviation("total", total)
         .deviation("per_run", per_run)
         .slope("wedge", turn.total)
+        .deviation("in_B", in_B)
         .deviation("scatter", scatter)
         .number("p", trend.p, Quantity::probability)
         .count("runs", static_cast<double>(runs))

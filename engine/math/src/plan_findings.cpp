@@ -108,6 +108,23 @@ void counts(const AxisTest& test, const Observations& o, std::vector<Finding>& f
                            .done());
 }
 
+// A target beyond the stated travel: one of the two is wrong.
+void outside_travel(const AxisTest& test, const Axis* axis, std::vector<Finding>& findings) {
+  if (axis == nullptr || !axis->travel) return;
+  const auto [from, to] = *axis->travel;
+  std::vector<std::size_t> outside;
+  for (std::size_t i = 0; i < test.targets.size(); ++i)
+    if (test.targets[i] < from - close || test.targets[i] > to + close) outside.push_back(i);
+  if (outside.empty()) return;
+  findings.push_back(FindingBuilder("targets.outside-travel", true, test.rotary)
+                         .count("concerned", static_cast<double>(outside.size()))
+                         .count("targets", static_cast<double>(test.targets.size()))
+                         .position("from", from)
+                         .position("to", to)
+                         .text("which", target_list(test, outside))
+                         .done());
+}
+
 }  // namespace
 
 void plan_findings(const AxisTest& test, const Observations& o, const Axis* axis,
@@ -115,6 +132,7 @@ void plan_findings(const AxisTest& test, const Observations& o, const Axis* axis
   if (test.targets.empty()) return;
   absent_directions(test, findings);
   counts(test, o, findings);
+  outside_travel(test, axis, findings);
   const double m = static_cast<double>(test.targets.size());
   const std::size_t wanted = wanted_targets(test);
   if (test.targets.size() < wanted)

@@ -154,28 +154,6 @@ Suspect most_suspect(const AxisTest& test, const PassModel& m, bool slopes) {
   return worst;
 }
 
-void suspect_findings(const AxisTest& test, std::vector<Finding>& findings) {
-  constexpr std::size_t most = 3;  // more is not a misreading but a different distribution
-  const bool slopes = test.targets.size() >= 4;
-  std::vector<std::size_t> left_out;
-  while (left_out.size() < most && test.most_approaches() >= 3) {
-    const PassModel m = fit_passes(test, slopes, left_out);
-    const Suspect s = most_suspect(test, m, slopes);
-    if (!(s.p < level)) break;
-    const auto& reading = test.readings()[s.reading];
-    findings.push_back(FindingBuilder("reading.suspect", true, test.rotary)
-                           .count("run", reading.run)
-                           .text("direction", m.passes[m.pass[s.reading]].minus ? "-" : "+")
-                           .position("target", test.targets[m.target[s.reading]])
-                           .deviation("value", reading.deviation)
-                           .deviation("expected", s.expected)
-                           .deviation("away", reading.deviation - s.expected)
-                           .number("p", s.p, Quantity::probability)
-                           .done());
-    left_out.push_back(s.reading);
-  }
-}
-
 struct Curve {
   std::vector<double> x, y;
 };
@@ -254,6 +232,28 @@ void worst_target_finding(const AxisTest& test, std::vector<Finding>& findings) 
 }  // namespace
 
 bool scatter_is_asymmetric(const AxisTest& test) { return assess_asymmetry(test).clear(); }
+
+void suspect_findings(const AxisTest& test, std::vector<Finding>& findings) {
+  constexpr std::size_t most = 3;  // more is not a misreading but a different distribution
+  const bool slopes = test.targets.size() >= 4;
+  std::vector<std::size_t> left_out;
+  while (left_out.size() < most && test.most_approaches() >= 3) {
+    const PassModel m = fit_passes(test, slopes, left_out);
+    const Suspect s = most_suspect(test, m, slopes);
+    if (!(s.p < level)) break;
+    const auto& reading = test.readings()[s.reading];
+    findings.push_back(FindingBuilder("reading.suspect", true, test.rotary)
+                           .count("run", reading.run)
+                           .text("direction", m.passes[m.pass[s.reading]].minus ? "-" : "+")
+                           .position("target", test.targets[m.target[s.reading]])
+                           .deviation("value", reading.deviation)
+                           .deviation("expected", s.expected)
+                           .deviation("away", reading.deviation - s.expected)
+                           .number("p", s.p, Quantity::probability)
+                           .done());
+    left_out.push_back(s.reading);
+  }
+}
 
 void scatter_findings(const AxisTest& test, std::vector<Finding>& findings) {
   asymmetry_finding(test, findings);

@@ -63,8 +63,10 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   e.points = table(*begun, result);
   e.findings = std::move(begun->findings);
   for (Finding& f : e.findings) f.measurement = in.measurement.id;
-  e.notes.push_back("ISO 230-2:" + std::to_string(edition) +
-                    ", k = " + (edition == 1988 ? "3 (R+ = 6 s)" : "2 (R+ = 4 s)"));
+  e.notes.push_back({"method.iso230-2",
+                     {{"edition", static_cast<double>(edition), Quantity::count},
+                      {"k", result.k, Quantity::count},
+                      {"two_k", 2.0 * result.k, Quantity::count}}});
   return e;
 }
 

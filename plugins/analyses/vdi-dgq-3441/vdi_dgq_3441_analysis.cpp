@@ -95,12 +95,8 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
          {{"readings", static_cast<double>(begun->test.most_approaches()), Quantity::count}}});
   hidden(*begun, result, e);
   for (Finding& f : e.findings) f.measurement = in.measurement.id;
-  e.notes.push_back(std::string("VDI/DGQ 3441:1977, standard deviation ") +
-                    (from_range ? "from the range (S = range/d_n)" : "direct (n - 1)"));
-  if (begun->budget)
-    e.notes.push_back(
-        "U is derived by the rules of the GUM from the budget of ISO 230-2; VDI/DGQ 3441 has no "
-        "such clause");
+  e.notes.push_back({from_range ? "method.vdi-from-range" : "method.vdi-direct"});
+  if (begun->budget) e.notes.push_back({"method.vdi-uncertainty"});
   return e;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "nonio/math/axis_findings.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::controllers {
@@ -61,11 +62,17 @@ std::string list_of(const std::vector<std::string>& words, std::string_view betw
   return out;
 }
 
+tl::unexpected<Error> wrong_axes(std::string message) {
+  Error error{std::move(message)};
+  error.key = "axes";
+  return fail(std::move(error));
+}
+
 // One entry of option `axes`: "X reference_mm=0 step_mm=50".
 Expected<void> take_entry(const std::string& entry, const std::set<std::string>& keys,
                           std::map<std::string, AxisSettings>& out) {
   const auto parts = split(entry);
-  if (parts.empty()) return fail("option axes: an empty entry");
+  if (parts.empty()) return wrong_axes("option axes: an empty entry");
   AxisSettings& settings = out[std::string(parts.front())];
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const std::size_t equals = parts[i].find('=');
@@ -73,11 +80,11 @@ Expected<void> take_entry(const std::string& entry, const std::set<std::string>&
     const auto value =
         equals == std::string_view::npos ? std::nullopt : number_of(parts[i].substr(equals + 1));
     if (keys.count(key) == 0)
-      return fail("option axes, \"" + entry + "\": no setting " + key + "; there are " +
-                  joined(keys));
+      return wrong_axes("option axes, \"" + entry + "\": no setting " + key + "; there are " +
+                        joined(keys));
     if (!value)
-      return fail("option axes, \"" + entry + "\": wanted " + key + "=NUMBER, found " +
-                  std::string(parts[i]));
+      return wrong_axes("option axes, \"" + entry + "\": wanted " + key + "=NUMBER, found " +
+                        std::string(parts[i]));
     settings[key] = *value;
   }
   return {};
@@ -95,7 +102,7 @@ Expected<std::map<std::string, AxisSettings>> settings_of_axes(const OutputInput
     if (m.kind == "axis") known.insert(m.axis);
   for (const auto& [axis, settings] : out)
     if (known.count(axis) == 0)
-      return fail("option axes: no axis " + axis + "; there are " + joined(known));
+      return wrong_axes("option axes: no axis " + axis + "; there are " + joined(known));
   return out;
 }
 
@@ -118,41 +125,31 @@ std::vector<std::string> about(const OutputInput& input, const AxisJob& job) {
   return lines;
 }
 
-std::vector<std::string> drift_of(const Results& results, const std::string& measurement) {
+// The table stage looks itself: the analyses that would say so may not have been asked for.
+std::vector<std::string> drift_of(const math::AxisTest& test) {
+  std::vector<Finding> findings;
+  math::drift_findings(test, findings);
   std::vector<std::string> ids;
-  for (const auto& a : results.analyses)
-    for (const Finding& f : a.evaluation.findings) {
-      const bool here = a.measurement == measurement || f.measurement == measurement;
-      if (here && f.id.rfind("drift.", 0) == 0 &&
-          std::find(ids.begin(), ids.end(), f.id) == ids.end())
-        ids.push_back(f.id);
-    }
+  for (const Finding& f : findings)
+    if (f.attention) ids.push_back(f.id);
   return ids;
 }
 
-std::optional<double> evidence_of(const Finding& f, std::string_view name) {
-  for (const Number& n : f.evidence)
-    if (n.name == name) return n.value;
-  return std::nullopt;
-}
-
-// Each reading once, however many analyses suspect it.
-std::vector<std::string> suspects_of(const Results& results, const AxisJob& job) {
+// "190.0 mm (3, +)": target, run, direction.
+std::vector<std::string> suspects_of(const math::AxisTest& test, const AxisJob& job) {
+  std::vector<Finding> findings;
+  math::suspect_findings(test, findings);
   std::vector<std::string> readings;
-  for (const auto& a : results.analyses)
-    for (const Finding& f : a.evaluation.findings) {
-      if (f.id != "reading.suspect" ||
-          (a.measurement != job.measurement && f.measurement != job.measurement))
-        continue;
-      const auto target = evidence_of(f, "target"), run = evidence_of(f, "run");
-      std::string text = target ? with_unit(job, *target, 4) : "?";
-      if (run) text += " (run " + fixed_text(*run, 0);
-      for (const auto& [name, value] : f.texts)
-        if (run && name == "direction") text += ", " + plain(value);
-      if (run) text += ")";
-      if (std::find(readings.begin(), readings.end(), text) == readings.end())
-        readings.push_back(text);
+  for (const Finding& f : findings) {
+    std::string text;
+    for (const Number& n : f.evidence) {
+      if (n.name == "target") text = with_unit(job, n.value, 4) + text;
+      if (n.name == "run") text += " (" + fixed_text(n.value, 0) + ", ";
     }
+    for (const auto& [name, value] : f.texts)
+      if (name == "direction") text += value + ")";
+    readings.push_back(std::move(text));
+  }
   return readings;
 }
 
@@ -162,7 +159,9 @@ std::size_t place_of(const Machine& machine, const std::string& axis) {
   return machine.axes.size() + 1;
 }
 
-AxisJob job_of(const OutputInput& input, const Measurement& m, const math::AxisTest& test) {
+AxisJob job_of(const OutputInput& input, std::size_t index) {
+  const Measurement& m = input.campaign.measurements[index];
+  const math::AxisTest test = math::AxisTest::arrange(input.observations[index]);
   AxisJob job;
   job.axis = m.axis;
   job.measurement = m.id;
@@ -170,24 +169,26 @@ AxisJob job_of(const OutputInput& input, const Measurement& m, const math::AxisT
   job.number = place_of(input.campaign.machine, m.axis);
   job.rotary = test.rotary;
   job.curve = math::error_curve(test);
+  if (input.measured != nullptr && index < input.measured->size())
+    job.measured = math::error_curve(math::AxisTest::arrange((*input.measured)[index]));
   if (job.rotary) job.turn = math::closed_turn(job.curve);
   job.reversal = math::assess_reversal(test);
-  job.drift = drift_of(input.results, m.id);
-  job.suspects = suspects_of(input.results, job);
+  job.drift = drift_of(test);
+  job.suspects = suspects_of(test, job);
   return job;
 }
 
 void say_what_was_left_out(const AxisJob& job, OutputResult& result) {
+  const auto say = [&](const char* id) -> Remark& {
+    return result.notes.emplace_back(remark(job, id));
+  };
   if (job.curve.left_out > 0)
-    result.notes.push_back("axis " + job.axis + ": " + std::to_string(job.curve.left_out) +
-                           " targets that were not reached from both directions are left out");
+    say("table.left-out").evidence = {
+        {"targets", static_cast<double>(job.curve.left_out), Quantity::count}};
   if (!job.curve.bidirectional())
-    result.notes.push_back("axis " + job.axis + ": measured from " +
-                           (job.curve.plus.empty() ? "minus" : "plus") +
-                           " only; the table is of that direction and says nothing of backlash");
+    say("table.one-direction").texts.emplace_back("direction", job.curve.plus.empty() ? "-" : "+");
   else if (job.reversal.kind == math::Reversal::Kind::unknown)
-    result.notes.push_back("axis " + job.axis +
-                           ": whether the reversal is constant could not be judged");
+    say("table.reversal-unjudged");
 }
 
 // Two measurements of one axis (before, after): each has its own files, and the user chooses.
@@ -199,8 +200,8 @@ Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
   for (AxisJob& j : jobs) {
     const std::string& owner = numbers.emplace(j.number, j.axis).first->second;
     if (owner != j.axis)
-      return fail("axes " + owner + " and " + j.axis + " would both be axis number " +
-                  std::to_string(j.number) + ": set axes = [\"" + j.axis + " number=...\"]");
+      return wrong_axes("axes " + owner + " and " + j.axis + " would both be axis number " +
+                        std::to_string(j.number) + ": set axes = [\"" + j.axis + " number=...\"]");
     if (count[j.axis] > 1) {
       j.stem += "-" + file_part(j.measurement);
       if (told.insert(j.axis).second)
@@ -222,6 +223,10 @@ Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
 
 }  // namespace
 
+Remark remark(const AxisJob& job, std::string id) {
+  return {std::move(id), {}, {{"axis", job.axis}, {"unit", std::string(job.unit())}}};
+}
+
 std::optional<double> AxisJob::setting(std::string_view name) const {
   const auto it = settings.find(name);
   return it == settings.end() ? std::nullopt : std::optional(it->second);
@@ -242,7 +247,7 @@ Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
   for (std::size_t i = 0; i < std::min(measurements.size(), input.observations.size()); ++i) {
     const Measurement& m = measurements[i];
     if (m.kind != "axis" || input.observations[i].size() == 0) continue;
-    AxisJob job = job_of(input, m, math::AxisTest::arrange(input.observations[i]));
+    AxisJob job = job_of(input, i);
     if (job.curve.position.size() < 2) {
       result.findings.push_back(
           {"table.too-few-targets",
@@ -256,7 +261,8 @@ Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
     if (const auto it = settings->find(m.axis); it != settings->end()) job.settings = it->second;
     if (const auto n = job.setting("number")) {
       if (!(*n >= 1.0 && *n <= 99.0 && *n == std::floor(*n)))
-        return fail("option axes, axis " + m.axis + ": number must be a whole number from 1 to 99");
+        return wrong_axes("option axes, axis " + m.axis +
+                          ": number must be a whole number from 1 to 99");
       job.number = static_cast<std::size_t>(*n);
     }
     job.about = about(input, job);
@@ -305,8 +311,8 @@ std::string drift_warning(const AxisJob& job, OutputResult& result) {
                              {},
                              {{"axis", job.axis}, {"drift", ids}},
                              job.measurement,
-                             "The axis was not stable while it was measured: measure it again "
-                             "before this table is loaded."});
+                             "Do not compensate yet: the axis was not stable while it was "
+                             "measured. Measure it again."});
   return "WARNING: the axis drifted while it was measured (" + ids +
          "); do not load this table before the cause is found";
 }
@@ -382,15 +388,16 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
   const math::Correction correction = [&](double x, int direction) {
     return whole(x, direction) - (direction > 0 ? present / 2.0 : -present / 2.0);
   };
-  const math::MeanDeviations was = math::before(job.curve);
-  const math::MeanDeviations will = math::after(job.curve, correction);
+  const math::ErrorCurve& curve = job.measured ? *job.measured : job.curve;
+  const math::MeanDeviations was = math::before(curve);
+  const math::MeanDeviations will = math::after(curve, correction);
   const Quantity q = deviation_of(job.rotary);
   const auto add = [&](const char* name, double before, double after) {
     if (std::isfinite(before) && std::isfinite(after))
       result.predictions.push_back({job.measurement, name, before, after, q});
   };
-  const bool both = job.curve.bidirectional();
-  add(both ? "E" : (job.curve.plus.empty() ? "E-" : "E+"), was.E(), will.E());
+  const bool both = curve.bidirectional();
+  add(both ? "E" : (curve.plus.empty() ? "E-" : "E+"), was.E(), will.E());
   add("B", was.B(), will.B());
   add("M", was.M(), will.M());
   if (!(will.E() < was.E()))

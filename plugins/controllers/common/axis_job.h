@@ -23,13 +23,14 @@ struct AxisJob {
   std::string stem;        ///< of file names; with the measurement where an axis has two of them
   std::size_t number = 1;  ///< its place among the machine's axes, from 1
   bool rotary = false;
-  math::ErrorCurve curve;                ///< as measured
-  std::optional<math::ErrorCurve> turn;  ///< of a rotary axis measured over the whole turn
+  math::ErrorCurve curve;                    ///< to be compensated: as measured, or the model's
+  std::optional<math::ErrorCurve> measured;  ///< as measured, where `curve` is the model's
+  std::optional<math::ErrorCurve> turn;      ///< of a rotary axis measured over the whole turn
   math::Reversal reversal;
   std::map<std::string, double, std::less<>> settings;  ///< of this axis: option `axes`
-  std::vector<std::string> drift;                       ///< ids of the findings that say so
-  std::vector<std::string> suspects;                    ///< readings: "190.0 mm (run 3, +)"
-  std::vector<std::string> about;                       ///< machine, axis, date: plain ASCII lines
+  std::vector<std::string> drift;     ///< ids of the findings that ask for attention
+  std::vector<std::string> suspects;  ///< readings: "190.0 mm (3, +)"
+  std::vector<std::string> about;     ///< machine, axis, date: plain ASCII lines
 
   const math::ErrorCurve& table_curve() const { return turn ? *turn : curve; }
   /// What the control's backlash parameter held while the axis was measured; setting `backlash`.
@@ -52,6 +53,9 @@ struct AxisJob {
 Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
                                          std::initializer_list<std::string_view> keys,
                                          OutputResult& result);
+
+/// A note about this axis; its words find {axis} and {unit}.
+Remark remark(const AxisJob& job, std::string id);
 
 /// The declaration of that option, with the keys in its help.
 Option axes_option(std::string keys);

@@ -278,8 +278,7 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
   // Where it is shifts the whole table, so the nearest end of what was measured will not do.
   const double reference = job.position_setting("reference").value_or(0.0);
   if (!job.position_setting("reference"))
-    result.notes.push_back("axis " + job.axis + ": the reference position is taken to be at 0 " +
-                           std::string(job.unit()) + " of the targets");
+    result.notes.push_back(controllers::remark(job, "fanuc.reference-at-zero"));
   const auto grid = grid_of(job, input, choices, reference);
   if (!grid) return tl::unexpected<Error>(grid.error());
   Table table = table_of(job, *grid, choices, directions, reference);
@@ -300,14 +299,9 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
 }
 
 void notes(const Choices& choices, OutputResult& result) {
-  result.notes.push_back("inferred: sign of the pitch data, -(e(n) - e(n-1))");
-  result.notes.push_back(
-      "unsure: form of the file (N10000 + point, axis word A): compare it with a backup of the "
-      "control before loading");
-  if (choices.directions)
-    result.notes.push_back(
-        "unsure: numbers of the negative direction at N13000 (option negative_numbers); 3627 in "
-        "pulses times magnification");
+  result.notes.push_back({"fanuc.sign-inferred"});
+  result.notes.push_back({"fanuc.form-unsure"});
+  if (choices.directions) result.notes.push_back({"fanuc.negative-unsure"});
 }
 
 Choices choices_of(const Settings& o) {

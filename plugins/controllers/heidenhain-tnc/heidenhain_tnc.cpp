@@ -89,7 +89,15 @@ Expected<std::vector<double>> positions(const AxisJob& job, const OutputInput& i
                                         const Choices& choices) {
   const double step = controllers::wished_step(job, input.options);
   const auto& measured = job.table_curve().position;
-  if (choices.listed() && step == 0.0 && measured.size() <= choices.max_points) return measured;
+  if (choices.listed() && step == 0.0) {
+    // Targets that the 4 decimals do not tell apart are one row.
+    std::vector<double> rows;
+    for (const double x : measured)
+      if (rows.empty() ||
+          signed_decimal(x * job.per_si(), 4) != signed_decimal(rows.back() * job.per_si(), 4))
+        rows.push_back(x);
+    if (rows.size() <= choices.max_points) return rows;
+  }
   math::GridRule rule;
   rule.unit = 1e-4 / job.per_si();
   rule.most = choices.max_points;
@@ -207,15 +215,9 @@ std::string cma_table(const std::vector<const AxisJob*>& written,
 }
 
 void notes(const Choices& choices, OutputResult& result) {
-  result.notes.push_back(
-      "inferred: sign +e of the .COM entries, their columns and 4 decimals (no file of the maker "
-      "was seen)");
-  if (choices.directions)
-    result.notes.push_back(
-        "inferred: BACKLASH holds the deviation measured in the negative direction itself, not "
-        "its difference");
-  if (!choices.listed())
-    result.notes.push_back("inferred: layout of .CMA; which parameter takes the backlash value");
+  result.notes.push_back({"heidenhain.form-inferred"});
+  if (choices.directions) result.notes.push_back({"heidenhain.negative-inferred"});
+  if (!choices.listed()) result.notes.push_back({"heidenhain.cma-inferred"});
 }
 
 Expected<Choices> choices_of(const Settings& o) {

@@ -141,19 +141,17 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
     return fail("axis " + job.axis +
                 ": the table written cannot be read back: " + correction.error().message);
   controllers::predict(job, *correction, result);
-  result.notes.push_back("axis " + job.axis + ": the table is zero at " +
-                         controllers::with_unit(job, reference, 4) +
-                         (job.position_setting("reference") ? "" : ", taken as reference point"));
+  Remark zero = controllers::remark(
+      job, job.position_setting("reference") ? "siemens.zero-at" : "siemens.zero-taken");
+  zero.evidence = {{"reference", reference, position_of(job.rotary)}};
+  result.notes.push_back(std::move(zero));
   for (Artifact& f : files) result.artifacts.push_back(std::move(f));
   return {};
 }
 
 void notes(const Choices& choices, OutputResult& result) {
-  result.notes.push_back("inferred: comment lines and the TEA block of the backlash file");
-  if (choices.directions)
-    result.notes.push_back(
-        "inferred: whether setpoint or actual value indexes a CEC table (editions of the manual "
-        "contradict each other); form of the axis names (option quoted_axes)");
+  result.notes.push_back({"siemens.form-inferred"});
+  if (choices.directions) result.notes.push_back({"siemens.cec-inferred"});
 }
 
 Expected<OutputResult> write(const OutputInput& input) {

@@ -146,7 +146,7 @@ void measurement(std::string& out, const Measurement& m, const Observations& obs
   append_number(object.member("missing"), obs.missing);
   if (!obs.notes.empty())
     object.list("notes", obs.notes.size(),
-                [&](std::string& to, std::size_t i) { to += json_text(obs.notes[i]); });
+                [&](std::string& to, std::size_t i) { to += json_text(obs.notes[i].english); });
   Object columns(object.member("readings"), "   ");
   readings(columns, obs);
   columns.close();

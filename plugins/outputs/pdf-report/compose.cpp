@@ -172,6 +172,7 @@ Document compose(const Source& source) {
     if (block == "identity") add_identity(source, document.blocks);
     if (block == "status") add_status(source, document.blocks);
     if (block == "measurements") add_measurements(source, document.blocks);
+    if (block == "models") add_models(source, document.blocks);
     if (block == "tables") add_tables(source, document.blocks);
     if (block == "notes") add_notes(source, document.blocks);
   }

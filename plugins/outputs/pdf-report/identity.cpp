@@ -158,14 +158,8 @@ void add_status(const Source& source, Blocks& blocks) {
           w.get("status.of_measurement",
                 {{"measurement", m.measurement.id}, {"what", w.get("measurement.unread")}}));
   }
-  for (const Results::Written& output : results.outputs)
-    for (const Finding& f : output.result.findings)
-      if (f.attention)
-        status.lines.push_back(w.get(
-            output.result.artifacts.empty() ? "status.refused" : "status.of_measurement",
-            {{"output", output.plugin},
-             {"measurement", output.plugin},
-             {"what", typeset(finding_text(source.in.templates, source.language(), f, "title"))}}));
+  for (const TableFinding& f : table_findings(source))
+    if (f.finding->attention) status.lines.push_back(title_of(source, f));
   if (status.lines.empty() && !results.errors.empty()) return;
   status.level = status.lines.empty() ? Level::good : Level::attention;
   status.text = w.get(status.lines.empty() ? "status.ok" : "status.attention");

@@ -5,16 +5,20 @@
 #include <vector>
 
 #include "look.h"
+#include "nonio/reports/wording.h"
 #include "nonio/sdk/plugin.h"
-#include "wording.h"
 
 namespace nonio::pdf_report {
+
+using reports::typeset;
+using reports::Wording;
 
 /// What every part of the report is made from.
 struct Source {
   const OutputInput& in;
   const Look& look;
   const Wording& words;
+  const Wording& pictures;  ///< words of the model's pictures
   const reports::Fonts& fonts;
 
   const std::string& language() const { return words.language(); }
@@ -47,6 +51,20 @@ void add_results(const Source&, const Measured&, Blocks&);
 void add_targets(const Source&, const Measured&, Blocks&);
 void add_plots(const Source&, const Measured&, Blocks&);
 void add_findings(const Source&, const Measured&, Blocks&);
+
+/// What controllers' tables have to say; what several of them say alike once, with all their names.
+struct TableFinding {
+  const Finding* finding;
+  std::string outputs;
+  bool refused;  ///< no file was written
+};
+std::vector<TableFinding> table_findings(const Source&);
+std::string title_of(const Source&, const TableFinding&);
+
+/// How the models fit: verdict, parameters, the falling error, the page of residual pictures.
+void add_models(const Source&, Blocks&);
+/// Always the same nine, in the same places, together with their heading on one page.
+void add_pictures(const Source&, const ModelFit&, Blocks&);
 
 void add_tables(const Source&, Blocks&);
 void add_notes(const Source&, Blocks&);

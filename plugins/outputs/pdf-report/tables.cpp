@@ -99,6 +99,10 @@ bool speaks(const OutputResult& r) {
 
 namespace {
 
+std::string remark(const Source& source, const Remark& note) {
+  return remark_text(source.in.templates, source.language(), note);
+}
+
 /// Whether the measurement's own findings have already said it.
 bool already_said(const Source& source, const Finding& f) {
   for (const Results::Analysed& a : source.in.results.analyses)
@@ -108,6 +112,37 @@ bool already_said(const Source& source, const Finding& f) {
 }
 
 }  // namespace
+
+std::vector<TableFinding> table_findings(const Source& source) {
+  std::vector<TableFinding> out;
+  for (const Results::Written& output : source.in.results.outputs)
+    for (const Finding& f : output.result.findings) {
+      const bool refused = output.result.artifacts.empty();
+      const auto says = [&](const Finding& one) {
+        return finding_text(source.in.templates, source.language(), one, "says");
+      };
+      const auto same = std::find_if(out.begin(), out.end(), [&](const TableFinding& known) {
+        return known.refused == refused && known.finding->id == f.id &&
+               known.finding->measurement == f.measurement && says(*known.finding) == says(f);
+      });
+      if (same == out.end())
+        out.push_back({&f, output.plugin, refused});
+      else
+        same->outputs += ", " + output.plugin;
+    }
+  return out;
+}
+
+std::string title_of(const Source& source, const TableFinding& f) {
+  const Wording& w = source.words;
+  std::string title =
+      typeset(finding_text(source.in.templates, source.language(), *f.finding, "title"));
+  if (!f.finding->measurement.empty())
+    title =
+        w.get("status.of_measurement", {{"measurement", f.finding->measurement}, {"what", title}});
+  return w.get(f.refused ? "status.refused" : "status.of_output",
+               {{"output", f.outputs}, {"what", title}});
+}
 
 void add_tables(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
@@ -120,22 +155,17 @@ void add_tables(const Source& source, Blocks& blocks) {
     blocks.push_back({std::move(table), "tables"});
     blocks.push_back({Paragraph{w.get("tables.predicted"), Paragraph::Look::muted}, "tables"});
   }
+  for (const TableFinding& f : table_findings(source)) {
+    Block block = note_of(source, *f.finding);
+    auto& note = std::get<Note>(block.what);
+    if (already_said(source, *f.finding)) note.says = note.advice = "";
+    note.title = title_of(source, f);
+    blocks.push_back(std::move(block));
+  }
   for (const Results::Written& output : outputs) {
-    if (!output.result.findings.empty() && output.result.artifacts.empty())
-      blocks.push_back(
-          {Heading{w.get("tables.refused", {{"output", output.plugin}}), 2}, "tables"});
-    for (const Finding& f : output.result.findings) {
-      Block block = note_of(source, f);
-      auto& note = std::get<Note>(block.what);
-      if (already_said(source, f)) note.says = note.advice = "";
-      if (!f.measurement.empty())
-        note.title =
-            w.get("status.of_measurement", {{"measurement", f.measurement}, {"what", note.title}});
-      blocks.push_back(std::move(block));
-    }
     std::string notes;
-    for (const std::string& note : output.result.notes)
-      notes += (notes.empty() ? "" : " · ") + note;
+    for (const Remark& note : output.result.notes)
+      notes += (notes.empty() ? "" : " ") + remark(source, note);
     if (!notes.empty())
       blocks.push_back(
           {Paragraph{typeset(visible_text(
@@ -155,14 +185,17 @@ void add_notes(const Source& source, Blocks& blocks) {
       blocks.push_back(
           {Paragraph{typeset(visible_text(text, source.fonts)), Paragraph::Look::small}, "notes"});
   };
-  for (const std::string& note : results.notes) add(note);
+  for (const Remark& note : results.notes)
+    add(w.get("status.of_measurement",
+              {{"measurement", note.measurement}, {"what", remark(source, note)}}));
   bool with_U = false, without_U = false;
   std::set<std::string> said;
   std::string methods;
   for (const Results::Analysed& a : results.analyses) {
     for (const Value& v : a.evaluation.values) (v.U ? with_U : without_U) = true;
-    for (const std::string& note : a.evaluation.notes)
-      if (said.insert(note).second) methods += (methods.empty() ? "" : " · ") + note;
+    for (const Remark& note : a.evaluation.notes)
+      if (said.insert(remark(source, note)).second)
+        methods += (methods.empty() ? "" : " ") + remark(source, note);
   }
   add(methods);
   std::string ours;

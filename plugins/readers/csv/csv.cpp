@@ -44,6 +44,10 @@ class Lines {
   std::uint64_t number_ = 0;
 };
 
+nonio::Number count(const char* name, std::uint64_t n) {
+  return {name, static_cast<double>(n), Quantity::count};
+}
+
 enum class Content { nothing, comment, fields };
 
 Content content_of(std::string_view line) {
@@ -267,11 +271,7 @@ bool Rows::add(std::string_view line, std::uint64_t line_number) {
 Expected<void> Rows::finish() {
   if (obs_.size() == 0 && not_taken_.empty())
     return fail("expected readings, found only a header row");
-  if (empty_rows_ > 0)
-    obs_.notes.push_back(std::to_string(empty_rows_) +
-                         (empty_rows_ == 1 ? " row with nothing between its separators was skipped"
-                                           : " rows with nothing between their separators were "
-                                             "skipped"));
+  if (empty_rows_ > 0) obs_.notes.push_back({"csv.empty-rows", {count("rows", empty_rows_)}});
   obs_.missing = not_taken_.size();
   if (!order_.unique())
     if (auto ok = settle_duplicates(obs_, not_taken_); !ok) return ok;
@@ -356,8 +356,18 @@ Expected<void> read_rows(const ReadInput& input, Lines& lines, const Header& hea
 
 }  // namespace
 
+/// UTF-16 is recognised, to be refused with a word for it: Latin letters in it have a zero byte
+/// each, all before them or all behind.
 bool recognises(std::string_view head) {
-  if (head.find('\0') != head.npos) return false;
+  std::string narrow;
+  if (const std::size_t first = head.find('\0'); first != head.npos) {
+    for (std::size_t i = first + 1; i < head.size(); i += 2)
+      if (head[i] == '\0') return false;
+    const bool marked = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
+    narrow = head.substr(marked ? 2 : 0);
+    std::erase(narrow, '\0');
+    head = narrow;
+  }
   Lines lines(head);
   std::string_view line;
   while (lines.next(line))

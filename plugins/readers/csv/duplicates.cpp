@@ -134,11 +134,12 @@ Expected<void> settle_duplicates(Observations& obs, std::vector<Key>& not_taken)
   if (worst) return fail(contradiction(obs, worst->first, worst->second));
   obs.missing = count_missing(obs, rows, not_taken);
   if (dropped == 0) return {};
-  obs.notes.push_back(std::to_string(dropped) +
-                      (dropped == 1 ? " row that repeats another one exactly was dropped: line "
-                                    : " rows that repeat others exactly were dropped, the first "
-                                      "in line ") +
-                      std::to_string(obs.source_line[first_dropped]));
+  const auto count = [](const char* name, double n) {
+    return nonio::Number{name, n, Quantity::count};
+  };
+  obs.notes.push_back({"csv.repeated-rows",
+                       {count("rows", static_cast<double>(dropped)),
+                        count("line", obs.source_line[first_dropped])}});
   drop_rows(obs, drop);
   return {};
 }

@@ -34,6 +34,16 @@ TEST(Heidenhain, ListedLayoutByHand) {
   EXPECT_LT(prediction(*r, "E").after, 0.06 * um);
 }
 
+// The same place for the 4 decimals of the table, two targets for the test.
+TEST(Heidenhain, TargetsThatPrintAlikeAreOneRow) {
+  Measured m = two_axes_x();
+  m.targets = {-100 * mm, 0.0, 0.00002 * mm, 100 * mm};
+  const auto r = Bench(m).write(heidenhain_plugin());
+  ASSERT_TRUE(r) << r.error().message;
+  EXPECT_EQ(lines(file(*r, "heidenhain-tnc-X.COM")).size(), 6U);
+  EXPECT_LT(prediction(*r, "E").after, 0.06 * um);
+}
+
 TEST(Heidenhain, EquidistantLayoutByHand) {
   const auto r = Bench(two_axes_x()).write(heidenhain_plugin(), layout("itnc530"));
   ASSERT_TRUE(r) << r.error().message;

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <numbers>
+#include <sstream>
 
+#include "nonio/host/manifest.h"
 #include "nonio/host/plugins.h"
 #include "nonio/sdk/axis_readings.h"
 
@@ -92,13 +95,13 @@ struct ByHand {
 
 void PrintTo(const ByHand& c, std::ostream* out) { *out << c.kind; }
 
-class Formula : public testing::TestWithParam<ByHand> {};
+class ByHandTest : public testing::TestWithParam<ByHand> {};
 
 }  // namespace
 
 // Linear: 0, 0.4, 1.0 m; p = -0.5, -0.1, 0.5; d = +, +, -; t = 0, 60, 180 s; K = -0.2, -0.1, 0.3.
 // Rotary: 0, 90, 210 deg; p = -105, -15, 105 deg.
-TEST_P(Formula, ByHandWithZeroWhereTheAxisStood) {
+TEST_P(ByHandTest, ZeroWhereTheAxisStood) {
   const ByHand& c = GetParam();
   const Axis axis = c.turns ? rotary(6) : linear();
   const double unit = c.turns ? pi / 180.0 : 1.0;
@@ -122,7 +125,7 @@ TEST_P(Formula, ByHandWithZeroWhereTheAxisStood) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Effects, Formula,
+    Effects, ByHandTest,
     testing::Values(
         ByHand{"scale", false, {}, {{-0.5, -0.1, 0.5}}},
         ByHand{"backlash", false, {}, {{0.5, 0.5, -0.5}}},
@@ -186,6 +189,29 @@ TEST(Effects, WhatATableCanTakeAway) {
   }
 }
 
+TEST(Effects, EveryOneHasACardInEveryLanguage) {
+  for (const char* language : {"en", "it"}) {
+    const std::string file = std::string(NONIO_WORDS) + "/" + language + "/effects.toml";
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    const auto words = host::parse_settings(text.str(), file);
+    ASSERT_TRUE(words) << words.error().message;
+    std::size_t wanted = 0;
+    const auto expect = [&](const std::string& name) {
+      ++wanted;
+      EXPECT_FALSE(words->text(name).empty()) << language << " " << name;
+    };
+    for (const auto& kind : kinds) {
+      for (const char* part : {"title", "is", "size", "looks", "alike", "cure"})
+        expect("effect." + kind + "." + part);
+      for (const auto& p : effect(kind).linear) expect("effect." + kind + ".parameter." + p.name);
+      for (const auto& s : effect(kind).shapes)
+        expect("effect." + kind + ".parameter." + s.parameter.name);
+    }
+    EXPECT_EQ(words->values.size(), wanted) << "words for what is not there";
+  }
+}
+
 TEST(Effects, GridsAscendAndGiveColumnsOfFiniteNumbers) {
   for (const auto& axis : {linear(), rotary(90)})
     for (const int targets : {8, 11, 30}) {
@@ -225,10 +251,12 @@ TEST(Effects, PeriodsOfUnevenTargetsGoOn) {
   for (int k = 0; k < 11; ++k)
     rows.push_back({0.1 * k + (k % 10 == 0 ? 0.0 : 0.013 * std::sin(k)), 1});
   const auto grid = effect("periodic").shapes[0].grid(table(linear(), rows), linear());
-  ASSERT_EQ(grid.size(), 68u);
-  EXPECT_NEAR(grid.front(), 1.0 / 19.75, 1e-12);
+  // 3 to 19.75 periods, and three values about each of the 15 usual leads of ball screws.
+  ASSERT_EQ(grid.size(), 68u + 45u);
+  EXPECT_NEAR(grid[45], 1.0 / 19.75, 1e-12);
+  EXPECT_EQ(std::count(grid.begin(), grid.end(), 0.01), 1);
   for (int k = 11; k < 800; ++k) rows.push_back({1e-3 * k + 1e-4 * std::sin(k), 1});
-  EXPECT_LE(effect("periodic").shapes[0].grid(table(linear(), rows), linear()).size(), 240u);
+  EXPECT_LE(effect("periodic").shapes[0].grid(table(linear(), rows), linear()).size(), 240u + 45u);
 }
 
 // A period that divides the spacing: both columns are the same at every target, which is for the

@@ -31,9 +31,16 @@ TEST(Format, ShortTextHasNoExponentWhereNobodyExpectsOne) {
   EXPECT_EQ(short_text(0.0), "0.00");
   EXPECT_EQ(short_text(5.5784), "5.58");
   EXPECT_EQ(short_text(-12.34), "-12.3");
-  EXPECT_EQ(short_text(1234.5), "1234");
+  EXPECT_EQ(short_text(1234.5), "1235");
   EXPECT_EQ(short_text(1e-7), "1.00e-07");
   EXPECT_EQ(fixed_text(-0.0004, 3), "0.000");
+  EXPECT_EQ(fixed_text(0.15, 1), "0.2");
+  EXPECT_EQ(fixed_text(-0.45, 1), "-0.5");
+  EXPECT_EQ(fixed_text(9.96, 1), "10.0");
+  EXPECT_EQ(fixed_text(0.96, 0), "1");
+  EXPECT_EQ(fixed_text(0.0, 2), "0.00");
+  EXPECT_EQ(fixed_text(1e-300, 2), "0.00");
+  EXPECT_EQ(fixed_text(123456.789, 2), "123456.79");
 }
 
 TEST(Suggestion, NearestOrNothing) {

@@ -114,6 +114,12 @@ TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
             "b.'\xC3\xA8'=['\xC3\xA8',\n-2.5,'\xC3\xA8']},"
             "'\xC3\xA8', \"\"\"a\\\n b\xC3\xA8\"\"\"]",
             "4: unknown key campaign.x"},
+           {"date = 2026-11-03", "customer = \"a\\nb\"",
+            "4: campaign.customer: wanted one line of text, found a line break"},
+           {"date = 2026-11-03", "site = \"a\\tb\"",
+            "4: campaign.site: wanted one line of text, found a tab"},
+           {"kind = \"axis\"", "kind = \"straightness\"\nlateral = \"Y\"",
+            "measurement.lateral: wanted another axis than Y"},
            {"U_fixed_um = 0.2", "U_fixed_um = -0.2",
             "17: instrument.U_fixed_um: wanted a number that is not negative"},
        }) {
@@ -121,6 +127,16 @@ TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
     EXPECT_NE(found.find(r.wanted), std::string::npos)
         << r.bad << "\ngot: " << found << "wanted: " << r.wanted;
   }
+}
+
+TEST(Manifest, KeysHaveTheirLines) {
+  const auto m = parse_manifest(whole, "campaign.toml");
+  ASSERT_TRUE(m);
+  EXPECT_EQ(m->lines.at("campaign.date"), 4U);
+  EXPECT_EQ(m->lines.at("machine.axes.Y.travel"), 9U);
+  EXPECT_EQ(m->lines.at("measurement.Y.file"), 25U);
+  EXPECT_EQ(m->lines.at("run.analyses"), 27U);
+  EXPECT_EQ(m->lines.at("options.iso230-2.edition"), 29U);
 }
 
 TEST(Manifest, AllErrorsAtOnce) {

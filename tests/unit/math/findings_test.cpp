@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numbers>
+
 #include "axis_builder.h"
 #include "nonio/math/axis_analysis.h"
 #include "nonio/math/axis_findings.h"
@@ -56,6 +59,74 @@ TEST(Findings, ATinyReversalIsNoReasonToAct) {
     ASSERT_NE(f, nullptr);
     EXPECT_EQ(f->attention, B < -10 * um);
   }
+}
+
+// Likewise a drift; and half of its step from run to run is in the mean reversal.
+TEST(Findings, ASmallDriftIsNoReasonToAct) {
+  made::Random random(5);
+  made::Plan plan{{0.0, 0.11, 0.19, 0.31, 0.43, 0.5}, 5};
+  for (const double step : {0.1 * um, 3 * um}) {
+    std::vector<Finding> findings;
+    const auto test = made::arranged(
+        plan, [&](double x, int, std::uint32_t run) { return 4e-5 * x + step * run; }, {0.02 * um},
+        random);
+    drift_findings(test, findings);
+    const Finding* f = find(findings, "drift.parallel");
+    ASSERT_NE(f, nullptr);
+    EXPECT_EQ(f->attention, step > um);
+    const auto in_B = std::find_if(f->evidence.begin(), f->evidence.end(),
+                                   [](const Number& n) { return n.name == "in_B"; });
+    ASSERT_NE(in_B, f->evidence.end());
+    EXPECT_NEAR(in_B->value, step / 2.0, 0.03 * um);
+  }
+}
+
+// 0 and 360 deg are one place. A drift within the passes differs in sign and is not meant.
+TEST(Findings, ATurnThatDoesNotClose) {
+  made::Random random(6);
+  made::Plan plan{{}, 5};
+  for (int i = 0; i <= 12; ++i) plan.targets.push_back(i * std::numbers::pi / 6.0);
+  plan.rotary = true;
+  const auto gap_of = [&](double closed, double drift) {
+    std::vector<Finding> findings;
+    turn_findings(made::arranged(
+                      plan,
+                      [&](double a, int d, std::uint32_t) {
+                        return 1e-5 * std::sin(a) +
+                               (closed + d * drift) * a / (2 * std::numbers::pi);
+                      },
+                      {0.5 * um}, random),
+                  findings);
+    const Finding* f = find(findings, "rotary.not-closed");
+    return f == nullptr ? 0.0 : f->evidence.at(2).value;
+  };
+  EXPECT_NEAR(gap_of(20 * um, 0.0), 20 * um, um);
+  EXPECT_NEAR(gap_of(-20 * um, 5 * um), -20 * um, um);
+  EXPECT_EQ(gap_of(0.0, 0.0), 0.0);
+  EXPECT_EQ(gap_of(0.0, 20 * um), 0.0);
+  plan.runs = 1;  // no scatter is known
+  EXPECT_EQ(gap_of(20 * um, 0.0), 0.0);
+  plan.runs = 5;
+  plan.targets.pop_back();
+  EXPECT_EQ(gap_of(20 * um, 0.0), 0.0);
+}
+
+TEST(Findings, TargetsOutsideTheTravelAreNamed) {
+  Observations o;
+  for (const double x : {-0.01, 0.0, 0.3, 0.5, 0.501})
+    for (const int d : {1, -1}) made::add(o, x, d, 0.0, 1);
+  const AxisTest t = AxisTest::arrange(o);
+  Axis axis;
+  axis.name = "X";
+  std::vector<Finding> findings;
+  plan_findings(t, o, &axis, findings);
+  EXPECT_EQ(find(findings, "targets.outside-travel"), nullptr);
+  axis.travel = {0.0, 0.5};
+  plan_findings(t, o, &axis, findings);
+  const Finding* f = find(findings, "targets.outside-travel");
+  ASSERT_NE(f, nullptr);
+  EXPECT_TRUE(f->attention);
+  EXPECT_EQ(f->texts.at(0).second, "-10; 501 mm");
 }
 
 // ISO R+ 4.516 against R- 1.756 and the like: s of one direction more than twice the other's.

@@ -25,6 +25,8 @@ std::map<std::string, std::string> sections(const fs::path& file) {
   for (std::string line; std::getline(in, line);) {
     if (line.rfind("[finding.\"", 0) == 0)
       id = line.substr(10, line.find("\"]") - 10);
+    else if (line.rfind("[", 0) == 0)
+      id.clear();
     else if (!id.empty())
       out[id] += line + "\n";
   }
@@ -72,7 +74,7 @@ TEST(Words, EveryFindingHasThem) {
   const auto en = sections(fs::path(NONIO_WORDS) / "en" / "findings.toml");
   static const std::regex id(
       "\"((?:drift|reversal|repeatability|target|targets|reading|readings|direction|runs|plan|"
-      "uncertainty|vdi)\\.[a-z-]+|eccentricity)\"");
+      "uncertainty|vdi|rotary)\\.[a-z-]+|eccentricity)\"");
   const std::string sources = all_sources();
   int found = 0;
   for (std::sregex_iterator it(sources.begin(), sources.end(), id), end; it != end; ++it, ++found)

@@ -33,7 +33,7 @@ Observations two_readings() {
   o.source_line = {2, 3};
   o.time = {0.5, std::numeric_limits<double>::quiet_NaN()};
   o.missing = 3;
-  o.notes = {"a \"note\"\n"};
+  o.notes = {{.id = "x", .english = "a \"note\"\n"}};
   return o;
 }
 

@@ -44,6 +44,24 @@ TEST(Rounding, ValueToThePlaceOfTwoDigitsOfU) {
   }
 }
 
+// Half away from zero on the decimal value, whatever the binary one: also of 0.15 and 0.45, which
+// lie below and above their ties.
+TEST(Rounding, TiesGoAwayFromZero) {
+  const struct {
+    double um;
+    int decimals;
+    const char* text;
+  } lines[] = {{0.15, 1, "0.2"},      {0.25, 1, "0.3"},     {0.35, 1, "0.4"},
+               {0.45, 1, "0.5"},      {2.5, 0, "3"},        {3.5, 0, "4"},
+               {-2.5, 0, "\u22123"},  {0.125, 2, "0.13"},   {1.005, 2, "1.01"},
+               {9.9995, 3, "10.000"}, {0.0005, 3, "0.001"}, {0.00049, 3, "0.000"},
+               {25.0, -1, "30"},      {15.0, -1, "20"}};
+  for (const auto& l : lines) {
+    EXPECT_EQ(printed_number(l.um * 1e-6, Quantity::deviation, l.decimals, "en"), l.text) << l.um;
+    EXPECT_EQ(printed_number(l.um / 1e6, Quantity::deviation, l.decimals, "en"), l.text) << l.um;
+  }
+}
+
 TEST(Rounding, ColumnsOfTargetsShowEveryDigitTheyHave) {
   EXPECT_EQ(decimals_for({0.0, 0.1, 2.0}, Quantity::length, 4), 0);
   EXPECT_EQ(decimals_for({0.0, 0.0963, 2.0}, Quantity::length, 4), 1);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -20,7 +21,14 @@ struct Colour {
 };
 
 enum class Dash : std::uint8_t { solid, dashed, dotted, dash_dot };
-enum class Marker : std::uint8_t { none, up, down, dot, ring };
+enum class Marker : std::uint8_t {
+  none,
+  up,
+  down,
+  dot,
+  ring,
+  around
+};  // around: leaves its middle
 
 struct Style {
   double page_width = 595.28, page_height = 841.89;  // ISO 216 A4
@@ -71,8 +79,8 @@ struct Table {
 /// Lines, bands and markers over one horizontal axis, in the units that are printed.
 struct Plot {
   struct Curve {
-    enum class Kind : std::uint8_t { line, band, bars };
-    Kind kind = Kind::line;
+    enum class Kind : std::uint8_t { line, band, bars, points };
+    Kind kind = Kind::line;  ///< points: of many in one place one is drawn, extremes always
     std::vector<double> x, y;
     std::vector<double> y2{};  ///< of a band, its other side; bars go from y to y2
     Colour colour{};
@@ -81,6 +89,11 @@ struct Plot {
     Marker marker = Marker::none;
     double marker_size = 2.2;
     std::string legend{};  ///< empty: not in the legend
+  };
+  /// A band across the whole width, behind everything.
+  struct Belt {
+    double from, to;
+    Colour colour{};
   };
   /// A span of the vertical axis, drawn as a dimension line at the right.
   struct Span {
@@ -91,9 +104,39 @@ struct Plot {
   std::string language{};  ///< of the numbers
   std::vector<Curve> curves;
   std::vector<Span> spans{};
+  std::vector<Belt> belts{};
+  std::optional<std::pair<double, double>> range{};  ///< of the vertical axis; else what is drawn
   bool degrees = false;  ///< the horizontal axis is an angle: ticks at parts of a turn
+  bool whole = false;    ///< the horizontal axis counts: ticks at whole numbers
   bool zero_line = true;
+  double height = 0;         ///< with title and legend; 0: the style's
   std::string empty_text{};  ///< what is said where there is nothing to draw
+};
+
+/// Horizontal bars over one scale that begins at 0, in rows of one bar or more, and a line to hold
+/// them against.
+struct BarChart {
+  struct Series {
+    std::string legend;
+    Colour colour{};
+  };
+  struct Bar {
+    double value = 0.0;  ///< in the unit that is printed; not finite: there is none
+    std::string text;    ///< beside it
+  };
+  struct Row {
+    std::string label;
+    std::vector<Bar> bars;  ///< one for each series
+  };
+  struct Line {
+    double at = 0.0, half = 0.0;  ///< half: of the band about it
+    std::string legend;
+  };
+  std::string title, x_title;
+  std::string language{};  ///< of the numbers
+  std::vector<Series> series;
+  std::vector<Row> rows;
+  std::optional<Line> line{};
 };
 
 /// Something that the reader must know: a mark, a title, what it says, what to do.
@@ -113,6 +156,9 @@ struct Spacer {
   double height = 6;
 };
 
+/// What follows begins on a new page.
+struct PageBreak {};
+
 struct Block;
 
 /// Parts side by side; too high for a page they come one below the other.
@@ -122,7 +168,9 @@ struct Columns {
 };
 
 struct Block {
-  std::variant<Heading, Paragraph, Grid, Table, Plot, Note, Status, Spacer, Columns> what;
+  std::variant<Heading, Paragraph, Grid, Table, Plot, BarChart, Note, Status, Spacer, PageBreak,
+               Columns>
+      what;
   std::string field{};
 };
 
@@ -135,6 +183,9 @@ struct Document {
   Style style;
   std::vector<Block> blocks;
 };
+
+/// The height that blocks can have on one page.
+double page_room(const Style&);
 
 /// The same document and fonts give the same bytes.
 Expected<std::string> pdf(const Document&, const Fonts&);

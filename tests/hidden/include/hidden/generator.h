@@ -17,6 +17,8 @@
 /// What is not hidden, because the readings could not show it (`random_scenario` draws again):
 ///  - a lead error or a worm mesh that the targets meet at about the same phase, or so slowly
 ///    moving that it looks like a smooth pitch curve;
+///  - a period that the manifest does not give and that is shorter than 0.6 of the mean distance of
+///    uneven targets, or than 2.3 distances of even ones, or longer than a third of the stretch;
 ///  - a measured temperature that runs along with time;
 ///  - two causes that act alike: warm-up, growth and temperature exclude each other;
 ///  - an effect that, beside the others of its campaign, stands out by less than

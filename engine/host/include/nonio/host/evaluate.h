@@ -28,6 +28,7 @@ struct Context {
 using Inputs = std::vector<std::pair<std::string, std::string>>;  // name, SHA-256
 
 inline constexpr const char* manifest_name = "campaign.toml";
+inline constexpr const char* site_name = "site.toml";
 /// How a measurement file is called in `Inputs`.
 std::string input_name(const std::string& file);
 
@@ -50,6 +51,9 @@ using Stage = std::function<void(const std::string&)>;
 /// One campaign from its folder to its artifacts; writes nothing.
 Evaluated evaluate(const std::filesystem::path& folder, const std::string& id,
                    const Context& context, const Stage& stage);
+
+/// What is wrong with the names and options of site.toml: it would be wrong in every campaign.
+std::vector<Error> site_mistakes(const Context& context);
 
 /// ISO 14253-1 with an upper limit; source: ISO 14253-1:2017, confidence of the reading: medium.
 Decision decide(double value, double U, double tolerance);

@@ -49,6 +49,12 @@ bool is_artifact_name(std::string_view name);
 /// others. On an error the temporary files are gone. Folders that are missing are made.
 Expected<void> publish(const std::filesystem::path& folder, const std::vector<Artifact>& files);
 
+/// The same in two steps, for what is written elsewhere: the name to write and flush it under, and
+/// the renaming of such files.
+std::filesystem::path temporary_path(const std::filesystem::path& folder, const std::string& name);
+Expected<void> rename_temporaries(const std::filesystem::path& folder,
+                                  const std::vector<std::string>& names);
+
 /// Removes files (those that are there) and fsyncs the folder.
 Expected<void> remove_files(const std::filesystem::path& folder,
                             const std::vector<std::string>& names);

@@ -22,6 +22,10 @@ struct RawOption {
 };
 using RawOptions = std::map<std::string, std::map<std::string, RawOption>>;
 
+/// Line of each key of a file: "campaign.customer", "measurement.X.file" for the measurement with
+/// id X.
+using KeyLines = std::map<std::string, std::uint64_t, std::less<>>;
+
 struct RunChoice {
   std::optional<std::vector<std::string>> analyses, outputs;  ///< absent: all that apply
 };
@@ -30,6 +34,7 @@ struct Manifest {
   Campaign campaign;
   RunChoice run;
   RawOptions options;
+  KeyLines lines;
 };
 
 struct Limits {
@@ -42,6 +47,7 @@ struct SiteFile {
   RunChoice run;
   RawOptions options;
   Limits limits;
+  KeyLines lines;
   std::vector<std::string> notes;  ///< sections that this version does not use yet
 };
 

@@ -29,6 +29,8 @@ class Plugins final : public Registry {
   const std::vector<PluginFile>& files() const { return files_; }
   /// Two plugins of one kind with the same name, each with both paths.
   const std::vector<std::string>& conflicts() const { return conflicts_; }
+  /// Whether every plugin that was loaded lies in this folder.
+  bool all_from(const std::filesystem::path& folder) const;
   /// One digest over all that was loaded.
   std::string digest() const;
 

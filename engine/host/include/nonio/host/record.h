@@ -20,6 +20,13 @@ struct KnownFinding {
   }
 };
 
+/// A file of a campaign's results as it was written.
+struct RecordedFile {
+  std::string name;
+  std::uint64_t size = 0;
+  std::string sha256;
+};
+
 /// `run.json` beside a campaign's results: from what they were made, when (which night) and why.
 /// It holds no time, so that equal runs leave equal bytes.
 struct Record {
@@ -29,7 +36,7 @@ struct Record {
   std::string status;
   bool retry = false;  ///< it failed for a reason that does not lie in its content
   Inputs inputs;
-  std::vector<std::string> files;
+  std::vector<RecordedFile> files;
   std::vector<Error> errors;
   std::vector<KnownFinding> findings, previous;  ///< previous: of the last night before this one
 };

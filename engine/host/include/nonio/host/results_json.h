@@ -2,16 +2,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "nonio/host/evaluate.h"
+#include "nonio/host/record.h"
 
 namespace nonio::host {
 
-/// results.json (schema nonio-results/1).
-std::string results_json(const Evaluated& evaluated, const Context& context);
-
-/// The same for a campaign whose worker did not come back.
-std::string failed_results_json(const std::string& id, const std::vector<Error>& errors);
+/// results.json (schema nonio-results/1); `files` are the artifacts of all outputs in their order.
+std::string results_json(const Evaluated& evaluated, const Context& context,
+                         const std::vector<RecordedFile>& files);
 
 const char* to_text(Decision decision);
 

@@ -15,7 +15,8 @@ namespace nonio::host {
 struct RunOptions {
   std::filesystem::path site, out;
   std::vector<std::filesystem::path> plugin_folders, template_folders;
-  std::size_t jobs = 0;  ///< 0: one for each core
+  std::filesystem::path own_plugins;  ///< the plugin folder beside the program
+  std::size_t jobs = 0;               ///< 0: one for each core
   bool force = false;
   bool dry_run = false;
   std::string version;

@@ -22,7 +22,13 @@ std::vector<Finding> axis_findings(const AxisTest&, const Observations&, const A
 void drift_findings(const AxisTest&, std::vector<Finding>&);
 void reversal_findings(const AxisTest&, std::vector<Finding>&);
 void scatter_findings(const AxisTest&, std::vector<Finding>&);
+void suspect_findings(const AxisTest&, std::vector<Finding>&);
+/// Rotary: whether a place that is met again after a whole turn deviates as it did.
+void turn_findings(const AxisTest&, std::vector<Finding>&);
 void plan_findings(const AxisTest&, const Observations&, const Axis* axis, std::vector<Finding>&);
+
+/// Whether a deviation of this size is worth acting on: from a fifth of A on (of E without A).
+bool matters(const AxisTest&, double size);
 
 /// Whether the scatter of the two directions differs (see repeatability.asymmetric).
 bool scatter_is_asymmetric(const AxisTest&);

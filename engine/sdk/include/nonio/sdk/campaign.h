@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "nonio/sdk/units.h"
 
 namespace nonio {
 
@@ -64,6 +67,20 @@ struct Measurement {
   std::string file;
   std::string reader;                      ///< empty: chosen by content
   std::map<std::string, double> from, to;  ///< ends of a diagonal, m
+  std::vector<std::uint32_t> exclude{};    ///< lines of the file whose readings do not count
+};
+
+/// An effect of the user's own, without compiling.
+struct Formula {
+  struct Parameter {
+    std::string name;
+    Quantity quantity = Quantity::number;
+    double start = 0.0;                                ///< SI
+    std::optional<std::pair<double, double>> range{};  ///< SI; absent: it enters linearly
+  };
+  std::string name, axis, expression;
+  std::vector<Parameter> parameters;
+  std::uint64_t line = 0;  ///< of the manifest, where the expression stands
 };
 
 struct Campaign {
@@ -74,6 +91,8 @@ struct Campaign {
   Laboratory laboratory;
   std::vector<Measurement> measurements;
   std::vector<std::string> model;  ///< effects, `kind:axis`
+  bool compensate_model = false;   ///< tables take what the model says, not the readings' means
+  std::vector<Formula> formulas;
 };
 
 }  // namespace nonio

@@ -15,6 +15,9 @@ struct Error {
   std::string file{};      ///< relative to the campaign's directory; empty if no file is to blame
   std::uint64_t line = 0;  ///< 1-based; 0 if no line is to blame
   std::string column{};    ///< name of the column, empty if none
+  /// The plugin's own option (`axes`) or the key of the manifest (`campaign.customer`) that is to
+  /// blame: the host knows its file and line. Empty if none.
+  std::string key{};
 };
 
 template <class T>

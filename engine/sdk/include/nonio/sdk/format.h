@@ -15,16 +15,39 @@
 /// Numbers and words as people and programs read them; the locale of the process has no part in it.
 namespace nonio {
 
-/// With `decimals` digits after the point, rounded half to even on the binary value; never "-0.0".
+/// With `decimals` digits after the point, half away from zero as by hand: 0.15 is a tie although
+/// its binary value is a little less, so the 15 digits that a double holds are what is rounded.
+/// Never "-0.0".
 inline std::string fixed_text(double value, int decimals) {
   if (!std::isfinite(value)) return "";
-  std::array<char, 400> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                 std::chars_format::fixed, decimals)
-                       .ptr;
-  std::string text(buffer.data(), end);
-  if (text.front() == '-' && text.find_first_of("123456789") == std::string::npos) text.erase(0, 1);
-  return text;
+  constexpr int held = 15;
+  std::array<char, 32> buffer{};  // d.dddddddddddddde+xx
+  const char* const end = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
+                                        std::fabs(value), std::chars_format::scientific, held - 1)
+                              .ptr;
+  int exponent = 0;
+  const char* const from = buffer.data() + held + 2;
+  std::from_chars(*from == '+' ? from + 1 : from, end, exponent);
+  std::string digits = std::string(1, buffer[0]) + std::string(buffer.data() + 2, held - 1);
+  int whole = exponent + 1;  // digits before the point
+  if (whole < 1) {
+    digits.insert(0, static_cast<std::size_t>(1 - whole), '0');
+    whole = 1;
+  }
+  const auto kept = static_cast<std::size_t>(whole + decimals);
+  const bool up = kept < digits.size() && digits[kept] >= '5';
+  digits.resize(kept, '0');
+  if (up) {
+    std::size_t i = kept;
+    while (i > 0 && digits[i - 1] == '9') digits[--i] = '0';
+    if (i > 0)
+      ++digits[i - 1];
+    else
+      digits.insert(0, 1, '1'), ++whole;
+  }
+  const bool negative = value < 0.0 && digits.find_first_not_of('0') != std::string::npos;
+  if (decimals > 0) digits.insert(static_cast<std::size_t>(whole), 1, '.');
+  return negative ? "-" + digits : digits;
 }
 
 /// With about `significant` digits and without an exponent where a person expects none.
@@ -73,10 +96,13 @@ inline std::string words(const Templates& templates, std::string_view language,
   return {};
 }
 
-/// The number of a finding in a sentence: counts are whole, positions keep their digits.
+/// The number of a finding in a sentence: counts are whole, positions keep their digits, and a
+/// probability is "p = 0.0021" down to what nobody can picture.
 inline std::string evidence_text(const Number& n) {
   const double value = printed(n.value, n.quantity);
   if (n.quantity == Quantity::count) return fixed_text(value, 0);
+  if (n.quantity == Quantity::probability)
+    return value < 1e-4 ? "p < 0.0001" : "p = " + short_text(value, 2);
   const bool deviation =
       n.quantity == Quantity::deviation || n.quantity == Quantity::angular_deviation;
   if (deviation && std::fabs(value) < 5e-4) return fixed_text(0.0, 3);  // no exponent for rounding
@@ -123,6 +149,16 @@ inline std::string finding_text(const Templates& templates, std::string_view lan
     text = words(templates, "en", "finding." + finding.id + "." + std::string(part));
   if (text.empty()) return part == "advice" ? finding.advice : part == "title" ? finding.id : "";
   return filled(text, finding, language);
+}
+
+/// The words for a remark; `english` where there are none.
+inline std::string remark_text(const Templates& templates, std::string_view language,
+                               const Remark& remark) {
+  std::string text = words(templates, language, "note." + remark.id);
+  if (text.empty() && language != "en") text = words(templates, "en", "note." + remark.id);
+  if (text.empty()) return remark.english;
+  return filled(text, {.id = remark.id, .evidence = remark.evidence, .texts = remark.texts},
+                language);
 }
 
 }  // namespace nonio

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "nonio/sdk/results.h"
+
 namespace nonio {
 
 /// The one table that all measurements reduce to: a row is one reading that was taken. Columns
@@ -38,8 +40,8 @@ struct Observations {
   std::vector<double> material, air;       ///< degC; NaN where blank
   std::vector<double> pressure, humidity;  ///< hPa, % ; NaN where blank
 
-  std::uint64_t missing = 0;       ///< readings that were not taken
-  std::vector<std::string> notes;  ///< what the reader did that a user would want to know
+  std::uint64_t missing = 0;  ///< readings that were not taken
+  std::vector<Remark> notes;  ///< what the reader did that a user would want to know
 
   std::size_t size() const { return deviation.size(); }
 };

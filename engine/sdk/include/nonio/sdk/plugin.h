@@ -111,6 +111,9 @@ struct OutputInput {
   const Results& results;
   const Settings& options;
   const Templates& templates;
+  /// For a table: the readings themselves, where `observations` is what the campaign's model says
+  /// of them (manifest, compensate = "model"); else null.
+  const std::vector<Observations>* measured = nullptr;
 };
 
 /// results -> artifacts

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,6 +38,17 @@ struct Finding {
   std::string advice{};
 };
 
+/// Something worth knowing that asks for nothing. Its words are the text `note.<id>` of
+/// templates/words, with places as a finding has them; `english` is for plugins without words
+/// there.
+struct Remark {
+  std::string id;
+  std::vector<Number> evidence{};
+  std::vector<std::pair<std::string, std::string>> texts{};
+  std::string measurement{};
+  std::string english{};
+};
+
 /// Values by target; NaN where one cannot be given.
 struct PointTable {
   struct Column {
@@ -68,7 +80,7 @@ struct Evaluation {
   PointTable points;
   std::vector<Series> series;
   std::vector<Finding> findings;
-  std::vector<std::string> notes;
+  std::vector<Remark> notes;
 };
 
 /// One result before a table is loaded, and as its consumer's model predicts it after.
@@ -89,7 +101,7 @@ struct OutputResult {
   std::vector<Artifact> artifacts;
   std::vector<Prediction> predictions;
   std::vector<Finding> findings;
-  std::vector<std::string> notes;  ///< what is only inferred about a format, for example
+  std::vector<Remark> notes;  ///< what is only inferred about a format, for example
 };
 
 /// ISO 14253-1 with an upper limit.
@@ -104,6 +116,62 @@ struct Conformity {
   std::string reason;  ///< why it cannot be decided: "no-uncertainty", "no-value", "near-limit"
 };
 
+/// A model held against the readings of one part of the machine (an axis, say): what the pictures
+/// and tables of documents are made from. SI. Columns have an entry for each reading, or none where
+/// the files did not have them; the prediction is deviation - residual.
+struct ModelFit {
+  struct Parameter {
+    std::string effect, name;  ///< "backlash:X", "b"
+    double value = 0.0;
+    std::optional<double> u{};  ///< standard uncertainty
+    Quantity quantity = Quantity::number;
+    bool searched = false;  ///< a shape: period, time constant, instant
+  };
+  struct Effect {
+    std::string name;                  ///< "backlash:X"
+    bool compensable = false;          ///< a table in the controller can take it away
+    std::vector<double> contribution;  ///< what it says of each reading; m or rad
+  };
+  /// The error as the model grew: first without any effect, then with one more at a time.
+  struct Step {
+    std::string effect;  ///< the one that came in; empty for the first
+    double rms = 0.0;
+    std::optional<double> cv_rms{};  ///< of runs left out one at a time; absent with one run
+  };
+  struct Suspect {
+    std::size_t row = 0;
+    double minimal_detectable = 0.0;  ///< an error here below this would not have been seen
+  };
+
+  std::string part;                       ///< a file can be named by it: "X"
+  std::vector<std::string> measurements;  ///< ids
+  std::string axis;
+  bool rotary = false;             ///< positions are angles, in rad
+  bool angular = false;            ///< deviations are angles, in rad
+  std::optional<double> period{};  ///< of the drive: screw pitch in m, or rad between two teeth
+
+  std::vector<std::uint32_t> measurement;  ///< index into `measurements`
+  std::vector<std::uint32_t> source_line;  ///< line of the file, 1-based
+  std::vector<std::uint32_t> run;          ///< as numbered in the file, from 1
+  std::vector<double> target;
+  std::vector<std::int8_t> direction;  ///< +1, -1; 0 if it is not known
+  std::vector<double> time;            ///< s; NaN where blank
+  std::vector<double> temperature;     ///< of the material, degC; NaN where blank
+  std::vector<double> deviation, residual;
+  std::vector<double> weight;       ///< 0..1: small where a misreading is suspected
+  std::vector<double> cv_residual;  ///< predicted without its run; none with one run
+
+  std::vector<Effect> effects;  ///< of the model, in its order
+  std::vector<Parameter> parameters;
+  std::vector<std::vector<double>> correlation;  ///< of `parameters`
+  std::vector<Step> steps;                       ///< the last one is the model
+  std::optional<double> floor{}, floor_u{};      ///< scatter of repeats, its standard uncertainty
+  std::vector<Suspect> suspects;
+  std::vector<Finding> says;  ///< the verdict, then what else the model says
+
+  std::size_t size() const { return deviation.size(); }
+};
+
 /// Everything known of a campaign so far; what outputs read and results.json holds.
 struct Results {
   struct Analysed {
@@ -116,9 +184,10 @@ struct Results {
   };
   std::vector<Error> errors;
   std::vector<Analysed> analyses;
+  std::vector<ModelFit> models;
   std::vector<Conformity> conformity;
   std::vector<Written> outputs;
-  std::vector<std::string> notes;
+  std::vector<Remark> notes;
 };
 
 }  // namespace nonio

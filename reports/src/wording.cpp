@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "wording.h"
+#include "nonio/reports/wording.h"
 
 #include <array>
 
-namespace nonio::pdf_report {
+namespace nonio::reports {
 
-Wording::Wording(const Templates& templates, std::string language)
-    : language_(std::move(language)) {
-  const auto it = templates.tables.find("words/" + language_ + "/report");
+Wording::Wording(const Templates& templates, std::string language, std::string file)
+    : language_(std::move(language)), file_("words/" + language_ + "/" + std::move(file)) {
+  const auto it = templates.tables.find(file_);
   if (it != templates.tables.end()) settings_ = &it->second;
 }
 
@@ -50,7 +50,7 @@ std::string Wording::get_or(std::string_view key, std::string otherwise) const {
 }
 
 Expected<void> Wording::complete() const {
-  const std::string file = "templates/words/" + language_ + "/report.toml";
+  const std::string file = "templates/" + file_ + ".toml";
   if (settings_ == nullptr) return fail(Error{"the words of this language are missing", file});
   if (!missing_.empty()) return fail(Error{"the key \"" + missing_ + "\" is missing", file});
   return {};
@@ -94,4 +94,4 @@ std::string typeset(std::string_view s) {
   return out;
 }
 
-}  // namespace nonio::pdf_report
+}  // namespace nonio::reports

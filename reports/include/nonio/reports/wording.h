@@ -9,15 +9,15 @@
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/settings.h"
 
-namespace nonio::pdf_report {
+namespace nonio::reports {
 
-/// The words of templates/words/<language>/report.toml. A word that is missing is remembered, and
-/// the report then fails.
+/// The words of templates/words/<language>/<file>.toml. A word that is missing is remembered, and
+/// the document then fails.
 class Wording {
  public:
   using Places = std::initializer_list<std::pair<std::string_view, std::string_view>>;
 
-  Wording(const Templates&, std::string language);
+  Wording(const Templates&, std::string language, std::string file = "report");
 
   const std::string& language() const { return language_; }
   std::string get(std::string_view key) const;
@@ -31,11 +31,11 @@ class Wording {
  private:
   const std::string* find(std::string_view key) const;
   const Settings* settings_ = nullptr;
-  std::string language_;
+  std::string language_, file_;
   mutable std::string missing_;
 };
 
 /// Units and signs of a plugin's sentence as they are printed: "-8.1 um" becomes "−8.1 µm".
 std::string typeset(std::string_view sentence);
 
-}  // namespace nonio::pdf_report
+}  // namespace nonio::reports

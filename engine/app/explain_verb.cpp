@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <iostream>
+
+#include "campaign_verb.h"
+#include "tables.h"
+
+namespace nonio::app {
+
+namespace {
+
+constexpr std::size_t most_steps = 12;
+
+struct ExplainOptions {
+  std::string folder;
+  bool automatic = false;
+  std::uint64_t seed = 1;
+};
+
+class Explain {
+ public:
+  Explain(const ExplainOptions& options, const Common& common)
+      : options_(options), common_(common) {}
+
+  int run() {
+    Outcome exit;
+    open_ = open_campaign("nonio explain", options_.folder, common_, exit);
+    if (exit) return *exit;
+    words_.emplace(open_.place->context.templates, "en");
+    if (const int status = explain(); status != exit_done && all_.empty()) return status;
+    while (options_.automatic && missing() != nullptr) {
+      if (steps_.size() == most_steps) {
+        tell(std::to_string(most_steps) + " effects were added and one is still missing; stopped");
+        failed_ = true;
+        break;
+      }
+      if (!add(missing()->explanation.verdict.effect)) break;
+      explain();
+    }
+    show();
+    return failed_ ? exit_failed : exit_done;
+  }
+
+ private:
+  static void tell(const std::string& text) { std::cerr << "nonio explain: " << text << "\n"; }
+
+  int explain() {
+    all_.clear();
+    errors_ = open_.read.errors;
+    failed_ = !errors_.empty();
+    auto parts = host::part_models(open_.read, open_.campaign().model);
+    if (!parts) {
+      tell(text_of(parts.error()));
+      return exit_usage;
+    }
+    warnings_.clear();
+    for (const std::string& effect : host::unmeasured(open_.campaign().model, *parts))
+      warnings_.push_back(words_->unmeasured(effect));
+    if (parts->empty()) tell("there is no measurement of an axis with readings");
+    for (host::PartModel& part : *parts) {
+      auto explanation = host::explain_part(part, options_.seed);
+      if (explanation) {
+        all_.push_back({std::move(part), std::move(*explanation)});
+        continue;
+      }
+      tell(text_of(explanation.error()));
+      errors_.push_back(explanation.error());
+      failed_ = true;
+    }
+    return all_.empty() ? exit_failed : exit_done;
+  }
+
+  const host::Explained* missing() const {
+    if (all_.empty()) return nullptr;
+    const host::Explained& worst = all_[host::most_severe(all_)];
+    return worst.explanation.verdict.kind == model::Verdict::Kind::missing ? &worst : nullptr;
+  }
+
+  bool add(const std::string& effect) {
+    const auto change = host::change_model(open_.folder, open_.read, effect, true);
+    if (!change) {
+      tell(text_of(change.error()));
+      failed_ = true;
+      return false;
+    }
+    steps_.push_back(change->step);
+    if (!common_.json) {
+      std::cout << "step " << steps_.size() << ": ";
+      print_change(std::cout, *change, *words_);
+    }
+    return true;
+  }
+
+  void show() const {
+    for (const std::string& warning : warnings_) tell(warning);
+    if (all_.empty()) return;
+    if (common_.json) {
+      std::cout << host::explain_json(all_, open_.campaign(), *words_, options_.seed, steps_,
+                                      warnings_, errors_);
+      return;
+    }
+    for (const host::Explained& e : all_)
+      print_explanation(std::cout, e, open_.campaign(), *words_);
+  }
+
+  const ExplainOptions& options_;
+  const Common& common_;
+  OpenCampaign open_;
+  std::optional<host::ModelWords> words_;
+  std::vector<host::Explained> all_;
+  std::vector<host::ModelStep> steps_;
+  std::vector<std::string> warnings_;
+  std::vector<Error> errors_;
+  bool failed_ = false;
+};
+
+}  // namespace
+
+void add_explain_verb(CLI::App& cli, Common& common, Outcome& outcome) {
+  CLI::App* verb = cli.add_subcommand(
+      "explain", "Which effect is missing from the model: candidates, ranked, and a verdict");
+  auto options = std::make_shared<ExplainOptions>();
+  add_campaign_arguments(*verb, options->folder, common);
+  verb->add_flag("--auto", options->automatic,
+                 "While an effect is missing, add it to campaign.toml; show each step");
+  verb->add_option("--seed", options->seed, "Of the shuffles behind the false-alarm rate")
+      ->capture_default_str();
+  verb->footer(
+      "Every effect of the catalogue (`nonio plugins`) that is not in the model is tried on top\n"
+      "of it. Verdicts: missing (an effect belongs into the model), nothing (the model is good\n"
+      "down to the noise), unknown (something is left that no effect explains; it says where),\n"
+      "unrepeatable (the readings contradict each other: look at the machine first).\n\n"
+      "Example: nonio explain samples/site/02-constant-reversal");
+  verb->callback([options, &common, &outcome] { outcome = Explain(*options, common).run(); });
+}
+
+}  // namespace nonio::app

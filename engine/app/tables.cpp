@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+#include "nonio/sdk/format.h"
+
+namespace nonio::app {
+
+namespace {
+
+constexpr std::size_t bar_width = 40;
+
+std::string padded(std::string text, std::size_t width) {
+  if (text.size() < width) text.append(width - text.size(), ' ');
+  return text;
+}
+
+/// `part` of `whole` as a bar of at most `width`, with "|" at `mark`.
+std::string bar(double part, double whole, std::size_t width, std::optional<double> mark = {}) {
+  const auto cells = [&](double value) {
+    const double share = whole > 0.0 ? std::clamp(value / whole, 0.0, 1.0) : 0.0;
+    return static_cast<std::size_t>(std::lround(share * static_cast<double>(width)));
+  };
+  std::string text(cells(part), '#');
+  text.resize(width, ' ');
+  if (mark) {
+    const std::size_t at = std::min(cells(*mark), width - 1);
+    text[at] = '|';
+  }
+  return text;
+}
+
+void line(std::ostream& out, const std::string& name, const std::string& value) {
+  out << "  " << padded(name, 18) << value << "\n";
+}
+
+std::string p_text(double p) { return short_text(p, 2); }
+
+std::string floor_text(const model::NoiseFloor& floor, Quantity q) {
+  return with_unit(floor.s, q) + ", u = " + with_unit(floor.u, q);
+}
+
+void print_head(std::ostream& out, const host::PartModel& part) {
+  const std::string effects = host::listed(part.names());
+  out << "axis " << part.axis().name << " (" << host::listed(part.part.measurements)
+      << "): " << part.part.table.size()
+      << " readings; model: " << (effects.empty() ? "nothing but the zero" : effects) << "\n";
+}
+
+void print_parameters(std::ostream& out, const model::Fit& fit) {
+  if (fit.parameters.empty()) return;
+  out << "  parameters\n";
+  for (const model::Parameter& p : fit.parameters) {
+    out << "    " << padded(p.effect, 20) << " " << padded(p.name, 8) << " "
+        << short_text(printed(p.value, p.quantity), 4);
+    if (std::isfinite(p.u)) out << ", u = " << short_text(printed(p.u, p.quantity), 2);
+    out << " " << unit_of(p.quantity).symbol << (p.shape ? "  (searched)" : "") << "\n";
+  }
+}
+
+void print_places(std::ostream& out, const std::vector<model::Place>& places,
+                  const host::ModelWords& words, bool rotary) {
+  bool any = false;
+  for (const model::Place& place : places) {
+    if (!(place.p < model::place_p)) continue;
+    if (!any) out << "  where it fails\n";
+    any = true;
+    out << "    " << padded(place.where, 24) << " "
+        << padded(fixed_text(100.0 * place.share, 0) + " %", 6) << "  p = " << p_text(place.p)
+        << "\n      " << words.place(place, rotary) << "\n";
+  }
+  if (!any) line(out, "where it fails", "nowhere");
+}
+
+void print_suspects(std::ostream& out, const model::Comparison& c, const host::PartModel& part,
+                    const Campaign& campaign, const host::ModelWords& words) {
+  for (const model::Suspect& s : c.suspects)
+    out << "  suspect: "
+        << words.suspect(s, host::place_of(part, campaign, s.row), part.deviation()) << "\n";
+}
+
+std::string largest_text(const host::Compared& compared, const Campaign& campaign) {
+  const host::PartModel& part = compared.part;
+  const auto at = host::place_of(part, campaign, compared.comparison.largest_row);
+  const Quantity position = position_of(part.axis().rotary);
+  std::string text = with_unit(compared.comparison.largest, part.deviation()) + " at " +
+                     evidence_text({"", at.target, position}) + " " +
+                     std::string(unit_of(position).symbol) + ", run " + std::to_string(at.run) +
+                     ", direction " + (at.direction > 0 ? "+" : "-") + ", " + at.file;
+  return at.line == 0 ? text : text + ":" + std::to_string(at.line);
+}
+
+void print_candidates(std::ostream& out, const host::Explained& e) {
+  const Quantity q = e.part.deviation();
+  double best = 0.0;
+  for (const model::Candidate& c : e.explanation.candidates)
+    if (host::is_ranked(c)) best = std::max(best, c.score);
+  out << "  " << padded("candidate", 22) << padded("evidence", 32) << padded("RMS after", 14)
+      << padded("left-out runs", 15) << "p\n";
+  for (const model::Candidate& c : e.explanation.candidates) {
+    if (!host::is_ranked(c)) continue;
+    out << "  " << padded(c.term.name(), 22) << bar(c.score, best, 20) << " "
+        << padded(fixed_text(c.score, 1), 11) << padded(with_unit(c.rms, q), 14)
+        << padded(c.cv_rms ? with_unit(*c.cv_rms, q) : "-", 15) << p_text(c.p) << "\n";
+  }
+}
+
+void print_verdict(std::ostream& out, const host::Explained& e, const host::ModelWords& words) {
+  const model::Explanation& x = e.explanation;
+  out << "  verdict: " << host::to_text(x.verdict.kind)
+      << (x.verdict.effect.empty() ? "" : " " + x.verdict.effect) << "\n    "
+      << words.verdict(x, e.part) << "\n";
+  if (x.together.size() > 1)
+    out << "    the best explanation adds: " << host::listed(x.together) << "\n";
+  if (!x.plans.empty()) out << "    to tell them apart: " << words.plan(x.plans.front()) << "\n";
+  for (const char* what : {"is", "cure"})
+    if (const std::string text = words.card(x.verdict.effect, what); !text.empty())
+      out << "    " << text << "\n";
+  if (x.verdict.trials > 0)
+    out << "    false alarms: " << short_text(100.0 * x.verdict.false_alarms, 2) << " % of "
+        << x.verdict.trials << " shuffles of what is left\n";
+}
+
+void print_bars(std::ostream& out, const host::ModelStep& step) {
+  const double whole = std::max(
+      {step.rms_before.value_or(0.0), step.rms_after.value_or(0.0), step.floor.value_or(0.0)});
+  const Quantity q = step.quantity;
+  const auto one = [&](const char* name, const std::optional<double>& rms) {
+    if (rms)
+      out << "  " << padded(name, 8) << bar(*rms, whole, bar_width, step.floor) << " "
+          << with_unit(*rms, q) << "\n";
+  };
+  one("before", step.rms_before);
+  one("after", step.rms_after);
+}
+
+}  // namespace
+
+std::string with_unit(double value, Quantity q) {
+  return short_text(printed(value, q)) + " " + std::string(unit_of(q).symbol);
+}
+
+void print_comparison(std::ostream& out, const host::Compared& compared, const Campaign& campaign,
+                      const host::ModelWords& words) {
+  const model::Comparison& c = compared.comparison;
+  const host::PartModel& part = compared.part;
+  const Quantity q = part.deviation();
+  print_head(out, part);
+  line(out, "RMS", with_unit(c.fit.rms, q));
+  line(out, "left-out runs", c.cv_rms ? with_unit(*c.cv_rms, q) : "not to be had: one run");
+  line(out, "noise floor", c.floor ? floor_text(*c.floor, q) : "not known: nothing was repeated");
+  if (c.largest != 0.0) line(out, "largest residual", largest_text(compared, campaign));
+  line(out, "redundancy", std::to_string(c.fit.redundancy));
+  if (c.lack_of_fit && std::isfinite(c.lack_of_fit->F))
+    line(out, "lack of fit",
+         "F = " + short_text(c.lack_of_fit->F) + ", p = " + p_text(c.lack_of_fit->p));
+  print_parameters(out, c.fit);
+  for (const host::Correlated& pair : host::correlated(c.fit))
+    line(out, "correlated",
+         pair.one->effect + " " + pair.one->name + " and " + pair.other->effect + " " +
+             pair.other->name + ": r = " + fixed_text(pair.r, 3));
+  print_places(out, c.places, words, part.axis().rotary);
+  print_suspects(out, c, part, campaign, words);
+  for (const std::string& warning : host::warnings_of(c.fit, words))
+    out << "  warning: " << warning << "\n";
+}
+
+void print_model(std::ostream& out, const host::Compared& compared, const host::ModelWords& words) {
+  const model::Comparison& c = compared.comparison;
+  const Quantity q = compared.part.deviation();
+  print_head(out, compared.part);
+  line(out, "RMS", with_unit(c.fit.rms, q));
+  if (c.cv_rms) line(out, "left-out runs", with_unit(*c.cv_rms, q));
+  if (c.floor) line(out, "noise floor", floor_text(*c.floor, q));
+  print_parameters(out, c.fit);
+  for (const std::string& warning : host::warnings_of(c.fit, words))
+    out << "  warning: " << warning << "\n";
+}
+
+void print_explanation(std::ostream& out, const host::Explained& e, const Campaign& campaign,
+                       const host::ModelWords& words) {
+  const model::Comparison& c = e.explanation.comparison;
+  const Quantity q = e.part.deviation();
+  print_head(out, e.part);
+  line(out, "RMS", with_unit(c.fit.rms, q));
+  if (c.floor) line(out, "noise floor", floor_text(*c.floor, q));
+  print_candidates(out, e);
+  for (const model::Candidate& candidate : e.explanation.candidates)
+    if (!host::is_ranked(candidate)) out << "  " << words.unseen(candidate) << "\n";
+  print_verdict(out, e, words);
+  print_suspects(out, c, e.part, campaign, words);
+  for (const std::string& warning : host::warnings_of(c.fit, words))
+    out << "  warning: " << warning << "\n";
+}
+
+void print_change(std::ostream& out, const host::Change& change, const host::ModelWords& words) {
+  const host::ModelStep& step = change.step;
+  out << step.effect << (step.added ? " added" : " dropped") << "; the model is now "
+      << (change.effects.empty() ? "empty" : host::listed(change.effects)) << "\n";
+  if (!change.no_before.empty()) out << "  before: " << change.no_before << "\n";
+  const Quantity q = step.quantity;
+  const auto row = [&](const char* name, const std::optional<double>& before,
+                       const std::optional<double>& after) {
+    out << "  " << padded(name, 18) << padded(before ? with_unit(*before, q) : "-", 14)
+        << (after ? with_unit(*after, q) : "-") << "\n";
+  };
+  out << "  " << padded("", 18) << padded("before", 14) << "after\n";
+  row("RMS", step.rms_before, step.rms_after);
+  row("left-out runs", step.cv_before, step.cv_after);
+  if (step.floor) line(out, "noise floor", with_unit(*step.floor, q));
+  print_bars(out, step);
+  if (!change.after) return;
+  print_parameters(out, change.after->comparison.fit);
+  for (const std::string& warning : host::warnings_of(change.after->comparison.fit, words))
+    out << "  warning: " << warning << "\n";
+}
+
+void print_history(std::ostream& out, const std::vector<host::ModelStep>& history) {
+  if (history.empty()) return;
+  out << "history\n";
+  double whole = 0.0;
+  for (const host::ModelStep& step : history)
+    whole = std::max({whole, step.rms_before.value_or(0.0), step.rms_after.value_or(0.0)});
+  for (const host::ModelStep& step : history)
+    out << "  " << padded((step.added ? "+ " : "- ") + step.effect, 24)
+        << (step.rms_after ? bar(*step.rms_after, whole, bar_width, step.floor) + " " +
+                                 with_unit(*step.rms_after, step.quantity)
+                           : "-")
+        << "\n";
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "nonio/host/campaign_model.h"
+#include "nonio/sdk/settings.h"
+
+/// Sentences about a model, from templates/words/<language>/model.toml.
+namespace nonio::host {
+
+class ModelWords {
+ public:
+  ModelWords(const Templates& templates, std::string language)
+      : templates_(templates), language_(std::move(language)) {}
+
+  std::string place(const model::Place& place, bool rotary) const;
+  std::string verdict(const model::Explanation& explanation, const PartModel& part) const;
+  std::string candidate(const model::Candidate& candidate, const PartModel& part,
+                        double rms_before) const;
+  /// Why these readings cannot show it.
+  std::string unseen(const model::Candidate& candidate) const;
+  std::string plan(const model::Plan& plan) const;
+  std::string suspect(const model::Suspect& suspect, const ReadingPlace& place,
+                      Quantity deviation) const;
+  std::string below_uncertainty(const std::string& effect) const;
+  std::string unmeasured(const std::string& effect) const;
+  /// What the catalogue says of an effect by its kind: "is", "size", "looks", "cure"; "" if
+  /// nothing.
+  std::string card(const std::string& effect, const std::string& what) const;
+
+ private:
+  std::string says(const std::string& id, std::vector<Number> numbers,
+                   std::vector<std::pair<std::string, std::string>> texts) const;
+
+  const Templates& templates_;
+  std::string language_;
+};
+
+/// The same as findings, for documents in any language: ids "verdict.*" and "place.*".
+Finding verdict_finding(const model::Explanation& explanation, const PartModel& part);
+Finding place_finding(const model::Place& place, bool rotary);
+
+/// "12.5 mm", "run 3": where a place is largest; "" if it is not at one place.
+std::string where_largest(const model::Place& place, const std::string& language);
+
+/// "a, b and c" in no language: "a, b, c".
+std::string listed(const std::vector<std::string>& names);
+
+}  // namespace nonio::host

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/host/campaign_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "guarded.h"
+#include "names.h"
+#include "nonio/host/digest.h"
+#include "nonio/host/files.h"
+#include "nonio/host/formula.h"
+#include "nonio/model/explain.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio::host {
+namespace fs = std::filesystem;
+
+namespace {
+
+class CampaignReader {
+ public:
+  CampaignReader(const fs::path& folder, const Context& context, const Stage& stage)
+      : folder_(folder), context_(context), stage_(stage) {}
+
+  ReadCampaign read() {
+    out_.effects = context_.plugins->effects();
+    if (read_manifest()) {
+      read_measurements();
+      add_formulas();
+    }
+    for (Observations& o : out_.observations) word(o.notes);
+    word(out_.notes);
+    return std::move(out_);
+  }
+
+ private:
+  const Campaign& campaign() const { return out_.manifest->campaign; }
+  void report(Error error) { out_.errors.push_back(std::move(error)); }
+  void word(std::vector<Remark>& notes) const {
+    for (Remark& note : notes) note.english = remark_text(context_.templates, "en", note);
+  }
+  /// An error that a key of the manifest is to blame for.
+  Error at(std::string key, const std::string& message) const {
+    Error error{key + ": " + message};
+    error.key = std::move(key);
+    locate(error, out_.manifest->lines, context_.site.lines);
+    return error;
+  }
+
+  bool read_manifest() {
+    stage_("reading campaign.toml");
+    const auto text = read_file(folder_ / manifest_name);
+    if (!text) {
+      report(Error{text.error().message, manifest_name});
+      return false;
+    }
+    out_.inputs.emplace_back(manifest_name, sha256(*text));
+    auto manifest = parse_manifest(*text, manifest_name);
+    if (!manifest) {
+      out_.errors = std::move(manifest.error());
+      return false;
+    }
+    out_.manifest = std::move(*manifest);
+    out_.manifest->campaign.laboratory = context_.site.laboratory;
+    return true;
+  }
+
+  void read_measurements() {
+    out_.observations.resize(campaign().measurements.size());
+    for (std::size_t i = 0; i < out_.observations.size(); ++i) {
+      const Measurement& m = campaign().measurements[i];
+      auto read = read_measurement(m, out_.observations[i]);
+      if (read) continue;
+      if (read.error().file.empty()) read.error().file = m.file;
+      report(std::move(read.error()));
+    }
+  }
+
+  Expected<void> read_measurement(const Measurement& m, Observations& into) {
+    const auto path = path_inside(folder_, m.file);
+    const auto file = path ? MappedFile::open(*path) : fail(path.error());
+    note_input(m.file, file ? sha256(file->bytes()) : absent);
+    if (!path) return fail(at("measurement." + m.id + ".file", path.error().message));
+    if (!file) return fail(at("measurement." + m.id + ".file", file.error().message));
+    const auto reader = choose_reader(m, file->bytes());
+    if (!reader) return fail(reader.error());
+    if (*reader == nullptr) return {};
+    const Info& info = (*reader)->info;
+    const auto options = settle(info);
+    if (!options) return {};
+    const std::string who = "reader " + info.name;
+    stage_(who + " (measurement " + m.id + ")");
+    auto observations = guarded(who, [&] {
+      return (*reader)->read({file->bytes(), campaign(), m, *options,
+                              [&](std::size_t offset) { file->release(offset); }});
+    });
+    if (!observations) {
+      Error error = observations.error();
+      if (error.message.starts_with(who + ": ")) error.message.erase(0, who.size() + 2);
+      return fail(std::move(error));
+    }
+    if (auto sound = check(*observations); !sound)
+      return fail(who + " gave " + sound.error().message);
+    if (auto excluded = exclude(m, *observations); !excluded) return excluded;
+    into = std::move(*observations);
+    for (Remark note : into.notes) {
+      note.measurement = m.id;
+      out_.notes.push_back(std::move(note));
+    }
+    return {};
+  }
+
+  void note_input(const std::string& name, const std::string& digest_now) {
+    for (const auto& [known, digest] : out_.inputs)
+      if (known == input_name(name)) return;
+    out_.inputs.emplace_back(input_name(name), digest_now);
+  }
+
+  /// The reader that is named, or the first that knows the content; none if no plugin reads this
+  /// kind of measurement at all, which is noted and leaves the others to be evaluated.
+  Expected<const Reader*> choose_reader(const Measurement& m, std::string_view bytes) {
+    const auto& readers = context_.plugins->readers();
+    if (!m.reader.empty()) {
+      for (const Reader& r : readers)
+        if (r.info.name == m.reader) return &r;
+      return fail(
+          at("measurement." + m.id + ".reader", context_.plugins->absence("reader", m.reader)));
+    }
+    bool any = false;
+    if (bytes.find_first_not_of(" \t\r\n") == bytes.npos)
+      return fail(Error{"expected readings, found an empty file", m.file});
+    for (const Reader& r : readers) {
+      if (!r.reads(m.kind)) continue;
+      any = true;
+      if (r.recognises(bytes.substr(0, 4096))) return &r;
+    }
+    if (any)
+      return fail(
+          Error{"no reader knows the format of this file; wanted a CSV with a header row, or "
+                "the format of an installed reader (`nonio plugins`)",
+                m.file});
+    out_.unread.push_back(m.id);
+    out_.notes.push_back({"measurement.unread", {}, {{"kind", m.kind}}, m.id});
+    return nullptr;
+  }
+
+  /// What every later stage relies on, whatever the reader did.
+  static Expected<void> check(const Observations& o) {
+    const std::size_t n = o.size();
+    const auto fits = [n](const auto& column) { return column.empty() || column.size() == n; };
+    bool sound = fits(o.u) && fits(o.run) && fits(o.line) && fits(o.source_line) && fits(o.time) &&
+                 fits(o.material) && fits(o.air) && fits(o.pressure) && fits(o.humidity);
+    for (const auto& axis : o.axes)
+      sound = sound && axis.position.size() == n && fits(axis.approach);
+    if (!sound) return fail("columns of different lengths");
+    const auto finite = [](double x) { return std::isfinite(x); };
+    if (!std::all_of(o.deviation.begin(), o.deviation.end(), finite))
+      return fail("a deviation that is not a number");
+    for (const auto& axis : o.axes)
+      if (!std::all_of(axis.position.begin(), axis.position.end(), finite))
+        return fail("a position that is not a number");
+    return {};
+  }
+
+  /// Takes the readings out that the manifest excludes, and says so.
+  Expected<void> exclude(const Measurement& m, Observations& o) const {
+    if (m.exclude.empty()) return {};
+    const std::set<std::uint32_t> lines(m.exclude.begin(), m.exclude.end());
+    for (const std::uint32_t line : lines)
+      if (std::find(o.source_line.begin(), o.source_line.end(), line) == o.source_line.end())
+        return fail(at("measurement." + m.id + ".exclude",
+                       "line " + std::to_string(line) + " of " + m.file + " holds no reading"));
+    std::vector<char> kept(o.size(), 1);
+    for (std::size_t i = 0; i < o.size(); ++i) {
+      if (!lines.contains(o.source_line[i])) continue;
+      kept[i] = 0;
+      const Quantity q = o.angular ? Quantity::angular_deviation : Quantity::deviation;
+      o.notes.push_back({"reading.excluded",
+                         {{"line", static_cast<double>(o.source_line[i]), Quantity::count},
+                          {"deviation", o.deviation[i], q}},
+                         {{"file", m.file}}});
+    }
+    keep_rows(o, kept);
+    return {};
+  }
+
+  /// The campaign's own effects join those of the plugins.
+  void add_formulas() {
+    const auto parts = model::parts_of(campaign(), out_.observations);
+    for (const Formula& formula : campaign().formulas) {
+      const auto blame = [&](const std::string& why) {
+        report(
+            Error{"model.formula \"" + formula.name + "\": " + why, manifest_name, formula.line});
+      };
+      const auto same_name = [&](const Effect& e) { return e.info.name == formula.name; };
+      if (std::any_of(out_.effects.begin(), out_.effects.end(), same_name)) {
+        blame("an effect of the catalogue has this name");
+        continue;
+      }
+      const Axis& axis = *campaign().machine.axis(formula.axis);  // the manifest was checked
+      auto effect = formula_effect(formula, axis);
+      if (!effect) {
+        blame(effect.error().message);
+        continue;
+      }
+      if (const std::string why = copied(parts, axis, *effect); !why.empty())
+        blame(why);
+      else
+        out_.effects.push_back(std::move(*effect));
+    }
+  }
+
+  std::string copied(const std::vector<model::Part>& parts, const Axis& axis,
+                     const Effect& effect) const {
+    for (const model::Part& part : parts) {
+      if (part.axes.front().name != axis.name || !effect.applies(part.table, axis)) continue;
+      const auto same = copy_of(part.table, axis, effect, out_.effects);
+      if (!same) return same.error().message;
+      if (*same == "zero") return "it says no more than the zero of a measurement";
+      if (!same->empty()) return "it says the same as " + *same + " on these readings";
+    }
+    return {};
+  }
+
+  std::optional<Settings> settle(const Info& info) {
+    auto options = settle_options(info, context_.site.options, out_.manifest->options);
+    if (options) return std::move(*options);
+    for (Error& e : options.error()) report(std::move(e));
+    return std::nullopt;
+  }
+
+  const fs::path& folder_;
+  const Context& context_;
+  const Stage& stage_;
+  ReadCampaign out_;
+};
+
+template <class Column>
+void keep(Column& column, const std::vector<char>& kept) {
+  if (column.empty()) return;
+  std::size_t to = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    if (kept[i] != 0) column[to++] = column[i];
+  column.resize(to);
+}
+
+}  // namespace
+
+void keep_rows(Observations& o, const std::vector<char>& kept) {
+  for (auto& axis : o.axes) {
+    keep(axis.position, kept);
+    keep(axis.approach, kept);
+  }
+  for (auto* column : {&o.deviation, &o.u, &o.time, &o.material, &o.air, &o.pressure, &o.humidity})
+    keep(*column, kept);
+  for (auto* column : {&o.run, &o.line, &o.source_line}) keep(*column, kept);
+}
+
+ReadCampaign read_campaign(const fs::path& folder, const Context& context, const Stage& stage) {
+  return CampaignReader(folder, context, stage).read();
+}
+
+}  // namespace nonio::host

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "nonio/sdk/campaign.h"
+#include "toml_reader.h"
+
+namespace nonio::host {
+
+/// [[model.formula]]: read and tried, so that what is wrong with them is said with the rest.
+std::vector<Formula> read_formulas(TableReader& model, const Machine& machine,
+                                   const std::string& file, std::vector<Error>& errors);
+
+}  // namespace nonio::host

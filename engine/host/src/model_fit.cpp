@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "nonio/host/model_json.h"
+
+namespace nonio::host {
+
+namespace {
+
+using Kind = model::Verdict::Kind;
+
+Number count(const char* name, std::size_t n) {
+  return {name, static_cast<double>(n), Quantity::count};
+}
+
+void add(std::vector<Value>& values, std::string name, std::optional<double> value, Quantity q,
+         std::optional<double> u = std::nullopt) {
+  if (!value || !std::isfinite(*value)) return;
+  if (u && !std::isfinite(*u)) u.reset();
+  values.push_back({std::move(name), *value, q, u ? std::optional(2.0 * *u) : std::nullopt});
+}
+
+std::vector<Value> values_of(const model::Comparison& c, Quantity q) {
+  std::vector<Value> values;
+  add(values, "rms", c.fit.rms, q);
+  add(values, "cv_rms", c.cv_rms, q);
+  if (c.floor) add(values, "noise_floor", c.floor->s, q, c.floor->u);
+  if (c.largest != 0.0) add(values, "largest_residual", c.largest, q);
+  add(values, "redundancy", static_cast<double>(c.fit.redundancy), Quantity::count);
+  if (c.lack_of_fit) {
+    add(values, "lack_of_fit_F", c.lack_of_fit->F, Quantity::number);
+    add(values, "lack_of_fit_p", c.lack_of_fit->p, Quantity::probability);
+  }
+  for (const model::Parameter& p : c.fit.parameters)
+    add(values, p.effect + "." + p.name, p.value, p.quantity, p.u);
+  return values;
+}
+
+class Findings {
+ public:
+  Findings(const PartModel& part, const Campaign& campaign) : part_(part), campaign_(campaign) {}
+
+  std::vector<Finding> of(const model::Explanation& e) {
+    verdict(e);
+    fails(e.comparison);
+    suspects(e.comparison);
+    if (const auto small = below_uncertainty(e.comparison.fit); !small.empty())
+      out_.push_back({"model.below-uncertainty", false, {}, {{"effects", listed(small)}}});
+    for (Finding& f : out_)
+      std::erase_if(f.evidence, [](const Number& n) { return !std::isfinite(n.value); });
+    return std::move(out_);
+  }
+
+ private:
+  void verdict(const model::Explanation& e) {
+    if (e.verdict.kind == Kind::nothing) return;
+    Finding f = verdict_finding(e, part_);
+    f.id = "model." + std::string(to_text(e.verdict.kind));
+    out_.push_back(std::move(f));
+  }
+
+  void fails(const model::Comparison& c) {
+    const auto worst = std::find_if(c.places.begin(), c.places.end(),
+                                    [](const auto& place) { return place.p < model::place_p; });
+    if (worst == c.places.end()) return;
+    Finding f{"model.fails", true, {}, {{"where", worst->where}}};
+    f.evidence = {{"share", worst->share, Quantity::ratio},
+                  {"percent", std::round(100.0 * worst->share), Quantity::count},
+                  {"p", worst->p, Quantity::probability},
+                  {"rms", c.fit.rms, part_.deviation()}};
+    if (worst->at && std::isfinite(*worst->at))
+      f.evidence.push_back({"at", *worst->at, worst->at_quantity});
+    out_.push_back(std::move(f));
+  }
+
+  void suspects(const model::Comparison& c) {
+    if (c.suspects.empty()) return;
+    std::vector<std::string> which;
+    for (const model::Suspect& s : c.suspects) {
+      const ReadingPlace at = place_of(part_, campaign_, s.row);
+      which.push_back(at.file + ":" + std::to_string(at.line));
+    }
+    out_.push_back(
+        {"model.suspects", false, {count("readings", which.size())}, {{"which", listed(which)}}});
+  }
+
+  const PartModel& part_;
+  const Campaign& campaign_;
+  std::vector<Finding> out_;
+};
+
+Finding cannot_fit(const std::string& reason) {
+  return {"model.cannot-fit", true, {}, {{"reason", reason}}};
+}
+
+void put_readings(ModelFit& out, const Observations& o) {
+  const auto& axis = o.axes.front();
+  out.measurement = o.line;
+  out.source_line = o.source_line;
+  out.run = o.run;
+  out.target = axis.position;
+  out.direction = axis.approach;
+  out.time = o.time;
+  out.temperature = o.material;
+  out.deviation = o.deviation;
+}
+
+void put_fit(ModelFit& out, const model::Comparison& c) {
+  const model::Fit& fit = c.fit;
+  out.residual = fit.residual;
+  out.weight = fit.weight;
+  out.cv_residual = c.cv_residual;
+  for (std::size_t t = 0; t < fit.terms.size(); ++t)
+    out.effects.push_back({fit.terms[t].name(), fit.terms[t].effect->compensable, fit.part[t]});
+  for (const model::Parameter& p : fit.parameters)
+    out.parameters.push_back({p.effect, p.name, p.value,
+                              std::isfinite(p.u) ? std::optional(p.u) : std::nullopt, p.quantity,
+                              p.shape});
+  out.correlation = fit.correlation;
+  if (c.floor) {
+    out.floor = c.floor->s;
+    out.floor_u = c.floor->u;
+  }
+  for (const model::Suspect& s : c.suspects) out.suspects.push_back({s.row, s.minimal_detectable});
+}
+
+/// The error as the model grows in its order; a step that cannot be fitted alone is left out.
+void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& whole) {
+  PartModel grown = part;
+  for (std::size_t n = 0; n < part.terms.size(); ++n) {
+    grown.terms.assign(part.terms.begin(), part.terms.begin() + static_cast<std::ptrdiff_t>(n));
+    if (const auto c = compare_part(grown))
+      out.steps.push_back({n == 0 ? "" : grown.terms.back().name(), c->fit.rms, c->cv_rms});
+  }
+  out.steps.push_back(
+      {part.terms.empty() ? "" : part.terms.back().name(), whole.fit.rms, whole.cv_rms});
+}
+
+/// The value that documents draw.
+ModelFit value_of(const PartModel& part, const model::Explanation& e) {
+  const Axis& axis = part.axis();
+  ModelFit out;
+  out.part = out.axis = axis.name;
+  out.measurements = part.part.measurements;
+  out.rotary = axis.rotary;
+  out.angular = part.part.table.angular;
+  if (axis.rotary && axis.teeth)
+    out.period = 2.0 * std::numbers::pi / static_cast<double>(*axis.teeth);
+  else
+    out.period = axis.screw_pitch;
+  put_readings(out, part.part.table);
+  put_fit(out, e.comparison);
+  put_steps(out, part, e.comparison);
+  out.says = {verdict_finding(e, part)};
+  for (const model::Place& place : e.fails) out.says.push_back(place_finding(place, axis.rotary));
+  return out;
+}
+
+/// Rows that give each target, once from each direction.
+std::vector<char> first_of_each(const Observations& o) {
+  std::set<std::pair<double, int>> seen;
+  std::vector<char> kept(o.size(), 0);
+  const auto& axis = o.axes.front();
+  for (std::size_t i = 0; i < o.size(); ++i)
+    kept[i] = seen.insert({axis.position[i], axis.approach[i]}).second ? 1 : 0;
+  return kept;
+}
+
+/// Deviations of the part's readings, each replaced by what the compensable effects say.
+std::vector<double> compensable_part(const model::Fit& fit) {
+  std::vector<double> said(fit.residual.size(), 0.0);
+  for (std::size_t t = 0; t < fit.terms.size(); ++t) {
+    if (!fit.terms[t].effect->compensable) continue;
+    for (std::size_t i = 0; i < said.size(); ++i) said[i] += fit.part[t][i];
+  }
+  return said;
+}
+
+std::vector<std::string> compensable(const model::Fit& fit) {
+  std::vector<std::string> names;
+  for (const model::Term& t : fit.terms)
+    if (t.effect->compensable) names.push_back(t.name());
+  return names;
+}
+
+Remark compensated(const PartModel& part, const std::vector<std::string>& effects) {
+  Remark remark{effects.empty() ? "model.not-compensated" : "model.compensated",
+                {},
+                {{"axis", part.axis().name}},
+                part.part.measurements.front()};
+  if (!effects.empty()) remark.texts.emplace_back("effects", listed(effects));
+  return remark;
+}
+
+}  // namespace
+
+Expected<ModelFits> model_fit(const ReadCampaign& read, const Context& context) {
+  const Campaign& campaign = read.manifest->campaign;
+  const auto parts = part_models(read, campaign.model);
+  if (!parts) return fail(parts.error());
+  ModelFits out;
+  for (const PartModel& part : *parts) {
+    Results::Analysed one{model_fit_name, context.version, part.part.measurements.front(), {}};
+    Evaluation& evaluation = one.evaluation;
+    if (part.part.measurements.size() > 1)
+      evaluation.notes.push_back(
+          {"model.joined",
+           {},
+           {{"measurements", listed(part.part.measurements)}, {"axis", part.axis().name}}});
+    if (const auto e = explain_part(part, 1)) {
+      evaluation.values = values_of(e->comparison, part.deviation());
+      evaluation.findings = Findings(part, campaign).of(*e);
+      out.models.push_back(value_of(part, *e));
+    } else {
+      evaluation.findings = {cannot_fit(e.error().message)};
+    }
+    out.analyses.push_back(std::move(one));
+  }
+  return out;
+}
+
+Expected<std::vector<Observations>> compensable_readings(const ReadCampaign& read,
+                                                         std::vector<Remark>& notes) {
+  const Campaign& campaign = read.manifest->campaign;
+  auto parts = part_models(read, campaign.model);
+  if (!parts) return fail(parts.error());
+  std::vector<Observations> out = read.observations;
+  for (const PartModel& part : *parts) {
+    const auto compared = compare_part(part);
+    if (!compared)
+      return fail(Error{"model.compensate: " + compared.error().message +
+                            "; no table can be written from this model",
+                        manifest_name});
+    const std::vector<double> said = compensable_part(compared->fit);
+    const std::vector<std::string> names = compensable(compared->fit);
+    notes.push_back(compensated(part, names));
+    std::size_t row = 0;  // of the part: its measurements one after the other
+    for (const std::string& id : part.part.measurements)
+      for (std::size_t m = 0; m < out.size(); ++m) {
+        if (campaign.measurements[m].id != id) continue;
+        for (double& deviation : out[m].deviation) deviation = said[row++];
+        keep_rows(out[m],
+                  names.empty() ? std::vector<char>(out[m].size(), 0) : first_of_each(out[m]));
+        out[m].run.assign(out[m].size(), 1);
+      }
+  }
+  return out;
+}
+
+}  // namespace nonio::host

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/host/model_history.h"
+
+#include "json_values.h"
+#include "nonio/host/files.h"
+
+namespace nonio::host {
+
+namespace {
+
+std::string key(const char* name, Quantity q) { return name + std::string(unit_of(q).suffix); }
+
+void put(Json& json, const char* name, std::optional<double> value, Quantity q) {
+  if (value) json[key(name, q)] = printed(*value, q);
+}
+
+std::optional<double> get(const Json& json, const char* name, Quantity q) {
+  const auto found = json.find(key(name, q));
+  if (found == json.end()) return std::nullopt;
+  return found->get<double>() / unit_of(q).per_si;
+}
+
+ModelStep step_of(const Json& json) {
+  ModelStep step;
+  step.effect = json.at("effect").get<std::string>();
+  step.added = json.at("action").get<std::string>() == "add";
+  if (json.contains("rms_before_arcsec") || json.contains("rms_after_arcsec"))
+    step.quantity = Quantity::angular_deviation;
+  const Quantity q = step.quantity;
+  step.rms_before = get(json, "rms_before", q);
+  step.rms_after = get(json, "rms_after", q);
+  step.cv_before = get(json, "cv_rms_before", q);
+  step.cv_after = get(json, "cv_rms_after", q);
+  step.floor = get(json, "noise_floor", q);
+  return step;
+}
+
+}  // namespace
+
+std::string history_line(const ModelStep& step) {
+  Json json = {{"action", step.added ? "add" : "drop"}, {"effect", step.effect}};
+  put(json, "rms_before", step.rms_before, step.quantity);
+  put(json, "rms_after", step.rms_after, step.quantity);
+  put(json, "cv_rms_before", step.cv_before, step.quantity);
+  put(json, "cv_rms_after", step.cv_after, step.quantity);
+  put(json, "noise_floor", step.floor, step.quantity);
+  return json.dump() + "\n";
+}
+
+Expected<std::vector<ModelStep>> parse_history(std::string_view text) {
+  std::vector<ModelStep> steps;
+  std::uint64_t line = 0;
+  while (!text.empty()) {
+    ++line;
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view one = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (one.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    try {
+      steps.push_back(step_of(Json::parse(one)));
+    } catch (const Json::exception&) {
+      return fail(Error{"wanted a change of the model as `nonio model` writes it; found \"" +
+                            std::string(one.substr(0, 60)) + "\" (the file may be deleted)",
+                        history_name, line});
+    }
+  }
+  return steps;
+}
+
+Expected<std::vector<ModelStep>> read_history(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (!std::filesystem::exists(folder / history_name, error)) return std::vector<ModelStep>{};
+  const auto text = read_file(folder / history_name);
+  if (!text) return fail(text.error());
+  return parse_history(*text);
+}
+
+}  // namespace nonio::host

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/host/model_words.h"
+
+#include <cmath>
+
+#include "nonio/sdk/format.h"
+
+namespace nonio::host {
+
+namespace {
+
+using Kind = model::Verdict::Kind;
+
+Number percent(const char* name, double share) {
+  return {name, std::round(100.0 * share), Quantity::count};
+}
+
+std::string id_of(Kind kind) {
+  switch (kind) {
+    case Kind::missing:
+      return "missing";
+    case Kind::nothing:
+      return "nothing";
+    case Kind::unknown:
+      return "unknown";
+    case Kind::unrepeatable:
+      break;
+  }
+  return "unrepeatable";
+}
+
+std::string kind_of(const std::string& effect) { return effect.substr(0, effect.find(':')); }
+
+}  // namespace
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+std::string where_largest(const model::Place& place, const std::string& language) {
+  if (!place.at || !std::isfinite(*place.at)) return {};
+  const std::string number =
+      localised(evidence_text({"at", *place.at, place.at_quantity}), language);
+  const std::string_view unit = unit_of(place.at_quantity).symbol;
+  return unit.empty() ? number : number + " " + std::string(unit);
+}
+
+std::string ModelWords::says(const std::string& id, std::vector<Number> numbers,
+                             std::vector<std::pair<std::string, std::string>> texts) const {
+  return finding_text(templates_, language_,
+                      {.id = id, .evidence = std::move(numbers), .texts = std::move(texts)},
+                      "says");
+}
+
+Finding place_finding(const model::Place& place, bool rotary) {
+  return {.id = "place." + place.where,
+          .evidence = {percent("share", place.share),
+                       {"rms", place.rms, deviation_of(rotary)},
+                       {"p", place.p, Quantity::probability}},
+          .texts = {{"where", place.where}}};
+}
+
+Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
+  const model::Verdict& v = e.verdict;
+  const Quantity q = part.deviation();
+  Finding f{.id = "verdict." + id_of(v.kind), .attention = v.kind != Kind::nothing};
+  f.evidence = {{"rms", e.comparison.fit.rms, q}, percent("suspects", v.suspects_share)};
+  if (e.comparison.floor) f.evidence.push_back({"floor", e.comparison.floor->s, q});
+  f.texts = {{"axis", part.axis().name}, {"effect", v.effect}};
+  f.measurement = part.part.measurements.front();
+  if (v.kind == Kind::missing && !e.candidates.empty()) {
+    const model::Candidate& c = e.candidates.front();
+    f.evidence.push_back({"after", c.rms, q});
+    if (!c.aliases.empty()) {
+      f.id = "verdict.missing-or-alias";
+      f.texts.emplace_back("aliases", listed(c.aliases));
+    }
+  }
+  if (v.kind == Kind::nothing && !e.comparison.floor) f.id = "verdict.nothing-without-floor";
+  return f;
+}
+
+std::string ModelWords::place(const model::Place& place, bool rotary) const {
+  Finding f = place_finding(place, rotary);
+  std::string text = finding_text(templates_, language_, f, "says");
+  if (text.empty()) {
+    f.id = "place.other";
+    text = finding_text(templates_, language_, f, "says");
+  }
+  const std::string at = where_largest(place, language_);
+  if (at.empty()) return text;
+  const std::string largest = says("place.largest." + place.where, {}, {{"at", at}});
+  return largest.empty() ? text : text + " " + largest;
+}
+
+std::string ModelWords::verdict(const model::Explanation& e, const PartModel& part) const {
+  std::string text = finding_text(templates_, language_, verdict_finding(e, part), "says");
+  if (e.verdict.kind == Kind::unknown && !e.fails.empty())
+    text += " " + place(e.fails.front(), part.axis().rotary);
+  return text;
+}
+
+std::string ModelWords::candidate(const model::Candidate& c, const PartModel& part,
+                                  double rms_before) const {
+  const Quantity q = part.deviation();
+  const std::vector<Number> numbers = {{"before", rms_before, q},
+                                       {"after", c.rms, q},
+                                       {"p", c.p, Quantity::probability},
+                                       {"detectable", c.minimal_detectable, q}};
+  const char* id = c.score > 0.0 ? c.aliases.empty() ? "candidate.evidence" : "candidate.alias"
+                                 : "candidate.none";
+  return says(id, numbers, {{"effect", c.term.name()}, {"aliases", listed(c.aliases)}});
+}
+
+std::string ModelWords::unseen(const model::Candidate& c) const {
+  const std::string text = says("unseen." + c.why, {}, {{"effect", c.term.name()}});
+  return text.empty() ? says("unseen.other", {}, {{"effect", c.term.name()}, {"why", c.why}})
+                      : text;
+}
+
+std::string ModelWords::plan(const model::Plan& plan) const {
+  std::string text = says("plan." + plan.id,
+                          {{"readings", static_cast<double>(plan.readings), Quantity::count},
+                           {"power", plan.power, Quantity::number}},
+                          {{"one", plan.one}, {"other", plan.other}});
+  return text.empty() ? plan.id : text;
+}
+
+std::string ModelWords::suspect(const model::Suspect& s, const ReadingPlace& at, Quantity q) const {
+  const Quantity position = q == Quantity::deviation ? Quantity::length : Quantity::angle;
+  return says("suspect",
+              {{"residual", s.residual, q},
+               {"detectable", s.minimal_detectable, q},
+               {"target", at.target, position},
+               {"run", static_cast<double>(at.run), Quantity::count},
+               {"line", static_cast<double>(at.line), Quantity::count}},
+              {{"direction", at.direction > 0 ? "+" : "-"},
+               {"measurement", at.measurement},
+               {"file", at.file}});
+}
+
+std::string ModelWords::below_uncertainty(const std::string& effect) const {
+  return says("below-uncertainty", {}, {{"effect", effect}});
+}
+
+std::string ModelWords::unmeasured(const std::string& effect) const {
+  return says("unmeasured", {}, {{"effect", effect}});
+}
+
+std::string ModelWords::card(const std::string& effect, const std::string& what) const {
+  return words(templates_, language_, "effect." + kind_of(effect) + "." + what);
+}
+
+}  // namespace nonio::host

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "names.h"
+
+#include <algorithm>
+
+#include "model_fit.h"
+
+namespace nonio::host {
+
+namespace {
+
+template <class Plugin>
+bool has(const std::vector<Plugin>& all, const std::string& name) {
+  return std::any_of(all.begin(), all.end(), [&](const Plugin& p) { return p.info.name == name; });
+}
+
+template <class Plugin>
+void check_names(const std::vector<Plugin>& all, const char* kind, const std::string& key,
+                 const std::optional<std::vector<std::string>>& names, const Context& context,
+                 std::vector<Error>& errors) {
+  if (!names) return;
+  for (const std::string& name : *names) {
+    if (has(all, name) || name == model_fit_name) continue;
+    Error error{key + ": " + context.plugins->absence(kind, name)};
+    error.key = key;
+    locate(error, {}, context.site.lines);
+    errors.push_back(std::move(error));
+  }
+}
+
+}  // namespace
+
+std::vector<Error> ownerless_options(const RawOptions& options, const Plugins& plugins) {
+  std::vector<Error> errors;
+  for (const auto& [name, values] : options) {
+    if (values.empty() || has(plugins.readers(), name) || has(plugins.analyses(), name) ||
+        has(plugins.outputs(), name))
+      continue;
+    const RawOption& first = values.begin()->second;
+    errors.push_back(
+        Error{"options." + name + ": there is no plugin of that name", first.file, first.line});
+  }
+  return errors;
+}
+
+void locate(Error& error, const KeyLines& manifest, const KeyLines& site,
+            const std::string& plugin) {
+  if (error.key.empty() || !error.file.empty()) return;
+  error.file = manifest_name;
+  const std::string option = "options." + plugin + "." + error.key;
+  for (const auto& [lines, file] : {std::pair(&manifest, manifest_name), {&site, site_name}})
+    for (const std::string& key : {option, error.key})
+      if (const auto found = lines->find(key); found != lines->end()) {
+        error.file = file;
+        error.line = found->second;
+        return;
+      }
+}
+
+std::vector<Error> site_mistakes(const Context& context) {
+  const Plugins& plugins = *context.plugins;
+  std::vector<Error> errors;
+  check_names(plugins.analyses(), "analysis", "run.analyses", context.site.run.analyses, context,
+              errors);
+  check_names(plugins.outputs(), "output", "run.outputs", context.site.run.outputs, context,
+              errors);
+  for (Error& e : ownerless_options(context.site.options, plugins)) errors.push_back(std::move(e));
+  const auto check_options = [&](const auto& all) {
+    for (const auto& plugin : all)
+      if (auto settled = settle_options(plugin.info, context.site.options, {}); !settled)
+        for (Error& e : settled.error()) errors.push_back(std::move(e));
+  };
+  check_options(plugins.readers());
+  check_options(plugins.analyses());
+  check_options(plugins.outputs());
+  return errors;
+}
+
+}  // namespace nonio::host

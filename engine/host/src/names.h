@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "nonio/host/evaluate.h"
+
+namespace nonio::host {
+
+/// `[options.x]` for an x that no plugin is, which would otherwise be ignored in silence.
+std::vector<Error> ownerless_options(const RawOptions& options, const Plugins& plugins);
+
+/// Fills in file and line of an error that says by its key what is to blame: an option of
+/// `plugin` or a key of the manifest or, where they do not have it, of site.toml.
+void locate(Error& error, const KeyLines& manifest, const KeyLines& site,
+            const std::string& plugin = {});
+
+}  // namespace nonio::host

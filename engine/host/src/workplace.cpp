@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "context.h"
+#include "nonio/host/campaign_reader.h"
+
+namespace nonio::host {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The nearest folder at or above the campaign that holds a site.toml; else the campaign's own.
+fs::path site_of(const fs::path& campaign) {
+  std::error_code error;
+  const fs::path start = fs::canonical(campaign, error);
+  for (fs::path folder = start; !error && !folder.empty(); folder = folder.parent_path()) {
+    if (fs::exists(folder / site_name, error)) return folder;
+    if (folder == folder.parent_path()) break;
+  }
+  return campaign;
+}
+
+}  // namespace
+
+Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
+                                                    const std::vector<fs::path>& plugin_folders,
+                                                    const std::vector<fs::path>& template_folders,
+                                                    const std::string& version) {
+  std::error_code error;
+  if (!fs::is_directory(campaign, error))
+    return fail("there is no folder " + campaign.string() + "; wanted the folder of a campaign");
+  if (!fs::exists(campaign / manifest_name, error))
+    return fail("there is no " + std::string(manifest_name) + " in " + campaign.string() +
+                ": it is not the folder of a campaign");
+  auto place = std::make_unique<Workplace>();
+  Context& context = place->context;
+  context.version = version;
+  const fs::path site = site_of(campaign);
+  auto read = read_site(site, context.site_sha256);
+  if (!read) return fail(read.error().front());
+  context.site = std::move(*read);
+  auto folders = template_folders;
+  if (fs::is_directory(site / "templates", error)) folders.push_back(site / "templates");
+  auto templates = read_templates(folders, context.templates_sha256);
+  if (!templates) return fail(templates.error());
+  context.templates = std::move(*templates);
+  place->plugins.load(plugin_folders);
+  if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
+  for (const PluginFile& f : place->plugins.files())
+    if (!f.refused.empty())
+      place->notes.push_back("plugin " + f.path.filename().string() + " " + f.refused);
+  context.plugins = &place->plugins;
+  context.plugins_sha256 = place->plugins.digest();
+  return place;
+}
+
+}  // namespace nonio::host

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "escape.h"
+#include "nonio/reports/number.h"
+#include "nonio/sdk/format.h"
+#include "page.h"
+
+namespace nonio::model_html {
+
+using namespace reports;
+
+namespace {
+
+void append_number(std::string& out, double value) {
+  if (!std::isfinite(value)) {
+    out += "null";
+    return;
+  }
+  char buffer[32];
+  const auto end =
+      std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 8);
+  out.append(buffer, end.ptr);
+}
+
+/// An object, member by member.
+class Object {
+ public:
+  void raw(std::string_view name, std::string_view value) {
+    out_ += out_.size() > 1 ? ",\n" : "";
+    out_ += json(name) + ":";
+    out_ += value;
+  }
+  void text(std::string_view name, std::string_view value) { raw(name, json(value)); }
+  void number(std::string_view name, double value) {
+    std::string text;
+    append_number(text, value);
+    raw(name, text);
+  }
+  std::string done() { return out_ + "}"; }
+
+ private:
+  std::string out_ = "{";
+};
+
+template <class Items, class Each>
+std::string list(const Items& items, const Each& each) {
+  std::string out = "[";
+  for (const auto& item : items) {
+    if (out.size() > 1) out += ',';
+    each(out, item);
+  }
+  return out + "]";
+}
+
+/// A column of the readings that are kept; null if the files did not have it.
+template <class T>
+std::string column(const std::vector<T>& values, const std::vector<std::size_t>& rows,
+                   double factor = 1.0, double from = 0.0) {
+  if (values.empty()) return "null";
+  return list(rows, [&](std::string& out, std::size_t row) {
+    append_number(out, row < values.size() ? (static_cast<double>(values[row]) - from) * factor
+                                           : std::nan(""));
+  });
+}
+
+/// A sample by this order falls in step with nothing that a test cycle repeats (the finaliser of
+/// SplitMix64: Steele, Lea, Flood, OOPSLA 2014).
+std::uint64_t scrambled(std::size_t row) {
+  std::uint64_t z = row + 0x9e3779b97f4a7c15U;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
+  return z ^ (z >> 31);
+}
+
+std::string words_of(const Source& source) {
+  Object out;
+  for (const char* name : {"rms_now", "without", "reading", "deviation", "model", "residual",
+                           "time", "temperature", "line", "suspect", "reversal"})
+    out.text(name, source.words.get(std::string("page.") + name));
+  out.text("no_readings", source.words.get("picture.no_readings"));
+  out.text("one_direction", source.words.get("picture.reversal.none"));
+  return out.done();
+}
+
+std::string pictures_of(const Source& source) {
+  return list(source.pictures, [](std::string& out, const PictureWords& p) {
+    Object picture;
+    picture.text("x", p.x);
+    picture.text("y", p.y);
+    picture.text("none", p.none);
+    picture.raw("degrees", p.degrees ? "true" : "false");
+    out += picture.done();
+  });
+}
+
+std::string files_of(const Source& source) {
+  return list(source.fit.measurements, [&](std::string& out, const std::string& id) {
+    std::string file;
+    for (const Measurement& m : source.in.campaign.measurements)
+      if (m.id == id) file = m.file;
+    out += json(file);
+  });
+}
+
+}  // namespace
+
+Kept kept_readings(const ModelFit& fit) {
+  Kept kept;
+  kept.rows.resize(fit.size());
+  std::iota(kept.rows.begin(), kept.rows.end(), std::size_t{0});
+  kept.counted.assign(fit.size(), 1);
+  if (fit.size() <= most_readings) return kept;
+  constexpr std::size_t largest = most_readings / 100;
+  std::vector<std::size_t> order = kept.rows;
+  const auto first = [&](std::size_t n, const auto& key) {
+    std::nth_element(
+        order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n), order.end(),
+        [&](std::size_t a, std::size_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
+    return std::vector(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n));
+  };
+  std::map<std::size_t, char> rows;
+  for (const std::size_t i :
+       first(largest, [&](std::size_t row) { return -std::fabs(fit.residual[row]); }))
+    rows[i] = 0;
+  for (const std::size_t i : first(most_readings - largest, scrambled)) rows[i] = 1;
+  kept = {};
+  for (const auto& [row, counted] : rows) kept.rows.push_back(row), kept.counted.push_back(counted);
+  return kept;
+}
+
+std::string data_of(const Source& source, const Kept& kept) {
+  const ModelFit& fit = source.fit;
+  const std::vector<std::size_t>& rows = kept.rows;
+  const Quantity along = position_of(fit.rotary), up = deviation_of(fit.angular);
+  const double across = unit_of(along).per_si, per_si = unit_of(up).per_si;
+  double first = INFINITY;
+  for (const double t : fit.time)
+    if (std::isfinite(t)) first = std::min(first, t);
+  std::vector<double> weight(fit.size(), 1.0);
+  for (std::size_t i = 0; i < fit.weight.size() && i < weight.size(); ++i)
+    weight[i] = fit.weight[i];
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (kept.counted[k] == 0) weight[rows[k]] = 0.0;
+  const auto known = [](const auto& values, std::size_t n) {
+    auto out = values;
+    out.resize(n);
+    return out;
+  };
+  Object out;
+  out.text("language", source.words.language());
+  out.text("axis", fit.axis);
+  out.text("unit", unit_text(up));
+  out.text("position_unit", unit_text(along));
+  out.text("time_unit", source.pictures[static_cast<std::size_t>(Picture::time)].time_unit);
+  out.number("period", period_of(fit) * across);
+  out.number("floor", fit.floor ? *fit.floor * per_si : std::nan(""));
+  out.raw("words", words_of(source));
+  out.raw("pictures", pictures_of(source));
+  out.raw("files", files_of(source));
+  out.raw("measurement", column(known(fit.measurement, fit.size()), rows));
+  out.raw("line", column(known(fit.source_line, fit.size()), rows));
+  out.raw("run", column(known(fit.run, fit.size()), rows));
+  out.raw("direction", column(known(fit.direction, fit.size()), rows));
+  out.raw("target", column(fit.target, rows, across));
+  out.raw("time", column(fit.time, rows,
+                         source.pictures[static_cast<std::size_t>(Picture::time)].x_per_si, first));
+  out.raw("temperature", column(fit.temperature, rows));
+  out.raw("deviation", column(fit.deviation, rows, per_si));
+  out.raw("residual", column(fit.residual, rows, per_si));
+  out.raw("left_out", column(fit.cv_residual, rows, per_si));
+  out.raw("weight", column(weight, rows));
+  out.raw("effects", list(fit.effects, [&](std::string& text, const ModelFit::Effect& e) {
+            Object effect;
+            effect.text("name", e.name);
+            effect.raw("says", column(known(e.contribution, fit.size()), rows, per_si));
+            text += effect.done();
+          }));
+  std::map<std::size_t, std::size_t> place;
+  for (std::size_t k = 0; k < rows.size(); ++k) place[rows[k]] = k;
+  std::vector<std::pair<std::size_t, double>> suspects;
+  for (const ModelFit::Suspect& s : fit.suspects)
+    if (const auto it = place.find(s.row); it != place.end())
+      suspects.emplace_back(it->second, s.minimal_detectable * per_si);
+  out.raw("suspects", list(suspects, [](std::string& text, const auto& s) {
+            text += "[" + std::to_string(s.first) + ",";
+            append_number(text, s.second);
+            text += "]";
+          }));
+  return out.done();
+}
+
+}  // namespace nonio::model_html

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace nonio::model_html {
+
+/// Text as it may stand between tags and in quoted attributes.
+std::string html(std::string_view text);
+
+/// Text as a string of JSON that may stand in a <script>: nothing in it can end the element.
+std::string json(std::string_view text);
+
+/// "sha256-..." of a Content-Security-Policy, from a digest in hexadecimal.
+std::string csp_source(std::string_view sha256);
+
+}  // namespace nonio::model_html

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "page.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "embedded.h"
+#include "escape.h"
+#include "nonio/reports/number.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio::model_html {
+
+using namespace reports;
+
+namespace {
+
+constexpr double notable_correlation = 0.9;
+
+std::string element(std::string_view name, std::string_view inner, std::string_view more = "") {
+  std::string out = "<";
+  out += name;
+  if (!more.empty()) out += " " + std::string(more);
+  out += ">" + std::string(inner) + "</" + std::string(name) + ">\n";
+  return out;
+}
+
+std::string title_of(const Source& source) {
+  return source.words.get("model.heading", {{"part", source.fit.part}});
+}
+
+std::string head(const Source& source) {
+  return "<head>\n<meta charset=\"utf-8\">\n"
+         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src '" +
+         csp_source(script_sha256) + "'; style-src '" + csp_source(style_sha256) +
+         "'; base-uri 'none'; form-action 'none'\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" +
+         element("title", html(title_of(source) + " · " + source.in.campaign.id)) +
+         element("style", page_style) + "</head>\n";
+}
+
+std::string identity(const Source& source) {
+  const Campaign& c = source.in.campaign;
+  std::string line;
+  for (const std::string& part :
+       {c.id, c.customer, c.machine.maker, c.machine.model, c.machine.serial, c.date})
+    if (!part.empty()) line += (line.empty() ? "" : " · ") + html(part);
+  return element("h1", html(title_of(source))) + element("p", line, "class=\"muted\"");
+}
+
+std::string notes(const Source& source) {
+  std::string out;
+  const auto says = [&](const Finding& f, const char* part) {
+    return html(finding_text(source.in.templates, source.words.language(), f, part));
+  };
+  for (const Finding& f : source.fit.says) {
+    std::string note = element("b", says(f, "title"));
+    for (const char* part : {"says", "advice"})
+      if (const std::string text = says(f, part); !text.empty()) note += element("p", text);
+    out += element("div", note, f.attention ? "class=\"note attention\"" : "class=\"note\"");
+  }
+  return out;
+}
+
+std::string parameters(const Source& source) {
+  const Wording& words = source.words;
+  const ModelFit& fit = source.fit;
+  if (fit.parameters.empty()) return element("p", html(words.get("model.empty")));
+  std::string rows = "<tr>";
+  for (const char* key : {"effect", "parameter", "value"})
+    rows += element("th", html(words.get(std::string("model.") + key)),
+                    std::string(key) == "value" ? "class=\"number\"" : "");
+  rows += "<th class=\"number\">U</th>" + element("th", html(words.get("model.unit"))) + "</tr>\n";
+  std::string correlated;
+  const auto name = [&](std::size_t i) {
+    return fit.parameters[i].effect + " " + fit.parameters[i].name;
+  };
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    const ModelFit::Parameter& p = fit.parameters[i];
+    std::optional<double> U;
+    if (p.u && std::isfinite(*p.u)) U = 2 * *p.u;
+    const Printed shown = printed_result(p.value, U, p.quantity, words.language());
+    rows += "<tr>" + element("td", html(p.effect)) + element("td", html(p.name)) +
+            element("td", shown.value, "class=\"number\"") +
+            element("td", shown.U.empty() ? "–" : shown.U, "class=\"number\"") +
+            element("td", html(unit_text(p.quantity))) + "</tr>\n";
+    for (std::size_t k = 0; i < fit.correlation.size() && k < i && k < fit.correlation[i].size();
+         ++k)
+      if (const double r = fit.correlation[i][k]; std::fabs(r) > notable_correlation)
+        correlated += (correlated.empty() ? "" : "; ") +
+                      words.get("model.pair",
+                                {{"one", name(k)},
+                                 {"other", name(i)},
+                                 {"r", printed_number(r, Quantity::ratio, 2, words.language())}});
+  }
+  std::string out = element("div", element("table", rows), "class=\"scroll\"");
+  if (!correlated.empty())
+    out += element("p", html(words.get("model.correlated", {{"pairs", correlated}})));
+  return out;
+}
+
+/// Bars in percent of the chart's width, so that they fit any screen without a script.
+class Falling {
+ public:
+  explicit Falling(const Source& source)
+      : source_(source), q_(deviation_of(source.fit.angular)), floor_(source.fit.floor) {
+    if (floor_ && !std::isfinite(*floor_)) floor_.reset();
+    most_ = floor_ ? *floor_ + half() : 0.0;
+    for (const ModelFit::Step& step : source.fit.steps) {
+      most_ = std::max({most_, step.rms, step.cv_rms.value_or(0.0)});
+      left_out_ |= step.cv_rms.has_value();
+    }
+  }
+
+  std::string text() const {
+    const Wording& words = source_.words;
+    std::string rows;
+    for (const ModelFit::Step& step : source_.fit.steps) {
+      const std::string label = step.effect.empty() ? words.get("model.start") : "+ " + step.effect;
+      rows += element("div", html(label), "class=\"label\"") + element("svg", bars(step)) +
+              element("div", value(step.rms) + (left_out_ ? "<br>" + value(step.cv_rms) : ""),
+                      "class=\"values\"");
+    }
+    return element("div", key(), "class=\"key\"") + element("div", rows, "class=\"falls\"");
+  }
+
+ private:
+  double half() const { return 2 * source_.fit.floor_u.value_or(0.0); }
+  std::string percent(double v) const {
+    return "\"" + fixed_text(most_ > 0 ? 100 * v / most_ : 0.0, 2) + "%\"";
+  }
+  std::string value(std::optional<double> si) const {
+    if (!si || !std::isfinite(*si)) return "–";
+    return localised(short_text(*si * unit_of(q_).per_si), source_.words.language()) + " " +
+           unit_text(q_);
+  }
+  std::string bars(const ModelFit::Step& step) const {
+    std::string out;
+    if (floor_) {
+      const double from = std::max(0.0, *floor_ - half());
+      out += "<rect class=\"band\" height=\"44\" x=" + percent(from) +
+             " width=" + percent(*floor_ + half() - from) + "/>";
+    }
+    const char* y = left_out_ ? "\"6\"" : "\"14\"";
+    out += "<rect class=\"fill-rms\" height=\"15\" y=" + std::string(y) +
+           " width=" + percent(step.rms) + "/>";
+    if (step.cv_rms && std::isfinite(*step.cv_rms))
+      out += "<rect class=\"fill-left-out\" height=\"15\" y=\"23\" width=" + percent(*step.cv_rms) +
+             "/>";
+    if (floor_)
+      out += "<line class=\"floor\" y1=\"0\" y2=\"44\" x1=" + percent(*floor_) +
+             " x2=" + percent(*floor_) + "/>";
+    return out;
+  }
+  static std::string key_entry(const char* sign, const std::string& text) {
+    return element("span", "<svg>" + std::string(sign) + "</svg> " + html(text));
+  }
+  std::string key() const {
+    const Wording& words = source_.words;
+    std::string out =
+        key_entry("<rect class=\"fill-rms\" width=\"16\" height=\"11\"/>", words.get("model.rms"));
+    if (left_out_)
+      out += key_entry("<rect class=\"fill-left-out\" width=\"16\" height=\"11\"/>",
+                       words.get("model.cv_rms"));
+    if (!floor_) return out;
+    const Printed shown = printed_result(*floor_, half(), q_, words.language());
+    return out + key_entry(
+                     "<rect class=\"band\" width=\"16\" height=\"12\"/>"
+                     "<line class=\"falls floor\" x1=\"8\" x2=\"8\" y1=\"0\" y2=\"12\"/>",
+                     words.get("model.floor", {{"s", shown.value},
+                                               {"U", shown.U.empty() ? "–" : shown.U},
+                                               {"unit", unit_text(q_)}}));
+  }
+
+  const Source& source_;
+  Quantity q_;
+  std::optional<double> floor_;
+  double most_ = 0.0;
+  bool left_out_ = false;
+};
+
+std::string choices(const Source& source) {
+  std::string out;
+  for (const char* id : {"effects", "directions", "runs"})
+    out += "<div id=\"" + std::string(id) + "\"><span>" +
+           html(source.words.get("page." + std::string(id))) + "</span></div>\n";
+  out += "<p id=\"rms\"></p>\n" +
+         element("p", html(source.words.get("page.toggling")), "class=\"muted\"");
+  return element("section", out, "id=\"choices\" hidden");
+}
+
+std::string nine(const Source& source) {
+  std::string out;
+  for (std::size_t i = 0; i < source.pictures.size(); ++i) {
+    const PictureWords& p = source.pictures[i];
+    const std::string title = html(p.title);
+    const std::string inside = p.none.empty()
+                                   ? "<svg role=\"img\" aria-label=\"" + title + "\"></svg>\n"
+                                   : element("p", html(p.none), "class=\"none\"");
+    out += "<figure id=\"picture-" + std::to_string(i) + "\">\n<figcaption><b>" + title +
+           "</b></figcaption>\n" + inside + "<figcaption>" + element("p", html(p.says)) +
+           "</figcaption>\n</figure>\n";
+  }
+  return element("div", out, "class=\"pictures\"");
+}
+
+std::string legend(const Source& source, const Kept& kept) {
+  const ModelFit& fit = source.fit;
+  const Wording& words = source.words;
+  const Quantity q = deviation_of(fit.angular);
+  std::string text = words.get("picture.legend") + " ";
+  text += fit.floor ? words.get("picture.legend_floor",
+                                {{"s", printed_number(*fit.floor, q, 2, words.language())},
+                                 {"unit", unit_text(q)}})
+                    : words.get("picture.no_floor");
+  if (!fit.suspects.empty())
+    text +=
+        " " + words.get("picture.legend_suspect", {{"count", std::to_string(fit.suspects.size())}});
+  if (kept.rows.size() < fit.size())
+    text += " " + words.get("page.thinned", {{"shown", std::to_string(kept.rows.size())},
+                                             {"all", std::to_string(fit.size())}});
+  return element("p", html(text), "class=\"muted\"");
+}
+
+}  // namespace
+
+std::string page_of(const Source& source) {
+  const Wording& words = source.words;
+  const Kept kept = kept_readings(source.fit);
+  std::string body = identity(source) + notes(source);
+  if (!source.fit.steps.empty())
+    body += element("h2", html(words.get("model.falls"))) + Falling(source).text();
+  body += element("h2", html(words.get("model.parameters"))) + parameters(source);
+  body += "<section class=\"residuals\">\n" +
+          element("h2", html(words.get("picture.heading", {{"part", source.fit.part}}))) +
+          choices(source) + element("noscript", html(words.get("page.noscript"))) +
+          legend(source, kept) + nine(source) + "</section>\n";
+  body += "<div id=\"tip\" hidden></div>\n";
+  body += "<script type=\"application/json\" id=\"data\">" + data_of(source, kept) + "</script>\n";
+  body += element("script", page_script);
+  return "<!DOCTYPE html>\n<html lang=\"" + html(words.language()) + "\">\n" + head(source) +
+         element("body", body) + "</html>\n";
+}
+
+}  // namespace nonio::model_html

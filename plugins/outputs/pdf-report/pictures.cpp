@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The page of residuals. Its nine pictures have the same places whatever the data are, so that the
+// eye learns where to look; one whose data are not there says so in its frame.
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/reports/number.h"
+#include "nonio/reports/residuals.h"
+#include "nonio/sdk/format.h"
+#include "report.h"
+
+namespace nonio::pdf_report {
+
+using namespace reports;
+using Curve = Plot::Curve;
+
+namespace {
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& v : values) v *= factor;
+  return values;
+}
+
+class Pictures {
+ public:
+  Pictures(const Source& source, const ModelFit& fit)
+      : source_(source),
+        words_(source.pictures),
+        fit_(fit),
+        style_(source.look.style),
+        deviation_(deviation_of(fit.angular)),
+        position_(position_of(fit.rotary)),
+        per_si_(unit_of(deviation_).per_si),
+        suspect_(fit.size(), 0) {
+    for (const ModelFit::Suspect& s : fit.suspects)
+      if (s.row < fit.size()) suspect_[s.row] = 1;
+    double low = 0, high = 0;
+    const auto widen = [&](double v) {
+      if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+    };
+    for (const auto* values : {&fit.residual, &fit.cv_residual})
+      for (std::size_t i = 0; i < std::min(values->size(), fit.size()); ++i)
+        if (suspect_[i] == 0) widen((*values)[i]);
+    if (fit.floor) widen(2.2 * *fit.floor), widen(-2.2 * *fit.floor);
+    const double edge = 0.06 * (high - low);
+    range_ = {(low - edge) * per_si_, (high + edge) * per_si_};
+  }
+
+  Plot draw(Picture picture, const PictureWords& said) const {
+    Plot plot = frame(said);
+    if (!said.none.empty()) return plot;
+    switch (picture) {
+      case Picture::position:
+        position(plot);
+        break;
+      case Picture::reversal:
+        reversal(plot);
+        break;
+      case Picture::time:
+        time(plot, said.x_per_si);
+        break;
+      case Picture::run:
+        run(plot);
+        break;
+      case Picture::phase:
+        residuals(plot, phase_of(fit_, period_of(fit_)), said.x_per_si);
+        break;
+      case Picture::temperature:
+        residuals(plot, fit_.temperature, said.x_per_si);
+        break;
+      case Picture::predicted:
+        predicted(plot);
+        break;
+      case Picture::normal:
+        normal(plot);
+        break;
+      case Picture::left_out:
+        scatter(plot, scaled(fit_.target, said.x_per_si), scaled(fit_.cv_residual, per_si_));
+        break;
+    }
+    return plot;
+  }
+
+  std::string legend() const {
+    std::string text = words_.get("picture.legend");
+    text += " " + (fit_.floor
+                       ? words_.get(
+                             "picture.legend_floor",
+                             {{"s", printed_number(*fit_.floor, deviation_, 2, source_.language())},
+                              {"unit", unit_text(deviation_)}})
+                       : words_.get("picture.no_floor"));
+    if (!fit_.suspects.empty())
+      text += " " + words_.get("picture.legend_suspect",
+                               {{"count", std::to_string(fit_.suspects.size())}});
+    return text;
+  }
+
+ private:
+  Plot frame(const PictureWords& said) const {
+    Plot plot;
+    plot.title = said.title;
+    plot.x_title = said.x;
+    plot.y_title = said.y;
+    plot.degrees = said.degrees;
+    plot.language = source_.language();
+    plot.empty_text = said.none;
+    plot.range = range_;
+    if (fit_.floor) {
+      const double half = 2 * *fit_.floor * per_si_;
+      plot.belts.push_back({-half, half, style_.rule});
+    }
+    return plot;
+  }
+
+  double held(double y) const {  // suspects beyond the picture stand at its edge
+    const double inset = 0.03 * (range_.second - range_.first);
+    return std::clamp(y, range_.first + inset, range_.second - inset);
+  }
+
+  /// Readings by direction, in printed units; `row`: which reading a point is, if not the i-th.
+  void scatter(Plot& plot, const std::vector<double>& x, const std::vector<double>& y,
+               const std::vector<std::size_t>& row = {}) const {
+    Curve plus, minus, other;
+    plus.colour = style_.plus, plus.marker = Marker::up;
+    minus.colour = style_.minus, minus.marker = Marker::down;
+    other.colour = style_.accent, other.marker = Marker::dot;
+    Curve marks;
+    marks.colour = style_.failed, marks.marker = Marker::around;
+    for (std::size_t i = 0; i < x.size() && i < y.size(); ++i) {
+      const std::size_t r = row.empty() ? i : row[i];
+      const int d = r < fit_.direction.size() ? fit_.direction[r] : 0;
+      const bool suspect = suspect_[r] != 0;
+      const double v = suspect ? held(y[i]) : y[i];
+      for (Curve* c : {d > 0 ? &plus : d < 0 ? &minus : &other, suspect ? &marks : nullptr})
+        if (c != nullptr) c->x.push_back(x[i]), c->y.push_back(v);
+    }
+    for (Curve* c : {&plus, &minus, &other, &marks}) {
+      c->kind = Curve::Kind::points;
+      c->marker_size = c == &marks ? 3.6 : 1.5;
+      if (!c->x.empty()) plot.curves.push_back(std::move(*c));
+    }
+  }
+
+  void line(Plot& plot, std::vector<double> x, std::vector<double> y, Colour colour,
+            Dash dash = Dash::solid) const {
+    Curve c;
+    c.x = std::move(x), c.y = std::move(y);
+    c.colour = colour, c.dash = dash, c.width = 1.2;
+    if (c.x.size() > 1) plot.curves.push_back(std::move(c));
+  }
+
+  /// Residuals over x (SI), with their mean along it.
+  void residuals(Plot& plot, const std::vector<double>& x, double per_si) const {
+    scatter(plot, scaled(x, per_si), scaled(fit_.residual, per_si_));
+    const Trace mean = mean_by_part(fit_, x);
+    line(plot, scaled(mean.x, per_si), scaled(mean.y, per_si_), style_.text);
+  }
+
+  void position(Plot& plot) const {
+    const double across = unit_of(position_).per_si;
+    scatter(plot, scaled(fit_.target, across), scaled(fit_.residual, per_si_));
+    for (const int d : {+1, -1, 0}) {
+      const Trace mean = mean_by_target(fit_, d);
+      line(plot, scaled(mean.x, across), scaled(mean.y, per_si_),
+           d > 0   ? style_.plus
+           : d < 0 ? style_.minus
+                   : style_.accent,
+           d < 0 ? Dash::dashed : Dash::solid);
+    }
+  }
+
+  void reversal(Plot& plot) const {
+    plot.range.reset();
+    plot.belts.clear();
+    const Reversal r = reversal_of(fit_);
+    const auto x = scaled(r.values.x, unit_of(position_).per_si);
+    if (fit_.floor) {
+      Curve band;
+      band.kind = Curve::Kind::band;
+      band.x = x;
+      band.y = scaled(r.spread, 2 * *fit_.floor * per_si_);
+      band.y2 = scaled(r.spread, -2 * *fit_.floor * per_si_);
+      band.colour = style_.muted;
+      band.width = 0;
+      plot.curves.push_back(std::move(band));
+    }
+    Curve values;
+    values.x = x;
+    values.y = scaled(r.values.y, per_si_);
+    values.colour = style_.accent;
+    plot.curves.push_back(values);
+    values.kind = Curve::Kind::points;
+    values.marker = Marker::dot;
+    values.marker_size = 1.6;
+    plot.curves.push_back(std::move(values));
+  }
+
+  void time(Plot& plot, double per_si) const {
+    std::vector<double> t = fit_.time;
+    double first = INFINITY;
+    for (const double v : t)
+      if (std::isfinite(v)) first = std::min(first, v);
+    for (double& v : t) v -= first;
+    residuals(plot, t, per_si);
+  }
+
+  void run(Plot& plot) const {
+    plot.whole = true;
+    scatter(plot, {fit_.run.begin(), fit_.run.end()}, scaled(fit_.residual, per_si_));
+    const Trace mean = mean_by_run(fit_);
+    line(plot, mean.x, scaled(mean.y, per_si_), style_.text);
+  }
+
+  void predicted(Plot& plot) const {
+    std::vector<double> x = fit_.deviation;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] -= fit_.residual[i];
+    residuals(plot, x, per_si_);
+  }
+
+  void normal(Plot& plot) const {
+    const Normal n = normal_plot(fit_);
+    scatter(plot, n.values.x, scaled(n.values.y, per_si_), n.row);
+    if (!fit_.floor) return;
+    const double low = n.values.x.front(), high = n.values.x.back(), s = *fit_.floor * per_si_;
+    line(plot, {low, high}, {low * s, high * s}, style_.text, Dash::dashed);
+  }
+
+  const Source& source_;
+  const Wording& words_;
+  const ModelFit& fit_;
+  const Style& style_;
+  Quantity deviation_, position_;
+  double per_si_;
+  std::vector<char> suspect_;  ///< of each reading
+  std::pair<double, double> range_;
+};
+
+}  // namespace
+
+void add_pictures(const Source& source, const ModelFit& fit, Blocks& blocks) {
+  constexpr std::size_t per_row = 3;
+  const Style& style = source.look.style;
+  const std::string field = "pictures of the model of " + fit.part;
+  const Pictures pictures(source, fit);
+  blocks.push_back({PageBreak{}});
+  blocks.push_back(
+      {Heading{source.pictures.get("picture.heading", {{"part", fit.part}}), 1}, field});
+  blocks.push_back({Paragraph{pictures.legend(), Paragraph::Look::small}, field});
+  // What heading, legend, captions of up to three lines and gaps need is not there for the plots.
+  constexpr double between = 7;
+  const double heading = 9 + 1.3 * style.heading + 6, legend = 3 * 1.3 * style.small + 2;
+  const double around = 5 + 3 * 1.3 * style.small + 2 + between;
+  const double height = (page_room(style) - heading - legend) / 3 - around;
+  const auto said = picture_words(fit, source.pictures);
+  for (std::size_t i = 0; i < said.size(); i += per_row) {
+    Columns row;
+    for (std::size_t k = i; k < i + per_row; ++k) {
+      Plot plot = pictures.draw(static_cast<Picture>(k), said[k]);
+      plot.height = height;
+      row.parts.push_back(
+          {{std::move(plot), field}, {Paragraph{said[k].says, Paragraph::Look::muted}, field}});
+    }
+    blocks.push_back({std::move(row), field});
+    blocks.push_back({Spacer{between}});
+  }
+}
+
+}  // namespace nonio::pdf_report

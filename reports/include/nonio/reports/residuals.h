@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "nonio/reports/wording.h"
+#include "nonio/sdk/results.h"
+
+/// The words and numbers behind the nine pictures of residuals. SI.
+namespace nonio::reports {
+
+/// The pictures in the order that never changes.
+enum class Picture {
+  position,
+  reversal,
+  time,
+  run,
+  phase,
+  temperature,
+  predicted,
+  normal,
+  left_out
+};
+
+/// What one of them says; `none`: why there is nothing to draw, empty if there is something.
+struct PictureWords {
+  std::string title, x, y, says, none;
+  std::string time_unit{};  ///< of the third: s, min or h
+  double x_per_si = 1.0;    ///< what x is multiplied by before it is printed
+  bool degrees = false;     ///< x is an angle of the turn
+};
+/// The words are those of templates/words/<language>/pictures.toml.
+std::array<PictureWords, 9> picture_words(const ModelFit&, const Wording&);
+
+/// The period of the fifth picture: screw pitch, tooth, or a whole turn; 0 if it is not known.
+double period_of(const ModelFit&);
+
+/// A curve, or points.
+struct Trace {
+  std::vector<double> x, y;
+};
+
+/// Readings that count: their weight says that they are no suspected misreading.
+bool counts(const ModelFit&, std::size_t row);
+
+/// Mean residual of the readings of one direction at each target.
+Trace mean_by_target(const ModelFit&, int direction);
+
+/// Mean residual in each of up to 12 equal parts of the range of x that hold three readings or
+/// more.
+Trace mean_by_part(const ModelFit&, const std::vector<double>& x);
+
+/// Mean residual of each run.
+Trace mean_by_run(const ModelFit&);
+
+/// mean(+) - mean(-) of the residuals at each target that has both.
+struct Reversal {
+  Trace values;
+  std::vector<double> spread;  ///< standard deviations in it per one of a reading
+};
+Reversal reversal_of(const ModelFit&);
+
+/// Position within one period, 0 <= phase < period, of each reading.
+std::vector<double> phase_of(const ModelFit&, double period);
+
+/// Ordered residuals over the quantiles of the normal distribution at (i - 1/2)/n; of many all the
+/// outer ones and some of the inner ones. `row`: the readings.
+struct Normal {
+  Trace values;
+  std::vector<std::size_t> row;
+};
+Normal normal_plot(const ModelFit&);
+
+}  // namespace nonio::reports

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A worker does many campaigns, and no result shows which one did it, or after what."""
+import os
+import pathlib
+import signal
+import subprocess
+import unittest
+
+from nightly import PLUGINS, NightTest, manifest, tree
+
+ALL = ('[run]\nanalyses = ["iso230-2", "vdi-dgq-3441"]\noutputs = ["json", "csv", "pdf-report", '
+       '"siemens-840d", "heidenhain-tnc", "fanuc", "linuxcnc"]\n')
+
+
+def children(pid):
+    return [int(p) for p in pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+class Workers(NightTest):
+    def site_of(self, number):
+        for i in range(number):
+            self.campaign(f"c{i:03}", run=ALL)
+
+    def test_one_worker_for_many_is_as_a_process_for_each(self):
+        self.site_of(70)  # more than one worker does
+        self.campaign("c005x", text=manifest("c005x").replace("linear", "lineal"))
+        self.campaign("c030", run=ALL + '[options.pdf-report]\nlanguage = "it"\n')
+        fresh = self.root / "fresh"
+        self.run_nonio("--jobs", "1", expect=1)
+        # A plugin from elsewhere, even one that no campaign calls, gives each its own process.
+        self.run_nonio("--plugin-path", str(PLUGINS / "bad"), out=fresh, expect=1)
+
+        def results(out):
+            return {k: v for k, v in tree(out).items() if not k.endswith("run.json")}
+        one, other = results(self.out), results(fresh)
+        self.assertGreater(len(one), 70 * 10)
+        self.assertEqual(sorted(k for k in one.keys() | other.keys() if one.get(k) != other.get(k)), [])
+
+    def test_killed_worker_costs_no_campaign(self):
+        self.site_of(60)
+        reference = self.root / "reference"
+        self.run_nonio("--jobs", "1", out=reference, expect=0)
+        run = subprocess.Popen(self.command("--jobs", "1"), stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, text=True)
+        while run.poll() is None and not (self.out / "c020" / "run.json").exists():
+            pass
+        workers = children(run.pid)
+        for worker in workers:
+            os.kill(worker, signal.SIGKILL)
+        _, errors = run.communicate(timeout=60)
+        self.assertEqual(len(workers), 1)  # else the run was over before
+        self.assertEqual(run.returncode, 0, errors)
+        self.assertTrue(tree(reference) == tree(self.out))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: Apache-2.0
+"""model_page_test.py WRITE_MODEL_PAGES: the page model-html in a real browser: it asks for nothing
+but itself, draws its pictures, takes effects out as the numbers say, and shows a reading."""
+import json
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+SKIPPED = 77
+
+
+class Browser:
+    """Chromium over its debugging pipe: messages of JSON that end with a zero byte."""
+
+    def __init__(self, program, folder):
+        to_read, self.send_to = os.pipe()
+        self.read_from, to_write = os.pipe()
+        # The browser wants the pipe as descriptors 3 and 4.
+        command = f"exec {program} --headless --no-sandbox --disable-gpu --disable-dev-shm-usage " \
+                  f"--user-data-dir={folder} --remote-debugging-pipe about:blank " \
+                  f"3<&{to_read} 4>&{to_write}"
+        self.process = subprocess.Popen(["bash", "-c", command], pass_fds=(to_read, to_write),
+                                        stderr=subprocess.DEVNULL)
+        os.close(to_read)
+        os.close(to_write)
+        self.last, self.session, self.rest = 0, None, b""
+        self.events = []
+
+    def receive(self):
+        while b"\0" not in self.rest:
+            got = os.read(self.read_from, 1 << 20)
+            if not got:
+                sys.exit("the browser ended")
+            self.rest += got
+        message, self.rest = self.rest.split(b"\0", 1)
+        return json.loads(message)
+
+    def ask(self, method, **parameters):
+        self.last += 1
+        message = {"id": self.last, "method": method, "params": parameters}
+        if self.session:
+            message["sessionId"] = self.session
+        os.write(self.send_to, json.dumps(message).encode() + b"\0")
+        while True:
+            answer = self.receive()
+            if answer.get("id") == self.last:
+                assert "error" not in answer, answer
+                return answer["result"]
+            self.events.append(answer)
+
+    def open(self, url, width):
+        self.session = None
+        target = self.ask("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        self.events = []
+        for domain in ("Page", "Runtime", "Network", "Log"):
+            self.ask(f"{domain}.enable")
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=900,
+                 deviceScaleFactor=1, mobile=width < 600)
+        self.ask("Page.navigate", url=url)
+        while not any(e.get("method") == "Page.loadEventFired" for e in self.events):
+            self.events.append(self.receive())
+
+    def value(self, expression):
+        result = self.ask("Runtime.evaluate", expression=expression, returnByValue=True,
+                          awaitPromise=True)
+        assert "exceptionDetails" not in result, result
+        return result["result"].get("value")
+
+    def close(self):
+        self.session = None
+        self.ask("Browser.close")
+        self.process.wait(timeout=30)
+
+
+def rms_without(data, effect):
+    residual = [r + (data["effects"][effect]["says"][i] if effect is not None else 0.0)
+                for i, r in enumerate(data["residual"])]
+    weight = data["weight"]
+    if effect is not None:
+        shift = sum(w * (r - o) for w, r, o in zip(weight, residual, data["residual"]))
+        residual = [r - shift / sum(weight) for r in residual]
+    return math.sqrt(sum(w * r * r for w, r in zip(weight, residual)) / sum(weight))
+
+
+def complaints(browser):
+    bad = []
+    for event in browser.events:
+        if event.get("method") == "Runtime.exceptionThrown":
+            bad.append(event["params"]["exceptionDetails"].get("text"))
+        if event.get("method") == "Log.entryAdded" and event["params"]["entry"]["level"] == "error":
+            bad.append(event["params"]["entry"]["text"])
+        if event.get("method") == "Network.requestWillBeSent":
+            url = event["params"]["request"]["url"]
+            if "/model-" not in url or not url.startswith("file:"):
+                bad.append("asks for " + url)
+    return bad
+
+
+def check(browser, page, width):
+    where = f"{page.parent.parent.name}/{page.parent.name} at {width}"
+    data = json.loads(page.read_text().split('id="data">')[1].split("</script>")[0])
+    browser.open(page.as_uri(), width)
+    assert browser.value("document.querySelectorAll('figure').length") == 9, where
+    drawn = browser.value("[...document.querySelectorAll('figure svg')]"
+                          ".filter(s => s.querySelector('path')).length")
+    assert drawn == sum(not p["none"] for p in data["pictures"]), f"{where}: {drawn} drawn"
+    wide = browser.value("document.documentElement.scrollWidth")
+    assert wide <= width, f"{where}: the page is {wide} wide"
+    comma = str.replace if data["language"] == "it" else lambda text, a, b: text
+    shown = lambda: browser.value("document.getElementById('rms').textContent")
+    wanted = comma(f"{rms_without(data, None):.2f}", ".", ",")
+    assert wanted in shown(), f"{where}: wanted {wanted}, found {shown()}"
+    for effect in range(len(data["effects"])):
+        box = f"document.querySelectorAll('#effects input')[{effect}]"
+        browser.value(f"{box}.click()")
+        wanted = comma(f"{rms_without(data, effect):.2f}", ".", ",")
+        assert wanted in shown(), f"{where}: wanted {wanted}, found {shown()}"
+        assert browser.value("location.hash") == f"#e{effect}", where
+        browser.value(f"{box}.click()")
+    bad = complaints(browser)
+    assert not bad, f"{where}: {bad}"
+
+
+def check_hover(browser, page):
+    browser.open(page.as_uri(), 1400)
+    place = browser.value("""(() => {
+        const ring = document.querySelector('#picture-0 .suspect');
+        ring.scrollIntoView({block: 'center'});
+        const box = ring.getBoundingClientRect();
+        return [box.x + box.width / 2, box.y + box.height / 2];
+    })()""")
+    browser.value("new Promise(done => setTimeout(done, 200))")
+    browser.ask("Input.dispatchMouseEvent", type="mouseMoved", x=place[0], y=place[1])
+    tip = browser.value("document.getElementById('tip').innerText")
+    assert "Run 1" in tip and "line 78" in tip and "suspected" in tip, tip
+    assert browser.value("document.querySelectorAll('.chosen').length") == 8, "marked everywhere"
+
+
+def main():
+    program = next((p for p in map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))
+                    if p), None)
+    if program is None:
+        print("skipped: no Chromium on this machine")
+        return SKIPPED
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        pages = pathlib.Path(folder) / "pages"
+        subprocess.run([sys.argv[1], str(pages)], check=True)
+        browser = Browser(program, folder + "/profile")
+        for page in sorted(pages.glob("*/*/model-*.html")):
+            for width in (1400,) if page.parts[-3] == "many" else (1400, 400):
+                check(browser, page, width)
+        check_hover(browser, pages / "usual" / "en" / "model-X.html")
+        browser.close()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

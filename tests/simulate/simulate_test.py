@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""nonio simulate, then nonio run: what was put in comes out."""
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+NONIO, SAMPLE = os.environ["NONIO"], pathlib.Path(os.environ["SAMPLE"])
+
+
+def nonio(*words):
+    return subprocess.run([NONIO, *map(str, words)], capture_output=True, text=True, check=False)
+
+
+class Simulate(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.root = pathlib.Path(self.folder.name)
+        self.campaign = self.root / "site" / "worn-screw"
+        self.addCleanup(self.folder.cleanup)
+
+    def simulate(self, *words, spec=SAMPLE, expect=0):
+        done = nonio("simulate", spec, "--out", self.campaign, *words)
+        self.assertEqual(done.returncode, expect, done.stderr)
+        return done
+
+    def spec(self, old, new):
+        path = self.root / "spec.toml"
+        text = SAMPLE.read_text(encoding="utf-8")
+        self.assertIn(old, text)
+        path.write_text(text.replace(old, new, 1), encoding="utf-8")
+        return path
+
+    def contents(self):
+        return {p.name: p.read_bytes() for p in self.campaign.iterdir()}
+
+    def test_it_can_be_run(self):
+        self.simulate(spec=self.spec('[[effect]]\nname = "run-jump:X"\nj_um = 3.0\ninstant_s = 700.0\n', ""))
+        self.assertEqual(set(self.contents()), {"campaign.toml", "x.csv"})
+        done = nonio("run", self.root / "site", "--out", self.root / "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        results = json.loads((self.root / "out" / "worn-screw" / "results.json").read_text("utf-8"))
+        values = next(a for a in results["analyses"] if a["plugin"] == "iso230-2")["values"]
+        # 0.6 um of noise, 20 targets x 5 runs a direction: u = 0.6 sqrt(2/100); misreadings of up
+        # to 24 um in 2 % of the readings add as much again.
+        self.assertAlmostEqual(values["B_mean"]["value"], -6.0, delta=1.2)
+
+    def test_same_seed_same_bytes(self):
+        self.simulate()
+        first = self.contents()
+        truth = self.root / "site" / "worn-screw.truth.json"
+        told = truth.read_bytes()
+        self.simulate()
+        self.assertEqual(self.contents(), first)
+        self.assertEqual(truth.read_bytes(), told)
+        self.simulate(spec=self.spec("seed = 7", "seed = 8"))
+        self.assertNotEqual(self.contents()["x.csv"], first["x.csv"])
+
+    def test_the_truth_is_apart(self):
+        done = self.simulate("--truth", self.campaign / "truth.json", expect=2)
+        self.assertIn("truth would lie in the campaign", done.stderr)
+        self.assertFalse(self.campaign.exists())
+        self.simulate("--truth", self.root / "truth.json", "--json")
+        truth = json.loads((self.root / "truth.json").read_text(encoding="utf-8"))
+        self.assertEqual([e["effect"] for e in truth["effects"]], ["backlash:X", "warm-up:X", "run-jump:X"])
+        self.assertEqual(truth["effects"][0]["parameters"], [{"name": "b", "value": -6.0, "unit": "um"}])
+        lines = (self.campaign / "x.csv").read_text(encoding="utf-8").splitlines()
+        self.assertTrue(truth["measurements"][0]["misread"])
+        for misread in truth["measurements"][0]["misread"]:
+            self.assertGreater(abs(float(lines[misread["line"] - 1].split(",")[3])), 0.6)
+        for text in self.contents().values():
+            self.assertNotIn(b"backlash", text)
+
+    def test_a_measured_campaign_is_left_alone(self):
+        self.campaign.mkdir(parents=True)
+        (self.campaign / "campaign.toml").write_text("format = 1\n", encoding="utf-8")
+        done = self.simulate(expect=2)
+        self.assertIn("not simulated", done.stderr)
+        self.assertEqual(self.contents(), {"campaign.toml": b"format = 1\n"})
+
+    def test_a_wrong_specification_leaves_nothing(self):
+        done = self.simulate(spec=self.spec("backlash:X", "backlsh:X"), expect=2)
+        self.assertRegex(done.stderr, r'spec.toml, line \d+: effect.name: .*nearest: "backlash"')
+        self.assertFalse(self.campaign.exists())
+
+    def test_help_teaches(self):
+        done = nonio("simulate", "--help")
+        self.assertEqual(done.returncode, 0)
+        for word in ("[[effect]]", "[[cycle]]", "--truth", "Example"):
+            self.assertIn(word, done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fixtures.h"
+#include "model_fixture.h"
+#include "nonio/reports/residuals.h"
+#include "pdf_reader.h"
+
+namespace nonio::fixtures {
+namespace {
+
+struct ModelReport : testing::Test {
+  Plugins plugins;
+  Templates templates = read_templates(NONIO_TEMPLATES);
+
+  void SetUp() override {
+    ASSERT_TRUE(plugins.load(std::string(NONIO_PLUGINS) + "/pdf-report.so"));
+  }
+  std::string pdf(const ModelFit& fit, const std::string& language = "en") {
+    Case c = simple_case();
+    c.results.models = {fit};
+    Settings options = defaults(plugins.outputs.front().info);
+    options.values["language"] = language;
+    const auto result =
+        plugins.outputs.front().write({c.campaign, c.observations, c.results, options, templates});
+    EXPECT_TRUE(result) << result.error().message;
+    return result ? result->artifacts.front().bytes : "";
+  }
+  /// The text of the page of pictures.
+  std::string pictures(const ModelFit& fit, const std::string& language = "en") {
+    const auto read = read_pdf(pdf(fit, language));
+    const char* first = language == "it" ? "1 Per posizione" : "1 By position";
+    for (const auto& page : read.pages)
+      if (page.find(first) != std::string::npos) return page;
+    ADD_FAILURE() << "no page of pictures";
+    return "";
+  }
+};
+
+bool has(const std::string& text, const std::string& what) {
+  return text.find(what) != std::string::npos;
+}
+
+MadeModel bare() { return {false, false, false, false, false, 11, 1, false}; }
+MadeModel turn() { return {true, true, true, false, true, 25, 3, true}; }
+
+TEST_F(ModelReport, NinePicturesStandOnOnePageInBothLanguagesWhateverTheDataAre) {
+  for (const MadeModel& made : {MadeModel{}, bare(), turn()})
+    for (const char* language : {"en", "it"}) {
+      const std::string page = pictures(made_model(made), language);
+      const reports::Wording words(templates, language, "pictures");
+      for (const auto& said : reports::picture_words(made_model(made), words))
+        EXPECT_TRUE(has(page, said.title)) << language << ": " << said.title << "\n" << page;
+    }
+}
+
+TEST_F(ModelReport, APictureWithoutDataSaysWhy) {
+  const std::string page = pictures(made_model(bare()));
+  for (const char* why : {"Measured from one direction only.", "No times.", "No temperature.",
+                          "Screw pitch not stated.", "A single run: none can be left out."})
+    EXPECT_TRUE(has(page, why)) << why << "\n" << page;
+  ModelFit aliased = made_model();
+  for (double& p : aliased.target) p = aliased.period.value() * std::round(p / *aliased.period);
+  EXPECT_TRUE(has(pictures(aliased), "All targets lie at one phase of 12 mm"));
+  EXPECT_FALSE(has(pictures(made_model()), "All targets lie at one phase"));
+}
+
+TEST_F(ModelReport, GivesParametersWithUAndNamesThoseThatGoTogether) {
+  const std::string text = read_pdf(pdf(made_model())).all();
+  for (const char* what : {"−6.10", "0.12", "µm/h", "backlash:X b and periodic:X a (−0.95)",
+                           "+ zero-drift:X", "noise floor of repeated readings, 0.590 ± 0.060"})
+    EXPECT_TRUE(has(text, what)) << what << "\n" << text;
+}
+
+TEST_F(ModelReport, AMillionReadingsMakeALightFile) {
+  MadeModel many;
+  many.targets = 1001;
+  many.runs = 500;
+  many.suspects = false;
+  ModelFit fit = made_model(many);
+  ASSERT_GT(fit.size(), 1000000U);
+  fit.residual[4321] = 40e-6;  // stays, whatever is thinned
+  const std::string bytes = pdf(fit);
+  EXPECT_LT(bytes.size(), 1500000U);
+  EXPECT_TRUE(has(read_pdf(bytes).all(), "40")) << "the scale reaches the largest";
+}
+
+TEST_F(ModelReport, TheSameBytesTwice) { EXPECT_EQ(pdf(made_model()), pdf(made_model())); }
+
+TEST_F(ModelReport, AModelWithoutEffectsAndReadingsStillHasItsPage) {
+  ModelFit fit;
+  fit.part = fit.axis = "X";
+  EXPECT_TRUE(has(pictures(fit), "No readings."));
+}
+
+TEST(Residuals, NormalQuantilesAreThoseOfTheTables) {
+  ModelFit fit;
+  for (int i = 0; i < 200; ++i) fit.residual.push_back(i), fit.deviation.push_back(i);
+  const auto normal = reports::normal_plot(fit);
+  ASSERT_EQ(normal.values.x.size(), 200U);
+  EXPECT_NEAR(normal.values.x[0], -2.807033768343811, 1e-9);  // p = 0.0025, tabulated
+  EXPECT_NEAR(normal.values.x[4], -2.005, 1e-3);              // p = 0.0225
+  for (std::size_t i = 0; i < 200; ++i)
+    EXPECT_NEAR(normal.values.x[i], -normal.values.x[199 - i], 1e-9);
+}
+
+TEST(Residuals, ReversalOfTheResidualLeavesSuspectsOut) {
+  ModelFit fit;
+  fit.target = {1, 1, 1, 2};
+  fit.direction = {1, -1, -1, 1};
+  fit.deviation = fit.residual = {3, 1, 100, 5};
+  fit.weight = {1, 1, 0, 1};
+  const auto reversal = reports::reversal_of(fit);
+  ASSERT_EQ(reversal.values.x, std::vector<double>{1.0});
+  EXPECT_EQ(reversal.values.y, std::vector<double>{2.0});
+  EXPECT_EQ(reversal.spread, std::vector<double>{std::sqrt(2.0)});
+}
+
+TEST(Residuals, AMultipleOfThePeriodHasPhaseZeroWhateverItsLastDigit) {
+  ModelFit fit;
+  fit.target = {0.0, 0.3 - 1e-16, 0.1 * 3, -0.05};
+  fit.deviation = fit.residual = {0, 0, 0, 0};
+  const auto phase = reports::phase_of(fit, 0.1);
+  EXPECT_NEAR(phase[0], 0.0, 1e-12);
+  EXPECT_NEAR(phase[1], 0.0, 1e-12);
+  EXPECT_NEAR(phase[2], 0.0, 1e-12);
+  EXPECT_NEAR(phase[3], 0.05, 1e-12);
+}
+
+}  // namespace
+}  // namespace nonio::fixtures

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""nonio explain: the JSON of the contract, verdicts, --auto."""
+import json
+import unittest
+
+from verbs import VerbTest, manifest, readings
+
+
+class Explain(VerbTest):
+    def check(self, e):
+        """The fields that other programs rely on."""
+        self.assertEqual(e["schema"], "nonio-explain/1")
+        self.assertEqual(e["campaign"], "c")
+        self.assertIsInstance(e["observations"], int)
+        self.assertIsInstance(e["model"]["effects"], list)
+        self.assertIsInstance(e["model"]["rms_um"], float)
+        for failed in e["fails"]:
+            self.assertTrue(failed["where"] and failed["says"], failed)
+            self.assertTrue(0 <= failed["share"] <= 1, failed)
+        scores = []
+        for c in e["candidates"]:
+            self.assertTrue(c["effect"].endswith(":" + e["axis"]) and c["says"], c)
+            self.assertNotIn(c["effect"], e["model"]["effects"])
+            self.assertIsInstance(c["aliases"], list)
+            self.assertTrue(0 <= c["p"] <= 1 and c["rms_um"] >= 0, c)
+            for p in c["parameters"]:
+                self.assertTrue(p["name"], p)
+                self.assertIsInstance(p["value"], (int, float))
+                self.assertIn("unit", p)
+            scores.append(c["score"])
+        self.assertEqual(scores, sorted(scores, reverse=True))
+        self.assertIn(e["verdict"]["kind"], ("missing", "nothing", "unknown", "unrepeatable"))
+        self.assertEqual("effect" in e["verdict"], e["verdict"]["kind"] == "missing")
+        return e
+
+    def explain(self, *args, **kwargs):
+        return self.check(self.json_of("explain", self.folder, *args, **kwargs))
+
+    def test_names_the_missing_effect(self):
+        self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
+        e = self.explain()
+        self.assertEqual(e["verdict"]["kind"], "missing")
+        self.assertEqual(e["verdict"]["effect"], "backlash:X")
+        best = e["candidates"][0]
+        self.assertEqual(best["effect"], "backlash:X")
+        b = best["parameters"][0]
+        self.assertEqual((b["name"], b["unit"]), ("b", "um"))
+        self.assertLess(abs(b["value"] + 6), 4 * b["u"])
+        self.assertLess(best["rms_um"], e["model"]["rms_um"] / 3)
+        self.assertIn("cv_rms_um", best)
+        self.assertIn("cv_rms_um", e["model"])
+        self.assertGreater(e["noise_floor_um"], 0)
+        self.assertGreater(e["lack_of_fit"]["F"], 10)
+        self.assertIn("direction", [f["where"] for f in e["fails"]])
+        self.assertTrue(0 <= e["false_alarm_rate"] <= 0.1)
+        self.assertGreaterEqual(e["false_alarm_trials"], 1)
+        self.assertIn("backlash:X", e["together"])
+        shown = self.nonio("explain", self.folder).stdout
+        self.assertIn("verdict: missing backlash:X", shown)
+        self.assertIn("#####", shown)
+
+    def test_a_complete_model_misses_nothing(self):
+        self.campaign(manifest(["scale:X", "backlash:X"]), x=readings(scale=20, backlash=-6))
+        e = self.explain()
+        self.assertEqual(e["verdict"]["kind"], "nothing")
+
+    def test_the_same_seed_gives_the_same_bytes(self):
+        self.campaign(manifest([]), x=readings(backlash=-3))
+        first = self.nonio("explain", self.folder, "--json", "--seed", "7").stdout
+        self.assertEqual(first, self.nonio("explain", self.folder, "--json", "--seed", "7").stdout)
+        self.assertEqual(json.loads(first)["seed"], 7)
+
+    def test_several_axes_lead_with_the_most_severe(self):
+        self.campaign(manifest([], axes="XY"), x=readings(1), y=readings(2, backlash=-6))
+        e = self.explain()
+        self.assertEqual((e["axis"], e["verdict"].get("effect")), ("Y", "backlash:Y"))
+        self.assertEqual([p["axis"] for p in e["parts"]], ["X", "Y"])
+        self.assertEqual(e["parts"][1]["verdict"], e["verdict"])
+        self.assertEqual(e["parts"][0]["verdict"]["kind"], "nothing")
+
+    def test_auto_adds_until_nothing_is_missing(self):
+        text = "# mine\n" + manifest(None)
+        self.campaign(text, x=readings(scale=30, backlash=-6))
+        e = self.explain("--auto")
+        self.assertEqual(sorted(e["model"]["effects"]), ["backlash:X", "scale:X"])
+        self.assertEqual(e["verdict"]["kind"], "nothing")
+        self.assertEqual(len(e["steps"]), 2)
+        for step in e["steps"]:
+            self.assertLess(step["rms_after_um"], step["rms_before_um"])
+        self.assertTrue(self.text().startswith(text))
+        history = (self.folder / "model-history.jsonl").read_text().splitlines()
+        self.assertEqual([json.loads(line) for line in history], e["steps"])
+
+    def test_auto_shows_each_step(self):
+        self.campaign(manifest([]), x=readings(backlash=-6))
+        shown = self.nonio("explain", self.folder, "--auto").stdout
+        self.assertIn("step 1: backlash:X added", shown)
+        self.assertIn("verdict: nothing", shown)
+
+    def test_a_mistake_in_the_model_names_line_and_nearest(self):
+        text = manifest(["backlsh:X"])
+        self.campaign(text, x=readings())
+        done = self.nonio("explain", self.folder, expect=2)
+        line = next(i for i, t in enumerate(text.splitlines(), 1) if t.startswith("effects"))
+        self.assertIn(f"campaign.toml:{line}: ", done.stderr)
+        self.assertIn('nearest: "backlash:X"', done.stderr)
+        for wrong in ("backlash", "backlash:Q", ":X", "backlash:"):
+            self.campaign(manifest([wrong]))
+            self.nonio("explain", self.folder, expect=2)
+
+    def test_help_teaches(self):
+        for verb in ("compare", "explain"):
+            shown = self.nonio(verb, "--help").stdout
+            self.assertIn("Example", shown)
+        self.nonio("explain", expect=2)
+        self.nonio("explain", self.site / "nowhere", expect=2)
+        self.nonio("explain", self.site, expect=2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The nightly run with a model: analysis model-fit, tables from the model, exclusions."""
+import json
+import re
+import unittest
+
+from verbs import VerbTest, manifest, readings
+
+
+class Nightly(VerbTest):
+    def night(self, *args, expect=0):
+        out = self.site.parent / "out"
+        self.nonio("run", self.site, "--out", out, "--quiet", *args, expect=expect)
+        self.out = out / "c"
+        return json.loads((self.out / "results.json").read_text())
+
+    def fits(self, results):
+        return [a for a in results["analyses"] if a["plugin"] == "model-fit"]
+
+    RUN = '[run]\noutputs = ["json"]\n'
+
+    def test_a_good_model_is_a_quiet_night(self):
+        self.campaign(manifest(["scale:X", "backlash:X"], self.RUN), x=readings(scale=20, backlash=-6))
+        fit = self.fits(self.night())[0]
+        self.assertEqual(fit["measurement"], "X")
+        self.assertEqual([f["id"] for f in fit["findings"]], [])
+        b = fit["values"]["backlash:X.b"]
+        self.assertLess(abs(b["value"] + 6), 2 * b["U"])
+        self.assertTrue(0.3 < fit["values"]["rms"]["value"] < 0.7)
+        self.assertEqual(fit["values"]["rms"]["unit"], "um")
+        self.assertIn("U", fit["values"]["noise_floor"])
+
+    def test_what_fails_and_what_is_missing_are_findings(self):
+        self.campaign(manifest(["scale:X"], self.RUN), x=readings(scale=20, backlash=-6))
+        results = self.night()
+        found = {f["id"]: f for f in self.fits(results)[0]["findings"]}
+        self.assertEqual(found["model.missing"]["evidence"]["effect"], "backlash:X")
+        fails = found["model.fails"]
+        self.assertEqual((fails["severity"], fails["evidence"]["where"]), ("attention", "direction"))
+        self.assertGreater(fails["evidence"]["share"], 0.9)
+        self.assertIn("p", fails["evidence"])
+        self.assertTrue(fails["advice"])
+        self.assertEqual(results["status"], "attention")
+
+    def test_without_a_model_it_runs_only_when_named(self):
+        self.campaign(manifest(None, self.RUN), x=readings())
+        self.assertEqual(self.fits(self.night()), [])
+        self.campaign(manifest(None, '[run]\nanalyses = ["model-fit"]\noutputs = ["json"]\n'))
+        results = self.night()
+        self.assertEqual([a["plugin"] for a in results["analyses"]], ["model-fit"])
+        self.campaign(manifest(["scale:X"], '[run]\nanalyses = ["iso230-2"]\noutputs = ["json"]\n'))
+        self.assertEqual(self.fits(self.night()), [])
+
+    def test_a_fit_that_is_impossible_is_a_finding(self):
+        self.campaign(manifest(["scale:X", "pitch-curve:X", "zero-drift:X", "run-jump:X"], self.RUN),
+                      x=readings(runs=1, targets=[0.0, 50.0]))
+        results = self.night(expect=None)
+        text = json.dumps(results)
+        self.assertTrue("model.cannot-fit" in text or "does not apply" in text, text)
+
+    def test_an_unknown_effect_fails_the_campaign_with_its_line(self):
+        text = manifest(["scal:X"], self.RUN)
+        self.campaign(text, x=readings())
+        results = self.night(expect=1)
+        error = results["errors"][0]
+        self.assertEqual(text.splitlines()[error["line"] - 1][:7], "effects")
+        self.assertIn('nearest: "scale:X"', error["message"])
+
+    def test_excluded_lines_are_noted_and_do_not_count(self):
+        text = manifest([], self.RUN).replace('file = "x.csv"\n', 'file = "x.csv"\nexclude = [5, 9]\n')
+        self.campaign(text, x=readings())
+        results = self.night()
+        self.assertEqual(sum("is excluded by the manifest" in n for n in results["notes"]), 2)
+
+    def test_the_history_is_an_input(self):
+        self.campaign(manifest(["scale:X"], self.RUN), x=readings(scale=20))
+        self.night()
+        plan = self.nonio("run", self.site, "--out", self.out.parent, "--dry-run").stdout
+        self.assertIn("nothing changed", plan)
+        (self.folder / "model-history.jsonl").write_text(
+            '{"action":"add","effect":"scale:X","rms_before_um":3.0,"rms_after_um":0.5}\n')
+        plan = self.nonio("run", self.site, "--out", self.out.parent, "--dry-run").stdout
+        self.assertIn("model-history.jsonl changed", plan)
+
+    def columns(self, model, drift):
+        run = '[run]\nanalyses = ["iso230-2"]\noutputs = ["linuxcnc"]\n'
+        self.campaign(manifest(["scale:X", "backlash:X", "zero-drift:X"], run, model),
+                      x=readings(noise=0.05, scale=20, backlash=-6, drift=drift))
+        results = self.night(expect=None)
+        table = (self.out / "linuxcnc-X.comp").read_text()
+        rows = [[float(x) for x in line.split()] for line in table.splitlines()
+                if re.match(r"\s*-?\d", line)]
+        self.assertEqual(len(rows), 11, table)
+        return rows, results
+
+    def test_drift_does_not_enter_a_table_of_the_model(self):
+        still, _ = self.columns('compensate = "model"\n', 0.0)
+        moved, results = self.columns('compensate = "model"\n', 30.0)
+        for a, b in zip(still, moved):
+            self.assertLess(max(abs(x - y) for x, y in zip(a, b)), 0.0003, (a, b))
+        raw, _ = self.columns("", 30.0)
+        self.assertGreater(max(abs(x - y) for a, b in zip(still, raw) for x, y in zip(a, b)), 0.002)
+        self.assertIn("Tables hold what the model says of scale:X, backlash:X", " ".join(results["notes"]))
+        before = next(p for p in results["tables"][0]["predictions"] if p["name"] == "E")
+        self.assertGreater(before["before"], 10.0)
+
+    def test_a_model_without_compensable_effects_gives_no_table(self):
+        run = '[run]\nanalyses = ["iso230-2"]\noutputs = ["linuxcnc"]\n'
+        self.campaign(manifest(["zero-drift:X"], run, 'compensate = "model"\n'), x=readings(drift=9))
+        results = self.night(expect=None)
+        self.assertEqual([o["file"] for o in results["outputs"]], [])
+        self.assertIn("no effect that a table can take away", json.dumps(results))
+
+
+if __name__ == "__main__":
+    unittest.main()
