@@ -155,7 +155,9 @@ std::string removed(std::string_view text, const List& list, std::size_t index) 
     out.erase(*item.comma - (end - begin), 1);
   } else if (!item.comma && index > 0) {
     const std::size_t comma = *list.items[index - 1].comma;
-    const std::size_t blanks = blank(text.substr(comma + 1, begin - comma - 1)) ? begin - comma : 1;
+    const bool apart =
+        text.substr(comma + 1, begin - comma - 1).find_first_not_of(" \t\r\n") != text.npos;
+    const std::size_t blanks = apart ? 1 : begin - comma;
     out.erase(comma, alone ? 1 : blanks);
   }
   return out;
