@@ -53,7 +53,7 @@ ReadingPlace place_of(const PartModel& part, const Campaign& campaign, std::size
     if (m.id == place.measurement) place.file = m.file;
   if (row < o.source_line.size()) place.line = o.source_line[row];
   if (row < o.run.size()) place.run = o.run[row];
-  place.direction = o.axes.front().approach[row];
+  place.direction = o.axes.front().approach[row] > 0 ? 1 : -1;
   place.target = o.axes.front().position[row];
   return place;
 }

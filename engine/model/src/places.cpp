@@ -52,11 +52,11 @@ Factor binned(std::string name, const std::vector<double>& value, Quantity quant
   return f;
 }
 
-MatrixXd waves(const VectorXd& angle, int orders) {
+MatrixXd waves(const VectorXd& angle, Index orders) {
   MatrixXd out(angle.size(), 2 * orders);
-  for (int k = 0; k < orders; ++k) {
-    out.col(2 * k) = (angle * (k + 1)).array().sin();
-    out.col(2 * k + 1) = (angle * (k + 1)).array().cos();
+  for (Index k = 0; k < orders; ++k) {
+    out.col(2 * k) = (angle * static_cast<double>(k + 1)).array().sin();
+    out.col(2 * k + 1) = (angle * static_cast<double>(k + 1)).array().cos();
   }
   return out;
 }
