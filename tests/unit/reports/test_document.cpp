@@ -219,7 +219,8 @@ TEST(Charts, BarsSayTheirValuesAndBearWhatIsNone) {
   BarChart chart;
   chart.title = "falls";
   chart.series = {{"rms", {}}, {"left out", {}}};
-  chart.rows = {{"none", {{4.0, "4.00"}, {NAN, "–"}}}, {"+ backlash", {{0.5, "0.500"}, {0.6, "0.600"}}}};
+  chart.rows = {{"none", {{4.0, "4.00"}, {NAN, "–"}}},
+                {"+ backlash", {{0.5, "0.500"}, {0.6, "0.600"}}}};
   chart.line = {0.55, 0.05, "floor"};
   const std::string text = pages_of(of({{chart}})).all();
   for (const char* word : {"falls", "left out", "+ backlash", "4.00", "0.600", "floor"})
