@@ -461,7 +461,16 @@ class Explainer {
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed) {
   if (part.table.size() == 0) return fail("there are no readings of an axis to explain");
-  return Explainer(part, model, catalogue, seed).run();
+  if (part.table.size() <= thin_beyond) return Explainer(part, model, catalogue, seed).run();
+  // The search on means of neighbours; what the model leaves, on all readings.
+  const Part thin{part.measurements, part.axes, thinned(part.table)};
+  auto out = Explainer(thin, model, catalogue, seed).run();
+  if (!out) return out;
+  auto whole = compare(part, out->comparison.fit.terms);
+  if (!whole) return fail(whole.error());
+  whole->places = std::move(out->comparison.places);
+  out->comparison = std::move(*whole);
+  return out;
 }
 
 }  // namespace nonio::model
