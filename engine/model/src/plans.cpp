@@ -54,17 +54,16 @@ void append(Observations& o, const Course& course, double interval) {
   }
 }
 
-/// Distance, in standard deviations, between what `truth` says and the nearest that `other` with
-/// the model can say. Their shapes are searched.
-double distance(const Observations& o, const std::vector<Term>& model, const Term& truth,
-                const VectorXd& said, const Term& other, double s) {
+/// Distance, in standard deviations, between what one effect has `said` and the nearest that
+/// `other` with the model can say. Its shapes are searched.
+double distance(const Observations& o, const std::vector<Term>& model, const VectorXd& said,
+                const Term& other, double s) {
   Observations imagined = o;
   imagined.deviation.assign(said.data(), said.data() + said.size());
   std::vector<Term> terms = model;
   Term free = other;
   free.shape.clear();
   terms.push_back(free);
-  (void)truth;
   const auto fitted = fit(imagined, terms);
   if (!fitted) return 0.0;
   return std::sqrt(std::max(fitted->rms * fitted->rms * static_cast<double>(o.size()), 0.0)) / s;
@@ -115,7 +114,7 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
       const auto other = std::find_if(catalogue.begin(), catalogue.end(),
                                       [&](const Term& t) { return t.name() == alias; });
       if (other == catalogue.end()) continue;
-      const double d = distance(o, model, candidate.term, *columns * value, *other, s);
+      const double d = distance(o, model, *columns * value, *other, s);
       if (d < plan.power) plan.power = d, plan.other = alias;
     }
     if (std::isfinite(plan.power)) plans.push_back(std::move(plan));
