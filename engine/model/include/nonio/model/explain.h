@@ -97,7 +97,7 @@ struct Candidate {
 
 /// A further measurement that would tell the effects of an alias group apart.
 struct Plan {
-  std::string id;            ///< "pause", "more-runs", "pendulum", "offset-targets", "temperature"
+  std::string id;            ///< "another-run", "run-after-a-pause", "other-targets", ...
   std::size_t readings = 0;  ///< to be taken
   double power = 0.0;        ///< distance of the two explanations in standard deviations
   std::string one, other;    ///< the two effects
