@@ -163,6 +163,8 @@ void print_comparison(std::ostream& out, const host::Compared& compared, const C
          pair.one->effect + " " + pair.one->name + " and " + pair.other->effect + " " +
              pair.other->name + ": r = " + fixed_text(pair.r, 3));
   print_places(out, c.places, words, part.axis().rotary);
+  if (c.means > 0)
+    line(out, "", "told from " + std::to_string(c.means) + " means of neighbouring readings");
   print_suspects(out, c, part, campaign, words);
   for (const std::string& warning : host::warnings_of(c.fit, words))
     out << "  warning: " << warning << "\n";

@@ -150,14 +150,26 @@ std::vector<Place> seats_in(const Part& part, const Repeats& repeats,
                    comparison.floor});
 }
 
-Expected<Comparison> compare(const Part& part, const std::vector<Term>& model) {
-  if (part.table.size() == 0) return fail("there are no readings of an axis to compare with");
-  const Repeats repeats(part.table);
-  auto suspects = suspects_of(part.table, repeats, part.table.deviation);
+Expected<Comparison> compare_without(const Part& part, const std::vector<Term>& model,
+                                     const Repeats& repeats, std::vector<Suspect> suspects) {
   auto weight = weights_without(part.table.size(), suspects);
   auto fitted = fit(part.table, model, std::move(weight));
   if (!fitted) return fail(fitted.error());
   return comparison_of(part, repeats, std::move(*fitted), std::move(suspects));
+}
+
+Expected<Comparison> compare(const Part& part, const std::vector<Term>& model) {
+  if (part.table.size() == 0) return fail("there are no readings of an axis to compare with");
+  const Repeats repeats(part.table);
+  auto out =
+      compare_without(part, model, repeats, suspects_of(part.table, repeats, part.table.deviation));
+  if (!out || part.table.size() <= thin_beyond) return out;
+  const Part thin{part.measurements, part.axes, thinned(part.table, out->fit.weight)};
+  auto of_means = compare_without(thin, out->fit.terms, Repeats(thin.table), {});
+  if (!of_means) return fail(of_means.error());
+  out->places = std::move(of_means->places);
+  out->means = thin.table.size();
+  return out;
 }
 
 }  // namespace nonio::model

@@ -23,6 +23,7 @@ constexpr double alias_evidence = 6.0;  // 2 ln 20: one twentieth of the evidenc
 constexpr double least_rms = 0.2;       // of the noise: smaller effects are not worth a name
 constexpr double least_left = 0.25;     // of the noise: smaller structure is not worth a verdict
 constexpr double serious_p = 0.005;
+constexpr double most_suspects = 0.06;  // of the readings; beyond, they do not repeat
 // What is left in the same place, of what the candidate says: beyond, the candidate is not it.
 constexpr double unexplained_share = 0.04;
 
@@ -87,17 +88,14 @@ class Explainer {
     if (!(s > 0.0)) return false;
     double least = 3.0;
     while (math::t_two_sided(least, 50.0) * static_cast<double>(n) > 0.01) least += 0.05;
-    std::vector<std::vector<double>> at_target(repeats_.targets);
-    for (std::size_t i = 0; i < n; ++i) at_target[repeats_.target[i]].push_back(e[i]);
+    std::vector<std::uint32_t> high;
+    for (std::uint32_t i = 0; i < n; ++i)
+      if (std::fabs(e[i]) >= least * s) high.push_back(i);
+    const std::vector<double> apart = apart_from_others(repeats_, high, e);
     std::vector<Suspect> now;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (std::fabs(e[i]) < least * s) continue;
-      std::vector<double> others = at_target[repeats_.target[i]];
-      others.erase(std::find(others.begin(), others.end(), e[i]));
-      const double apart = e[i] - (others.empty() ? 0.0 : math::median(others));
-      if (std::fabs(apart) < least * s) continue;
-      now.push_back({i, e[i], e[i] / s, least * s});
-    }
+    for (std::size_t k = 0; k < high.size(); ++k)
+      if (std::fabs(apart[k]) >= least * s)
+        now.push_back({high[k], e[high[k]], e[high[k]] / s, least * s});
     if (now.size() > n / 8) return false;
     const bool changed =
         now.size() != suspects_.size() ||
@@ -397,7 +395,7 @@ class Explainer {
       out_.fails.insert(out_.fails.begin(), *run);
       return true;
     }
-    return out_.verdict.suspects_share > 0.06 || two_valued();
+    return out_.verdict.suspects_share > most_suspects || two_valued();
   }
 
   void judge() {
@@ -456,21 +454,42 @@ class Explainer {
   Explanation out_;
 };
 
+/// The search on means of neighbours; how well the model and each candidate do, on all readings.
+Expected<Explanation> explain_on_means(const Part& part, const std::vector<Term>& model,
+                                       const std::vector<Term>& catalogue, std::uint64_t seed) {
+  const Repeats repeats(part.table);
+  auto suspects = suspects_of(part.table, repeats, part.table.deviation);
+  const auto weight = weights_without(part.table.size(), suspects);
+  const Part thin{part.measurements, part.axes, thinned(part.table, weight)};
+  auto out = Explainer(thin, model, catalogue, seed).run();
+  if (!out) return out;
+  auto whole = compare_without(part, out->comparison.fit.terms, repeats, std::move(suspects));
+  if (!whole) return fail(whole.error());
+  whole->places = std::move(out->comparison.places);
+  whole->means = thin.table.size();
+  out->comparison = std::move(*whole);
+  out->verdict.suspects_share =
+      static_cast<double>(out->comparison.suspects.size()) / static_cast<double>(part.table.size());
+  if (out->verdict.suspects_share > most_suspects) out->verdict.kind = Verdict::Kind::unrepeatable;
+  for (Candidate& c : out->candidates) {
+    if (!c.visible) continue;
+    std::vector<Term> terms = out->comparison.fit.terms;
+    terms.push_back(c.term);
+    const auto fitted = fit(part.table, terms, weight);
+    if (!fitted) continue;
+    c.rms = fitted->rms;
+    c.cv_rms = rms_of(cross_validated(part.table, terms, weight), weight);
+  }
+  return out;
+}
+
 }  // namespace
 
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed) {
   if (part.table.size() == 0) return fail("there are no readings of an axis to explain");
   if (part.table.size() <= thin_beyond) return Explainer(part, model, catalogue, seed).run();
-  // The search on means of neighbours; what the model leaves, on all readings.
-  const Part thin{part.measurements, part.axes, thinned(part.table)};
-  auto out = Explainer(thin, model, catalogue, seed).run();
-  if (!out) return out;
-  auto whole = compare(part, out->comparison.fit.terms);
-  if (!whole) return fail(whole.error());
-  whole->places = std::move(out->comparison.places);
-  out->comparison = std::move(*whole);
-  return out;
+  return explain_on_means(part, model, catalogue, seed);
 }
 
 }  // namespace nonio::model

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "design.h"
+#include "thin.h"
 #include "workbench.h"
 
 namespace nonio::model {
@@ -141,7 +142,6 @@ void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std:
 /// Shapes that were not given: the grid's best.
 Expected<void> start_shapes(const Observations& o, std::vector<Term>& terms,
                             const std::vector<char>& searched, const std::vector<double>& weight) {
-  if (std::find(searched.begin(), searched.end(), 1) == searched.end()) return {};
   const Workbench bench(o, terms, weight);
   auto best = bench.best_shapes();
   if (!best) return fail(best.error());
@@ -175,6 +175,36 @@ Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::si
   if (above->cols() != linear.size() || below->cols() != linear.size())
     return fail(term.name() + ": the number of columns changes with a continuous shape");
   return VectorXd((*above - *below) * linear / (2.0 * step));
+}
+
+/// Shapes that were found on means of the readings: steps of Gauss and Newton on all of them.
+void step_shapes(const Observations& o, std::vector<Term>& terms, const std::vector<char>& searched,
+                 const VectorXd& root, const VectorXd& y) {
+  for (int round = 0; round < 2; ++round) {
+    auto d = design_of(o, terms, root);
+    if (!d) return;
+    const auto s = solve(*d, y, root);
+    if (!s) return;
+    std::vector<double*> moved;
+    std::vector<Term> next = terms;
+    for (std::size_t t = 0; t < terms.size(); ++t)
+      for (std::size_t k = 0; searched[t] && k < terms[t].shape.size(); ++k) {
+        if (!terms[t].effect->shapes[k].continuous) continue;
+        const Index columns = d->first[t + 1] - d->first[t];
+        const auto column = shape_column(o, terms[t], k, s->x.segment(d->first[t], columns));
+        if (!column) continue;
+        d->a.conservativeResize(Eigen::NoChange, d->a.cols() + 1);
+        d->a.rightCols(1) = root.cwiseProduct(*column);
+        d->names.push_back(terms[t].name());
+        moved.push_back(&next[t].shape[k]);
+      }
+    const auto joint = moved.empty() ? Expected<Solution>(fail("")) : solve(*d, y, root);
+    if (!joint) return;
+    for (std::size_t k = 0; k < moved.size(); ++k)
+      *moved[k] += joint->x(d->first.back() + static_cast<Index>(k));
+    if (!(squares_with(o, next, root, y) < s->squares)) return;
+    terms = std::move(next);
+  }
 }
 
 void name_parameters(Fit& out) {
@@ -249,7 +279,15 @@ Expected<Fit> fit(const Observations& o, std::vector<Term> terms, std::vector<do
   std::vector<char> searched;
   for (const Term& term : terms)
     searched.push_back(term.shape.empty() && !term.effect->shapes.empty());
-  if (auto found = start_shapes(o, terms, searched, weight); !found) return fail(found.error());
+  const bool any = std::find(searched.begin(), searched.end(), 1) != searched.end();
+  const Observations thin = any && o.size() > thin_beyond ? thinned(o, weight) : Observations{};
+  if (thin.size() > 0 && thin.size() < o.size()) {
+    auto near = fit(thin, terms);
+    if (!near) return fail(near.error());
+    terms = std::move(near->terms);
+  } else if (any) {
+    if (auto found = start_shapes(o, terms, searched, weight); !found) return fail(found.error());
+  }
   return fit_near(o, std::move(terms), searched, std::move(weight));
 }
 
@@ -258,7 +296,10 @@ Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
   const VectorXd root = root_weights(o, weight);
   const VectorXd y =
       Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.deviation.size()));
-  refine_shapes(o, terms, searched, root, y);
+  if (o.size() > thin_beyond)
+    step_shapes(o, terms, searched, root, y);
+  else
+    refine_shapes(o, terms, searched, root, y);
   auto design = design_of(o, terms, root);
   if (!design) return fail(design.error());
   const auto used = static_cast<Index>((root.array() > 0.0).count());

@@ -75,6 +75,7 @@ struct Comparison {
   std::optional<NoiseFloor> floor{};
   std::optional<LackOfFit> lack_of_fit{};
   std::vector<Place> places{};  ///< all that were looked at, largest share first
+  std::size_t means = 0;        ///< long tables: of how many means the places tell; else 0
   std::vector<Suspect> suspects{};
   bool fails() const;  ///< something is left in some place
 };
