@@ -35,32 +35,49 @@ std::vector<double> cross_validated(const Observations& o, const std::vector<Ter
   if (std::none_of(of_line.begin(), of_line.end(), [](const auto& l) { return l.second > 1; }))
     return {};
   const auto n = static_cast<Index>(o.size()), lines = static_cast<Index>(lines_of(o));
-  MatrixXd a = MatrixXd::Zero(n, lines);
+  std::vector<MatrixXd> blocks;
+  Index columns = lines;
+  for (const Term& term : terms) {
+    auto block = columns_of(o, term, term.shape);
+    if (!block) return {};
+    columns += block->cols();
+    blocks.push_back(std::move(*block));
+  }
+  MatrixXd a = MatrixXd::Zero(n, columns);
   for (Index i = 0; i < n; ++i)
     a(i, static_cast<Index>(line_of(o, static_cast<std::size_t>(i)))) = 1.0;
-  for (const Term& term : terms) {
-    const auto block = columns_of(o, term, term.shape);
-    if (!block) return {};
-    a.conservativeResize(Eigen::NoChange, a.cols() + block->cols());
-    a.rightCols(block->cols()) = *block;
+  Index first = lines;
+  for (MatrixXd& block : blocks) {
+    a.middleCols(first, block.cols()) = block;
+    first += block.cols();
+    block.resize(0, 0);
   }
   const VectorXd scale = a.colwise().norm().cwiseMax(1e-300).transpose();
-  a = a * scale.cwiseInverse().asDiagonal();
-  const VectorXd y = Eigen::Map<const VectorXd>(o.deviation.data(), n);
+  a *= scale.cwiseInverse().asDiagonal();
+  const Eigen::Map<const VectorXd> y(o.deviation.data(), n);
   const VectorXd root = root_weights(o, weight);
-  const MatrixXd wa = root.asDiagonal() * a;
-  const MatrixXd normal = wa.transpose() * wa;
-  const VectorXd right = wa.transpose() * root.cwiseProduct(y);
+  // Each run's share of the normal equations; it is left out by taking its share away.
+  const auto share_of = [&](const std::vector<Index>& rows, MatrixXd& normal, VectorXd& right) {
+    const MatrixXd here = root(rows).asDiagonal() * a(rows, Eigen::all);
+    normal.noalias() = here.transpose() * here;
+    right.noalias() = here.transpose() * root(rows).cwiseProduct(y(rows));
+  };
+  MatrixXd normal = MatrixXd::Zero(columns, columns), share;
+  VectorXd right = VectorXd::Zero(columns), right_share;
+  for (const auto& [run, rows] : runs) {
+    share_of(rows, share, right_share);
+    normal += share;
+    right += right_share;
+  }
   std::vector<double> out(o.size(), std::numeric_limits<double>::quiet_NaN());
   for (const auto& [run, rows] : runs) {
     if (of_line[run.first] < 2) continue;
-    const MatrixXd here = wa(rows, Eigen::all);
-    const VectorXd wy = root.cwiseProduct(y)(rows);
-    const Eigen::LDLT<MatrixXd> ldlt(normal - here.transpose() * here);
+    share_of(rows, share, right_share);
+    const Eigen::LDLT<MatrixXd> ldlt(normal - share);
     if (ldlt.info() != Eigen::Success ||
         !(ldlt.vectorD().minCoeff() > 1e-10 * ldlt.vectorD().maxCoeff()))
       continue;
-    const VectorXd x = ldlt.solve(right - here.transpose() * wy);
+    const VectorXd x = ldlt.solve(right - right_share);
     for (const Index i : rows) out[static_cast<std::size_t>(i)] = y(i) - a.row(i).dot(x);
   }
   return out;

@@ -22,13 +22,13 @@ struct Design {
   MatrixXd a;                      // rows times root weights; zeros of lines first, then terms
   std::vector<std::string> names;  // of all columns
   std::vector<Index> first;        // first column of each term, and the end
+  std::vector<MatrixXd> blocks;    // of each term, as its effect gave them
 };
 
 Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms,
                            const VectorXd& root) {
   const auto n = static_cast<Index>(o.size());
   const auto lines = static_cast<Index>(lines_of(o));
-  std::vector<MatrixXd> blocks;
   Design d;
   Index columns = lines;
   for (Index k = 0; k < lines; ++k) d.names.push_back("the zero of line " + std::to_string(k + 1));
@@ -38,14 +38,14 @@ Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms
     d.first.push_back(columns);
     columns += block->cols();
     for (Index k = 0; k < block->cols(); ++k) d.names.push_back(term.name());
-    blocks.push_back(std::move(*block));
+    d.blocks.push_back(std::move(*block));
   }
   d.first.push_back(columns);
   d.a.setZero(n, columns);
   for (Index i = 0; i < n; ++i)
     d.a(i, static_cast<Index>(line_of(o, static_cast<std::size_t>(i)))) = root(i);
   for (std::size_t t = 0; t < terms.size(); ++t)
-    d.a.middleCols(d.first[t], blocks[t].cols()) = root.asDiagonal() * blocks[t];
+    d.a.middleCols(d.first[t], d.blocks[t].cols()) = root.asDiagonal() * d.blocks[t];
   return d;
 }
 
@@ -63,7 +63,7 @@ std::string inseparable(const MatrixXd& scaled, const std::vector<std::string>& 
 }
 
 struct Solution {
-  VectorXd x, residual;  // residual without weights
+  VectorXd x;
   MatrixXd cofactor;     // (A^T W A)^-1
   double squares = 0.0;  // weighted
 };
@@ -84,12 +84,7 @@ Expected<Solution> solve(const Design& d, const VectorXd& y, const VectorXd& roo
   VectorXd scaled = qr.solve(weighted);
   scaled += qr.solve(weighted - a * scaled);  // one step of refinement
   s.x = scaled.cwiseQuotient(scale);
-  const VectorXd left = weighted - a * scaled;
-  s.squares = left.squaredNorm();
-  s.residual = left;
-  for (Index i = 0; i < left.size(); ++i) {
-    if (root(i) > 0.0) s.residual(i) = left(i) / root(i);
-  }
+  s.squares = (weighted - a * scaled).squaredNorm();
   // (A^T A)^-1 = P R^-1 R^-T P^T
   const MatrixXd r_inverse = qr.matrixR()
                                  .topLeftCorner(unknowns, unknowns)
@@ -320,9 +315,8 @@ Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
   for (Index i = 0; i < y.size(); ++i)
     residual(i) -= s->x(static_cast<Index>(line_of(o, static_cast<std::size_t>(i))));
   for (std::size_t t = 0; t < out.terms.size(); ++t) {
-    const auto block = columns_of(o, out.terms[t], out.terms[t].shape);
-    if (!block) return fail(block.error());
-    const VectorXd part = *block * s->x.segment(design->first[t], block->cols());
+    const MatrixXd& block = design->blocks[t];
+    const VectorXd part = block * s->x.segment(design->first[t], block.cols());
     residual -= part;
     out.part.emplace_back(part.data(), part.data() + part.size());
   }
