@@ -70,7 +70,28 @@ class Explainer {
     }
     start_ = bench_->settled(std::move(start));
     best_ = best_explanation(*bench_, start_);
+    // What lies between the values of a grid would be taken for an effect of its own.
+    const bool finer = add_refined(start_);
+    if (add_refined(best_) || finer) {
+      start_ = bench_->settled(std::move(start_));
+      best_ = best_explanation(*bench_, start_);
+    }
     return {};
+  }
+
+  /// Shapes of a state between the values of their grids, as values of the grids.
+  bool add_refined(const State& state) {
+    const std::vector<Term> coarse = terms_of_state(state);
+    const std::vector<char> searched = flags(state, true);
+    const auto fitted = fit_near(part_.table, coarse, searched, weight_);
+    if (!fitted) return false;
+    bool any = false;
+    for (std::size_t t = 0; t < coarse.size(); ++t) {
+      if (fitted->terms[t].shape == coarse[t].shape) continue;
+      bench_->add_shape(part_.table, bench_->effect_of(state.blocks[t]), fitted->terms[t].shape);
+      any = true;
+    }
+    return any;
   }
 
   VectorXd residual_of(const State& state) const {

@@ -106,6 +106,41 @@ double squares_with(const Observations& o, const std::vector<Term>& terms, const
   return rotated.tail(rotated.size() - d->a.cols()).squaredNorm();
 }
 
+/// Sum of squares as a function of one term's shape: all other columns are taken out once.
+class SquaresOf {
+ public:
+  SquaresOf(const Observations& o, const std::vector<Term>& terms, std::size_t t,
+            const VectorXd& root, const VectorXd& y)
+      : o_(o), root_(root), left_(root.cwiseProduct(y)) {
+    std::vector<Term> others = terms;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(t));
+    const auto d = design_of(o, others, root);
+    if (!d) return;
+    const MatrixXd scaled =
+        d->a * d->a.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal();
+    const Eigen::HouseholderQR<MatrixXd> qr(scaled);
+    others_ = qr.householderQ() * MatrixXd::Identity(scaled.rows(), scaled.cols());
+    left_ -= others_ * (others_.transpose() * left_);
+  }
+
+  /// Infinite where the term has no columns.
+  double operator()(const Term& term) const {
+    auto block = columns_of(o_, term, term.shape);
+    if (!block) return std::numeric_limits<double>::infinity();
+    *block = root_.asDiagonal() * *block;
+    if (others_.cols() > 0) *block -= others_ * (others_.transpose() * *block);
+    const Eigen::HouseholderQR<MatrixXd> qr(*block);
+    const VectorXd rotated = qr.householderQ().transpose() * left_;
+    return rotated.tail(rotated.size() - block->cols()).squaredNorm();
+  }
+
+ private:
+  const Observations& o_;
+  const VectorXd& root_;
+  VectorXd left_;
+  MatrixXd others_;
+};
+
 /// Golden section between the neighbours of a grid's best value.
 void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std::size_t k,
             const VectorXd& root, const VectorXd& y) {
@@ -116,9 +151,10 @@ void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std:
   double low = below == grid.begin() ? value : *std::prev(below);
   double high = above == grid.end() ? value : *above;
   if (!(low < high)) return;
+  const SquaresOf squares_of(o, terms, t, root, y);
   const auto at = [&](double x) {
     value = x;
-    return squares_with(o, terms, root, y);
+    return squares_of(terms[t]);
   };
   constexpr double golden = 0.6180339887498949;  // (sqrt(5) - 1)/2
   const double start = value, squares = at(start);

@@ -67,24 +67,50 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
   yy_ = y_.squaredNorm();
 }
 
+MatrixXd Workbench::columns_for(const Observations& o, Instance& instance,
+                                const std::vector<double>& shape, bool& of_position) const {
+  const auto columns = columns_of(o, instance.term, shape);
+  if (!columns) {
+    instance.error = columns.error().message;
+    return {};
+  }
+  MatrixXd part = root_.asDiagonal() * *columns;
+  const VectorXd before = part.colwise().norm().transpose();
+  take_out_zeros(o, root_, part);
+  const VectorXd after = part.colwise().norm().transpose();
+  if (part.cols() == 0 || !(after.array() > 1e-9 * before.array()).all()) return {};
+  of_position = varies_with_target_only(*columns, target_);
+  return part * after.cwiseInverse().asDiagonal();
+}
+
+void Workbench::add_shape(const Observations& o, std::size_t effect,
+                          const std::vector<double>& shape) {
+  Block block{effect, shape, x_.cols(), 0, false};
+  const MatrixXd part = columns_for(o, instances_[effect], shape, block.of_position);
+  if (part.cols() == 0) return;
+  block.count = part.cols();
+  const Index columns = x_.cols() + part.cols();
+  x_.conservativeResize(Eigen::NoChange, columns);
+  x_.rightCols(part.cols()) = part;
+  gram_.conservativeResize(columns, columns);
+  gram_.rightCols(part.cols()).noalias() = x_.transpose() * part;
+  gram_.bottomRows(part.cols()) = gram_.rightCols(part.cols()).transpose();
+  xy_.conservativeResize(columns);
+  xy_.tail(part.cols()).noalias() = part.transpose() * y_;
+  instances_[effect].blocks.push_back(blocks_.size());
+  blocks_.push_back(std::move(block));
+}
+
 void Workbench::add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts) {
   Instance& instance = instances_[effect];
   const auto shapes = shapes_of(o, instance.term);
   Index at = parts.empty() ? 0 : blocks_.back().first + blocks_.back().count;
   for (const std::vector<double>& shape : shapes) {
-    auto columns = columns_of(o, instance.term, shape);
-    if (!columns) {
-      instance.error = columns.error().message;
-      continue;
-    }
-    MatrixXd part = root_.asDiagonal() * *columns;
-    const VectorXd before = part.colwise().norm().transpose();
-    take_out_zeros(o, root_, part);
-    const VectorXd after = part.colwise().norm().transpose();
-    if (part.cols() == 0 || !(after.array() > 1e-9 * before.array()).all()) continue;
-    part = part * after.cwiseInverse().asDiagonal();
+    bool of_position = false;
+    MatrixXd part = columns_for(o, instance, shape, of_position);
+    if (part.cols() == 0) continue;
     instance.blocks.push_back(blocks_.size());
-    blocks_.push_back({effect, shape, at, part.cols(), varies_with_target_only(*columns, target_)});
+    blocks_.push_back({effect, shape, at, part.cols(), of_position});
     at += part.cols();
     parts.push_back(std::move(part));
   }

@@ -48,6 +48,9 @@ class Workbench {
   double readings() const { return used_; }
   Index zeros() const { return zeros_; }
 
+  /// One more value of an effect's shapes, beside those of its grid.
+  void add_shape(const Observations& o, std::size_t effect, const std::vector<double>& shape);
+
   State state(std::vector<std::size_t> blocks) const;
   /// For each block the fall of `squares` if it is added; NaN if it adds no independent column.
   VectorXd gains(const State& state) const;
@@ -79,6 +82,9 @@ class Workbench {
  private:
   Index unknowns_of(const Block& block) const;
   void add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts);
+  /// Columns of unit length without the zeros of lines; none if the readings cannot show them.
+  MatrixXd columns_for(const Observations& o, Instance& instance, const std::vector<double>& shape,
+                       bool& of_position) const;
   struct Projection {
     Eigen::LLT<MatrixXd> llt;
     std::vector<Index> columns;
