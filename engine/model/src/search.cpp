@@ -142,12 +142,12 @@ class ChanceOf {
  public:
   ChanceOf(const Workbench& bench, const State& complete, const MatrixXd& noise)
       : bench_(bench),
-        columns_(bench.columns_of_state(complete)),
-        llt_(bench.gram()(columns_, columns_)),
+        llt_(bench.gram(complete.blocks)),
+        with_complete_(bench.products(complete.blocks)),
         products_(bench.columns().transpose() * noise),
         squares_(noise.colwise().squaredNorm().transpose()) {
-    if (!columns_.empty()) {
-      z_ = products_(columns_, Eigen::all);
+    if (!complete.blocks.empty()) {
+      z_ = products_(bench.columns_of_state(complete), Eigen::all);
       llt_.matrixL().solveInPlace(z_);
       squares_ -= z_.colwise().squaredNorm().transpose();
     }
@@ -163,10 +163,10 @@ class ChanceOf {
     VectorXd k_of_best = VectorXd::Ones(shuffles);
     for (const std::size_t b : instance.blocks) {
       const Workbench::Block& block = bench_.blocks()[b];
-      MatrixXd s = bench_.gram().block(block.first, block.first, block.count, block.count);
+      MatrixXd s = block.own;
       MatrixXd t = products_.middleRows(block.first, block.count);
-      if (!columns_.empty()) {
-        MatrixXd w = bench_.gram()(columns_, Eigen::seqN(block.first, block.count));
+      if (z_.size() > 0) {
+        MatrixXd w = with_complete_.middleRows(block.first, block.count).transpose();
         llt_.matrixL().solveInPlace(w);
         s.noalias() -= w.transpose() * w;
         t.noalias() -= w.transpose() * z_;
@@ -202,9 +202,8 @@ class ChanceOf {
 
  private:
   const Workbench& bench_;
-  std::vector<Index> columns_;
   Eigen::LLT<MatrixXd> llt_;
-  MatrixXd products_, z_;
+  MatrixXd with_complete_, products_, z_;
   VectorXd squares_;
   double dof_ = 0.0;
 };
