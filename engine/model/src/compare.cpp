@@ -149,8 +149,8 @@ Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
       Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(o.size())));
   if (o.size() <= thin_beyond) {
     const MatrixXd basis = basis_of(o, fit.terms, root);
-    out.places = places_of(
-        {part, repeats, root, residual, basis, static_cast<double>(fit.redundancy), out.floor});
+    out.places = PlaceTests(part, repeats, root, basis, static_cast<double>(fit.redundancy))(
+        residual, out.floor);
   }
   out.fit = std::move(fit);
   return out;

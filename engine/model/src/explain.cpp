@@ -45,7 +45,8 @@ class Explainer {
       if (auto searched = search(); !searched) return fail(searched.error());
       if (!suspect_again()) break;
     }
-    chance_ = measure_chance(*bench_, best_, repeats_.pass, seed_);
+    chance_ = measure_chance(
+        *bench_, best_, shuffled(residual_of(best_), bench_->basis(best_), repeats_.pass, seed_));
     prune();
     if (auto fitted = fit_both(); !fitted) return fail(fitted.error());
     rank();
@@ -328,12 +329,41 @@ class Explainer {
     return false;
   }
 
-  std::vector<Place> serious_places() const {
-    const double s = best_fit_.floor ? best_fit_.floor->s : best_fit_.fit.s;
+  /// Structure smaller than this is not worth a verdict.
+  double least_serious() const {
+    return least_left * (best_fit_.floor ? best_fit_.floor->s : best_fit_.fit.s);
+  }
+
+  std::vector<Place> serious(const std::vector<Place>& places) const {
     std::vector<Place> out;
-    for (const Place& place : best_fit_.places)
-      if (place.p < serious_p && place.rms > least_left * s) out.push_back(place);
+    for (const Place& place : places)
+      if (place.p < serious_p && place.rms > least_serious()) out.push_back(place);
     return out;
+  }
+
+  /// Noise alone, as large as that of a reading: what repeats leave, else what the best explanation
+  /// leaves (with root weights).
+  VectorXd noise() const {
+    const Saturated left = saturate(repeats_, best_fit_.fit.residual, weight_);
+    if (!(left.dof >= 8.0)) return residual_of(best_);
+    return bench_->root_weight().cwiseProduct(
+               Eigen::Map<const VectorXd>(left.e.data(), static_cast<Index>(left.e.size()))) *
+           std::sqrt(bench_->readings() / left.dof);
+  }
+
+  /// The share of shuffles of the noise whose verdict would not be `nothing`.
+  double false_alarms() const {
+    const MatrixXd basis = bench_->basis(best_);
+    MatrixXd shuffles = shuffled(noise(), basis, repeats_.pass, seed_);
+    take_out_zeros(part_.table, bench_->root_weight(), shuffles);
+    const std::vector<char> named = measure_chance(*bench_, best_, shuffles).named;
+    const PlaceTests tests(part_, repeats_, bench_->root_weight(), basis, dof_of(best_));
+    double alarms = 0.0;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      const VectorXd one = shuffles.col(static_cast<Index>(i));
+      if (named[i] != 0 || !serious(tests(one, best_fit_.floor, least_serious())).empty()) ++alarms;
+    }
+    return alarms / static_cast<double>(named.size());
   }
 
   /// Repeats of one target fall into two groups with nothing between them: no noise does that.
@@ -421,14 +451,13 @@ class Explainer {
 
   void judge() {
     Verdict& v = out_.verdict;
-    v.false_alarms =
-        static_cast<double>(chance_.false_alarms) / static_cast<double>(chance_.shuffles);
-    v.trials = chance_.shuffles;
+    v.trials = chance_.named.size();
+    v.false_alarms = false_alarms();
     v.suspects_share =
         static_cast<double>(suspects_.size()) / static_cast<double>(part_.table.size());
     for (const Place& place : out_.comparison.places)
       if (place.p < place_p) out_.fails.push_back(place);
-    const std::vector<Place> serious = serious_places();
+    const std::vector<Place> serious = this->serious(best_fit_.places);
     if (contradictory()) {
       v.kind = Verdict::Kind::unrepeatable;
       return;

@@ -107,12 +107,9 @@ double Chance::corrected(double p) const {
   return -std::expm1(trials * std::log1p(-std::min(p, 1.0)));
 }
 
-namespace {
-
-constexpr std::size_t stretch = 5;  // readings whose sign is flipped together
-
-MatrixXd shuffled(const VectorXd& residual, const std::vector<std::uint32_t>& pass,
-                  std::size_t shuffles, std::uint64_t seed) {
+MatrixXd shuffled(const VectorXd& residual, const MatrixXd& basis,
+                  const std::vector<std::uint32_t>& pass, std::uint64_t seed) {
+  constexpr std::size_t stretch = 5, shuffles = 200;  // readings whose sign is flipped together
   std::vector<std::size_t> block(pass.size());
   std::vector<std::size_t> in_pass, current;
   std::size_t blocks = 0;
@@ -129,8 +126,11 @@ MatrixXd shuffled(const VectorXd& residual, const std::vector<std::uint32_t>& pa
     for (Index i = 0; i < out.rows(); ++i)
       out(i, s) = sign[block[static_cast<std::size_t>(i)]] * residual(i);
   }
+  out -= basis * (basis.transpose() * out);
   return out;
 }
+
+namespace {
 
 /// One effect added to a complete model in every shuffle: its p, and whether the criterion falls.
 struct Added {
@@ -146,11 +146,6 @@ class ChanceOf {
         with_complete_(bench.products(complete.blocks)),
         products_(bench.columns().transpose() * noise),
         squares_(noise.colwise().squaredNorm().transpose()) {
-    if (!complete.blocks.empty()) {
-      z_ = products_(bench.columns_of_state(complete), Eigen::all);
-      llt_.matrixL().solveInPlace(z_);
-      squares_ -= z_.colwise().squaredNorm().transpose();
-    }
     dof_ = bench.readings() - static_cast<double>(bench.zeros() + complete.parameters);
   }
 
@@ -165,11 +160,10 @@ class ChanceOf {
       const Workbench::Block& block = bench_.blocks()[b];
       MatrixXd s = block.own;
       MatrixXd t = products_.middleRows(block.first, block.count);
-      if (z_.size() > 0) {
+      if (with_complete_.cols() > 0) {
         MatrixXd w = with_complete_.middleRows(block.first, block.count).transpose();
         llt_.matrixL().solveInPlace(w);
         s.noalias() -= w.transpose() * w;
-        t.noalias() -= w.transpose() * z_;
       }
       const Eigen::LLT<MatrixXd> llt(s);
       if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > 1e-4)) continue;
@@ -203,20 +197,16 @@ class ChanceOf {
  private:
   const Workbench& bench_;
   Eigen::LLT<MatrixXd> llt_;
-  MatrixXd with_complete_, products_, z_;
+  MatrixXd with_complete_, products_;
   VectorXd squares_;
   double dof_ = 0.0;
 };
 
 }  // namespace
 
-Chance measure_chance(const Workbench& bench, const State& complete,
-                      const std::vector<std::uint32_t>& pass, std::uint64_t seed) {
-  constexpr std::size_t shuffles = 200;
-  VectorXd residual = bench.y();
-  const MatrixXd basis = bench.basis(complete);
-  residual -= basis * (basis.transpose() * residual);
-  const ChanceOf of(bench, complete, shuffled(residual, pass, shuffles, seed));
+Chance measure_chance(const Workbench& bench, const State& complete, const MatrixXd& shuffled) {
+  const ChanceOf of(bench, complete, shuffled);
+  const auto shuffles = static_cast<std::size_t>(shuffled.cols());
   std::vector<double> least(shuffles, 1.0), least_better(shuffles, 1.0);
   for (std::size_t e = 0; e < bench.instances().size(); ++e) {
     if (bench.holds(complete, e)) continue;
@@ -230,9 +220,9 @@ Chance measure_chance(const Workbench& bench, const State& complete,
   double sum = 0.0;
   for (const double p : least) sum -= std::log1p(-std::min(p, 1.0 - 1e-12));
   Chance out;
-  out.shuffles = shuffles;
   out.trials = std::max(static_cast<double>(shuffles) / std::max(sum, 1e-12), 1.0);
-  for (const double p : least_better) out.false_alarms += p < 1.0 && out.corrected(p) < named_below;
+  for (const double p : least_better)
+    out.named.push_back(p < 1.0 && out.corrected(p) < named_below ? 1 : 0);
   return out;
 }
 

@@ -108,7 +108,7 @@ struct Verdict {
   enum class Kind { missing, nothing, unknown, unrepeatable };
   Kind kind = Kind::nothing;
   std::string effect;           ///< of missing
-  double false_alarms = 0.0;    ///< measured rate: noise alone, this model, this catalogue
+  double false_alarms = 0.0;    ///< share of shuffles of the noise whose verdict is not `nothing`
   std::size_t trials = 0;       ///< behind it
   double suspects_share = 0.0;  ///< of the readings
 };
