@@ -351,19 +351,19 @@ class Explainer {
            std::sqrt(bench_->readings() / left.dof);
   }
 
-  /// The share of shuffles of the noise whose verdict would not be `nothing`.
-  double false_alarms() const {
+  void count_false_alarms(Verdict& v) const {
     const MatrixXd basis = bench_->basis(best_);
     MatrixXd shuffles = shuffled(noise(), basis, repeats_.pass, seed_);
     take_out_zeros(part_.table, bench_->root_weight(), shuffles);
-    const std::vector<char> named = measure_chance(*bench_, best_, shuffles).named;
+    const std::vector<char> named = named_in(*bench_, best_, shuffles, chance_);
     const PlaceTests tests(part_, repeats_, bench_->root_weight(), basis, dof_of(best_));
     double alarms = 0.0;
     for (std::size_t i = 0; i < named.size(); ++i) {
       const VectorXd one = shuffles.col(static_cast<Index>(i));
       if (named[i] != 0 || !serious(tests(one, best_fit_.floor, least_serious())).empty()) ++alarms;
     }
-    return alarms / static_cast<double>(named.size());
+    v.trials = named.size();
+    v.false_alarms = alarms / static_cast<double>(named.size());
   }
 
   /// Repeats of one target fall into two groups with nothing between them: no noise does that.
@@ -451,8 +451,7 @@ class Explainer {
 
   void judge() {
     Verdict& v = out_.verdict;
-    v.trials = chance_.named.size();
-    v.false_alarms = false_alarms();
+    count_false_alarms(v);
     v.suspects_share =
         static_cast<double>(suspects_.size()) / static_cast<double>(part_.table.size());
     for (const Place& place : out_.comparison.places)
@@ -525,9 +524,7 @@ Expected<Explanation> explain_on_means(const Part& part, const std::vector<Term>
     if (!c.visible) continue;
     std::vector<Term> terms = out->comparison.fit.terms;
     terms.push_back(c.term);
-    const auto fitted = fit(part.table, terms, weight);
-    if (!fitted) continue;
-    c.rms = fitted->rms;
+    c.rms = rms_with(part.table, terms, weight);
     c.cv_rms = rms_of(cross_validated(part.table, terms, weight), weight);
   }
   return out;

@@ -98,12 +98,13 @@ Expected<Solution> solve(const Design& d, const VectorXd& y, const VectorXd& roo
 /// Weighted sum of squares with these shapes; infinite where there is none.
 double squares_with(const Observations& o, const std::vector<Term>& terms, const VectorXd& root,
                     const VectorXd& y) {
-  const auto d = design_of(o, terms, root);
+  auto d = design_of(o, terms, root);
   if (!d) return std::numeric_limits<double>::infinity();
-  const VectorXd weighted = root.cwiseProduct(y);
-  const Eigen::HouseholderQR<MatrixXd> qr(d->a);
-  VectorXd rotated = qr.householderQ().transpose() * weighted;
-  return rotated.tail(rotated.size() - d->a.cols()).squaredNorm();
+  const Index columns = d->a.cols();
+  const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(d->a);  // in place
+  VectorXd rotated = root.cwiseProduct(y);
+  rotated.applyOnTheLeft(qr.householderQ().transpose());
+  return rotated.tail(rotated.size() - columns).squaredNorm();
 }
 
 /// Sum of squares as a function of one term's shape: all other columns are taken out once.
@@ -368,6 +369,15 @@ Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
   out.s = out.redundancy > 0 ? std::sqrt(s->squares / static_cast<double>(out.redundancy)) : 0.0;
   for (Parameter& p : out.parameters) p.u *= out.s;
   return out;
+}
+
+double rms_with(const Observations& o, const std::vector<Term>& terms,
+                const std::vector<double>& weight) {
+  const VectorXd root = root_weights(o, weight);
+  const Eigen::Map<const VectorXd> y(o.deviation.data(), static_cast<Index>(o.size()));
+  const double sum = weight.empty() ? static_cast<double>(o.size())
+                                    : std::accumulate(weight.begin(), weight.end(), 0.0);
+  return std::sqrt(squares_with(o, terms, root, y) / sum);
 }
 
 }  // namespace nonio::model

@@ -149,7 +149,8 @@ class ChanceOf {
     dof_ = bench.readings() - static_cast<double>(bench.zeros() + complete.parameters);
   }
 
-  Added add(std::size_t effect) const {
+  /// p of those only that lower the criterion, if asked for: an F-test costs more than all else.
+  Added add(std::size_t effect, bool better_only) const {
     const Workbench::Instance& instance = bench_.instances()[effect];
     const Index shuffles = products_.cols();
     Added out{std::vector<double>(static_cast<std::size_t>(shuffles), 1.0),
@@ -186,6 +187,7 @@ class ChanceOf {
     for (Index i = 0; i < shuffles; ++i) {
       const auto at = static_cast<std::size_t>(i);
       out.better[at] = best(i) > 0.0 && fall_of_best(i) > 0.0;
+      if (better_only && out.better[at] == 0) continue;
       const double dof = dof_ - k_of_best(i);
       out.p[at] =
           math::f_upper(fall_of_best(i) / k_of_best(i) / ((squares_(i) - fall_of_best(i)) / dof),
@@ -206,24 +208,29 @@ class ChanceOf {
 
 Chance measure_chance(const Workbench& bench, const State& complete, const MatrixXd& shuffled) {
   const ChanceOf of(bench, complete, shuffled);
-  const auto shuffles = static_cast<std::size_t>(shuffled.cols());
-  std::vector<double> least(shuffles, 1.0), least_better(shuffles, 1.0);
+  std::vector<double> least(static_cast<std::size_t>(shuffled.cols()), 1.0);
   for (std::size_t e = 0; e < bench.instances().size(); ++e) {
     if (bench.holds(complete, e)) continue;
-    const Added added = of.add(e);
-    for (std::size_t i = 0; i < shuffles; ++i) {
-      least[i] = std::min(least[i], added.p[i]);
-      if (added.better[i]) least_better[i] = std::min(least_better[i], added.p[i]);
-    }
+    const Added added = of.add(e, false);
+    for (std::size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], added.p[i]);
   }
   // The smallest of m independent p: -ln(1 - p) is exponential with rate m.
   double sum = 0.0;
   for (const double p : least) sum -= std::log1p(-std::min(p, 1.0 - 1e-12));
-  Chance out;
-  out.trials = std::max(static_cast<double>(shuffles) / std::max(sum, 1e-12), 1.0);
-  for (const double p : least_better)
-    out.named.push_back(p < 1.0 && out.corrected(p) < named_below ? 1 : 0);
-  return out;
+  return {std::max(static_cast<double>(least.size()) / std::max(sum, 1e-12), 1.0)};
+}
+
+std::vector<char> named_in(const Workbench& bench, const State& complete, const MatrixXd& shuffled,
+                           const Chance& chance) {
+  const ChanceOf of(bench, complete, shuffled);
+  std::vector<char> named(static_cast<std::size_t>(shuffled.cols()), 0);
+  for (std::size_t e = 0; e < bench.instances().size(); ++e) {
+    if (bench.holds(complete, e)) continue;
+    const Added added = of.add(e, true);
+    for (std::size_t i = 0; i < named.size(); ++i)
+      if (added.better[i] != 0 && chance.corrected(added.p[i]) < named_below) named[i] = 1;
+  }
+  return named;
 }
 
 }  // namespace nonio::model

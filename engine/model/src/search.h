@@ -15,8 +15,7 @@ Workbench::State best_explanation(const Workbench& bench, const Workbench::State
 
 /// What noise alone finds in this search when `complete` holds all that there is.
 struct Chance {
-  double trials = 1.0;        ///< independent tests that the search amounts to
-  std::vector<char> named{};  ///< of each shuffle, whether an effect would have been named
+  double trials = 1.0;  ///< independent tests that the search amounts to
 
   /// 1 - (1 - p)^trials
   double corrected(double p) const;
@@ -29,6 +28,10 @@ MatrixXd shuffled(const VectorXd& residual, const MatrixXd& basis,
 
 Chance measure_chance(const Workbench& bench, const Workbench::State& complete,
                       const MatrixXd& shuffled);
+
+/// Of each shuffle, whether an effect would be named.
+std::vector<char> named_in(const Workbench& bench, const Workbench::State& complete,
+                           const MatrixXd& shuffled, const Chance& chance);
 
 /// F-test of one effect of a state against the rest; not corrected for any search.
 double p_of(const Workbench& bench, const Workbench::State& state, std::size_t effect);
