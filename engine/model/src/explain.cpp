@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "compare.h"
 #include "nonio/math/distributions.h"
@@ -23,6 +24,7 @@ constexpr double alias_evidence = 6.0;  // 2 ln 20: one twentieth of the evidenc
 constexpr double least_rms = 0.2;       // of the noise: smaller effects are not worth a name
 constexpr double least_left = 0.25;     // of the noise: smaller structure is not worth a verdict
 constexpr double serious_p = 0.005;
+constexpr double memory_p = 1e-4;       // noise without a memory looks so once in 10,000
 constexpr double most_suspects = 0.06;  // of the readings; beyond, they do not repeat
 // What is left in the same place, of what the candidate says: beyond, the candidate is not it.
 constexpr double unexplained_share = 0.04;
@@ -58,18 +60,11 @@ class Explainer {
   Expected<void> search() {
     weight_ = weights_without(part_.table.size(), suspects_);
     bench_.emplace(part_.table, terms_, weight_, repeats_.target);
-    State start = bench_->state({});
-    for (std::size_t e = 0; e < model_.size(); ++e) {
-      const State next = bench_->with(start, bench_->gains(start, e), e);
-      if (next.blocks.size() == start.blocks.size()) {
-        const std::string& why = bench_->instances()[e].error;
-        return fail(!why.empty() ? why
-                                 : "the readings cannot tell " + model_[e].name() +
-                                       " from the rest of the model");
-      }
-      start = next;
-    }
-    start_ = bench_->settled(std::move(start));
+    auto start = started(false);
+    if (!start) return fail(start.error());
+    start_ = std::move(*start);
+    // Instants and periods of a model hold each other fast: tried from two sides.
+    if (const auto other = started(true); other && other->squares < start_.squares) start_ = *other;
     best_ = best_explanation(*bench_, start_);
     // What lies between the values of a grid would be taken for an effect of its own.
     const bool finer = add_refined(start_);
@@ -78,6 +73,40 @@ class Explainer {
       best_ = best_explanation(*bench_, start_);
     }
     return {};
+  }
+
+  /// The model with its shapes searched; its terms come in as they are written, or those first that
+  /// explain most.
+  Expected<State> started(bool largest_first) const {
+    State start = bench_->state({});
+    std::vector<std::size_t> open(model_.size());
+    std::iota(open.begin(), open.end(), std::size_t{0});
+    while (!open.empty()) {
+      const VectorXd gains = bench_->gains(start);
+      State best;
+      std::size_t at = open.size();
+      for (std::size_t k = 0; k < (largest_first ? open.size() : 1); ++k) {
+        State next = bench_->with(start, gains, open[k]);
+        if (next.blocks.size() == start.blocks.size()) {
+          const std::string& why = bench_->instances()[open[k]].error;
+          return fail(!why.empty() ? why
+                                   : "the readings cannot tell " + model_[open[k]].name() +
+                                         " from the rest of the model");
+        }
+        if (at == open.size() || next.squares < best.squares) best = std::move(next), at = k;
+      }
+      start = std::move(best);
+      open.erase(open.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    return in_order(bench_->settled(std::move(start)));
+  }
+
+  /// Blocks in the order of the model.
+  State in_order(State state) const {
+    std::sort(state.blocks.begin(), state.blocks.end(), [&](std::size_t a, std::size_t b) {
+      return bench_->effect_of(a) < bench_->effect_of(b);
+    });
+    return state;
   }
 
   /// Shapes of a state between the values of their grids, as values of the grids.
@@ -308,9 +337,33 @@ class Explainer {
     });
   }
 
+  /// A zero that walks: what repeats leave has a memory from one reading of a pass to the next. Its
+  /// size is that of a random walk over all passes: step^2 n/6 in square, of which a pass of m
+  /// readings keeps step^2 3m/70 when its curve of second degree is taken out.
+  std::optional<Place> walking_zero() const {
+    const Saturated left = saturate(repeats_, best_fit_.fit.residual, weight_);
+    if (!(left.dof >= 8.0)) return std::nullopt;
+    std::vector<double> before(repeats_.passes, std::numeric_limits<double>::quiet_NaN());
+    double products = 0.0, pairs = 0.0;
+    for (std::size_t i = 0; i < left.e.size(); ++i) {
+      if (!(weight_[i] > 0.0)) continue;
+      double& last = before[repeats_.pass[i]];
+      if (std::isfinite(last)) products += last * left.e[i], ++pairs;
+      last = left.e[i];
+    }
+    const double mean_square = left.squares / bench_->readings();
+    if (!(pairs >= 20.0) || !(mean_square > 0.0)) return std::nullopt;
+    const double r = products / pairs / mean_square;  // 0 +- 1/sqrt(pairs) without a memory
+    const double p = 0.5 * std::erfc(r * std::sqrt(pairs / 2.0));
+    if (!(p < memory_p)) return std::nullopt;
+    const double square = r * mean_square * static_cast<double>(repeats_.passes) * 70.0 / 18.0;
+    return Place{"time", 0.0, p, std::sqrt(square)};
+  }
+
   /// Whether something else is left in the places where this effect works: then it may be no more
-  /// than the nearest thing in the catalogue.
-  bool in_doubt(const std::string& name, const std::vector<Place>& serious) const {
+  /// than the nearest thing in the catalogue. A zero that walks can look like anything.
+  bool in_doubt(const std::string& name, const std::vector<Place>& serious,
+                const std::optional<Place>& walk) const {
     for (std::size_t t = 0; t < best_fit_.fit.terms.size(); ++t) {
       if (best_fit_.fit.terms[t].name() != name) continue;
       const VectorXd part = Eigen::Map<const VectorXd>(
@@ -319,6 +372,7 @@ class Explainer {
       // What it alone can say: effects that cancel each other may both be large.
       const double rms2 =
           (bench_->without(best_, index_of(name)).squares - best_.squares) / bench_->readings();
+      if (walk && walk->rms * walk->rms > unexplained_share * rms2) return true;
       const auto works_in = factors_of(part_, repeats_, bench_->root_weight(),
                                        bench_->root_weight().cwiseProduct(centred));
       for (const Place& place : serious)
@@ -456,17 +510,19 @@ class Explainer {
         static_cast<double>(suspects_.size()) / static_cast<double>(part_.table.size());
     for (const Place& place : out_.comparison.places)
       if (place.p < place_p) out_.fails.push_back(place);
-    const std::vector<Place> serious = this->serious(best_fit_.places);
+    std::vector<Place> serious = this->serious(best_fit_.places);
+    const std::optional<Place> walk = walking_zero();
     if (contradictory()) {
       v.kind = Verdict::Kind::unrepeatable;
       return;
     }
     for (const std::string& name : out_.together)
-      if (!in_doubt(name, serious)) {
+      if (!in_doubt(name, serious, walk)) {
         v.kind = Verdict::Kind::missing;
         v.effect = name;
         break;
       }
+    if (walk) serious.insert(serious.begin(), *walk);
     if (v.kind == Verdict::Kind::missing) {
       lift(v.effect);
       out_.plans = plans_for(part_, out_.comparison.fit.terms, out_.candidates.front(), terms_,
