@@ -223,6 +223,7 @@ int main(int argc, char** argv) {
   add_compare_verb(cli, common, outcome);
   add_explain_verb(cli, common, outcome);
   add_model_verb(cli, common, outcome);
+  add_plan_verb(cli, common, outcome);
 
   app::SimulateVerb simulate;
   CLI::App* simulate_verb = simulate.add_to(cli);

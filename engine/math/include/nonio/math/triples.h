@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "nonio/sdk/error.h"
+#include "nonio/sdk/results.h"
 
 /// Stops for two axes and both diagonals of their rectangle such that the steps of all three are
 /// whole multiples of the control's resolution.
@@ -112,6 +113,9 @@ struct TriplePlans {
 inline constexpr std::int64_t most_tried = 20'000'000;
 
 Expected<TriplePlans> plan_triples(const TripleWish& wish);
+
+/// A row a plan, with the names of the contract and the noise gains.
+PointTable triple_table(const std::vector<TriplePlan>& plans);
 
 /// The order of preference.
 bool stands_before(const TriplePlan& one, const TriplePlan& other, EvenSteps even);
