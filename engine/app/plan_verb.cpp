@@ -143,7 +143,7 @@ int write_programs(const char* verb, const Common& common, const Programs& p,
   host::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
-  const auto files = host::write_programs(plugins, p.control, machine, rows, settings, {});
+  const auto files = host::write_programs(plugins, p.control, machine, rows, settings);
   if (!files) {
     for (const Error& e : files.error()) complain(verb, e.message);
     return exit_usage;

@@ -128,7 +128,7 @@ class Programs(VerbTest):
         lines = {c: (folder / f).read_text(encoding="ascii").splitlines() for c, f in
                  (("gcode", "program-gcode-D2.ngc"), ("siemens", "program-siemens-D2.mpf"),
                   ("heidenhain", "program-heidenhain-D2.h"))}
-        self.assertIn("(machine: FP  12    ??)", lines["gcode"])
+        self.assertIn("(machine: FP  12   ??)", lines["gcode"])
         at = lines["gcode"].index("G1 X1.0 Y61.0")
         self.assertEqual(lines["gcode"][at - 2:at + 3], ["F1500", "G1 X0.0 Y61.75", "G1 X1.0 Y61.0", "G4 P2.5", "G1 X21.0 Y46.0"])
         self.assertEqual(lines["gcode"][-1], "M30")
@@ -175,7 +175,7 @@ class Programs(VerbTest):
                 (base + ["--set", "dwell_s=1,5"], "wanted a number"),
                 (base + ["--set", "runs=0"], "wanted at least 1"),
                 (base + ["--set", "programs=axis"], "wanted axes, diagonals"),
-                (base + ["--set", "programs=diagonals"], "no plan"),
+                (base + ["--set", "programs=diagonals"], "there is none"),
                 (base + ["--set", "programs=step-diagonals"], "axis Y: wanted a linear axis"),
                 (base + ["--set", "over_travel_mm=50"], "closer than"),
                 (base + ["--set", "over_travel_mm=80"], "closer than"),

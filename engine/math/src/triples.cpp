@@ -25,8 +25,9 @@ std::int64_t nanometres(double m) { return std::llround(m * per_metre); }
 
 std::string mm(double m) {
   std::array<char, 40> text{};
-  const auto end =
-      std::to_chars(text.data(), text.data() + text.size(), printed(m, Quantity::length)).ptr;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(),
+                                 printed(m, Quantity::length), std::chars_format::fixed)
+                       .ptr;
   return std::string(text.data(), end) + " mm";
 }
 
@@ -318,8 +319,8 @@ void explain_nothing(const TripleWish& wish, TriplePlans& out) {
 }
 
 std::string wrong_length(const char* what, double m, double least, double most) {
-  // Written so that NaN is wrong.
-  if (m >= least && m <= most) return {};
+  // Written so that NaN is wrong; 0.000001 mm is a nanometre, whatever its binary value.
+  if (m >= least * (1.0 - 1e-9) && m <= most) return {};
   return std::string(what) + ": wanted " + mm(least) + " to " + mm(most) + ", found " +
          (std::isfinite(m) ? mm(m) : "no number");
 }

@@ -72,9 +72,9 @@ std::vector<Option> options(std::vector<Option> own) {
 }
 
 Expected<OutputResult> written(const OutputInput& in, const Dialect& dialect) {
-  OutputResult result;
-  auto programs = requested(in, result);
+  const auto programs = requested(in);
   if (!programs) return fail(programs.error());
+  OutputResult result;
   for (const Program& p : *programs)
     result.artifacts.push_back(
         {std::string(dialect.output) + "-" + file_part(p.path.name) + std::string(dialect.ending),

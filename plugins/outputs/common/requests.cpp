@@ -51,8 +51,7 @@ tl::unexpected<Error> wrong(std::string key, const std::string& message) {
 
 class Requests {
  public:
-  Requests(const OutputInput& in, OutputResult& result)
-      : in_(in), o_(in.options), result_(result), plan_(plan_of(in)) {
+  explicit Requests(const OutputInput& in) : in_(in), o_(in.options), plan_(plan_of(in)) {
     wish_.runs = static_cast<int>(o_.integer("runs"));
     wish_.dwell = o_.number("dwell_s");
     wish_.both_directions = o_.flag("both_directions", true);
@@ -160,10 +159,10 @@ class Requests {
   }
 
   Expected<void> diagonals(bool half) {
-    if (!plan_) {
-      result_.findings.push_back({.id = "program.no-plan", .attention = true});
-      return {};
-    }
+    if (!plan_)
+      return wrong("programs",
+                   "the diagonals follow a plan with equal steps of both axes, and "
+                   "there is none (analysis triple-planner makes one)");
     const auto x = axis(plan_->x), y = axis(plan_->y);
     if (!x) return fail(x.error());
     if (!y) return fail(y.error());
@@ -252,7 +251,6 @@ class Requests {
 
   const OutputInput& in_;
   const Settings& o_;
-  OutputResult& result_;
   std::optional<Plan> plan_;
   MeasuringWish wish_;
   std::vector<Program> programs_;
@@ -269,8 +267,6 @@ std::string plain(std::string_view text) {
   return out;
 }
 
-Expected<std::vector<Program>> requested(const OutputInput& in, OutputResult& result) {
-  return Requests(in, result).all();
-}
+Expected<std::vector<Program>> requested(const OutputInput& in) { return Requests(in).all(); }
 
 }  // namespace nonio::programs

@@ -7,9 +7,8 @@
 
 namespace nonio::programs {
 
-/// What the options ask for, made into paths. A finding where the diagonals are asked for and the
-/// campaign has no plan.
-Expected<std::vector<Program>> requested(const OutputInput& in, OutputResult& result);
+/// What the options ask for, made into paths.
+Expected<std::vector<Program>> requested(const OutputInput& in);
 
 /// Printable ASCII on one line, without what ends a comment.
 std::string plain(std::string_view text);

@@ -24,10 +24,9 @@ std::string why_nothing(const math::TriplePlans& plans);
 std::string triples_json(const math::TripleWish& wish, const math::TriplePlans& plans);
 
 /// Part programs by the output plugin of that name ("program-" may be left out), with its options
-/// as texts: 2.5, true, axes,diagonals. Findings that ask for attention are errors here.
+/// as texts: 2.5, true, axes,diagonals.
 Checked<std::vector<Artifact>> write_programs(const Plugins& plugins, const std::string& output,
                                               const Machine& machine, const PointTable& rows,
-                                              const std::map<std::string, std::string>& options,
-                                              const Templates& templates);
+                                              const std::map<std::string, std::string>& options);
 
 }  // namespace nonio::host
