@@ -97,7 +97,7 @@ void print_plan(std::size_t number, const math::TriplePlan& p, const math::Tripl
         mm_text(p.step_d), mm_text(p.length_x), mm_text(p.length_y), mm_text(p.length_d),
         fixed_text(100.0 * p.cover_x, 2), fixed_text(100.0 * p.cover_y, 2),
         fixed_text(p.gain_EYX(), 2), fixed_text(p.gain_EXY(), 2)})
-    std::cout << padded_left(cell, 9);
+    std::cout << padded_left(cell, 10);
   std::cout << "\n       why: " << host::why_listed(p)
             << "\n       gives up: " << host::gives_up(p, best) << "\n";
   if (const std::string warning = host::aspect_warning(p); !warning.empty())
@@ -113,7 +113,7 @@ void print_plans(const Plan& plan, const math::TriplePlans& found) {
             << padded_left("a-b-c", 20);
   for (const char* head : {"q", "n", "step X", "step Y", "step D", "X mm", "Y mm", "D mm",
                            "cover X%", "cover Y%", "gain EYX", "gain EXY"})
-    std::cout << padded_left(head, 9);
+    std::cout << padded_left(head, 10);
   std::cout << "\n";
   for (std::size_t i = 0; i < found.plans.size(); ++i)
     print_plan(i + 1, found.plans[i], found.plans.front());

@@ -18,6 +18,7 @@ constexpr double per_metre = 1e9;         // the search counts in whole nanometr
 constexpr std::int64_t fewest_steps = 4;  // five points
 constexpr double longest_travel = 1e3;    // m; keeps every product far from the end of 64 bits
 constexpr std::int64_t largest_hypotenuse = 1'000'000;
+constexpr std::int64_t most_points = 1'000'000;
 constexpr double even_bonus = 0.01;
 const double even_part_gain = std::sqrt(6.0) / 4.0;
 
@@ -114,7 +115,8 @@ struct Found {
   std::int64_t q, n;
 };
 
-/// Every triple and number of steps that keeps the limits, with its largest step.
+/// Every triple and number of steps that keeps the limits, with its largest step, until `take`
+/// says that it is enough.
 template <class Take>
 void for_each_plan(const Search& s, const Take& take) {
   for (const Triple& t : s.triples) {
@@ -124,16 +126,14 @@ void for_each_plan(const Search& s, const Take& take) {
     for (std::int64_t n = s.least_n; n <= std::min(s.most_n, products); ++n) {
       if (s.even && n % 2 != 0) continue;
       const std::int64_t q = beside_pitch(s, t, std::min(products / n, q_step));
-      if (q > 0) take(Found{&t, q, n});
+      if (q > 0 && take(Found{&t, q, n})) return;
     }
   }
 }
 
 bool anything(const TripleWish& wish) {
   bool any = false;
-  const Search s = search_of(wish);
-  if (work(s) > most_tried) return true;  // finer than can be searched: surely
-  for_each_plan(s, [&](const Found&) { any = true; });
+  for_each_plan(search_of(wish), [&](const Found&) { return any = true; });
   return any;
 }
 
@@ -246,13 +246,17 @@ void list(std::vector<TriplePlan>& plans, const TriplePlan& p, TripleReason why,
 
 std::vector<TriplePlan> chosen(const Search& s, const TripleWish& w) {
   Leaders leaders(w.count, w.even);
-  for_each_plan(s, [&](const Found& f) { leaders.see(plan_of(f, w)); });
+  for_each_plan(s, [&](const Found& f) {
+    leaders.see(plan_of(f, w));
+    return false;
+  });
   if (leaders.list().empty()) return {};
   const TriplePlan best = leaders.list().front();
   std::vector<Best> others = kinds(best, w.even);
   for_each_plan(s, [&](const Found& f) {
     const TriplePlan p = plan_of(f, w);
     for (Best& b : others) b.see(p);
+    return false;
   });
   std::vector<TriplePlan> plans;
   list(plans, best, TripleReason::best, w.count);
@@ -274,7 +278,7 @@ std::optional<TripleWish> without(TripleWish w, TripleLimit limit) {
       w.largest_step = 0.0;
       break;
     case TripleLimit::max_points:
-      w.max_points = std::int64_t{1} << 40;
+      w.max_points *= 20;
       break;
     case TripleLimit::pitch:
       had = !w.pitch_x.empty() || !w.pitch_y.empty();
@@ -338,7 +342,7 @@ std::string wrong(const TripleWish& w) {
       wrong_length("travel of Y", w.y, finest, longest_travel),
       wrong_length("over-travel", w.over_travel, 0.0, longest_travel),
       wrong_length("resolution", w.resolution, finest, longest_travel),
-      wrong_count("points of the table", w.max_points, fewest_steps + 1, std::int64_t{1} << 40),
+      wrong_count("points of the table", w.max_points, fewest_steps + 1, most_points),
       wrong_count("largest hypotenuse", w.hypotenuse, 5, largest_hypotenuse),
       wrong_count("number of plans", static_cast<std::int64_t>(w.count), 1, 1000)};
   if (w.largest_step != 0.0)
