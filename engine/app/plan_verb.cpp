@@ -5,6 +5,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "campaign_verb.h"
 #include "nonio/host/files.h"
@@ -134,7 +135,8 @@ Expected<std::map<std::string, std::string>> settings_of(const Programs& p) {
 
 int write_programs(const char* verb, const Common& common, const Programs& p,
                    const Machine& machine, const PointTable& rows,
-                   std::map<std::string, std::string> settings) {
+                   std::map<std::string, std::string> settings,
+                   std::vector<std::string>* written = nullptr) {
   if (p.control.empty() || p.out.empty())
     return complain(verb, "part programs want a control (--control) and a folder");
   const auto given = settings_of(p);
@@ -152,8 +154,11 @@ int write_programs(const char* verb, const Common& common, const Programs& p,
     complain(verb, done.error().message);
     return exit_failed;
   }
-  if (!common.quiet)
-    for (const Artifact& a : *files) std::cerr << (fs::path(p.out) / a.name).string() << "\n";
+  for (const Artifact& a : *files) {
+    const std::string path = (fs::path(p.out) / a.name).string();
+    if (written != nullptr) written->push_back(path);
+    if (!common.quiet) std::cerr << path << "\n";
+  }
   return exit_done;
 }
 
@@ -239,7 +244,12 @@ int plan_program(const Program& p, const Common& common) {
   }
   const auto rows = grid_of(p);
   if (!rows) return complain(verb, rows.error().message);
-  return write_programs(verb, common, p.programs, machine, *rows, {});
+  std::vector<std::string> files;
+  const int exit = write_programs(verb, common, p.programs, machine, *rows, {}, &files);
+  if (common.json && exit == exit_done)
+    std::cout << nlohmann::ordered_json{{"schema", "nonio-programs/1"}, {"files", files}}.dump(1)
+              << "\n";
+  return exit;
 }
 
 void add_program_options(CLI::App& verb, Programs& p) {

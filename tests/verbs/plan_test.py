@@ -142,6 +142,12 @@ class Programs(VerbTest):
         at = bare.index("L X+1.0 Y+61.0 R0 F1500 M91")
         self.assertEqual(bare[at + 1:at + 4], ["CYCL DEF 9.0 DWELL TIME", "CYCL DEF 9.1 DWELL 2.5", "L X+21.0 Y+46.0 R0 F1500 M91"])
 
+    def test_the_files_as_json(self):
+        whole = self.json_of("plan", "program", "--axis", "X=0:100", "--axis", "C=0:360", "--control", "gcode", "--out",
+                             self.site / "programs")
+        self.assertEqual(whole["schema"], "nonio-programs/1")
+        self.assertEqual([p.rsplit("/", 1)[1] for p in whole["files"]], ["program-gcode-X.ngc", "program-gcode-C.ngc"])
+
     def test_the_unit_of_the_rest(self):
         for word, wanted in (("P-s", "G4 P2.5"), ("P-ms", "G4 P2500"), ("X", "G4 X2.5")):
             _, files = self.program("program", "--axis", "X=0:100", "--control", "gcode", "--out", self.site / "programs",

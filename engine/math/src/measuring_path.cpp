@@ -40,8 +40,13 @@ MeasuringPath line_path(std::string name, const Rectangle& r, double y0, double 
   const auto at = [&](double i) { return std::vector{r.from_x + i * step_x, y0 + i * step_y}; };
   std::vector<std::vector<double>> stops;
   for (int i = 0; i <= steps; ++i) stops.push_back(at(i));
+  const auto turning = [&](double i) {
+    std::vector<double> place = at(i);
+    for (double& p : place) p = rounded(p, wish.resolution);
+    return place;
+  };
   const double beyond = wish.over_travel / further;
-  path.moves = to_and_fro(stops, at(-beyond), at(steps + beyond), wish);
+  path.moves = to_and_fro(stops, turning(-beyond), turning(steps + beyond), wish);
   return path;
 }
 

@@ -54,6 +54,7 @@ class Requests {
   explicit Requests(const OutputInput& in) : in_(in), o_(in.options), plan_(plan_of(in)) {
     wish_.runs = static_cast<int>(o_.integer("runs"));
     wish_.dwell = o_.number("dwell_s");
+    wish_.resolution = o_.number("resolution_mm") * mm;
     wish_.both_directions = o_.flag("both_directions", true);
   }
 
@@ -228,7 +229,7 @@ class Requests {
     std::vector<std::string> lines;
     for (const std::string& part : {m.maker, m.model, m.serial})
       if (!part.empty()) lines = {(lines.empty() ? "machine:" : lines.front()) + " " + part};
-    lines.push_back("measurement " + path.name + ", moves " + axes + "; the other axes stay");
+    lines.push_back("measurement " + path.name + ": moves " + axes + ", the other axes stay");
     lines.push_back(how);
     lines.push_back(std::to_string(wish_.runs) + " runs, " + direction(path) + ", " +
                     std::to_string(readings) + " readings");

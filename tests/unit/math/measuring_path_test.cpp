@@ -26,7 +26,7 @@ void expect_near(const Places& found, const Places& wanted) {
       EXPECT_NEAR(found[i][a], wanted[i][a], 1e-12) << i << " " << a;
 }
 
-MeasuringWish wish(int runs, double over, bool both = true) { return {runs, 2.0, over, both}; }
+MeasuringWish wish(int runs, double over, bool both = true) { return {runs, 2.0, over, both, 1e-6}; }
 
 TEST(MeasuringPath, AxisUpAndDownWithTurningPoints) {
   const MeasuringPath p = axis_path("X", false, {0.1, 0.2, 0.3}, wish(2, 0.01));

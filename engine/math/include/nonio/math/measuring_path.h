@@ -28,6 +28,7 @@ struct MeasuringWish {
   double dwell = 5.0;        ///< s
   double over_travel = 0.0;  ///< beyond both ends, so that every target is reached from one side
   bool both_directions = true;
+  double resolution = 1e-6;  ///< points of turning are whole multiples of it
 };
 
 /// Targets of an axis test: P_i = first + (i - 1) p + r_i for `points` targets, p = even interval.
