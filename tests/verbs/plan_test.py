@@ -148,6 +148,12 @@ class Programs(VerbTest):
         self.assertEqual(whole["schema"], "nonio-programs/1")
         self.assertEqual([p.rsplit("/", 1)[1] for p in whole["files"]], ["program-gcode-X.ngc", "program-gcode-C.ngc"])
 
+    def test_a_long_name_of_an_axis(self):
+        _, files = self.program("program", "--axis", "X1=0:100", "--axis", "X2=0:100", "--control", "siemens", "--out",
+                                self.site / "programs", "--set", "axes=X2", "--set", "targets=even")
+        self.assertEqual(list(files), ["program-siemens-X2.mpf"])
+        self.assertIn("\nG1 X2=1.0 F2000\n", files["program-siemens-X2.mpf"])
+
     def test_the_unit_of_the_rest(self):
         for word, wanted in (("P-s", "G4 P2.5"), ("P-ms", "G4 P2500"), ("X", "G4 X2.5")):
             _, files = self.program("program", "--axis", "X=0:100", "--control", "gcode", "--out", self.site / "programs",
@@ -183,6 +189,10 @@ class Programs(VerbTest):
                 (base + ["--set", "programs=axis"], "wanted axes, diagonals"),
                 (base + ["--set", "programs=diagonals"], "there is none"),
                 (base + ["--set", "programs=step-diagonals"], "axis Y: wanted a linear axis"),
+                (["program", "--axis", "X1=0:100", "--control", "gcode", *out], "a single letter"),
+                (["program", "--axis", "X1=0:100", "--control", "heidenhain", *out], "a single letter"),
+                (base + ["--set", "axes=Y"], "has no axis \"Y\""),
+                (base + ["--set", "interval_mm=0.003"], "wanted at most 100000"),
                 (base + ["--set", "over_travel_mm=50"], "closer than"),
                 (base + ["--set", "over_travel_mm=80"], "closer than"),
                 (base + ["--n", "0", "--step-x", "1", "--step-y", "1"], "--n: wanted"),

@@ -9,11 +9,17 @@ namespace nonio::math {
 
 namespace {
 
+constexpr double nearly_one = 1.0 + 1e-9;  // against rounding before a number is cut off
+
 /// Uniform in [0, 1): the distributions of the standard library differ between libraries.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-double rounded(double value, double resolution) {
-  return std::round(value / resolution) * resolution;
+/// The nearest multiple of the resolution that lies between first and last.
+double rounded(double value, const AxisTargets& wish) {
+  const double nearest = std::round(value / wish.resolution) * wish.resolution;
+  const double slack = 1e-6 * wish.resolution;
+  if (nearest < wish.first - slack) return nearest + wish.resolution;
+  return nearest > wish.last + slack ? nearest - wish.resolution : nearest;
 }
 
 /// There and back over the stops as often as asked; `before` and `after` are the points of turning.
@@ -40,13 +46,15 @@ MeasuringPath line_path(std::string name, const Rectangle& r, double y0, double 
   const auto at = [&](double i) { return std::vector{r.from_x + i * step_x, y0 + i * step_y}; };
   std::vector<std::vector<double>> stops;
   for (int i = 0; i <= steps; ++i) stops.push_back(at(i));
-  const auto turning = [&](double i) {
-    std::vector<double> place = at(i);
-    for (double& p : place) p = rounded(p, wish.resolution);
+  // Beyond a stop by whole multiples of the resolution, never by more than asked.
+  const auto beyond = [&](int stop, double direction) {
+    std::vector<double> place = at(stop);
+    const double multiple = direction * wish.over_travel / further / wish.resolution;
+    place[0] += std::trunc(multiple * step_x * nearly_one) * wish.resolution;
+    place[1] += std::trunc(multiple * step_y * nearly_one) * wish.resolution;
     return place;
   };
-  const double beyond = wish.over_travel / further;
-  path.moves = to_and_fro(stops, turning(-beyond), turning(steps + beyond), wish);
+  path.moves = to_and_fro(stops, beyond(0, -1.0), beyond(steps, 1.0), wish);
   return path;
 }
 
@@ -94,7 +102,7 @@ Expected<std::vector<double>> axis_targets(const AxisTargets& wish) {
     const double inwards = i == 0                 ? std::fabs(offset)
                            : i == wish.points - 1 ? -std::fabs(offset)
                                                   : offset;
-    targets.push_back(rounded(even + inwards, wish.resolution));
+    targets.push_back(rounded(even + inwards, wish));
   }
   return targets;
 }

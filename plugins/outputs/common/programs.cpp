@@ -25,6 +25,19 @@ std::string file_part(std::string_view name) {
   return out;
 }
 
+/// That the control takes the name for an axis: with a digit behind its letter, a number that
+/// follows would be another one.
+Expected<void> check_name(const std::string& axis, const Dialect& dialect) {
+  const auto letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+  if (letter(axis.front()) && file_part(axis) == axis && (axis.size() == 1 || dialect.long_names))
+    return {};
+  Error error{"axis " + axis + ": wanted " +
+              (dialect.long_names ? "letters and digits" : "a single letter") +
+              " for a name in a program; option axes leaves it out"};
+  error.key = "machine.axes." + axis;
+  return fail(std::move(error));
+}
+
 }  // namespace
 
 std::string position(const math::MeasuringPath& path, std::size_t axis, double si) {
@@ -40,6 +53,7 @@ std::vector<Option> options(std::vector<Option> own) {
       {"programs", std::vector<std::string>{}, "",
        "Which: axes, diagonals, half-diagonal, step-diagonals; empty: axes, and the diagonals "
        "where the campaign has a plan."},
+      {"axes", std::vector<std::string>{}, "", "Of the axis runs; empty: all that have a travel."},
       {"plan", std::int64_t{1}, "", "Row of the plan that the diagonals follow.", {}, 1.0, 1000.0},
       {"x", std::string("X"), "", "First axis of the diagonals."},
       {"y", std::string("Y"), "", "Second axis of the diagonals."},
@@ -75,6 +89,9 @@ Expected<OutputResult> written(const OutputInput& in, const Dialect& dialect) {
   const auto programs = requested(in);
   if (!programs) return fail(programs.error());
   OutputResult result;
+  for (const Program& p : *programs)
+    for (const std::string& axis : p.path.axes)
+      if (auto named = check_name(axis, dialect); !named) return fail(named.error());
   for (const Program& p : *programs)
     result.artifacts.push_back(
         {std::string(dialect.output) + "-" + file_part(p.path.name) + std::string(dialect.ending),

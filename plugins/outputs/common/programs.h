@@ -28,7 +28,8 @@ struct Dialect {
   std::string_view output;  ///< name of the plugin, and start of its file names
   std::string_view ending;  ///< ".ngc"
   std::string (*format)(const Program&, const Settings&) = nullptr;
-  bool tried = false;  ///< on a real control or its interpreter
+  bool tried = false;       ///< on a real control or its interpreter
+  bool long_names = false;  ///< an axis may be called X1
 };
 
 /// The options of each program writer; its own are added behind them.

@@ -16,7 +16,8 @@ using math::MeasuringWish;
 
 constexpr double mm = 1e-3;
 constexpr double deg = 1.0 / deg_per_rad;
-constexpr double slack = 1e-9;  // m or rad: rounding, no travel
+constexpr double slack = 1e-9;         // m or rad: rounding, no travel
+constexpr double most_readings = 1e5;  // of one program: 140 h at 5 s
 
 /// The plan that the diagonals follow: a row with equal steps of two axes.
 struct Plan {
@@ -64,7 +65,9 @@ class Requests {
       asked = {"axes"};
       if (plan_) asked.emplace_back("diagonals");
     }
-    for (const std::string& what : asked) {
+    for (auto it = asked.begin(); it != asked.end(); ++it) {
+      const std::string& what = *it;
+      if (std::find(asked.begin(), it, what) != it) continue;  // said twice
       const auto done = what == "axes"             ? axes()
                         : what == "diagonals"      ? diagonals(false)
                         : what == "half-diagonal"  ? diagonals(true)
@@ -106,10 +109,24 @@ class Requests {
                                        number(travel / mm) + " mm");
   }
 
+  /// That the program does not become longer than anybody measures.
+  Expected<void> bounded(const std::string& name, double stops) const {
+    const double readings = stops * wish_.runs * (wish_.both_directions ? 2.0 : 1.0);
+    if (readings <= most_readings) return {};
+    return wrong("runs", name + ": " + number(readings) + " readings, wanted at most " +
+                             number(most_readings) + ": fewer runs or larger intervals");
+  }
+
   Expected<void> axes() {
+    const std::vector<std::string> names = o_.texts("axes");
+    for (const std::string& name : names)
+      if (const Axis* a = in_.campaign.machine.axis(name); a == nullptr || !a->travel)
+        return wrong("axes", "axes: the machine has no axis \"" + name + "\" with a travel");
     bool any = false;
     for (const Axis& a : in_.campaign.machine.axes) {
-      if (!a.travel) continue;
+      const bool asked =
+          names.empty() || std::find(names.begin(), names.end(), a.name) != names.end();
+      if (!a.travel || !asked) continue;
       any = true;
       if (auto done = axis_program(a); !done) return done;
     }
@@ -132,8 +149,9 @@ class Requests {
       wanted.points = plan_->n + 1;
       wanted.last = wanted.first + plan_->n * step;
       how = "targets: the grid of the plan, " + number(step / mm) + " mm";
-    } else {
-      spread(a, choice, wanted, how);
+      if (auto fine = bounded(a.name, wanted.points); !fine) return fine;
+    } else if (auto fine = spread(a, choice, wanted, how); !fine) {
+      return fine;
     }
     const auto targets = math::axis_targets(wanted);
     if (!targets)
@@ -144,19 +162,21 @@ class Requests {
   }
 
   /// Targets as ISO 230-2 asks for them.
-  void spread(const Axis& a, const std::string& choice, math::AxisTargets& wanted,
-              std::string& how) const {
+  Expected<void> spread(const Axis& a, const std::string& choice, math::AxisTargets& wanted,
+                        std::string& how) const {
     const double length = wanted.last - wanted.first;
     const double interval =
         a.rotary ? o_.number("interval_deg") * deg : o_.number("interval_mm") * mm;
-    wanted.points = interval > 0.0 ? 1 + static_cast<int>(std::ceil(length / interval - slack))
-                                   : math::axis_points(length);
+    const double intervals = interval > 0.0 ? std::ceil(length / interval - slack) : length / 0.2;
+    if (auto fine = bounded(a.name, intervals + 1.0); !fine) return fine;
+    wanted.points = interval > 0.0 ? 1 + static_cast<int>(intervals) : math::axis_points(length);
     wanted.points = std::max(wanted.points, 2);
     // Rotary: even, so that 0, 90, 180 and 270 deg can be among the targets.
     wanted.scatter = choice != "even" && !a.rotary;
     wanted.period = a.screw_pitch.value_or(0.0);
     how = wanted.scatter ? "targets: random offsets, seed " + std::to_string(wanted.seed)
                          : "targets: even";
+    return {};
   }
 
   Expected<void> diagonals(bool half) {
@@ -169,6 +189,7 @@ class Requests {
     if (!y) return fail(y.error());
     if (auto fits = room(**x, plan_->n * plan_->step_x); !fits) return fits;
     if (auto fits = room(**y, plan_->n * plan_->step_y); !fits) return fits;
+    if (auto fine = bounded("diagonals", plan_->n + 1.0); !fine) return fine;
     if (half && plan_->n % 2 != 0)
       return wrong("plan", "the half diagonal wants an even number of steps, the plan has " +
                                std::to_string(plan_->n));
@@ -191,6 +212,7 @@ class Requests {
     math::Volume v;
     v.axes = {o_.text("x"), o_.text("y"), o_.text("z")};
     v.n = static_cast<int>(o_.integer("steps"));
+    if (auto fine = bounded("step diagonals", 3.0 * v.n + 1.0); !fine) return fine;
     const double unit = o_.number("resolution_mm") * mm;
     std::string how = std::to_string(v.n) + " steps of";
     for (const std::string& name : v.axes) {

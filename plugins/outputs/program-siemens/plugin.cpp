@@ -10,10 +10,9 @@ namespace {
 
 using programs::Program;
 
-/// An axis whose name ends in a digit is assigned with "=".
+/// An axis whose name is not a single letter is assigned with "=".
 std::string word(const std::string& axis, const std::string& value) {
-  const bool digit = axis.back() >= '0' && axis.back() <= '9';
-  return axis + (digit ? "=" : "") + value;
+  return axis + (axis.size() > 1 ? "=" : "") + value;
 }
 
 std::string format(const Program& p, const Settings&) {
@@ -33,7 +32,7 @@ std::string format(const Program& p, const Settings&) {
 }
 
 Expected<OutputResult> write(const OutputInput& in) {
-  return programs::written(in, {"program-siemens", ".mpf", format, false});
+  return programs::written(in, {"program-siemens", ".mpf", format, false, true});
 }
 
 }  // namespace

@@ -26,7 +26,9 @@ void expect_near(const Places& found, const Places& wanted) {
       EXPECT_NEAR(found[i][a], wanted[i][a], 1e-12) << i << " " << a;
 }
 
-MeasuringWish wish(int runs, double over, bool both = true) { return {runs, 2.0, over, both, 1e-6}; }
+MeasuringWish wish(int runs, double over, bool both = true) {
+  return {runs, 2.0, over, both, 1e-6};
+}
 
 TEST(MeasuringPath, AxisUpAndDownWithTurningPoints) {
   const MeasuringPath p = axis_path("X", false, {0.1, 0.2, 0.3}, wish(2, 0.01));
@@ -122,6 +124,22 @@ TEST(AxisTargets, RandomWithinTheirReach) {
     w.seed = 2;
     EXPECT_NE(*targets, *axis_targets(w));
   }
+}
+
+TEST(AxisTargets, NeverBeyondTheEnds) {
+  for (const double odd : {0.0004e-3, 0.0006e-3}) {
+    const auto targets = axis_targets({.first = -odd, .last = 1.0 - odd, .points = 5});
+    ASSERT_TRUE(targets);
+    EXPECT_GE(targets->front(), -odd);
+    EXPECT_LE(targets->back(), 1.0 - odd);
+    EXPECT_NEAR(targets->back(), 1.0 - 1e-6, 1e-12);
+  }
+}
+
+TEST(MeasuringPath, TheDiagonalsTurnWithinTheOverTravel) {
+  const Rectangle r{"X", "Y", 0.0, 0.0, 0.033, 0.056, 4};
+  const Places turns = where(diagonal_paths(r, wish(1, 0.01)).front(), false);
+  expect_near({turns[0], turns[1]}, {{-0.005892, -0.01}, {0.132 + 0.005892, 0.224 + 0.01}});
 }
 
 TEST(AxisTargets, TheSameOnEveryComputer) {

@@ -28,13 +28,13 @@ struct MeasuringWish {
   double dwell = 5.0;        ///< s
   double over_travel = 0.0;  ///< beyond both ends, so that every target is reached from one side
   bool both_directions = true;
-  double resolution = 1e-6;  ///< points of turning are whole multiples of it
+  double resolution = 1e-6;  ///< the over-travel is a whole multiple of it
 };
 
 /// Targets of an axis test: P_i = first + (i - 1) p + r_i for `points` targets, p = even interval.
 /// With `scatter`, r_i is random, uniform within +- min(period, 0.3 p), at the ends only inwards:
-/// even steps would not see an error with the period of the screw or of the scale. Rounded to
-/// `resolution`; the same seed gives the same targets on every computer.
+/// even steps would not see an error with the period of the screw or of the scale. Multiples of
+/// `resolution` between first and last; the same seed gives the same targets on every computer.
 /// Source: ISO 230-2:2014, test plan; the 30 % where no period is known is common practice.
 struct AxisTargets {
   double first = 0.0, last = 0.0;
