@@ -28,6 +28,7 @@ class CampaignRun {
     if (read()) {
       analyse();
       fit_model();
+      note_unevaluated();
       if (!failed()) hold_against_tolerances();
       fill_advice();
       if (!failed()) write_outputs();
@@ -107,7 +108,8 @@ class CampaignRun {
       for (const Analysis* analysis : analyses)
         if (analysis->applies && analysis->applies(out_.campaign, m))
           analyse_with(*analysis, &m, [&](const Settings& options) {
-            return analysis->analyse({out_.campaign, m, read_.observations[i], options});
+            return analysis->analyse(
+                {out_.campaign, m, read_.observations[i], options, &read_.observations});
           });
     }
     for (const Analysis* analysis : analyses)
@@ -175,6 +177,22 @@ class CampaignRun {
       if (s.value.size() != s.position.size() || (!s.U.empty() && s.U.size() != s.value.size()))
         return fail("a series " + s.name + " with columns of different lengths");
     return {};
+  }
+
+  /// No analysis and no model has looked at it: said, so that nobody takes silence for a result.
+  void note_unevaluated() {
+    std::set<std::string> seen(read_.unread.begin(), read_.unread.end());
+    for (const Results::Analysed& a : out_.results.analyses) {
+      seen.insert(a.measurement);
+      seen.insert(a.evaluation.uses.begin(), a.evaluation.uses.end());
+    }
+    for (const ModelFit& m : out_.results.models)
+      seen.insert(m.measurements.begin(), m.measurements.end());
+    for (std::size_t i = 0; i < read_.observations.size(); ++i) {
+      const Measurement& m = out_.campaign.measurements[i];
+      if (read_.observations[i].size() != 0 && !seen.contains(m.id))
+        out_.results.notes.push_back({"measurement.not-evaluated", {}, {{"kind", m.kind}}, m.id});
+    }
   }
 
   void hold_against_tolerances() {

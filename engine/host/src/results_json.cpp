@@ -164,6 +164,12 @@ void put_analysis(JsonWriter& json, const Results::Analysed& a,
   json.member("plugin", a.plugin);
   json.member("version", a.version);
   put(json, "measurement", a.measurement);
+  if (!a.evaluation.uses.empty()) {
+    json.key("uses");
+    json.begin_array();
+    for (const std::string& id : a.evaluation.uses) json.value(id);
+    json.end_array();
+  }
   json.key("values");
   json.begin_object();
   for (const Value& v : a.evaluation.values) put_value(json, v, a, conformity);

@@ -97,6 +97,9 @@ struct AnalysisInput {
   const Measurement& measurement;
   const Observations& observations;
   const Settings& options;
+  /// One entry for each measurement of the campaign, in its order; empty where nothing could read
+  /// it. For methods that need more than one: its ids stand in Evaluation::uses.
+  const std::vector<Observations>* all = nullptr;
 };
 
 struct CampaignInput {

@@ -82,6 +82,7 @@ struct Evaluation {
   std::vector<Series> series;
   std::vector<Finding> findings;
   std::vector<Remark> notes;
+  std::vector<std::string> uses{};  ///< ids of the other measurements that it is made from
 };
 
 /// One result before a table is loaded, and as its consumer's model predicts it after.
