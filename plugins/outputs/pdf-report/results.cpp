@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nonio/reports/model.h"
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
 #include "report.h"
@@ -143,7 +144,7 @@ void add_results(const Source& source, const Measured& m, Blocks& blocks) {
   std::vector<Blocks> parts;
   bool decisions = false;
   for (const auto* a : m.analyses) {
-    if (a->evaluation.values.empty()) continue;
+    if (a->evaluation.values.empty() || a->plugin == model_analysis) continue;
     parts.push_back({value_table(source, *a)});
     if (parts.size() <= 2) decisions |= shape_of(source, *a).decision;
   }

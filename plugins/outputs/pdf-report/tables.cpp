@@ -205,7 +205,6 @@ void add_notes(const Source& source, Blocks& blocks) {
   if (!results.conformity.empty()) say("notes.decision");
   say("notes.sign");
   say("notes.items");
-  say("end");
   add(ours);
 }
 
