@@ -49,6 +49,25 @@ Colour colour_of(const Style& style, Level level) {
   return style.accent;
 }
 
+Expected<void> draw_axis_text(Canvas& canvas, const Context& context, const AxisScale& scale,
+                              std::string_view title, double left, double width, double top,
+                              double size, std::string_view field) {
+  double free_from = -1e9;
+  for (std::size_t i = 0; i < scale.ticks.size(); ++i) {
+    auto text = set_line(context, scale.labels[i], false, size, width, field);
+    if (!text) return fail(text.error());
+    const double x = left + width * scale.at(scale.ticks[i]),
+                 half = text->lines[0].width * size / 2;
+    if (x - half < free_from) continue;
+    free_from = x + half + 3;
+    text->draw(canvas, 0, x - 50, top, 100, 0.5);
+  }
+  auto text = set_line(context, title, false, size, width, field);
+  if (!text) return fail(text.error());
+  text->draw(canvas, 0, left, top - 1.3 * size, width, 0.5);
+  return {};
+}
+
 void draw_mark(Canvas& canvas, const Style& style, Level level, double x, double y, double size) {
   canvas.fill_colour(colour_of(style, level));
   if (level == Level::attention) {

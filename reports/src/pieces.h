@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "axis_scale.h"
 #include "canvas.h"
 #include "nonio/reports/document.h"
 
@@ -59,6 +60,12 @@ Expected<SetText> set_line(const Context&, std::string_view text, bool bold, dou
 /// A filled sign: a disc, a triangle, a square or a ring, so that colour is not needed to tell.
 void draw_mark(Canvas&, const Style&, Level, double x, double y, double size);
 Colour colour_of(const Style&, Level);
+
+/// The numbers of a horizontal axis from `left` over `width`, those that would touch the one before
+/// left out, and below them its title.
+Expected<void> draw_axis_text(Canvas&, const Context&, const AxisScale&, std::string_view title,
+                              double left, double width, double top, double size,
+                              std::string_view field);
 
 Expected<Laid> lay_block(const Block&, double width, const Context&);
 Expected<Laid> lay_table(const Table&, double width, const Context&, std::string_view field);
