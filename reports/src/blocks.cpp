@@ -17,10 +17,17 @@ void SetText::draw_all(Canvas& canvas, double x, double y, double width, double 
     draw(canvas, i, x, y - leading() * static_cast<double>(i), width, align);
 }
 
+void note_glyphs(const Context& context, const Glyphs& glyphs, bool bold) {
+  const std::vector<char>& common = context.font(bold).common;
+  for (const Glyph& g : glyphs)
+    if (common[g.id] == 0) context.common_only = false;
+}
+
 Expected<SetText> set_text(const Context& context, std::string_view text, bool bold, double size,
                            double width, std::string_view field) {
   auto glyphs = shape(text, context.font(bold), field);
   if (!glyphs) return fail(glyphs.error());
+  note_glyphs(context, *glyphs, bold);
   SetText out{std::move(*glyphs), {}, bold, size};
   out.lines = wrap(out.glyphs, width / size);
   return out;
@@ -31,6 +38,7 @@ Expected<SetText> set_line(const Context& context, std::string_view text, bool b
   auto glyphs = shape(text, context.font(bold), field);
   if (!glyphs) return fail(glyphs.error());
   SetText out{shortened(std::move(*glyphs), width / size, context.font(bold)), {}, bold, size};
+  note_glyphs(context, out.glyphs, bold);
   out.lines.push_back({0, out.glyphs.size(), width_of(out.glyphs)});
   return out;
 }

@@ -30,7 +30,8 @@ struct Laid {
 struct Context {
   const Style& style;
   const Fonts& fonts;
-  double page_room;  ///< height between head and foot
+  double page_room;   ///< height between head and foot
+  bool& common_only;  ///< false once a glyph was set that is not one of Font::common
 
   const Font& font(bool bold) const { return bold ? fonts.bold : fonts.regular; }
 };
@@ -51,6 +52,8 @@ struct SetText {
   void draw_all(Canvas&, double x, double y, double width = 0.0, double align = 0.0) const;
 };
 
+/// For text that is set in another way than by the next two.
+void note_glyphs(const Context&, const Glyphs&, bool bold);
 Expected<SetText> set_text(const Context&, std::string_view text, bool bold, double size,
                            double width, std::string_view field);
 /// In one line, with an ellipsis if it is too long for it.
