@@ -164,8 +164,10 @@ void add_tables(const Source& source, Blocks& blocks) {
   }
   for (const Results::Written& output : outputs) {
     std::string notes;
+    std::set<std::string> said;  // of two measurements of an axis the same is said once
     for (const Remark& note : output.result.notes)
-      notes += (notes.empty() ? "" : " ") + remark(source, note);
+      if (const std::string text = remark(source, note); said.insert(text).second)
+        notes += (notes.empty() ? "" : " ") + text;
     if (!notes.empty())
       blocks.push_back(
           {Paragraph{typeset(visible_text(
