@@ -34,7 +34,7 @@ inline std::string fixed_text(double value, int decimals) {
     digits.insert(0, static_cast<std::size_t>(1 - whole), '0');
     whole = 1;
   }
-  const auto kept = static_cast<std::size_t>(whole + decimals);
+  const auto kept = static_cast<std::size_t>(whole) + static_cast<std::size_t>(decimals);
   const bool up = kept < digits.size() && digits[kept] >= '5';
   digits.resize(kept, '0');
   if (up) {
