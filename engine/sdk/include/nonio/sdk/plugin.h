@@ -36,6 +36,9 @@ struct Info {
   std::string version;
   std::string summary;  ///< one sentence, for `nonio plugins`
   std::vector<Option> options{};
+  /// Of an analysis or output: not among "all that apply", only where `[run]` names it or the
+  /// campaign has its `[options.<name>]`.
+  bool on_request = false;
 };
 
 struct ReadInput {
@@ -96,11 +99,20 @@ struct AnalysisInput {
   const Settings& options;
 };
 
+struct CampaignInput {
+  const Campaign& campaign;
+  /// One entry for each measurement, in their order; empty where nothing could read it.
+  const std::vector<Observations>& observations;
+  const Settings& options;
+};
+
 /// observations -> results
 struct Analysis {
   Info info;
   bool (*applies)(const Campaign&, const Measurement&) = nullptr;
   Expected<Evaluation> (*analyse)(const AnalysisInput&) = nullptr;
+  /// In place of these two: once, of the campaign as a whole (a plan needs no measurement).
+  Expected<Evaluation> (*analyse_campaign)(const CampaignInput&) = nullptr;
 };
 
 struct OutputInput {
@@ -143,7 +155,7 @@ class Registry {
   ~Registry() = default;
 };
 
-inline constexpr int sdk_version = 2;
+inline constexpr int sdk_version = 3;
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
@@ -167,7 +179,7 @@ inline constexpr int sdk_version = 2;
 #endif
 
 /// Everything that must agree before a plugin may be called.
-#define NONIO_ABI_TAG "nonio-sdk 2; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
+#define NONIO_ABI_TAG "nonio-sdk 3; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
 
 /// The one exported symbol, `nonio_plugin`. Plain: the host reads the tag before it calls anything.
 struct PluginEntry {
