@@ -139,6 +139,7 @@ void print_plugins_json(const host::Plugins& plugins) {
                    {"name", p.info->name},
                    {"version", p.info->version},
                    {"summary", p.info->summary},
+                   {"on_request", p.info->on_request},
                    {"options", std::move(options)}});
   }
   std::cout << Json{{"abi", NONIO_ABI_TAG},
@@ -150,8 +151,8 @@ void print_plugins_json(const host::Plugins& plugins) {
 
 void print_plugins(const host::Plugins& plugins, bool with_options) {
   for (const Listed& p : listed(plugins)) {
-    std::cout << p.kind << " " << p.info->name << " " << p.info->version << "\n    "
-              << p.info->summary << "\n";
+    std::cout << p.kind << " " << p.info->name << " " << p.info->version
+              << (p.info->on_request ? " (on request)" : "") << "\n    " << p.info->summary << "\n";
     if (with_options)
       for (const Option& o : p.info->options)
         std::cout << "    [options." << p.info->name << "] " << o.name << " = "
@@ -223,6 +224,7 @@ int main(int argc, char** argv) {
   add_compare_verb(cli, common, outcome);
   add_explain_verb(cli, common, outcome);
   add_model_verb(cli, common, outcome);
+  add_plan_verb(cli, common, outcome);
 
   app::SimulateVerb simulate;
   CLI::App* simulate_verb = simulate.add_to(cli);

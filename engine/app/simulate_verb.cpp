@@ -52,7 +52,8 @@ CLI::App* SimulateVerb::add_to(CLI::App& cli) {
       "  [simulation]           seed = 7             the same seed gives the same bytes\n"
       "  [[cycle]]              measurement = \"X\"    targets, runs, noise of one measurement\n"
       "  [[effect]]             name = \"backlash:X\"  b_um = -6.0\n"
-      "Effects are those of `nonio plugins`; each parameter has its unit in its name.\n\n"
+      "Effects are those of `nonio plugins`, and formulas under [[model.formula]] or, to stay\n"
+      "hidden, [[simulation.formula]]; each parameter has its unit in its name.\n\n"
       "Example: nonio simulate samples/simulate/worn-screw.toml --out site/worn-screw");
   return verb;
 }

@@ -54,10 +54,12 @@ void print_parameters(std::ostream& out, const model::Fit& fit) {
   if (fit.parameters.empty()) return;
   out << "  parameters\n";
   for (const model::Parameter& p : fit.parameters) {
+    const double value = printed(p.value, p.quantity);
     out << "    " << padded(p.effect, 20) << " " << padded(p.name, 8) << " "
-        << short_text(printed(p.value, p.quantity), 4);
+        << (p.quantity == Quantity::count ? fixed_text(value, 0) : short_text(value, 4));
     if (std::isfinite(p.u)) out << ", u = " << short_text(printed(p.u, p.quantity), 2);
-    out << " " << unit_of(p.quantity).symbol << (p.shape ? "  (searched)" : "") << "\n";
+    const std::string_view unit = unit_of(p.quantity).symbol;
+    out << (unit.empty() ? "" : " ") << unit << (p.shape ? "  (searched)" : "") << "\n";
   }
 }
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "axis_scale.h"
 #include "pieces.h"
 
 namespace nonio::reports {
@@ -111,15 +110,8 @@ class BarSetter {
     canvas_.line(0.5);
     canvas_.segment(left_, top, left_, bottom);
     canvas_.fill_colour(style_.text);
-    for (std::size_t i = 0; i < scale_.ticks.size(); ++i) {
-      auto text = set_line(context_, scale_.labels[i], false, size_ - 0.5, width_, field_);
-      if (!text) return fail(text.error());
-      text->draw(canvas_, 0, at(scale_.ticks[i]) - 50, bottom - 1, 100, 0.5);
-    }
-    auto title = set_line(context_, chart_.x_title, false, size_ - 0.5, room_, field_);
-    if (!title) return fail(title.error());
-    title->draw(canvas_, 0, left_, bottom - 1 - 1.3 * size_, room_, 0.5);
-    return {};
+    return draw_axis_text(canvas_, context_, scale_, chart_.x_title, left_, room_, bottom - 1,
+                          size_ - 0.5, field_);
   }
 
   Expected<void> draw_row(const BarChart::Row& row) {

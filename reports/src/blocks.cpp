@@ -17,10 +17,17 @@ void SetText::draw_all(Canvas& canvas, double x, double y, double width, double 
     draw(canvas, i, x, y - leading() * static_cast<double>(i), width, align);
 }
 
+void note_glyphs(const Context& context, const Glyphs& glyphs, bool bold) {
+  const std::vector<char>& common = context.font(bold).common;
+  for (const Glyph& g : glyphs)
+    if (common[g.id] == 0) context.common_only = false;
+}
+
 Expected<SetText> set_text(const Context& context, std::string_view text, bool bold, double size,
                            double width, std::string_view field) {
   auto glyphs = shape(text, context.font(bold), field);
   if (!glyphs) return fail(glyphs.error());
+  note_glyphs(context, *glyphs, bold);
   SetText out{std::move(*glyphs), {}, bold, size};
   out.lines = wrap(out.glyphs, width / size);
   return out;
@@ -31,6 +38,7 @@ Expected<SetText> set_line(const Context& context, std::string_view text, bool b
   auto glyphs = shape(text, context.font(bold), field);
   if (!glyphs) return fail(glyphs.error());
   SetText out{shortened(std::move(*glyphs), width / size, context.font(bold)), {}, bold, size};
+  note_glyphs(context, out.glyphs, bold);
   out.lines.push_back({0, out.glyphs.size(), width_of(out.glyphs)});
   return out;
 }
@@ -47,6 +55,25 @@ Colour colour_of(const Style& style, Level level) {
       break;
   }
   return style.accent;
+}
+
+Expected<void> draw_axis_text(Canvas& canvas, const Context& context, const AxisScale& scale,
+                              std::string_view title, double left, double width, double top,
+                              double size, std::string_view field) {
+  double free_from = -1e9;
+  for (std::size_t i = 0; i < scale.ticks.size(); ++i) {
+    auto text = set_line(context, scale.labels[i], false, size, width, field);
+    if (!text) return fail(text.error());
+    const double x = left + width * scale.at(scale.ticks[i]),
+                 half = text->lines[0].width * size / 2;
+    if (x - half < free_from) continue;
+    free_from = x + half + 3;
+    text->draw(canvas, 0, x - 50, top, 100, 0.5);
+  }
+  auto text = set_line(context, title, false, size, width, field);
+  if (!text) return fail(text.error());
+  text->draw(canvas, 0, left, top - 1.3 * size, width, 0.5);
+  return {};
 }
 
 void draw_mark(Canvas& canvas, const Style& style, Level level, double x, double y, double size) {

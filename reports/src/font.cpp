@@ -6,40 +6,14 @@
 #include <optional>
 
 #include "bytes.h"
+#include "font_reader.h"
+#include "font_subset.h"
 
 namespace nonio::reports {
 namespace {
 
-/// Big-endian numbers of a font file; beyond its end everything is 0 and `ok` turns false.
-class Reader {
- public:
-  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
-  std::uint32_t u16(std::size_t at) const { return byte(at) << 8 | byte(at + 1); }
-  std::uint32_t u32(std::size_t at) const { return u16(at) << 16 | u16(at + 2); }
-  int s16(std::size_t at) const { return static_cast<std::int16_t>(u16(at)); }
-  bool ok() const { return ok_; }
-
-  /// Offset of a table; nothing if the font has none.
-  std::optional<std::size_t> table(std::string_view tag) const {
-    const std::size_t count = u16(4);
-    for (std::size_t i = 0; i < count; ++i)
-      if (12 + 16 * i + 16 <= bytes_.size() && bytes_.substr(12 + 16 * i, 4) == tag)
-        return u32(12 + 16 * i + 8);
-    return {};
-  }
-
- private:
-  std::uint32_t byte(std::size_t at) const {
-    if (at < bytes_.size()) return static_cast<unsigned char>(bytes_[at]);
-    ok_ = false;
-    return 0;
-  }
-  std::string_view bytes_;
-  mutable bool ok_ = true;
-};
-
 /// The Unicode cmap of format 4 (basic plane), spread out by character.
-bool read_cmap(const Reader& r, std::size_t cmap, std::vector<std::uint16_t>& glyphs) {
+bool read_cmap(const FontReader& r, std::size_t cmap, std::vector<std::uint16_t>& glyphs) {
   const std::size_t count = r.u16(cmap + 2);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t record = cmap + 4 + 8 * i;
@@ -75,7 +49,7 @@ void append_hex(std::string& out, std::uint32_t value) {
 
 /// Glyphs back to characters. The minus sign is given back as "-", so that numbers copied out of a
 /// report are numbers.
-std::string to_unicode(const Font& font) {
+std::string to_unicode(const Font& font, const std::vector<char>& kept) {
   std::vector<std::uint16_t> character(font.advance.size());
   for (std::size_t c = font.glyphs.size(); c-- > 0;)
     if (font.glyphs[c] < character.size())
@@ -84,7 +58,7 @@ std::string to_unicode(const Font& font) {
   if (minus < font.glyphs.size() && font.glyphs[minus] != 0) character[font.glyphs[minus]] = u'-';
   std::vector<std::string> lines;
   for (std::size_t g = 1; g < character.size(); ++g) {
-    if (character[g] == 0) continue;
+    if (character[g] == 0 || kept[g] == 0) continue;
     std::string line = "<";
     append_hex(line, static_cast<std::uint32_t>(g));
     line += "> <";
@@ -107,13 +81,18 @@ std::string to_unicode(const Font& font) {
   return out + "endcmap\nCMapName currentdict /CMap defineresource pop\nend\nend\n";
 }
 
-std::string widths_array(const std::vector<std::uint16_t>& advance) {
-  std::string out = "[0 [";
-  for (const std::uint16_t w : advance) {
-    append_int(out, w);
-    out += ' ';
+/// Glyphs that are kept, in stretches: [0 [365 278 ...] 97 [556]].
+std::string widths_array(const std::vector<std::uint16_t>& advance, const std::vector<char>& kept) {
+  std::string out = "[";
+  for (std::size_t g = 0; g < advance.size(); ++g) {
+    if (kept[g] == 0) continue;
+    if (g == 0 || kept[g - 1] == 0) {
+      append_int(out, static_cast<long long>(g));
+      out += " [";
+    }
+    append_int(out, advance[g]);
+    out += g + 1 < advance.size() && kept[g + 1] != 0 ? ' ' : ']';
   }
-  out.back() = ']';
   return out + "]";
 }
 
@@ -131,10 +110,24 @@ std::string subset_name(std::string_view bytes, std::string_view path) {
   return name.substr(0, 100);
 }
 
+bool is_common(std::size_t c) {
+  constexpr std::u16string_view signs =
+      u"\u2013\u2014\u2018\u2019\u201C\u201D\u2022\u2026"
+      u"\u2190\u2191\u2192\u2193\u2212\u2248\u2264\u2265";
+  return (c >= 0x20 && c < 0x7F) || (c > 0xA0 && c <= 0xFF) ||
+         signs.find(static_cast<char16_t>(c)) != std::u16string_view::npos;
+}
+
+Embedded embedded(const Font& font, const std::string& file, const std::vector<char>& kept,
+                  std::string_view path) {
+  return {subset_name(file, path), file.size(), deflated(file, 12),
+          widths_array(font.advance, kept), deflated(to_unicode(font, kept), 12)};
+}
+
 }  // namespace
 
 Expected<Font> parse_font(std::string bytes, std::string_view name) {
-  const Reader r(bytes);
+  const FontReader r(bytes);
   const auto broken = [&](std::string_view why) {
     return fail(Error{"a TrueType font was expected, but " + std::string(why), std::string(name)});
   };
@@ -149,7 +142,6 @@ Expected<Font> parse_font(std::string bytes, std::string_view name) {
     return static_cast<int>(value * 1000.0 / units + (value < 0 ? -0.5 : 0.5));
   };
   Font font;
-  font.name = subset_name(bytes, name);
   for (std::size_t i = 0; i < 4; ++i) font.box[i] = scaled(r.s16(*head + 36 + 2 * i));
   font.ascent = scaled(r.s16(*hhea + 4));
   font.descent = scaled(r.s16(*hhea + 6));
@@ -165,9 +157,13 @@ Expected<Font> parse_font(std::string bytes, std::string_view name) {
   if (!r.ok()) return broken("the file ends early");
   for (std::uint16_t& g : font.glyphs)
     if (g >= glyphs) g = 0;
-  font.widths = widths_array(font.advance);
-  font.to_unicode_deflated = deflated(to_unicode(font), 12);
-  font.file_deflated = deflated(bytes, 12);
+  font.common.assign(glyphs, 0);
+  font.common[0] = 1;
+  for (std::size_t c = 0; c < font.glyphs.size(); ++c)
+    if (is_common(c)) font.common[font.glyphs[c]] = 1;
+  font.with_all = embedded(font, bytes, std::vector<char>(glyphs, 1), name);
+  const std::string subset = font_subset(bytes, font.common);
+  font.with_common = subset.empty() ? font.with_all : embedded(font, subset, font.common, name);
   font.bytes = std::move(bytes);
   return font;
 }

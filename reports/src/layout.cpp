@@ -111,7 +111,8 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
   if (!(width > 100 && room > 100))
     return fail("the page's margins leave no room: " + std::to_string(width) + " pt by " +
                 std::to_string(room) + " pt");
-  const Context context{style, fonts, room};
+  bool common_only = true;
+  const Context context{style, fonts, room, common_only};
   for (const auto& [text, field] :
        {std::pair(&document.title, "title"), std::pair(&document.author, "author"),
         std::pair(&document.subject, "subject")})
@@ -136,9 +137,9 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
   pages.add(waiting);
   std::vector<Canvas> drawn = pages.take();
   if (auto ok = add_heads_and_feet(drawn, document, context); !ok) return fail(ok.error());
-  PdfFile file{document.title,    document.author,   document.subject,
-               document.language, document.date,     style.page_width,
-               style.page_height, style.see_through, {}};
+  PdfFile file{
+      document.title,   document.author,   document.subject,  document.language, document.date,
+      style.page_width, style.page_height, style.see_through, common_only,       {}};
   for (Canvas& canvas : drawn) file.pages.push_back(std::move(canvas.ops));
   return write_pdf(file, fonts);
 }

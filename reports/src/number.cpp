@@ -49,7 +49,8 @@ Printed printed_result(double value, std::optional<double> U, Quantity quantity,
   if (quantity == Quantity::count) return {printed_number(value, quantity, 0, language), ""};
   const double shown = printed(value, quantity);
   const double shown_U = U ? printed(*U, quantity) : 0.0;
-  if (!(shown_U > 0.0) || !std::isfinite(shown_U)) return {rounded_text(shown, -3, language), ""};
+  if (!(shown_U > 0.0) || !std::isfinite(shown_U))
+    return {rounded_text(shown, quantity == Quantity::time ? -1 : -3, language), ""};
   const int place = std::max(place_of_second_digit(shown_U), -9);
   return {rounded_text(shown, place, language), rounded_text(shown_U, place, language)};
 }

@@ -48,7 +48,7 @@ HPDF_STATUS write_filter(HPDF_Dict, HPDF_Stream stream) {
 }
 
 HPDF_STATUS write_widths(HPDF_Dict dict, HPDF_Stream stream) {
-  const auto* font = static_cast<const Font*>(dict->attr);
+  const auto* font = static_cast<const Embedded*>(dict->attr);
   HPDF_STATUS status = HPDF_Stream_WriteStr(stream, "/W ");
   if (status == HPDF_OK) status = HPDF_Stream_WriteStr(stream, font->widths.c_str());
   return status == HPDF_OK ? HPDF_Stream_WriteStr(stream, "\012") : status;
@@ -74,12 +74,12 @@ HPDF_Dict new_object(HPDF_Doc doc, const char* type) {
   return dict;
 }
 
-HPDF_Dict add_descriptor(HPDF_Doc doc, const Font& font, bool bold) {
-  HPDF_Dict file = compressed_stream(doc, font.file_deflated);
+HPDF_Dict add_descriptor(HPDF_Doc doc, const Font& font, const Embedded& embedded, bool bold) {
+  HPDF_Dict file = compressed_stream(doc, embedded.file_deflated);
   HPDF_Dict descriptor = new_object(doc, "FontDescriptor");
   if (file == nullptr || descriptor == nullptr) return nullptr;
-  HPDF_Dict_AddNumber(file, "Length1", static_cast<HPDF_INT32>(font.bytes.size()));
-  HPDF_Dict_AddName(descriptor, "FontName", font.name.c_str());
+  HPDF_Dict_AddNumber(file, "Length1", static_cast<HPDF_INT32>(embedded.size));
+  HPDF_Dict_AddName(descriptor, "FontName", embedded.name.c_str());
   HPDF_Dict_AddNumber(descriptor, "Flags", 4);  // symbolic: glyphs are chosen by number
   HPDF_Array box = HPDF_Array_New(doc->mmgr);
   HPDF_Dict_Add(descriptor, "FontBBox", box);
@@ -93,14 +93,15 @@ HPDF_Dict add_descriptor(HPDF_Doc doc, const Font& font, bool bold) {
   return descriptor;
 }
 
-HPDF_Dict add_font(HPDF_Doc doc, const Font& font, bool bold) {
-  HPDF_Dict descriptor = add_descriptor(doc, font, bold);
-  HPDF_Dict to_unicode = compressed_stream(doc, font.to_unicode_deflated);
+HPDF_Dict add_font(HPDF_Doc doc, const Font& font, bool common, bool bold) {
+  const Embedded& embedded = common ? font.with_common : font.with_all;
+  HPDF_Dict descriptor = add_descriptor(doc, font, embedded, bold);
+  HPDF_Dict to_unicode = compressed_stream(doc, embedded.to_unicode_deflated);
   HPDF_Dict cid_font = new_object(doc, "Font"), type0 = new_object(doc, "Font");
   if (descriptor == nullptr || to_unicode == nullptr || cid_font == nullptr || type0 == nullptr)
     return nullptr;
   HPDF_Dict_AddName(cid_font, "Subtype", "CIDFontType2");
-  HPDF_Dict_AddName(cid_font, "BaseFont", font.name.c_str());
+  HPDF_Dict_AddName(cid_font, "BaseFont", embedded.name.c_str());
   HPDF_Dict system = HPDF_Dict_New(doc->mmgr);
   HPDF_Dict_Add(cid_font, "CIDSystemInfo", system);
   HPDF_Dict_Add(system, "Registry", HPDF_String_New(doc->mmgr, "Adobe", nullptr));
@@ -108,11 +109,11 @@ HPDF_Dict add_font(HPDF_Doc doc, const Font& font, bool bold) {
   HPDF_Dict_AddNumber(system, "Supplement", 0);
   HPDF_Dict_Add(cid_font, "FontDescriptor", descriptor);
   HPDF_Dict_AddName(cid_font, "CIDToGIDMap", "Identity");
-  cid_font->attr = const_cast<Font*>(&font);
+  cid_font->attr = const_cast<Embedded*>(&embedded);
   cid_font->write_fn = write_widths;
 
   HPDF_Dict_AddName(type0, "Subtype", "Type0");
-  HPDF_Dict_AddName(type0, "BaseFont", font.name.c_str());
+  HPDF_Dict_AddName(type0, "BaseFont", embedded.name.c_str());
   HPDF_Dict_AddName(type0, "Encoding", "Identity-H");
   HPDF_Array descendants = HPDF_Array_New(doc->mmgr);
   HPDF_Dict_Add(type0, "DescendantFonts", descendants);
@@ -122,9 +123,10 @@ HPDF_Dict add_font(HPDF_Doc doc, const Font& font, bool bold) {
 }
 
 /// One dictionary that all pages share.
-HPDF_Dict add_resources(HPDF_Doc doc, const Fonts& fonts, double see_through) {
+HPDF_Dict add_resources(HPDF_Doc doc, const Fonts& fonts, const PdfFile& pdf) {
   HPDF_Dict resources = new_object(doc, nullptr);
-  HPDF_Dict regular = add_font(doc, fonts.regular, false), bold = add_font(doc, fonts.bold, true);
+  HPDF_Dict regular = add_font(doc, fonts.regular, pdf.common_only, false),
+            bold = add_font(doc, fonts.bold, pdf.common_only, true);
   HPDF_Dict state = new_object(doc, "ExtGState");
   if (resources == nullptr || regular == nullptr || bold == nullptr || state == nullptr)
     return nullptr;
@@ -132,7 +134,7 @@ HPDF_Dict add_resources(HPDF_Doc doc, const Fonts& fonts, double see_through) {
   HPDF_Dict_Add(resources, "Font", by_font);
   HPDF_Dict_Add(by_font, "F1", regular);
   HPDF_Dict_Add(by_font, "F2", bold);
-  HPDF_Dict_AddReal(state, "ca", static_cast<HPDF_REAL>(see_through));
+  HPDF_Dict_AddReal(state, "ca", static_cast<HPDF_REAL>(pdf.see_through));
   HPDF_Dict by_state = HPDF_Dict_New(doc->mmgr);
   HPDF_Dict_Add(resources, "ExtGState", by_state);
   HPDF_Dict_Add(by_state, "G1", state);
@@ -205,7 +207,7 @@ Expected<std::string> write_pdf(const PdfFile& file, const Fonts& fonts) {
   pdf.doc->pdf_version = HPDF_VER_17;
   add_properties(pdf.doc, file);
   std::string bytes;
-  if (HPDF_Dict resources = add_resources(pdf.doc, fonts, file.see_through)) {
+  if (HPDF_Dict resources = add_resources(pdf.doc, fonts, file)) {
     for (const std::string& content : file.pages) add_page(pdf.doc, file, content, resources);
     if (pdf.failure.code == HPDF_OK && HPDF_SaveToStream(pdf.doc) == HPDF_OK) {
       HPDF_UINT32 size = HPDF_GetStreamSize(pdf.doc);

@@ -15,6 +15,7 @@ struct PdfFile {
   std::string date;  ///< YYYY-MM-DD or empty
   double width = 0.0, height = 0.0;
   double see_through = 1.0;  ///< opacity of areas drawn under /G1
+  bool common_only = false;  ///< every glyph is one of Font::common
   std::vector<std::string> pages;
 };
 

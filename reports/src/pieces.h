@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "axis_scale.h"
 #include "canvas.h"
 #include "nonio/reports/document.h"
 
@@ -29,7 +30,8 @@ struct Laid {
 struct Context {
   const Style& style;
   const Fonts& fonts;
-  double page_room;  ///< height between head and foot
+  double page_room;   ///< height between head and foot
+  bool& common_only;  ///< false once a glyph was set that is not one of Font::common
 
   const Font& font(bool bold) const { return bold ? fonts.bold : fonts.regular; }
 };
@@ -50,6 +52,8 @@ struct SetText {
   void draw_all(Canvas&, double x, double y, double width = 0.0, double align = 0.0) const;
 };
 
+/// For text that is set in another way than by the next two.
+void note_glyphs(const Context&, const Glyphs&, bool bold);
 Expected<SetText> set_text(const Context&, std::string_view text, bool bold, double size,
                            double width, std::string_view field);
 /// In one line, with an ellipsis if it is too long for it.
@@ -59,6 +63,12 @@ Expected<SetText> set_line(const Context&, std::string_view text, bool bold, dou
 /// A filled sign: a disc, a triangle, a square or a ring, so that colour is not needed to tell.
 void draw_mark(Canvas&, const Style&, Level, double x, double y, double size);
 Colour colour_of(const Style&, Level);
+
+/// The numbers of a horizontal axis from `left` over `width`, those that would touch the one before
+/// left out, and below them its title.
+Expected<void> draw_axis_text(Canvas&, const Context&, const AxisScale&, std::string_view title,
+                              double left, double width, double top, double size,
+                              std::string_view field);
 
 Expected<Laid> lay_block(const Block&, double width, const Context&);
 Expected<Laid> lay_table(const Table&, double width, const Context&, std::string_view field);

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "axis_scale.h"
 #include "pieces.h"
 
 namespace nonio::reports {
@@ -362,20 +361,12 @@ class PlotSetter {
     canvas_.fill_colour(style_.text);
     for (std::size_t i = 0; i < labels.size(); ++i)
       labels[i].draw(canvas_, 0, 0, f.py(f.up.ticks[i]) + 0.65 * size_, f.x - 3, 1.0);
-    double free_from = -1e9;
-    for (std::size_t i = 0; i < f.across.ticks.size(); ++i) {
-      auto text = set_line(context_, f.across.labels[i], false, size_, width_, field_);
-      if (!text) return fail(text.error());
-      const double x = f.px(f.across.ticks[i]), half = text->lines[0].width * size_ / 2;
-      if (x - half < free_from) continue;
-      free_from = x + half + 3;
-      text->draw(canvas_, 0, x - 50, f.y - 2, 100, 0.5);
-    }
-    auto across = set_line(context_, plot_.x_title, false, size_, f.w, field_);
+    if (auto ok = draw_axis_text(canvas_, context_, f.across, plot_.x_title, f.x, f.w, f.y - 2,
+                                 size_, field_);
+        !ok)
+      return ok;
     auto up = set_line(context_, plot_.y_title, false, size_, f.h, field_);
-    if (!across) return fail(across.error());
     if (!up) return fail(up.error());
-    across->draw(canvas_, 0, f.x, f.y - 2 - 1.3 * size_, f.w, 0.5);
     canvas_.text_upwards(size_, f.y + (f.h - up->lines[0].width * size_) / 2, false, size_,
                          up->glyphs);
     return {};

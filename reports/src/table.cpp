@@ -123,6 +123,7 @@ class TableSetter {
   }
 
   SetText set(Glyphs glyphs, bool bold, std::size_t c) const {
+    note_glyphs(context_, glyphs, bold);
     SetText text{std::move(glyphs), {}, bold, context_.style.small};
     text.lines = wrap(text.glyphs, (widths_[c] - 2 * pad) / text.size);
     return text;

@@ -73,6 +73,53 @@ class Simulate(unittest.TestCase):
         for text in self.contents().values():
             self.assertNotIn(b"backlash", text)
 
+    FORMULA = """
+[[{table}.formula]]
+name = "sag"
+axis = "X"
+expression = "a*cos(2*_pi*p/P)"
+parameters = [{{ name = "a", unit = "um" }},
+              {{ name = "P", unit = "mm", start = 700, range = [500, 1500] }}]
+[[effect]]
+name = "sag:X"
+a_um = 4.5
+P_mm = 730.0
+"""
+
+    def with_formula(self, table, old="", new=""):
+        path = self.root / "formula.toml"
+        text = SAMPLE.read_text(encoding="utf-8") + self.FORMULA.format(table=table)
+        self.assertIn(old, text)
+        path.write_text(text.replace(old, new) if old else text, encoding="utf-8")
+        return path
+
+    def test_a_formula_of_the_users_is_an_effect(self):
+        self.simulate("--truth", self.root / "truth.json", spec=self.with_formula("model"))
+        truth = json.loads((self.root / "truth.json").read_text(encoding="utf-8"))
+        self.assertEqual(truth["effects"][-1]["parameters"], [{"name": "a", "value": 4.5, "unit": "um"},
+                                                              {"name": "P", "value": 730.0, "unit": "mm"}])
+        self.assertIn(b"expression", self.contents()["campaign.toml"])
+        found = json.loads(nonio("explain", self.campaign, "--auto", "--json").stdout)
+        of_it = {p["name"]: p for p in found["model"]["parameters"] if p["effect"] == "sag:X"}
+        for name, value in (("a", 4.5), ("P", 730.0)):
+            self.assertLess(abs(of_it[name]["value"] - value), 4 * of_it[name]["u"], of_it)
+
+    def test_a_formula_of_the_simulation_stays_hidden(self):
+        self.simulate(spec=self.with_formula("model"))
+        shown = self.contents()
+        self.simulate(spec=self.with_formula("simulation"))
+        self.assertEqual(self.contents()["x.csv"], shown["x.csv"])
+        self.assertNotIn(b"expression", self.contents()["campaign.toml"])
+
+    def test_a_wrong_formula_is_refused(self):
+        for old, new, says in (('"sag:X"', '"sg:X"', 'nearest: "sag"'), ("P_mm", "P_um", "P_um"),
+                               ("a_um = 4.5", "", "a_um is missing"), ("cos(2*_pi*p/P)", "cos(p)", "simulation.formula"),
+                               ('name = "sag"', 'name = "scale"', "there is an effect of this name")):
+            done = self.simulate(spec=self.with_formula("simulation", old, new), expect=2)
+            self.assertIn(says, done.stderr)
+            self.assertRegex(done.stderr, r"formula.toml, line \d+: ")
+        self.assertFalse(self.campaign.exists())
+
     def test_a_measured_campaign_is_left_alone(self):
         self.campaign.mkdir(parents=True)
         (self.campaign / "campaign.toml").write_text("format = 1\n", encoding="utf-8")

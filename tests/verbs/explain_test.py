@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """nonio explain: the JSON of the contract, verdicts, --auto."""
 import json
+import pathlib
+import shutil
 import unittest
 
 from verbs import VerbTest, manifest, readings
@@ -96,6 +98,14 @@ class Explain(VerbTest):
         shown = self.nonio("explain", self.folder, "--auto").stdout
         self.assertIn("step 1: backlash:X added", shown)
         self.assertIn("verdict: nothing", shown)
+
+    def test_without_repeats_it_does_not_speak_of_noise(self):
+        sample = pathlib.Path(__file__).parents[2] / "samples" / "site" / "06-long-axis"
+        shutil.copytree(sample, self.folder, dirs_exist_ok=True)
+        shown = self.nonio("explain", self.folder, "--auto").stdout
+        self.assertIn("verdict: unknown", shown)  # a wave of 2.6 m that no effect of the catalogue says
+        self.assertIn("Nothing was repeated", shown)
+        self.assertNotIn("in every run", shown)
 
     def test_a_mistake_in_the_model_names_line_and_nearest(self):
         text = manifest(["backlsh:X"])

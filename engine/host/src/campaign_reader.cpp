@@ -150,7 +150,8 @@ class CampaignReader {
     const std::size_t n = o.size();
     const auto fits = [n](const auto& column) { return column.empty() || column.size() == n; };
     bool sound = fits(o.u) && fits(o.run) && fits(o.line) && fits(o.source_line) && fits(o.time) &&
-                 fits(o.material) && fits(o.air) && fits(o.pressure) && fits(o.humidity);
+                 fits(o.material) && fits(o.air) && fits(o.pressure) && fits(o.humidity) &&
+                 fits(o.sense);
     for (const auto& axis : o.axes)
       sound = sound && axis.position.size() == n && fits(axis.approach);
     if (!sound) return fail("columns of different lengths");
@@ -255,6 +256,7 @@ void keep_rows(Observations& o, const std::vector<char>& kept) {
   for (auto* column : {&o.deviation, &o.u, &o.time, &o.material, &o.air, &o.pressure, &o.humidity})
     keep(*column, kept);
   for (auto* column : {&o.run, &o.line, &o.source_line}) keep(*column, kept);
+  keep(o.sense, kept);
 }
 
 ReadCampaign read_campaign(const fs::path& folder, const Context& context, const Stage& stage) {

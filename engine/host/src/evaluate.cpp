@@ -28,6 +28,7 @@ class CampaignRun {
     if (read()) {
       analyse();
       fit_model();
+      note_unevaluated();
       if (!failed()) hold_against_tolerances();
       fill_advice();
       if (!failed()) write_outputs();
@@ -80,7 +81,8 @@ class CampaignRun {
     std::vector<const Plugin*> out;
     const auto& names = campaign ? campaign : site;
     if (!names) {
-      for (const Plugin& p : all) out.push_back(&p);
+      for (const Plugin& p : all)
+        if (!p.info.on_request || read_.manifest->options.contains(p.info.name)) out.push_back(&p);
       return out;
     }
     for (const std::string& name : *names) {
@@ -103,30 +105,42 @@ class CampaignRun {
     for (std::size_t i = 0; i < read_.observations.size(); ++i) {
       const Measurement& m = out_.campaign.measurements[i];
       if (read_.observations[i].size() == 0) continue;
-      for (const Analysis* analysis : analyses) {
-        if (!analysis->applies(out_.campaign, m)) continue;
-        const auto options = settle(analysis->info);
-        if (!options) continue;
-        const std::string who = "analysis " + analysis->info.name;
-        stage_(who + " (measurement " + m.id + ")");
-        auto evaluation = guarded(who, [&] {
-          return analysis->analyse({out_.campaign, m, read_.observations[i], *options});
-        });
-        if (evaluation)
-          if (auto sound = check(*evaluation); !sound)
-            evaluation = fail(who + " gave " + sound.error().message);
-        if (!evaluation) {
-          locate(evaluation.error(), analysis->info.name);
-          if (evaluation.error().file.empty()) evaluation.error().file = m.file;
-          report(std::move(evaluation.error()));
-          continue;
-        }
-        for (Finding& f : evaluation->findings) f.measurement = m.id;
-        word(evaluation->notes);
-        out_.results.analyses.push_back(
-            {analysis->info.name, analysis->info.version, m.id, std::move(*evaluation)});
-      }
+      for (const Analysis* analysis : analyses)
+        if (analysis->applies && analysis->applies(out_.campaign, m))
+          analyse_with(*analysis, &m, [&](const Settings& options) {
+            return analysis->analyse(
+                {out_.campaign, m, read_.observations[i], options, &read_.observations});
+          });
     }
+    for (const Analysis* analysis : analyses)
+      if (analysis->analyse_campaign)
+        analyse_with(*analysis, nullptr, [&](const Settings& options) {
+          return analysis->analyse_campaign({out_.campaign, read_.observations, options});
+        });
+  }
+
+  /// Of one measurement, or of the campaign if there is none.
+  template <class Call>
+  void analyse_with(const Analysis& analysis, const Measurement* measurement, const Call& call) {
+    const auto options = settle(analysis.info);
+    if (!options) return;
+    const std::string who = "analysis " + analysis.info.name;
+    const std::string id = measurement == nullptr ? "" : measurement->id;
+    stage_(measurement == nullptr ? who : who + " (measurement " + id + ")");
+    auto evaluation = guarded(who, [&] { return call(*options); });
+    if (evaluation)
+      if (auto sound = check(*evaluation); !sound)
+        evaluation = fail(who + " gave " + sound.error().message);
+    if (!evaluation) {
+      locate(evaluation.error(), analysis.info.name);
+      if (evaluation.error().file.empty())
+        evaluation.error().file = measurement == nullptr ? manifest_name : measurement->file;
+      return report(std::move(evaluation.error()));
+    }
+    for (Finding& f : evaluation->findings) f.measurement = id;
+    word(evaluation->notes);
+    out_.results.analyses.push_back(
+        {analysis.info.name, analysis.info.version, id, std::move(*evaluation)});
   }
 
   void fit_model() {
@@ -155,13 +169,30 @@ class CampaignRun {
       for (const Number& n : f.evidence)
         if (!std::isfinite(n.value))
           return fail("evidence " + n.name + " of finding " + f.id + " that is not a number");
-    for (const PointTable::Column& c : e.points.columns)
-      if (c.values.size() != e.points.columns.front().values.size())
-        return fail("a table of points with columns of different lengths");
+    for (const PointTable* table : {&e.points, &e.rows})
+      for (const PointTable::Column& c : table->columns)
+        if (c.values.size() != table->columns.front().values.size())
+          return fail("a table with columns of different lengths");
     for (const Series& s : e.series)
       if (s.value.size() != s.position.size() || (!s.U.empty() && s.U.size() != s.value.size()))
         return fail("a series " + s.name + " with columns of different lengths");
     return {};
+  }
+
+  /// No analysis and no model has looked at it: said, so that nobody takes silence for a result.
+  void note_unevaluated() {
+    std::set<std::string> seen(read_.unread.begin(), read_.unread.end());
+    for (const Results::Analysed& a : out_.results.analyses) {
+      seen.insert(a.measurement);
+      seen.insert(a.evaluation.uses.begin(), a.evaluation.uses.end());
+    }
+    for (const ModelFit& m : out_.results.models)
+      seen.insert(m.measurements.begin(), m.measurements.end());
+    for (std::size_t i = 0; i < read_.observations.size(); ++i) {
+      const Measurement& m = out_.campaign.measurements[i];
+      if (read_.observations[i].size() != 0 && !seen.contains(m.id))
+        out_.results.notes.push_back({"measurement.not-evaluated", {}, {{"kind", m.kind}}, m.id});
+    }
   }
 
   void hold_against_tolerances() {

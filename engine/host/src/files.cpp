@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -133,24 +134,6 @@ bool is_artifact_name(std::string_view name) {
   return true;
 }
 
-namespace {
-
-/// All files under their temporary names, on disk. They are filled before the first is flushed, so
-/// that the file system can write them together: one journal commit instead of one for each.
-Expected<void> write_temporaries(const fs::path& folder, const std::vector<Artifact>& files) {
-  std::vector<Descriptor> open;
-  for (const Artifact& file : files) {
-    auto written = write_new(temporary_path(folder, file.name), file.bytes);
-    if (!written) return fail(written.error());
-    open.push_back(std::move(*written));
-  }
-  for (std::size_t i = 0; i < open.size(); ++i)
-    if (::fsync(open[i].get()) != 0) return system_error("cannot flush", folder / files[i].name);
-  return {};
-}
-
-}  // namespace
-
 fs::path temporary_path(const fs::path& folder, const std::string& name) {
   return folder / ("." + name + std::string(leftover_suffix));
 }
@@ -166,40 +149,86 @@ Expected<void> rename_temporaries(const fs::path& folder, const std::vector<std:
   return flush_folder(folder);
 }
 
-Expected<void> publish(const fs::path& folder, const std::vector<Artifact>& files) {
-  if (files.empty()) return {};
+namespace {
+
+Expected<std::vector<Descriptor>> fill(const fs::path& folder, const std::vector<Artifact>& files) {
+  std::vector<Descriptor> open;
+  for (const Artifact& file : files) {
+    auto written = write_new(temporary_path(folder, file.name), file.bytes);
+    if (!written) return fail(written.error());
+    open.push_back(std::move(*written));
+  }
+  return open;
+}
+
+void remove_temporaries(const fs::path& folder, const std::vector<Artifact>& files) {
+  std::error_code ignored;
+  for (const Artifact& file : files) fs::remove(temporary_path(folder, file.name), ignored);
+}
+
+Expected<bool> make_folder(const fs::path& folder) {
   std::error_code error;
   const bool is_new = fs::create_directories(folder, error);
   if (error) return fail("cannot make the folder " + folder.string() + ": " + error.message());
-  auto done = write_temporaries(folder, files);
+  return is_new;
+}
+
+/// All files are filled before the first is flushed, so that the file system can write them
+/// together: one journal commit instead of one for each.
+Expected<void> fill_and_flush(const fs::path& folder, const std::vector<Artifact>& files) {
+  const auto open = fill(folder, files);
+  if (!open) return fail(open.error());
+  for (std::size_t i = 0; i < open->size(); ++i)
+    if (::fsync((*open)[i].get()) != 0) return system_error("cannot flush", folder / files[i].name);
+  return {};
+}
+
+}  // namespace
+
+Expected<void> publish(const fs::path& folder, const std::vector<Artifact>& files) {
+  if (files.empty()) return {};
+  const auto is_new = make_folder(folder);
+  if (!is_new) return fail(is_new.error());
+  auto done = fill_and_flush(folder, files);
   // After the files: a journal that was committed for them holds the new folder already.
-  if (done && is_new) done = flush_folder(folder.parent_path());
+  if (done && *is_new) done = flush_folder(folder.parent_path());
   std::vector<std::string> names;
   for (const Artifact& file : files) names.push_back(file.name);
   if (done) done = rename_temporaries(folder, names);
-  if (!done)
-    for (const Artifact& file : files) fs::remove(temporary_path(folder, file.name), error);
+  if (!done) remove_temporaries(folder, files);
   return done;
 }
 
-Expected<void> remove_files(const fs::path& folder, const std::vector<std::string>& names) {
-  bool removed = false;
-  for (const std::string& name : names) {
-    if (::unlink((folder / name).c_str()) == 0)
-      removed = true;
-    else if (errno != ENOENT && errno != ENOTDIR)
-      return system_error("cannot remove", folder / name);
-  }
-  return removed ? flush_folder(folder) : Expected<void>{};
+Expected<void> write_temporaries(const fs::path& folder, const std::vector<Artifact>& files) {
+  if (const auto made = make_folder(folder); !made) return fail(made.error());
+  const auto filled = fill(folder, files);
+  if (filled) return {};
+  remove_temporaries(folder, files);
+  return fail(filled.error());
 }
 
-void remove_leftovers(const fs::path& folder) {
+std::vector<std::string> temporaries(const fs::path& folder) {
+  std::vector<std::string> names;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
-    std::error_code ignored;
-    if (name.starts_with('.') && name.ends_with(leftover_suffix)) fs::remove(it->path(), ignored);
+    if (name.starts_with('.') && name.ends_with(leftover_suffix))
+      names.push_back(name.substr(1, name.size() - 1 - leftover_suffix.size()));
   }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Expected<void> flush_file_system(const fs::path& folder) {
+  const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!fd || ::syncfs(fd.get()) != 0) return system_error("cannot flush the disk of", folder);
+  return {};
+}
+
+void remove_leftovers(const fs::path& folder) {
+  std::error_code ignored;
+  for (const std::string& name : temporaries(folder))
+    fs::remove(temporary_path(folder, name), ignored);
 }
 
 }  // namespace nonio::host

@@ -69,17 +69,17 @@ Formula read_formula(TableReader& reader, const std::string& file, std::vector<E
 
 }  // namespace
 
-std::vector<Formula> read_formulas(TableReader& model, const Machine& machine,
+std::vector<Formula> read_formulas(TableReader& table, const Machine& machine,
                                    const std::string& file, std::vector<Error>& errors) {
   std::vector<Formula> formulas;
-  const toml::array* list = model.tables("formula");
+  const toml::array* list = table.tables("formula");
   if (list == nullptr) return formulas;
   std::vector<std::string> axes;
   for (const Axis& axis : machine.axes) axes.push_back(axis.name);
   std::set<std::string> names;
   for (const toml::node& node : *list) {
     const std::size_t before = errors.size();
-    TableReader reader(*node.as_table(), "model.formula", file, errors);
+    TableReader reader(*node.as_table(), table.place("formula"), file, errors);
     Formula formula = read_formula(reader, file, errors);
     const Axis* axis = machine.axis(formula.axis);
     if (axis == nullptr && !formula.axis.empty())

@@ -6,8 +6,9 @@
 
 namespace nonio::host {
 
-/// [[model.formula]]: read and tried, so that what is wrong with them is said with the rest.
-std::vector<Formula> read_formulas(TableReader& model, const Machine& machine,
+/// [[formula]] of [model], or of a simulation: read and tried, so that what is wrong with them is
+/// said with the rest.
+std::vector<Formula> read_formulas(TableReader& table, const Machine& machine,
                                    const std::string& file, std::vector<Error>& errors);
 
 }  // namespace nonio::host

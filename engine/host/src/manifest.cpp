@@ -206,10 +206,13 @@ Measurement read_measurement(Source& source, const toml::table& table) {
   return m;
 }
 
-void read_measurements(Source& source, TableReader& top, Campaign& campaign) {
+void read_measurements(Source& source, TableReader& top, Campaign& campaign, bool plans) {
   const toml::array* list = top.tables("measurement");
   if (list == nullptr || list->empty()) {
-    top.error("measurement", "is missing: a campaign has at least one [[measurement]]");
+    if (!plans)
+      top.error("measurement",
+                "is missing: a campaign has at least one [[measurement]], or, where it only plans, "
+                "[run] analyses and outputs");
     return;
   }
   std::set<std::string> ids;
@@ -303,7 +306,8 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
   restore_axis_order(*root, campaign.machine);
   campaign.instrument = read_instrument(source, top.table("instrument"));
   campaign.environment = read_environment(source, top.table("environment"));
-  read_measurements(source, top, campaign);
+  manifest.run = read_run(source, top.table("run"));
+  read_measurements(source, top, campaign, manifest.run.analyses && manifest.run.outputs);
   if (const toml::table* model = top.table("model")) {
     TableReader reader = source.reader(*model, "model");
     if (auto effects = reader.texts("effects")) campaign.model = std::move(*effects);
@@ -311,7 +315,6 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
     campaign.formulas = read_formulas(reader, campaign.machine, file, source.errors);
     reader.finish();
   }
-  manifest.run = read_run(source, top.table("run"));
   manifest.options = read_options(source, top.table("options"));
   top.finish();
   if (!source.errors.empty()) return tl::unexpected(std::move(source.errors));

@@ -78,7 +78,8 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
       f.texts.emplace_back("aliases", listed(c.aliases));
     }
   }
-  if (v.kind == Kind::nothing && !e.comparison.floor) f.id = "verdict.nothing-without-floor";
+  if ((v.kind == Kind::nothing || v.kind == Kind::unknown) && !e.comparison.floor)
+    f.id += "-without-floor";
   return f;
 }
 

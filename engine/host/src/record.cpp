@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/host/record.h"
 
+#include <simdjson.h>
+
 #include "json_values.h"
-#include "nonio/host/files.h"
 
 namespace nonio::host {
 
@@ -18,31 +19,40 @@ Json findings_json(const std::vector<KnownFinding>& findings) {
   return json;
 }
 
-std::vector<KnownFinding> findings_of(const Json& json) {
+namespace dom = simdjson::dom;
+
+std::string text(dom::element e) { return std::string(std::string_view(e)); }
+
+std::vector<KnownFinding> findings_of(dom::array json) {
   std::vector<KnownFinding> out;
-  for (const Json& f : json)
-    out.push_back({f.at("measurement").get<std::string>(), f.at("id").get<std::string>(),
-                   f.at("title").get<std::string>(), f.at("severity") == "attention"});
+  for (const dom::object f : json)
+    out.push_back({text(f["measurement"]), text(f["id"]), text(f["title"]),
+                   std::string_view(f["severity"]) == "attention"});
   return out;
 }
 
-Record record_of(const Json& json) {
+Error error_of(dom::object json) {
+  Error error{text(json["message"])};
+  if (dom::element e; json["file"].get(e) == simdjson::SUCCESS) error.file = text(e);
+  if (dom::element e; json["line"].get(e) == simdjson::SUCCESS) error.line = std::uint64_t(e);
+  if (dom::element e; json["column"].get(e) == simdjson::SUCCESS) error.column = text(e);
+  return error;
+}
+
+Record record_of(dom::object json) {
   Record r;
-  r.folder = json.at("folder").get<std::string>();
-  r.night = json.at("night").get<std::uint64_t>();
-  r.reason = json.at("reason").get<std::string>();
-  r.status = json.at("status").get<std::string>();
-  r.retry = json.at("retry").get<bool>();
-  for (const auto& [name, digest] : json.at("inputs").items())
-    r.inputs.emplace_back(name, digest.get<std::string>());
-  for (const auto& [name, size_and_digest] : json.at("files").items())
-    r.files.push_back({name, size_and_digest.at(0).get<std::uint64_t>(),
-                       size_and_digest.at(1).get<std::string>()});
-  for (const Json& e : json.at("errors"))
-    r.errors.push_back({e.at("message").get<std::string>(), e.value("file", std::string()),
-                        e.value("line", std::uint64_t{0}), e.value("column", std::string())});
-  r.findings = findings_of(json.at("findings"));
-  r.previous = findings_of(json.at("previous_findings"));
+  r.folder = text(json["folder"]);
+  r.night = json["night"];
+  r.reason = text(json["reason"]);
+  r.status = text(json["status"]);
+  r.retry = json["retry"];
+  for (const auto [name, digest] : dom::object(json["inputs"]))
+    r.inputs.emplace_back(name, text(digest));
+  for (const auto [name, size_and_digest] : dom::object(json["files"]))
+    r.files.push_back({std::string(name), size_and_digest.at(0), text(size_and_digest.at(1))});
+  for (const dom::object e : dom::array(json["errors"])) r.errors.push_back(error_of(e));
+  r.findings = findings_of(json["findings"]);
+  r.previous = findings_of(json["previous_findings"]);
   return r;
 }
 
@@ -69,13 +79,12 @@ std::string to_json(const Record& r) {
 }
 
 Expected<Record> read_record(const std::filesystem::path& campaign_output) {
-  const auto file = MappedFile::open(campaign_output / record_name);
-  if (!file) return fail(file.error());
   try {
-    const Json json = Json::parse(file->bytes());
-    if (json.at("schema") != "nonio-run/2") return fail("is of another version");
+    dom::parser parser;
+    const dom::object json = parser.load((campaign_output / record_name).string());
+    if (std::string_view(json["schema"]) != "nonio-run/2") return fail("is of another version");
     return record_of(json);
-  } catch (const Json::exception& e) {
+  } catch (const simdjson::simdjson_error& e) {
     return fail(std::string("is not a record: ") + e.what());
   }
 }

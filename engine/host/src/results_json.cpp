@@ -92,13 +92,13 @@ void put_number(JsonWriter& json, double value, Quantity quantity) {
     json.value(printed(value, quantity));
 }
 
-void put_points(JsonWriter& json, const PointTable& table) {
+void put_table(JsonWriter& json, const PointTable& table, const char* name, const char* units) {
   if (table.columns.empty()) return;
-  json.key("point_units");
+  json.key(units);
   json.begin_object();
   for (const PointTable::Column& c : table.columns) json.member(c.name, unit_of(c.quantity).symbol);
   json.end_object();
-  json.key("points");
+  json.key(name);
   json.begin_array();
   for (std::size_t i = 0; i < table.columns.front().values.size(); ++i) {
     json.begin_object();
@@ -163,12 +163,19 @@ void put_analysis(JsonWriter& json, const Results::Analysed& a,
   json.begin_object();
   json.member("plugin", a.plugin);
   json.member("version", a.version);
-  json.member("measurement", a.measurement);
+  put(json, "measurement", a.measurement);
+  if (!a.evaluation.uses.empty()) {
+    json.key("uses");
+    json.begin_array();
+    for (const std::string& id : a.evaluation.uses) json.value(id);
+    json.end_array();
+  }
   json.key("values");
   json.begin_object();
   for (const Value& v : a.evaluation.values) put_value(json, v, a, conformity);
   json.end_object();
-  put_points(json, a.evaluation.points);
+  put_table(json, a.evaluation.points, "points", "point_units");
+  put_table(json, a.evaluation.rows, "rows", "row_units");
   put_series(json, a.evaluation.series);
   put_findings(json, a.evaluation.findings, false);
   put_notes(json, a.evaluation.notes);

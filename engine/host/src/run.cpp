@@ -10,6 +10,7 @@
 #include <csignal>
 #include <iostream>
 
+#include "committer.h"
 #include "context.h"
 #include "night_state.h"
 #include "nonio/host/files.h"
@@ -50,6 +51,11 @@ class Runner {
         context_(context),
         night_(night),
         campaigns_(campaigns),
+        committer_([this](const std::vector<std::size_t>& batch) {
+          std::vector<std::string> ids;
+          for (const std::size_t c : batch) ids.push_back(campaigns_[c].id);
+          return commit(options_.out, ids);
+        }),
         campaigns_per_worker_(context.plugins->all_from(options.own_plugins) ? campaigns_per_worker
                                                                              : 1) {}
 
@@ -65,13 +71,10 @@ class Runner {
         if (!campaign) break;
         start(*campaign);
       }
-      if (workers_.empty()) return true;
+      if (workers_.empty() && committer_.pending().empty()) return true;
       wait();
     }
-    for (Worker& w : workers_) {
-      w.end();
-      remove_leftovers(options_.out / campaigns_[w.campaign()].id);
-    }
+    stop();
     return false;
   }
 
@@ -120,6 +123,23 @@ class Runner {
                               std::chrono::duration<double>(context_.site.limits.seconds)));
   }
 
+  /// What is evaluated is stored, what is not is given up. A disk that does not answer does not
+  /// hold up the one who wants to stop.
+  void stop() {
+    for (Worker& w : workers_) {
+      w.end();
+      remove_leftovers(options_.out / campaigns_[w.campaign()].id);
+    }
+    workers_.clear();
+    const auto deadline = Worker::Clock::now() + std::chrono::seconds(10);
+    while (!committer_.pending().empty() && Worker::Clock::now() < deadline) {
+      wait_for_answer(workers_, committer_.channel());
+      take_stored();
+    }
+    for (const std::size_t c : committer_.pending())
+      remove_leftovers(options_.out / campaigns_[c].id);
+  }
+
   /// In the worker's process.
   Answer work(std::size_t index, bool first, SharedWords& stage) const {
     const CampaignState& c = campaigns_[index];
@@ -127,10 +147,10 @@ class Runner {
                                          [&](const std::string& s) { stage.set(s); });
     if (evaluated.status == "failed" && !first) return Answer::again;
     stage.set("writing the results");
-    const auto stored =
-        store(options_.out, evaluated, context_, {c.folder, night_.number, c.reason, false});
-    if (!stored) {
-      stage.set(stored.error().message);
+    const auto staged =
+        host::stage(options_.out, evaluated, context_, {c.folder, night_.number, c.reason, false});
+    if (!staged) {
+      stage.set(staged.error().message);
       return Answer::not_stored;
     }
     return evaluated.status == "failed"      ? Answer::failed
@@ -139,7 +159,8 @@ class Runner {
   }
 
   void wait() {
-    wait_for_answer(workers_);
+    wait_for_answer(workers_, committer_.channel());
+    take_stored();
     for (std::size_t i = workers_.size(); i-- > 0;) {
       Worker& worker = workers_[i];
       bool goes_on = false;
@@ -165,11 +186,12 @@ class Runner {
     switch (answer) {
       case Answer::ok:
       case Answer::attention:
-        finish(worker.campaign(), answer == Answer::ok ? "ok" : "attention", {});
-        return worker.given() < campaigns_per_worker_ && !worker.grown() && again_.empty();
       case Answer::failed:
-        take_failed(worker.campaign());
-        return false;
+        campaigns_[worker.campaign()].status = to_text(answer);
+        if (const auto given = committer_.give(worker.campaign()); !given)
+          lost(worker.campaign(), given.error().message);
+        return answer != Answer::failed && worker.given() < campaigns_per_worker_ &&
+               !worker.grown() && again_.empty();
       case Answer::again:
         again_.push_back(worker.campaign());
         return false;
@@ -194,10 +216,30 @@ class Runner {
       lost(worker.campaign(), why);
   }
 
+  void take_stored() {
+    for (Committer::Done& done : committer_.done()) {
+      const CampaignState& c = campaigns_[done.campaign];
+      if (done.again) {
+        const auto stored = commit(options_.out, {c.id}).front();
+        done.error = stored ? "" : stored.error().message;
+      }
+      if (!done.error.empty())
+        lost(done.campaign, done.error);
+      else if (c.status == "failed")
+        take_failed(done.campaign);
+      else
+        finish(done.campaign, c.status, {});
+    }
+  }
+
   void take_failed(std::size_t index) {
     const auto record = read_record(options_.out / campaigns_[index].id);
     if (!record) return lost(index, "its record cannot be read: " + record.error().message);
     finish(index, record->status, record->errors);
+  }
+
+  static const char* to_text(Answer answer) {
+    return answer == Answer::ok ? "ok" : answer == Answer::attention ? "attention" : "failed";
   }
 
   static std::string short_number(double x) {
@@ -233,6 +275,7 @@ class Runner {
   const Context& context_;
   const NightState& night_;
   std::vector<CampaignState>& campaigns_;
+  Committer committer_;
   const std::size_t campaigns_per_worker_;
   std::size_t next_ = 0;
   std::vector<std::size_t> again_;  ///< get a second trial

@@ -107,10 +107,10 @@ std::vector<double> deviation_of_columns(const EffectSpec& e, const Effect::Colu
                                          Random random) {
   std::vector<double> sum(columns.empty() ? 0 : columns[0].size(), 0.0);
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    const double factor = e.effect->curve ? random.normal() : e.linear[k];
+    const double factor = e.effect.curve ? random.normal() : e.linear[k];
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * columns[k][i];
   }
-  if (e.effect->curve) {
+  if (e.effect.curve) {
     const double size = rms(sum);
     for (double& v : sum) v *= size > 0.0 ? e.linear[0] / size : 0.0;
   }
@@ -125,7 +125,7 @@ Expected<std::vector<double>> shape_of(const EffectSpec& e, const Observations& 
       shape.push_back(*e.shape[k]);
       continue;
     }
-    const Effect::Shape& searched = e.effect->shapes[k];
+    const Effect::Shape& searched = e.effect.shapes[k];
     const std::vector<double> grid = searched.grid(o, e.axis);
     if (grid.size() != 1)
       return fail("effect." + key_of(searched.parameter, e.axis.rotary) +
@@ -148,13 +148,13 @@ Json quantity_json(double value, bool rotary) {
 }
 
 Expected<Json> add_effect(const EffectSpec& e, Observations& o, Random random) {
-  if (!e.effect->applies(o, e.axis))
-    return fail(e.name + " does not apply to these readings: " + e.effect->info.summary);
+  if (!e.effect.applies(o, e.axis))
+    return fail(e.name + " does not apply to these readings: " + e.effect.info.summary);
   const auto shape = shape_of(e, o);
   if (!shape) return fail(shape.error());
-  const auto columns = e.effect->columns(o, e.axis, *shape);
+  const auto columns = e.effect.columns(o, e.axis, *shape);
   if (!columns) return fail(e.name + ": " + columns.error().message);
-  if (!e.effect->curve && columns->size() != e.linear.size())
+  if (!e.effect.curve && columns->size() != e.linear.size())
     return fail(e.name + ": its plugin gives " + std::to_string(columns->size()) + " columns for " +
                 std::to_string(e.linear.size()) + " parameters");
   const std::vector<double> part = deviation_of_columns(e, *columns, random);
@@ -164,9 +164,9 @@ Expected<Json> add_effect(const EffectSpec& e, Observations& o, Random random) {
   }
   Json parameters = Json::array();
   for (std::size_t k = 0; k < e.linear.size(); ++k)
-    parameters.push_back(parameter_json(e, e.effect->linear[k], e.linear[k]));
+    parameters.push_back(parameter_json(e, e.effect.linear[k], e.linear[k]));
   for (std::size_t k = 0; k < shape->size(); ++k)
-    parameters.push_back(parameter_json(e, e.effect->shapes[k].parameter, (*shape)[k]));
+    parameters.push_back(parameter_json(e, e.effect.shapes[k].parameter, (*shape)[k]));
   return Json{{"effect", e.name},
               {"parameters", std::move(parameters)},
               {"rms", quantity_json(rms(part), e.axis.rotary)}};

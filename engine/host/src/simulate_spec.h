@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "nonio/host/manifest.h"
+#include "nonio/sdk/plugin.h"
+#include "toml_reader.h"
 
 namespace nonio::host {
 
@@ -36,7 +38,7 @@ struct CycleSpec {
 
 /// One [[effect]], its parameters as written.
 struct EffectSpec {
-  const Effect* effect = nullptr;
+  Effect effect;
   std::string name;  ///< "backlash:X"
   Axis axis;
   std::uint64_t line = 0;
@@ -48,12 +50,17 @@ struct Specification {
   Campaign campaign;
   std::string manifest;  ///< the text without what is only for the simulation
   std::uint64_t seed = 1;
+  std::vector<Effect> catalogue;  ///< the plugins' effects, and formulas
   std::vector<CycleSpec> cycles;  ///< in the order of the measurements
   std::vector<EffectSpec> effects;
 };
 
 Checked<Specification> read_specification(std::string_view text, const std::string& file,
                                           const std::vector<Effect>& effects);
+
+/// The [[cycle]]s, one for each measurement, in their order.
+std::vector<CycleSpec> read_cycles(TableReader& top, const Campaign& campaign,
+                                   const std::string& file, std::vector<Error>& errors);
 
 /// Quantity of a parameter on this kind of axis, and its key: "b_um", "a_um_per_m".
 Quantity quantity_on(const Effect::Parameter& parameter, bool rotary);

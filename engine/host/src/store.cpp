@@ -40,7 +40,7 @@ RecordedFile recorded(const Artifact& a) { return {a.name, a.bytes.size(), sha25
 
 }  // namespace
 
-Expected<void> store(const fs::path& out, const Evaluated& e, const Context& context,
+Expected<void> stage(const fs::path& out, const Evaluated& e, const Context& context,
                      const StoreNote& note) {
   const fs::path folder = out / e.campaign.id;
   if (std::error_code error; fs::exists(folder / manifest_name, error))
@@ -65,20 +65,89 @@ Expected<void> store(const fs::path& out, const Evaluated& e, const Context& con
   files.push_back({results_name, results_json(e, context, record.files)});
   record.files.push_back(recorded(files.back()));
 
-  std::vector<std::string> stale;
-  if (const auto old = read_record(folder)) {
+  if (const auto old = read_record(folder))
     record.previous = old->night < note.night ? old->findings : old->previous;
-    for (const RecordedFile& f : old->files)
-      if (std::none_of(record.files.begin(), record.files.end(),
-                       [&](const RecordedFile& now) { return now.name == f.name; }) &&
-          is_artifact_name(f.name))
-        stale.push_back(f.name);
-  }
   files.push_back({record_name, to_json(record)});
   remove_leftovers(folder);
-  stale.insert(stale.begin(), record_name);
-  if (auto done = remove_files(folder, stale); !done) return done;
-  return publish(folder, files);
+  return write_temporaries(folder, files);
+}
+
+namespace {
+
+/// The results of one campaign on their way from temporary names to their own.
+struct Move {
+  fs::path folder;
+  std::vector<std::string> names{};
+  bool moved = false;  ///< already
+  Expected<void> done{};
+
+  void remove(const std::string& name) {
+    if (std::error_code error; done && !fs::remove(folder / name, error) && error)
+      done = fail("cannot remove " + (folder / name).string() + ": " + error.message());
+  }
+  void rename(const std::string& name) {
+    std::error_code error;
+    if (done) fs::rename(temporary_path(folder, name), folder / name, error);
+    if (error) done = fail("cannot write " + (folder / name).string() + ": " + error.message());
+  }
+  /// The old record, and files of it that the new results do not have.
+  void take_old_away() {
+    const auto old = read_record(folder);
+    remove(record_name);
+    if (!old) return;
+    for (const RecordedFile& f : old->files)
+      if (is_artifact_name(f.name) && !std::binary_search(names.begin(), names.end(), f.name))
+        remove(f.name);
+  }
+  void rename_files() {
+    for (const std::string& name : names)
+      if (name != record_name) rename(name);
+  }
+  void rename_record() { rename(record_name); }
+};
+
+/// What a commit that was cut short has done already is not staged any more.
+Move move_of(const fs::path& folder) {
+  Move move{folder, temporaries(folder)};
+  const bool staged = std::binary_search(move.names.begin(), move.names.end(), record_name);
+  if (!staged) {
+    move.names.clear();
+    move.moved = read_record(folder).has_value();
+    if (!move.moved) move.done = fail("nothing is staged in " + folder.string());
+  }
+  return move;
+}
+
+}  // namespace
+
+std::vector<Expected<void>> commit(const fs::path& out, const std::vector<std::string>& ids) {
+  std::vector<Move> moves;
+  for (const std::string& id : ids) moves.push_back(move_of(out / id));
+  const auto flush = [&] {
+    const auto flushed = flush_file_system(out);
+    for (Move& m : moves)
+      if (m.done && !flushed) m.done = flushed;
+  };
+  const auto each = [&](void (Move::*step)()) {
+    for (Move& m : moves)
+      if (!m.moved) (m.*step)();
+    flush();
+  };
+  each(&Move::take_old_away);
+  each(&Move::rename_files);
+  each(&Move::rename_record);
+  std::vector<Expected<void>> done;
+  for (Move& m : moves) {
+    if (!m.done) remove_leftovers(m.folder);
+    done.push_back(std::move(m.done));
+  }
+  return done;
+}
+
+Expected<void> store(const fs::path& out, const Evaluated& evaluated, const Context& context,
+                     const StoreNote& note) {
+  if (auto staged = stage(out, evaluated, context, note); !staged) return staged;
+  return commit(out, {evaluated.campaign.id}).front();
 }
 
 }  // namespace nonio::host

@@ -17,8 +17,18 @@ struct StoreNote {
   bool retry = false;
 };
 
-/// Puts a campaign's files into its output folder. The record is taken away first and written last:
-/// whenever it is there, all the files it lists belong together.
+/// Writes a campaign's files into its output folder under temporary names; `commit` gives them
+/// theirs.
+Expected<void> stage(const std::filesystem::path& out, const Evaluated& evaluated,
+                     const Context& context, const StoreNote& note);
+
+/// Makes the staged files of these campaigns their results, durably: one flush of the disk serves
+/// all of them. The old record is taken away first and the new one gets its name last: whenever a
+/// record is there, all the files it lists belong together. One entry for each id.
+std::vector<Expected<void>> commit(const std::filesystem::path& out,
+                                   const std::vector<std::string>& ids);
+
+/// Both, for one campaign.
 Expected<void> store(const std::filesystem::path& out, const Evaluated& evaluated,
                      const Context& context, const StoreNote& note);
 

@@ -157,8 +157,8 @@ ChildEnd Worker::end() {
   return child_end(status);
 }
 
-void wait_for_answer(const std::vector<Worker>& workers) {
-  std::vector<pollfd> channels;
+void wait_for_answer(const std::vector<Worker>& workers, int other) {
+  std::vector<pollfd> channels{{other, POLLIN, 0}};
   for (const Worker& w : workers) channels.push_back({w.channel(), POLLIN, 0});
   ::poll(channels.data(), channels.size(), 100);
 }

@@ -35,8 +35,8 @@ class SharedWords {
 enum class Answer : char {
   ok,
   attention,
-  failed,      ///< stored as failed
-  again,       ///< failed, and not stored: it may owe that to the worker's earlier campaigns
+  failed,
+  again,       ///< failed, and not written: it may owe that to the worker's earlier campaigns
   not_stored,  ///< why stands in the worker's words
   none,        ///< the process ended without a word
 };
@@ -78,7 +78,8 @@ class Worker {
   bool grown_ = false;
 };
 
-/// Returns when one of them may have an answer, or soon.
-void wait_for_answer(const std::vector<Worker>& workers);
+/// Returns when one of them may have an answer, when `other` (a descriptor, or -1) can be read, or
+/// soon.
+void wait_for_answer(const std::vector<Worker>& workers, int other = -1);
 
 }  // namespace nonio::host

@@ -104,7 +104,7 @@ std::string values_file(const Results& results) {
   return out;
 }
 
-std::string points_file(const PointTable& points) {
+std::string table_file(const PointTable& points) {
   std::string out;
   std::vector<std::string> row;
   std::size_t rows = 0;
@@ -123,7 +123,8 @@ std::string points_file(const PointTable& points) {
 }
 
 /// A plain file name that no artifact has yet.
-std::string file_name(const Results::Analysed& a, const std::vector<Artifact>& others) {
+std::string file_name(const std::string& kind, const Results::Analysed& a,
+                      const std::vector<Artifact>& others) {
   const auto plain = [](std::string part) {
     for (char& c : part)
       if (std::string_view("/\\:*?\"<>| ").find(c) != std::string_view::npos ||
@@ -131,7 +132,8 @@ std::string file_name(const Results::Analysed& a, const std::vector<Artifact>& o
         c = '_';
     return part;
   };
-  const std::string base = "points-" + plain(a.measurement) + "-" + plain(a.plugin);
+  const std::string base =
+      kind + (a.measurement.empty() ? "" : "-" + plain(a.measurement)) + "-" + plain(a.plugin);
   std::string name = base + ".csv";
   const auto taken = [&] {
     return std::any_of(others.begin(), others.end(),
@@ -145,9 +147,10 @@ Expected<OutputResult> write(const OutputInput& input) {
   OutputResult result;
   result.artifacts.push_back({"values.csv", values_file(input.results)});
   for (const Results::Analysed& a : input.results.analyses)
-    if (!a.evaluation.points.columns.empty())
-      result.artifacts.push_back(
-          {file_name(a, result.artifacts), points_file(a.evaluation.points)});
+    for (const auto& [kind, table] :
+         {std::pair{"points", &a.evaluation.points}, {"rows", &a.evaluation.rows}})
+      if (!table->columns.empty())
+        result.artifacts.push_back({file_name(kind, a, result.artifacts), table_file(*table)});
   return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include "embedded.h"
 #include "escape.h"
+#include "nonio/reports/model.h"
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
 
@@ -14,8 +15,6 @@ namespace nonio::model_html {
 using namespace reports;
 
 namespace {
-
-constexpr double notable_correlation = 0.9;
 
 std::string element(std::string_view name, std::string_view inner, std::string_view more = "") {
   std::string out = "<";
@@ -48,56 +47,47 @@ std::string identity(const Source& source) {
   return element("h1", html(title_of(source))) + element("p", line, "class=\"muted\"");
 }
 
+/// The verdict in a box, and in it where something is left, line by line.
 std::string notes(const Source& source) {
-  std::string out;
+  std::string note, list;
+  bool attention = false;
   const auto says = [&](const Finding& f, const char* part) {
     return html(typeset(finding_text(source.in.templates, source.words.language(), f, part)));
   };
   for (const Finding& f : source.fit.says) {
-    std::string note, title = says(f, "title");
+    if (&f != &source.fit.says.front()) {
+      list += element("li", says(f, "says"));
+      continue;
+    }
+    attention = f.attention;
+    const std::string title = says(f, "title");
     if (title != f.id || says(f, "says").empty())
       note += element("b", title);  // a verdict has none
     for (const char* part : {"says", "advice"})
       if (const std::string text = says(f, part); !text.empty()) note += element("p", text);
-    out += element("div", note, f.attention ? "class=\"note attention\"" : "class=\"note\"");
   }
-  return out;
+  if (!list.empty()) note += element("ul", list);
+  if (note.empty()) return note;
+  return element("div", note, attention ? "class=\"note attention\"" : "class=\"note\"");
 }
 
 std::string parameters(const Source& source) {
   const Wording& words = source.words;
   const ModelFit& fit = source.fit;
   if (fit.parameters.empty()) return element("p", html(words.get("model.empty")));
-  std::string rows = "<tr>";
-  for (const char* key : {"effect", "parameter", "value"})
-    rows += element("th", html(words.get(std::string("model.") + key)),
-                    std::string(key) == "value" ? "class=\"number\"" : "");
-  rows += "<th class=\"number\">U</th>" + element("th", html(words.get("model.unit"))) + "</tr>\n";
-  std::string correlated;
-  const auto name = [&](std::size_t i) {
-    return fit.parameters[i].effect + " " + fit.parameters[i].name;
-  };
-  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-    const ModelFit::Parameter& p = fit.parameters[i];
-    std::optional<double> U;
-    if (p.u && std::isfinite(*p.u)) U = 2 * *p.u;
-    const Printed shown = printed_result(p.value, U, p.quantity, words.language());
-    rows += "<tr>" + element("td", html(p.effect)) + element("td", html(p.name)) +
-            element("td", shown.value, "class=\"number\"") +
-            element("td", shown.U.empty() ? "–" : shown.U, "class=\"number\"") +
-            element("td", html(unit_text(p.quantity))) + "</tr>\n";
-    for (std::size_t k = 0; i < fit.correlation.size() && k < i && k < fit.correlation[i].size();
-         ++k)
-      if (const double r = fit.correlation[i][k]; std::fabs(r) > notable_correlation)
-        correlated += (correlated.empty() ? "" : "; ") +
-                      words.get("model.pair",
-                                {{"one", name(k)},
-                                 {"other", name(i)},
-                                 {"r", printed_number(r, Quantity::ratio, 2, words.language())}});
-  }
+  std::string rows = "<tr>" + element("th", html(words.get("model.effect"))) +
+                     element("th", html(words.get("model.parameter")), "colspan=\"2\"") +
+                     element("th", html(words.get("model.value")), "class=\"number\"") +
+                     "<th class=\"number\">U</th>" + element("th", html(words.get("model.unit"))) +
+                     "</tr>\n";
+  for (const ParameterRow& row : parameter_rows(fit, source.in.templates, words.language()))
+    rows += "<tr>" + element("td", html(row.effect)) + element("td", html(row.name)) +
+            element("td", html(row.meaning)) + element("td", row.value, "class=\"number\"") +
+            element("td", row.U, "class=\"number\"") + element("td", html(row.unit)) + "</tr>\n";
   std::string out = element("div", element("table", rows), "class=\"scroll\"");
-  if (!correlated.empty())
-    out += element("p", html(words.get("model.correlated", {{"pairs", correlated}})));
+  for (const std::string& text :
+       {correlated_parameters(fit, words), fit_in_words(fit, source.in.results, words)})
+    if (!text.empty()) out += element("p", html(text));
   return out;
 }
 

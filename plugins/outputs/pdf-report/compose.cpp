@@ -125,6 +125,16 @@ void add_measurements(const Source& source, Blocks& blocks) {
   }
 }
 
+/// Parts of a line that are not known leave no gap: "worn-screw · " becomes "worn-screw".
+std::string without_gaps(std::string line) {
+  constexpr std::string_view between = " · ";
+  const std::string twice = std::string(between) + std::string(between);
+  while (line.find(twice) != std::string::npos) line.erase(line.find(twice), between.size());
+  if (line.starts_with(between)) line.erase(0, between.size());
+  if (line.ends_with(between)) line.resize(line.size() - between.size());
+  return line;
+}
+
 }  // namespace
 
 std::vector<Measured> measured(const Source& source) {
@@ -158,14 +168,14 @@ Document compose(const Source& source) {
   document.title = words.get("title") + " " + campaign.id;
   document.author = campaign.laboratory.name;
   document.subject = machine;
-  document.head = words.get("head", {{"title", words.get("title")},
-                                     {"id", campaign.id},
-                                     {"machine", machine},
-                                     {"laboratory", campaign.laboratory.name},
-                                     {"date", campaign.date}});
-  document.foot = words.get(
+  document.head = without_gaps(words.get("head", {{"title", words.get("title")},
+                                                  {"id", campaign.id},
+                                                  {"machine", machine},
+                                                  {"laboratory", campaign.laboratory.name},
+                                                  {"date", campaign.date}}));
+  document.foot = without_gaps(words.get(
       "foot",
-      {{"id", campaign.id}, {"date", campaign.date}, {"laboratory", campaign.laboratory.name}});
+      {{"id", campaign.id}, {"date", campaign.date}, {"laboratory", campaign.laboratory.name}}));
   document.page_of = words.get("page_of");
   for (const std::string& block : source.look.blocks) {
     if (block == "title") add_title(source, document.blocks);
@@ -175,7 +185,9 @@ Document compose(const Source& source) {
     if (block == "models") add_models(source, document.blocks);
     if (block == "tables") add_tables(source, document.blocks);
     if (block == "notes") add_notes(source, document.blocks);
+    if (block == "residuals") add_residuals(source, document.blocks);
   }
+  document.blocks.push_back({Paragraph{words.get("end"), Paragraph::Look::small}, "end"});
   return document;
 }
 

@@ -135,8 +135,8 @@ Expected<Look> read_look(const Templates& templates, const std::string& name) {
     return fail(Error{"there is no template of the name \"" + name + "\"", file});
   Keys keys(it->second, file);
   Look look;
-  look.blocks = keys.names(
-      "blocks", {"title", "identity", "status", "measurements", "models", "tables", "notes"});
+  look.blocks = keys.names("blocks", {"title", "identity", "status", "measurements", "models",
+                                      "tables", "notes", "residuals"});
   look.measurement = keys.names("measurement", {"results", "plots", "findings", "targets"});
   look.plots = keys.names("plots", {"runs", "iso", "vdi", "reversal", "series"});
   look.plots_per_row = static_cast<int>(keys.number("plots_per_row", 1, 3));

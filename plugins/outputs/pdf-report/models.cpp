@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "nonio/reports/model.h"
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
 #include "report.h"
@@ -13,22 +14,18 @@ using namespace reports;
 
 namespace {
 
-constexpr double notable_correlation = 0.9;
-
-std::string unit_or_dash(Quantity q) {
-  const std::string unit = unit_text(q);
-  return unit.empty() ? "–" : unit;
-}
-
-/// A verdict is one sentence and has no title.
-Note note(const Source& source, const Finding& finding) {
-  const auto text = [&](const char* part) {
-    return typeset(finding_text(source.in.templates, source.language(), finding, part));
-  };
-  Note out{finding.attention ? Level::attention : Level::info, text("title"), text("says"),
-           text("advice")};
-  if (out.title == finding.id && !out.says.empty()) out.title = std::exchange(out.says, "");
-  return out;
+/// The verdict as a note, a sentence without a title; then where something is left, line by line.
+void add_what_it_says(const Source& source, const ModelFit& fit, Blocks& blocks) {
+  const std::string field = "model of " + fit.part;
+  for (const Finding& f : fit.says) {
+    Block block = note_of(source, f);
+    auto& note = std::get<Note>(block.what);
+    if (note.title == f.id && !note.says.empty()) note.title = std::exchange(note.says, "");
+    if (&f == &fit.says.front())
+      blocks.push_back(std::move(block));
+    else
+      blocks.push_back({Paragraph{"• " + note.title, Paragraph::Look::small}, field});
+  }
 }
 
 void add_parameters(const Source& source, const ModelFit& fit, Blocks& blocks) {
@@ -42,38 +39,20 @@ void add_parameters(const Source& source, const ModelFit& fit, Blocks& blocks) {
   table.title = words.get("model.parameters");
   table.columns = {{words.get("model.effect"), ""},
                    {words.get("model.parameter"), ""},
+                   {"", ""},
                    {words.get("model.value"), "", true},
                    {"U", "", true},
                    {words.get("model.unit"), ""}};
-  for (const ModelFit::Parameter& p : fit.parameters) {
-    std::optional<double> U;
-    if (p.u && std::isfinite(*p.u)) U = 2 * *p.u;
-    const Printed shown = printed_result(p.value, U, p.quantity, source.language());
-    table.rows.push_back({{p.effect},
-                          {p.name},
-                          {shown.value},
-                          {shown.U.empty() ? "–" : shown.U},
-                          {unit_or_dash(p.quantity)}});
-  }
+  for (const ParameterRow& row : parameter_rows(fit, source.in.templates, source.language()))
+    table.rows.push_back({{row.effect, true},
+                          {row.name},
+                          {row.meaning},
+                          {row.value},
+                          {row.U},
+                          {row.unit.empty() ? "–" : row.unit}});
   blocks.push_back({std::move(table), field});
-  std::string correlated;
-  for (std::size_t i = 0; i < fit.correlation.size() && i < fit.parameters.size(); ++i)
-    for (std::size_t k = 0; k < i && k < fit.correlation[i].size(); ++k) {
-      const double r = fit.correlation[i][k];
-      if (!(std::fabs(r) > notable_correlation)) continue;
-      const auto name = [&](std::size_t n) {
-        return fit.parameters[n].effect + " " + fit.parameters[n].name;
-      };
-      correlated += (correlated.empty() ? "" : "; ") +
-                    words.get("model.pair",
-                              {{"one", name(k)},
-                               {"other", name(i)},
-                               {"r", printed_number(r, Quantity::ratio, 2, source.language())}});
-    }
-  if (!correlated.empty())
-    blocks.push_back(
-        {Paragraph{words.get("model.correlated", {{"pairs", correlated}}), Paragraph::Look::small},
-         field});
+  if (const std::string text = correlated_parameters(fit, words); !text.empty())
+    blocks.push_back({Paragraph{text, Paragraph::Look::small}, field});
 }
 
 void add_falling_error(const Source& source, const ModelFit& fit, Blocks& blocks) {
@@ -118,12 +97,17 @@ void add_models(const Source& source, Blocks& blocks) {
     const std::string field = "model of " + fit.part;
     blocks.push_back(
         {Heading{source.pictures.get("model.heading", {{"part", fit.part}}), 1}, field});
-    for (const Finding& f : fit.says) blocks.push_back({note(source, f), field});
+    add_what_it_says(source, fit, blocks);
     add_parameters(source, fit, blocks);
     add_falling_error(source, fit, blocks);
-    add_pictures(source, fit, blocks);
+    if (const std::string text = fit_in_words(fit, source.in.results, source.pictures);
+        !text.empty())
+      blocks.push_back({Paragraph{text, Paragraph::Look::small}, field});
   }
-  if (!source.in.results.models.empty()) blocks.push_back({PageBreak{}});
+}
+
+void add_residuals(const Source& source, Blocks& blocks) {
+  for (const ModelFit& fit : source.in.results.models) add_pictures(source, fit, blocks);
 }
 
 }  // namespace nonio::pdf_report

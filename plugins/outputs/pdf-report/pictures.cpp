@@ -251,7 +251,8 @@ void add_pictures(const Source& source, const ModelFit& fit, Blocks& blocks) {
   constexpr double between = 7;
   const double heading = 9 + 1.3 * style.heading + 6, legend = 3 * 1.3 * style.small + 2;
   const double around = 5 + 3 * 1.3 * style.small + 2 + between;
-  const double height = (page_room(style) - heading - legend) / 3 - around;
+  const double end = 1.3 * style.small + 2;  // the line that ends the report
+  const double height = (page_room(style) - heading - legend - end) / 3 - around;
   const auto said = picture_words(fit, source.pictures);
   for (std::size_t i = 0; i < said.size(); i += per_row) {
     Columns row;

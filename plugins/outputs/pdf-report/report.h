@@ -61,8 +61,10 @@ struct TableFinding {
 std::vector<TableFinding> table_findings(const Source&);
 std::string title_of(const Source&, const TableFinding&);
 
-/// How the models fit: verdict, parameters, the falling error, the page of residual pictures.
+/// How the models fit: verdict, parameters, the falling error.
 void add_models(const Source&, Blocks&);
+/// A page of pictures for each model.
+void add_residuals(const Source&, Blocks&);
 /// Always the same nine, in the same places, together with their heading on one page.
 void add_pictures(const Source&, const ModelFit&, Blocks&);
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nonio/reports/model.h"
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
 #include "report.h"
@@ -138,16 +139,23 @@ void add_what_is_hidden(const Source& source, const Measured& m, Blocks& blocks)
 
 }  // namespace
 
-/// Two tables stand side by side; with tolerances and decisions they need the whole width.
+/// Two tables stand side by side; with tolerances and decisions they need the whole width, and what
+/// is said of the second one stands beside it.
 void add_results(const Source& source, const Measured& m, Blocks& blocks) {
   std::vector<Blocks> parts;
-  bool decisions = false;
+  bool decisions = false, second_decides = false;
   for (const auto* a : m.analyses) {
-    if (a->evaluation.values.empty()) continue;
+    if (a->evaluation.values.empty() || a->plugin == model_analysis) continue;
     parts.push_back({value_table(source, *a)});
+    if (parts.size() == 2) second_decides = shape_of(source, *a).decision;
     if (parts.size() <= 2) decisions |= shape_of(source, *a).decision;
   }
-  if (parts.size() > 1) add_what_is_hidden(source, m, parts[1]);
+  Blocks hidden;
+  if (parts.size() > 1) add_what_is_hidden(source, m, hidden);
+  if (decisions && !second_decides && !hidden.empty())
+    parts[1] = {{Columns{{std::move(parts[1]), std::move(hidden)}, {0.55, 0.45}}, "results"}};
+  else if (parts.size() > 1)
+    std::move(hidden.begin(), hidden.end(), std::back_inserter(parts[1]));
   std::size_t next = 0;
   if (parts.size() > 1 && !decisions) {
     blocks.push_back(

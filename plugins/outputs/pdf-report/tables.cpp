@@ -164,8 +164,10 @@ void add_tables(const Source& source, Blocks& blocks) {
   }
   for (const Results::Written& output : outputs) {
     std::string notes;
+    std::set<std::string> said;  // of two measurements of an axis the same is said once
     for (const Remark& note : output.result.notes)
-      notes += (notes.empty() ? "" : " ") + remark(source, note);
+      if (const std::string text = remark(source, note); said.insert(text).second)
+        notes += (notes.empty() ? "" : " ") + text;
     if (!notes.empty())
       blocks.push_back(
           {Paragraph{typeset(visible_text(
@@ -205,7 +207,6 @@ void add_notes(const Source& source, Blocks& blocks) {
   if (!results.conformity.empty()) say("notes.decision");
   say("notes.sign");
   say("notes.items");
-  say("end");
   add(ours);
 }
 

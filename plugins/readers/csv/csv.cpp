@@ -11,64 +11,17 @@
 #include "duplicates.h"
 #include "fields.h"
 #include "header.h"
+#include "lines.h"
+#include "nonio/sdk/format.h"
+#include "spatial.h"
 
 namespace nonio::csv {
 namespace {
 
-constexpr std::size_t longest_line = 65536;
 constexpr std::size_t report_every = std::size_t{4} << 20U;
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-
-/// The lines of a file, without LF or CRLF; a CR at the very end of the file counts as CRLF.
-class Lines {
- public:
-  explicit Lines(std::string_view bytes) : bytes_(bytes) {
-    if (bytes_.substr(0, byte_order_mark.size()) == byte_order_mark)
-      offset_ = byte_order_mark.size();
-  }
-  bool next(std::string_view& line) {
-    if (offset_ >= bytes_.size()) return false;
-    const std::size_t end = std::min(bytes_.find('\n', offset_), bytes_.size());
-    line = bytes_.substr(offset_, end - offset_);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    offset_ = end + 1;
-    ++number_;
-    return true;
-  }
-  std::uint64_t number() const { return number_; }  ///< of the line last given, from 1
-  std::size_t offset() const { return std::min(offset_, bytes_.size()); }
-
- private:
-  std::string_view bytes_;
-  std::size_t offset_ = 0;
-  std::uint64_t number_ = 0;
-};
 
 nonio::Number count(const char* name, std::uint64_t n) {
   return {name, static_cast<double>(n), Quantity::count};
-}
-
-enum class Content { nothing, comment, fields };
-
-Content content_of(std::string_view line) {
-  for (const char c : line)
-    if (c != ' ' && c != '\t') return c == '#' ? Content::comment : Content::fields;
-  return Content::nothing;
-}
-
-/// What no line of a text file may hold. Rows of numbers need no such look: their fields would not
-/// be numbers.
-std::optional<Error> not_text(std::string_view line) {
-  if (line.size() > longest_line)
-    return Error{"expected lines of at most " + std::to_string(longest_line) + " bytes, found " +
-                 std::to_string(line.size())};
-  if (line.find('\0') != line.npos)
-    return Error{"expected text in UTF-8, found a NUL byte; is the file UTF-16 or binary?"};
-  if (!is_utf8(line))
-    return Error{"expected text in UTF-8, found other bytes; save the file as UTF-8"};
-  if (line.find('\r') != line.npos)
-    return Error{"expected lines that end in LF or CRLF, found a lone CR"};
-  return std::nullopt;
 }
 
 /// How many rows the file may hold, from lines counted in windows spread over it. Only a hint:
@@ -283,6 +236,7 @@ Expected<void> Rows::finish() {
 
 Expected<Expectation> expectation_of(const ReadInput& input) {
   const Measurement& m = input.measurement;
+  if (m.kind == "diagonal") return Expectation{};
   const Axis* axis = input.campaign.machine.axis(m.axis);
   if (axis == nullptr)
     return fail("expected the axis of measurement \"" + m.id + "\" in [machine.axes], found " +
@@ -310,18 +264,6 @@ Observations empty_observations(const Measurement& m, const Expectation& e) {
   if (!obs.angular && coordinate != along.npos) line.sense[coordinate] = 1.0;
   obs.lines.push_back(line);
   return obs;
-}
-
-/// The next line with fields on it; false at the end of the file, or with `error` set.
-bool next_content(Lines& lines, std::string_view& line, std::optional<Error>& error) {
-  while (lines.next(line)) {
-    const Content content = content_of(line);
-    if (content == Content::fields) return true;
-    if (content == Content::nothing) continue;
-    error = not_text(line);
-    if (error) return false;
-  }
-  return false;
 }
 
 Expected<Header> read_header(Lines& lines, const Expectation& expectation) {
@@ -356,30 +298,21 @@ Expected<void> read_rows(const ReadInput& input, Lines& lines, const Header& hea
 
 }  // namespace
 
-/// UTF-16 is recognised, to be refused with a word for it: Latin letters in it have a zero byte
-/// each, all before them or all behind.
-bool recognises(std::string_view head) {
-  std::string narrow;
-  if (const std::size_t first = head.find('\0'); first != head.npos) {
-    for (std::size_t i = first + 1; i < head.size(); i += 2)
-      if (head[i] == '\0') return false;
-    const bool marked = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
-    narrow = head.substr(marked ? 2 : 0);
-    std::erase(narrow, '\0');
-    head = narrow;
+namespace {
+
+bool has_spatial_name(std::string_view line) {
+  const auto& known = spatial_names();
+  for (const char separator : {',', ';', '\t'}) {
+    std::vector<std::string_view> names;
+    if (!split(line, separator, names)) continue;
+    for (const std::string_view name : names)
+      if (std::find(known.begin(), known.end(), name) != known.end()) return true;
   }
-  Lines lines(head);
-  std::string_view line;
-  while (lines.next(line))
-    if (content_of(line) == Content::fields) return known_names(line, find_separator(line)) > 0;
   return false;
 }
 
-bool reads(std::string_view measurement_kind) {
-  return measurement_kind == "axis" || measurement_kind == "straightness";
-}
-
-Expected<Observations> read(const ReadInput& input) {
+/// Readings over one position: of an axis, or of the distance along a diagonal.
+Expected<Observations> read_runs(const ReadInput& input) {
   const auto expectation = expectation_of(input);
   if (!expectation) return fail(expectation.error());
   Lines lines(input.bytes);
@@ -396,6 +329,64 @@ Expected<Observations> read(const ReadInput& input) {
     return in_file(ok.error(), lines.number());
   if (auto ok = rows.finish(); !ok) return in_file(ok.error(), 0);
   return obs;
+}
+
+/// A stop beyond the ends of its diagonal is a mistake in the manifest or in the file.
+Expected<Observations> read_diagonal(const ReadInput& input) {
+  const auto span = span_of(input.campaign, input.measurement);
+  if (!span) return fail(span.error());
+  auto obs = read_runs(input);
+  if (!obs) return obs;
+  const auto& along = obs->axes.front().position;
+  const double slack = 1e-6 * span->length;
+  for (std::size_t i = 0; i < along.size(); ++i)
+    if (!(along[i] >= -slack && along[i] <= span->length + slack)) {
+      Error error{"expected a distance from 0 to the length of the diagonal, " +
+                  fixed_text(1e3 * span->length, 3) + " mm (`from`, `to`), found " +
+                  fixed_text(1e3 * along[i], 3) + " mm"};
+      error.file = input.measurement.file;
+      error.line = obs->source_line[i];
+      error.column = "target_mm";
+      return fail(std::move(error));
+    }
+  spread(*obs, *span);
+  return obs;
+}
+
+}  // namespace
+
+/// UTF-16 is recognised, to be refused with a word for it: Latin letters in it have a zero byte
+/// each, all before them or all behind.
+bool recognises(std::string_view head) {
+  std::string narrow;
+  if (const std::size_t first = head.find('\0'); first != head.npos) {
+    for (std::size_t i = first + 1; i < head.size(); i += 2)
+      if (head[i] == '\0') return false;
+    const bool marked = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
+    narrow = head.substr(marked ? 2 : 0);
+    std::erase(narrow, '\0');
+    head = narrow;
+  }
+  Lines lines(head);
+  std::string_view line;
+  while (lines.next(line))
+    if (content_of(line) == Content::fields)
+      return known_names(line, find_separator(line)) > 0 || has_spatial_name(line);
+  return false;
+}
+
+bool reads(std::string_view kind) {
+  return kind == "axis" || kind == "straightness" || kind == "diagonal" ||
+         kind == "step-diagonal" || kind == "ball-centres" || kind == "observations";
+}
+
+Expected<Observations> read(const ReadInput& input) {
+  const std::string& kind = input.measurement.kind;
+  if (kind == "diagonal") return read_diagonal(input);
+  if (kind == "step-diagonal") return read_step_diagonal(input);
+  if (kind == "ball-centres") return read_ball_centres(input);
+  if (kind == "observations") return read_general(input);
+  return read_runs(input);
 }
 
 }  // namespace nonio::csv

@@ -70,6 +70,7 @@ std::optional<Error> wrong_unit(const Known& column, const Expectation& e) {
                            : column.position ? std::string(angle ? "position_deg" : "position_mm")
                                              : e.deviation();
   std::string why = "axis \"" + e.axis + "\" is " + (e.rotary ? "rotary" : "linear");
+  if (e.axis.empty()) why = "distance and deviation of a diagonal are lengths";
   if (e.straightness && !target) why = "the deviation of a straightness is a length";
   Error error{"wrong unit: found column \"" + std::string(column.name) + "\", but " + why +
               "; expected \"" + want + "\""};

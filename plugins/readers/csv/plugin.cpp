@@ -3,7 +3,7 @@
 
 NONIO_PLUGIN(registry) {
   nonio::Reader reader;
-  reader.info = {"csv", "1.0", "Readings of an axis or a straightness as comma-separated values."};
+  reader.info = {"csv", "1.0", "Readings of every kind of measurement as comma-separated values."};
   reader.recognises = nonio::csv::recognises;
   reader.reads = nonio::csv::reads;
   reader.read = nonio::csv::read;

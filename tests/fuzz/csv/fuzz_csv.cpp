@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "csv.h"
 #include "fields.h"
@@ -54,9 +55,31 @@ void check_observations(const nonio::Observations& obs, std::string_view bytes) 
     check_column(*column, n);
 }
 
+/// What holds of measurements of several axes.
+void check_spatial(const nonio::Observations& obs, std::string_view bytes) {
+  const std::size_t n = obs.size();
+  must(n > 0 && n + obs.missing <= 3 * bytes.size(), "there are readings");
+  must(obs.run.size() == n && obs.source_line.size() == n, "run and line of each reading");
+  must(obs.sense.empty() || obs.sense.size() == n, "a sense for each reading, or for none");
+  must(obs.line.empty() ? obs.lines.size() == 1 : obs.line.size() == n, "a line of each reading");
+  for (const auto& axis : obs.axes)
+    must(axis.position.size() == n && (axis.approach.empty() || axis.approach.size() == n),
+         "a position of each axis");
+  for (std::size_t i = 0; i < n; ++i) {
+    must(std::isfinite(obs.deviation[i]), "finite");
+    for (const auto& axis : obs.axes) must(std::isfinite(axis.position[i]), "finite");
+    must(obs.line.empty() || obs.line[i] < obs.lines.size(), "a line that is there");
+    const auto& sense = obs.sense_of(i);
+    must(std::fabs(std::hypot(sense[0], sense[1], sense[2]) - 1.0) < 1e-9, "a unit vector");
+  }
+  for (const auto* column : {&obs.time, &obs.material, &obs.air, &obs.pressure, &obs.humidity})
+    check_column(*column, n);
+}
+
 struct World {
   nonio::Campaign campaign;
   nonio::Measurement linear, rotary, straightness;
+  std::vector<nonio::Measurement> spatial;
   nonio::Settings options;
 
   World() {
@@ -70,6 +93,14 @@ struct World {
     straightness.lateral = "Y";
     linear.axis = straightness.axis = "X";
     rotary.axis = "C";
+    for (const char* kind : {"diagonal", "step-diagonal", "ball-centres", "observations"}) {
+      nonio::Measurement m;
+      m.id = m.kind = kind;
+      m.axis = "C";
+      m.from = {{"X", 0.0}, {"Y", 0.0}, {"Z", 1.0}};
+      m.to = {{"X", 0.8}, {"Y", 0.6}, {"Z", m.kind == "diagonal" ? 1.0 : 1.6}};
+      spatial.push_back(m);
+    }
   }
 };
 
@@ -79,6 +110,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const World world;
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   nonio::csv::recognises(bytes);
+  for (const nonio::Measurement& m : world.spatial) {
+    const auto table = nonio::csv::read({bytes, world.campaign, m, world.options, {}});
+    if (table)
+      check_spatial(*table, bytes);
+    else
+      check_error(table.error(), bytes);
+  }
   // The file says by its columns, or in a comment, what it is to be.
   const bool deg = bytes.find("_deg") != bytes.npos;
   const bool straight = bytes.find("#straightness") != bytes.npos;

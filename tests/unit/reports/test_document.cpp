@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "fixtures.h"
+#include "font_reader.h"
 #include "nonio/reports/document.h"
 #include "nonio/reports/text.h"
 #include "pdf_reader.h"
@@ -46,6 +47,50 @@ TEST(Fonts, HaveWhatEuropeanNamesAndMetrologyNeed) {
   const auto f = fonts();
   EXPECT_TRUE(
       check_text("àéîõüßçñøåæœšžčřůłőąęţșğı ΆΈάόώΩμσ ЁёЖяїґ µ°±−–…″′→↑↓≤≥≈·×²³€№„“”’•", *f, "all"));
+}
+
+/// The outline of a glyph, by the short or long offsets of its file.
+std::string outline(std::string_view file, std::size_t glyph) {
+  const FontReader r(file);
+  const bool wide = r.u16(*r.table("head") + 50) != 0;
+  const auto at = [&](std::size_t g) -> std::size_t {
+    const std::size_t loca = *r.table("loca");
+    return *r.table("glyf") + (wide ? r.u32(loca + 4 * g) : 2 * r.u16(loca + 2 * g));
+  };
+  return std::string(file.substr(at(glyph), at(glyph + 1) - at(glyph)));
+}
+
+TEST(Fonts, TheCommonSubsetDrawsItsGlyphsAndNoOther) {
+  const auto both = fonts();
+  for (const Font* font : {&both->regular, &both->bold}) {
+    const std::string subset = fixtures::inflated(font->with_common.file_deflated);
+    ASSERT_EQ(subset.size(), font->with_common.size);
+    EXPECT_LT(subset.size(), font->bytes.size() / 2);
+    for (const char32_t c : std::u32string_view(U"AZaz09%(~\u00E8\u00B5\u2191\u2212")) {
+      const std::string whole = outline(font->bytes, font->glyph(c));
+      const std::string kept = outline(subset, font->glyph(c));
+      ASSERT_FALSE(whole.empty());
+      EXPECT_EQ(kept.substr(0, whole.size()), whole) << std::hex << static_cast<unsigned>(c);
+    }
+    for (const char32_t c : {U'\u0416', U'\u0141', U'\u03A9'})
+      EXPECT_TRUE(outline(subset, font->glyph(c)).empty());
+    // e with a grave accent is composed of two others, which must be there too
+    const std::string composed = outline(subset, font->glyph(U'\u00E8'));
+    ASSERT_LT(FontReader(composed).s16(0), 0);
+    EXPECT_FALSE(outline(subset, FontReader(composed).u16(12)).empty());
+  }
+}
+
+TEST(Fonts, ARareCharacterTakesTheWholeFont) {
+  Document document = of({});
+  document.blocks = {{Paragraph{"Torino, 20 \u00B5m, e cos\u00EC via"}, "text"}};
+  const auto common = pdf(document, *fonts());
+  document.blocks = {{Paragraph{"\u0141\u00F3d\u017A"}, "text"}};
+  const auto rare = pdf(document, *fonts());
+  ASSERT_TRUE(common && rare);
+  EXPECT_LT(common->size() + 20000, rare->size());
+  EXPECT_NE(fixtures::read_pdf(*rare).all().find("\u0141\u00F3d\u017A"), std::string::npos);
+  EXPECT_NE(fixtures::read_pdf(*common).all().find("cos\u00EC"), std::string::npos);
 }
 
 TEST(Fonts, WhatIsNoFontIsRefused) {

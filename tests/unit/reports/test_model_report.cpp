@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <optional>
 
 #include "fixtures.h"
 #include "model_fixture.h"
@@ -22,9 +23,14 @@ struct ModelReport : testing::Test {
   void SetUp() override {
     ASSERT_TRUE(plugins.load(std::string(NONIO_PLUGINS) + "/pdf-report.so"));
   }
-  std::string pdf(const ModelFit& fit, const std::string& language = "en") {
+  std::string pdf(const ModelFit& fit, const std::string& language = "en",
+                  const std::optional<Results::Analysed>& fitted = {}) {
     Case c = simple_case();
     c.results.models = {fit};
+    if (fitted) {
+      c.campaign.measurements = {{"X", "axis", "X", "", "x.csv", "", {}, {}}};
+      c.results.analyses = {*fitted};
+    }
     Settings options = defaults(plugins.outputs.front().info);
     options.values["language"] = language;
     const auto result =
@@ -76,6 +82,57 @@ TEST_F(ModelReport, GivesParametersWithUAndNamesThoseThatGoTogether) {
   for (const char* what : {"-6.10", "0.12", "µm/h", "backlash:X b and periodic:X a (-0.95)",
                            "+ zero-drift:X", "noise floor of repeated readings, 0.590 ± 0.060"})
     EXPECT_TRUE(has(text, what)) << what << "\n" << text;
+}
+
+TEST_F(ModelReport, SaysWhatAParameterIsIfThereAreWords) {
+  ModelFit fit = made_model();
+  fit.parameters.push_back({"sag:X", "a", 1.25e-6, 0.1e-6, Quantity::deviation});
+  fit.parameters.push_back({"run-jump:X", "instant", 720.7, {}, Quantity::time, true});
+  fit.parameters.push_back({"pitch-curve:X", "s12", 2e-6, 0.1e-6, Quantity::deviation});
+  const std::string english = flat(read_pdf(pdf(fit)).all());
+  for (const char* what : {"backlash:X b reversal -6.10", "sag:X a 1.25 0.20 µm",
+                           "instant instant 720.7 – s", "s12 part of the curve"})
+    EXPECT_TRUE(has(english, what)) << what << "\n" << english;
+  const std::string italian = flat(read_pdf(pdf(fit, "it")).all());
+  EXPECT_TRUE(has(italian, "backlash:X b errore di inversione")) << italian;
+}
+
+TEST_F(ModelReport, ValuesOfTheFitStandInWordsAndWithUnits) {
+  Results::Analysed fitted{"model-fit", "1", "X", {}};
+  fitted.evaluation.values = {{"rms", 0.6e-6, Quantity::deviation},
+                              {"cv_rms", 0.61e-6, Quantity::deviation},
+                              {"largest_residual", -1.5e-6, Quantity::deviation},
+                              {"redundancy", 401, Quantity::count},
+                              {"lack_of_fit_F", 2.5, Quantity::number},
+                              {"lack_of_fit_p", 1e-9, Quantity::probability}};
+  const std::string text = flat(read_pdf(pdf(made_model(), "en", fitted)).all());
+  EXPECT_TRUE(has(text,
+                  "410 readings, redundancy 401. Largest residual -1.50 µm. "
+                  "Lack of fit against the noise floor: F = 2.50, p < 0.0001."))
+      << text;
+  for (const char* raw : {"cv rms", "cv_rms", "lack of fit F", "model-fit"})
+    EXPECT_FALSE(has(text, raw)) << raw;
+}
+
+TEST_F(ModelReport, PlacesAreSaidInTheLanguageOfTheReport) {
+  Results::Analysed fitted{"model-fit", "1", "X", {}};
+  fitted.evaluation.findings = {{"model.fails",
+                                 true,
+                                 {{"percent", 64, Quantity::count},
+                                  {"rms", 1.5e-6, Quantity::deviation},
+                                  {"p", 1e-9, Quantity::probability}},
+                                 {{"where", "direction x time"}}}};
+  for (const auto& [language, says] :
+       {std::pair("en", "goes with the direction of approach together with the time (p < 0.0001)"),
+        std::pair("it", "dipende dalla direzione di avvicinamento e insieme dal tempo")}) {
+    const std::string text = flat(read_pdf(pdf(made_model(), language, fitted)).all());
+    EXPECT_TRUE(has(text, says)) << text;
+  }
+}
+
+TEST_F(ModelReport, EndsWithItsEnd) {
+  const std::string page = pictures(made_model());
+  EXPECT_TRUE(has(page, "End of the report.")) << page;
 }
 
 TEST_F(ModelReport, AMillionReadingsMakeALightFile) {

@@ -17,8 +17,8 @@ struct Printed {
 };
 
 /// U to two significant digits, the value to the same place; without U the value to 0.001 of its
-/// printed unit. `value` and `U` are SI. What is not finite or not given prints as a dash; beyond
-/// 1e9 a number prints with an exponent, since no table has room for more.
+/// printed unit, a time to 0.1 s. `value` and `U` are SI. What is not finite or not given prints as
+/// a dash; beyond 1e9 a number prints with an exponent, since no table has room for more.
 Printed printed_result(double value, std::optional<double> U, Quantity, std::string_view language);
 
 /// With so many decimals, in the printed unit.

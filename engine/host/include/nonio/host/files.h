@@ -49,15 +49,20 @@ bool is_artifact_name(std::string_view name);
 /// others. On an error the temporary files are gone. Folders that are missing are made.
 Expected<void> publish(const std::filesystem::path& folder, const std::vector<Artifact>& files);
 
-/// The same in two steps, for what is written elsewhere: the name to write and flush it under, and
+/// Writes files under their temporary names, not flushed. On an error they are gone. Folders that
+/// are missing are made.
+Expected<void> write_temporaries(const std::filesystem::path& folder,
+                                 const std::vector<Artifact>& files);
+/// The names that files under temporary names in a folder are to get, in order.
+std::vector<std::string> temporaries(const std::filesystem::path& folder);
+/// Returns when everything that was written to the file system of this folder is on disk.
+Expected<void> flush_file_system(const std::filesystem::path& folder);
+
+/// `publish` in two steps, for what is written elsewhere: the name to write and flush it under, and
 /// the renaming of such files.
 std::filesystem::path temporary_path(const std::filesystem::path& folder, const std::string& name);
 Expected<void> rename_temporaries(const std::filesystem::path& folder,
                                   const std::vector<std::string>& names);
-
-/// Removes files (those that are there) and fsyncs the folder.
-Expected<void> remove_files(const std::filesystem::path& folder,
-                            const std::vector<std::string>& names);
 
 /// Removes what a killed process left half-written in a folder.
 void remove_leftovers(const std::filesystem::path& folder);

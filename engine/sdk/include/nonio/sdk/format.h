@@ -34,7 +34,7 @@ inline std::string fixed_text(double value, int decimals) {
     digits.insert(0, static_cast<std::size_t>(1 - whole), '0');
     whole = 1;
   }
-  const auto kept = static_cast<std::size_t>(whole + decimals);
+  const auto kept = static_cast<std::size_t>(whole) + static_cast<std::size_t>(decimals);
   const bool up = kept < digits.size() && digits[kept] >= '5';
   digits.resize(kept, '0');
   if (up) {
@@ -141,6 +141,17 @@ inline std::string filled(std::string_view text, const Finding& finding,
   return out;
 }
 
+/// Texts of a finding that are names out of a list, in words where the language has some:
+/// `term.<key>.<text>` of templates/words.
+inline std::vector<std::pair<std::string, std::string>> said(
+    const Templates& templates, std::string_view language,
+    std::vector<std::pair<std::string, std::string>> texts) {
+  for (auto& [key, text] : texts)
+    if (std::string term = words(templates, language, "term." + key + "." + text); !term.empty())
+      text = std::move(term);
+  return texts;
+}
+
 /// The words for a finding: part is "title", "says" or "advice".
 inline std::string finding_text(const Templates& templates, std::string_view language,
                                 const Finding& finding, std::string_view part) {
@@ -148,7 +159,9 @@ inline std::string finding_text(const Templates& templates, std::string_view lan
   if (text.empty() && language != "en")
     text = words(templates, "en", "finding." + finding.id + "." + std::string(part));
   if (text.empty()) return part == "advice" ? finding.advice : part == "title" ? finding.id : "";
-  return filled(text, finding, language);
+  Finding in_words = finding;
+  in_words.texts = said(templates, language, std::move(in_words.texts));
+  return filled(text, in_words, language);
 }
 
 /// The words for a remark; `english` where there are none.

@@ -40,10 +40,16 @@ struct Observations {
   std::vector<double> material, air;       ///< degC; NaN where blank
   std::vector<double> pressure, humidity;  ///< hPa, % ; NaN where blank
 
+  /// Direction of sensing of each reading, where it differs within a line; else empty.
+  std::vector<std::array<double, 3>> sense{};
+
   std::uint64_t missing = 0;  ///< readings that were not taken
   std::vector<Remark> notes;  ///< what the reader did that a user would want to know
 
   std::size_t size() const { return deviation.size(); }
+  const std::array<double, 3>& sense_of(std::size_t i) const {
+    return sense.empty() ? lines[line.empty() ? 0 : line[i]].sense : sense[i];
+  }
 };
 
 }  // namespace nonio

@@ -36,6 +36,9 @@ struct Info {
   std::string version;
   std::string summary;  ///< one sentence, for `nonio plugins`
   std::vector<Option> options{};
+  /// Of an analysis or output: not among "all that apply", only where `[run]` names it or the
+  /// campaign has its `[options.<name>]`.
+  bool on_request = false;
 };
 
 struct ReadInput {
@@ -94,6 +97,16 @@ struct AnalysisInput {
   const Measurement& measurement;
   const Observations& observations;
   const Settings& options;
+  /// One entry for each measurement of the campaign, in its order; empty where nothing could read
+  /// it. For methods that need more than one: its ids stand in Evaluation::uses.
+  const std::vector<Observations>* all = nullptr;
+};
+
+struct CampaignInput {
+  const Campaign& campaign;
+  /// One entry for each measurement, in their order; empty where nothing could read it.
+  const std::vector<Observations>& observations;
+  const Settings& options;
 };
 
 /// observations -> results
@@ -101,6 +114,8 @@ struct Analysis {
   Info info;
   bool (*applies)(const Campaign&, const Measurement&) = nullptr;
   Expected<Evaluation> (*analyse)(const AnalysisInput&) = nullptr;
+  /// In place of these two: once, of the campaign as a whole (a plan needs no measurement).
+  Expected<Evaluation> (*analyse_campaign)(const CampaignInput&) = nullptr;
 };
 
 struct OutputInput {
@@ -143,7 +158,7 @@ class Registry {
   ~Registry() = default;
 };
 
-inline constexpr int sdk_version = 2;
+inline constexpr int sdk_version = 3;
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
@@ -167,7 +182,7 @@ inline constexpr int sdk_version = 2;
 #endif
 
 /// Everything that must agree before a plugin may be called.
-#define NONIO_ABI_TAG "nonio-sdk 2; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
+#define NONIO_ABI_TAG "nonio-sdk 3; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
 
 /// The one exported symbol, `nonio_plugin`. Plain: the host reads the tag before it calls anything.
 struct PluginEntry {

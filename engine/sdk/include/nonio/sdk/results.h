@@ -49,14 +49,14 @@ struct Remark {
   std::string english{};
 };
 
-/// Values by target; NaN where one cannot be given.
+/// Values by row; NaN where one cannot be given.
 struct PointTable {
   struct Column {
     std::string name;
     Quantity quantity = Quantity::number;
     std::vector<double> values;
   };
-  std::vector<Column> columns;  ///< the first is `target`; all of the same length
+  std::vector<Column> columns;  ///< all of the same length
 
   const Column* column(std::string_view name) const {
     for (const Column& c : columns)
@@ -74,13 +74,15 @@ struct Series {
   std::vector<double> position, value, U;
 };
 
-/// What an analysis says of one measurement.
+/// What an analysis says of one measurement, or of the campaign.
 struct Evaluation {
   std::vector<Value> values;
-  PointTable points;
+  PointTable points;  ///< a row a target: the first column is `target`
+  PointTable rows;    ///< a row something else: a plan
   std::vector<Series> series;
   std::vector<Finding> findings;
   std::vector<Remark> notes;
+  std::vector<std::string> uses{};  ///< ids of the other measurements that it is made from
 };
 
 /// One result before a table is loaded, and as its consumer's model predicts it after.
@@ -175,7 +177,7 @@ struct ModelFit {
 /// Everything known of a campaign so far; what outputs read and results.json holds.
 struct Results {
   struct Analysed {
-    std::string plugin, version, measurement;
+    std::string plugin, version, measurement;  ///< measurement: empty if of the campaign
     Evaluation evaluation;
   };
   struct Written {

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "campaign_verb.h"
+#include "nonio/host/files.h"
+#include "nonio/host/plan.h"
+#include "nonio/sdk/format.h"
+#include "tables.h"
+
+namespace nonio::app {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Lengths are taken as texts: a decimal comma deserves a better word than "could not convert".
+struct Lengths {
+  std::string x, y, over_travel = "0", resolution = "1", max_step = "0";
+  std::vector<std::string> pitch_x, pitch_y;
+};
+
+struct Programs {
+  std::string out, control;
+  std::vector<std::string> settings;
+};
+
+struct Plan {
+  Lengths mm;
+  math::TripleWish wish;
+  std::string even = "any";
+  std::int64_t count = 5, choose = 1;
+  Programs programs;
+};
+
+struct Program {
+  std::vector<std::string> axes;
+  std::string n, step_x, step_y, machine;
+  Programs programs;
+};
+
+Expected<double> length_of(const std::string& option, const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error == std::errc() && stop == end) return value / 1e3;
+  return fail(option + ": wanted a number in mm, with a point for decimals; found \"" + text +
+              "\"");
+}
+
+int complain(const char* verb, const std::string& message) {
+  std::cerr << verb << ": " << message << "\n";
+  return exit_usage;
+}
+
+Expected<void> settle(Plan& plan) {
+  math::TripleWish& w = plan.wish;
+  const auto one = [](const char* option, const std::string& text, double& to) -> Expected<void> {
+    const auto length = length_of(option, text);
+    if (!length) return fail(length.error());
+    to = *length;
+    return {};
+  };
+  for (const auto& done : {one("--x", plan.mm.x, w.x), one("--y", plan.mm.y, w.y),
+                           one("--over-travel", plan.mm.over_travel, w.over_travel),
+                           one("--resolution", plan.mm.resolution, w.resolution),
+                           one("--max-step", plan.mm.max_step, w.largest_step)})
+    if (!done) return done;
+  for (const auto& [option, texts, to] : {std::tuple{"--pitch-x", &plan.mm.pitch_x, &w.pitch_x},
+                                          {"--pitch-y", &plan.mm.pitch_y, &w.pitch_y}})
+    for (const std::string& text : *texts)
+      if (const auto done = one(option, text, to->emplace_back()); !done) return done;
+  w.even = plan.even == "require"  ? math::EvenSteps::require
+           : plan.even == "prefer" ? math::EvenSteps::prefer
+                                   : math::EvenSteps::any;
+  if (plan.count < 1)
+    return fail("--count: wanted at least 1, found " + std::to_string(plan.count));
+  w.count = static_cast<std::size_t>(plan.count);
+  return {};
+}
+
+std::string padded_left(const std::string& text, std::size_t width) {
+  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
+}
+
+std::string mm_text(double m) { return evidence_text({"", m, Quantity::length}); }
+
+void print_plan(std::size_t number, const math::TriplePlan& p, const math::TriplePlan& best) {
+  std::cout << padded_left(std::to_string(number), 3) << "  "
+            << padded_left(
+                   std::to_string(p.a) + "-" + std::to_string(p.b) + "-" + std::to_string(p.c), 15);
+  for (const std::string& cell :
+       {std::to_string(p.q), std::to_string(p.n), mm_text(p.step_x), mm_text(p.step_y),
+        mm_text(p.step_d), mm_text(p.length_x), mm_text(p.length_y), mm_text(p.length_d),
+        fixed_text(100.0 * p.cover_x, 2), fixed_text(100.0 * p.cover_y, 2),
+        fixed_text(p.gain_EYX(), 2), fixed_text(p.gain_EXY(), 2)})
+    std::cout << padded_left(cell, 10);
+  std::cout << "\n       why: " << host::why_listed(p)
+            << "\n       gives up: " << host::gives_up(p, best) << "\n";
+  if (const std::string warning = host::aspect_warning(p); !warning.empty())
+    std::cout << "       warning: " << warning << "\n";
+}
+
+void print_plans(const Plan& plan, const math::TriplePlans& found) {
+  const math::TripleWish& w = plan.wish;
+  std::cout << "X " << mm_text(w.x) << " mm, Y " << mm_text(w.y) << " mm, over-travel "
+            << mm_text(w.over_travel) << " mm at each end; steps are multiples of "
+            << mm_text(w.resolution) << " mm" << (w.largest_step > 0.0 ? ", at most " : "")
+            << (w.largest_step > 0.0 ? mm_text(w.largest_step) + " mm" : "") << "\n\n"
+            << padded_left("a-b-c", 20);
+  for (const char* head : {"q", "n", "step X", "step Y", "step D", "X mm", "Y mm", "D mm",
+                           "cover X%", "cover Y%", "gain EYX", "gain EXY"})
+    std::cout << padded_left(head, 10);
+  std::cout << "\n";
+  for (std::size_t i = 0; i < found.plans.size(); ++i)
+    print_plan(i + 1, found.plans[i], found.plans.front());
+  std::cout << "\nn + 1 stops on each line. gain: scatter of a straightness, for a scatter of 1 of "
+               "one reading\nof the diagonals.\n";
+}
+
+Expected<std::map<std::string, std::string>> settings_of(const Programs& p) {
+  std::map<std::string, std::string> out;
+  for (const std::string& one : p.settings) {
+    const std::size_t equals = one.find('=');
+    if (equals == std::string::npos || equals == 0)
+      return fail("--set: wanted NAME=VALUE, found \"" + one + "\"");
+    out[one.substr(0, equals)] = one.substr(equals + 1);
+  }
+  return out;
+}
+
+int write_programs(const char* verb, const Common& common, const Programs& p,
+                   const Machine& machine, const PointTable& rows,
+                   std::map<std::string, std::string> settings,
+                   std::vector<std::string>* written = nullptr) {
+  if (p.control.empty() || p.out.empty())
+    return complain(verb, "part programs want a control (--control) and a folder");
+  const auto given = settings_of(p);
+  if (!given) return complain(verb, given.error().message);
+  for (const auto& [name, value] : *given) settings[name] = value;
+  host::Plugins plugins;
+  plugins.load(common.plugin_folders());
+  for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
+  const auto files = host::write_programs(plugins, p.control, machine, rows, settings);
+  if (!files) {
+    for (const Error& e : files.error()) complain(verb, e.message);
+    return exit_usage;
+  }
+  if (auto done = host::publish(fs::absolute(p.out), *files); !done) {
+    complain(verb, done.error().message);
+    return exit_failed;
+  }
+  for (const Artifact& a : *files) {
+    const std::string path = (fs::path(p.out) / a.name).string();
+    if (written != nullptr) written->push_back(path);
+    if (!common.quiet) std::cerr << path << "\n";
+  }
+  return exit_done;
+}
+
+int plan_triples(Plan plan, const Common& common) {
+  const char* const verb = "nonio plan triples";
+  if (auto done = settle(plan); !done) return complain(verb, done.error().message);
+  const auto found = math::plan_triples(plan.wish);
+  if (!found) return complain(verb, found.error().message);
+  if (common.json)
+    std::cout << host::triples_json(plan.wish, *found);
+  else if (!found->plans.empty())
+    print_plans(plan, *found);
+  if (found->plans.empty()) {
+    std::cerr << verb << ": " << host::why_nothing(*found) << "\n";
+    return exit_failed;
+  }
+  if (plan.programs.out.empty() && plan.programs.control.empty()) return exit_done;
+  if (plan.choose < 1 || plan.choose > static_cast<std::int64_t>(found->plans.size()))
+    return complain(verb, "--choose: wanted 1 to " + std::to_string(found->plans.size()) +
+                              ", found " + std::to_string(plan.choose));
+  Machine machine;
+  machine.axes = {Axis{.name = "X", .travel = std::pair(0.0, plan.wish.x)},
+                  Axis{.name = "Y", .travel = std::pair(0.0, plan.wish.y)}};
+  return write_programs(
+      verb, common, plan.programs, machine, math::triple_table(found->plans),
+      {{"plan", std::to_string(plan.choose)}, {"over_travel_mm", plan.mm.over_travel}});
+}
+
+/// "X=0:12000"; A, B and C turn and are in degrees (ISO 841).
+Expected<Axis> axis_of(const std::string& text) {
+  const std::size_t equals = text.find('='), colon = text.find(':');
+  const std::string name = text.substr(0, std::min(equals, text.size()));
+  const auto wrong = [&] {
+    return fail(
+        "--axis: wanted NAME=FROM:TO in mm or deg, FROM below TO, such as X=0:12000; found \"" +
+        text + "\"");
+  };
+  if (equals == std::string::npos || colon == std::string::npos || colon < equals || name.empty() ||
+      name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789") != std::string::npos)
+    return wrong();
+  const auto from = length_of("--axis", text.substr(equals + 1, colon - equals - 1));
+  const auto to = length_of("--axis", text.substr(colon + 1));
+  // Written so that NaN is wrong.
+  if (!from || !to || !(*from < *to) || !std::isfinite(*from) || !std::isfinite(*to))
+    return wrong();
+  Axis axis{.name = name, .rotary = name[0] == 'A' || name[0] == 'B' || name[0] == 'C'};
+  const double per_mm = axis.rotary ? 1e3 / deg_per_rad : 1.0;
+  axis.travel = {*from * per_mm, *to * per_mm};
+  return axis;
+}
+
+/// The row that the diagonals follow; none where no steps are given.
+Expected<PointTable> grid_of(const Program& p) {
+  PointTable rows;
+  if (p.n.empty() && p.step_x.empty() && p.step_y.empty()) return rows;
+  std::int64_t n = 0;
+  const char* const end = p.n.data() + p.n.size();
+  const auto [stop, error] = std::from_chars(p.n.data(), end, n);
+  if (error != std::errc() || stop != end || n < 1 || n > 100000)
+    return fail("--n: wanted a whole number of steps from 1 to 100000, found \"" + p.n + "\"");
+  rows.columns.push_back({"n", Quantity::count, {static_cast<double>(n)}});
+  for (const auto& [option, text, name] :
+       {std::tuple{"--step-x", &p.step_x, "step_x"}, {"--step-y", &p.step_y, "step_y"}}) {
+    const auto step = length_of(option, *text);
+    if (!step) return fail(step.error());
+    if (!(*step > 0.0 && *step < 1e3))
+      return fail(std::string(option) + ": wanted more than 0 mm, found \"" + *text + "\"");
+    rows.columns.push_back({name, Quantity::length, {*step}});
+  }
+  return rows;
+}
+
+int plan_program(const Program& p, const Common& common) {
+  const char* const verb = "nonio plan program";
+  Machine machine;
+  machine.model = p.machine;
+  for (const std::string& text : p.axes) {
+    const auto axis = axis_of(text);
+    if (!axis) return complain(verb, axis.error().message);
+    if (machine.axis(axis->name) != nullptr)
+      return complain(verb, "--axis: " + axis->name + " is there twice");
+    machine.axes.push_back(*axis);
+  }
+  const auto rows = grid_of(p);
+  if (!rows) return complain(verb, rows.error().message);
+  std::vector<std::string> files;
+  const int exit = write_programs(verb, common, p.programs, machine, *rows, {}, &files);
+  if (common.json && exit == exit_done)
+    std::cout << nlohmann::ordered_json{{"schema", "nonio-programs/1"}, {"files", files}}.dump(1)
+              << "\n";
+  return exit;
+}
+
+void add_program_options(CLI::App& verb, Programs& p) {
+  verb.add_option("--control", p.control,
+                  "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name");
+  verb.add_option("--set", p.settings,
+                  "NAME=VALUE: an option of that writer (`nonio plugins` lists them), such as\n"
+                  "dwell_s=3, runs=2, programs=axes,diagonals; may be given several times")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+}
+
+void add_triples(CLI::App& plan_verb, Common& common, Outcome& outcome) {
+  CLI::App* verb = plan_verb.add_subcommand(
+      "triples", "Stops for X, Y and both diagonals of their rectangle, with equal whole steps");
+  auto plan = std::make_shared<Plan>();
+  verb->add_option("--x", plan->mm.x, "Travel of X, mm")->required();
+  verb->add_option("--y", plan->mm.y, "Travel of Y, mm")->required();
+  verb->add_option("--over-travel", plan->mm.over_travel,
+                   "Kept free at each end of both axes, mm (default 0)");
+  verb->add_option("--resolution", plan->mm.resolution,
+                   "Steps are whole multiples of it, mm (default 1)");
+  verb->add_option("--max-step", plan->mm.max_step,
+                   "Largest step of either axis, mm (default any)");
+  verb->add_option("--max-points", plan->wish.max_points,
+                   "Entries of the control's compensation table (default 1500)");
+  for (const auto& [name, to] :
+       {std::pair{"--pitch-x", &plan->mm.pitch_x}, {"--pitch-y", &plan->mm.pitch_y}})
+    verb->add_option(name, *to,
+                     "Pitch of screw, rack or scale, mm: no step is a whole multiple of it;\n"
+                     "may be given several times")
+        ->take_all()
+        ->expected(1)
+        ->allow_extra_args(false);
+  verb->add_flag("--density", plan->wish.density,
+                 "Only stops that ISO 230-2 accepts: five a metre on axes of up to 2 m,\n"
+                 "no more than 250 mm apart on longer ones");
+  verb->add_flag("--even{require}", plan->even,
+                 "An even number of steps, for a third diagonal to half of Y;\n"
+                 "--even=prefer takes it where it costs at most 1 % of coverage")
+      ->check(CLI::IsMember({"any", "prefer", "require"}));
+  verb->add_option("--hypotenuse", plan->wish.hypotenuse,
+                   "Largest c of the triples a-b-c (default 5000)");
+  verb->add_option("--count", plan->count, "Plans to show (default 5)");
+  verb->add_option("--program", plan->programs.out,
+                   "Folder for the part programs of one plan: X, Y and both diagonals");
+  verb->add_option("--choose", plan->choose, "Which plan --program writes (default 1)");
+  add_program_options(*verb, plan->programs);
+  add_common(*verb, common);
+  verb->footer(
+      "A diagonal whose steps are whole needs a right triangle with whole sides: 3-4-5,\n"
+      "5-12-13, ... Step = q (a, b, c) x resolution; n steps cover n q a of X and n q b of Y.\n"
+      "The same n stops serve the pitch of X and Y, both straightnesses and the diagonals.\n"
+      "First comes the plan that covers the worse axis furthest; the others say why they are\n"
+      "there and what they give up.\n\n"
+      "Exit status: 0 plans were found; 1 nothing fits, and which limit to ease; 2 usage.\n\n"
+      "Example: nonio plan triples --x 12000 --y 9000 --max-step 500 --max-points 31");
+  verb->callback([plan, &common, &outcome] { outcome = plan_triples(*plan, common); });
+}
+
+void add_program(CLI::App& plan_verb, Common& common, Outcome& outcome) {
+  CLI::App* verb = plan_verb.add_subcommand(
+      "program", "Part programs of axis runs, diagonals and step diagonals, without a campaign");
+  auto program = std::make_shared<Program>();
+  verb->add_option("--axis", program->axes,
+                   "NAME=FROM:TO, travel in mm, of A, B, C in deg; may be given several times")
+      ->required()
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  verb->add_option("--n", program->n, "Steps of the diagonals (from `nonio plan triples`)");
+  verb->add_option("--step-x", program->step_x, "Step of X on the diagonals, mm");
+  verb->add_option("--step-y", program->step_y, "Step of Y on the diagonals, mm");
+  verb->add_option("--machine", program->machine, "Name of the machine, for the comments");
+  verb->add_option("--out", program->programs.out, "Folder for the programs")->required();
+  add_program_options(*verb, program->programs);
+  add_common(*verb, common);
+  verb->footer(
+      "Axis runs have random offsets of the targets, as ISO 230-2 asks; the same seed\n"
+      "(--set seed=7) gives the same targets. With --n, --step-x and --step-y the diagonals are\n"
+      "written too, and X and Y have the same stops as they.\n\n"
+      "Example: nonio plan program --axis X=0:800 --axis Y=0:600 --axis Z=0:600 \\\n"
+      "           --control siemens --set programs=axes,step-diagonals --set steps=40 --out p");
+  verb->callback([program, &common, &outcome] { outcome = plan_program(*program, common); });
+}
+
+}  // namespace
+
+void add_plan_verb(CLI::App& cli, Common& common, Outcome& outcome) {
+  CLI::App* verb = cli.add_subcommand("plan", "What to measure: stops, and the part programs");
+  verb->require_subcommand(1);
+  add_triples(*verb, common, outcome);
+  add_program(*verb, common, outcome);
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "committer.h"
+
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <iostream>
+#include <utility>
+
+#include "child.h"
+
+namespace nonio::host {
+
+namespace {
+
+/// So many at once: a crash costs no more campaigns than that, and answers fit into the channel.
+constexpr std::size_t largest_batch = 64;
+
+struct Message {
+  std::size_t campaign = 0;
+  bool stored = false;
+  std::array<char, 500> why{};
+};
+
+Message message_of(std::size_t campaign, const Expected<void>& result) {
+  Message message{campaign, result.has_value()};
+  if (!result) result.error().message.copy(message.why.data(), message.why.size() - 1);
+  return message;
+}
+
+[[noreturn]] void serve(const Committer::Task& task, int channel) noexcept {
+  settle_child();
+  for (std::size_t campaign; ::read(channel, &campaign, sizeof campaign) == sizeof campaign;) {
+    std::vector<std::size_t> batch{campaign};
+    while (batch.size() < largest_batch &&
+           ::recv(channel, &campaign, sizeof campaign, MSG_DONTWAIT) == sizeof campaign)
+      batch.push_back(campaign);
+    const auto results = task(batch);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      const Message message = message_of(batch[i], results[i]);
+      if (::write(channel, &message, sizeof message) != sizeof message) ::_exit(0);
+    }
+  }
+  ::_exit(0);
+}
+
+}  // namespace
+
+Committer::~Committer() { end(); }
+
+Expected<void> Committer::start() {
+  int ends[2];
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
+    return fail(std::string("no channel to the process that stores: ") + std::strerror(errno));
+  std::cout.flush();
+  std::cerr.flush();
+  pid_ = ::fork();
+  if (pid_ == 0) {
+    ::close(ends[0]);
+    serve(task_, ends[1]);
+  }
+  const int code = errno;
+  ::close(ends[1]);
+  channel_ = ends[0];
+  if (pid_ > 0) return {};
+  end();
+  return fail(std::string("no process that stores: ") + std::strerror(code));
+}
+
+void Committer::end() {
+  if (channel_ >= 0) ::close(std::exchange(channel_, -1));
+  if (pid_ < 0) return;
+  ::kill(pid_, SIGKILL);
+  ::waitpid(std::exchange(pid_, -1), nullptr, 0);
+}
+
+Expected<void> Committer::give(std::size_t campaign) {
+  if (channel_ < 0)
+    if (auto started = start(); !started) return started;
+  pending_.push_back(campaign);
+  // A process that is dead already is found by done().
+  [[maybe_unused]] const ssize_t n = ::send(channel_, &campaign, sizeof campaign, MSG_NOSIGNAL);
+  return {};
+}
+
+std::vector<Committer::Done> Committer::done() {
+  std::vector<Done> out;
+  while (channel_ >= 0 && !pending_.empty()) {
+    Message message;
+    const ssize_t n = ::recv(channel_, &message, sizeof message, MSG_DONTWAIT);
+    if (n == sizeof message) {
+      std::erase(pending_, message.campaign);
+      out.push_back({message.campaign, message.stored ? "" : message.why.data()});
+      continue;
+    }
+    if (n < 0 && (errno == EAGAIN || errno == EINTR)) break;
+    end();
+    for (const std::size_t campaign : std::exchange(pending_, {}))
+      out.push_back({campaign, "the process that stores died", true});
+  }
+  return out;
+}
+
+}  // namespace nonio::host

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Part programs of a measurement in ISO 6983 G-code.
+#include "nonio/sdk/plugin.h"
+
+#include "programs.h"
+
+namespace nonio {
+namespace {
+
+using programs::Program;
+
+/// The rest in the word that the control understands: controls differ in the unit of P.
+std::string dwell(double seconds, const std::string& word) {
+  if (word == "X") return "G4 X" + programs::number(seconds);
+  if (word == "P-ms") return "G4 P" + programs::number(seconds * 1e3);
+  return "G4 P" + programs::number(seconds);
+}
+
+std::string format(const Program& p, const Settings& options) {
+  std::string out;
+  for (const std::string& line : p.about) out += "(" + line + ")\n";
+  out += "G21 G17 G90 G94 G40 G49 G80\nG61\n" + options.text("work_offset", "G54") + "\n";
+  out += "F" + programs::number(p.feed) + "\n";
+  const std::string word = options.text("dwell_word", "P-s");
+  for (const math::MeasuringMove& move : p.path.moves) {
+    out += "G1";
+    for (std::size_t a = 0; a < p.path.axes.size(); ++a)
+      out += " " + p.path.axes[a] + programs::position(p.path, a, move.to[a]);
+    out += "\n";
+    if (move.dwell > 0.0) out += dwell(move.dwell, word) + "\n";
+  }
+  return out + "M30\n";
+}
+
+Expected<OutputResult> write(const OutputInput& in) {
+  return programs::written(in, {"program-gcode", ".ngc", format, true});
+}
+
+}  // namespace
+}  // namespace nonio
+
+NONIO_PLUGIN(registry) {
+  using nonio::Option;
+  nonio::Output output;
+  output.info = {
+      "program-gcode", "1.0.0", "Part programs of the measurement in ISO G-code.",
+      nonio::programs::options(
+          {Option{"dwell_word",
+                  std::string("P-s"),
+                  "",
+                  "G4: P-s (LinuxCNC), P-ms (P in milliseconds: Fanuc), X (seconds: Fanuc).",
+                  {"P-s", "P-ms", "X"}},
+           Option{"work_offset",
+                  std::string("G54"),
+                  "",
+                  "Offset that is set to the machine's zero.",
+                  {"G54", "G55", "G56", "G57", "G58", "G59"}}}),
+      true};
+  output.applies = [](const nonio::Campaign&) { return true; };
+  output.write = nonio::write;
+  registry.add(std::move(output));
+}

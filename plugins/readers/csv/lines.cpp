@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lines.h"
+
+#include <algorithm>
+#include <string>
+
+#include "fields.h"
+
+namespace nonio::csv {
+
+namespace {
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+}
+
+Lines::Lines(std::string_view bytes) : bytes_(bytes) {
+  if (bytes_.substr(0, byte_order_mark.size()) == byte_order_mark) offset_ = byte_order_mark.size();
+}
+
+bool Lines::next(std::string_view& line) {
+  if (offset_ >= bytes_.size()) return false;
+  const std::size_t end = std::min(bytes_.find('\n', offset_), bytes_.size());
+  line = bytes_.substr(offset_, end - offset_);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  offset_ = end + 1;
+  ++number_;
+  return true;
+}
+
+std::size_t Lines::offset() const { return std::min(offset_, bytes_.size()); }
+
+Content content_of(std::string_view line) {
+  for (const char c : line)
+    if (c != ' ' && c != '\t') return c == '#' ? Content::comment : Content::fields;
+  return Content::nothing;
+}
+
+std::optional<Error> not_text(std::string_view line) {
+  if (line.size() > longest_line)
+    return Error{"expected lines of at most " + std::to_string(longest_line) + " bytes, found " +
+                 std::to_string(line.size())};
+  if (line.find('\0') != line.npos)
+    return Error{"expected text in UTF-8, found a NUL byte; is the file UTF-16 or binary?"};
+  if (!is_utf8(line))
+    return Error{"expected text in UTF-8, found other bytes; save the file as UTF-8"};
+  if (line.find('\r') != line.npos)
+    return Error{"expected lines that end in LF or CRLF, found a lone CR"};
+  return std::nullopt;
+}
+
+bool next_content(Lines& lines, std::string_view& line, std::optional<Error>& error) {
+  while (lines.next(line)) {
+    const Content content = content_of(line);
+    if (content == Content::fields) return true;
+    if (content == Content::nothing) continue;
+    error = not_text(line);
+    if (error) return false;
+  }
+  return false;
+}
+
+}  // namespace nonio::csv

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "nonio/sdk/error.h"
+
+namespace nonio::csv {
+
+inline constexpr std::size_t longest_line = 65536;
+
+/// The lines of a file, without LF or CRLF; a CR at the very end of the file counts as CRLF.
+class Lines {
+ public:
+  explicit Lines(std::string_view bytes);
+  bool next(std::string_view& line);
+  std::uint64_t number() const { return number_; }  ///< of the line last given, from 1
+  std::size_t offset() const;
+
+ private:
+  std::string_view bytes_;
+  std::size_t offset_ = 0;
+  std::uint64_t number_ = 0;
+};
+
+enum class Content { nothing, comment, fields };
+Content content_of(std::string_view line);
+
+/// What no line of a text file may hold. Rows of numbers need no such look: their fields would not
+/// be numbers.
+std::optional<Error> not_text(std::string_view line);
+
+/// The next line with fields on it; false at the end of the file, or with `error` set.
+bool next_content(Lines& lines, std::string_view& line, std::optional<Error>& error);
+
+}  // namespace nonio::csv

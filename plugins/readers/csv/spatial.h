@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "nonio/sdk/plugin.h"
+
+/// Measurements of several axes at once: diagonals, step diagonals, ball centres, and the general
+/// table that all of them are rows of.
+namespace nonio::csv {
+
+/// The line of a diagonal: from one corner to another.
+struct Span {
+  struct Side {
+    std::string axis;
+    std::size_t coordinate = 0;   ///< 0, 1, 2: along X, Y, Z
+    double from = 0.0, to = 0.0;  ///< m
+  };
+  std::vector<Side> sides;  ///< of the axes that move, in the order X, Y, Z
+  double length = 0.0;      ///< m
+};
+
+/// From the manifest's `from` and `to`; an error if they do not span a line of linear axes.
+Expected<Span> span_of(const Campaign& campaign, const Measurement& measurement);
+
+/// Readings over the distance along a span (in axes[0]) become readings over the positions of its
+/// axes.
+void spread(Observations& observations, const Span& span);
+
+Expected<Observations> read_step_diagonal(const ReadInput& input);
+Expected<Observations> read_ball_centres(const ReadInput& input);
+Expected<Observations> read_general(const ReadInput& input);
+
+/// Names of columns that only these kinds have, for recognising a file.
+const std::vector<std::string_view>& spatial_names();
+
+}  // namespace nonio::csv

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "table.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "fields.h"
+#include "lines.h"
+
+namespace nonio::csv {
+namespace {
+
+using Kind = ColumnSpec::Kind;
+
+const ColumnSpec* find(const std::vector<ColumnSpec>& columns, std::string_view name) {
+  const auto it =
+      std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
+  return it == columns.end() ? nullptr : &*it;
+}
+
+class TableReader {
+ public:
+  explicit TableReader(const std::vector<ColumnSpec>& columns) : columns_(columns) {}
+
+  Expected<Table> read(std::string_view bytes) {
+    Lines lines(bytes);
+    std::string_view line;
+    std::optional<Error> error;
+    bool header = true;
+    while (!error && next_content(lines, line, error)) {
+      line_ = lines.number();
+      error = not_text(line);
+      if (!error) error = header ? take_header(line) : take_row(line);
+      header = false;
+    }
+    if (error) {
+      if (error->line == 0) error->line = lines.number();
+      return fail(std::move(*error));
+    }
+    if (header) return fail("expected a header row, found an empty file");
+    if (table_.size() == 0) return fail("expected readings, found only a header row");
+    return std::move(table_);
+  }
+
+ private:
+  Error at(std::size_t column, std::string message) const {
+    Error error{std::move(message)};
+    error.column = own_[column]->name;
+    return error;
+  }
+
+  /// The separator with which most names of the header row are known ones.
+  char separator_of(std::string_view row) const {
+    char best = ',';
+    std::ptrdiff_t most = -1;
+    for (const char separator : {',', ';', '\t'}) {
+      std::vector<std::string_view> names;
+      if (!split(row, separator, names)) continue;
+      const auto known = std::count_if(names.begin(), names.end(),
+                                       [&](auto name) { return find(columns_, name) != nullptr; });
+      if (known > most) {
+        most = known;
+        best = separator;
+      }
+    }
+    return best;
+  }
+
+  std::optional<Error> take_header(std::string_view row) {
+    separator_ = separator_of(row);
+    if (!split(row, separator_, fields_))
+      return Error{"header row: a quote is not closed, or something stands behind it"};
+    for (const std::string_view name : fields_) {
+      const ColumnSpec* spec = find(columns_, name);
+      if (spec == nullptr) return unknown(name);
+      if (std::find(own_.begin(), own_.end(), spec) != own_.end())
+        return Error{"column \"" + spec->name + "\" occurs twice; expected it once"};
+      own_.push_back(spec);
+    }
+    for (const ColumnSpec& spec : columns_)
+      if (spec.required && std::find(own_.begin(), own_.end(), &spec) == own_.end())
+        return missing(spec.name);
+    for (const ColumnSpec* spec : own_)
+      if (spec->kind == Kind::word)
+        words_.push_back(&table_.words[spec->name]), numbers_.push_back(nullptr);
+      else
+        numbers_.push_back(&table_.numbers[spec->name]), words_.push_back(nullptr);
+    return std::nullopt;
+  }
+
+  Error unknown(std::string_view name) const {
+    if (name.empty())
+      return Error{"a column of the header row has no name; is there a separator too many?"};
+    if (parse_number(name, true).kind == Number::Kind::taken)
+      return Error{"expected a header row with the names of the columns, found the number " +
+                   shown(name)};
+    std::vector<std::string_view> names;
+    for (const ColumnSpec& c : columns_) names.push_back(c.name);
+    return Error{"unknown column " + shown(name) + "; did you mean \"" +
+                 std::string(nearest(name, names)) + "\"?"};
+  }
+
+  Error missing(const std::string& name) const {
+    std::string found;
+    for (const std::string_view field : fields_)
+      found += (found.empty() ? "" : ", ") + std::string(field);
+    return Error{"missing column: expected \"" + name + "\", found " + found};
+  }
+
+  std::optional<Error> take_row(std::string_view row) {
+    if (!split(row, separator_, fields_))
+      return Error{"a quote is not closed on its line, or something stands behind it: " +
+                   shown(row)};
+    if (std::all_of(fields_.begin(), fields_.end(), [](auto f) { return f.empty(); })) {
+      ++table_.empty_rows;
+      return std::nullopt;
+    }
+    if (fields_.size() != own_.size())
+      return Error{"expected " + std::to_string(own_.size()) +
+                   " fields as in the header row, found " + std::to_string(fields_.size()) +
+                   (separator_ == ',' && fields_.size() > own_.size()
+                        ? "; a decimal comma needs \";\" or a tab between the fields: "
+                        : ": ") +
+                   shown(row)};
+    if (line_ > std::numeric_limits<std::uint32_t>::max())
+      return Error{"expected at most 4294967295 lines"};
+    for (std::size_t i = 0; i < own_.size(); ++i)
+      if (auto error = take_field(i)) return error;
+    table_.line.push_back(static_cast<std::uint32_t>(line_));
+    return std::nullopt;
+  }
+
+  std::optional<Error> take_field(std::size_t i) {
+    const std::string_view text = fields_[i];
+    const ColumnSpec& spec = *own_[i];
+    switch (spec.kind) {
+      case Kind::word:
+        return take_word(i);
+      case Kind::whole:
+        numbers_[i]->push_back(parse_run(text));
+        if (numbers_[i]->back() > 0.0) return std::nullopt;
+        return at(i, "expected a whole number from 1 to 4294967295, found " + shown(text));
+      case Kind::sign:
+      case Kind::motion:
+        numbers_[i]->push_back(text == "+" ? 1.0 : text == "-" ? -1.0 : 0.0);
+        if (text == "+" || text == "-" || (spec.kind == Kind::motion && text.empty()))
+          return std::nullopt;
+        return at(
+            i, "expected + or -" +
+                   std::string(spec.kind == Kind::motion ? ", or nothing where the axis stood still"
+                                                         : "") +
+                   ", found " + shown(text));
+      case Kind::number:
+      case Kind::place:
+        break;
+    }
+    return take_number(i);
+  }
+
+  std::optional<Error> take_word(std::size_t i) {
+    const std::string_view text = fields_[i];
+    const auto& allowed = own_[i]->words;
+    words_[i]->emplace_back(text);
+    if (allowed.empty() || std::find(allowed.begin(), allowed.end(), text) != allowed.end())
+      return std::nullopt;
+    std::string list;
+    for (const std::string& word : allowed) list += (list.empty() ? "" : ", ") + word;
+    return at(i, "expected one of " + list + ", found " + shown(text));
+  }
+
+  std::optional<Error> take_number(std::size_t i) {
+    const std::string_view text = fields_[i];
+    const bool comma = separator_ != ',';
+    const Number number = parse_number(text, comma);
+    if (number.kind == Number::Kind::bad)
+      return at(i, "expected a number, found " + shown(text) +
+                       (!comma && parse_number(text, true).kind == Number::Kind::taken
+                            ? "; a decimal comma needs \";\" or a tab between the fields"
+                            : ""));
+    const bool taken = number.kind == Number::Kind::taken;
+    if (!taken && own_[i]->kind == Kind::place)
+      return at(i, "expected a number, found " + shown(text));
+    if (comma && number.mark != DecimalMark::none)
+      if (auto error = mixed_marks(i, number.mark)) return error;
+    numbers_[i]->push_back(taken ? number.value : std::numeric_limits<double>::quiet_NaN());
+    return std::nullopt;
+  }
+
+  /// 1.234 in a file with decimal commas may mean 1234; nobody can tell, so nobody guesses.
+  std::optional<Error> mixed_marks(std::size_t i, DecimalMark mark) {
+    const bool point = mark == DecimalMark::point;
+    std::uint64_t& first = point ? first_point_ : first_comma_;
+    const std::uint64_t other = point ? first_comma_ : first_point_;
+    if (first == 0) first = line_;
+    if (other == 0) return std::nullopt;
+    return at(i, "found " + shown(fields_[i]) + " with a decimal " + (point ? "point" : "comma") +
+                     ", but a decimal " + (point ? "comma" : "point") + " in line " +
+                     std::to_string(other) + "; expected the same everywhere");
+  }
+
+  const std::vector<ColumnSpec>& columns_;
+  std::vector<const ColumnSpec*> own_;  ///< of each column of the file
+  std::vector<std::vector<double>*> numbers_;
+  std::vector<std::vector<std::string>*> words_;
+  std::vector<std::string_view> fields_;
+  char separator_ = ',';
+  std::uint64_t line_ = 0;
+  std::uint64_t first_point_ = 0, first_comma_ = 0;  ///< lines with that decimal mark; 0: none
+  Table table_;
+};
+
+}  // namespace
+
+Expected<Table> read_table(std::string_view bytes, const std::vector<ColumnSpec>& columns) {
+  return TableReader(columns).read(bytes);
+}
+
+}  // namespace nonio::csv

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "nonio/reports/wording.h"
+#include "nonio/sdk/results.h"
+
+/// What every document says of a model in words and numbers; its pictures are in residuals.h.
+namespace nonio::reports {
+
+/// The host's analysis whose values stand with the model and not with the measurement.
+inline constexpr std::string_view model_analysis = "model-fit";
+
+struct ParameterRow {
+  std::string effect;   ///< empty below the first one of its effect
+  std::string name;     ///< "b"
+  std::string meaning;  ///< of effects that have words; a formula's has none
+  std::string value, U, unit;
+};
+std::vector<ParameterRow> parameter_rows(const ModelFit&, const Templates&,
+                                         const std::string& language);
+
+/// "backlash:X b and periodic:X a (-0.95); ...": what the readings hardly tell apart; or nothing.
+std::string correlated_parameters(const ModelFit&, const Wording&);
+
+/// Readings, redundancy, largest residual, lack of fit, in sentences.
+std::string fit_in_words(const ModelFit&, const Results&, const Wording&);
+
+}  // namespace nonio::reports

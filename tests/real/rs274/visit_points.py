@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""visit_points.py NONIO
+
+`nonio plan program` writes programs; rs274, LinuxCNC's own interpreter, runs them. Where it stops, in
+which order and how long must be the plan, written down here once more.
+
+Exit status: 0 shown, 1 not so, 77 rs274 is not here.
+"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+NONIO = sys.argv.pop(1)
+OVER, DWELL, RUNS = 1.5, 2.25, 2
+X0, Y0, Z0 = -100.0, 50.0, -600.0  # start of the travels
+AXES = ["--axis", "X=-100:4100", "--axis", "Y=50:3050", "--axis", "Z=-600:0"]
+N, STEP_X, STEP_Y = 12, 240.0, 180.0
+STEPS = 7  # of a step diagonal
+
+
+def run_by_linuxcnc(program):
+    """[(position of X Y Z A B C, seconds of rest there)]"""
+    done = subprocess.run(["rs274", "-g", program.name], cwd=program.parent, capture_output=True, text=True,
+                          timeout=60)
+    if done.returncode != 0:
+        raise AssertionError(f"{program.name}: {done.stderr}{done.stdout[-500:]}")
+    stops = []
+    for line in done.stdout.splitlines():
+        move = re.search(r"(STRAIGHT_FEED|STRAIGHT_TRAVERSE)\(([^)]*)\)", line)
+        if move:
+            stops.append([[float(v) for v in move.group(2).split(",")], 0.0])
+        rest = re.search(r"DWELL\(([^)]*)\)", line)
+        if rest:
+            stops[-1][1] += float(rest.group(1))
+    return stops
+
+
+def to_and_fro(stops, before, after, both=True):
+    moves = [(before, 0.0)]
+    for _ in range(RUNS):
+        moves += [(s, DWELL) for s in stops]
+        if both:
+            moves += [(after, 0.0)] + [(s, DWELL) for s in reversed(stops)]
+        moves.append((before, 0.0))
+    return moves
+
+
+def line(start, step, n):
+    """Stops on a straight line of X and Y, and the points of turning."""
+    further = OVER / max(abs(s) for s in step)
+    at = lambda i: [start[0] + i * step[0], start[1] + i * step[1]]
+    return to_and_fro([at(i) for i in range(n + 1)], at(-further), at(n + further))
+
+
+def step_diagonal(name):
+    ends = [(X0, 4100.0), (Y0, 3050.0), (Z0, 0.0)]
+    step = [int((b - a - 2 * OVER) / STEPS / 0.001 + 1e-6) * 0.001 for a, b in ends]
+    sign = [1 if c == "P" else -1 for c in name]
+    start = [a + OVER + (0 if s > 0 else STEPS * d) for (a, _), s, d in zip(ends, sign, step)]
+    before = [p - s * OVER for p, s in zip(start, sign)]
+    moves = [(before, 0.0)]
+    for _ in range(RUNS):
+        at = list(start)
+        moves.append((list(at), DWELL))
+        for _ in range(STEPS):
+            for a in range(3):
+                at[a] += sign[a] * step[a]
+                moves.append((list(at), DWELL))
+        moves.append((before, 0.0))
+    return moves
+
+
+class Interpreter(unittest.TestCase):
+    def write(self, *words, axes=AXES):
+        folder = tempfile.TemporaryDirectory(prefix="nonio-rs274-")
+        self.addCleanup(folder.cleanup)
+        settings = [f"over_travel_mm={OVER}", f"dwell_s={DWELL}", f"runs={RUNS}", "over_travel_deg=2"]
+        command = [NONIO, "plan", "program", *axes, "--control", "gcode", "--out", folder.name, *words]
+        for s in settings:
+            command += ["--set", s]
+        subprocess.run(command, check=True, capture_output=True, timeout=60)
+        return pathlib.Path(folder.name)
+
+    def same(self, program, planned, axes=(0, 1, 2)):
+        stops = run_by_linuxcnc(program)
+        self.assertEqual(len(stops), len(planned), program.name)
+        for i, ((position, rest), (wanted, dwell)) in enumerate(zip(stops, planned)):
+            near = 1e-4 if dwell else 1.1e-3  # the over-travel is cut off to 0.001 mm
+            for axis, value in zip(axes, wanted):
+                self.assertAlmostEqual(position[axis], value, delta=near, msg=f"{program.name} {i}")
+            for axis in set(range(6)) - set(axes[:len(wanted)]):
+                self.assertEqual(position[axis], 0.0, f"{program.name} {i}")
+            self.assertAlmostEqual(rest, dwell, delta=1e-4, msg=f"{program.name} {i}")
+        return stops
+
+    def test_diagonals_and_axes_on_their_grid(self):
+        grid = ["--n", str(N), "--step-x", f"{STEP_X:g}", "--step-y", f"{STEP_Y:g}"]
+        folder = self.write(*grid, "--set", "programs=axes,diagonals,half-diagonal", axes=AXES[:4])
+        x, y = X0 + OVER, Y0 + OVER
+        self.same(folder / "program-gcode-D1.ngc", line((x, y), (STEP_X, STEP_Y), N))
+        self.same(folder / "program-gcode-D2.ngc", line((x, y + N * STEP_Y), (STEP_X, -STEP_Y), N))
+        self.same(folder / "program-gcode-D3.ngc", line((x, y), (2 * STEP_X, STEP_Y), N // 2))
+        for axis, (name, start, step) in enumerate((("X", x, STEP_X), ("Y", y, STEP_Y))):
+            stops = [[start + i * step] for i in range(N + 1)]
+            self.same(folder / f"program-gcode-{name}.ngc",
+                      to_and_fro(stops, [start - OVER], [start + N * step + OVER]), axes=(axis,))
+
+    def test_step_diagonals(self):
+        folder = self.write("--set", "programs=step-diagonals", "--set", f"steps={STEPS}")
+        self.assertEqual(len(list(folder.iterdir())), 4)
+        for name in ("PPP", "NPP", "PNP", "PPN"):
+            self.same(folder / f"program-gcode-{name}.ngc", step_diagonal(name))
+
+    def test_a_rotary_axis(self):
+        folder = self.write("--set", "interval_deg=45", axes=["--axis", "C=-5:365"])
+        stops = [[-3.0 + i * 366.0 / 9] for i in range(10)]
+        self.same(folder / "program-gcode-C.ngc", to_and_fro(stops, [-5.0], [365.0]), axes=(5,))
+
+    def test_random_offsets_are_the_same_in_every_run(self):
+        folder = self.write(axes=["--axis", "X=0:1003"])
+        stops = run_by_linuxcnc(folder / "program-gcode-X.ngc")
+        targets = [p[0] for p, rest in stops if rest > 0]
+        up = targets[:5]
+        self.assertEqual(targets, (up + up[::-1]) * RUNS)
+        for i, t in enumerate(up):
+            self.assertLessEqual(abs(t - (1.5 + 250 * i)), 75.0001)
+        self.assertEqual(len({round(b - a, 3) for a, b in zip(up, up[1:])}), 4, up)
+        start, end = round(up[0] - OVER, 3), round(up[-1] + OVER, 3)
+        self.assertEqual([p[0] for p, rest in stops if rest == 0], [start] + [end, start] * RUNS)
+
+
+if shutil.which("rs274") is None:
+    print("skipped: rs274 of LinuxCNC is not installed")
+    sys.exit(77)
+unittest.main()

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measurements of several axes at once.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "csv.h"
+
+namespace nonio::csv {
+namespace {
+
+Measurement measurement(const std::string& kind) {
+  Measurement m;
+  m.id = "D1";
+  m.kind = kind;
+  m.axis = kind == "ball-centres" ? "C" : "";
+  m.file = "d1.csv";
+  m.from = {{"X", 0.0}, {"Y", 9.0}};
+  m.to = {{"X", 12.0}, {"Y", 0.0}};
+  if (kind == "step-diagonal") {
+    m.from = {{"X", 0.1}, {"Y", 0.0}, {"Z", 0.0}};
+    m.to = {{"X", 0.9}, {"Y", 0.6}, {"Z", -0.6}};
+  }
+  return m;
+}
+
+Expected<Observations> read_text(const std::string& text, const Measurement& m) {
+  Campaign campaign;
+  for (const char* name : {"X", "Y", "C"}) {
+    Axis axis;
+    axis.name = name;
+    axis.rotary = axis.name == "C";
+    campaign.machine.axes.push_back(axis);
+  }
+  const Settings options;
+  return read({text, campaign, m, options, {}});
+}
+Expected<Observations> read_text(const std::string& text, const std::string& kind) {
+  return read_text(text, measurement(kind));
+}
+
+TEST(Diagonal, DistancesBecomePositionsOfBothAxes) {
+  const auto obs =
+      read_text("run,direction,target_mm,deviation_um\n1,+,500,-1.5\n1,-,15000,2\n", "diagonal");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->axes.size(), 2U);
+  EXPECT_EQ(obs->axes[0].axis, "X");
+  EXPECT_DOUBLE_EQ(obs->axes[0].position[0], 0.4);
+  EXPECT_DOUBLE_EQ(obs->axes[1].position[0], 9.0 - 0.3);
+  EXPECT_DOUBLE_EQ(obs->axes[1].position[1], 0.0);
+  EXPECT_EQ(obs->axes[0].approach, (std::vector<std::int8_t>{1, -1}));
+  EXPECT_EQ(obs->axes[1].approach, (std::vector<std::int8_t>{-1, 1}));
+  ASSERT_EQ(obs->lines.size(), 1U);
+  EXPECT_DOUBLE_EQ(obs->lines[0].sense[0], 0.8);
+  EXPECT_DOUBLE_EQ(obs->lines[0].sense[1], -0.6);
+  EXPECT_DOUBLE_EQ(obs->deviation[0], -1.5e-6);
+}
+
+TEST(Diagonal, ItsEndsAreChecked) {
+  const std::string text = "run,direction,target_mm,deviation_um\n1,+,500,-1.5\n1,+,15001,2\n";
+  const auto beyond = read_text(text, "diagonal");
+  ASSERT_FALSE(beyond);
+  EXPECT_EQ(beyond.error().line, 3U);
+  EXPECT_NE(beyond.error().message.find("15000.000 mm"), std::string::npos);
+  Measurement m = measurement("diagonal");
+  m.to["Y"] = 9.0;
+  EXPECT_FALSE(read_text(text, m));
+  m.to.erase("Y");
+  EXPECT_FALSE(read_text(text, m));
+  m = measurement("diagonal");
+  m.from["C"] = 0.0;
+  m.to["C"] = 1.0;
+  EXPECT_FALSE(read_text(text, m));
+  EXPECT_FALSE(read_text("run,direction,target_deg,deviation_um\n1,+,5,1\n", "diagonal"));
+}
+
+std::string steps(const std::string& diagonal, int n) {
+  std::string text;
+  for (int step = 1; step <= 3 * n; ++step)
+    text += diagonal + "," + std::to_string(step) + "," + "XYZ"[(step - 1) % 3] + ",1.0\n";
+  return text;
+}
+const std::string step_head = "diagonal,step,moved,deviation_um\n";
+
+TEST(StepDiagonal, PositionsFollowTheMoves) {
+  const auto obs = read_text(step_head + steps("PPP", 2) + steps("NPP", 2), "step-diagonal");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->size(), 12U);
+  EXPECT_DOUBLE_EQ(obs->axes[0].position[0], 0.5);  // after the first move of X
+  EXPECT_DOUBLE_EQ(obs->axes[1].position[0], 0.0);
+  EXPECT_DOUBLE_EQ(obs->axes[2].position[5], -0.6);
+  EXPECT_DOUBLE_EQ(obs->axes[0].position[6], 0.5);  // NPP starts at X = 0.9
+  EXPECT_DOUBLE_EQ(obs->axes[0].position[11], 0.1);
+  EXPECT_EQ(obs->axes[2].approach[0], -1);  // towards smaller coordinates
+  EXPECT_EQ(obs->axes[0].approach[6], -1);
+  const double length = std::sqrt(0.64 + 0.36 + 0.36);
+  ASSERT_EQ(obs->lines.size(), 2U);
+  EXPECT_EQ(obs->lines[1].name, "D1 NPP");
+  EXPECT_DOUBLE_EQ(obs->lines[1].sense[0], -0.8 / length);
+  EXPECT_DOUBLE_EQ(obs->lines[1].sense[2], -0.6 / length);
+}
+
+TEST(StepDiagonal, BadMovesAreErrorsWithTheirLine) {
+  const auto error = [](const std::string& text) {
+    const auto obs = read_text(step_head + text, "step-diagonal");
+    EXPECT_FALSE(obs) << text;
+    return obs ? Error{} : obs.error();
+  };
+  EXPECT_EQ(error("PPX,1,X,1\n").line, 2U);
+  EXPECT_EQ(error("PPP,1,A,1\n").column, "moved");
+  EXPECT_EQ(error("PPP,1.5,X,1\n").column, "step");
+  EXPECT_EQ(error("PPP,1,X,1\nPPP,2,Y,1\n").column, "step");              // 2 of 3
+  EXPECT_EQ(error("PPP,1,X,1\nPPP,3,Z,1\nPPP,3,Z,1\n").line, 3U);         // 2 is missing
+  EXPECT_EQ(error("PPP,1,X,1\nPPP,2,X,1\nPPP,3,Z,1\n").column, "moved");  // X twice
+  EXPECT_EQ(error("PPP,1,X,1\nPPP,2,Y,1\nPPP,3,Z,1\nPPP,3,Z,2\n").line, 5U);
+}
+
+TEST(StepDiagonal, StepsNotTakenAreMissing) {
+  const auto obs =
+      read_text(step_head + "PPP,1,X,1\nPPP,2,Y,nan\nPPP,3,Z,1\nPPP,3,Z,1\n", "step-diagonal");
+  ASSERT_TRUE(obs) << obs.error().message;
+  EXPECT_EQ(obs->size(), 2U);
+  EXPECT_EQ(obs->missing, 1U);
+  EXPECT_EQ(obs->notes.size(), 1U);  // the repeated row
+}
+
+TEST(BallCentres, EachCentreIsThreeReadings) {
+  const auto obs =
+      read_text("angle_deg;x_mm;y_mm;z_mm\n0;261,5;1;2\n90;0;262;2\n180;;1;2\n", "ball-centres");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->size(), 6U);
+  EXPECT_EQ(obs->missing, 1U);
+  EXPECT_DOUBLE_EQ(obs->axes[0].position[3], std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(obs->axes[1].position[2], 0.2615);
+  EXPECT_DOUBLE_EQ(obs->deviation[4], 0.262);
+  EXPECT_EQ(obs->lines[1].sense[1], 1.0);
+  EXPECT_TRUE(obs->axes[0].approach.empty());
+  Measurement m = measurement("ball-centres");
+  m.axis = "X";
+  EXPECT_FALSE(read_text("angle_deg,x_mm,y_mm,z_mm\n0,1,2,3\n", m));
+  EXPECT_FALSE(read_text("angle_deg,x_mm,y_mm,z_mm\n,1,2,3\n", "ball-centres"));
+  EXPECT_FALSE(read_text("angle_deg;x_mm;y_mm;z_mm\n0;1,5;2.5;3\n", "ball-centres"));
+}
+
+TEST(General, LinesAndSenses) {
+  const auto obs = read_text(
+      "X_mm,Y_mm,X_dir,nx,ny,nz,deviation_um,line,time_s\n"
+      "0,0,+,1,0,0,1,a,0\n10,0,-,1,0,0,2,a,1\n10,5,,0,1,0,3,b,2\n",
+      "observations");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->lines.size(), 2U);
+  EXPECT_TRUE(obs->sense.empty());
+  EXPECT_EQ(obs->line, (std::vector<std::uint32_t>{0, 0, 1}));
+  EXPECT_EQ(obs->axes[0].approach, (std::vector<std::int8_t>{1, -1, 0}));
+  EXPECT_TRUE(obs->axes[1].approach.empty());
+  EXPECT_EQ(obs->sense_of(2)[1], 1.0);
+  EXPECT_EQ(obs->time[2], 2.0);
+  const auto mixed =
+      read_text("X_mm,nx,ny,nz,deviation_um\n0,1,0,0,1\n1,0,1,0,2\n", "observations");
+  ASSERT_TRUE(mixed);
+  EXPECT_EQ(mixed->sense.size(), 2U);
+  EXPECT_EQ(mixed->sense_of(1)[1], 1.0);
+}
+
+TEST(General, BadTables) {
+  EXPECT_FALSE(read_text("nx,ny,nz,deviation_um\n1,0,0,1\n", "observations"));
+  EXPECT_FALSE(read_text("X_mm,nx,ny,nz,deviation_um\n0,1,1,0,1\n", "observations"));
+  EXPECT_FALSE(read_text("X_deg,nx,ny,nz,deviation_um\n0,1,0,0,1\n", "observations"));
+  EXPECT_FALSE(read_text("Y_mm,X_dir,nx,ny,nz,deviation_um\n0,+,1,0,0,1\n", "observations"));
+  EXPECT_FALSE(read_text("X_mm,nx,ny,nz,deviation_um\n0,1,0,0,nan\n", "observations"));
+  EXPECT_FALSE(read_text("", "observations"));
+}
+
+}  // namespace
+}  // namespace nonio::csv
