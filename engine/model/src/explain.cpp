@@ -11,6 +11,7 @@
 #include "nonio/math/statistics.h"
 #include "places.h"
 #include "plans.h"
+#include "scatter.h"
 #include "search.h"
 #include "thin.h"
 
@@ -24,7 +25,6 @@ constexpr double alias_evidence = 6.0;  // 2 ln 20: one twentieth of the evidenc
 constexpr double least_rms = 0.2;       // of the noise: smaller effects are not worth a name
 constexpr double least_left = 0.25;     // of the noise: smaller structure is not worth a verdict
 constexpr double serious_p = 0.005;
-constexpr double memory_p = 1e-4;       // noise without a memory looks so once in 10,000
 constexpr double most_suspects = 0.06;  // of the readings; beyond, they do not repeat
 // What is left in the same place, of what the candidate says: beyond, the candidate is not it.
 constexpr double unexplained_share = 0.04;
@@ -337,29 +337,6 @@ class Explainer {
     });
   }
 
-  /// A zero that walks: what repeats leave has a memory from one reading of a pass to the next. Its
-  /// size is that of a random walk over all passes: step^2 n/6 in square, of which a pass of m
-  /// readings keeps step^2 3m/70 when its curve of second degree is taken out.
-  std::optional<Place> walking_zero() const {
-    const Saturated left = saturate(repeats_, best_fit_.fit.residual, weight_);
-    if (!(left.dof >= 8.0)) return std::nullopt;
-    std::vector<double> before(repeats_.passes, std::numeric_limits<double>::quiet_NaN());
-    double products = 0.0, pairs = 0.0;
-    for (std::size_t i = 0; i < left.e.size(); ++i) {
-      if (!(weight_[i] > 0.0)) continue;
-      double& last = before[repeats_.pass[i]];
-      if (std::isfinite(last)) products += last * left.e[i], ++pairs;
-      last = left.e[i];
-    }
-    const double mean_square = left.squares / bench_->readings();
-    if (!(pairs >= 20.0) || !(mean_square > 0.0)) return std::nullopt;
-    const double r = products / pairs / mean_square;  // 0 +- 1/sqrt(pairs) without a memory
-    const double p = 0.5 * std::erfc(r * std::sqrt(pairs / 2.0));
-    if (!(p < memory_p)) return std::nullopt;
-    const double square = r * mean_square * static_cast<double>(repeats_.passes) * 70.0 / 18.0;
-    return Place{"time", 0.0, p, std::sqrt(square)};
-  }
-
   /// Whether something else is left in the places where this effect works: then it may be no more
   /// than the nearest thing in the catalogue. A zero that walks can look like anything.
   bool in_doubt(const std::string& name, const std::vector<Place>& serious,
@@ -420,87 +397,13 @@ class Explainer {
     v.false_alarms = alarms / static_cast<double>(named.size());
   }
 
-  /// Repeats of one target fall into two groups with nothing between them: no noise does that.
-  bool two_valued() const {
-    std::vector<std::pair<double, std::uint32_t>> e;  // residual and cell
-    for (std::size_t i = 0; i < weight_.size(); ++i)
-      if (weight_[i] > 0.0) e.emplace_back(best_fit_.fit.residual[i], repeats_.cell[i]);
-    if (e.size() < 40) return false;
-    std::sort(e.begin(), e.end());
-    const auto n = static_cast<double>(e.size());
-    double sum = 0.0, squares = 0.0;
-    for (const auto& [x, cell] : e) sum += x, squares += x * x;
-    double left = 0.0, best = 0.0;
-    std::size_t split = 0;
-    for (std::size_t i = 0; i + 1 < e.size(); ++i) {
-      left += e[i].first;
-      const double k = static_cast<double>(i + 1);
-      if (k < 0.1 * n || k > 0.9 * n) continue;
-      const double apart = left / k - (sum - left) / (n - k);
-      const double between = apart * apart * k * (n - k) / n;
-      const double within = (squares - sum * sum / n - between) / n;
-      // Of normal noise 7, of evenly spread noise 12.
-      if (apart * apart / within > best) best = apart * apart / within, split = i + 1;
-    }
-    if (best < 18.0) return false;
-    std::vector<int> side(repeats_.cells, 0);
-    for (std::size_t i = 0; i < e.size(); ++i) side[e[i].second] |= i < split ? 1 : 2;
-    const auto mixed = std::count(side.begin(), side.end(), 3);
-    return static_cast<double>(mixed) > 0.25 * static_cast<double>(repeats_.cells);
-  }
-
-  /// Residuals of the best explanation without what a whole pass shares.
-  std::vector<double> within_passes() const {
-    Repeats alone =
-        repeats_;  // every reading a cell of its own would leave nothing: one cell a pass
-    alone.cell = alone.pass;
-    alone.cells = alone.passes;
-    return saturate(alone, best_fit_.fit.residual, weight_).e;
-  }
-
-  /// One run with a scatter of its own.
-  std::optional<Place> wild_run() const {
-    std::vector<std::vector<double>> of_run;
-    const std::vector<double> e_of = within_passes();
-    for (std::size_t i = 0; i < part_.table.size(); ++i) {
-      const std::size_t run = part_.table.run.empty() ? 0 : part_.table.run[i];
-      if (run >= of_run.size()) of_run.resize(run + 1);
-      of_run[run].push_back(e_of[i]);
-    }
-    double all = 0.0, n = 0.0, runs = 0.0;
-    for (const auto& e : of_run) {
-      for (const double x : e) all += x * x, ++n;
-      runs += e.empty() ? 0.0 : 1.0;
-    }
-    std::optional<Place> worst;
-    for (std::size_t run = 0; run < of_run.size(); ++run) {
-      const auto k = static_cast<double>(of_run[run].size());
-      if (k < 6.0 || n - k < 6.0) continue;
-      // By its median, so that one misread value makes no wild run.
-      std::vector<double> size;
-      double squares = 0.0;
-      for (const double x : of_run[run]) size.push_back(std::fabs(x)), squares += x * x;
-      const double s = 1.4826 * math::median(size);
-      std::vector<double> others;
-      for (std::size_t r = 0; r < of_run.size(); ++r)
-        if (r != run)
-          for (const double x : of_run[r]) others.push_back(std::fabs(x));
-      const double s_others = 1.4826 * math::median(others);
-      const double F = s * s / (s_others * s_others);
-      // A median knows a scatter as well as 0.37 times as many squares do.
-      const double p = math::f_upper(F, 0.37 * k, 0.37 * (n - k)) * runs;
-      if (F < 4.0 || p > 1e-4 || (worst && p >= worst->p)) continue;
-      worst = Place{"run", squares / all, p, s, static_cast<double>(run), Quantity::count};
-    }
-    return worst;
-  }
-
   bool contradictory() {
-    if (const auto run = wild_run()) {
+    if (const auto run = wild_run(part_.table, repeats_, best_fit_.fit.residual, weight_)) {
       out_.fails.insert(out_.fails.begin(), *run);
       return true;
     }
-    return out_.verdict.suspects_share > most_suspects || two_valued();
+    return out_.verdict.suspects_share > most_suspects ||
+           two_valued(repeats_, best_fit_.fit.residual, weight_);
   }
 
   void judge() {
@@ -511,7 +414,7 @@ class Explainer {
     for (const Place& place : out_.comparison.places)
       if (place.p < place_p) out_.fails.push_back(place);
     std::vector<Place> serious = this->serious(best_fit_.places);
-    const std::optional<Place> walk = walking_zero();
+    const std::optional<Place> walk = walking_zero(repeats_, best_fit_.fit.residual, weight_);
     if (contradictory()) {
       v.kind = Verdict::Kind::unrepeatable;
       return;

@@ -232,12 +232,12 @@ struct PlaceTests::Tests {
 };
 
 PlaceTests::PlaceTests(const Part& part, const Repeats& repeats, const VectorXd& root_weight,
-                       const MatrixXd& basis, double dof)
-    : tests_(new Tests{Factors(part, repeats), {}, root_weight, dof}) {
-  tests_->bases = bases_of(tests_->factors, part, repeats, root_weight, basis);
+                       const MatrixXd& basis, double dof) {
+  Factors factors(part, repeats);
+  auto bases = bases_of(factors, part, repeats, root_weight, basis);
+  tests_ =
+      std::make_shared<const Tests>(Tests{std::move(factors), std::move(bases), root_weight, dof});
 }
-
-PlaceTests::~PlaceTests() = default;
 
 std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
                                           const std::optional<NoiseFloor>& floor,

@@ -26,14 +26,13 @@ class PlaceTests {
   /// `basis` of the model as in Leftover.
   PlaceTests(const Part&, const Repeats&, const VectorXd& root_weight, const MatrixXd& basis,
              double dof);
-  ~PlaceTests();
   /// With the share of what is left, largest first; only those whose rms is above `least`.
   std::vector<Place> operator()(const VectorXd& residual, const std::optional<NoiseFloor>& floor,
                                 double least = -1.0) const;
 
  private:
   struct Tests;
-  std::unique_ptr<Tests> tests_;
+  std::shared_ptr<const Tests> tests_;
 };
 
 /// The fewest places that hold what is left: one after the other, each with all that its factors

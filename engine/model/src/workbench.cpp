@@ -90,7 +90,7 @@ void Workbench::add_shape(const Observations& o, std::size_t effect,
   x_.conservativeResize(Eigen::NoChange, columns);
   x_.rightCols(part.cols()) = part;
   xy_.conservativeResize(columns);
-  xy_.tail(part.cols()).noalias() = part.transpose() * y_;
+  for (Index k = 0; k < part.cols(); ++k) xy_(columns - part.cols() + k) = part.col(k).dot(y_);
   push(std::move(block), part);
   products_.assign(blocks_.size(), {});
 }
