@@ -36,6 +36,14 @@ const Analysis& the_analysis() {
   return taker.analysis;
 }
 
+Measurement named(const std::string& id, const std::string& kind, const std::string& axis) {
+  Measurement m;
+  m.id = id;
+  m.kind = kind;
+  m.axis = axis;
+  return m;
+}
+
 /// Files of a campaign, read on the exact machine in two runs and both directions.
 struct Workpiece {
   Rectangle rect;
@@ -76,7 +84,7 @@ struct Workpiece {
   }
 
   void diagonal(const std::string& id, const GridLine& line) {
-    Measurement m{.id = id, .kind = "diagonal"};
+    Measurement m = named(id, "diagonal", {});
     std::vector<Observations::AxisColumn> places{{"X", false, {}, {}}, {"Y", false, {}, {}}};
     for (const std::size_t i : line.ix) places[0].position.push_back(rect.x(i));
     for (const std::size_t i : line.iy) places[1].position.push_back(rect.y(i));
@@ -93,14 +101,14 @@ struct Workpiece {
   void X(const std::string& id, double y) {
     std::vector<Observations::AxisColumn> places{{"X", false, {}, {}}};
     for (const std::size_t i : count(rect.n)) places[0].position.push_back(rect.x(i));
-    observe({.id = id, .kind = "axis", .axis = "X", .at = {{"Y", y}}}, places,
-            pitch_x(errors, rect, y).mean, {1.0, 0.0, 0.0});
+    Measurement m = named(id, "axis", "X");
+    m.at["Y"] = y;
+    observe(std::move(m), places, pitch_x(errors, rect, y).mean, {1.0, 0.0, 0.0});
   }
   void Y(const std::string& id = "Y") {
     std::vector<Observations::AxisColumn> places{{"Y", false, {}, {}}};
     for (const std::size_t i : count(rect.n)) places[0].position.push_back(rect.y(i));
-    observe({.id = id, .kind = "axis", .axis = "Y"}, places, pitch_y(errors, rect).mean,
-            {0.0, 1.0, 0.0});
+    observe(named(id, "axis", "Y"), places, pitch_y(errors, rect).mean, {0.0, 1.0, 0.0});
   }
   Workpiece& everything() {
     X("X1", 0.5);
@@ -266,7 +274,7 @@ TEST(DiagonalPlugin, BadInputIsRefusedByName) {
   for (auto& a : w.all[3].axes) std::fill(a.approach.begin(), a.approach.end(), std::int8_t{1});
   expect_refused(w, "refused-one-direction");
   w = good;
-  w.Y("Y again");
+  w.Y("Y-again");
   expect_refused(w, "refused-ambiguous");
   w = good;
   w.campaign.measurements[0].at.clear();
