@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "heidenhain-tnc/consumer.h"
 #include "siemens-840d/consumer.h"
 #include "workshop.h"
 
@@ -86,6 +87,25 @@ TEST(Cross, AFlippedSignIsSeenByTheConsumer) {
   ASSERT_TRUE(result);
   EXPECT_GT(prediction(*result, "D1").after, 1.9 * prediction(*result, "D1").before);
   EXPECT_NE(finding(*result, "table.no-gain"), nullptr);
+}
+
+TEST(Cross, HeidenhainColumnsOfTheOtherAxis) {
+  for (const char* layout : {"tnc640", "itnc530"}) {
+    Bench bench = gantry();
+    bench.results.analyses.push_back(analysed(true));
+    const auto result = bench.write(heidenhain_plugin(), {{"layout", std::string(layout)}});
+    ASSERT_TRUE(result) << result.error().message;
+    const auto y = heidenhain::load(file(*result, "heidenhain-tnc-X.COM"), {"Y", false, 256, 0.0});
+    const auto x = heidenhain::load(file(*result, "heidenhain-tnc-Y.COM"), {"X", false, 256, 0.0});
+    ASSERT_TRUE(x && y) << layout;
+    for (std::size_t i = 0; i <= n; ++i) {
+      const double at = static_cast<double>(i) / n;
+      EXPECT_NEAR((*y)(Lx * at, 1), -f(Lx * at), 0.051 * um);
+      EXPECT_NEAR((*x)(Ly * at, 1), -(g(Ly * at) - square * Ly * at), 0.051 * um);
+    }
+    EXPECT_LT(prediction(*result, "D1").after, 0.3 * um);  // four decimals of a millimetre
+    EXPECT_LT(prediction(*result, "D2").after, 0.3 * um);
+  }
 }
 
 TEST(Cross, WhatIsNotSeparatedHasNoTable) {
