@@ -183,11 +183,12 @@ class Look {
 /// The ids that manifests give, each read in full in a process that a parser may bring down or hold
 /// up without harm to the night; empty where there is none, or where the process did not come back.
 /// Such a campaign is tried again in its worker, which says what happened.
-std::vector<std::string> read_ids(const std::vector<fs::path>& manifests, const Limits& limits,
-                                  bool (*stopped)()) {
-  std::vector<std::string> ids(manifests.size());
+std::vector<std::string> read_ids(std::size_t count,
+                                  const std::function<fs::path(std::size_t)>& manifest_of,
+                                  const Limits& limits, bool (*stopped)()) {
+  std::vector<std::string> ids(count);
   const auto read = [&](std::size_t i, bool, SharedWords& words) {
-    const auto text = read_file(manifests[i]);
+    const auto text = read_file(manifest_of(i));
     const auto manifest = parse_manifest(text.value_or(""), manifest_name);
     words.set(manifest ? manifest->campaign.id : "");
     return Answer::ok;
@@ -283,10 +284,10 @@ Expected<std::vector<CampaignState>> survey(const SurveyInput& input) {
     const std::lock_guard guard(unread_guard);
     unread.push_back(std::move(one));
   });
-  std::vector<fs::path> manifests;
-  for (const Unread& u : unread)
-    manifests.push_back(input.site / states[u.index].folder / manifest_name);
-  const auto ids = read_ids(manifests, input.context.site.limits, input.stopped);
+  const auto manifest_of = [&](std::size_t i) {
+    return input.site / states[unread[i].index].folder / manifest_name;
+  };
+  const auto ids = read_ids(unread.size(), manifest_of, input.context.site.limits, input.stopped);
   for_all(unread.size(), input.stopped,
           [&](std::size_t i) { look.again(states[unread[i].index], ids[i], unread[i].digest); });
   give_way(states);
