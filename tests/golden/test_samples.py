@@ -9,6 +9,7 @@ import csv
 import filecmp
 import importlib.util
 import io
+import math
 import os
 import statistics
 import sys
@@ -162,6 +163,22 @@ class Samples(unittest.TestCase):
         middle = statistics.fmean(points[len(points) // 2]["+"])
         self.assertGreater(middle - statistics.fmean(points[0]["+"]), 4.0)
         self.assertGreater(middle - statistics.fmean(points[-1]["+"]), 4.0)
+
+    def test_rotary_table_turns_about_its_lines(self):
+        for file, count, point, lean in (
+                ("c.csv", 8, (412.300, 305.120, -148.600), (0.00012, -0.00008, 1.0)),
+                ("b.csv", 11, (412.286, 0.0, -310.045), (0.00015, 1.0, -0.00007))):
+            with open(os.path.join(SITE, "14-rotary-table", file), encoding="utf-8") as opened:
+                rows = list(csv.DictReader(line for line in opened if not line.startswith("#")))
+            self.assertEqual(len(rows), count)
+            size = math.sqrt(sum(v * v for v in lean))
+            for row in rows:
+                arm = [float(row[k + "_mm"]) - p for k, p in zip("xyz", point)]
+                along = sum(a * v for a, v in zip(arm, lean)) / size
+                radius = math.sqrt(sum(a * a for a in arm) - along * along)
+                # 1 um of noise; B's start lies 20 um nearer to its leaning line.
+                self.assertAlmostEqual(radius, 261.0, delta=0.03)
+            self.assertEqual(len({row["angle_deg"] for row in rows}), count)
 
 
 if __name__ == "__main__":

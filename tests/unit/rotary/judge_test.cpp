@@ -7,6 +7,7 @@
 
 #include "nonio/sdk/plugin.h"
 #include "table.h"
+#include "words.h"
 
 extern "C" const nonio::PluginEntry nonio_plugin;
 
@@ -52,7 +53,24 @@ struct Workshop {
     auto e =
         the_analysis().analyse({campaign, campaign.measurements.back(), all.back(), options, &all});
     EXPECT_TRUE(e);
+    if (e) expect_words(*e);
     return e ? *e : Evaluation{};
+  }
+  /// Every place in the words has its evidence.
+  static void expect_words(const Evaluation& e) {
+    static const auto words = word_places("en");
+    const auto filled = [&](const std::string& id, const auto& evidence, const auto& texts) {
+      const auto places = words.find(id);
+      ASSERT_NE(places, words.end()) << id;
+      for (const std::string& place : places->second) {
+        bool has = false;
+        for (const Number& n : evidence) has |= n.name == place;
+        for (const auto& [name, text] : texts) has |= name == place;
+        EXPECT_TRUE(has) << id << " " << place;
+      }
+    };
+    for (const Finding& f : e.findings) filled(f.id, f.evidence, f.texts);
+    for (const Remark& r : e.notes) filled(r.id, r.evidence, r.texts);
   }
 };
 
@@ -94,6 +112,12 @@ void expect_refused(const Evaluation& e, std::string_view id) {
   EXPECT_TRUE(f->attention);
   EXPECT_TRUE(e.values.empty());
   EXPECT_TRUE(e.series.empty());
+}
+
+TEST(RotaryJudge, BothLanguagesSayTheSame) {
+  const auto en = word_places("en"), it = word_places("it");
+  ASSERT_GE(en.size(), 25U);
+  EXPECT_EQ(en, it);
 }
 
 TEST(RotaryJudge, GoodTable) {
