@@ -171,6 +171,8 @@ INTERFEROMETER = {"maker": '"Sample Optics"', "model": '"Laser interferometer"',
 ROTARY_CALIBRATOR = {"maker": '"Sample Optics"', "model": '"Rotary calibrator"',
                      "serial": '"R-001"', "calibrated": "2026-01-12",
                      "certificate": '"SO-2026-0002"', "U_arcsec": "0.4"}
+PROBE = {"maker": '"Sample Optics"', "model": '"Touch probe and ball"', "serial": '"P-001"',
+         "calibrated": "2026-01-12", "certificate": '"SO-2026-0003"', "U_fixed_um": "2.0", "U_per_m_um": "1.0"}
 GOOD_ROOM = {"misalignment_mm": "0.5", "temperature_range_K": "0.2",
              "temperature_difference_K": "0.8", "expansion_range_um_per_m_K": "1.0",
              "drift_um": "0.6"}
@@ -584,6 +586,64 @@ def gantry_diagonals():
     return files
 
 
+# --- rotary axes -----------------------------------------------------------------------------------
+
+def turned(point, centre, direction, degrees):
+    """A point turned about a line, in mm, exactly (Rodrigues)."""
+    t = math.radians(degrees)
+    arm = [p - c for p, c in zip(point, centre)]
+    along = sum(a * d for a, d in zip(arm, direction))
+    cross = [direction[1] * arm[2] - direction[2] * arm[1], direction[2] * arm[0] - direction[0] * arm[2],
+             direction[0] * arm[1] - direction[1] * arm[0]]
+    return [c + a * math.cos(t) + x * math.sin(t) + d * along * (1.0 - math.cos(t))
+            for c, a, x, d in zip(centre, arm, cross, direction)]
+
+
+def unit(vector):
+    size = math.sqrt(sum(v * v for v in vector))
+    return [v / size for v in vector]
+
+
+def ball_centres(noise, centre, direction, start, angles, sigma_um, comment):
+    """The file of a ball that turns with the axis; coordinates to 0.0001 mm, noise in each."""
+    direction = unit(direction)
+    lines = ["# " + line for line in comment] + ["angle_deg,x_mm,y_mm,z_mm"]
+    for angle in angles:
+        point = turned(start, centre, direction, angle)
+        read = [p + 0.001 * sigma_um * noise.normal() for p in point]
+        lines.append(f"{angle}," + ",".join(f"{x:.4f}" for x in read))
+    return "\n".join(lines) + "\n"
+
+
+def rotary_table():
+    noise = Noise(114)
+    # The ball is 261 mm from each line; C leans by 146 urad, B carries C.
+    c_line = ([412.300, 305.120, -148.600], [0.00012, -0.00008, 1.0])
+    b_line = ([412.286, 0.0, -310.045], [0.00015, 1.0, -0.00007])
+    c_start = [412.300 + 261.0, 305.120, -130.0]
+    b_start = [412.286, 118.0, -310.045 + 261.0]
+    story = ["A rotary table: C (full turn, every 45 deg) on a swivelling axis B (-60 to 90 deg, every 15 deg), a ball",
+             "261 mm from each axis, both read in one frame. Constructed: lines and noise (1 um in each coordinate) are",
+             "chosen; the centres are the ball turned exactly about the lines."]
+    text = manifest(story, "14-rotary-table", "Esempio Quattordici S.r.l.", "Udine", "2026-04-02",
+                    {"maker": "Sample Machines", "model": "UM 5", "serial": "S-0114", "structure": "bridge"},
+                    {"C": {"kind": '"rotary"', "travel": "[0.0, 360.0]"},
+                     "B": {"kind": '"rotary"', "travel": "[-60.0, 90.0]"}},
+                    [axis_measurement("C", "ball-centres"), axis_measurement("B", "ball-centres")],
+                    PROBE)
+    text += """
+[run]
+analyses = ["rotary-kinematics"]
+
+[options.rotary-kinematics]
+same_reference = ["C", "B"]
+"""
+    made = [MADE_UP]
+    return {"campaign.toml": text,
+            "c.csv": ball_centres(noise, *c_line, c_start, range(0, 360, 45), 1.0, made),
+            "b.csv": ball_centres(noise, *b_line, b_start, range(-60, 91, 15), 1.0, made)}
+
+
 STORIES = {
     "01-asymmetric-repeatability": asymmetric_repeatability,
     "02-constant-reversal": constant_reversal,
@@ -598,6 +658,7 @@ STORIES = {
     "11-missing-and-misread": missing_and_misread,
     "12-straightness": straightness,
     "13-gantry-diagonals": gantry_diagonals,
+    "14-rotary-table": rotary_table,
 }
 
 SITE = """# What holds for all sample campaigns. The laboratory is invented.

@@ -323,10 +323,10 @@ class PlotSetter {
       up.low = plot_.range->first, up.high = plot_.range->second;
     else
       up.low -= edge, up.high += edge;
-    const auto ticks = plot_.degrees ? Ticks::turn : plot_.whole ? Ticks::whole : Ticks::decimal;
-    frame.across =
-        axis_scale(across.low - side, across.high + side,
-                   std::clamp(static_cast<int>(width_ / 30), 2, 7), ticks, plot_.language);
+    across.low -= side, across.high += side;
+    const double below = 2.9 * size_ + 3;
+    frame.h = height - top - below;
+    if (plot_.same_scale) widen(up, (across.high - across.low) * frame.h / (width_ - 12 * size_));
     frame.up = axis_scale(up.low, up.high, 6, Ticks::decimal, plot_.language);
     std::vector<SetText> labels;
     double label_width = 0;
@@ -336,11 +336,14 @@ class PlotSetter {
       label_width = std::max(label_width, text->lines[0].width * size_);
       labels.push_back(std::move(*text));
     }
-    const double below = 2.9 * size_ + 3;
     frame.x = 1.5 * size_ + label_width + 4;
     frame.y = -height + below;
     frame.w = width_ - frame.x - 2 - span_room() * static_cast<double>(plot_.spans.size());
-    frame.h = height - top - below;
+    if (plot_.same_scale) widen(across, (up.high - up.low) * frame.w / frame.h);
+    const auto ticks = plot_.degrees ? Ticks::turn : plot_.whole ? Ticks::whole : Ticks::decimal;
+    frame.across =
+        axis_scale(across.low, across.high, std::clamp(static_cast<int>(width_ / 30), 2, 7), ticks,
+                   plot_.language);
     if (auto ok = draw_axes(frame, labels); !ok) return ok;
     canvas_.clip(frame.x, frame.y, frame.w, frame.h);
     canvas_.ops += "1 j\n";  // round joins: no spikes where a curve turns
@@ -381,6 +384,12 @@ class PlotSetter {
     canvas_.text_upwards(size_, f.y + (f.h - up->lines[0].width * size_) / 2, false, size_,
                          up->glyphs);
     return {};
+  }
+
+  /// Room for `span`, to both sides alike.
+  static void widen(Range& range, double span) {
+    const double more = std::max(0.0, span - (range.high - range.low)) / 2;
+    range.low -= more, range.high += more;
   }
 
   double span_room() const { return 1.3 * size_ + 7; }

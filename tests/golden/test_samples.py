@@ -9,6 +9,7 @@ import csv
 import filecmp
 import importlib.util
 import io
+import math
 import os
 import statistics
 import sys
@@ -193,6 +194,22 @@ class Samples(unittest.TestCase):
         worst = [max(range(n + 1), key=lambda i: abs(d[i])) for d in shapes]
         self.assertGreater(abs(worst[0] - worst[1]), 4)
         self.assertGreater(max(map(abs, before[0])), 3.0 * max(map(abs, x1 + x2 + y)))
+
+    def test_rotary_table_turns_about_its_lines(self):
+        for file, count, point, lean in (
+                ("c.csv", 8, (412.300, 305.120, -148.600), (0.00012, -0.00008, 1.0)),
+                ("b.csv", 11, (412.286, 0.0, -310.045), (0.00015, 1.0, -0.00007))):
+            with open(os.path.join(SITE, "14-rotary-table", file), encoding="utf-8") as opened:
+                rows = list(csv.DictReader(line for line in opened if not line.startswith("#")))
+            self.assertEqual(len(rows), count)
+            size = math.sqrt(sum(v * v for v in lean))
+            for row in rows:
+                arm = [float(row[k + "_mm"]) - p for k, p in zip("xyz", point)]
+                along = sum(a * v for a, v in zip(arm, lean)) / size
+                radius = math.sqrt(sum(a * a for a in arm) - along * along)
+                # 1 um of noise; B's start lies 20 um nearer to its leaning line.
+                self.assertAlmostEqual(radius, 261.0, delta=0.03)
+            self.assertEqual(len({row["angle_deg"] for row in rows}), count)
 
 
 if __name__ == "__main__":

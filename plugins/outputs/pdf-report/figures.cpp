@@ -347,16 +347,18 @@ void series_plots(const Source& source, const Measured& m, std::vector<Plot>& pl
 
 void add_plots(const Source& source, const Measured& m, Blocks& blocks) {
   std::vector<Plot> plots;
+  const bool circle = m.measurement.kind == "ball-centres";  // coordinates, not deviations
   const auto add = [&](std::optional<Plot> plot) {
     if (plot) plots.push_back(std::move(*plot));
   };
   for (const std::string& kind : source.look.plots) {
-    if (kind == "runs") add(runs_plot(source, m));
+    if (kind == "runs" && !circle) add(runs_plot(source, m));
     if (kind == "iso") add(iso_plot(source, m));
     if (kind == "vdi") add(vdi_plot(source, m));
     if (kind == "reversal") add(reversal_plot(source, m));
     if (kind == "diagonals") add_diagonals(source, m, plots);
-    if (kind == "series") series_plots(source, m, plots);
+    if (kind == "circle" && circle) add_circle(source, m, plots);
+    if (kind == "series" && !circle) series_plots(source, m, plots);
   }
   if (!plots.empty()) blocks.push_back({Spacer{4}});
   const std::string field = "plots of measurement " + m.measurement.id;
