@@ -68,6 +68,32 @@ Eigen::MatrixXd averaging(const StepDiagonals& d) {
   return W;
 }
 
+/// Puts the slopes right of two straightnesses that share a plane: their sum is in the totals of
+/// the diagonals, whatever the set-up, and how it is split is a rotation of the frame.
+///     sigma_pq = L / (4 T_p T_q) sum of e_p e_q D;   E_qp (far end) = 0, E_pq (far end) = sigma
+///     T_q
+void slopes_from_totals(const StepDiagonals& d, std::size_t p, std::size_t q, Eigen::MatrixXd& W) {
+  const std::size_t each = 3 * d.n + 1;
+  const auto share = shares(d);
+  Eigen::RowVectorXd end = Eigen::RowVectorXd::Zero(W.cols());
+  for (std::size_t k = 0; k < d.passes.size(); ++k) {
+    const auto& pass = d.passes[k];
+    const double c =
+        share[line_of(pass)] * pass.sign[p] * pass.sign[q] * d.diagonal() / (4.0 * d.travel[p]);
+    end[static_cast<Index>(k * each)] -= c;
+    end[static_cast<Index>(k * each + each - 1)] += c;
+  }
+  const auto tilt = [&](std::size_t axis, std::size_t along, const Eigen::RowVectorXd& far) {
+    const Eigen::RowVectorXd by =
+        far - W.row(static_cast<Index>(function_column(axis, along, d.n, d.n)));
+    for (std::size_t i = 1; i <= d.n; ++i)
+      W.row(static_cast<Index>(function_column(axis, along, i, d.n))) +=
+          by * (static_cast<double>(i) / static_cast<double>(d.n));
+  };
+  tilt(p, q, Eigen::RowVectorXd::Zero(W.cols()));
+  tilt(q, p, end);
+}
+
 /// Check sums in the order of the moves' intervals, NaN where a reading is missing.
 std::array<std::vector<double>, 3> check_sums(const StepDiagonals& d) {
   const auto share = shares(d);
@@ -133,6 +159,30 @@ Line line_through(const std::array<std::vector<double>, 3>& sums) {
 
 }  // namespace
 
+std::optional<Estimated> close_lengths(const StepDiagonals& d,
+                                       const std::vector<AxisSeries>& series, double u) {
+  const auto share = shares(d);
+  Estimated sum;
+  double variance = 0.0;
+  for (std::size_t k = 0; k < d.passes.size(); ++k)
+    sum.value += share[line_of(d.passes[k])] / 4.0 * d.passes[k].reading.back();
+  for (const double s : share) variance += 2.0 * u * u * s / 16.0;
+  std::array<bool, 3> used{};
+  for (const AxisSeries& s : series) {
+    if (s.position.size() < 2 || used[s.axis]) continue;
+    const double first = s.position.front(), last = s.position.back();
+    if (!(last - first > 0.9 * d.travel[s.axis])) continue;
+    const double part = d.travel[s.axis] / d.diagonal(),
+                 stretch = d.travel[s.axis] / (last - first);
+    sum.value -= part * stretch * (s.deviation.back() - s.deviation.front());
+    variance += 2.0 * std::pow(part * stretch * (s.u > 0.0 ? s.u : u), 2);
+    used[s.axis] = true;
+  }
+  sum.u = std::sqrt(variance);
+  if (!used[0] || !used[1] || !used[2] || !std::isfinite(sum.value)) return std::nullopt;
+  return sum;
+}
+
 StepChecks check_step_diagonals(const StepDiagonals& d) {
   const Line l = line_through(check_sums(d));
   StepChecks c;
@@ -153,6 +203,8 @@ StepChecks check_step_diagonals(const StepDiagonals& d) {
 }
 
 Expected<StepSolution> average_step_diagonals(const StepDiagonals& d, const StepChoices& choices) {
+  for (const double share : shares(d))
+    if (!std::isfinite(share)) return fail("expected the four body diagonals, found fewer");
   const std::size_t each = 3 * d.n + 1;
   Eigen::VectorXd readings(static_cast<Index>(each * d.passes.size()));
   for (std::size_t k = 0; k < d.passes.size(); ++k)
@@ -166,8 +218,10 @@ Expected<StepSolution> average_step_diagonals(const StepDiagonals& d, const Step
   out.u_reading = choices.u_reading > 0.0 ? choices.u_reading : checks.u_reading;
   out.dof = static_cast<double>(checks.count) - 4.0;
   out.unknowns = out.rank = 9 * d.n;
-  const Eigen::MatrixXd W = averaging(d);
-  if (!W.allFinite()) return fail("expected the four body diagonals, found fewer");
+  Eigen::MatrixXd W = averaging(d);
+  slopes_from_totals(d, 0, 1, W);
+  slopes_from_totals(d, 0, 2, W);
+  slopes_from_totals(d, 1, 2, W);
   const bool known = choices.set_up_known;
   present(d, W * readings, out.u_reading * out.u_reading * (W * W.transpose()),
           {known, known, known}, out);

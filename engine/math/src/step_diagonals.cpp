@@ -102,7 +102,7 @@ Design begin_design(const StepDiagonals& d, const std::vector<AxisSeries>& serie
   l.set_up = choices.set_up_known ? 0 : 2 * passes;
   l.zeros = passes;
   l.series = static_cast<Index>(series.size());
-  std::size_t rows = design.readings.size() + 3;
+  std::size_t rows = design.readings.size() + (choices.set_up_known ? 0 : 3);
   for (const AxisSeries& s : series) rows += s.position.size();
   design.A = MatrixXd::Zero(static_cast<Index>(rows), l.columns());
   design.b = VectorXd::Zero(static_cast<Index>(rows));
@@ -125,7 +125,8 @@ Design design_of(const StepDiagonals& d, const std::vector<AxisSeries>& series,
       design.b[r] = weight * s.deviation[i];
     }
   }
-  // The rotations: EYX, EZX, EZY are 0 at the far end.
+  if (choices.set_up_known) return design;
+  // Mirrors that stand anyhow leave the rotations free: EYX, EZX, EZY are 0 at the far end.
   for (const auto& [axis, along] : {std::pair{0U, 1U}, std::pair{0U, 2U}, std::pair{1U, 2U}})
     design.A(r++, static_cast<Index>(function_column(axis, along, d.n, d.n))) = 1.0;
   return design;

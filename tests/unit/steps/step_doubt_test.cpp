@@ -44,7 +44,7 @@ TEST(StepDoubt, NoiseAloneIsSeldomDoubted) {
 TEST(StepDoubt, SetUpAngleIsAConstantOfTheChecks) {
   Noise noise;
   const Volume v{{0.8, 0.6, 0.6}, 20};
-  std::vector<SetUp> set_up(4);
+  std::vector<Optics> set_up(4);
   set_up[1].beam = {0.05e-3, 0.03e-3};
   const auto c = check_step_diagonals(noise.on(measured({}, v, set_up)));
   EXPECT_LT(c.p_constant, 1e-6);
@@ -55,8 +55,8 @@ TEST(StepDoubt, DriftIsATrendOfTheChecks) {
   Noise noise;
   const Volume v{{0.8, 0.6, 0.6}, 20};
   auto d = empty(v);
-  for (std::size_t t = 0; t < 60; ++t)  // warming up in one pass: 5 um, slower and slower
-    d.passes[2].reading[t] = 5 * um * (1.0 - std::exp(-static_cast<double>(t) / 30.0));
+  for (std::size_t t = 0; t < 60; ++t)  // warming up in one pass: 20 um, slower and slower
+    d.passes[2].reading[t] = 20 * um * (1.0 - std::exp(-static_cast<double>(t) / 30.0));
   EXPECT_LT(check_step_diagonals(noise.on(d)).p_trend, 0.01);
 }
 

@@ -62,7 +62,7 @@ TEST(StepRecovery, AxisTargetsNeedNotBeTheSteps) {
 
 TEST(StepRecovery, SetUpAnglesAreFound) {
   const Volume v{{0.8, 0.6, 0.6}, 8};
-  std::vector<SetUp> set_up(4);
+  std::vector<Optics> set_up(4);
   set_up[0].beam = {0.1e-3, 0.0};
   set_up[2].beam = {0.0, -0.3e-3};
   const auto s = solve_step_diagonals(measured({}, v, set_up), lengths({}, v, "XYZ"), usual);
@@ -109,20 +109,32 @@ TEST(StepRecovery, OneAxisLengthIsItsOwnScaleOnly) {
 // The known failure: a mirror 0.3 mrad askew, a machine without errors, diagonals without errors.
 TEST(StepRecovery, AveragingTurnsTheSetUpIntoFalseErrors) {
   const Volume v;
-  std::vector<SetUp> set_up(4);
-  std::mt19937 rng(seed);
   double displacement = 0.0, straightness = 0.0;
-  for (int k = 0; k < 20; ++k) {
-    const auto d = measured({}, v, random_set_up(rng, 0.3e-3, false));
+  for (const int pattern : {0, 1}) {
+    // Each mirror turned towards X by 0.3 mrad: by the sign that makes EXX worst, then EYX.
+    std::vector<Optics> set_up;
+    for (const auto& sign : four()) {
+      Vector u = v.travel.normalized();
+      for (Eigen::Index c = 0; c < 3; ++c) u[c] *= sign[static_cast<std::size_t>(c)];
+      const Vector one = u.unitOrthogonal(), two = u.cross(one);
+      // A turn t about `one` moves the normal by t one x u = -t two; about `two` by t one.
+      const double towards = 0.3e-3 * sign[0] * (pattern == 0 ? 1 : sign[0] * sign[1]);
+      const Eigen::Vector2d x = Eigen::Vector2d(-two.x(), one.x()).normalized();
+      set_up.push_back({towards * x, {0, 0}});
+    }
+    const auto d = measured({}, v, set_up);
     for (const auto& pass : d.passes) EXPECT_LT(std::fabs(pass.reading.back()), 0.06 * um);
     const auto s = average_step_diagonals(d, perfect);
     ASSERT_TRUE(s);
     displacement = std::max(displacement, largest(s->curves[0].value));
     EXPECT_LT(std::fabs(s->squareness[0].value), 0.3 * urad);
     for (const auto& c : s->curves)
-      if (c.name[1] != c.name[2]) EXPECT_LT(largest(c.value), 0.02 * um) << c.name;
-    for (const auto& c : average_step_diagonals(d, mirror_askew)->curves)
-      EXPECT_LT(largest(c.value), 0.02 * um) << c.name;
+      if (c.name[1] != c.name[2]) {
+        EXPECT_LT(largest(c.value), 0.02 * um) << c.name;
+      }
+    const auto shapes = average_step_diagonals(d, mirror_askew);
+    ASSERT_TRUE(shapes);
+    for (const auto& c : shapes->curves) EXPECT_LT(largest(c.value), 0.02 * um) << c.name;
     // The slope of EYX, before its line is taken away: sum of its increments.
     double end = 0.0;
     for (std::size_t i = 0; i < v.n; ++i)
@@ -135,8 +147,15 @@ TEST(StepRecovery, AveragingTurnsTheSetUpIntoFalseErrors) {
   }
   std::cout << "false displacement " << displacement / um << " um, straightness "
             << straightness / um << " um\n";
-  EXPECT_GT(displacement, 100 * um);
-  EXPECT_GT(straightness, 100 * um);
+  EXPECT_GT(displacement, 172 * um);  // what random angles of this size have made of it
+  EXPECT_GT(straightness, 300 * um);
+}
+
+machine::Errors about_the_middle(const Volume& v) {
+  machine::Errors e;
+  e.y_ref = v.travel.y() / 2;
+  e.z_ref = v.travel.z() / 2;
+  return e;
 }
 
 TEST(StepRecovery, ShapesSurviveAnySetUp) {
@@ -165,7 +184,7 @@ TEST(StepRecovery, AngularErrorsBecomeFalseStraightness) {
        {Alias{"ECX", "EYX", -1.0}, Alias{"EBX", "EZX", 1.0}, Alias{"EAY", "EZY", -1.0}}) {
     const double travel = v.travel[a.angle[2] - 'X'];
     const machine::Curve psi = [=](double p) { return 20 * urad * std::sin(5.0 * p / travel); };
-    machine::Errors e;
+    machine::Errors e = about_the_middle(v);
     e[a.angle] = psi;
     const auto s = average_step_diagonals(measured(e, v), perfect);
     ASSERT_TRUE(s);
@@ -173,21 +192,33 @@ TEST(StepRecovery, AngularErrorsBecomeFalseStraightness) {
         sampled([&](double p) { return a.sign * (p - travel / 2) * psi(p); }, travel, v.n));
     for (const auto& c : s->curves)
       if (c.name == a.curve) {
-        EXPECT_GT(largest(c.value), 3 * um);
+        EXPECT_GT(largest(c.value), 2 * um);
         EXPECT_LT(largest_difference(c.value, wanted), 0.02 * um) << c.name;
       }
   }
 }
 
-TEST(StepRecovery, RollsAreInvisible) {
+// Rolls turn the mirror, whose normal is not along the axis of the roll. What is even about the
+// middle of the travel stays: ECZ makes a false EYX = -int (ECZ(z) + ECZ(Z - z)) / 2 dx.
+TEST(StepRecovery, RollsAreInvisibleIfTheyGrowEvenly) {
   const Volume v;
-  for (const char* roll : {"EAX", "EBY", "ECZ"}) {
-    machine::Errors e;
-    e[roll] = [](double p) { return 20 * urad * std::sin(7.0 * p); };
-    const auto s = average_step_diagonals(measured(e, v), perfect);
-    ASSERT_TRUE(s);
-    for (const auto& c : s->curves) EXPECT_LT(largest(c.value), 0.02 * um) << roll << c.name;
-  }
+  for (const bool even : {true, false})
+    for (const char* roll : {"EAX", "EBY", "ECZ"}) {
+      const double travel = v.travel[roll[2] - 'X'];
+      machine::Errors e = about_the_middle(v);
+      e[roll] = [=](double p) {
+        const double t = p / travel;
+        return 20 * urad * (even ? t : 4.0 * t * (1.0 - t));
+      };
+      const auto s = average_step_diagonals(measured(e, v), perfect);
+      ASSERT_TRUE(s);
+      double most = 0.0;
+      for (const auto& c : s->curves) most = std::max(most, largest(c.value));
+      std::cout << roll << (even ? " even: " : " bowed: ") << most / um << " um\n";
+      if (even) {
+        EXPECT_LT(most, 0.3 * um) << roll;  // step times angle
+      }
+    }
 }
 
 TEST(StepRecovery, AMissingReadingCostsNothingInTheFitAndStopsTheAveraging) {

@@ -24,7 +24,7 @@ struct Volume {
 };
 
 /// How the optics stand in one pass: the mirror against the beam, the beam against the diagonal.
-struct SetUp {
+struct Optics {
   Eigen::Vector2d mirror{0, 0}, beam{0, 0};  ///< rad
 };
 
@@ -54,7 +54,7 @@ inline std::vector<Vector> stops(const StepDiagonals& d, const StepDiagonals::Pa
 }
 
 inline StepDiagonals measured(const machine::Errors& errors, const Volume& v,
-                              const std::vector<SetUp>& set_up = std::vector<SetUp>(4)) {
+                              const std::vector<Optics>& set_up = std::vector<Optics>(4)) {
   StepDiagonals d = empty(v);
   for (std::size_t k = 0; k < d.passes.size(); ++k) {
     const auto places = stops(d, d.passes[k]);
@@ -172,10 +172,10 @@ inline void expect_truth(const nonio::math::StepSolution& s, const machine::Erro
     EXPECT_NEAR(s.squareness[k].value, square[k], angle_within) << k;
 }
 
-inline std::vector<SetUp> random_set_up(std::mt19937& rng, double angle, bool beam) {
+inline std::vector<Optics> random_set_up(std::mt19937& rng, double angle, bool beam) {
   std::uniform_real_distribution<double> u(-angle / std::sqrt(2.0), angle / std::sqrt(2.0));
-  std::vector<SetUp> out(4);
-  for (SetUp& s : out) (beam ? s.beam : s.mirror) = Eigen::Vector2d(u(rng), u(rng));
+  std::vector<Optics> out(4);
+  for (Optics& s : out) (beam ? s.beam : s.mirror) = Eigen::Vector2d(u(rng), u(rng));
   return out;
 }
 

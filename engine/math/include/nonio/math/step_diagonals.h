@@ -22,7 +22,7 @@
 ///
 /// Least squares: 9n function values, two set-up angles a pass, the zero of each pass, and the
 /// zero of each axis series d(x) = E_aa(x) + zero. A rotation of the frame moves no reading: EYX,
-/// EZX and EZY are 0 at the far end while it is solved (three gauge rows). The rank is found
+/// EZX and EZY are 0 at the far end while it is solved (three gauge rows, if the set-up is open). The rank is found
 /// numerically; without axis series the set-up leaves two scales unknown, and what depends on them
 /// is not given. Where the mirror is square to a beam that does not run along the diagonal, the
 /// path is short by |nu|^2/2 of u.p: subtracted, with nu.E, and solved again, twice.
@@ -30,6 +30,10 @@
 /// Averaging (perfect set-up only), r = increment of a reading over interval i of axis a:
 ///     dE_aa = mean of r / u_a,   dE_ba = mean of (e_a e_b r) / u_b    over the four diagonals
 ///     check = sum of (product of the other two signs) r = 0           three a step
+///     slope EYX + slope EXY = L (sum of ex ey D) / (4 X Y)            D: totals of the diagonals
+///
+/// The functions are those on lines through the middle of the volume: angular errors of an axis
+/// that is measured beside it make the axis series disagree.
 ///
 /// Given: straightness less its least-squares line (ISO 230-1), and with it
 ///     C0Y = -(slope EYX + slope EXY), B0Z = slope EZX + slope EXZ, A0Z = -(slope EZY + slope EYZ)
@@ -121,6 +125,11 @@ struct StepChecks {
   std::size_t count = 0;
 };
 StepChecks check_step_diagonals(const StepDiagonals&);
+
+/// Mean total of the diagonals less what three axis series (ascending) say of it, m:
+/// mean D - sum of (T_a/L) E_aa(T_a). Nothing if an axis or a total is missing.
+std::optional<Estimated> close_lengths(const StepDiagonals&, const std::vector<AxisSeries>&,
+                                       double u_reading);
 
 /// An axis series against the positioning that the diagonals alone give, both less a line.
 struct ShapeContrast {
