@@ -226,9 +226,16 @@ math::AxisSeries series_of(const math::AxisTest& test, std::size_t axis) {
   return s;
 }
 
-bool wanted(const Settings& options, const std::string& id) {
-  const auto ids = options.texts("lengths");
-  return ids.empty() || std::find(ids.begin(), ids.end(), id) != ids.end();
+/// What follows the first space of an id: "final" of "SD final".
+std::string_view occasion(std::string_view id) {
+  return id.substr(std::min(id.find(' '), id.size()));
+}
+
+/// The lengths that were measured on the same occasion, or those that the user names.
+bool wanted(const AnalysisInput& in, const std::string& id) {
+  const auto ids = in.options.texts("lengths");
+  if (!ids.empty()) return std::find(ids.begin(), ids.end(), id) != ids.end();
+  return occasion(id) == occasion(in.measurement.id);
 }
 
 }  // namespace
@@ -243,7 +250,7 @@ Lengths lengths_of(const AnalysisInput& in, const Passes& passes) {
     for (std::size_t i = 0; i < in.all->size(); ++i) {
       const Measurement& m = in.campaign.measurements[i];
       if (m.kind == "axis" && m.axis == passes.axes[k] && (*in.all)[i].size() > 0 &&
-          wanted(in.options, m.id))
+          wanted(in, m.id))
         candidates.push_back(i);
     }
     if (candidates.size() > 1)

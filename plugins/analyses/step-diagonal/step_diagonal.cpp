@@ -249,7 +249,8 @@ std::vector<Option> options() {
        "the mirror alone stands askew.",
        {"off-diagonal", "on-diagonal"}},
       {"lengths", std::vector<std::string>{}, "",
-       "Ids of the axis measurements that give the lengths; none: all, one an axis."},
+       "Ids of the axis measurements that give the lengths; none: those with the same words after "
+       "the name (SD final: X final)."},
       {"mirror_mm", 0.0, "mm", "Usable half width of the mirror; 0: not checked.", {}, 0.0, {}},
       {"angle_urad", 0.0, "urad", "Largest yaw or pitch of an axis; 0: not known.", {}, 0.0, {}},
       {"budget_um",
