@@ -644,6 +644,122 @@ same_reference = ["C", "B"]
             "b.csv": ball_centres(noise, *b_line, b_start, range(-60, 91, 15), 1.0, made)}
 
 
+# Step diagonals: the signs with which the axes go, and the order of their moves.
+DIAGONALS = {"PPP": (1, 1, 1), "NPP": (-1, 1, 1), "PNP": (1, -1, 1), "PPN": (1, 1, -1)}
+
+
+def errors_of_volume(noise, size):
+    """Nine curves over t = 0..1, 0 at 0, in 0.001 um: [axis][direction]. Slopes hold squareness."""
+    def curve():
+        a, b, c = (size * noise.normal() for _ in range(3))
+        f = noise.uniform(0.0, 6.283)
+        return lambda t: (a * t + 0.6 * b * (math.sin(3.1416 * t))
+                          + 0.25 * c * (math.sin(6.2832 * t + f) - math.sin(f)))
+    return [[curve() for _ in range(3)] for _ in range(3)]
+
+
+def step_readings(travel, n, curves, share):
+    """{diagonal: [deviation after each of the 3n moves]}: u.(E(position) - E(start)), times share."""
+    length = math.sqrt(sum(t * t for t in travel))
+    out = {}
+    for name, sign in DIAGONALS.items():
+        readings, moves = [], [0, 0, 0]
+
+        def error(direction):
+            places = [m if s > 0 else n - m for m, s in zip(moves, sign)]
+            return sum(curves[axis][direction](places[axis] / n) for axis in range(3))
+        start = [error(d) for d in range(3)]
+        for step in range(3 * n):
+            moves[step % 3] += 1
+            readings.append(share * sum(sign[d] * travel[d] / length * (error(d) - start[d])
+                                        for d in range(3)))
+        out[name] = readings
+    return out
+
+
+def set_up_readings(noise, travel, n, angle):
+    """What mirrors that stand askew by about `angle` (rad) add: nothing after a whole cycle."""
+    length = math.sqrt(sum(t * t for t in travel))
+    out = {}
+    for name, sign in DIAGONALS.items():
+        u = [s * t / length for s, t in zip(sign, travel)]
+        nu = [angle * noise.normal() for _ in range(3)]
+        along = sum(a * b for a, b in zip(nu, u))
+        nu = [a - along * b for a, b in zip(nu, u)]
+        steps = [1e6 * a * s * t / n for a, s, t in zip(nu, sign, travel)]
+        out[name] = [sum(steps[:step % 3 + 1]) if step % 3 < 2 else 0.0 for step in range(3 * n)]
+    return out
+
+
+def step_table(noise, travel, n, curves, largest):
+    """A file whose largest deviation after whole cycles is `largest` (0.001 um), and the share of
+    the curves that is in it."""
+    askew = set_up_readings(noise, travel, n, 60e-6)
+    scatter = {name: [50.0 * noise.normal() for _ in range(3 * n)] for name in DIAGONALS}
+
+    def readings(share):
+        plain = step_readings(travel, n, curves, share)
+        return {name: [round(a + b + c) for a, b, c in zip(plain[name], askew[name], scatter[name])]
+                for name in DIAGONALS}
+
+    def worst(share):
+        return max(abs(r) for values in readings(share).values() for r in values[2::3])
+    low, high = 0.0, 100.0
+    while high - low > 1e-9:
+        middle = (low + high) / 2.0
+        low, high = (middle, high) if worst(middle) < largest else (low, middle)
+    rows = ["# " + MADE_UP, "diagonal,step,moved,deviation_um"]
+    for name, values in readings(high).items():
+        rows += ["%s,%d,%s,%s" % (name, i + 1, "XYZ"[i % 3], decimal(v)) for i, v in enumerate(values)]
+    return "\n".join(rows) + "\n", high
+
+
+def lengths_table(noise, travel, curve, share):
+    """An axis run on the line through the middle of the volume."""
+    places = targets(noise, 0.0, travel, 21)
+    mean = [share * curve(x / travel) for x in places]
+    rows = standard_cycle(places, [round(y) - 150 for y in mean], [round(y) + 150 for y in mean],
+                          even(places, 200.0), even(places, 200.0), noise)
+    return table(rows, [MADE_UP])
+
+
+def step_diagonals(seed, ident, customer, place, date, model, travel, n, before, after):
+    noise = Noise(seed)
+    files, measurements = {}, []
+    for occasion, largest in (("00", before), ("final", after)):
+        curves = errors_of_volume(noise, 10000.0)
+        text, share = step_table(noise, travel, n, curves, largest)
+        files["sd-%s.csv" % occasion] = text
+        for k, axis in enumerate("XYZ"):
+            measurements.append(axis_measurement(axis, "axis", "%s %s" % (axis, occasion)))
+            measurements[-1]["file"] = "%s-%s.csv" % (axis.lower(), occasion)
+            files[measurements[-1]["file"]] = lengths_table(noise, travel[k], curves[k][k], share)
+        measurements.append({"id": "SD %s" % occasion, "kind": "step-diagonal",
+                             "from": dict.fromkeys("XYZ", 0), "to": dict(zip("XYZ", travel)),
+                             "file": "sd-%s.csv" % occasion})
+    story = ["Step diagonals of a volume of %d x %d x %d mm in %d steps, before (00) and after (final) a" % (*travel, n),
+             "compensation: the largest deviation at whole steps is %.1f um, then %.1f um. The axis runs beside" % (
+                 before / 1000.0, after / 1000.0),
+             "them give the lengths that step diagonals do not know; the mirror stands askew by some 0.06 mrad."]
+    text = manifest(story, ident, customer, place, date,
+                    {"maker": "Sample Machines", "model": model, "serial": "S-0%d" % seed,
+                     "structure": "bridge", "control": "siemens-840d"},
+                    {axis: linear(float(t)) for axis, t in zip("XYZ", travel)}, measurements,
+                    environment=GOOD_ROOM)
+    files["campaign.toml"] = text + '\n[run]\nanalyses = ["iso230-2", "step-diagonal"]\n'
+    return files
+
+
+def step_diagonal_800():
+    return step_diagonals(115, "15-step-diagonal", "Esempio Quindici S.p.A.", "Parma", "2026-04-08",
+                          "BM 8", (800, 600, 600), 40, 60000, 6800)
+
+
+def step_diagonal_900():
+    return step_diagonals(116, "16-step-diagonal", "Esempio Sedici S.r.l.", "Reggio Emilia", "2026-04-10",
+                          "BM 9", (900, 720, 720), 30, 58000, 8700)
+
+
 STORIES = {
     "01-asymmetric-repeatability": asymmetric_repeatability,
     "02-constant-reversal": constant_reversal,
@@ -659,6 +775,8 @@ STORIES = {
     "12-straightness": straightness,
     "13-gantry-diagonals": gantry_diagonals,
     "14-rotary-table": rotary_table,
+    "15-step-diagonal": step_diagonal_800,
+    "16-step-diagonal": step_diagonal_900,
 }
 
 SITE = """# What holds for all sample campaigns. The laboratory is invented.

@@ -148,6 +148,16 @@ class Samples(unittest.TestCase):
         self.assertGreater(found["B"], 3.0 + 1.0)
         self.assertLess(abs(found["E"] - 12.0), 1.0)
 
+    def test_step_diagonals_have_their_largest_error(self):
+        for campaign, steps, largest in (("15-step-diagonal", 40, ("60.000", "6.800")),
+                                         ("16-step-diagonal", 30, ("58.000", "8.700"))):
+            for occasion, wanted in zip(("00", "final"), largest):
+                with open(os.path.join(SITE, campaign, "sd-%s.csv" % occasion), encoding="utf-8") as opened:
+                    rows = list(csv.DictReader(line for line in opened if not line.startswith("#")))
+                self.assertEqual(len(rows), 4 * 3 * steps)
+                whole = [abs(float(row["deviation_um"])) for row in rows if int(row["step"]) % 3 == 0]
+                self.assertEqual("%.3f" % max(whole), wanted, campaign + " " + occasion)
+
     def test_one_direction_has_no_other(self):
         self.assertTrue(all(len(p["+"]) == 5 and not p["-"]
                             for p in readings("10-one-direction", "z.csv").values()))
