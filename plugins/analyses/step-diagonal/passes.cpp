@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "passes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "nonio/math/axis_findings.h"
+#include "nonio/math/axis_test.h"
+#include "nonio/math/statistics.h"
+#include "nonio/math/uncertainty.h"
+
+namespace nonio::step_diagonal {
+namespace {
+
+constexpr double same_place = 1e-6;  // of the travel
+constexpr std::string_view letters = "XYZ";
+
+Number count(const char* name, std::size_t n) {
+  return {name, static_cast<double>(n), Quantity::count};
+}
+
+/// One line of the observations: where its readings lie, in moves of each axis from its start.
+struct Line {
+  std::string name;
+  std::array<int, 3> sign{};
+  std::vector<std::size_t> rows;
+  std::size_t n = 0;                              ///< steps of an axis; 0: not even
+  std::vector<std::array<std::size_t, 3>> moves;  ///< of each row
+};
+
+Expected<void> place(Passes& p, const AnalysisInput& in) {
+  const Observations& o = in.observations;
+  if (o.axes.size() != 3) return fail("wanted step diagonals over three axes");
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::string& axis = o.axes[k].axis;
+    const auto from = in.measurement.from.find(axis), to = in.measurement.to.find(axis);
+    if (from == in.measurement.from.end() || to == in.measurement.to.end())
+      return fail("wanted `from` and `to` of axis " + axis + ", found none");
+    p.axes.push_back(axis);
+    p.readings.low[k] = std::min(from->second, to->second);
+    p.readings.travel[k] = std::fabs(to->second - from->second);
+  }
+  return {};
+}
+
+/// Steps of each axis in a line: whole parts of the travel, the same on all three; else 0.
+std::size_t steps_of(const Passes& p, const Observations& o, const Line& line) {
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::vector<double> at;
+    for (const std::size_t row : line.rows) at.push_back(o.axes[k].position[row]);
+    std::sort(at.begin(), at.end());
+    double gap = p.readings.travel[k];
+    for (std::size_t i = 1; i < at.size(); ++i)
+      if (at[i] - at[i - 1] > same_place * p.readings.travel[k])
+        gap = std::min(gap, at[i] - at[i - 1]);
+    n = std::max(n, static_cast<std::size_t>(std::llround(p.readings.travel[k] / gap)));
+  }
+  return n;
+}
+
+/// Whether every reading lies a whole number of steps from the start; the numbers go to the line.
+bool count_moves(const Passes& p, const Observations& o, Line& line) {
+  line.n = steps_of(p, o, line);
+  for (const std::size_t row : line.rows) {
+    std::array<std::size_t, 3> moves{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double travel = p.readings.travel[k];
+      const double start = p.readings.low[k] + (line.sign[k] > 0 ? 0.0 : travel);
+      const double steps =
+          std::fabs(o.axes[k].position[row] - start) / travel * static_cast<double>(line.n);
+      if (!(std::fabs(steps - std::round(steps)) < 1e-3)) return false;
+      moves[k] = static_cast<std::size_t>(std::llround(steps));
+    }
+    line.moves.push_back(moves);
+  }
+  return true;
+}
+
+std::vector<Line> lines_of(const Observations& o) {
+  std::vector<Line> lines(o.lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    lines[i].name = o.lines[i].name;
+    for (std::size_t k = 0; k < 3; ++k) lines[i].sign[k] = o.lines[i].sense[k] < 0.0 ? -1 : 1;
+  }
+  for (std::size_t row = 0; row < o.size(); ++row)
+    lines[o.line.empty() ? 0 : o.line[row]].rows.push_back(row);
+  return lines;
+}
+
+bool fits(const Line& line, const std::array<std::size_t, 3>& order) {
+  math::StepDiagonals d;
+  d.order = order;
+  for (const auto& m : line.moves)
+    if (d.counts(m[0] + m[1] + m[2]) != m) return false;
+  return true;
+}
+
+std::string words(const std::array<std::size_t, 3>& order) {
+  std::string out;
+  for (const std::size_t k : order) out += letters[k];
+  return out;
+}
+
+/// The order in which the axes of a line move, all the way.
+std::optional<std::array<std::size_t, 3>> order_of(const Line& line) {
+  std::array<std::size_t, 3> order{0, 1, 2};
+  do
+    if (fits(line, order)) return order;
+  while (std::next_permutation(order.begin(), order.end()));
+  return std::nullopt;
+}
+
+Finding refused(const char* id, std::vector<Number> evidence,
+                std::vector<std::pair<std::string, std::string>> texts) {
+  return {.id = id, .attention = true, .evidence = std::move(evidence), .texts = std::move(texts)};
+}
+
+void refuse_order(Passes& p, const std::vector<Line>& lines) {
+  std::optional<std::array<std::size_t, 3>> first;
+  for (const Line& line : lines) {
+    const auto order = order_of(line);
+    if (!order)
+      return p.refusal.push_back(refused("step-diagonal.order-broken", {}, {{"pass", line.name}}));
+    if (first && *first != *order)
+      return p.refusal.push_back(
+          refused("step-diagonal.order-differs", {},
+                  {{"pass", line.name}, {"order", words(*order)}, {"first", words(*first)}}));
+    first = order;
+  }
+  if (first) p.readings.order = *first;
+}
+
+void refuse_missing(Passes& p, const std::vector<Line>& lines) {
+  static constexpr std::array<std::pair<const char*, std::pair<int, int>>, 4> four{
+      {{"PPP", {1, 1}}, {"NPP", {-1, -1}}, {"PNP", {-1, 1}}, {"PPN", {1, -1}}}};
+  std::string missing;
+  std::size_t found = 0;
+  for (const auto& [name, pattern] : four) {
+    const bool there = std::any_of(lines.begin(), lines.end(), [&](const Line& l) {
+      return l.sign[0] * l.sign[1] == pattern.first && l.sign[0] * l.sign[2] == pattern.second;
+    });
+    found += there ? 1 : 0;
+    if (!there) missing += std::string(missing.empty() ? "" : ", ") + name;
+  }
+  if (found < 4)
+    p.refusal.push_back(refused("step-diagonal.too-few-diagonals", {count("found", found)},
+                                {{"missing", missing}}));
+}
+
+void refuse_steps(Passes& p, const Observations& o, std::vector<Line>& lines) {
+  for (Line& line : lines) {
+    const bool even = count_moves(p, o, line);
+    if (even && line.n == lines.front().n) continue;
+    return p.refusal.push_back(refused("step-diagonal.unequal-steps",
+                                       {count("steps", line.n), count("first", lines.front().n)},
+                                       {{"pass", line.name}}));
+  }
+  const std::size_t n = lines.front().n;
+  if (n < 3 || n > math::most_diagonal_steps)
+    p.refusal.push_back(refused("step-diagonal.steps",
+                                {count("steps", n), count("most", math::most_diagonal_steps)}, {}));
+  p.readings.n = n;
+}
+
+}  // namespace
+
+Expected<Passes> passes_of(const AnalysisInput& in) {
+  Passes p;
+  const Observations& o = in.observations;
+  if (auto placed = place(p, in); !placed) return fail(placed.error());
+  std::vector<Line> lines = lines_of(o);
+  lines.erase(
+      std::remove_if(lines.begin(), lines.end(), [](const Line& l) { return l.rows.empty(); }),
+      lines.end());
+  refuse_missing(p, lines);
+  if (lines.empty()) return p;
+  refuse_steps(p, o, lines);
+  if (p.refusal.empty()) refuse_order(p, lines);
+  if (!p.refusal.empty()) return p;
+  for (const Line& line : lines) {
+    math::StepDiagonals::Pass pass{line.sign, std::vector<double>(3 * line.n, std::nan(""))};
+    for (std::size_t i = 0; i < line.rows.size(); ++i) {
+      const auto& m = line.moves[i];
+      pass.reading[m[0] + m[1] + m[2] - 1] = o.deviation[line.rows[i]];
+    }
+    p.readings.passes.push_back(std::move(pass));
+    p.names.push_back(line.name);
+  }
+  return p;
+}
+
+namespace {
+
+double mean_of(std::span<const math::AxisTest::Reading> readings) {
+  double sum = 0.0;
+  for (const auto& r : readings) sum += r.deviation;
+  return sum / static_cast<double>(readings.size());
+}
+
+/// Mean deviations of an axis, and the standard uncertainty of one from the scatter of repeats.
+math::AxisSeries series_of(const math::AxisTest& test, std::size_t axis) {
+  math::AxisSeries s{axis, {}, {}, 0.0};
+  double squares = 0.0, dof = 0.0, share = 0.0;
+  for (std::size_t i = 0; i < test.targets.size(); ++i) {
+    double sum = 0.0, sides = 0.0, inverse = 0.0;
+    for (const auto& readings : {test.plus(i), test.minus(i)}) {
+      if (readings.empty()) continue;
+      const double mean = mean_of(readings), n = static_cast<double>(readings.size());
+      for (const auto& r : readings) squares += (r.deviation - mean) * (r.deviation - mean);
+      dof += n - 1.0;
+      sum += mean;
+      sides += 1.0;
+      inverse += 1.0 / n;
+    }
+    if (sides == 0.0 || (test.bidirectional() && sides < 2.0)) continue;
+    s.position.push_back(test.targets[i]);
+    s.deviation.push_back(sum / sides);
+    share += inverse / (sides * sides);
+  }
+  if (dof > 0.0 && !s.position.empty())
+    s.u = std::sqrt(squares / dof * share / static_cast<double>(s.position.size()));
+  return s;
+}
+
+/// What follows the first space of an id: "final" of "SD final".
+std::string_view occasion(std::string_view id) {
+  return id.substr(std::min(id.find(' '), id.size()));
+}
+
+/// The lengths that were measured on the same occasion, or those that the user names.
+bool wanted(const AnalysisInput& in, const std::string& id) {
+  const auto ids = in.options.texts("lengths");
+  if (!ids.empty()) return std::find(ids.begin(), ids.end(), id) != ids.end();
+  return occasion(id) == occasion(in.measurement.id);
+}
+
+}  // namespace
+
+Lengths lengths_of(const AnalysisInput& in, const Passes& passes) {
+  Lengths out;
+  if (in.all == nullptr) return out;
+  bool budgets = true;
+  double relative = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::vector<std::size_t> candidates;
+    for (std::size_t i = 0; i < in.all->size(); ++i) {
+      const Measurement& m = in.campaign.measurements[i];
+      if (m.kind == "axis" && m.axis == passes.axes[k] && (*in.all)[i].size() > 0 &&
+          wanted(in, m.id))
+        candidates.push_back(i);
+    }
+    if (candidates.size() > 1)
+      out.findings.push_back(refused("step-diagonal.lengths-ambiguous",
+                                     {count("measurements", candidates.size())},
+                                     {{"axis", passes.axes[k]}}));
+    if (candidates.size() != 1) continue;
+    const auto test = math::AxisTest::arrange((*in.all)[candidates[0]]);
+    math::AxisSeries series = series_of(test, k);
+    if (series.position.size() < 2) continue;
+    const auto budget = math::uncertainty_budget(in.campaign, passes.axes[k], test);
+    if (budget.budget && test.length() > 0.0)
+      relative = std::max(relative, budget.budget->systematic() / test.length());
+    else if (std::exchange(budgets, false))
+      out.findings.push_back(math::budget_finding(budget, false));
+    out.series.push_back(std::move(series));
+    out.ids.push_back(in.campaign.measurements[candidates[0]].id);
+  }
+  if (budgets && !out.series.empty()) out.relative = relative;
+  return out;
+}
+
+}  // namespace nonio::step_diagonal

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "nonio/math/step_diagonals.h"
+#include "nonio/sdk/plugin.h"
+
+/// What the observations of a campaign give to the kernel of step diagonals.
+namespace nonio::step_diagonal {
+
+/// The passes of a measurement, or the finding that says why they cannot be evaluated together.
+struct Passes {
+  math::StepDiagonals readings;
+  std::vector<std::string> axes;   ///< their names along X, Y, Z
+  std::vector<std::string> names;  ///< of the passes: "SD PPP"
+  std::vector<Finding> refusal;
+};
+Expected<Passes> passes_of(const AnalysisInput& in);
+
+/// The axis measurements of the campaign that go along its axes.
+struct Lengths {
+  std::vector<math::AxisSeries> series;
+  std::vector<std::string> ids;    ///< of the measurements, one for each series
+  std::optional<double> relative;  ///< expanded, of a length; none if the manifest lacks a key
+  std::vector<Finding> findings;
+};
+Lengths lengths_of(const AnalysisInput& in, const Passes& passes);
+
+}  // namespace nonio::step_diagonal

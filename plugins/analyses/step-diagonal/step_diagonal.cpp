@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Sequential step diagonals: three positionings, six straightnesses and three squarenesses of a
+// volume, as far as the readings know them.
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/math/step_diagonals.h"
+#include "nonio/sdk/plugin.h"
+#include "passes.h"
+
+using namespace nonio;
+using namespace nonio::math;
+using namespace nonio::step_diagonal;
+
+namespace {
+
+constexpr double level = 0.01;
+constexpr double enough_dof = 15.0;  // below it two standard deviations are not 95 %
+constexpr double urad = 1e-6, um = 1e-6, mm = 1e-3;
+
+Number number(const char* name, double value, Quantity quantity) { return {name, value, quantity}; }
+
+Finding attention(const char* id, std::vector<Number> evidence,
+                  std::vector<std::pair<std::string, std::string>> texts = {}) {
+  return {.id = id, .attention = true, .evidence = std::move(evidence), .texts = std::move(texts)};
+}
+
+/// Largest distance of a stop from the line of the beam: the mirror must reach so far.
+double lateral(const StepDiagonals& d) {
+  double most = 0.0;
+  for (std::size_t t = 1; t < 3; ++t) {
+    const auto moves = d.counts(t);
+    double square = 0.0, along = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double step = d.travel[k] / static_cast<double>(d.n) * static_cast<double>(moves[k]);
+      square += step * step;
+      along += step * d.travel[k] / d.diagonal();
+    }
+    most = std::max(most, std::sqrt(std::max(0.0, square - along * along)));
+  }
+  return most;
+}
+
+/// What the analysis goes through, with what it may say.
+struct Work {
+  const AnalysisInput& in;
+  const Passes& passes;
+  Lengths lengths;
+  StepChoices choices;
+  StepChecks checks;
+  bool averaging = false;
+  Evaluation out;
+};
+
+void judge_checks(Work& w) {
+  const StepChecks& c = w.checks;
+  if (c.p_constant < level) {
+    const auto worst =
+        *std::max_element(c.constant.begin(), c.constant.end(),
+                          [](double a, double b) { return std::fabs(a) < std::fabs(b); });
+    const bool stated = w.choices.set_up_known;
+    Finding f = attention(stated ? "step-diagonal.set-up-not-square" : "step-diagonal.set-up-seen",
+                          {number("constant", worst, Quantity::deviation),
+                           number("u", c.u_reading, Quantity::deviation),
+                           number("p", c.p_constant, Quantity::probability)});
+    f.attention = stated;
+    w.out.findings.push_back(std::move(f));
+    w.choices.set_up_known = false;
+  }
+  if (c.p_trend < level)
+    w.out.findings.push_back(
+        attention("step-diagonal.drift", {number("per_step", c.trend, Quantity::deviation),
+                                          number("u", c.u_reading, Quantity::deviation),
+                                          number("p", c.p_trend, Quantity::probability)}));
+}
+
+void judge_lengths(Work& w, double u) {
+  for (const ShapeContrast& c : contrast_shapes(w.passes.readings, w.lengths.series, w.choices))
+    if (c.p < level / 3.0)
+      w.out.findings.push_back(
+          attention("step-diagonal.axis-disagrees",
+                    {number("rms", c.rms, Quantity::deviation),
+                     number("largest", c.largest, Quantity::deviation),
+                     number("at", c.at, Quantity::length), number("p", c.p, Quantity::probability)},
+                    {{"axis", w.passes.axes[c.axis]}}));
+  const auto gap = close_lengths(w.passes.readings, w.lengths.series, u);
+  if (gap && std::fabs(gap->value) > 3.0 * gap->u)
+    w.out.findings.push_back(
+        attention("step-diagonal.lengths-disagree", {number("gap", gap->value, Quantity::deviation),
+                                                     number("u", gap->u, Quantity::deviation)}));
+}
+
+/// Names of the positionings whose scale is open.
+std::string open_scales(const StepSolution& s) {
+  std::string open;
+  for (const StepCurve& c : s.curves)
+    if (!c.known) open += (open.empty() ? "" : ", ") + c.name;
+  return open;
+}
+
+void say_scales(Work& w, const StepSolution& s) {
+  const std::string open = open_scales(s);
+  if (open.empty()) return;
+  const double freedom = static_cast<double>(s.unknowns - s.rank);
+  w.out.findings.push_back(attention("step-diagonal.scales-not-identified",
+                                     {number("open", w.averaging ? 2.0 : freedom, Quantity::count)},
+                                     {{"scales", open}}));
+}
+
+/// Straightness that stated angular errors could make by themselves, beyond what is allowed.
+bool withheld(Work& w, const StepCurve& c) {
+  const double angle = w.in.options.number("angle_urad") * urad;
+  const double budget = w.in.options.number("budget_um") * um;
+  const bool aliased = c.name == "EYX" || c.name == "EZX" || c.name == "EZY";
+  const double size = w.passes.readings.travel[c.axis] / 2.0 * angle;
+  if (!aliased || budget == 0.0 || !(size > budget)) return false;
+  w.out.findings.push_back(attention(
+      "step-diagonal.angles-too-large",
+      {number("angle", angle, Quantity::small_angle), number("size", size, Quantity::deviation),
+       number("budget", budget, Quantity::deviation)},
+      {{"curve", c.name}}));
+  return true;
+}
+
+void put_curve(Work& w, const StepCurve& c, bool certain) {
+  const bool positioning = c.name[1] == c.name[2];
+  Series s{c.known ? c.name : c.name + "_shape",
+           w.passes.axes[c.axis],
+           Quantity::length,
+           Quantity::deviation,
+           c.position,
+           c.value,
+           {}};
+  const bool scale = positioning && c.known;
+  const bool budget = !scale || w.lengths.series.empty() || w.lengths.relative.has_value();
+  if (certain && budget)
+    for (std::size_t i = 0; i < c.u.size(); ++i) {
+      const double far = c.position[i] - c.position.front();
+      const double systematic = scale ? w.lengths.relative.value_or(0.0) * far : 0.0;
+      s.U.push_back(std::hypot(2.0 * c.u[i], systematic));
+    }
+  w.out.series.push_back(std::move(s));
+}
+
+void put_values(Work& w, const StepSolution& s) {
+  const bool certain = w.choices.u_reading > 0.0 || s.dof >= enough_dof;
+  if (!certain)
+    w.out.findings.push_back(attention(
+        "step-diagonal.no-uncertainty",
+        {number("dof", s.dof, Quantity::count), number("wanted", enough_dof, Quantity::count)}));
+  static constexpr std::array<const char*, 3> names{"C0Y", "B0Z", "A0Z"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    Value v{names[k], s.squareness[k].value, Quantity::small_angle};
+    if (certain) v.U = 2.0 * s.squareness[k].u;
+    w.out.values.push_back(std::move(v));
+  }
+  for (const StepCurve& c : s.curves)
+    if (!withheld(w, c)) put_curve(w, c, certain);
+}
+
+void put_notes(Work& w, const StepSolution& s) {
+  const auto n = static_cast<double>(w.passes.readings.n);
+  double straightness = 0.0;
+  for (const StepCurve& c : s.curves)
+    if (c.name[1] != c.name[2])
+      straightness = std::max(straightness, *std::max_element(c.u.begin(), c.u.end()));
+  w.out.notes.push_back(
+      {w.averaging ? "method.step-averaging" : "method.step-least-squares",
+       {number("n", n, Quantity::count), number("u", s.u_reading, Quantity::deviation),
+        number("dof", s.dof, Quantity::count)}});
+  if (s.u_reading > 0.0)
+    w.out.notes.push_back(
+        {"step-diagonal.random-walk",
+         {number("n", n, Quantity::count), number("u", s.u_reading, Quantity::deviation),
+          number("most", straightness, Quantity::deviation),
+          number("gain", straightness / s.u_reading, Quantity::ratio)}});
+  if (!s.set_up.empty())
+    w.out.notes.push_back({"step-diagonal.set-up",
+                           {number("angle", *std::max_element(s.set_up.begin(), s.set_up.end()),
+                                   Quantity::small_angle)}});
+  w.out.notes.push_back({"step-diagonal.angles-not-told"});
+}
+
+bool refuse_mirror(Work& w) {
+  const double mirror = w.in.options.number("mirror_mm") * mm, way = lateral(w.passes.readings);
+  if (mirror == 0.0 || !(way > mirror)) return false;
+  w.out.findings.push_back(attention(
+      "step-diagonal.mirror",
+      {number("way", way, Quantity::length), number("mirror", mirror, Quantity::length)}));
+  return true;
+}
+
+Evaluation finished(Work& w) {
+  for (Finding& f : w.out.findings) f.measurement = w.in.measurement.id;
+  for (Remark& r : w.out.notes) r.measurement = w.in.measurement.id;
+  return std::move(w.out);
+}
+
+Expected<Evaluation> analyse(const AnalysisInput& in) {
+  const auto passes = passes_of(in);
+  if (!passes) return fail(passes.error());
+  Work w{in, *passes, {}, {}, {}, in.options.text("method") == "averaging", {}};
+  w.out.findings = passes->refusal;
+  if (!passes->refusal.empty() || refuse_mirror(w)) return finished(w);
+  w.lengths = w.averaging ? Lengths{} : lengths_of(in, *passes);
+  w.out.uses = w.lengths.ids;
+  for (const Finding& f : w.lengths.findings) w.out.findings.push_back(f);
+  w.choices = {in.options.flag("set_up_square"), in.options.text("beam") == "off-diagonal",
+               in.options.number("u_reading_um") * um};
+  w.checks = check_step_diagonals(passes->readings);
+  judge_checks(w);
+  const auto solution = w.averaging
+                            ? average_step_diagonals(passes->readings, w.choices)
+                            : solve_step_diagonals(passes->readings, w.lengths.series, w.choices);
+  if (!solution) {
+    w.out.findings.push_back(attention(
+        "step-diagonal.incomplete",
+        {number("missing", static_cast<double>(in.observations.missing), Quantity::count)}));
+    return finished(w);
+  }
+  if (!w.averaging) judge_lengths(w, solution->u_reading);
+  say_scales(w, *solution);
+  put_values(w, *solution);
+  put_notes(w, *solution);
+  return finished(w);
+}
+
+std::vector<Option> options() {
+  return {
+      {"method",
+       std::string("least-squares"),
+       "",
+       "Least squares with the set-up angles, or the conventional averaging of increments.",
+       {"least-squares", "averaging"}},
+      {"u_reading_um",
+       0.0,
+       "um",
+       "Standard uncertainty of a reading; 0: from the residuals.",
+       {},
+       0.0,
+       {}},
+      {"set_up_square", false, "",
+       "The mirror is known to be square to the diagonals within the noise over a step."},
+      {"beam",
+       std::string("off-diagonal"),
+       "",
+       "Where a set-up angle comes from: the mirror is square to a beam off the diagonal, or "
+       "the mirror alone stands askew.",
+       {"off-diagonal", "on-diagonal"}},
+      {"lengths", std::vector<std::string>{}, "",
+       "Ids of the axis measurements that give the lengths; none: those with the same words after "
+       "the name (SD final: X final)."},
+      {"mirror_mm", 0.0, "mm", "Usable half width of the mirror; 0: not checked.", {}, 0.0, {}},
+      {"angle_urad", 0.0, "urad", "Largest yaw or pitch of an axis; 0: not known.", {}, 0.0, {}},
+      {"budget_um",
+       0.0,
+       "um",
+       "Straightness is withheld where angle_urad could make more than this; 0: never.",
+       {},
+       0.0,
+       {}}};
+}
+
+bool applies(const Campaign&, const Measurement& m) { return m.kind == "step-diagonal"; }
+
+}  // namespace
+
+NONIO_PLUGIN(registry) {
+  Analysis a;
+  a.info = {"step-diagonal", "1.0.0",
+            "Positioning, straightness and squareness of a volume from four step diagonals.",
+            options()};
+  a.applies = applies;
+  a.analyse = analyse;
+  registry.add(std::move(a));
+}
