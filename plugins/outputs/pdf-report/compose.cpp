@@ -63,6 +63,8 @@ std::string heading_of(const Source& source, const Measured& m) {
   if (measurement.kind == "straightness")
     return ids(words.get("measurement.straightness",
                          {{"axis", measurement.axis}, {"lateral", measurement.lateral}}));
+  if (measurement.kind == "diagonal")
+    return words.get("measurement.diagonal", {{"id", measurement.id}});
   if (measurement.kind == "ball-centres")
     return ids(words.get("measurement.ball_centres", {{"axis", measurement.axis}}));
   return words.get("measurement.other", {{"id", measurement.id}, {"kind", measurement.kind}});
