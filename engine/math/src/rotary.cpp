@@ -71,7 +71,7 @@ std::optional<Plane> plane_of(std::span<const BallCentre> centres) {
   const Matrix3d small =
       Eigen::HouseholderQR<Points>(weighted).matrixQR().topRows<3>().triangularView<Eigen::Upper>();
   const Eigen::JacobiSVD<Matrix3d> svd(small, Eigen::ComputeFullV);
-  const Vector3d size = svd.singularValues();
+  const auto& size = svd.singularValues();
   if (!(size[1] > thinnest * size[0]) || !(size[0] > 1e-12 * (1.0 + plane.origin.norm())))
     return {};
   plane.axes = svd.matrixV();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "nonio/math/rotary.h"

@@ -4,8 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <span>
-#include <tl/expected.hpp>
 #include <vector>
+
+#include "nonio/sdk/error.h"
 
 /// The line of a rotary axis from centres of a ball that turns with it.
 ///
