@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well `explain` finds what the second generator (tests/hidden) has hidden:
 //   bench_hidden one|several|complete|outside COUNT SEED [--verbose] [--plugins FOLDER]
-//                [--write FOLDER]
-// Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio explain --auto` does.
+//                [--write FOLDER] [--right PERCENT] [--wrong PERCENT]
+// Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio explain --auto` does. Fails
+// if fewer are right, or more named wrongly, than --right and --wrong say.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -33,6 +34,7 @@ struct Arguments {
   std::uint64_t count = 0, seed = 0;
   bool verbose = false;
   fs::path plugins, write;
+  std::uint64_t least_right = 0, most_wrong = 100;  // %
 };
 
 struct Step {
@@ -333,7 +335,7 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
   if (words.size() < 3 || kinds.count(words[0]) == 0) return {};
   const auto count = whole(words[1]), seed = whole(words[2]);
   if (!count || !seed) return {};
-  Arguments a{kinds.at(words[0]), *count, *seed, false, {}, {}};
+  Arguments a{kinds.at(words[0]), *count, *seed, false, {}, {}, 0, 100};
   std::error_code error;
   a.plugins = fs::read_symlink("/proc/self/exe", error).parent_path() / NONIO_PLUGINS_FROM_PROGRAM;
   for (std::size_t i = 3; i < words.size(); ++i) {
@@ -343,7 +345,12 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
       a.plugins = words[++i];
     else if (words[i] == "--write" && i + 1 < words.size())
       a.write = words[++i];
-    else
+    else if ((words[i] == "--right" || words[i] == "--wrong") && i + 1 < words.size()) {
+      const auto percent = whole(words[i + 1]);
+      if (!percent) return {};
+      (words[i] == "--right" ? a.least_right : a.most_wrong) = *percent;
+      ++i;
+    } else
       return {};
   }
   return a;
@@ -354,9 +361,10 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
   const auto a = arguments({argv + 1, argv + argc});
   if (!a) {
-    std::fprintf(stderr,
-                 "bench_hidden one|several|complete|outside COUNT SEED [--verbose]\n"
-                 "             [--plugins FOLDER] [--write FOLDER]\n");
+    std::fprintf(
+        stderr,
+        "bench_hidden one|several|complete|outside COUNT SEED [--verbose]\n"
+        "             [--plugins FOLDER] [--write FOLDER] [--right PERCENT] [--wrong PERCENT]\n");
     return 2;
   }
   host::Plugins plugins;
@@ -389,5 +397,11 @@ int main(int argc, char** argv) {
   std::printf("seeds %llu .. %llu (Wilson 95 %%)\n", static_cast<unsigned long long>(a->seed),
               static_cast<unsigned long long>(a->seed + a->count - 1));
   print_score(score, a->kind);
-  return 0;
+  const bool good = 100 * score.right.yes >= a->least_right * score.right.of &&
+                    100 * score.wrong_name.yes <= a->most_wrong * score.wrong_name.of;
+  if (!good)
+    std::printf("wanted: at least %llu %% right, at most %llu %% with a wrong name\n",
+                static_cast<unsigned long long>(a->least_right),
+                static_cast<unsigned long long>(a->most_wrong));
+  return good ? 0 : 1;
 }

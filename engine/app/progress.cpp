@@ -65,7 +65,8 @@ void Progress::planned(std::size_t campaigns, std::size_t to_do) {
   if (json_)
     print_event({{"event", "planned"}, {"campaigns", campaigns}, {"to_do", to_do}});
   else if (!quiet_)
-    std::cerr << campaigns << " campaigns, " << to_do << " to do\n";
+    std::cerr << campaigns << (campaigns == 1 ? " campaign, " : " campaigns, ") << to_do
+              << " to do\n";
 }
 
 void Progress::finished(const host::CampaignState& c) {

@@ -84,6 +84,17 @@ void print_suspects(std::ostream& out, const model::Comparison& c, const host::P
         << words.suspect(s, host::place_of(part, campaign, s.row), part.deviation()) << "\n";
 }
 
+/// With Wilson's 95 % interval: what so many shuffles can tell.
+std::string false_alarms_text(const model::Verdict& v) {
+  const double n = static_cast<double>(v.trials), p = v.false_alarms, z2 = 1.959964 * 1.959964;
+  const double middle = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
+  const double half = std::sqrt(z2 * (p * (1.0 - p) + z2 / (4.0 * n)) / n) / (1.0 + z2 / n);
+  return fixed_text(100.0 * p, 1) + " % of " + std::to_string(v.trials) +
+         " shuffles of the noise (95 % interval " +
+         fixed_text(100.0 * std::max(0.0, middle - half), 1) + " .. " +
+         fixed_text(100.0 * (middle + half), 1) + " %)";
+}
+
 std::string largest_text(const host::Compared& compared, const Campaign& campaign) {
   const host::PartModel& part = compared.part;
   const auto at = host::place_of(part, campaign, compared.comparison.largest_row);
@@ -121,9 +132,7 @@ void print_verdict(std::ostream& out, const host::Explained& e, const host::Mode
   for (const char* what : {"is", "cure"})
     if (const std::string text = words.card(x.verdict.effect, what); !text.empty())
       out << "    " << text << "\n";
-  if (x.verdict.trials > 0)
-    out << "    false alarms: " << short_text(100.0 * x.verdict.false_alarms, 2) << " % of "
-        << x.verdict.trials << " shuffles of what is left\n";
+  if (x.verdict.trials > 0) out << "    false alarms: " << false_alarms_text(x.verdict) << "\n";
 }
 
 void print_bars(std::ostream& out, const host::ModelStep& step) {
@@ -165,6 +174,8 @@ void print_comparison(std::ostream& out, const host::Compared& compared, const C
          pair.one->effect + " " + pair.one->name + " and " + pair.other->effect + " " +
              pair.other->name + ": r = " + fixed_text(pair.r, 3));
   print_places(out, c.places, words, part.axis().rotary);
+  if (c.means > 0)
+    line(out, "", "told from " + std::to_string(c.means) + " means of neighbouring readings");
   print_suspects(out, c, part, campaign, words);
   for (const std::string& warning : host::warnings_of(c.fit, words))
     out << "  warning: " << warning << "\n";

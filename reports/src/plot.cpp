@@ -68,6 +68,14 @@ void draw_marker(Canvas& canvas, Marker marker, double x, double y, double r, Co
 
 using Point = Canvas::Point;
 
+/// Markers of one kind; dots together, which is a fraction of the bytes of as many circles.
+void draw_markers(Canvas& canvas, Marker marker, const std::vector<Point>& points, double r,
+                  Colour colour) {
+  constexpr double outline = 0.6;
+  if (marker == Marker::dot) return canvas.dots(points, 1.6 * r + outline, colour);
+  for (const auto& [x, y] : points) draw_marker(canvas, marker, x, y, r, colour);
+}
+
 /// Points of one unbroken stretch; of many in the same place only the first, the extremes and the
 /// last, which look the same.
 void thin_out(std::vector<Point>& points) {
@@ -122,14 +130,16 @@ void draw_line(Canvas& canvas, const Frame& frame, const Curve& curve) {
   const double spacing = frame.w / static_cast<double>(std::max<std::size_t>(1, curve.x.size()));
   const double apart = spacing < 1.8 * curve.marker_size ? 14.0 : 0.0;  // of dense points some
   double last = -1e9;
+  std::vector<Point> marked;
   for (const auto& part : parts)
     for (const Point& p : part) {
       if (curve.marker == Marker::none && part.size() > 1) break;
       if (std::fabs(p.x - last) < apart) continue;
       last = p.x;
-      draw_marker(canvas, curve.marker == Marker::none ? Marker::dot : curve.marker, p.x, p.y,
-                  curve.marker_size, curve.colour);
+      marked.push_back(p);
     }
+  draw_markers(canvas, curve.marker == Marker::none ? Marker::dot : curve.marker, marked,
+               curve.marker_size, curve.colour);
 }
 
 void draw_band(Canvas& canvas, const Frame& frame, const Curve& curve) {
@@ -203,10 +213,11 @@ void draw_points(Canvas& canvas, const Frame& frame, const Curve& curve) {
     const double diameter = 0.8 * curve.marker_size;
     return canvas.dots(scattered(frame, curve, diameter), diameter, curve.colour);
   }
+  std::vector<Point> points;
   for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i)
     if (drawable(curve.x[i]) && drawable(curve.y[i]))
-      draw_marker(canvas, curve.marker, frame.px(curve.x[i]), frame.py(curve.y[i]),
-                  curve.marker_size, curve.colour);
+      points.push_back({frame.px(curve.x[i]), frame.py(curve.y[i])});
+  draw_markers(canvas, curve.marker, points, curve.marker_size, curve.colour);
 }
 
 class PlotSetter {
@@ -312,10 +323,10 @@ class PlotSetter {
       up.low = plot_.range->first, up.high = plot_.range->second;
     else
       up.low -= edge, up.high += edge;
-    const auto ticks = plot_.degrees ? Ticks::turn : plot_.whole ? Ticks::whole : Ticks::decimal;
-    frame.across =
-        axis_scale(across.low - side, across.high + side,
-                   std::clamp(static_cast<int>(width_ / 30), 2, 7), ticks, plot_.language);
+    across.low -= side, across.high += side;
+    const double below = 2.9 * size_ + 3;
+    frame.h = height - top - below;
+    if (plot_.same_scale) widen(up, (across.high - across.low) * frame.h / (width_ - 12 * size_));
     frame.up = axis_scale(up.low, up.high, 6, Ticks::decimal, plot_.language);
     std::vector<SetText> labels;
     double label_width = 0;
@@ -325,11 +336,14 @@ class PlotSetter {
       label_width = std::max(label_width, text->lines[0].width * size_);
       labels.push_back(std::move(*text));
     }
-    const double below = 2.9 * size_ + 3;
     frame.x = 1.5 * size_ + label_width + 4;
     frame.y = -height + below;
     frame.w = width_ - frame.x - 2 - span_room() * static_cast<double>(plot_.spans.size());
-    frame.h = height - top - below;
+    if (plot_.same_scale) widen(across, (up.high - up.low) * frame.w / frame.h);
+    const auto ticks = plot_.degrees ? Ticks::turn : plot_.whole ? Ticks::whole : Ticks::decimal;
+    frame.across =
+        axis_scale(across.low, across.high, std::clamp(static_cast<int>(width_ / 30), 2, 7), ticks,
+                   plot_.language);
     if (auto ok = draw_axes(frame, labels); !ok) return ok;
     canvas_.clip(frame.x, frame.y, frame.w, frame.h);
     canvas_.ops += "1 j\n";  // round joins: no spikes where a curve turns
@@ -370,6 +384,12 @@ class PlotSetter {
     canvas_.text_upwards(size_, f.y + (f.h - up->lines[0].width * size_) / 2, false, size_,
                          up->glyphs);
     return {};
+  }
+
+  /// Room for `span`, to both sides alike.
+  static void widen(Range& range, double span) {
+    const double more = std::max(0.0, span - (range.high - range.low)) / 2;
+    range.low -= more, range.high += more;
   }
 
   double span_room() const { return 1.3 * size_ + 7; }

@@ -9,6 +9,7 @@ import csv
 import filecmp
 import importlib.util
 import io
+import math
 import os
 import statistics
 import sys
@@ -172,6 +173,53 @@ class Samples(unittest.TestCase):
         middle = statistics.fmean(points[len(points) // 2]["+"])
         self.assertGreater(middle - statistics.fmean(points[0]["+"]), 4.0)
         self.assertGreater(middle - statistics.fmean(points[-1]["+"]), 4.0)
+
+    def test_gantry_diagonals_close_and_the_third_one_tells_the_axes_apart(self):
+        def mean(file):
+            return [(statistics.fmean(p["+"]) + statistics.fmean(p["-"])) / 2.0
+                    for p in readings("13-gantry-diagonals", file).values()]
+
+        x1, x2, y = mean("x1.csv"), mean("x2.csv"), mean("y.csv")
+        n, c, s = 30, 0.8, 0.6
+
+        def x_error(i, j):  # on the line y_j, from the two lines at 300 and 8700 mm
+            second = (300.0 * j - 300.0) / 8400.0
+            return (1.0 - second) * (x1[i] - x1[0]) + second * (x2[i] - x2[0])
+
+        def less_pitch(file, rising):
+            d = mean(file)
+            def part(i):
+                j = i if rising else n - i
+                return d[i] - c * x_error(i, j) - (s if rising else -s) * y[j]
+            return [part(i) - part(0) for i in range(n + 1)]
+
+        for when, square in (("00", 8.0), ("final", 0.3)):
+            d1 = less_pitch("d1-%s.csv" % when, True)
+            d2 = less_pitch("d2-%s.csv" % when, False)
+            self.assertLess(abs(d1[n] + d2[n]), 4.0 * 2.45 * 0.5)
+            self.assertAlmostEqual(-(d1[n] - d2[n]) * 15.0 / (2.0 * 12.0 * 9.0), square, delta=0.2)
+        # Larger than what positioning leaves, at points that do not correspond.
+        before = [less_pitch("d1-00.csv", True), less_pitch("d2-00.csv", False)]
+        shapes = [[v - d[n] * i / n for i, v in enumerate(d)] for d in before]
+        worst = [max(range(n + 1), key=lambda i: abs(d[i])) for d in shapes]
+        self.assertGreater(abs(worst[0] - worst[1]), 4)
+        self.assertGreater(max(map(abs, before[0])), 3.0 * max(map(abs, x1 + x2 + y)))
+
+    def test_rotary_table_turns_about_its_lines(self):
+        for file, count, point, lean in (
+                ("c.csv", 8, (412.300, 305.120, -148.600), (0.00012, -0.00008, 1.0)),
+                ("b.csv", 11, (412.286, 0.0, -310.045), (0.00015, 1.0, -0.00007))):
+            with open(os.path.join(SITE, "14-rotary-table", file), encoding="utf-8") as opened:
+                rows = list(csv.DictReader(line for line in opened if not line.startswith("#")))
+            self.assertEqual(len(rows), count)
+            size = math.sqrt(sum(v * v for v in lean))
+            for row in rows:
+                arm = [float(row[k + "_mm"]) - p for k, p in zip("xyz", point)]
+                along = sum(a * v for a, v in zip(arm, lean)) / size
+                radius = math.sqrt(sum(a * a for a in arm) - along * along)
+                # 1 um of noise; B's start lies 20 um nearer to its leaning line.
+                self.assertAlmostEqual(radius, 261.0, delta=0.03)
+            self.assertEqual(len({row["angle_deg"] for row in rows}), count)
 
 
 if __name__ == "__main__":

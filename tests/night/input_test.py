@@ -119,14 +119,14 @@ class Input(NightTest):
         for name, (_, words) in cases.items():
             self.assertIn(words, self.errors(name)[0]["message"])
 
-    def test_a_kind_that_nobody_reads_leaves_the_others(self):
-        ball = '[[measurement]]\nid = "C"\nkind = "ball-centres"\naxis = "C"\nfile = "x.csv"\n'
-        self.campaign("a", extra=ball)
+    def test_what_no_analysis_evaluates_is_said(self):
+        table = '[[measurement]]\nid = "T"\nkind = "observations"\nfile = "t.csv"\n'
+        (self.campaign("a", extra=table) / "t.csv").write_text(
+            "X_mm,nx,ny,nz,deviation_um\n0,0,1,0,1\n10,0,1,0,2\n", encoding="utf-8")
         self.run_nonio(expect=0)
         results = self.results("a")
-        self.assertEqual(results["status"], "attention")
-        self.assertIn("ball-centres", results["notes"][0])
-        self.assertEqual(results["analyses"][0]["measurement"], "X")
+        self.assertIn("observations", results["notes"][0])
+        self.assertEqual({a["measurement"] for a in results["analyses"]}, {"X"})
 
     def test_without_uncertainty_nothing_conforms(self):
         tolerance = "[machine.axes.X.tolerance_um]\nA = 1000.0\nQ = 1.0\n"

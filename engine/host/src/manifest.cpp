@@ -202,6 +202,9 @@ Measurement read_measurement(Source& source, const toml::table& table) {
     if (spans && ends->empty())
       reader.error(key, "is missing: the axis positions of that end, { X = 0, Y = 0 }");
   }
+  for (const auto& [axis, position] : reader.number_table("at", mm)) m.at[axis] = position;
+  if (m.at.contains(m.axis))
+    reader.error("at", "wanted the axes that stood still, found " + m.axis + ", which moves");
   reader.finish();
   return m;
 }

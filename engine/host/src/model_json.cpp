@@ -148,6 +148,7 @@ Json compared_json(const Compared& c, const Campaign& campaign, const ModelWords
   json["correlations"] = std::move(pairs);
   json["fails"] = places_json(failing(comparison.places), words, c.part.axis().rotary);
   json["places"] = places_json(comparison.places, words, c.part.axis().rotary);
+  if (comparison.means > 0) json["means"] = comparison.means;
   json["suspects"] = suspects_json(comparison.suspects, c.part, campaign, words);
   json["warnings"] = warnings_of(comparison.fit, words);
   return json;

@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <iostream>
 
 #include "committer.h"
@@ -27,7 +27,8 @@ namespace {
 
 using Action = CampaignState::Action;
 
-volatile std::sig_atomic_t stop_requested = 0;
+std::atomic<bool> stop_requested = false;  // set by a signal
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 /// Memory that a worker gives back to the system is only faulted in again for the next campaign.
 void keep_freed_memory() {
@@ -65,8 +66,8 @@ class Runner {
     prepare_outputs();
     const std::size_t jobs =
         options_.jobs != 0 ? options_.jobs : Poco::Environment::processorCount();
-    while (stop_requested == 0) {
-      while (workers_.size() < jobs && stop_requested == 0) {
+    while (!stop_requested) {
+      while (workers_.size() < jobs && !stop_requested) {
         const auto campaign = next();
         if (!campaign) break;
         start(*campaign);
@@ -323,7 +324,7 @@ void store_collisions(const RunOptions& options, const Context& context, const N
 
 }  // namespace
 
-void request_stop() { stop_requested = 1; }
+void request_stop() { stop_requested = true; }
 
 Night run_site(const RunOptions& options, const RunEvents& events) {
   Night night;
@@ -371,8 +372,12 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   const auto state = begin_night(options.out, options.force, options.dry_run);
   if (!state) return refuse(state.error().message);
   const std::size_t notes_so_far = night.notes.size();
-  auto campaigns =
-      survey({options.site, options.out, context, state->number, state->force, night.notes});
+  auto campaigns = survey({options.site, options.out, context, state->number, state->force,
+                           night.notes, [] { return stop_requested.load(); }});
+  if (stop_requested) {
+    night.end = Night::End::interrupted;
+    return night;
+  }
   if (!campaigns) return refuse(campaigns.error().message);
   night.campaigns = std::move(*campaigns);
   for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);

@@ -104,9 +104,11 @@ struct Lists {
 
 void write_text(Spool& out, const Night& night, Lists& lists, const std::string& version) {
   const auto n = [](std::size_t count) { return std::to_string(count); };
-  out.add("Nonio " + version + ": " + n(night.campaigns.size()) + " campaigns: " +
-          n(lists.done.count) + " done, " + n(lists.unchanged.count) + " unchanged, " +
-          n(lists.failed.count) + " failed; " + n(lists.attention.count) + " ask for attention\n");
+  out.add("Nonio " + version + ": " + n(night.campaigns.size()) +
+          (night.campaigns.size() == 1 ? " campaign: " : " campaigns: ") + n(lists.done.count) +
+          " done, " + n(lists.unchanged.count) + " unchanged, " + n(lists.failed.count) +
+          " failed; " + n(lists.attention.count) + (lists.attention.count == 1 ? " asks" : " ask") +
+          " for attention\n");
   // What somebody must act on comes first.
   const auto section = [&](const char* heading, Spool& body) {
     if (body.empty()) return;

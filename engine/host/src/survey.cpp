@@ -183,10 +183,12 @@ class Look {
 /// The ids that manifests give, each read in full in a process that a parser may bring down or hold
 /// up without harm to the night; empty where there is none, or where the process did not come back.
 /// Such a campaign is tried again in its worker, which says what happened.
-std::vector<std::string> read_ids(const std::vector<fs::path>& manifests, const Limits& limits) {
-  std::vector<std::string> ids(manifests.size());
+std::vector<std::string> read_ids(std::size_t count,
+                                  const std::function<fs::path(std::size_t)>& manifest_of,
+                                  const Limits& limits, bool (*stopped)()) {
+  std::vector<std::string> ids(count);
   const auto read = [&](std::size_t i, bool, SharedWords& words) {
-    const auto text = read_file(manifests[i]);
+    const auto text = read_file(manifest_of(i));
     const auto manifest = parse_manifest(text.value_or(""), manifest_name);
     words.set(manifest ? manifest->campaign.id : "");
     return Answer::ok;
@@ -194,7 +196,7 @@ std::vector<std::string> read_ids(const std::vector<fs::path>& manifests, const 
   const auto limit = std::chrono::duration_cast<Worker::Clock::duration>(
       std::chrono::duration<double>(limits.seconds));
   std::vector<Worker> workers;
-  for (std::size_t next = 0; next < ids.size() || !workers.empty();) {
+  for (std::size_t next = 0; (next < ids.size() || !workers.empty()) && !stopped();) {
     while (workers.size() < Poco::Environment::processorCount() && next < ids.size()) {
       auto worker = Worker::start(read, limits.memory_MB);
       if (!worker) return ids;
@@ -216,12 +218,12 @@ std::vector<std::string> read_ids(const std::vector<fs::path>& manifests, const 
   return ids;
 }
 
-/// Calls `work` for 0 to `count` - 1 on all cores; its threads are joined at the return, so that
-/// processes may be forked again.
-void for_all(std::size_t count, const std::function<void(std::size_t)>& work) {
+/// Calls `work` for 0 to `count` - 1 on all cores, until it is stopped; its threads are joined at
+/// the return, so that processes may be forked again.
+void for_all(std::size_t count, bool (*stopped)(), const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next{0};
   const auto run = [&] {
-    for (std::size_t i; (i = next.fetch_add(1)) < count;) work(i);
+    for (std::size_t i; !stopped() && (i = next.fetch_add(1)) < count;) work(i);
   };
   std::vector<std::jthread> helpers;
   for (unsigned i = 1; i < Poco::Environment::processorCount(); ++i) helpers.emplace_back(run);
@@ -275,18 +277,18 @@ Expected<std::vector<CampaignState>> survey(const SurveyInput& input) {
   };
   std::vector<Unread> unread;
   std::mutex unread_guard;
-  for_all(states.size(), [&](std::size_t i) {
+  for_all(states.size(), input.stopped, [&](std::size_t i) {
     states[i].folder = std::move((*folders)[i]);
     Unread one{i, {}};
     if (look.at_first(states[i], one.digest)) return;
     const std::lock_guard guard(unread_guard);
     unread.push_back(std::move(one));
   });
-  std::vector<fs::path> manifests;
-  for (const Unread& u : unread)
-    manifests.push_back(input.site / states[u.index].folder / manifest_name);
-  const auto ids = read_ids(manifests, input.context.site.limits);
-  for_all(unread.size(),
+  const auto manifest_of = [&](std::size_t i) {
+    return input.site / states[unread[i].index].folder / manifest_name;
+  };
+  const auto ids = read_ids(unread.size(), manifest_of, input.context.site.limits, input.stopped);
+  for_all(unread.size(), input.stopped,
           [&](std::size_t i) { look.again(states[unread[i].index], ids[i], unread[i].digest); });
   give_way(states);
   std::stable_sort(states.begin(), states.end(),

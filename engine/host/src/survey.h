@@ -15,6 +15,7 @@ struct SurveyInput {
   std::uint64_t night;  ///< the one that is being done
   bool force;
   std::vector<std::string>& notes;  ///< what was passed over, for the summary
+  bool (*stopped)();                ///< asked now and then; what is returned then is not whole
 };
 
 /// All campaigns of a site, by id, each with what is to be done with it and why. Campaigns whose

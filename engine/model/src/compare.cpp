@@ -35,32 +35,49 @@ std::vector<double> cross_validated(const Observations& o, const std::vector<Ter
   if (std::none_of(of_line.begin(), of_line.end(), [](const auto& l) { return l.second > 1; }))
     return {};
   const auto n = static_cast<Index>(o.size()), lines = static_cast<Index>(lines_of(o));
-  MatrixXd a = MatrixXd::Zero(n, lines);
+  std::vector<MatrixXd> blocks;
+  Index columns = lines;
+  for (const Term& term : terms) {
+    auto block = columns_of(o, term, term.shape);
+    if (!block) return {};
+    columns += block->cols();
+    blocks.push_back(std::move(*block));
+  }
+  MatrixXd a = MatrixXd::Zero(n, columns);
   for (Index i = 0; i < n; ++i)
     a(i, static_cast<Index>(line_of(o, static_cast<std::size_t>(i)))) = 1.0;
-  for (const Term& term : terms) {
-    const auto block = columns_of(o, term, term.shape);
-    if (!block) return {};
-    a.conservativeResize(Eigen::NoChange, a.cols() + block->cols());
-    a.rightCols(block->cols()) = *block;
+  Index first = lines;
+  for (MatrixXd& block : blocks) {
+    a.middleCols(first, block.cols()) = block;
+    first += block.cols();
+    block.resize(0, 0);
   }
   const VectorXd scale = a.colwise().norm().cwiseMax(1e-300).transpose();
-  a = a * scale.cwiseInverse().asDiagonal();
-  const VectorXd y = Eigen::Map<const VectorXd>(o.deviation.data(), n);
+  a *= scale.cwiseInverse().asDiagonal();
+  const Eigen::Map<const VectorXd> y(o.deviation.data(), n);
   const VectorXd root = root_weights(o, weight);
-  const MatrixXd wa = root.asDiagonal() * a;
-  const MatrixXd normal = wa.transpose() * wa;
-  const VectorXd right = wa.transpose() * root.cwiseProduct(y);
+  // Each run's share of the normal equations; it is left out by taking its share away.
+  const auto share_of = [&](const std::vector<Index>& rows, MatrixXd& normal, VectorXd& right) {
+    const MatrixXd here = root(rows).asDiagonal() * a(rows, Eigen::all);
+    normal.noalias() = here.transpose() * here;
+    right.noalias() = here.transpose() * root(rows).cwiseProduct(y(rows));
+  };
+  MatrixXd normal = MatrixXd::Zero(columns, columns), share;
+  VectorXd right = VectorXd::Zero(columns), right_share;
+  for (const auto& [run, rows] : runs) {
+    share_of(rows, share, right_share);
+    normal += share;
+    right += right_share;
+  }
   std::vector<double> out(o.size(), std::numeric_limits<double>::quiet_NaN());
   for (const auto& [run, rows] : runs) {
     if (of_line[run.first] < 2) continue;
-    const MatrixXd here = wa(rows, Eigen::all);
-    const VectorXd wy = root.cwiseProduct(y)(rows);
-    const Eigen::LDLT<MatrixXd> ldlt(normal - here.transpose() * here);
+    share_of(rows, share, right_share);
+    const Eigen::LDLT<MatrixXd> ldlt(normal - share);
     if (ldlt.info() != Eigen::Success ||
         !(ldlt.vectorD().minCoeff() > 1e-10 * ldlt.vectorD().maxCoeff()))
       continue;
-    const VectorXd x = ldlt.solve(right - here.transpose() * wy);
+    const VectorXd x = ldlt.solve(right - right_share);
     for (const Index i : rows) out[static_cast<std::size_t>(i)] = y(i) - a.row(i).dot(x);
   }
   return out;
@@ -132,8 +149,8 @@ Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
       Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(o.size())));
   if (o.size() <= thin_beyond) {
     const MatrixXd basis = basis_of(o, fit.terms, root);
-    out.places = places_of(
-        {part, repeats, root, residual, basis, static_cast<double>(fit.redundancy), out.floor});
+    out.places = PlaceTests(part, repeats, root, basis, static_cast<double>(fit.redundancy))(
+        residual, out.floor);
   }
   out.fit = std::move(fit);
   return out;
@@ -150,14 +167,26 @@ std::vector<Place> seats_in(const Part& part, const Repeats& repeats,
                    comparison.floor});
 }
 
-Expected<Comparison> compare(const Part& part, const std::vector<Term>& model) {
-  if (part.table.size() == 0) return fail("there are no readings of an axis to compare with");
-  const Repeats repeats(part.table);
-  auto suspects = suspects_of(part.table, repeats, part.table.deviation);
+Expected<Comparison> compare_without(const Part& part, const std::vector<Term>& model,
+                                     const Repeats& repeats, std::vector<Suspect> suspects) {
   auto weight = weights_without(part.table.size(), suspects);
   auto fitted = fit(part.table, model, std::move(weight));
   if (!fitted) return fail(fitted.error());
   return comparison_of(part, repeats, std::move(*fitted), std::move(suspects));
+}
+
+Expected<Comparison> compare(const Part& part, const std::vector<Term>& model) {
+  if (part.table.size() == 0) return fail("there are no readings of an axis to compare with");
+  const Repeats repeats(part.table);
+  auto out =
+      compare_without(part, model, repeats, suspects_of(part.table, repeats, part.table.deviation));
+  if (!out || part.table.size() <= thin_beyond) return out;
+  const Part thin{part.measurements, part.axes, thinned(part.table, out->fit.weight)};
+  auto of_means = compare_without(thin, out->fit.terms, Repeats(thin.table), {});
+  if (!of_means) return fail(of_means.error());
+  out->places = std::move(of_means->places);
+  out->means = thin.table.size();
+  return out;
 }
 
 }  // namespace nonio::model

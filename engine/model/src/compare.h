@@ -13,6 +13,10 @@ std::vector<double> weights_without(std::size_t readings, const std::vector<Susp
 Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
                          std::vector<Suspect> suspects);
 
+/// The comparison with these readings suspected; no places of a long table.
+Expected<Comparison> compare_without(const Part& part, const std::vector<Term>& model,
+                                     const Repeats& repeats, std::vector<Suspect> suspects);
+
 /// Where what a fit leaves sits.
 std::vector<Place> seats_in(const Part& part, const Repeats& repeats, const Comparison& comparison);
 

@@ -44,4 +44,8 @@ inline Quantity quantity_of(const Effect::Parameter& p, const Axis& axis) {
 Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
                        const std::vector<char>& searched, std::vector<double> weight);
 
+/// `rms` of a fit with shapes that are given, without the rest of it; infinite where there is none.
+double rms_with(const Observations& o, const std::vector<Term>& terms,
+                const std::vector<double>& weight);
+
 }  // namespace nonio::model

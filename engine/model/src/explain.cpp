@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "compare.h"
 #include "nonio/math/distributions.h"
@@ -23,6 +24,8 @@ constexpr double alias_evidence = 6.0;  // 2 ln 20: one twentieth of the evidenc
 constexpr double least_rms = 0.2;       // of the noise: smaller effects are not worth a name
 constexpr double least_left = 0.25;     // of the noise: smaller structure is not worth a verdict
 constexpr double serious_p = 0.005;
+constexpr double memory_p = 1e-4;       // noise without a memory looks so once in 10,000
+constexpr double most_suspects = 0.06;  // of the readings; beyond, they do not repeat
 // What is left in the same place, of what the candidate says: beyond, the candidate is not it.
 constexpr double unexplained_share = 0.04;
 
@@ -44,7 +47,8 @@ class Explainer {
       if (auto searched = search(); !searched) return fail(searched.error());
       if (!suspect_again()) break;
     }
-    chance_ = measure_chance(*bench_, best_, repeats_.pass, seed_);
+    chance_ = measure_chance(
+        *bench_, best_, shuffled(residual_of(best_), bench_->basis(best_), repeats_.pass, seed_));
     prune();
     if (auto fitted = fit_both(); !fitted) return fail(fitted.error());
     rank();
@@ -56,20 +60,68 @@ class Explainer {
   Expected<void> search() {
     weight_ = weights_without(part_.table.size(), suspects_);
     bench_.emplace(part_.table, terms_, weight_, repeats_.target);
-    State start = bench_->state({});
-    for (std::size_t e = 0; e < model_.size(); ++e) {
-      const State next = bench_->with(start, bench_->gains(start, e), e);
-      if (next.blocks.size() == start.blocks.size()) {
-        const std::string& why = bench_->instances()[e].error;
-        return fail(!why.empty() ? why
-                                 : "the readings cannot tell " + model_[e].name() +
-                                       " from the rest of the model");
-      }
-      start = next;
-    }
-    start_ = bench_->settled(std::move(start));
+    auto start = started(false);
+    if (!start) return fail(start.error());
+    start_ = std::move(*start);
+    // Instants and periods of a model hold each other fast: tried from two sides.
+    if (const auto other = started(true); other && other->squares < start_.squares) start_ = *other;
     best_ = best_explanation(*bench_, start_);
+    // What lies between the values of a grid would be taken for an effect of its own.
+    const bool finer = add_refined(start_);
+    if (add_refined(best_) || finer) {
+      start_ = bench_->settled(std::move(start_));
+      best_ = best_explanation(*bench_, start_);
+    }
     return {};
+  }
+
+  /// The model with its shapes searched; its terms come in as they are written, or those first that
+  /// explain most.
+  Expected<State> started(bool largest_first) const {
+    State start = bench_->state({});
+    std::vector<std::size_t> open(model_.size());
+    std::iota(open.begin(), open.end(), std::size_t{0});
+    while (!open.empty()) {
+      const VectorXd gains = bench_->gains(start);
+      State best;
+      std::size_t at = open.size();
+      for (std::size_t k = 0; k < (largest_first ? open.size() : 1); ++k) {
+        State next = bench_->with(start, gains, open[k]);
+        if (next.blocks.size() == start.blocks.size()) {
+          const std::string& why = bench_->instances()[open[k]].error;
+          return fail(!why.empty() ? why
+                                   : "the readings cannot tell " + model_[open[k]].name() +
+                                         " from the rest of the model");
+        }
+        if (at == open.size() || next.squares < best.squares) best = std::move(next), at = k;
+      }
+      start = std::move(best);
+      open.erase(open.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    return in_order(bench_->settled(std::move(start)));
+  }
+
+  /// Blocks in the order of the model.
+  State in_order(State state) const {
+    std::sort(state.blocks.begin(), state.blocks.end(), [&](std::size_t a, std::size_t b) {
+      return bench_->effect_of(a) < bench_->effect_of(b);
+    });
+    return state;
+  }
+
+  /// Shapes of a state between the values of their grids, as values of the grids.
+  bool add_refined(const State& state) {
+    const std::vector<Term> coarse = terms_of_state(state);
+    const std::vector<char> searched = flags(state, true);
+    const auto fitted = fit_near(part_.table, coarse, searched, weight_);
+    if (!fitted) return false;
+    bool any = false;
+    for (std::size_t t = 0; t < coarse.size(); ++t) {
+      if (fitted->terms[t].shape == coarse[t].shape) continue;
+      bench_->add_shape(part_.table, bench_->effect_of(state.blocks[t]), fitted->terms[t].shape);
+      any = true;
+    }
+    return any;
   }
 
   VectorXd residual_of(const State& state) const {
@@ -87,17 +139,14 @@ class Explainer {
     if (!(s > 0.0)) return false;
     double least = 3.0;
     while (math::t_two_sided(least, 50.0) * static_cast<double>(n) > 0.01) least += 0.05;
-    std::vector<std::vector<double>> at_target(repeats_.targets);
-    for (std::size_t i = 0; i < n; ++i) at_target[repeats_.target[i]].push_back(e[i]);
+    std::vector<std::uint32_t> high;
+    for (std::uint32_t i = 0; i < n; ++i)
+      if (std::fabs(e[i]) >= least * s) high.push_back(i);
+    const std::vector<double> apart = apart_from_others(repeats_, high, e);
     std::vector<Suspect> now;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (std::fabs(e[i]) < least * s) continue;
-      std::vector<double> others = at_target[repeats_.target[i]];
-      others.erase(std::find(others.begin(), others.end(), e[i]));
-      const double apart = e[i] - (others.empty() ? 0.0 : math::median(others));
-      if (std::fabs(apart) < least * s) continue;
-      now.push_back({i, e[i], e[i] / s, least * s});
-    }
+    for (std::size_t k = 0; k < high.size(); ++k)
+      if (std::fabs(apart[k]) >= least * s)
+        now.push_back({high[k], e[high[k]], e[high[k]] / s, least * s});
     if (now.size() > n / 8) return false;
     const bool changed =
         now.size() != suspects_.size() ||
@@ -288,9 +337,33 @@ class Explainer {
     });
   }
 
+  /// A zero that walks: what repeats leave has a memory from one reading of a pass to the next. Its
+  /// size is that of a random walk over all passes: step^2 n/6 in square, of which a pass of m
+  /// readings keeps step^2 3m/70 when its curve of second degree is taken out.
+  std::optional<Place> walking_zero() const {
+    const Saturated left = saturate(repeats_, best_fit_.fit.residual, weight_);
+    if (!(left.dof >= 8.0)) return std::nullopt;
+    std::vector<double> before(repeats_.passes, std::numeric_limits<double>::quiet_NaN());
+    double products = 0.0, pairs = 0.0;
+    for (std::size_t i = 0; i < left.e.size(); ++i) {
+      if (!(weight_[i] > 0.0)) continue;
+      double& last = before[repeats_.pass[i]];
+      if (std::isfinite(last)) products += last * left.e[i], ++pairs;
+      last = left.e[i];
+    }
+    const double mean_square = left.squares / bench_->readings();
+    if (!(pairs >= 20.0) || !(mean_square > 0.0)) return std::nullopt;
+    const double r = products / pairs / mean_square;  // 0 +- 1/sqrt(pairs) without a memory
+    const double p = 0.5 * std::erfc(r * std::sqrt(pairs / 2.0));
+    if (!(p < memory_p)) return std::nullopt;
+    const double square = r * mean_square * static_cast<double>(repeats_.passes) * 70.0 / 18.0;
+    return Place{"time", 0.0, p, std::sqrt(square)};
+  }
+
   /// Whether something else is left in the places where this effect works: then it may be no more
-  /// than the nearest thing in the catalogue.
-  bool in_doubt(const std::string& name, const std::vector<Place>& serious) const {
+  /// than the nearest thing in the catalogue. A zero that walks can look like anything.
+  bool in_doubt(const std::string& name, const std::vector<Place>& serious,
+                const std::optional<Place>& walk) const {
     for (std::size_t t = 0; t < best_fit_.fit.terms.size(); ++t) {
       if (best_fit_.fit.terms[t].name() != name) continue;
       const VectorXd part = Eigen::Map<const VectorXd>(
@@ -299,6 +372,7 @@ class Explainer {
       // What it alone can say: effects that cancel each other may both be large.
       const double rms2 =
           (bench_->without(best_, index_of(name)).squares - best_.squares) / bench_->readings();
+      if (walk && walk->rms * walk->rms > unexplained_share * rms2) return true;
       const auto works_in = factors_of(part_, repeats_, bench_->root_weight(),
                                        bench_->root_weight().cwiseProduct(centred));
       for (const Place& place : serious)
@@ -309,12 +383,41 @@ class Explainer {
     return false;
   }
 
-  std::vector<Place> serious_places() const {
-    const double s = best_fit_.floor ? best_fit_.floor->s : best_fit_.fit.s;
+  /// Structure smaller than this is not worth a verdict.
+  double least_serious() const {
+    return least_left * (best_fit_.floor ? best_fit_.floor->s : best_fit_.fit.s);
+  }
+
+  std::vector<Place> serious(const std::vector<Place>& places) const {
     std::vector<Place> out;
-    for (const Place& place : best_fit_.places)
-      if (place.p < serious_p && place.rms > least_left * s) out.push_back(place);
+    for (const Place& place : places)
+      if (place.p < serious_p && place.rms > least_serious()) out.push_back(place);
     return out;
+  }
+
+  /// Noise alone, as large as that of a reading: what repeats leave, else what the best explanation
+  /// leaves (with root weights).
+  VectorXd noise() const {
+    const Saturated left = saturate(repeats_, best_fit_.fit.residual, weight_);
+    if (!(left.dof >= 8.0)) return residual_of(best_);
+    return bench_->root_weight().cwiseProduct(
+               Eigen::Map<const VectorXd>(left.e.data(), static_cast<Index>(left.e.size()))) *
+           std::sqrt(bench_->readings() / left.dof);
+  }
+
+  void count_false_alarms(Verdict& v) const {
+    const MatrixXd basis = bench_->basis(best_);
+    MatrixXd shuffles = shuffled(noise(), basis, repeats_.pass, seed_);
+    take_out_zeros(part_.table, bench_->root_weight(), shuffles);
+    const std::vector<char> named = named_in(*bench_, best_, shuffles, chance_);
+    const PlaceTests tests(part_, repeats_, bench_->root_weight(), basis, dof_of(best_));
+    double alarms = 0.0;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      const VectorXd one = shuffles.col(static_cast<Index>(i));
+      if (named[i] != 0 || !serious(tests(one, best_fit_.floor, least_serious())).empty()) ++alarms;
+    }
+    v.trials = named.size();
+    v.false_alarms = alarms / static_cast<double>(named.size());
   }
 
   /// Repeats of one target fall into two groups with nothing between them: no noise does that.
@@ -397,29 +500,29 @@ class Explainer {
       out_.fails.insert(out_.fails.begin(), *run);
       return true;
     }
-    return out_.verdict.suspects_share > 0.06 || two_valued();
+    return out_.verdict.suspects_share > most_suspects || two_valued();
   }
 
   void judge() {
     Verdict& v = out_.verdict;
-    v.false_alarms =
-        static_cast<double>(chance_.false_alarms) / static_cast<double>(chance_.shuffles);
-    v.trials = chance_.shuffles;
+    count_false_alarms(v);
     v.suspects_share =
         static_cast<double>(suspects_.size()) / static_cast<double>(part_.table.size());
     for (const Place& place : out_.comparison.places)
       if (place.p < place_p) out_.fails.push_back(place);
-    const std::vector<Place> serious = serious_places();
+    std::vector<Place> serious = this->serious(best_fit_.places);
+    const std::optional<Place> walk = walking_zero();
     if (contradictory()) {
       v.kind = Verdict::Kind::unrepeatable;
       return;
     }
     for (const std::string& name : out_.together)
-      if (!in_doubt(name, serious)) {
+      if (!in_doubt(name, serious, walk)) {
         v.kind = Verdict::Kind::missing;
         v.effect = name;
         break;
       }
+    if (walk) serious.insert(serious.begin(), *walk);
     if (v.kind == Verdict::Kind::missing) {
       lift(v.effect);
       out_.plans = plans_for(part_, out_.comparison.fit.terms, out_.candidates.front(), terms_,
@@ -456,21 +559,40 @@ class Explainer {
   Explanation out_;
 };
 
+/// The search on means of neighbours; how well the model and each candidate do, on all readings.
+Expected<Explanation> explain_on_means(const Part& part, const std::vector<Term>& model,
+                                       const std::vector<Term>& catalogue, std::uint64_t seed) {
+  const Repeats repeats(part.table);
+  auto suspects = suspects_of(part.table, repeats, part.table.deviation);
+  const auto weight = weights_without(part.table.size(), suspects);
+  const Part thin{part.measurements, part.axes, thinned(part.table, weight)};
+  auto out = Explainer(thin, model, catalogue, seed).run();
+  if (!out) return out;
+  auto whole = compare_without(part, out->comparison.fit.terms, repeats, std::move(suspects));
+  if (!whole) return fail(whole.error());
+  whole->places = std::move(out->comparison.places);
+  whole->means = thin.table.size();
+  out->comparison = std::move(*whole);
+  out->verdict.suspects_share =
+      static_cast<double>(out->comparison.suspects.size()) / static_cast<double>(part.table.size());
+  if (out->verdict.suspects_share > most_suspects) out->verdict.kind = Verdict::Kind::unrepeatable;
+  for (Candidate& c : out->candidates) {
+    if (!c.visible) continue;
+    std::vector<Term> terms = out->comparison.fit.terms;
+    terms.push_back(c.term);
+    c.rms = rms_with(part.table, terms, weight);
+    c.cv_rms = rms_of(cross_validated(part.table, terms, weight), weight);
+  }
+  return out;
+}
+
 }  // namespace
 
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed) {
   if (part.table.size() == 0) return fail("there are no readings of an axis to explain");
   if (part.table.size() <= thin_beyond) return Explainer(part, model, catalogue, seed).run();
-  // The search on means of neighbours; what the model leaves, on all readings.
-  const Part thin{part.measurements, part.axes, thinned(part.table)};
-  auto out = Explainer(thin, model, catalogue, seed).run();
-  if (!out) return out;
-  auto whole = compare(part, out->comparison.fit.terms);
-  if (!whole) return fail(whole.error());
-  whole->places = std::move(out->comparison.places);
-  out->comparison = std::move(*whole);
-  return out;
+  return explain_on_means(part, model, catalogue, seed);
 }
 
 }  // namespace nonio::model

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "design.h"
+#include "thin.h"
 #include "workbench.h"
 
 namespace nonio::model {
@@ -21,13 +22,13 @@ struct Design {
   MatrixXd a;                      // rows times root weights; zeros of lines first, then terms
   std::vector<std::string> names;  // of all columns
   std::vector<Index> first;        // first column of each term, and the end
+  std::vector<MatrixXd> blocks;    // of each term, as its effect gave them
 };
 
 Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms,
                            const VectorXd& root) {
   const auto n = static_cast<Index>(o.size());
   const auto lines = static_cast<Index>(lines_of(o));
-  std::vector<MatrixXd> blocks;
   Design d;
   Index columns = lines;
   for (Index k = 0; k < lines; ++k) d.names.push_back("the zero of line " + std::to_string(k + 1));
@@ -37,14 +38,14 @@ Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms
     d.first.push_back(columns);
     columns += block->cols();
     for (Index k = 0; k < block->cols(); ++k) d.names.push_back(term.name());
-    blocks.push_back(std::move(*block));
+    d.blocks.push_back(std::move(*block));
   }
   d.first.push_back(columns);
   d.a.setZero(n, columns);
   for (Index i = 0; i < n; ++i)
     d.a(i, static_cast<Index>(line_of(o, static_cast<std::size_t>(i)))) = root(i);
   for (std::size_t t = 0; t < terms.size(); ++t)
-    d.a.middleCols(d.first[t], blocks[t].cols()) = root.asDiagonal() * blocks[t];
+    d.a.middleCols(d.first[t], d.blocks[t].cols()) = root.asDiagonal() * d.blocks[t];
   return d;
 }
 
@@ -62,7 +63,7 @@ std::string inseparable(const MatrixXd& scaled, const std::vector<std::string>& 
 }
 
 struct Solution {
-  VectorXd x, residual;  // residual without weights
+  VectorXd x;
   MatrixXd cofactor;     // (A^T W A)^-1
   double squares = 0.0;  // weighted
 };
@@ -83,12 +84,7 @@ Expected<Solution> solve(const Design& d, const VectorXd& y, const VectorXd& roo
   VectorXd scaled = qr.solve(weighted);
   scaled += qr.solve(weighted - a * scaled);  // one step of refinement
   s.x = scaled.cwiseQuotient(scale);
-  const VectorXd left = weighted - a * scaled;
-  s.squares = left.squaredNorm();
-  s.residual = left;
-  for (Index i = 0; i < left.size(); ++i) {
-    if (root(i) > 0.0) s.residual(i) = left(i) / root(i);
-  }
+  s.squares = (weighted - a * scaled).squaredNorm();
   // (A^T A)^-1 = P R^-1 R^-T P^T
   const MatrixXd r_inverse = qr.matrixR()
                                  .topLeftCorner(unknowns, unknowns)
@@ -102,13 +98,49 @@ Expected<Solution> solve(const Design& d, const VectorXd& y, const VectorXd& roo
 /// Weighted sum of squares with these shapes; infinite where there is none.
 double squares_with(const Observations& o, const std::vector<Term>& terms, const VectorXd& root,
                     const VectorXd& y) {
-  const auto d = design_of(o, terms, root);
+  auto d = design_of(o, terms, root);
   if (!d) return std::numeric_limits<double>::infinity();
-  const VectorXd weighted = root.cwiseProduct(y);
-  const Eigen::HouseholderQR<MatrixXd> qr(d->a);
-  VectorXd rotated = qr.householderQ().transpose() * weighted;
-  return rotated.tail(rotated.size() - d->a.cols()).squaredNorm();
+  const Index columns = d->a.cols();
+  const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(d->a);  // in place
+  VectorXd rotated = root.cwiseProduct(y);
+  rotated.applyOnTheLeft(qr.householderQ().transpose());
+  return rotated.tail(rotated.size() - columns).squaredNorm();
 }
+
+/// Sum of squares as a function of one term's shape: all other columns are taken out once.
+class SquaresOf {
+ public:
+  SquaresOf(const Observations& o, const std::vector<Term>& terms, std::size_t t,
+            const VectorXd& root, const VectorXd& y)
+      : o_(o), root_(root), left_(root.cwiseProduct(y)) {
+    std::vector<Term> others = terms;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(t));
+    const auto d = design_of(o, others, root);
+    if (!d) return;
+    const MatrixXd scaled =
+        d->a * d->a.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal();
+    const Eigen::HouseholderQR<MatrixXd> qr(scaled);
+    others_ = qr.householderQ() * MatrixXd::Identity(scaled.rows(), scaled.cols());
+    left_ -= others_ * (others_.transpose() * left_);
+  }
+
+  /// Infinite where the term has no columns.
+  double operator()(const Term& term) const {
+    auto block = columns_of(o_, term, term.shape);
+    if (!block) return std::numeric_limits<double>::infinity();
+    *block = root_.asDiagonal() * *block;
+    if (others_.cols() > 0) *block -= others_ * (others_.transpose() * *block);
+    const Eigen::HouseholderQR<MatrixXd> qr(*block);
+    const VectorXd rotated = qr.householderQ().transpose() * left_;
+    return rotated.tail(rotated.size() - block->cols()).squaredNorm();
+  }
+
+ private:
+  const Observations& o_;
+  const VectorXd& root_;
+  VectorXd left_;
+  MatrixXd others_;
+};
 
 /// Golden section between the neighbours of a grid's best value.
 void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std::size_t k,
@@ -120,9 +152,10 @@ void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std:
   double low = below == grid.begin() ? value : *std::prev(below);
   double high = above == grid.end() ? value : *above;
   if (!(low < high)) return;
+  const SquaresOf squares_of(o, terms, t, root, y);
   const auto at = [&](double x) {
     value = x;
-    return squares_with(o, terms, root, y);
+    return squares_of(terms[t]);
   };
   constexpr double golden = 0.6180339887498949;  // (sqrt(5) - 1)/2
   const double start = value, squares = at(start);
@@ -141,7 +174,6 @@ void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std:
 /// Shapes that were not given: the grid's best.
 Expected<void> start_shapes(const Observations& o, std::vector<Term>& terms,
                             const std::vector<char>& searched, const std::vector<double>& weight) {
-  if (std::find(searched.begin(), searched.end(), 1) == searched.end()) return {};
   const Workbench bench(o, terms, weight);
   auto best = bench.best_shapes();
   if (!best) return fail(best.error());
@@ -175,6 +207,36 @@ Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::si
   if (above->cols() != linear.size() || below->cols() != linear.size())
     return fail(term.name() + ": the number of columns changes with a continuous shape");
   return VectorXd((*above - *below) * linear / (2.0 * step));
+}
+
+/// Shapes that were found on means of the readings: steps of Gauss and Newton on all of them.
+void step_shapes(const Observations& o, std::vector<Term>& terms, const std::vector<char>& searched,
+                 const VectorXd& root, const VectorXd& y) {
+  for (int round = 0; round < 2; ++round) {
+    auto d = design_of(o, terms, root);
+    if (!d) return;
+    const auto s = solve(*d, y, root);
+    if (!s) return;
+    std::vector<double*> moved;
+    std::vector<Term> next = terms;
+    for (std::size_t t = 0; t < terms.size(); ++t)
+      for (std::size_t k = 0; searched[t] && k < terms[t].shape.size(); ++k) {
+        if (!terms[t].effect->shapes[k].continuous) continue;
+        const Index columns = d->first[t + 1] - d->first[t];
+        const auto column = shape_column(o, terms[t], k, s->x.segment(d->first[t], columns));
+        if (!column) continue;
+        d->a.conservativeResize(Eigen::NoChange, d->a.cols() + 1);
+        d->a.rightCols(1) = root.cwiseProduct(*column);
+        d->names.push_back(terms[t].name());
+        moved.push_back(&next[t].shape[k]);
+      }
+    const auto joint = moved.empty() ? Expected<Solution>(fail("")) : solve(*d, y, root);
+    if (!joint) return;
+    for (std::size_t k = 0; k < moved.size(); ++k)
+      *moved[k] += joint->x(d->first.back() + static_cast<Index>(k));
+    if (!(squares_with(o, next, root, y) < s->squares)) return;
+    terms = std::move(next);
+  }
 }
 
 void name_parameters(Fit& out) {
@@ -249,7 +311,15 @@ Expected<Fit> fit(const Observations& o, std::vector<Term> terms, std::vector<do
   std::vector<char> searched;
   for (const Term& term : terms)
     searched.push_back(term.shape.empty() && !term.effect->shapes.empty());
-  if (auto found = start_shapes(o, terms, searched, weight); !found) return fail(found.error());
+  const bool any = std::find(searched.begin(), searched.end(), 1) != searched.end();
+  const Observations thin = any && o.size() > thin_beyond ? thinned(o, weight) : Observations{};
+  if (thin.size() > 0 && thin.size() < o.size()) {
+    auto near = fit(thin, terms);
+    if (!near) return fail(near.error());
+    terms = std::move(near->terms);
+  } else if (any) {
+    if (auto found = start_shapes(o, terms, searched, weight); !found) return fail(found.error());
+  }
   return fit_near(o, std::move(terms), searched, std::move(weight));
 }
 
@@ -258,7 +328,10 @@ Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
   const VectorXd root = root_weights(o, weight);
   const VectorXd y =
       Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.deviation.size()));
-  refine_shapes(o, terms, searched, root, y);
+  if (o.size() > thin_beyond)
+    step_shapes(o, terms, searched, root, y);
+  else
+    refine_shapes(o, terms, searched, root, y);
   auto design = design_of(o, terms, root);
   if (!design) return fail(design.error());
   const auto used = static_cast<Index>((root.array() > 0.0).count());
@@ -279,9 +352,8 @@ Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
   for (Index i = 0; i < y.size(); ++i)
     residual(i) -= s->x(static_cast<Index>(line_of(o, static_cast<std::size_t>(i))));
   for (std::size_t t = 0; t < out.terms.size(); ++t) {
-    const auto block = columns_of(o, out.terms[t], out.terms[t].shape);
-    if (!block) return fail(block.error());
-    const VectorXd part = *block * s->x.segment(design->first[t], block->cols());
+    const MatrixXd& block = design->blocks[t];
+    const VectorXd part = block * s->x.segment(design->first[t], block.cols());
     residual -= part;
     out.part.emplace_back(part.data(), part.data() + part.size());
   }
@@ -297,6 +369,15 @@ Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
   out.s = out.redundancy > 0 ? std::sqrt(s->squares / static_cast<double>(out.redundancy)) : 0.0;
   for (Parameter& p : out.parameters) p.u *= out.s;
   return out;
+}
+
+double rms_with(const Observations& o, const std::vector<Term>& terms,
+                const std::vector<double>& weight) {
+  const VectorXd root = root_weights(o, weight);
+  const Eigen::Map<const VectorXd> y(o.deviation.data(), static_cast<Index>(o.size()));
+  const double sum = weight.empty() ? static_cast<double>(o.size())
+                                    : std::accumulate(weight.begin(), weight.end(), 0.0);
+  return std::sqrt(squares_with(o, terms, root, y) / sum);
 }
 
 }  // namespace nonio::model

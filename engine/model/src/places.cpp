@@ -13,8 +13,6 @@
 
 namespace nonio::model {
 
-namespace {
-
 /// Columns that vary with one factor only; `repeated`: told by differences between repeats of one
 /// cell (time, run, temperature), else by the cells themselves (position, direction, phase).
 struct Factor {
@@ -24,6 +22,8 @@ struct Factor {
   std::vector<double> levels{};  // of dummies: target, run
   Quantity quantity = Quantity::number;
 };
+
+namespace {
 
 constexpr Index most_bins = 40;
 
@@ -66,6 +66,8 @@ VectorXd map(const std::vector<double>& v) {
 }
 
 MatrixXd times(const MatrixXd& columns, const VectorXd& by) { return by.asDiagonal() * columns; }
+
+}  // namespace
 
 /// Factors of the first axis that moves, and the products of two of them.
 class Factors {
@@ -143,6 +145,8 @@ class Factors {
   MatrixXd position_;  // from -1 to 1
 };
 
+namespace {
+
 /// Mean of each cell taken out of each column (rows times root weights).
 void take_out_cells(const Repeats& r, const VectorXd& root, MatrixXd& columns) {
   MatrixXd sum = MatrixXd::Zero(static_cast<Index>(r.cells), columns.cols());
@@ -192,52 +196,76 @@ std::vector<MatrixXd> bases_of(const Factors& factors, const Part& part, const R
   return out;
 }
 
-/// The level of a factor of dummies that holds most of its sum of squares, if one does.
-void find_level(const Factor& f, const Leftover& left, double s2, Place& place) {
+/// The level of a factor of dummies that holds most of its sum of squares, if one does; `s2` known
+/// from `dof`.
+void find_level(const Factor& f, const VectorXd& root, const VectorXd& residual, double s2,
+                double dof, Place& place) {
   if (f.levels.size() < 3) return;
-  double most = 0.0, total = 0.0, p_most = 1.0;
+  double most = 0.0, total = 0.0, t_most = 0.0;
   for (Index k = 0; k < f.columns.cols(); ++k) {
-    const VectorXd column = left.root_weight.cwiseProduct(f.columns.col(k));
-    const double norm = column.norm();
-    if (!(norm > 0.0)) continue;
-    const double sum = column.dot(left.residual) / norm;
-    total += sum * sum;
-    if (sum * sum <= most) continue;
-    most = sum * sum;
+    double norm2 = 0.0, sum = 0.0;
+    for (Index i = 0; i < root.size(); ++i) {
+      const double x = root(i) * f.columns(i, k);
+      norm2 += x * x;
+      sum += x * residual(i);
+    }
+    if (!(norm2 > 0.0)) continue;
+    total += sum * sum / norm2;
+    if (sum * sum / norm2 <= most) continue;
+    most = sum * sum / norm2;
     place.at = f.levels[static_cast<std::size_t>(k)];
-    p_most = math::t_two_sided(sum / std::sqrt(s2), left.floor ? left.floor->dof : left.dof) *
-             static_cast<double>(f.levels.size());
+    t_most = sum / std::sqrt(norm2 * s2);
   }
   place.at_quantity = f.quantity;
   if (most < 0.5 * total) place.at.reset();
-  place.p = std::min(place.p, 2.0 * p_most);
+  const double p = math::t_two_sided(t_most, dof) * static_cast<double>(f.levels.size());
+  place.p = std::min(place.p, 2.0 * p);
 }
 
 }  // namespace
 
-std::vector<Place> places_of(const Leftover& left) {
-  const Factors factors(left.part, left.repeats);
-  const auto bases = bases_of(factors, left.part, left.repeats, left.root_weight, left.basis);
-  const double squares = left.residual.squaredNorm();
+struct PlaceTests::Tests {
+  Factors factors;
+  std::vector<MatrixXd> bases;
+  VectorXd root;
+  double dof;
+};
+
+PlaceTests::PlaceTests(const Part& part, const Repeats& repeats, const VectorXd& root_weight,
+                       const MatrixXd& basis, double dof)
+    : tests_(new Tests{Factors(part, repeats), {}, root_weight, dof}) {
+  tests_->bases = bases_of(tests_->factors, part, repeats, root_weight, basis);
+}
+
+PlaceTests::~PlaceTests() = default;
+
+std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
+                                          const std::optional<NoiseFloor>& floor,
+                                          double least) const {
+  const double squares = residual.squaredNorm();
+  const bool known = floor && floor->dof >= 8.0;
   std::vector<Place> places;
-  for (std::size_t f = 0; f < bases.size(); ++f) {
-    const auto k = static_cast<double>(bases[f].cols());
+  double tested = 0.0;
+  for (std::size_t f = 0; f < tests_->bases.size(); ++f) {
+    const auto k = static_cast<double>(tests_->bases[f].cols());
     if (k == 0.0) continue;
-    const double here = (bases[f].transpose() * left.residual).squaredNorm();
-    const bool known = left.floor && left.floor->dof >= 8.0;
-    const double dof = known ? left.floor->dof : left.dof - k;
+    const double here = (tests_->bases[f].transpose() * residual).squaredNorm();
+    const double dof = known ? floor->dof : tests_->dof - k;
     if (!(dof >= 3.0)) continue;
-    const double s2 = known ? left.floor->s * left.floor->s : (squares - here) / dof;
-    Place place;
-    place.where = factors.all()[f].name;
-    place.p = math::f_upper(here / k / s2, k, dof);
+    ++tested;
+    const double s2 = known ? floor->s * floor->s : (squares - here) / dof;
     const double excess = std::max(here - k * s2, 0.0);
+    Place place;
+    place.rms = std::sqrt(excess / static_cast<double>(residual.size()));
+    if (!(place.rms > least)) continue;
+    place.where = tests_->factors.all()[f].name;
+    place.p = math::f_upper(here / k / s2, k, dof);
     place.share = squares > 0.0 ? excess / squares : 0.0;
-    place.rms = std::sqrt(excess / static_cast<double>(left.residual.size()));
-    find_level(factors.all()[f], left, s2, place);
+    find_level(tests_->factors.all()[f], tests_->root, residual, s2,
+               floor ? floor->dof : tests_->dof, place);
     places.push_back(std::move(place));
   }
-  for (Place& place : places) place.p = std::min(1.0, place.p * static_cast<double>(places.size()));
+  for (Place& place : places) place.p = std::min(1.0, place.p * tested);
   std::stable_sort(places.begin(), places.end(),
                    [](const Place& a, const Place& b) { return a.share > b.share; });
   return places;
@@ -276,8 +304,8 @@ std::vector<Place> seats_of(const Leftover& left) {
     const double dof = left.dof - k;
     seat.p = math::f_upper(fall / k / ((rest.squaredNorm() - fall) / dof), k, dof) *
              static_cast<double>(bases.size());
-    Leftover now{left.part, left.repeats, left.root_weight, rest, left.basis, left.dof, left.floor};
-    find_level(factors.all()[best], now, (rest.squaredNorm() - fall) / dof, seat);
+    find_level(factors.all()[best], left.root_weight, rest, (rest.squaredNorm() - fall) / dof,
+               left.floor ? left.floor->dof : left.dof, seat);
     seats.push_back(std::move(seat));
     const MatrixXd chosen = bases[best];
     rest -= chosen * (chosen.transpose() * rest);

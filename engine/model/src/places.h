@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "design.h"
@@ -19,8 +20,21 @@ struct Leftover {
   const std::optional<NoiseFloor>& floor;
 };
 
-/// Every place that these readings can show, with its share of what is left.
-std::vector<Place> places_of(const Leftover&);
+/// The tests of every place that these readings can show, for one residual of a model or many.
+class PlaceTests {
+ public:
+  /// `basis` of the model as in Leftover.
+  PlaceTests(const Part&, const Repeats&, const VectorXd& root_weight, const MatrixXd& basis,
+             double dof);
+  ~PlaceTests();
+  /// With the share of what is left, largest first; only those whose rms is above `least`.
+  std::vector<Place> operator()(const VectorXd& residual, const std::optional<NoiseFloor>& floor,
+                                double least = -1.0) const;
+
+ private:
+  struct Tests;
+  std::unique_ptr<Tests> tests_;
+};
 
 /// The fewest places that hold what is left: one after the other, each with all that its factors
 /// say together ("direction x time" with what is constant in time), as long as the evidence pays

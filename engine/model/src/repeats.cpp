@@ -2,10 +2,11 @@
 #include "repeats.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <tuple>
+#include <span>
+#include <unordered_map>
 
 #include "design.h"
 #include "nonio/math/distributions.h"
@@ -15,62 +16,96 @@ namespace nonio::model {
 
 namespace {
 
-/// Names things by their first appearance.
-template <class Key>
-class Numbers {
+/// What is left of a group of `before` when it is divided by `by`; numbered by first appearance.
+std::vector<std::uint32_t> divided(const std::vector<std::uint32_t>& before,
+                                   const std::vector<std::uint64_t>& by, std::size_t& groups) {
+  struct Hash {
+    std::size_t operator()(const std::pair<std::uint32_t, std::uint64_t>& key) const {
+      std::uint64_t h = (key.second ^ (std::uint64_t{key.first} << 32)) * 0x9e3779b97f4a7c15ULL;
+      return static_cast<std::size_t>(h ^ (h >> 32));
+    }
+  };
+  std::unordered_map<std::pair<std::uint32_t, std::uint64_t>, std::uint32_t, Hash> known;
+  std::vector<std::uint32_t> out(before.size());
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = known.try_emplace({before[i], by[i]}, static_cast<std::uint32_t>(known.size()))
+                 .first->second;
+  groups = known.size();
+  return out;
+}
+
+/// Rows of each group, in their order, in one array.
+class Members {
  public:
-  std::uint32_t operator()(const Key& key) {
-    return known_.try_emplace(key, static_cast<std::uint32_t>(known_.size())).first->second;
+  Members(const std::vector<std::uint32_t>& group, std::size_t groups)
+      : first_(groups + 1, 0), rows_(group.size()) {
+    for (const std::uint32_t g : group) ++first_[g + 1];
+    for (std::size_t g = 0; g < groups; ++g) first_[g + 1] += first_[g];
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t i = 0; i < group.size(); ++i)
+      rows_[next[group[i]]++] = static_cast<std::uint32_t>(i);
   }
-  std::size_t size() const { return known_.size(); }
+  std::size_t size() const { return first_.size() - 1; }
+  std::span<const std::uint32_t> operator[](std::size_t g) const {
+    return {rows_.data() + first_[g], first_[g + 1] - first_[g]};
+  }
 
  private:
-  std::map<Key, std::uint32_t> known_;
+  std::vector<std::size_t> first_;
+  std::vector<std::uint32_t> rows_;
 };
 
-std::vector<std::vector<std::uint32_t>> members(const std::vector<std::uint32_t>& group,
-                                                std::size_t groups) {
-  std::vector<std::vector<std::uint32_t>> out(groups);
-  for (std::size_t i = 0; i < group.size(); ++i)
-    out[group[i]].push_back(static_cast<std::uint32_t>(i));
-  return out;
+/// Median of values whose order may be changed.
+double median_of(std::span<double> x) {
+  const std::size_t half = x.size() / 2;
+  if (x.size() <= 8)
+    std::sort(x.begin(), x.end());
+  else
+    std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(half), x.end());
+  if (x.size() % 2 == 1) return x[half];
+  const double lower = *std::max_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(half));
+  return lower + (x[half] - lower) / 2.0;
 }
 
 }  // namespace
 
 Repeats::Repeats(const Observations& o) {
   const std::size_t n = o.size();
-  Numbers<std::tuple<std::uint32_t, std::vector<double>>> target_number;
-  Numbers<std::tuple<std::uint32_t, std::vector<std::int8_t>>> cell_number, side_number;
-  Numbers<std::tuple<std::uint32_t, std::uint32_t>> pass_number;
-  std::vector<double> place(o.axes.size());
-  std::vector<std::int8_t> from(o.axes.size());
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t a = 0; a < o.axes.size(); ++a) {
-      place[a] = o.axes[a].position[i];
-      from[a] = o.axes[a].approach.empty() ? std::int8_t{0} : o.axes[a].approach[i];
-    }
-    const std::uint32_t line = line_of(o, i);
-    target.push_back(target_number({line, place}));
-    cell.push_back(cell_number({target.back(), from}));
-    const std::uint32_t of_side = side_number({line, from});
-    pass.push_back(pass_number({of_side, o.run.empty() ? 1 : o.run[i]}));
-    if (pass.back() == side.size()) side.push_back(of_side);
+  std::vector<std::uint64_t> by(n);
+  std::vector<std::uint32_t> line(n), of_side;
+  for (std::size_t i = 0; i < n; ++i) line[i] = line_of(o, i);
+  target = line;
+  for (const auto& axis : o.axes) {
+    // 0.0 is added so that -0.0 is 0.0.
+    for (std::size_t i = 0; i < n; ++i)
+      by[i] = std::bit_cast<std::uint64_t>(axis.position[i] + 0.0);
+    target = divided(target, by, targets);
   }
-  targets = target_number.size();
-  cells = cell_number.size();
-  passes = pass_number.size();
-  sides = side_number.size();
+  cell = target, cells = targets;
+  of_side = divided(line, std::vector<std::uint64_t>(n, 0), sides);
+  for (const auto& axis : o.axes) {
+    if (axis.approach.empty()) continue;
+    for (std::size_t i = 0; i < n; ++i) by[i] = static_cast<std::uint64_t>(axis.approach[i] + 1);
+    cell = divided(cell, by, cells);
+    of_side = divided(of_side, by, sides);
+  }
+  for (std::size_t i = 0; i < n; ++i) by[i] = o.run.empty() ? 1 : o.run[i];
+  pass = divided(of_side, by, passes);
+  side.resize(passes);
+  for (std::size_t i = 0; i < n; ++i) side[pass[i]] = of_side[i];
   order.assign(n, 0.0);
-  for (const auto& rows : members(pass, passes))
+  const Members of_pass(pass, passes);
+  for (std::size_t p = 0; p < passes; ++p) {
+    const auto rows = of_pass[p];
     for (std::size_t k = 0; k < rows.size() && rows.size() > 1; ++k)
       order[rows[k]] = 2.0 * static_cast<double>(k) / static_cast<double>(rows.size() - 1) - 1.0;
+  }
 }
 
 Saturated saturate(const Repeats& r, const std::vector<double>& y,
                    const std::vector<double>& weight) {
   const std::size_t n = y.size();
-  const auto cells = members(r.cell, r.cells), passes = members(r.pass, r.passes);
+  const Members cells(r.cell, r.cells), passes(r.pass, r.passes);
   const auto w = [&](std::uint32_t i) { return weight.empty() ? 1.0 : weight[i]; };
   Saturated out;
   out.e = y;
@@ -79,13 +114,15 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
   std::vector<MatrixXd> value(r.passes);  // the same columns at all rows
   std::vector<Index> columns(r.passes, 0);
   for (std::size_t p = 0; p < r.passes; ++p) {
-    const auto& rows = passes[p];
+    const auto rows = passes[p];
     const auto used = std::count_if(rows.begin(), rows.end(), [&](auto i) { return w(i) > 0.0; });
     const Index k = used >= 10 ? 3 : used >= 6 ? 2 : used >= 1 ? 1 : 0;
     MatrixXd b(static_cast<Index>(rows.size()), k);
     for (std::size_t i = 0; i < rows.size(); ++i)
       for (Index c = 0; c < k; ++c)
-        b(static_cast<Index>(i), c) = std::pow(r.order[rows[i]], static_cast<double>(c));
+        b(static_cast<Index>(i), c) = c == 0   ? 1.0
+                                      : c == 1 ? r.order[rows[i]]
+                                               : r.order[rows[i]] * r.order[rows[i]];
     // Gram-Schmidt with the weights, carried out on all rows.
     MatrixXd wb = b;
     for (Index c = 0; c < k; ++c) {
@@ -106,7 +143,8 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
   VectorXd part;
   double before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < 200; ++round) {
-    for (const auto& rows : cells) {
+    for (std::size_t c = 0; c < r.cells; ++c) {
+      const auto rows = cells[c];
       double sum = 0.0, weights = 0.0;
       for (const auto i : rows) sum += w(i) * out.e[i], weights += w(i);
       if (weights > 0.0)
@@ -114,7 +152,7 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
     }
     double squares = 0.0;
     for (std::size_t p = 0; p < r.passes; ++p) {
-      const auto& rows = passes[p];
+      const auto rows = passes[p];
       part.resize(static_cast<Index>(rows.size()));
       for (std::size_t i = 0; i < rows.size(); ++i) part(static_cast<Index>(i)) = out.e[rows[i]];
       part -= value[p] * (basis[p].transpose() * part);
@@ -129,8 +167,8 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
   }
   double used = 0.0, cells_used = 0.0;
   for (std::uint32_t i = 0; i < n; ++i) used += w(i) > 0.0 ? 1.0 : 0.0;
-  for (const auto& rows : cells)
-    cells_used += std::any_of(rows.begin(), rows.end(), [&](auto i) { return w(i) > 0.0; });
+  for (std::size_t c = 0; c < r.cells; ++c)
+    cells_used += std::any_of(cells[c].begin(), cells[c].end(), [&](auto i) { return w(i) > 0.0; });
   out.dof = used - cells_used;
   // What the passes of a side have in common is in its cells already.
   std::vector<Index> common(r.sides, 0);
@@ -153,23 +191,25 @@ namespace {
 /// What is left when the median of its target and the running median of its pass are taken out of
 /// each reading, twice: no model, and a misread value spoils no other.
 std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
-  const auto targets = members(r.target, r.targets), passes = members(r.pass, r.passes);
-  std::vector<double> e = y, some;
+  const Members targets(r.target, r.targets), passes(r.pass, r.passes);
+  std::vector<double> e = y, some, smooth;
   for (int round = 0; round < 3; ++round) {
-    for (const auto& rows : targets) {
+    for (std::size_t t = 0; t < r.targets; ++t) {
+      const auto rows = targets[t];
       if (rows.size() < 3) continue;
       some.clear();
       for (const auto i : rows) some.push_back(e[i]);
-      const double m = math::median(some);
+      const double m = median_of(some);
       for (const auto i : rows) e[i] -= m;
     }
-    for (const auto& rows : passes) {
-      std::vector<double> smooth(rows.size(), 0.0);
+    for (std::size_t p = 0; p < r.passes; ++p) {
+      const auto rows = passes[p];
+      smooth.assign(rows.size(), 0.0);
       for (std::size_t k = 0; k < rows.size(); ++k) {
         some.clear();
         for (std::size_t j = k >= 3 ? k - 3 : 0; j < std::min(k + 4, rows.size()); ++j)
           if (j != k || rows.size() == 1) some.push_back(e[rows[j]]);
-        smooth[k] = math::median(some);
+        smooth[k] = median_of(some);
       }
       for (std::size_t k = 0; k < rows.size(); ++k) e[rows[k]] -= smooth[k];
     }
@@ -177,15 +217,33 @@ std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
   return e;
 }
 
-double median_of_others(const std::vector<std::uint32_t>& rows, std::uint32_t i,
-                        const std::vector<double>& e) {
-  std::vector<double> others;
-  for (const auto k : rows)
-    if (k != i) others.push_back(e[k]);
-  return others.empty() ? 0.0 : math::median(others);
-}
-
 }  // namespace
+
+std::vector<double> apart_from_others(const Repeats& r, const std::vector<std::uint32_t>& rows,
+                                      const std::vector<double>& e) {
+  // Of each target that is asked for, its values in order: one left out moves the middle by one.
+  std::vector<std::size_t> asked(r.targets, 0);
+  std::size_t lists = 0;
+  for (const auto i : rows)
+    if (asked[r.target[i]] == 0) asked[r.target[i]] = ++lists;
+  std::vector<std::vector<double>> values(lists);
+  for (std::size_t i = 0; i < e.size() && lists > 0; ++i)
+    if (const std::size_t list = asked[r.target[i]]; list > 0) values[list - 1].push_back(e[i]);
+  for (auto& v : values) std::sort(v.begin(), v.end());
+  std::vector<double> out;
+  for (const auto i : rows) {
+    const std::vector<double>& v = values[asked[r.target[i]] - 1];
+    const std::size_t others = v.size() - 1;
+    const auto own =
+        static_cast<std::size_t>(std::lower_bound(v.begin(), v.end(), e[i]) - v.begin());
+    const auto other = [&](std::size_t k) { return v[k < own ? k : k + 1]; };
+    out.push_back(others == 0 ? e[i]
+                              : e[i] - (others % 2 == 1
+                                            ? other(others / 2)
+                                            : (other(others / 2 - 1) + other(others / 2)) / 2.0));
+  }
+  return out;
+}
 
 std::vector<Suspect> suspects_of(const Observations&, const Repeats& r,
                                  const std::vector<double>& y) {
@@ -195,15 +253,15 @@ std::vector<Suspect> suspects_of(const Observations&, const Repeats& r,
   // Taking out medians takes out noise too: measured, 1.1 to 1.25 with 4 to 10 readings a target.
   const double s_rough = 1.2 * math::robust_deviation(e);
   if (!(s_rough > 0.0)) return {};
-  const auto targets = members(r.target, r.targets);
   std::vector<double> weight(n, 1.0);
-  std::vector<std::uint32_t> flagged;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const double apart = e[i] - median_of_others(targets[r.target[i]], i, e);
-    if (std::fabs(e[i]) > 3.5 * s_rough && std::fabs(apart) > 3.5 * s_rough) {
-      flagged.push_back(i);
-      weight[i] = 0.0;
-    }
+  std::vector<std::uint32_t> high, flagged;
+  for (std::uint32_t i = 0; i < n; ++i)
+    if (std::fabs(e[i]) > 3.5 * s_rough) high.push_back(i);
+  const std::vector<double> apart = apart_from_others(r, high, e);
+  for (std::size_t k = 0; k < high.size(); ++k) {
+    if (!(std::fabs(apart[k]) > 3.5 * s_rough)) continue;
+    flagged.push_back(high[k]);
+    weight[high[k]] = 0.0;
   }
   if (flagged.empty() || flagged.size() > n / 4) return {};
   const Saturated left = saturate(r, y, weight);
@@ -213,6 +271,8 @@ std::vector<Suspect> suspects_of(const Observations&, const Repeats& r,
   const double dof = known ? floor->dof : static_cast<double>(n) / 4.0;
   std::vector<double> in_cell(r.cells, 0.0);
   for (std::size_t i = 0; i < n; ++i) in_cell[r.cell[i]] += weight[i];
+  double least = 3.0;  // smallest t that would be named
+  while (math::t_two_sided(least, dof) * static_cast<double>(n) > 0.01) least += 0.01;
   std::vector<Suspect> out;
   for (const auto i : flagged) {
     const double others = in_cell[r.cell[i]];
@@ -222,8 +282,6 @@ std::vector<Suspect> suspects_of(const Observations&, const Repeats& r,
     const double sigma = s * std::sqrt(1.0 + (repeated ? 1.0 / others + 0.2 : 0.3));
     const double t = residual / sigma;
     if (math::t_two_sided(t, dof) * static_cast<double>(n) > 0.01) continue;
-    double least = 3.0;  // smallest t that would be named
-    while (math::t_two_sided(least, dof) * static_cast<double>(n) > 0.01) least += 0.01;
     out.push_back({i, residual, t, least * sigma});
   }
   return out;

@@ -29,6 +29,10 @@ Saturated saturate(const Repeats&, const std::vector<double>& y, const std::vect
 
 std::optional<NoiseFloor> noise_floor(const Saturated&);
 
+/// Of each of `rows` its value less the median of the other readings of its target.
+std::vector<double> apart_from_others(const Repeats&, const std::vector<std::uint32_t>& rows,
+                                      const std::vector<double>& e);
+
 /// Readings that contradict their repeats and their neighbours: found by medians, then tested
 /// against the scatter of the others (Student, corrected for the number of readings).
 std::vector<Suspect> suspects_of(const Observations&, const Repeats&, const std::vector<double>& y);

@@ -107,12 +107,9 @@ double Chance::corrected(double p) const {
   return -std::expm1(trials * std::log1p(-std::min(p, 1.0)));
 }
 
-namespace {
-
-constexpr std::size_t stretch = 5;  // readings whose sign is flipped together
-
-MatrixXd shuffled(const VectorXd& residual, const std::vector<std::uint32_t>& pass,
-                  std::size_t shuffles, std::uint64_t seed) {
+MatrixXd shuffled(const VectorXd& residual, const MatrixXd& basis,
+                  const std::vector<std::uint32_t>& pass, std::uint64_t seed) {
+  constexpr std::size_t stretch = 5, shuffles = 200;  // readings whose sign is flipped together
   std::vector<std::size_t> block(pass.size());
   std::vector<std::size_t> in_pass, current;
   std::size_t blocks = 0;
@@ -129,8 +126,11 @@ MatrixXd shuffled(const VectorXd& residual, const std::vector<std::uint32_t>& pa
     for (Index i = 0; i < out.rows(); ++i)
       out(i, s) = sign[block[static_cast<std::size_t>(i)]] * residual(i);
   }
+  out -= basis * (basis.transpose() * out);
   return out;
 }
+
+namespace {
 
 /// One effect added to a complete model in every shuffle: its p, and whether the criterion falls.
 struct Added {
@@ -142,19 +142,15 @@ class ChanceOf {
  public:
   ChanceOf(const Workbench& bench, const State& complete, const MatrixXd& noise)
       : bench_(bench),
-        columns_(bench.columns_of_state(complete)),
-        llt_(bench.gram()(columns_, columns_)),
+        llt_(bench.gram(complete.blocks)),
+        with_complete_(bench.products(complete.blocks)),
         products_(bench.columns().transpose() * noise),
         squares_(noise.colwise().squaredNorm().transpose()) {
-    if (!columns_.empty()) {
-      z_ = products_(columns_, Eigen::all);
-      llt_.matrixL().solveInPlace(z_);
-      squares_ -= z_.colwise().squaredNorm().transpose();
-    }
     dof_ = bench.readings() - static_cast<double>(bench.zeros() + complete.parameters);
   }
 
-  Added add(std::size_t effect) const {
+  /// p of those only that lower the criterion, if asked for: an F-test costs more than all else.
+  Added add(std::size_t effect, bool better_only) const {
     const Workbench::Instance& instance = bench_.instances()[effect];
     const Index shuffles = products_.cols();
     Added out{std::vector<double>(static_cast<std::size_t>(shuffles), 1.0),
@@ -163,13 +159,12 @@ class ChanceOf {
     VectorXd k_of_best = VectorXd::Ones(shuffles);
     for (const std::size_t b : instance.blocks) {
       const Workbench::Block& block = bench_.blocks()[b];
-      MatrixXd s = bench_.gram().block(block.first, block.first, block.count, block.count);
+      MatrixXd s = block.own;
       MatrixXd t = products_.middleRows(block.first, block.count);
-      if (!columns_.empty()) {
-        MatrixXd w = bench_.gram()(columns_, Eigen::seqN(block.first, block.count));
+      if (with_complete_.cols() > 0) {
+        MatrixXd w = with_complete_.middleRows(block.first, block.count).transpose();
         llt_.matrixL().solveInPlace(w);
         s.noalias() -= w.transpose() * w;
-        t.noalias() -= w.transpose() * z_;
       }
       const Eigen::LLT<MatrixXd> llt(s);
       if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > 1e-4)) continue;
@@ -192,6 +187,7 @@ class ChanceOf {
     for (Index i = 0; i < shuffles; ++i) {
       const auto at = static_cast<std::size_t>(i);
       out.better[at] = best(i) > 0.0 && fall_of_best(i) > 0.0;
+      if (better_only && out.better[at] == 0) continue;
       const double dof = dof_ - k_of_best(i);
       out.p[at] =
           math::f_upper(fall_of_best(i) / k_of_best(i) / ((squares_(i) - fall_of_best(i)) / dof),
@@ -202,39 +198,39 @@ class ChanceOf {
 
  private:
   const Workbench& bench_;
-  std::vector<Index> columns_;
   Eigen::LLT<MatrixXd> llt_;
-  MatrixXd products_, z_;
+  MatrixXd with_complete_, products_;
   VectorXd squares_;
   double dof_ = 0.0;
 };
 
 }  // namespace
 
-Chance measure_chance(const Workbench& bench, const State& complete,
-                      const std::vector<std::uint32_t>& pass, std::uint64_t seed) {
-  constexpr std::size_t shuffles = 200;
-  VectorXd residual = bench.y();
-  const MatrixXd basis = bench.basis(complete);
-  residual -= basis * (basis.transpose() * residual);
-  const ChanceOf of(bench, complete, shuffled(residual, pass, shuffles, seed));
-  std::vector<double> least(shuffles, 1.0), least_better(shuffles, 1.0);
+Chance measure_chance(const Workbench& bench, const State& complete, const MatrixXd& shuffled) {
+  const ChanceOf of(bench, complete, shuffled);
+  std::vector<double> least(static_cast<std::size_t>(shuffled.cols()), 1.0);
   for (std::size_t e = 0; e < bench.instances().size(); ++e) {
     if (bench.holds(complete, e)) continue;
-    const Added added = of.add(e);
-    for (std::size_t i = 0; i < shuffles; ++i) {
-      least[i] = std::min(least[i], added.p[i]);
-      if (added.better[i]) least_better[i] = std::min(least_better[i], added.p[i]);
-    }
+    const Added added = of.add(e, false);
+    for (std::size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], added.p[i]);
   }
   // The smallest of m independent p: -ln(1 - p) is exponential with rate m.
   double sum = 0.0;
   for (const double p : least) sum -= std::log1p(-std::min(p, 1.0 - 1e-12));
-  Chance out;
-  out.shuffles = shuffles;
-  out.trials = std::max(static_cast<double>(shuffles) / std::max(sum, 1e-12), 1.0);
-  for (const double p : least_better) out.false_alarms += p < 1.0 && out.corrected(p) < named_below;
-  return out;
+  return {std::max(static_cast<double>(least.size()) / std::max(sum, 1e-12), 1.0)};
+}
+
+std::vector<char> named_in(const Workbench& bench, const State& complete, const MatrixXd& shuffled,
+                           const Chance& chance) {
+  const ChanceOf of(bench, complete, shuffled);
+  std::vector<char> named(static_cast<std::size_t>(shuffled.cols()), 0);
+  for (std::size_t e = 0; e < bench.instances().size(); ++e) {
+    if (bench.holds(complete, e)) continue;
+    const Added added = of.add(e, true);
+    for (std::size_t i = 0; i < named.size(); ++i)
+      if (added.better[i] != 0 && chance.corrected(added.p[i]) < named_below) named[i] = 1;
+  }
+  return named;
 }
 
 }  // namespace nonio::model

@@ -16,17 +16,22 @@ Workbench::State best_explanation(const Workbench& bench, const Workbench::State
 /// What noise alone finds in this search when `complete` holds all that there is.
 struct Chance {
   double trials = 1.0;  ///< independent tests that the search amounts to
-  std::size_t shuffles = 0;
-  std::size_t false_alarms = 0;  ///< shuffles in which an effect would have been named
 
   /// 1 - (1 - p)^trials
   double corrected(double p) const;
 };
 
-/// The residuals of `complete` with the signs of short stretches of their passes flipped at random:
-/// what neighbours share within a pass stays.
+/// `residual` with the signs of short stretches of its passes flipped at random (what neighbours
+/// share within a pass stays), less what `basis` says of it: a column for each shuffle.
+MatrixXd shuffled(const VectorXd& residual, const MatrixXd& basis,
+                  const std::vector<std::uint32_t>& pass, std::uint64_t seed);
+
 Chance measure_chance(const Workbench& bench, const Workbench::State& complete,
-                      const std::vector<std::uint32_t>& pass, std::uint64_t seed);
+                      const MatrixXd& shuffled);
+
+/// Of each shuffle, whether an effect would be named.
+std::vector<char> named_in(const Workbench& bench, const Workbench::State& complete,
+                           const MatrixXd& shuffled, const Chance& chance);
 
 /// F-test of one effect of a state against the rest; not corrected for any search.
 double p_of(const Workbench& bench, const Workbench::State& state, std::size_t effect);

@@ -10,26 +10,36 @@ namespace nonio::model {
 
 namespace {
 
-constexpr std::size_t most_runs = 20, most_positions = 100;
+constexpr std::size_t most_runs = 20, least_positions = 25;
 
-/// Ranks of values, joined so that at most so many groups are left.
-std::map<double, std::size_t> groups(const std::vector<double>& values, std::size_t most) {
-  std::map<double, std::size_t> rank;
-  for (const double v : values) rank.try_emplace(v, 0);
-  const std::size_t together = (rank.size() + most - 1) / most;
-  std::size_t k = 0;
-  for (auto& [value, group] : rank) group = k++ / together;
-  return rank;
+/// Group of each value when neighbours among the distinct ones are joined to at most `most` groups.
+std::vector<std::size_t> grouped(const std::vector<double>& values, std::size_t most) {
+  std::vector<double> distinct = values;
+  std::sort(distinct.begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  const std::size_t together = (distinct.size() + most - 1) / most;
+  std::vector<std::size_t> out;
+  out.reserve(values.size());
+  for (const double v : values)
+    out.push_back(static_cast<std::size_t>(std::lower_bound(distinct.begin(), distinct.end(), v) -
+                                           distinct.begin()) /
+                  together);
+  return out;
 }
 
 }  // namespace
 
-Observations thinned(const Observations& o) {
+Observations thinned(const Observations& o, const std::vector<double>& weight) {
   if (o.axes.size() != 1 || o.axes.front().approach.size() != o.size()) return o;
   const auto& axis = o.axes.front();
-  const std::vector<double> runs(o.run.begin(), o.run.end());
-  const auto run_group = groups(runs, most_runs);
-  const auto place_group = groups(axis.position, most_positions);
+  std::vector<double> runs(o.run.begin(), o.run.end());
+  runs.resize(o.size(), 1.0);
+  // So many means fit into `thin_beyond` on each side of each line.
+  const std::size_t means = thin_beyond / 2 / std::max<std::size_t>(o.lines.size(), 1);
+  const auto run_group =
+      grouped(runs, std::clamp<std::size_t>(means / least_positions, 2, most_runs));
+  const std::size_t run_groups = *std::max_element(run_group.begin(), run_group.end()) + 1;
+  const auto place_group = grouped(axis.position, std::max(least_positions, means / run_groups));
   Observations out;
   out.measurement = o.measurement;
   out.angular = o.angular;
@@ -44,10 +54,11 @@ Observations thinned(const Observations& o) {
     to[row] += (from[i] - to[row]) / count[row];
   };
   for (std::size_t i = 0; i < o.size(); ++i) {
-    const std::size_t run = runs.empty() ? 0 : run_group.at(runs[i]);
+    if (!weight.empty() && !(weight[i] > 0.0)) continue;
+    const std::size_t run = run_group[i];
     const std::uint32_t line = o.line.empty() ? 0 : o.line[i];
-    const auto [at, fresh] = row_of.try_emplace(
-        {line, run, axis.approach[i], place_group.at(axis.position[i])}, count.size());
+    const auto [at, fresh] =
+        row_of.try_emplace({line, run, axis.approach[i], place_group[i]}, count.size());
     const std::size_t row = at->second;
     if (fresh) {
       count.push_back(0.0);

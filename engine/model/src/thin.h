@@ -5,11 +5,13 @@
 
 namespace nonio::model {
 
-/// Tables longer than this are searched in a shorter form.
+/// Longer tables are searched, and their places are told, from means of their readings.
 inline constexpr std::size_t thin_beyond = 6000;
 
 /// Means of readings that lie close together: of one line and direction, of neighbouring runs and
-/// neighbouring positions. The noise of a mean is smaller; what varies slowly stays.
-Observations thinned(const Observations& o);
+/// neighbouring positions, as many as stay below `thin_beyond` rows where that leaves 2 runs and 25
+/// positions. Readings of weight 0 are left out. The noise of a mean is smaller; what varies slowly
+/// stays.
+Observations thinned(const Observations& o, const std::vector<double>& weight);
 
 }  // namespace nonio::model

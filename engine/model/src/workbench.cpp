@@ -60,11 +60,46 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
     x_.middleCols(columns, part.cols()) = part;
     columns += part.cols();
   }
-  gram_.setZero(columns, columns);
-  gram_.selfadjointView<Eigen::Lower>().rankUpdate(x_.transpose());
-  gram_.triangularView<Eigen::StrictlyUpper>() = gram_.transpose();
+  products_.resize(blocks_.size());
   xy_ = x_.transpose() * y_;
   yy_ = y_.squaredNorm();
+}
+
+MatrixXd Workbench::columns_for(const Observations& o, Instance& instance,
+                                const std::vector<double>& shape, bool& of_position) const {
+  const auto columns = columns_of(o, instance.term, shape);
+  if (!columns) {
+    instance.error = columns.error().message;
+    return {};
+  }
+  MatrixXd part = root_.asDiagonal() * *columns;
+  const VectorXd before = part.colwise().norm().transpose();
+  take_out_zeros(o, root_, part);
+  const VectorXd after = part.colwise().norm().transpose();
+  if (part.cols() == 0 || !(after.array() > 1e-9 * before.array()).all()) return {};
+  of_position = varies_with_target_only(*columns, target_);
+  return part * after.cwiseInverse().asDiagonal();
+}
+
+void Workbench::add_shape(const Observations& o, std::size_t effect,
+                          const std::vector<double>& shape) {
+  Block block{effect, shape, x_.cols(), 0, false};
+  const MatrixXd part = columns_for(o, instances_[effect], shape, block.of_position);
+  if (part.cols() == 0) return;
+  const Index columns = x_.cols() + part.cols();
+  x_.conservativeResize(Eigen::NoChange, columns);
+  x_.rightCols(part.cols()) = part;
+  xy_.conservativeResize(columns);
+  xy_.tail(part.cols()).noalias() = part.transpose() * y_;
+  push(std::move(block), part);
+  products_.assign(blocks_.size(), {});
+}
+
+void Workbench::push(Block block, const MatrixXd& columns) {
+  block.count = columns.cols();
+  block.own.noalias() = columns.transpose() * columns;
+  instances_[block.effect].blocks.push_back(blocks_.size());
+  blocks_.push_back(std::move(block));
 }
 
 void Workbench::add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts) {
@@ -72,19 +107,10 @@ void Workbench::add(const Observations& o, std::size_t effect, std::vector<Matri
   const auto shapes = shapes_of(o, instance.term);
   Index at = parts.empty() ? 0 : blocks_.back().first + blocks_.back().count;
   for (const std::vector<double>& shape : shapes) {
-    auto columns = columns_of(o, instance.term, shape);
-    if (!columns) {
-      instance.error = columns.error().message;
-      continue;
-    }
-    MatrixXd part = root_.asDiagonal() * *columns;
-    const VectorXd before = part.colwise().norm().transpose();
-    take_out_zeros(o, root_, part);
-    const VectorXd after = part.colwise().norm().transpose();
-    if (part.cols() == 0 || !(after.array() > 1e-9 * before.array()).all()) continue;
-    part = part * after.cwiseInverse().asDiagonal();
-    instance.blocks.push_back(blocks_.size());
-    blocks_.push_back({effect, shape, at, part.cols(), varies_with_target_only(*columns, target_)});
+    bool of_position = false;
+    MatrixXd part = columns_for(o, instance, shape, of_position);
+    if (part.cols() == 0) continue;
+    push({effect, shape, at, 0, of_position}, part);
     at += part.cols();
     parts.push_back(std::move(part));
   }
@@ -120,22 +146,20 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
   State out;
   out.blocks = std::move(blocks);
   const std::vector<Index> columns = columns_of_state(out);
-  double price_sum = 0.0;
   for (const std::size_t b : out.blocks) {
-    price_sum += price(blocks_[b].effect, blocks_[b].count);
+    out.price += price(blocks_[b].effect, blocks_[b].count);
     out.parameters += unknowns_of(blocks_[b]);
   }
   out.squares = yy_;
   if (!columns.empty()) {
-    const MatrixXd g = gram_(columns, columns);
-    const Eigen::LLT<MatrixXd> llt(g);
+    const Eigen::LLT<MatrixXd> llt(gram(out.blocks));
     const VectorXd z = llt.matrixL().solve(xy_(columns));
     const bool sound = llt.info() == Eigen::Success && z.allFinite() &&
                        llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent);
     out.squares = sound ? std::max(yy_ - z.squaredNorm(), 0.0) : nan;
   }
   out.criterion = std::isnan(out.squares) ? std::numeric_limits<double>::infinity()
-                                          : criterion(out.squares, price_sum);
+                                          : criterion(out.squares, out.price);
   return out;
 }
 
@@ -160,44 +184,69 @@ double fall_of_two(double aa, double ab, double bb, double ta, double tb) {
 
 }  // namespace
 
-Workbench::Projection Workbench::projection(const State& state) const {
-  const std::vector<Index> columns = columns_of_state(state);
-  Projection out{Eigen::LLT<MatrixXd>(gram_(columns, columns)), columns, {}};
-  if (!columns.empty()) out.z = out.llt.matrixL().solve(xy_(columns));
+const MatrixXd& Workbench::products_of(std::size_t block) const {
+  MatrixXd& products = products_[block];
+  if (products.size() == 0)
+    products.noalias() = x_.transpose() * x_.middleCols(blocks_[block].first, blocks_[block].count);
+  return products;
+}
+
+MatrixXd Workbench::products(const std::vector<std::size_t>& blocks) const {
+  Index columns = 0;
+  for (const std::size_t b : blocks) columns += blocks_[b].count;
+  MatrixXd out(x_.cols(), columns);
+  columns = 0;
+  for (const std::size_t b : blocks) {
+    out.middleCols(columns, blocks_[b].count) = products_of(b);
+    columns += blocks_[b].count;
+  }
   return out;
 }
 
-void Workbench::add_falls(const Projection& p, std::size_t effect, VectorXd& fall) const {
-  const Instance& instance = instances_[effect];
-  if (instance.blocks.empty()) return;
-  const Index first = blocks_[instance.blocks.front()].first;
-  const Block& last = blocks_[instance.blocks.back()];
-  const Index count = last.first + last.count - first;
-  MatrixXd w(static_cast<Index>(p.columns.size()), count);
-  VectorXd left = xy_.segment(first, count);
-  if (!p.columns.empty()) {
-    w = gram_(p.columns, Eigen::seqN(first, count));
-    p.llt.matrixL().solveInPlace(w);
-    left.noalias() -= w.transpose() * p.z;
-  }
-  for (const std::size_t b : instance.blocks) {
-    const Block& block = blocks_[b];
-    const Index at = block.first - first;
-    double& here = fall(static_cast<Index>(b));
-    if (block.count == 1) {
-      const double s = 1.0 - w.col(at).squaredNorm();
-      here = s > independent ? left(at) * left(at) / s : nan;
-    } else if (block.count == 2) {
-      here = fall_of_two(1.0 - w.col(at).squaredNorm(),
-                         gram_(block.first, block.first + 1) - w.col(at).dot(w.col(at + 1)),
-                         1.0 - w.col(at + 1).squaredNorm(), left(at), left(at + 1));
-    } else {
-      const auto part = w.middleCols(at, block.count);
-      MatrixXd s = gram_.block(block.first, block.first, block.count, block.count);
-      s.noalias() -= part.transpose() * part;
-      here = fall_of(s, left.segment(at, block.count));
+MatrixXd Workbench::gram(const std::vector<std::size_t>& blocks) const {
+  Index columns = 0;
+  for (const std::size_t b : blocks) columns += blocks_[b].count;
+  MatrixXd out(columns, columns);
+  Index column = 0;
+  for (const std::size_t b : blocks) {
+    Index row = 0;
+    for (const std::size_t a : blocks) {
+      out.block(row, column, blocks_[a].count, blocks_[b].count) =
+          products_of(b).middleRows(blocks_[a].first, blocks_[a].count);
+      row += blocks_[a].count;
     }
+    column += blocks_[b].count;
   }
+  return out;
+}
+
+Workbench::Projection Workbench::projection(const State& state) const {
+  Projection out{Eigen::LLT<MatrixXd>(gram(state.blocks)), products(state.blocks), {}};
+  if (!state.blocks.empty()) {
+    out.z = out.llt.matrixL().solve(xy_(columns_of_state(state)));
+    out.llt.matrixU().solveInPlace<Eigen::OnTheRight>(out.products);
+  }
+  return out;
+}
+
+/// `p.products` holds what each column has in the directions of the state.
+double Workbench::fall_of_block(const Projection& p, const Block& block) const {
+  const auto w = p.products.middleRows(block.first, block.count);
+  VectorXd left = xy_.segment(block.first, block.count);
+  if (p.z.size() > 0) left.noalias() -= w * p.z;
+  if (block.count == 1) {
+    const double s = 1.0 - w.squaredNorm();
+    return s > independent ? left(0) * left(0) / s : nan;
+  }
+  if (block.count == 2)
+    return fall_of_two(1.0 - w.row(0).squaredNorm(), block.own(0, 1) - w.row(0).dot(w.row(1)),
+                       1.0 - w.row(1).squaredNorm(), left(0), left(1));
+  return fall_of(block.own - w * w.transpose(), left);
+}
+
+void Workbench::add_falls(const Projection& p, std::size_t effect, VectorXd& fall) const {
+  for (const std::size_t b : instances_[effect].blocks)
+    fall(static_cast<Index>(b)) = fall_of_block(p, blocks_[b]);
 }
 
 VectorXd Workbench::gains(const State& state) const {
@@ -230,9 +279,13 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
     if (c < least) least = c, best = b;
   }
   if (best == blocks_.size()) return state;
-  std::vector<std::size_t> blocks = state.blocks;
-  blocks.push_back(best);
-  return this->state(std::move(blocks));
+  State more = state;
+  more.blocks.push_back(best);
+  more.squares = std::max(state.squares - gains(static_cast<Index>(best)), 0.0);
+  more.parameters += unknowns_of(blocks_[best]);
+  more.price += price(effect, blocks_[best].count);
+  more.criterion = criterion(more.squares, more.price);
+  return more;
 }
 
 bool Workbench::holds(const State& state, std::size_t effect) const {

@@ -9,8 +9,8 @@
 namespace nonio::model {
 
 /// Every effect of a search with every value of its shapes, as columns of unit length from which
-/// the zeros of the lines are taken out, and all their scalar products: a set of effects is then
-/// judged without touching the readings again.
+/// the zeros of the lines are taken out. Scalar products are kept as they are needed: a set of
+/// effects is judged without touching the readings again. Of one thread.
 class Workbench {
  public:
   /// Columns first .. first + count of an effect with one value of its shapes.
@@ -19,6 +19,7 @@ class Workbench {
     std::vector<double> shape;
     Index first, count;
     bool of_position;  ///< the same at every reading of a target
+    MatrixXd own{};    ///< scalar products of its columns
   };
   struct Instance {
     Term term;
@@ -31,6 +32,7 @@ class Workbench {
     std::vector<std::size_t> blocks;
     double squares = 0.0;  ///< left, weighted
     Index parameters = 0;  ///< linear ones and searched shapes, without zeros
+    double price = 0.0;    ///< of parameters, shapes and names
     double criterion =
         0.0;  ///< n ln(squares/n) + price of parameters, shapes and names; small is good
   };
@@ -47,6 +49,9 @@ class Workbench {
   const VectorXd& root_weight() const { return root_; }
   double readings() const { return used_; }
   Index zeros() const { return zeros_; }
+
+  /// One more value of an effect's shapes, beside those of its grid.
+  void add_shape(const Observations& o, std::size_t effect, const std::vector<double>& shape);
 
   State state(std::vector<std::size_t> blocks) const;
   /// For each block the fall of `squares` if it is added; NaN if it adds no independent column.
@@ -71,7 +76,9 @@ class Workbench {
 
   /// Columns of a state's blocks in `columns()`.
   std::vector<Index> columns_of_state(const State& state) const;
-  const MatrixXd& gram() const { return gram_; }
+  /// Scalar products of the columns of blocks with each other, and of all columns with them.
+  MatrixXd gram(const std::vector<std::size_t>& blocks) const;
+  MatrixXd products(const std::vector<std::size_t>& blocks) const;
 
   /// Price of an effect with so many linear columns.
   double price(std::size_t effect, Index columns) const;
@@ -79,18 +86,25 @@ class Workbench {
  private:
   Index unknowns_of(const Block& block) const;
   void add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts);
+  /// Columns of unit length without the zeros of lines; none if the readings cannot show them.
+  MatrixXd columns_for(const Observations& o, Instance& instance, const std::vector<double>& shape,
+                       bool& of_position) const;
   struct Projection {
     Eigen::LLT<MatrixXd> llt;
-    std::vector<Index> columns;
+    MatrixXd products;  // of all columns with the state's
     VectorXd z;
   };
   Projection projection(const State& state) const;
   void add_falls(const Projection& projection, std::size_t effect, VectorXd& fall) const;
+  double fall_of_block(const Projection& projection, const Block& block) const;
+  void push(Block block, const MatrixXd& columns);
+  const MatrixXd& products_of(std::size_t block) const;
   double criterion(double squares, double price) const;
 
   std::vector<Instance> instances_;
   std::vector<Block> blocks_;
-  MatrixXd x_, gram_;
+  MatrixXd x_;
+  mutable std::vector<MatrixXd> products_;  // of all columns with each block's, where asked for
   VectorXd y_, root_, xy_;
   double yy_ = 0.0, used_ = 0.0;
   std::vector<std::uint32_t> target_;

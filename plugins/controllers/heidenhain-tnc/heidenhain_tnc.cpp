@@ -3,12 +3,14 @@
 
 #include "axis_job.h"
 #include "consumer.h"
+#include "cross_job.h"
 #include "nonio/sdk/plugin.h"
 
 namespace nonio {
 namespace {
 
 using controllers::AxisJob;
+using controllers::CrossCurve;
 using controllers::signed_decimal;
 
 enum class Layout { tnc407, itnc530, tnc640 };
@@ -23,7 +25,7 @@ struct Choices {
 // One row of a table before it is text. mm or deg.
 struct Row {
   double position, value;
-  std::optional<double> negative;
+  std::optional<double> negative, cross;  ///< cross: of another axis
 };
 
 // Columns as the table editor has them: a cell starts where its heading starts.
@@ -51,7 +53,8 @@ std::vector<std::string> axis_columns(const Campaign& campaign, const AxisJob& j
 
 // The .COM text; it takes no comments, the words are in the file beside it.
 std::string com_table(const AxisJob& job, const std::vector<Row>& rows,
-                      const std::vector<std::string>& axes, const Choices& choices) {
+                      const std::vector<std::string>& axes, const CrossCurve* cross,
+                      const Choices& choices) {
   const Columns& c = choices.listed() ? listed_columns : equidistant_columns;
   std::string out = "BEGIN " + com_name(job, choices);
   out += choices.listed()
@@ -63,17 +66,21 @@ std::string com_table(const AxisJob& job, const std::vector<Row>& rows,
     put(head, c.position, "AXISPOS");
     put(head, c.negative, "BACKLASH");
   }
-  std::size_t own = c.first_axis;
+  std::size_t own = c.first_axis, other = c.first_axis;
   for (std::size_t k = 0; k < axes.size(); ++k) {
     put(head, c.first_axis + c.width * k, axes[k]);
     if (axes[k] == controllers::plain(job.axis)) own = c.first_axis + c.width * k;
+    if (cross != nullptr && axes[k] == controllers::plain(cross->output))
+      other = c.first_axis + c.width * k;
   }
   out += head + "\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
     std::string line = std::to_string(i);
     put(line, c.position, signed_decimal(rows[i].position, 4));
     if (rows[i].negative) put(line, c.negative, signed_decimal(*rows[i].negative, 4));
+    if (rows[i].cross && other < own) put(line, other, signed_decimal(*rows[i].cross, 4));
     put(line, own, signed_decimal(rows[i].value, 4));
+    if (rows[i].cross && other > own) put(line, other, signed_decimal(*rows[i].cross, 4));
     out += line + "\n";
   }
   return choices.listed() ? out + "[END]\n" : out;
@@ -115,7 +122,8 @@ Expected<std::vector<double>> positions(const AxisJob& job, const OutputInput& i
   return out;
 }
 
-std::vector<Row> rows_of(const AxisJob& job, const std::vector<double>& at, bool directions) {
+std::vector<Row> rows_of(const AxisJob& job, const std::vector<double>& at, bool directions,
+                         const CrossCurve* cross) {
   const auto& curve = job.table_curve();
   const auto reference = job.position_setting("reference");
   const double zero =
@@ -126,7 +134,11 @@ std::vector<Row> rows_of(const AxisJob& job, const std::vector<double>& at, bool
   std::vector<Row> rows;
   for (const double x : at)
     rows.push_back({x * job.per_si(), entry(directions ? curve.plus : curve.mean, x),
-                    directions ? std::optional(entry(curve.minus, x)) : std::nullopt});
+                    directions ? std::optional(entry(curve.minus, x)) : std::nullopt,
+                    cross == nullptr
+                        ? std::nullopt
+                        : std::optional(math::ErrorCurve::at(cross->position, cross->value, x) *
+                                        job.per_si())});
   return rows;
 }
 
@@ -152,8 +164,8 @@ std::string words(const AxisJob& job, const Choices& choices, bool directions,
   return out;
 }
 
-Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Choices& choices,
-                          OutputResult& result) {
+Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const CrossCurve* cross,
+                          const Choices& choices, OutputResult& result) {
   const bool directions = choices.directions && job.curve.bidirectional();
   if (controllers::refused(job, directions, result)) return {};
   const auto axes = axis_columns(input.campaign, job);
@@ -164,7 +176,8 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
   if (!at) return tl::unexpected<Error>(at.error());
   const std::string stem = "heidenhain-tnc-" + job.stem;
   const auto warning = controllers::warnings(job, result);
-  Artifact com{stem + ".COM", com_table(job, rows_of(job, *at, directions), axes, choices)};
+  Artifact com{stem + ".COM",
+               com_table(job, rows_of(job, *at, directions, cross), axes, cross, choices)};
   Artifact text{stem + ".txt", words(job, choices, directions, com.name, warning)};
 
   heidenhain::Machine control{controllers::plain(job.axis), job.rotary, choices.max_points,
@@ -214,6 +227,23 @@ std::string cma_table(const std::vector<const AxisJob*>& written,
   return choices.listed() ? out + "[END]\n" : out;
 }
 
+/// What the control makes of the columns of the other axis, read from the tables of each.
+void predict_cross(const controllers::CrossJob& set, const std::vector<const AxisJob*>& written,
+                   const Choices& choices, OutputResult& result) {
+  const auto read = [&](const CrossCurve& curve) -> Expected<math::Correction> {
+    for (const AxisJob* job : written)
+      for (const Artifact& a : result.artifacts)
+        if (job->axis == curve.input && a.name == "heidenhain-tnc-" + job->stem + ".COM")
+          return heidenhain::load(
+              a.bytes, {controllers::plain(curve.output), false, choices.max_points, 0.0});
+    return fail("no table of axis " + curve.input);
+  };
+  const auto of_y = read(set.along_x), of_x = read(set.along_y);
+  if (!of_y || !of_x) return;  // a table was refused; its finding says why
+  controllers::predict_diagonals(set, *of_y, *of_x, result);
+  result.notes.push_back({"heidenhain.cross"});
+}
+
 void notes(const Choices& choices, OutputResult& result) {
   result.notes.push_back({"heidenhain.form-inferred"});
   if (choices.directions) result.notes.push_back({"heidenhain.negative-inferred"});
@@ -242,14 +272,23 @@ Expected<OutputResult> write(const OutputInput& input) {
   const auto jobs =
       controllers::axis_jobs(input, {"step", "first", "reference", "backlash"}, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
+  // The columns of other axes are for one state of the machine, and have no direction.
+  const auto sets = controllers::cross_jobs(input.results);
+  const controllers::CrossJob* set =
+      sets.size() == 1 && !choices->directions ? &sets.front() : nullptr;
   std::vector<const AxisJob*> written;
   for (const AxisJob& job : *jobs) {
     const std::size_t files = result.artifacts.size();
-    if (auto done = write_axis(job, input, *choices, result); !done)
+    const CrossCurve* cross = set == nullptr                   ? nullptr
+                              : job.axis == set->along_x.input ? &set->along_x
+                              : job.axis == set->along_y.input ? &set->along_y
+                                                               : nullptr;
+    if (auto done = write_axis(job, input, cross, *choices, result); !done)
       return tl::unexpected<Error>(done.error());
     if (result.artifacts.size() > files) written.push_back(&job);
   }
   if (written.empty()) return result;
+  if (set != nullptr) predict_cross(*set, written, *choices, result);
   result.artifacts.push_back(
       {"heidenhain-tnc-CONFIG.CMA",
        cma_table(written, axis_columns(input.campaign, *written.front()), *choices)});

@@ -206,4 +206,25 @@ Expected<math::Correction> load(const std::vector<std::string_view>& files,
   });
 }
 
+Expected<math::Correction> load_cross(const std::vector<std::string_view>& files,
+                                      const std::string& input, const std::string& output,
+                                      const Machine& machine) {
+  Memory memory;
+  for (const std::string_view f : files)
+    if (auto done = read_file(memory, f, machine); !done)
+      return tl::unexpected<Error>(done.error());
+  std::vector<Table> active;
+  for (const auto& [number, table] : memory.cec)
+    if (table.input == input && table.output == output) active.push_back(table);
+  if (active.empty()) return fail("no table with input " + input + " and output " + output);
+  for (const Table& t : active)
+    if (auto ok = whole(t); !ok) return tl::unexpected<Error>(ok.error());
+  return math::Correction([active](double x, int direction) {
+    double c = 0.0;
+    for (const Table& t : active)
+      if (t.direction == 0.0 || t.direction * direction > 0.0) c -= interpolated(t, x * 1e3);
+    return c / 1e3;
+  });
+}
+
 }  // namespace nonio::siemens

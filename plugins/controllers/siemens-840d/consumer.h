@@ -25,4 +25,10 @@ struct Machine {
 /// After these files are loaded and the functions enabled. m or rad.
 Expected<math::Correction> load(const std::vector<std::string_view>& files, const Machine& machine);
 
+/// What the CEC tables of these files add to axis `output` at a position of the linear axis
+/// `input`, both as the files name them.
+Expected<math::Correction> load_cross(const std::vector<std::string_view>& files,
+                                      const std::string& input, const std::string& output,
+                                      const Machine& machine);
+
 }  // namespace nonio::siemens

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "axis_job.h"
 #include "consumer.h"
+#include "cross_tables.h"
 #include "nonio/sdk/plugin.h"
 
 namespace nonio {
@@ -166,6 +167,13 @@ Expected<OutputResult> write(const OutputInput& input) {
   for (const AxisJob& job : *jobs)
     if (auto done = write_axis(job, input, choices, result); !done)
       return tl::unexpected<Error>(done.error());
+  siemens::CrossChoices cross{choices.first_cec_table, choices.max_points, choices.quoted_axes};
+  const auto& axes = input.campaign.machine.axes;
+  for (std::size_t i = 0; i < axes.size(); ++i) cross.numbers[axes[i].name] = i + 1;
+  for (const AxisJob& job : *jobs) cross.numbers[job.axis] = job.number;
+  if (choices.directions) cross.first_table += 2 * static_cast<std::int64_t>(axes.size());
+  if (auto done = siemens::write_cross_tables(input, cross, result); !done)
+    return tl::unexpected<Error>(done.error());
   if (!result.artifacts.empty()) notes(choices, result);
   return result;
 }

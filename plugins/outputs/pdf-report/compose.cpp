@@ -63,6 +63,10 @@ std::string heading_of(const Source& source, const Measured& m) {
   if (measurement.kind == "straightness")
     return ids(words.get("measurement.straightness",
                          {{"axis", measurement.axis}, {"lateral", measurement.lateral}}));
+  if (measurement.kind == "diagonal")
+    return words.get("measurement.diagonal", {{"id", measurement.id}});
+  if (measurement.kind == "ball-centres")
+    return ids(words.get("measurement.ball_centres", {{"axis", measurement.axis}}));
   return words.get("measurement.other", {{"id", measurement.id}, {"kind", measurement.kind}});
 }
 
@@ -82,6 +86,10 @@ std::string temperatures(const Source& source, const char* key, const std::vecto
 std::string test_of(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
   if (o.axes.empty() || o.size() == 0) return source.words.get("measurement.unread");
+  if (m.measurement.kind == "ball-centres")
+    return source.words.get("measurement.centres", {{"count", std::to_string(o.size() / 3)}}) +
+           temperatures(source, "measurement.material", o.material) +
+           temperatures(source, "measurement.air", o.air);
   const auto& axis = o.axes.front();
   std::vector<double> targets = axis.position;
   std::sort(targets.begin(), targets.end());

@@ -63,12 +63,18 @@ Colour lighter(Colour c, float share) {
   return {mix(c.red), mix(c.green), mix(c.blue)};
 }
 
+/// A diagonal has none of its own: that of its first column.
+std::string axis_of(const Measured& m) {
+  const auto& axes = m.observations.axes;
+  return m.measurement.axis.empty() && !axes.empty() ? axes.front().axis : m.measurement.axis;
+}
+
 Plot empty_plot(const Source& source, const Measured& m, std::string title) {
   const Quantity position = position_of(m.rotary), deviation = deviation_of(m.rotary);
   Plot plot;
   plot.title = std::move(title);
-  plot.x_title = source.words.get("plot.position",
-                                  {{"axis", m.measurement.axis}, {"unit", unit_text(position)}});
+  plot.x_title =
+      source.words.get("plot.position", {{"axis", axis_of(m)}, {"unit", unit_text(position)}});
   plot.y_title = source.words.get("plot.deviation", {{"unit", unit_text(deviation)}});
   plot.language = source.language();
   plot.degrees = m.rotary;
@@ -341,15 +347,18 @@ void series_plots(const Source& source, const Measured& m, std::vector<Plot>& pl
 
 void add_plots(const Source& source, const Measured& m, Blocks& blocks) {
   std::vector<Plot> plots;
+  const bool circle = m.measurement.kind == "ball-centres";  // coordinates, not deviations
   const auto add = [&](std::optional<Plot> plot) {
     if (plot) plots.push_back(std::move(*plot));
   };
   for (const std::string& kind : source.look.plots) {
-    if (kind == "runs") add(runs_plot(source, m));
+    if (kind == "runs" && !circle) add(runs_plot(source, m));
     if (kind == "iso") add(iso_plot(source, m));
     if (kind == "vdi") add(vdi_plot(source, m));
     if (kind == "reversal") add(reversal_plot(source, m));
-    if (kind == "series") series_plots(source, m, plots);
+    if (kind == "diagonals") add_diagonals(source, m, plots);
+    if (kind == "circle" && circle) add_circle(source, m, plots);
+    if (kind == "series" && !circle) series_plots(source, m, plots);
   }
   if (!plots.empty()) blocks.push_back({Spacer{4}});
   const std::string field = "plots of measurement " + m.measurement.id;

@@ -51,6 +51,10 @@ void add_results(const Source&, const Measured&, Blocks&);
 void add_targets(const Source&, const Measured&, Blocks&);
 void add_plots(const Source&, const Measured&, Blocks&);
 void add_findings(const Source&, const Measured&, Blocks&);
+/// Diagonals before and after, and their plane with its errors exaggerated.
+void add_diagonals(const Source&, const Measured&, std::vector<reports::Plot>&);
+/// The circle of ball centres with exaggerated residuals, and the residuals over the angle.
+void add_circle(const Source&, const Measured&, std::vector<reports::Plot>&);
 
 /// What controllers' tables have to say; what several of them say alike once, with all their names.
 struct TableFinding {

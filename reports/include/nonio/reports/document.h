@@ -109,6 +109,7 @@ struct Plot {
   bool degrees = false;  ///< the horizontal axis is an angle: ticks at parts of a turn
   bool whole = false;    ///< the horizontal axis counts: ticks at whole numbers
   bool zero_line = true;
+  bool same_scale = false;   ///< a length is as long across as up: a picture of something
   double height = 0;         ///< with title and legend; 0: the style's
   std::string empty_text{};  ///< what is said where there is nothing to draw
 };

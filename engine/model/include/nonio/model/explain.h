@@ -75,6 +75,7 @@ struct Comparison {
   std::optional<NoiseFloor> floor{};
   std::optional<LackOfFit> lack_of_fit{};
   std::vector<Place> places{};  ///< all that were looked at, largest share first
+  std::size_t means = 0;        ///< long tables: of how many means the places tell; else 0
   std::vector<Suspect> suspects{};
   bool fails() const;  ///< something is left in some place
 };
@@ -107,7 +108,7 @@ struct Verdict {
   enum class Kind { missing, nothing, unknown, unrepeatable };
   Kind kind = Kind::nothing;
   std::string effect;           ///< of missing
-  double false_alarms = 0.0;    ///< measured rate: noise alone, this model, this catalogue
+  double false_alarms = 0.0;    ///< share of shuffles of the noise whose verdict is not `nothing`
   std::size_t trials = 0;       ///< behind it
   double suspects_share = 0.0;  ///< of the readings
 };

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <vector>
 
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/error.h"
@@ -39,18 +39,17 @@ inline bool complete(const std::vector<double>& column, const std::vector<char>&
 
 inline void fill_times(const Observations& o, AxisReadings& r) {
   r.timed = complete(o.time, r.moved);
-  std::map<std::uint32_t, double> first;  // by line
-  std::map<std::uint32_t, double> count;
+  const auto line_of = [&](std::size_t i) { return o.line.empty() ? 0U : o.line[i]; };
+  const std::size_t lines = std::max<std::size_t>(o.line.empty() ? 1 : o.lines.size(), 1);
+  std::vector<double> first(lines, std::numeric_limits<double>::infinity()), count(lines, 0.0);
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (!r.moved[i]) continue;
-    const std::uint32_t line = o.line.empty() ? 0 : o.line[i];
-    r.t[i] = r.timed ? o.time[i] : count[line]++;
-    const auto [at, fresh] = first.try_emplace(line, r.t[i]);
-    if (!fresh) at->second = std::min(at->second, r.t[i]);
+    r.t[i] = r.timed ? o.time[i] : count[line_of(i)]++;
+    first[line_of(i)] = std::min(first[line_of(i)], r.t[i]);
   }
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (!r.moved[i]) continue;
-    r.t[i] -= first[o.line.empty() ? 0 : o.line[i]];
+    r.t[i] -= first[line_of(i)];
     r.duration = std::max(r.duration, r.t[i]);
   }
 }

@@ -68,6 +68,7 @@ struct Measurement {
   std::string reader;                      ///< empty: chosen by content
   std::map<std::string, double> from, to;  ///< ends of a diagonal, m
   std::vector<std::uint32_t> exclude{};    ///< lines of the file whose readings do not count
+  std::map<std::string, double> at{};      ///< where the axes that stood still were, m
 };
 
 /// An effect of the user's own, without compiling.

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "nonio/sdk/error.h"
+
+/// Squareness and straightness of two axes from the diagonals of their rectangle.
+///
+/// Symbols (ISO 230-1; lengths in m, angles in rad). Travels Lx, Ly; L = hypot(Lx, Ly); c = Lx/L,
+/// s = Ly/L; n equal steps, x_i = i Lx/n, y_i = i Ly/n. f_i = EYX(x_i), g_i = EXY(y_i), both 0 at
+/// both ends (end-point gauge; their slopes are then part of k), k = C0Y, positive turns +Y towards
+/// -X. Ex(x, y): positioning error of X on the line y, EXX(x) - (y - y0) ECX(x). A line of
+/// measurement has stops (x_a, y_b) on the grid and a direction (cx, cy); it reads, from its first
+/// stop on,
+///
+///     D = cx [Ex(x_a, y_b) + g_b - k y_b] + cy [f_a + EYY(y_b)]  less the same at the first stop.
+///
+/// First-order form of the product of the transforms of both carriages (Schwenke et al., CIRP
+/// Annals 57 (2008) 660); tests hold it against the exact product. What two full diagonals leave
+/// open is EXY = a, EYX = -(Lx/Ly) a for every a that is odd about mid-travel: floor((n - 1)/2)
+/// numbers. Derived here; docs/formulas.md.
+namespace nonio::math {
+
+/// Means of readings, and the standard uncertainty of each mean.
+struct MeanCurve {
+  std::vector<double> mean;
+  double u = 0.0;  ///< 0: not known
+  /// The first stop was not read, or the instrument was set to zero there each time: 0 by
+  /// definition.
+  bool zeroed = true;
+};
+
+struct PitchLine : MeanCurve {
+  double across = 0.0;  ///< position of the other axis on this line, m from the grid's origin
+};
+
+/// Readings along a straight line whose stops are points of the grid.
+struct GridLine : MeanCurve {
+  std::vector<std::size_t> ix, iy;  ///< of each stop
+  double cx = 0.0, cy = 0.0;        ///< unit vector of sensing
+};
+
+/// Straightness by another instrument, against a line that is its own.
+struct DirectStraightness : MeanCurve {
+  /// Its even part counts too, and its line goes through both ends (`zeroed`: through readings that
+  /// are 0 by definition). Else only its odd part counts, and the slope of its line is unknown.
+  bool whole = false;
+};
+
+/// Everything read at the same n + 1 points of each axis. Curves of pitch and straightness have
+/// n + 1 means.
+struct DiagonalReadings {
+  double Lx = 0.0, Ly = 0.0;
+  std::size_t n = 0;
+  GridLine D1, D2;              ///< (0, 0) -> (Lx, Ly), (0, Ly) -> (Lx, 0)
+  std::vector<GridLine> third;  ///< further lines, which may close what the two leave open
+  std::vector<PitchLine> X;     ///< positioning of X on one line, or on two: then with yaw
+  PitchLine Y;
+  std::optional<DirectStraightness> EYX, EXY;
+};
+
+/// A curve over n + 1 points with its standard uncertainty at each.
+struct KnownCurve {
+  std::vector<double> value, u;
+  double gain = 0.0;  ///< rms over the inner points of u for white noise 1 of the readings of lines
+};
+
+/// Least-squares line of ISO 230-1 taken out.
+struct LsqGauge {
+  std::vector<double> EYX, EXY;  ///< empty if they cannot be separated
+  double C0Y = 0.0, u_C0Y = 0.0;
+};
+
+struct Closure {
+  double S_n = 0.0, S_n_limit = 0.0;      ///< 4 standard uncertainties
+  double S_odd = 0.0, S_odd_limit = 0.0;  ///< rms, and 4 times what noise gives
+  bool passed() const { return std_abs(S_n) <= S_n_limit && S_odd <= S_odd_limit; }
+
+ private:
+  static double std_abs(double v) { return v < 0.0 ? -v : v; }
+};
+
+struct DiagonalResult {
+  double C0Y = 0.0, u_C0Y = 0.0, gain_C0Y = 0.0;  ///< end-point gauge; gain in 1/m
+  std::size_t unknowns = 0, rank = 0;
+  std::size_t nullity() const { return unknowns - rank; }
+  bool separable() const { return rank == unknowns; }
+  KnownCurve EYX, EXY;                   ///< if separable, else empty; end-point gauge
+  KnownCurve EYX_even, EXY_even, q_odd;  ///< always; q = c EXY + s EYX
+  LsqGauge lsq;
+  std::vector<double> d1, d2;         ///< readings less positioning and yaw
+  std::vector<double> ECX;            ///< yaw from two lines; else empty
+  std::optional<double> slave_shift;  ///< of the second line's zero, removes C0Y; from two lines
+  Closure closure;
+  /// Standard deviation of a mean as the residuals of the fit say, with its degrees of freedom.
+  double residual_u = 0.0;
+  std::size_t dof = 0;
+  bool noise_known = false;  ///< every u was given: else all are taken as equal, from residual_u
+};
+
+/// Fails if the curves do not have the lengths that the grid asks for.
+Expected<DiagonalResult> solve_diagonals(const DiagonalReadings&);
+
+/// What a bound abs(EXY_odd) <= G says of EYX_odd = (q_odd - c EXY_odd)/s.
+struct Band {
+  std::vector<double> low, high;
+};
+Band straightness_band(const DiagonalResult&, double Lx, double Ly, double G);
+
+/// 1/(2 min(c, s)): scatter of the worse straightness for scatter 1 of a diagonal's reading.
+double diagonal_gain(double Lx, double Ly);
+
+}  // namespace nonio::math

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace nonio::diagonals {
+
+bool Curve::both_directions() const {
+  return std::all_of(stops.begin(), stops.end(),
+                     [](const Stop& p) { return p.n_plus > 0 && p.n_minus > 0; });
+}
+
+double Curve::u_mean() const {
+  std::size_t plus = std::numeric_limits<std::size_t>::max(), minus = plus;
+  for (const Stop& p : stops) plus = std::min(plus, p.n_plus), minus = std::min(minus, p.n_minus);
+  if (plus == 0 || minus == 0) return 0.0;
+  return s / 2.0 * std::sqrt(1.0 / static_cast<double>(plus) + 1.0 / static_cast<double>(minus));
+}
+
+double Curve::mean_reversal() const {
+  double sum = 0.0;
+  for (const Stop& p : stops) sum += p.reversal();
+  return sum / static_cast<double>(stops.size());
+}
+
+std::size_t Curve::find(double position) const {
+  for (std::size_t i = 0; i < stops.size(); ++i)
+    if (std::fabs(stops[i].position - position) <= same_stop) return i;
+  return stops.size();
+}
+
+Curve curve_of(const Observations& o, std::size_t column) {
+  const auto& axis = o.axes[column];
+  std::vector<std::size_t> order(o.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return axis.position[a] < axis.position[b];
+  });
+  Curve curve;
+  double squares = 0.0;
+  std::size_t dof = 0;
+  for (std::size_t begin = 0; begin < order.size();) {
+    std::size_t end = begin;
+    Curve::Stop stop;
+    stop.position = axis.position[order[begin]];
+    if (o.axes.size() > 1) stop.across = o.axes[1 - column].position[order[begin]];
+    bool zero = true;
+    for (; end < order.size() && axis.position[order[end]] - stop.position <= same_stop; ++end) {
+      const bool plus = axis.approach.empty() || axis.approach[order[end]] > 0;
+      (plus ? stop.plus : stop.minus) += o.deviation[order[end]];
+      ++(plus ? stop.n_plus : stop.n_minus);
+      zero = zero && o.deviation[order[end]] == 0.0;
+    }
+    if (stop.n_plus > 0) stop.plus /= static_cast<double>(stop.n_plus);
+    if (stop.n_minus > 0) stop.minus /= static_cast<double>(stop.n_minus);
+    if (begin == 0) curve.zeroed = zero;
+    if (begin > 0 || !zero) {  // a zero by definition has no scatter
+      for (std::size_t k = begin; k < end; ++k) {
+        const bool plus = axis.approach.empty() || axis.approach[order[k]] > 0;
+        const double e = o.deviation[order[k]] - (plus ? stop.plus : stop.minus);
+        squares += e * e;
+      }
+      dof += std::max<std::size_t>(stop.n_plus, 1) - 1 + std::max<std::size_t>(stop.n_minus, 1) - 1;
+    }
+    curve.stops.push_back(stop);
+    begin = end;
+  }
+  if (dof > 0) curve.s = std::sqrt(squares / static_cast<double>(dof));
+  return curve;
+}
+
+}  // namespace nonio::diagonals

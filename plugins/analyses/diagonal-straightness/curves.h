@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "nonio/math/diagonals.h"
+#include "nonio/sdk/observations.h"
+
+namespace nonio::diagonals {
+
+/// Stops nearer than this are one stop: far above a control's resolution, and a slope of 10 um/m
+/// makes 1 nm of it.
+inline constexpr double same_stop = 1e-4;
+
+/// Readings by stop and direction of the axis in one column of the observations.
+struct Curve {
+  struct Stop {
+    double position = 0.0, across = 0.0;  ///< of the axis, and of the second axis if there is one
+    double plus = 0.0, minus = 0.0;       ///< means
+    std::size_t n_plus = 0, n_minus = 0;
+    double mean() const { return (plus + minus) / 2.0; }
+    double reversal() const { return plus - minus; }
+  };
+  std::vector<Stop> stops;  ///< ascending
+  double s = 0.0;           ///< pooled standard deviation of a reading; 0: no repetition
+  bool zeroed = false;      ///< every reading at the first stop is 0
+
+  bool both_directions() const;
+  /// Standard uncertainty of the mean of both directions; 0 if unknown.
+  double u_mean() const;
+  double mean_reversal() const;
+  /// Index of the stop at this position, or the number of stops.
+  std::size_t find(double position) const;
+};
+
+Curve curve_of(const Observations& observations, std::size_t column);
+
+}  // namespace nonio::diagonals

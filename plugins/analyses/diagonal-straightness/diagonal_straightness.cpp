@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Squareness and straightness of two axes from the diagonals of their rectangle.
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/math/diagonals.h"
+#include "sets.h"
+
+using namespace nonio;
+using namespace nonio::diagonals;
+
+namespace {
+
+constexpr double um = 1e-6;
+constexpr std::size_t enough_dof = 10;  ///< to take the noise from the residuals
+
+bool applies(const Campaign& campaign, const Measurement& m) {
+  return m.kind == "diagonal" && set_led_by(sets_of(campaign), campaign, m) != nullptr;
+}
+
+/// Curves and values of one set that was solved.
+class Report {
+ public:
+  Report(const AnalysisInput& in, const Collected& c, const math::DiagonalResult& r, Evaluation& e)
+      : in_(in), c_(c), r_(r), e_(e), known_(r.noise_known || r.dof >= enough_dof) {}
+
+  void fill(bool first_set) {
+    add_points();
+    value("S_n", r_.closure.S_n, Quantity::deviation);
+    value("S_odd", r_.closure.S_odd, Quantity::deviation);
+    check_reversal();
+    if (!known_)
+      e_.findings.push_back({.id = "diagonals.no-uncertainty",
+                             .attention = true,
+                             .evidence = {{"dof", static_cast<double>(r_.dof), Quantity::count}}});
+    if (!r_.closure.passed()) return refuse_closure();
+    const double gain = math::diagonal_gain(c_.readings.Lx, c_.readings.Ly),
+                 most = in_.options.number("largest_gain");
+    if (!(gain <= most)) {
+      e_.findings.push_back(
+          {.id = "diagonals.flat",
+           .attention = true,
+           .evidence = {{"gain", gain, Quantity::ratio}, {"limit", most, Quantity::ratio}}});
+      return add_squareness();
+    }
+    add_squareness();
+    series("ECX", c_.x_axis, r_.ECX, {}, Quantity::small_angle);
+    if (r_.separable())
+      add_both();
+    else
+      add_parts();
+    if (!first_set) e_.findings.push_back({.id = "diagonals.remeasured"});
+  }
+
+ private:
+  void value(const char* name, double v, Quantity q, std::optional<double> u = {}) {
+    Value out{name, v, q};
+    if (u && known_) out.U = 2.0 * *u;
+    e_.values.push_back(std::move(out));
+  }
+
+  std::vector<double> positions(const std::string& axis) const {
+    const bool x = axis == c_.x_axis;
+    const double from = x ? c_.x0 : c_.y0, length = x ? c_.readings.Lx : c_.readings.Ly;
+    const std::size_t n = c_.readings.n;
+    std::vector<double> out;
+    for (std::size_t i = 0; i <= n; ++i)
+      out.push_back(from + length * static_cast<double>(i) / static_cast<double>(n));
+    return out;
+  }
+
+  void series(const char* name, const std::string& axis, const std::vector<double>& v,
+              const std::vector<double>& u, Quantity q = Quantity::deviation) {
+    if (v.empty()) return;
+    Series s{name, axis, Quantity::length, q, positions(axis), v, {}};
+    if (known_)
+      for (const double x : u) s.U.push_back(2.0 * x);
+    e_.series.push_back(std::move(s));
+  }
+
+  /// The diagonals as measured, and less positioning and yaw, by distance from the first corner.
+  void add_points() {
+    const auto& r = c_.readings;
+    const double L = std::hypot(r.Lx, r.Ly);
+    PointTable::Column target{"target", Quantity::length, {}};
+    PointTable::Column D1{"D1", Quantity::deviation, {}}, D2{"D2", Quantity::deviation, {}};
+    for (std::size_t i = 0; i <= r.n; ++i) {
+      target.values.push_back(L * static_cast<double>(i) / static_cast<double>(r.n));
+      D1.values.push_back(r.D1.mean[i] - r.D1.mean[0]);
+      D2.values.push_back(r.D2.mean[i] - r.D2.mean[0]);
+    }
+    e_.points.columns = {std::move(target),
+                         std::move(D1),
+                         std::move(D2),
+                         {"D1_less_pitch", Quantity::deviation, r_.d1},
+                         {"D2_less_pitch", Quantity::deviation, r_.d2}};
+  }
+
+  void add_squareness() {
+    value("C0Y", r_.C0Y, Quantity::small_angle, r_.u_C0Y);
+    value("C0Y_LSQ", r_.lsq.C0Y, Quantity::small_angle, r_.lsq.u_C0Y);
+    if (r_.slave_shift) {
+      const double W = c_.readings.X[1].across - c_.readings.X[0].across;
+      value("slave_shift", *r_.slave_shift, Quantity::deviation, std::fabs(W) * r_.u_C0Y);
+    }
+  }
+
+  void add_both() {
+    series("EYX", c_.x_axis, r_.EYX.value, r_.EYX.u);
+    series("EXY", c_.y_axis, r_.EXY.value, r_.EXY.u);
+    series("EYX_LSQ", c_.x_axis, r_.lsq.EYX, {});
+    series("EXY_LSQ", c_.y_axis, r_.lsq.EXY, {});
+    value("gain_EYX", r_.EYX.gain, Quantity::ratio);
+    value("gain_EXY", r_.EXY.gain, Quantity::ratio);
+  }
+
+  void add_parts() {
+    series("EYX_even", c_.x_axis, r_.EYX_even.value, r_.EYX_even.u);
+    series("EXY_even", c_.y_axis, r_.EXY_even.value, r_.EXY_even.u);
+    series("q_odd", c_.x_axis, r_.q_odd.value, r_.q_odd.u);
+    value("gain_EYX_even", r_.EYX_even.gain, Quantity::ratio);
+    value("gain_EXY_even", r_.EXY_even.gain, Quantity::ratio);
+    value("gain_q_odd", r_.q_odd.gain, Quantity::ratio);
+    const auto& r = c_.readings;
+    const double bound = in_.options.number("EXY_odd_bound_um") * um;
+    Finding f{.id = bound > 0.0 ? "diagonals.not-separable-band" : "diagonals.not-separable",
+              .attention = true,
+              .evidence = {{"numbers", static_cast<double>(r_.nullity()), Quantity::count},
+                           {"q_max", largest(r_.q_odd.value), Quantity::deviation}},
+              .texts = {{"x", c_.x_axis}, {"y", c_.y_axis}}};
+    if (bound > 0.0) {
+      const math::Band band = math::straightness_band(r_, r.Lx, r.Ly, bound);
+      series("EYX_low", c_.x_axis, band.low, r_.EYX_even.u);
+      series("EYX_high", c_.x_axis, band.high, r_.EYX_even.u);
+      f.evidence.push_back({"bound", bound, Quantity::deviation});
+      f.evidence.push_back({"half_width", bound * r.Lx / r.Ly, Quantity::deviation});
+    }
+    e_.findings.push_back(std::move(f));
+  }
+
+  static double largest(const std::vector<double>& v) {
+    double most = 0.0;
+    for (const double x : v) most = std::max(most, std::fabs(x));
+    return most;
+  }
+
+  void refuse_closure() {
+    e_.findings.push_back(
+        {.id = "diagonals.closure",
+         .attention = true,
+         .evidence = {{"S_n", r_.closure.S_n, Quantity::deviation},
+                      {"S_n_limit", r_.closure.S_n_limit, Quantity::deviation},
+                      {"S_odd", r_.closure.S_odd, Quantity::deviation},
+                      {"S_odd_limit", r_.closure.S_odd_limit, Quantity::deviation}}});
+  }
+
+  void check_reversal() {
+    const double differ = c_.reversal_of_diagonals - c_.reversal_of_axes;
+    if (!(c_.u_reversal > 0.0) || std::fabs(differ) <= 4.0 * c_.u_reversal) return;
+    e_.findings.push_back(
+        {.id = "diagonals.reversal",
+         .attention = true,
+         .evidence = {{"diagonals", c_.reversal_of_diagonals, Quantity::deviation},
+                      {"axes", c_.reversal_of_axes, Quantity::deviation}}});
+  }
+
+  const AnalysisInput& in_;
+  const Collected& c_;
+  const math::DiagonalResult& r_;
+  Evaluation& e_;
+  bool known_;
+};
+
+Expected<Evaluation> analyse(const AnalysisInput& in) {
+  if (in.all == nullptr) return fail("wanted the other measurements of the campaign, found none");
+  const auto sets = sets_of(in.campaign);
+  const Set* set = set_led_by(sets, in.campaign, in.measurement);
+  if (set == nullptr) return fail("this diagonal belongs to another one's set");
+  Evaluation e;
+  for (const std::size_t i : set->lines)
+    if (in.campaign.measurements[i].id != in.measurement.id)
+      e.uses.push_back(in.campaign.measurements[i].id);
+  const auto collected = collect(in, sets, *set);
+  if (!collected) {
+    e.findings.push_back(collected.error());
+    return e;
+  }
+  for (const std::string& id : collected->uses)
+    if (std::find(e.uses.begin(), e.uses.end(), id) == e.uses.end()) e.uses.push_back(id);
+  e.findings = collected->findings;
+  const auto solved = math::solve_diagonals(collected->readings);
+  if (!solved) return fail(solved.error());
+  Report(in, *collected, *solved, e).fill(set == &sets.front());
+  return e;
+}
+
+std::vector<Option> options() {
+  return {{"EXY_odd_bound_um",
+           0.0,
+           "um",
+           "Largest size of the odd part of EXY that is known from elsewhere; 0: not known.",
+           {},
+           0.0,
+           {}},
+          {"direct_straightness",
+           std::string("odd"),
+           "",
+           "What counts of a straightness measured directly: its 'odd' part, or the 'whole' of it.",
+           {"odd", "whole"}},
+          {"largest_gain",
+           3.0,
+           "",
+           "Largest noise gain 1/(2 min(c, s)); above it no straightness.",
+           {},
+           0.7,
+           {}},
+          {"reading_u_um",
+           0.0,
+           "um",
+           "Standard uncertainty of every mean; 0: from the scatter of the readings.",
+           {},
+           0.0,
+           {}}};
+}
+
+}  // namespace
+
+NONIO_PLUGIN(registry) {
+  Analysis a;
+  a.info = {"diagonal-straightness", "1.0.0",
+            "Squareness and straightness of two axes from the diagonals of their rectangle.",
+            options()};
+  a.applies = applies;
+  a.analyse = analyse;
+  registry.add(std::move(a));
+}

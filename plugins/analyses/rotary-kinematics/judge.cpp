@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "centres.h"
+#include "nonio/math/distributions.h"
+
+namespace nonio::rotary {
+namespace {
+
+using math::DoubleWave;
+using math::RotaryFit;
+using math::RotaryRefusal;
+
+constexpr double significant = 0.01;      // of a wave
+constexpr double surely = 1e-3;           // residuals against a stated sigma
+constexpr double no_circle_share = 1e-3;  // of the radius, where no sigma is known
+constexpr double half_turn = std::numbers::pi, full_turn = 2.0 * std::numbers::pi;
+constexpr double few = 7;             // degrees of freedom below which Student's factor is large
+constexpr double shear_unit = 10e-6;  // rad, in which the sensitivity of an arc is told
+
+Finding finding(const char* id, bool attention, std::vector<Number> evidence) {
+  return {.id = id, .attention = attention, .evidence = std::move(evidence)};
+}
+
+Number count(const char* name, double n) { return {name, n, Quantity::count}; }
+Number um(const char* name, double v) { return {name, v, Quantity::deviation}; }
+Number mm(const char* name, double v) { return {name, v, Quantity::length}; }
+Number urad(const char* name, double v) { return {name, v, Quantity::small_angle}; }
+Number deg(const char* name, double v) { return {name, v, Quantity::angle}; }
+
+const char* name_of(RotaryRefusal refusal) {
+  switch (refusal) {
+    case RotaryRefusal::not_finite:
+      return "rotary.not-finite";
+    case RotaryRefusal::weight:
+      return "rotary.weight";
+    case RotaryRefusal::repeated_angles:
+      return "rotary.repeated-angles";
+    case RotaryRefusal::too_few:
+      return "rotary.too-few";
+    case RotaryRefusal::collinear:
+      return "rotary.collinear";
+    case RotaryRefusal::not_converging:
+      return "rotary.not-converging";
+    case RotaryRefusal::angles_disagree:
+      break;
+  }
+  return "rotary.angles-disagree";
+}
+
+/// Largest standard uncertainty in any direction: the root of the largest eigenvalue of a block of
+/// the covariance, by power iteration from each axis.
+double largest(const RotaryFit& fit, std::size_t first) {
+  double best = 0.0;
+  for (std::size_t start = 0; start < 3; ++start) {
+    math::Vector3 v{};
+    v[start] = 1.0;
+    double size = 0.0;
+    for (int step = 0; step < 60; ++step) {
+      math::Vector3 next{};
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k) next[i] += fit.cofactor[first + i][first + k] * v[k];
+      size = std::hypot(next[0], next[1], next[2]);
+      if (!(size > 0.0)) break;
+      for (std::size_t i = 0; i < 3; ++i) v[i] = next[i] / size;
+    }
+    best = std::max(best, size);
+  }
+  return std::sqrt(best);
+}
+
+class Judge {
+ public:
+  Judge(const Observations& o, const Wish& wish) : o_(o), wish_(wish) {}
+
+  Judged done() {
+    if (!fitted() || !with_sigma() || !a_circle() || !squareness_known() || !long_enough())
+      return std::move(out_);
+    out_.given = true;
+    tell_points();
+    tell_waves();
+    tell_tolerances();
+    return std::move(out_);
+  }
+
+ private:
+  bool refuse(Finding f) {
+    out_.findings.push_back(std::move(f));
+    return false;
+  }
+  double points() const { return static_cast<double>(out_.centres.size()); }
+  double arc() const { return full_turn - out_.fit.gap; }
+
+  bool fitted() {
+    auto centres = centres_of(o_);
+    if (!centres) return refuse(std::move(centres.error()));
+    out_.centres = std::move(*centres);
+    auto fit = math::fit_rotary(out_.centres, wish_.use_angles);
+    if (!fit) return refuse(finding(name_of(fit.error()), true, {count("points", points())}));
+    out_.fit = std::move(*fit);
+    radial_ = math::double_wave(out_.fit, out_.centres, out_.fit.radial);
+    axial_ = math::double_wave(out_.fit, out_.centres, out_.fit.axial);
+    return true;
+  }
+
+  /// What one reading is worth: stated, or from the residuals, or from the instrument.
+  bool with_sigma() {
+    const RotaryFit& fit = out_.fit;
+    if (wish_.sigma) {
+      const double ratio = fit.s / *wish_.sigma;
+      exceeds_ = fit.dof > 0 && math::f_upper(ratio * ratio, fit.dof, 1e9) < surely;
+      if (!exceeds_) {
+        out_.sigma = *wish_.sigma;
+        return true;
+      }
+    }
+    if (fit.dof > 0) {
+      out_.sigma = fit.s;
+      out_.k = math::expansion_factor(fit.dof);
+      return true;
+    }
+    if (!wish_.U_instrument)
+      return refuse(finding("rotary.sigma-needed", true, {count("points", points())}));
+    out_.sigma = 0.5 * *wish_.U_instrument;
+    return true;
+  }
+
+  bool a_circle() {
+    const RotaryFit& fit = out_.fit;
+    const double left = radial_.p < significant ? radial_.left : fit.s;
+    const double expected = wish_.sigma ? *wish_.sigma : 0.5 * wish_.U_instrument.value_or(0.0);
+    const double limit =
+        expected > 0.0 ? wish_.circle_limit * expected : no_circle_share * fit.radius;
+    if (fit.dof == 0 || left <= limit) return true;
+    return refuse(finding("rotary.not-a-circle", true,
+                          {um("s", left), um("limit", limit), mm("radius", fit.radius)}));
+  }
+
+  /// Three points of a full turn take a squareness of the linear axes for a shift of the centre,
+  /// without any residual.
+  bool squareness_known() {
+    const RotaryFit& fit = out_.fit;
+    out_.U_shear = 2.0 / std::numbers::sqrt3 * fit.shear_shift * wish_.linear_axes.value_or(0.0);
+    if (fit.dof > 0 || wish_.linear_axes) return true;
+    return refuse(finding("rotary.three-points-squareness", true,
+                          {um("shift", fit.shear_shift * shear_unit), urad("shear", shear_unit)}));
+  }
+
+  double U_centre() const {
+    return std::hypot(out_.k * out_.sigma * largest(out_.fit, 0), out_.U_shear);
+  }
+  double U_direction() const { return out_.k * out_.sigma * largest(out_.fit, 3); }
+
+  bool long_enough() {
+    if (out_.fit.gap <= half_turn || U_centre() <= wish_.tolerance) return true;
+    return refuse(finding("rotary.short-arc", true,
+                          {deg("arc", arc()), um("U", U_centre()), um("tolerance", wish_.tolerance),
+                           count("points", points())}));
+  }
+
+  void tell_points() {
+    const RotaryFit& fit = out_.fit;
+    if (out_.centres.size() == 3)
+      out_.findings.push_back(
+          finding("rotary.three-points", true,
+                  {um("sigma", out_.sigma), um("shift", fit.shear_shift * shear_unit),
+                   urad("shear", shear_unit)}));
+    else if (fit.dof < few && out_.k > 2.0)
+      out_.findings.push_back(
+          finding("rotary.few-points", false,
+                  {count("points", points()), {"k", out_.k, Quantity::ratio}, um("s", fit.s)}));
+    if (exceeds_)
+      out_.findings.push_back(
+          finding("rotary.scatter", true, {um("s", fit.s), um("sigma", *wish_.sigma)}));
+    if (fit.gap > half_turn && !wish_.linear_axes)
+      out_.findings.push_back(finding("rotary.arc-squareness", false,
+                                      {deg("arc", arc()), um("shift", fit.shear_shift * shear_unit),
+                                       urad("shear", shear_unit)}));
+  }
+
+  void tell_waves() {
+    const RotaryFit& fit = out_.fit;
+    if (radial_.p < significant)
+      out_.findings.push_back(finding("rotary.ellipse", true,
+                                      {um("amplitude", radial_.amplitude),
+                                       urad("shear", 2.0 * radial_.amplitude / fit.radius),
+                                       deg("at", radial_.phase),
+                                       {"p", radial_.p, Quantity::probability}}));
+    if (axial_.p < significant)
+      out_.findings.push_back(finding("rotary.axial-run-out", true,
+                                      {um("amplitude", axial_.amplitude),
+                                       deg("at", axial_.phase),
+                                       {"p", axial_.p, Quantity::probability}}));
+    if (wish_.use_angles) tell_angles();
+  }
+
+  /// Encoder against circle: larger than the rest, the angles do not deserve their trust.
+  void tell_angles() {
+    const RotaryFit& fit = out_.fit;
+    double along = 0.0, rest = 0.0;
+    for (std::size_t i = 0; i < out_.centres.size(); ++i) {
+      const double w = out_.centres[i].weight;
+      along += w * fit.tangential[i] * fit.tangential[i];
+      rest += w * (fit.radial[i] * fit.radial[i] + fit.axial[i] * fit.axial[i]);
+    }
+    // Of the 3N - 7 degrees of freedom the constant angle takes one of the N along the circle.
+    const double dof = points() - 1.0, others = fit.dof - dof;
+    if (!(others > 0.0) || !(rest > 0.0)) return;
+    const double p = math::f_upper(along / dof / (rest / others), dof, others);
+    if (p < surely)
+      out_.findings.push_back(finding("rotary.angles-not-trusted", true,
+                                      {um("along", std::sqrt(along / dof)),
+                                       um("rest", std::sqrt(rest / others)),
+                                       {"p", p, Quantity::probability}}));
+  }
+
+  void tell_tolerances() {
+    const RotaryFit& fit = out_.fit;
+    if (const double U = U_centre(); U > wish_.tolerance)
+      out_.findings.push_back(
+          finding("rotary.more-points", true,
+                  {um("U", U), um("tolerance", wish_.tolerance), count("points", points()),
+                   count("wanted", std::ceil(points() * std::pow(U / wish_.tolerance, 2)))}));
+    if (const double U = U_direction(); U > wish_.tolerance_direction) {
+      const double ratio = U / wish_.tolerance_direction;
+      out_.findings.push_back(finding(
+          "rotary.larger-radius", true,
+          {urad("U", U), urad("tolerance", wish_.tolerance_direction), mm("radius", fit.radius),
+           mm("radius_wanted", fit.radius * ratio), count("points", points()),
+           count("wanted", std::ceil(points() * ratio * ratio))}));
+    }
+  }
+
+  const Observations& o_;
+  const Wish& wish_;
+  Judged out_;
+  DoubleWave radial_, axial_;
+  bool exceeds_ = false;  ///< the residuals are larger than the stated sigma allows
+};
+
+}  // namespace
+
+double Judged::U_centre(std::size_t i) const {
+  const double across = 1.0 - fit.direction[i] * fit.direction[i];
+  return std::sqrt(std::pow(k * sigma, 2) * fit.cofactor[i][i] +
+                   U_shear * U_shear * std::max(0.0, across));
+}
+
+double Judged::U_direction(std::size_t i) const {
+  return k * sigma * std::sqrt(std::max(0.0, fit.cofactor[3 + i][3 + i]));
+}
+
+double Judged::U_radius() const {
+  return std::hypot(k * sigma * std::sqrt(fit.cofactor_radius), U_shear);
+}
+
+Judged judge(const Observations& o, const Wish& wish) { return Judge(o, wish).done(); }
+
+}  // namespace nonio::rotary

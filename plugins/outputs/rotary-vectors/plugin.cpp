@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Centre and direction of the rotary axes as text, JSON and CSV, and under the names of controls.
+#include "nonio/sdk/plugin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "nonio/sdk/format.h"
+#include "vectors.h"
+
+namespace nonio {
+namespace vectors {
+
+std::string millimetres(double si) { return fixed_text(printed(si, Quantity::length), 4); }
+std::string component(double value) { return fixed_text(value, 7); }
+
+std::vector<Line> lines_of(const Campaign& campaign, const Results& results) {
+  std::vector<Line> lines;
+  for (const Results::Analysed& a : results.analyses) {
+    const auto take = [&](std::string_view name, Value& into) {
+      for (const Value& v : a.evaluation.values)
+        if (v.name == name) {
+          into = v;
+          return true;
+        }
+      return false;
+    };
+    Line line;
+    bool complete = take("radius", line.radius);
+    for (std::size_t k = 0; k < 3; ++k)
+      complete = complete && take(std::string("centre_") + "xyz"[k], line.centre[k]) &&
+                 take(std::string("direction_") + "ijk"[k], line.direction[k]);
+    if (!complete) continue;
+    line.measurement = a.measurement;
+    for (const Measurement& m : campaign.measurements)
+      if (m.id == a.measurement) line.axis = m.axis;
+    line.shares_reference = a.evaluation.uses;
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(const Value& v) {
+  Json out = {{"value", printed(v.value, v.quantity)}, {"unit", unit_of(v.quantity).symbol}};
+  if (v.U) out["U"] = printed(*v.U, v.quantity);
+  return out;
+}
+
+std::string json(const Campaign& campaign, const std::vector<Line>& lines) {
+  Json axes = Json::array();
+  for (const Line& line : lines) {
+    Json one = {{"measurement", line.measurement}, {"axis", line.axis}};
+    for (const auto* values : {&line.centre, &line.direction})
+      for (const Value& v : *values) one[v.name] = number(v);
+    one["radius"] = number(line.radius);
+    one["compared_with"] = line.shares_reference;
+    axes.push_back(std::move(one));
+  }
+  const Json all = {
+      {"schema", "nonio-rotary-vectors/1"}, {"campaign", campaign.id}, {"axes", std::move(axes)}};
+  return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+/// A field of text: quoted where RFC 4180 asks for it, and never a spreadsheet's formula.
+std::string field(std::string text) {
+  if (!text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos)
+    text.insert(0, 1, '\'');
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string csv(const std::vector<Line>& lines) {
+  std::string out = "measurement,axis,name,value,unit,U\n";
+  const auto digits = [](double si, Quantity q) {
+    return q == Quantity::length ? millimetres(si) : component(si);
+  };
+  for (const Line& line : lines) {
+    std::vector<const Value*> values;
+    for (const auto* three : {&line.centre, &line.direction})
+      for (const Value& v : *three) values.push_back(&v);
+    values.push_back(&line.radius);
+    for (const Value* v : values)
+      out += field(line.measurement) + "," + field(line.axis) + "," + v->name + "," +
+             digits(v->value, v->quantity) + "," + std::string(unit_of(v->quantity).symbol) + "," +
+             (v->U ? digits(*v->U, v->quantity) : "") + "\n";
+  }
+  return out;
+}
+
+std::string padded(std::string text, std::size_t width) {
+  return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
+}
+
+std::string text(const Campaign& campaign, const std::vector<Line>& lines) {
+  std::string out = "Rotary axes of " + campaign.id + "\n";
+  out += "mm, in the coordinates of the linear axes that read the ball; U: expanded, k = 2\n";
+  out += "positive angles turn right-handed about the direction\n";
+  for (const Line& line : lines) {
+    out += "\naxis " + line.axis + " (measurement " + line.measurement + "), ball at radius " +
+           millimetres(line.radius.value) + " mm\n";
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Value &c = line.centre[k], &d = line.direction[k];
+      out += std::string("  ") + "xyz"[k] + padded(millimetres(c.value), 14) + " +- " +
+             padded(c.U ? millimetres(*c.U) : "?", 8) + "    " + "ijk"[k] +
+             padded(component(d.value), 12) + " +- " + padded(d.U ? component(*d.U) : "?", 10) +
+             "\n";
+    }
+  }
+  return out;
+}
+
+bool applies(const Campaign& campaign) {
+  return std::any_of(campaign.measurements.begin(), campaign.measurements.end(),
+                     [](const Measurement& m) { return m.kind == "ball-centres"; });
+}
+
+Expected<OutputResult> write(const OutputInput& in) {
+  OutputResult result;
+  const std::vector<Line> lines = lines_of(in.campaign, in.results);
+  if (lines.empty()) {
+    result.findings.push_back({.id = "vectors.none", .attention = true});
+    return result;
+  }
+  result.artifacts = {{"rotary-vectors.txt", text(in.campaign, lines)},
+                      {"rotary-vectors.json", json(in.campaign, lines)},
+                      {"rotary-vectors.csv", csv(lines)}};
+  write_controllers(lines, in.campaign.id, result);
+  result.notes.push_back({.id = "vectors.frame"});
+  return result;
+}
+
+}  // namespace
+}  // namespace vectors
+}  // namespace nonio
+
+NONIO_PLUGIN(registry) {
+  nonio::Output output;
+  output.info = {"rotary-vectors", "1.0.0",
+                 "Centre and direction of rotary axes as text, JSON, CSV, and for controls."};
+  output.applies = nonio::vectors::applies;
+  output.write = nonio::vectors::write;
+  registry.add(std::move(output));
+}

@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plugin as it was built, on campaigns of the exact machine.
+#include "nonio/sdk/plugin.h"
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+#include <stdexcept>
+
+#include "bench.h"
+
+namespace nonio {
+namespace {
+
+using namespace bench;
+
+constexpr unsigned seed = 20261121;
+
+const Analysis& the_analysis() {
+  struct Taker final : Registry {
+    Analysis analysis;
+    void add(Reader) override {}
+    void add(Effect) override {}
+    void add(Analysis a) override { analysis = std::move(a); }
+    void add(Output) override {}
+  };
+  static const Taker taker = [] {
+    Taker t;
+    void* library = dlopen(NONIO_DIAGONAL_PLUGIN, RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr) throw std::runtime_error(dlerror());
+    static_cast<const PluginEntry*>(dlsym(library, "nonio_plugin"))->add_to(t);
+    return t;
+  }();
+  return taker.analysis;
+}
+
+Measurement named(const std::string& id, const std::string& kind, const std::string& axis) {
+  Measurement m;
+  m.id = id;
+  m.kind = kind;
+  m.axis = axis;
+  return m;
+}
+
+/// Files of a campaign, read on the exact machine in two runs and both directions.
+struct Workpiece {
+  Rectangle rect;
+  Errors errors;
+  Campaign campaign;
+  std::vector<Observations> all;
+  double scatter = 0.0;
+  std::mt19937 rng{seed};
+  std::map<std::string, Setting> options;
+
+  explicit Workpiece(const Rectangle& r, const Errors& e = {}) : rect(r), errors(e) {
+    campaign.machine.structure = "gantry";
+    for (const char* name : {"X", "Y"}) campaign.machine.axes.push_back(Axis{.name = name});
+  }
+
+  Observations& observe(Measurement m, const std::vector<Observations::AxisColumn>& places,
+                        const std::vector<double>& mean, std::array<double, 3> sense) {
+    std::normal_distribution<double> normal(0.0, 1.0);
+    Observations o;
+    o.measurement = m.id;
+    o.lines.push_back({m.id, sense});
+    o.axes = places;
+    for (auto& a : o.axes) a.position.clear(), a.approach.clear();
+    for (std::uint32_t run = 1; run <= 2; ++run)
+      for (const int direction : {1, -1})
+        for (std::size_t j = 0; j < mean.size(); ++j) {
+          for (std::size_t k = 0; k < places.size(); ++k) {
+            o.axes[k].position.push_back(places[k].position[j]);
+            const bool rising = places[k].position.back() > places[k].position.front();
+            o.axes[k].approach.push_back(static_cast<std::int8_t>(rising ? direction : -direction));
+          }
+          o.deviation.push_back(mean[j] + scatter * normal(rng));
+          o.run.push_back(run);
+        }
+    campaign.measurements.push_back(std::move(m));
+    all.push_back(std::move(o));
+    return all.back();
+  }
+
+  void diagonal(const std::string& id, const GridLine& line) {
+    Measurement m = named(id, "diagonal", {});
+    std::vector<Observations::AxisColumn> places{{"X", false, {}, {}}, {"Y", false, {}, {}}};
+    for (const std::size_t i : line.ix) places[0].position.push_back(rect.x(i));
+    for (const std::size_t i : line.iy) places[1].position.push_back(rect.y(i));
+    m.from = {{"X", places[0].position.front()}, {"Y", places[1].position.front()}};
+    m.to = {{"X", places[0].position.back()}, {"Y", places[1].position.back()}};
+    observe(std::move(m), places, line.mean, {line.cx, line.cy, 0.0});
+  }
+  void D1(const std::string& id = "D1") {
+    diagonal(id, line(errors, rect, count(rect.n), count(rect.n)));
+  }
+  void D2(const std::string& id = "D2") {
+    diagonal(id, line(errors, rect, count(rect.n), down(rect.n)));
+  }
+  void X(const std::string& id, double y) {
+    std::vector<Observations::AxisColumn> places{{"X", false, {}, {}}};
+    for (const std::size_t i : count(rect.n)) places[0].position.push_back(rect.x(i));
+    Measurement m = named(id, "axis", "X");
+    m.at["Y"] = y;
+    observe(std::move(m), places, pitch_x(errors, rect, y).mean, {1.0, 0.0, 0.0});
+  }
+  void Y(const std::string& id = "Y") {
+    std::vector<Observations::AxisColumn> places{{"Y", false, {}, {}}};
+    for (const std::size_t i : count(rect.n)) places[0].position.push_back(rect.y(i));
+    observe(named(id, "axis", "Y"), places, pitch_y(errors, rect).mean, {0.0, 1.0, 0.0});
+  }
+  Workpiece& everything() {
+    X("X1", 0.5);
+    X("X2", 8.5);
+    Y();
+    D1();
+    D2();
+    return *this;
+  }
+
+  std::size_t index(const std::string& id) const {
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (campaign.measurements[i].id == id) return i;
+    throw std::out_of_range(id);
+  }
+  Evaluation evaluate(const std::string& id = "D1") const {
+    Settings settings;
+    for (const Option& o : the_analysis().info.options) settings.values[o.name] = o.otherwise;
+    for (const auto& [name, value] : options) {
+      EXPECT_EQ(settings.values.count(name), 1U) << name;
+      settings.values[name] = value;
+    }
+    const std::size_t i = index(id);
+    EXPECT_TRUE(the_analysis().applies(campaign, campaign.measurements[i]));
+    const auto e =
+        the_analysis().analyse({campaign, campaign.measurements[i], all[i], settings, &all});
+    EXPECT_TRUE(e) << (e ? "" : e.error().message);
+    return e.value_or(Evaluation{});
+  }
+};
+
+const Finding* finding(const Evaluation& e, const std::string& id) {
+  for (const Finding& f : e.findings)
+    if (f.id == "diagonals." + id) return &f;
+  return nullptr;
+}
+std::string ids(const Evaluation& e) {
+  std::string out;
+  for (const Finding& f : e.findings) out += f.id + " ";
+  return out;
+}
+double value(const Evaluation& e, const std::string& name) {
+  for (const Value& v : e.values)
+    if (v.name == name) return v.value;
+  ADD_FAILURE() << "no value " << name;
+  return 0.0;
+}
+const Series* series(const Evaluation& e, const std::string& name) {
+  for (const Series& s : e.series)
+    if (s.name == name) return &s;
+  return nullptr;
+}
+
+/// Refused: no value but the checks, no curve, and the reason by its name.
+void expect_refused(const Workpiece& w, const std::string& why, const std::string& id = "D1") {
+  const Evaluation e = w.evaluate(id);
+  ASSERT_NE(finding(e, why), nullptr) << why << ", found " << ids(e);
+  EXPECT_TRUE(finding(e, why)->attention);
+  EXPECT_TRUE(e.series.empty());
+  for (const Value& v : e.values) EXPECT_TRUE(v.name == "S_n" || v.name == "S_odd") << v.name;
+}
+
+TEST(DiagonalPlugin, RecoversTheMachineAndSaysWhatItUsed) {
+  std::cout << "seed " << seed << "\n";
+  std::mt19937 rng(seed);
+  const Rectangle rect{12.0, 9.0, 30};
+  const Errors errors = random_gantry(rng, rect);
+  Workpiece w(rect, errors);
+  w.everything();
+  w.diagonal("D3", half_diagonal(errors, rect));
+  const Evaluation e = w.evaluate();
+  EXPECT_EQ(e.uses, (std::vector<std::string>{"D2", "D3", "Y", "X1", "X2"}));
+  EXPECT_NEAR(value(e, "C0Y"), errors.C0Y, 0.01e-6);
+  EXPECT_NEAR(value(e, "slave_shift"), 8.0 * errors.C0Y, 0.05 * um);
+  const Series *f = series(e, "EYX"), *g = series(e, "EXY");
+  ASSERT_TRUE(f != nullptr && g != nullptr) << ids(e);
+  for (std::size_t i = 0; i <= rect.n; ++i) {
+    EXPECT_NEAR(f->value[i], errors.EYX(f->position[i]), 0.05 * um);
+    EXPECT_NEAR(g->value[i], errors.EXY(g->position[i]), 0.05 * um);
+  }
+  EXPECT_EQ(series(e, "q_odd"), nullptr);
+}
+
+TEST(DiagonalPlugin, NeverSplitsWhatTwoDiagonalsDoNotContain) {
+  Workpiece w({12.0, 9.0, 30});
+  w.errors.EXY = [](double y) { return 50 * um * std::sin(2.0 * std::numbers::pi * y / 9.0); };
+  w.errors.EYX = [](double x) {
+    return -50 * um * 12.0 / 9.0 * std::sin(2.0 * std::numbers::pi * x / 12.0);
+  };
+  w.everything();
+  Evaluation e = w.evaluate();
+  ASSERT_NE(finding(e, "not-separable"), nullptr) << ids(e);
+  EXPECT_EQ(finding(e, "not-separable")->evidence.front().value, 14.0);
+  EXPECT_EQ(series(e, "EYX"), nullptr);
+  EXPECT_EQ(series(e, "EXY"), nullptr);
+  ASSERT_NE(series(e, "EYX_even"), nullptr);
+  for (const double v : series(e, "q_odd")->value) EXPECT_LT(std::fabs(v), 0.01 * um);
+  w.options["EXY_odd_bound_um"] = 50.0;
+  e = w.evaluate();
+  ASSERT_NE(finding(e, "not-separable-band"), nullptr) << ids(e);
+  const Series *low = series(e, "EYX_low"), *high = series(e, "EYX_high");
+  for (std::size_t i = 0; i <= 30; ++i) {
+    const double truth = w.errors.EYX(low->position[i]);
+    EXPECT_LE(low->value[i], truth + 0.05 * um);
+    EXPECT_GE(high->value[i], truth - 0.05 * um);
+  }
+}
+
+TEST(DiagonalPlugin, ASingleColumnNeverBowsTheOtherWay) {
+  Workpiece w({12.0, 9.0, 30});
+  w.campaign.machine.structure = "single-column";
+  w.errors.EYX = [](double x) { return 160 * um * x / 12.0 * (1.0 - x / 12.0); };
+  w.errors.ECX = [](double x) { return -320 * um / 144.0 * x; };
+  w.errors.C0Y = -160 * um / 12.0;
+  w.errors.y_ref = 4.5;
+  w.X("X", 4.5);
+  w.Y();
+  w.D1();
+  w.D2();
+  expect_refused(w, "refused-single-column");
+  w.campaign.machine.structure = "gantry";
+  expect_refused(w, "yaw-needed");
+
+  Workpiece measured({12.0, 9.0, 30}, w.errors);
+  measured.campaign.machine.structure = "single-column";
+  const Evaluation e = measured.everything().evaluate();
+  ASSERT_NE(series(e, "EYX_even"), nullptr) << ids(e);
+  EXPECT_NEAR(series(e, "EYX_even")->value[15], 40 * um, 0.05 * um);
+}
+
+TEST(DiagonalPlugin, BadInputIsRefusedByName) {
+  const Rectangle rect{12.0, 9.0, 10};
+  Workpiece w(rect);
+  w.everything();
+  const Workpiece good = w;
+  EXPECT_NE(finding(good.evaluate(), "not-separable"), nullptr);
+
+  w.D1("D1b");
+  expect_refused(w, "refused-sets");
+  w = Workpiece(rect);
+  w.X("X1", 0.5), w.X("X2", 8.5), w.Y(), w.D1();
+  expect_refused(w, "refused-missing-diagonal");
+  w = good;  // unequal number of stops
+  w.campaign.measurements.pop_back(), w.all.pop_back();
+  w.rect.n = 12;
+  w.D2();
+  expect_refused(w, "refused-stops");
+  w = good;  // unequal steps: mm typed instead of the next whole step
+  for (double& x : w.all[3].axes[0].position)
+    if (std::fabs(x - 6.0) < 1e-9) x = 6.3;
+  expect_refused(w, "refused-stops");
+  w = good;  // a stop that was not read
+  for (auto& a : w.all[4].axes) {
+    std::vector<double> kept;
+    for (std::size_t i = 0; i < a.position.size(); ++i)
+      if (i % 11 != 4) kept.push_back(a.position[i]);
+    a.position = kept;
+    a.approach.resize(kept.size());
+  }
+  w.all[4].deviation.resize(w.all[4].axes[0].position.size());
+  expect_refused(w, "refused-stops");
+  w = good;  // read from one direction only
+  for (auto& a : w.all[3].axes) std::fill(a.approach.begin(), a.approach.end(), std::int8_t{1});
+  expect_refused(w, "refused-one-direction");
+  w = good;
+  w.Y("Y-again");
+  expect_refused(w, "refused-ambiguous");
+  w = good;
+  w.campaign.measurements[0].at.clear();
+  expect_refused(w, "refused-place");
+  w = good;
+  for (double& x : w.all[2].axes[0].position) x *= 1.001;
+  expect_refused(w, "refused-pitch-points");
+  w = Workpiece(rect);
+  w.X("X1", 0.5), w.X("X2", 8.5), w.D1(), w.D2();
+  expect_refused(w, "refused-pitch");
+  w = good;
+  w.campaign.measurements[0].at["Z"] = 0.4;
+  for (const std::size_t i : {3UL, 4UL})
+    w.campaign.measurements[i].from["Z"] = w.campaign.measurements[i].to["Z"] = 0.1;
+  expect_refused(w, "refused-height");
+}
+
+TEST(DiagonalPlugin, ADiagonalNamedFromTheOtherEndIsTheSame) {
+  std::mt19937 rng(seed + 1);
+  std::cout << "seed " << seed + 1 << "\n";
+  const Rectangle rect{12.0, 9.0, 30};
+  const Errors errors = random_gantry(rng, rect);
+  Workpiece w(rect, errors), turned(rect, errors);
+  w.everything();
+  turned.X("X1", 0.5), turned.X("X2", 8.5), turned.Y(), turned.D1();
+  turned.diagonal("D2", line(errors, rect, down(rect.n), count(rect.n)));
+  const auto a = w.evaluate(), b = turned.evaluate();
+  ASSERT_NE(series(b, "q_odd"), nullptr) << ids(b);
+  EXPECT_NEAR(value(a, "C0Y"), value(b, "C0Y"), 1e-9);
+  for (std::size_t i = 0; i <= rect.n; ++i)
+    EXPECT_NEAR(series(a, "q_odd")->value[i], series(b, "q_odd")->value[i], 0.01 * um);
+}
+
+TEST(DiagonalPlugin, ClosureRefusesAChangedPitch) {
+  Workpiece w({12.0, 9.0, 30});
+  w.scatter = 0.5 * um;
+  w.everything();
+  for (std::size_t i = 0; i < w.all[2].size(); ++i)  // Y grew by 2 um/m after it was measured
+    w.all[2].deviation[i] -= 2e-6 * w.all[2].axes[0].position[i];
+  expect_refused(w, "closure");
+}
+
+TEST(DiagonalPlugin, ReversalOfTheAxesHasToBeThatOfTheDiagonals) {
+  Workpiece w({12.0, 9.0, 30});
+  w.scatter = 0.5 * um;
+  w.everything();
+  const auto reverse = [&](std::size_t i, double B) {
+    for (std::size_t k = 0; k < w.all[i].size(); ++k)
+      w.all[i].deviation[k] += w.all[i].axes[0].approach[k] * B / 2.0;
+  };
+  reverse(0, -4 * um), reverse(1, -4 * um), reverse(2, -2 * um);
+  EXPECT_NE(finding(w.evaluate(), "reversal"), nullptr);
+  reverse(3, -4.4 * um), reverse(4, -4.4 * um);  // 0.8 * -4 + 0.6 * -2
+  EXPECT_EQ(finding(w.evaluate(), "reversal"), nullptr) << ids(w.evaluate());
+}
+
+TEST(DiagonalPlugin, FlatDiagonalsGiveSquarenessOnly) {
+  Workpiece w({12.0, 1.8, 30});
+  w.errors.C0Y = 5e-6;
+  w.X("X1", 0.1), w.X("X2", 1.7), w.Y(), w.D1(), w.D2();
+  const auto e = w.evaluate();
+  ASSERT_NE(finding(e, "flat"), nullptr) << ids(e);
+  EXPECT_TRUE(e.series.empty());
+  EXPECT_NEAR(value(e, "C0Y"), 5e-6, 0.01e-6);
+}
+
+TEST(DiagonalPlugin, SetsBeforeAndAfterAreApart) {
+  Workpiece w({12.0, 9.0, 30});
+  w.errors.C0Y = 8e-6;
+  w.X("X1", 0.5), w.X("X2", 8.5), w.Y(), w.D1("D1 00"), w.D2("D2 00");
+  w.errors.C0Y = 0.5e-6;
+  w.D1("D1 final"), w.D2("D2 final");
+  const auto before = w.evaluate("D1 00"), after = w.evaluate("D1 final");
+  EXPECT_NEAR(value(before, "C0Y"), 8e-6, 0.01e-6);
+  EXPECT_NEAR(value(after, "C0Y"), 0.5e-6, 0.01e-6);
+  EXPECT_EQ(finding(before, "remeasured"), nullptr);
+  EXPECT_NE(finding(after, "remeasured"), nullptr);
+  EXPECT_FALSE(the_analysis().applies(w.campaign, w.campaign.measurements[w.index("D2 00")]));
+}
+
+TEST(DiagonalPlugin, UncertaintiesFromTheScatterCoverTheTruth) {
+  std::mt19937 rng(seed + 2);
+  std::cout << "seed " << seed + 2 << "\n";
+  const Rectangle rect{12.0, 9.0, 6};
+  const Errors errors = random_gantry(rng, rect);
+  constexpr int campaigns = 2000;
+  double inside = 0.0, inside_k = 0.0, solved = 0.0;
+  for (int c = 0; c < campaigns; ++c) {
+    Workpiece w(rect, errors);
+    w.rng.seed(seed + 100 + static_cast<unsigned>(c));
+    w.scatter = 1 * um;
+    w.everything();
+    const Evaluation e = w.evaluate();
+    const Series* f = series(e, "EYX_even");
+    if (f == nullptr) continue;  // the closure has its own rate of false alarms
+    solved += 1.0;
+    for (std::size_t i = 1; i < rect.n; ++i) {
+      const double truth = (errors.EYX(rect.x(i)) + errors.EYX(rect.x(rect.n - i))) / 2.0;
+      inside += (std::fabs(f->value[i] - truth) <= f->U[i]) / static_cast<double>(rect.n - 1);
+    }
+    for (const Value& v : e.values)
+      if (v.name == "C0Y") inside_k += std::fabs(v.value - errors.C0Y) <= *v.U;
+  }
+  std::cout << "EYX_even " << 100.0 * inside / solved << " %, C0Y " << 100.0 * inside_k / solved
+            << " % of " << solved << "\n";
+  EXPECT_GE(solved, 0.99 * campaigns);
+  for (const double hit : {inside, inside_k}) {
+    EXPECT_GE(hit, 0.93 * solved);
+    EXPECT_LE(hit, 0.97 * solved);
+  }
+}
+
+}  // namespace
+}  // namespace nonio

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "one_output.h"
+
+namespace nonio {
+namespace {
+
+using Vec = std::array<double, 3>;
+constexpr double mm = 1e-3, deg = std::numbers::pi / 180.0;
+
+Results::Analysed axis(const std::string& id, Vec centre, Vec direction,
+                       std::vector<std::string> uses = {}) {
+  Results::Analysed a{"rotary-kinematics", "1", id, {}};
+  const double size = std::hypot(direction[0], direction[1], direction[2]);
+  for (std::size_t k = 0; k < 3; ++k)
+    a.evaluation.values.push_back(
+        {std::string("centre_") + "xyz"[k], centre[k], Quantity::length, 1e-6});
+  a.evaluation.values.push_back({"radius", 0.261, Quantity::length, 1e-6});
+  for (std::size_t k = 0; k < 3; ++k)
+    a.evaluation.values.push_back(
+        {std::string("direction_") + "ijk"[k], direction[k] / size, Quantity::number, 5e-6});
+  a.evaluation.uses = std::move(uses);
+  return a;
+}
+
+Campaign campaign(const std::vector<std::string>& axes) {
+  Campaign c;
+  c.id = "one";
+  for (const std::string& name : axes) {
+    Measurement m;
+    m.id = m.axis = name;
+    m.kind = "ball-centres";
+    c.measurements.push_back(m);
+  }
+  return c;
+}
+
+OutputResult write(const Campaign& c, std::vector<Results::Analysed> analyses) {
+  Results results;
+  results.analyses = std::move(analyses);
+  auto out = written(c, {}, results);
+  EXPECT_TRUE(out);
+  return out ? *out : OutputResult{};
+}
+
+std::string file(const OutputResult& result, std::string_view name) {
+  for (const Artifact& a : result.artifacts)
+    if (a.name == name) return a.bytes;
+  return {};
+}
+
+bool says(const OutputResult& result, std::string_view id) {
+  for (const Finding& f : result.findings)
+    if (f.id == id) return true;
+  return false;
+}
+
+double pin(const std::string& hal, const std::string& name) {
+  const std::size_t at = hal.find("." + name + " ");
+  EXPECT_NE(at, std::string::npos) << name;
+  return at == std::string::npos ? NAN : std::stod(hal.substr(at + name.size() + 2)) * mm;
+}
+
+TEST(RotaryVectors, GenericFiles) {
+  const auto out =
+      write(campaign({"C"}), {axis("C", {0.4123456, 0.305, -0.1486}, {1.2e-4, -8e-5, 1})});
+  const auto json = nlohmann::json::parse(file(out, "rotary-vectors.json"));
+  EXPECT_EQ(json["axes"][0]["axis"], "C");
+  EXPECT_DOUBLE_EQ(json["axes"][0]["centre_x"]["value"], 412.3456);
+  EXPECT_EQ(json["axes"][0]["centre_x"]["unit"], "mm");
+  EXPECT_DOUBLE_EQ(json["axes"][0]["centre_x"]["U"], 0.001);
+  EXPECT_NEAR(json["axes"][0]["direction_i"]["value"], 1.2e-4, 1e-10);
+  EXPECT_NE(file(out, "rotary-vectors.csv").find("C,C,centre_x,412.3456,mm,0.0010\n"),
+            std::string::npos);
+  EXPECT_NE(file(out, "rotary-vectors.txt").find("412.3456 +-   0.0010"), std::string::npos);
+  EXPECT_EQ(out.artifacts.size(), 3U);  // one axis has no offsets
+  EXPECT_TRUE(out.findings.empty());
+}
+
+TEST(RotaryVectors, SaysWhyThereIsNothing) {
+  const auto out = write(campaign({"C"}), {{"rotary-kinematics", "1", "C", {}}});
+  EXPECT_TRUE(out.artifacts.empty());
+  EXPECT_TRUE(says(out, "vectors.none"));
+}
+
+TEST(RotaryVectors, OffsetsOnlyWithOneReference) {
+  const Vec c{0.1, 0.2, -0.1}, b{0.11, 0.0, -0.3};
+  const auto apart =
+      write(campaign({"C", "B"}), {axis("C", c, {0, 0, 1}), axis("B", b, {0, 1, 0})});
+  EXPECT_TRUE(says(apart, "vectors.no-reference"));
+  EXPECT_EQ(apart.artifacts.size(), 3U);
+  const auto wrong =
+      write(campaign({"C", "B"}), {axis("C", c, {0, 0, -1}), axis("B", b, {0, 1, 0}, {"C"})});
+  EXPECT_TRUE(says(wrong, "vectors.other-sense"));
+  EXPECT_EQ(wrong.artifacts.size(), 3U);
+  // An axis that was measured twice is not chosen from.
+  auto twice = campaign({"C", "B"});
+  twice.measurements.push_back(twice.measurements[0]);
+  twice.measurements[2].id = "C again";
+  const auto unclear = write(twice, {axis("C", c, {0, 0, 1}), axis("B", b, {0, 1, 0}, {"C"}),
+                                     axis("C again", c, {0, 0, 1})});
+  EXPECT_EQ(unclear.artifacts.size(), 3U);
+}
+
+Vec turned(const Vec& p, const Vec& about, std::size_t axis_of, double angle) {
+  const std::size_t a = (axis_of + 1) % 3, b = (axis_of + 2) % 3;
+  Vec out = p;
+  const double x = p[a] - about[a], y = p[b] - about[b];
+  out[a] = about[a] + std::cos(angle) * x - std::sin(angle) * y;
+  out[b] = about[b] + std::sin(angle) * x + std::cos(angle) * y;
+  return out;
+}
+
+/// The formulas of xyzbc-trt-kins and xyzac-trt-kins (from the work to the joints), as its source
+/// has them, must put every point where a table with these lines carries it.
+TEST(RotaryVectors, LinuxCncGoesWhereTheTableGoes) {
+  for (const bool a : {false, true}) {
+    const Vec c{0.4123, 0.30512, -0.1}, tilt{0.41226, 0.30519, -0.310045};
+    const std::string name = a ? "A" : "B";
+    const auto out =
+        write(campaign({"C", name}),
+              {axis("C", c, {0, 0, 1}), axis(name, tilt, a ? Vec{1, 0, 0} : Vec{0, 1, 0}, {"C"})});
+    const std::string hal = file(out, "rotary-vectors-linuxcnc.hal");
+    EXPECT_NE(hal.find(a ? "setp xyzac-trt-kins." : "setp xyzbc-trt-kins."), std::string::npos);
+    const double xr = pin(hal, "x-rot-point"), yr = pin(hal, "y-rot-point"),
+                 zr = pin(hal, "z-rot-point"), d = pin(hal, a ? "y-offset" : "x-offset"),
+                 dz = pin(hal, "z-offset");
+    for (const auto& [swivel, turn] : {std::pair(30.0, 50.0), {-60.0, 200.0}, {90.0, -10.0}}) {
+      const Vec work{0.5, 0.25, -0.02};
+      const double cs = std::cos(swivel * deg), sn = std::sin(swivel * deg);
+      const double cc = std::cos(turn * deg), sc = std::sin(turn * deg);
+      const double px = cc * (work[0] - xr) - sc * (work[1] - yr),
+                   py = sc * (work[0] - xr) + cc * (work[1] - yr), pz = work[2] - zr;
+      const Vec joints = a ? Vec{px + xr, cs * py - sn * pz - cs * d + sn * dz + d + yr,
+                                 sn * py + cs * pz - sn * d - cs * dz + dz + zr}
+                           : Vec{cs * px + sn * pz - cs * d - sn * dz + d + xr, py + yr,
+                                 -sn * px + cs * pz + sn * d - cs * dz + dz + zr};
+      const Vec real = turned(turned(work, c, 2, turn * deg), tilt, a ? 0 : 1, swivel * deg);
+      for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(joints[k], real[k], 0.2e-6) << name << k;
+    }
+  }
+}
+
+TEST(RotaryVectors, HeidenhainMarksWhatIsInferred) {
+  const auto out = write(campaign({"C", "B"}), {axis("C", {0.1, 0.2, -0.1}, {0, 0, 1}),
+                                                axis("B", {0.11, 0, -0.3}, {0, 1, 0}, {"C"})});
+  const std::string table = file(out, "rotary-vectors-heidenhain.txt");
+  EXPECT_NE(table.find("INFERRED"), std::string::npos);
+  EXPECT_NE(table.find("Trans     X     110.0000\nTrans     Y     200.0000\n"
+                       "Trans     Z     -300.0000\nMachAxis  B\nTrans     X     -10.0000\n"),
+            std::string::npos)
+      << table;
+}
+
+}  // namespace
+}  // namespace nonio

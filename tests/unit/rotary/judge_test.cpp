@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the plugin says of good and bad measurements.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "nonio/sdk/plugin.h"
+#include "table.h"
+#include "words.h"
+
+extern "C" const nonio::PluginEntry nonio_plugin;
+
+namespace nonio {
+namespace {
+
+using namespace turntable;
+
+Analysis the_analysis() {
+  struct Taker final : Registry {
+    Analysis analysis;
+    void add(Reader) override { ADD_FAILURE() << "a reader"; }
+    void add(Effect) override { ADD_FAILURE() << "an effect"; }
+    void add(Analysis a) override { analysis = std::move(a); }
+    void add(Output) override { ADD_FAILURE() << "an output"; }
+  } taker;
+  nonio_plugin.add_to(taker);
+  return taker.analysis;
+}
+
+/// A campaign as the host gives it to the plugin.
+struct Workshop {
+  Campaign campaign;
+  std::vector<Observations> all;
+  Settings options;
+
+  Workshop() {
+    for (const Option& o : the_analysis().info.options) options.values[o.name] = o.otherwise;
+  }
+  Workshop& measured(const std::string& id, const std::vector<math::BallCentre>& centres) {
+    Measurement m;
+    m.id = m.axis = id;
+    m.kind = "ball-centres";
+    campaign.measurements.push_back(m);
+    all.push_back(observed(centres, id));
+    return *this;
+  }
+  Workshop& with(const std::string& name, Setting value) {
+    options.values[name] = std::move(value);
+    return *this;
+  }
+  Evaluation last() const {
+    auto e =
+        the_analysis().analyse({campaign, campaign.measurements.back(), all.back(), options, &all});
+    EXPECT_TRUE(e);
+    if (e) expect_words(*e);
+    return e ? *e : Evaluation{};
+  }
+  /// Every place in the words has its evidence.
+  static void expect_words(const Evaluation& e) {
+    static const auto words = word_places("en");
+    const auto filled = [&](const std::string& id, const auto& evidence, const auto& texts) {
+      const auto places = words.find(id);
+      ASSERT_NE(places, words.end()) << id;
+      for (const std::string& place : places->second) {
+        bool has = false;
+        for (const Number& n : evidence) has |= n.name == place;
+        for (const auto& [name, text] : texts) has |= name == place;
+        EXPECT_TRUE(has) << id << " " << place;
+      }
+    };
+    for (const Finding& f : e.findings) filled(f.id, f.evidence, f.texts);
+    for (const Remark& r : e.notes) filled(r.id, r.evidence, r.texts);
+  }
+};
+
+const Value* value(const Evaluation& e, std::string_view name) {
+  for (const Value& v : e.values)
+    if (v.name == name) return &v;
+  return nullptr;
+}
+
+const Finding* found(const Evaluation& e, std::string_view id) {
+  for (const Finding& f : e.findings)
+    if (f.id == id) return &f;
+  return nullptr;
+}
+
+double evidence(const Finding& f, std::string_view name) {
+  for (const Number& n : f.evidence)
+    if (n.name == name) return n.value;
+  ADD_FAILURE() << f.id << " has no " << name;
+  return 0.0;
+}
+
+std::string ids(const Evaluation& e) {
+  std::string out;
+  for (const Finding& f : e.findings) out += f.id + " ";
+  return out;
+}
+
+std::vector<math::BallCentre> noisy(const Table& t, const std::vector<double>& angles, double sigma,
+                                    unsigned seed = 7) {
+  Noise noise(seed);
+  return noise.on(t.at(angles), sigma);
+}
+
+/// Refused means: this finding, for attention, and no value.
+void expect_refused(const Evaluation& e, std::string_view id) {
+  const Finding* f = found(e, id);
+  ASSERT_NE(f, nullptr) << "wanted " << id << ", found " << ids(e);
+  EXPECT_TRUE(f->attention);
+  EXPECT_TRUE(e.values.empty());
+  EXPECT_TRUE(e.series.empty());
+}
+
+TEST(RotaryJudge, BothLanguagesSayTheSame) {
+  const auto en = word_places("en"), it = word_places("it");
+  ASSERT_GE(en.size(), 25U);
+  EXPECT_EQ(en, it);
+}
+
+TEST(RotaryJudge, GoodTable) {
+  Table t;
+  const Evaluation e = Workshop().measured("C", noisy(t, full_turn(8), 1 * um)).last();
+  EXPECT_TRUE(e.findings.empty()) << ids(e);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Value* c = value(e, std::string("centre_") + "xyz"[k]);
+    ASSERT_NE(c, nullptr);
+    EXPECT_NEAR(c->value, t.centre[static_cast<int>(k)], 3 * um);
+    EXPECT_GT(*c->U, 0.2 * um);
+    EXPECT_LT(*c->U, 3 * um);
+    ASSERT_NE(value(e, std::string("direction_") + "ijk"[k]), nullptr);
+  }
+  EXPECT_NEAR(value(e, "radius")->value, t.radius, 2 * um);
+  ASSERT_EQ(e.series.size(), 2U);
+  EXPECT_EQ(e.series[0].position.size(), 8U);
+}
+
+TEST(RotaryJudge, RefusesWhatIsNoAxis) {
+  Table t;
+  const auto evaluated = [](std::vector<math::BallCentre> c) {
+    return Workshop().measured("C", c).last();
+  };
+  expect_refused(evaluated(t.at(full_turn(2))), "rotary.too-few");
+  auto repeated = t.at({0, 1, 2, 3, 1});
+  expect_refused(evaluated(repeated), "rotary.repeated-angles");
+  auto line = t.at(full_turn(5));
+  for (std::size_t i = 0; i < 5; ++i) line[i].at = {0.05 * static_cast<double>(i), 0, 0};
+  expect_refused(evaluated(line), "rotary.collinear");
+  auto same = t.at(full_turn(5));
+  for (auto& c : same) c.at = {1, 2, 3};
+  expect_refused(evaluated(same), "rotary.collinear");
+  auto huge = t.at(full_turn(5));
+  huge[1].at[2] = 1e12;
+  expect_refused(evaluated(huge), "rotary.not-finite");
+  huge[1].at[2] = std::numeric_limits<double>::quiet_NaN();
+  expect_refused(evaluated(huge), "rotary.not-finite");
+  huge[1].angle = std::numeric_limits<double>::quiet_NaN();
+  expect_refused(evaluated(huge), "rotary.repeated-angles");
+  auto shuffled = t.at(full_turn(8));
+  std::swap(shuffled[0].at, shuffled[3].at);
+  expect_refused(evaluated(shuffled), "rotary.angles-disagree");
+}
+
+TEST(RotaryJudge, NotACircle) {
+  Table t;
+  auto square = t.at(full_turn(8));
+  for (std::size_t i = 0; i < 8; i += 2)
+    for (std::size_t k = 0; k < 2; ++k)
+      square[i].at[k] += 0.01 * (square[i].at[k] - t.centre[static_cast<int>(k)]);
+  expect_refused(Workshop().measured("C", square).last(), "rotary.not-a-circle");
+  // Against a stated sigma.
+  const auto rough = noisy(t, full_turn(8), 30 * um);
+  EXPECT_EQ(found(Workshop().measured("C", rough).last(), "rotary.not-a-circle"), nullptr);
+  expect_refused(Workshop().with("sigma_um", 1.0).measured("C", rough).last(),
+                 "rotary.not-a-circle");
+}
+
+TEST(RotaryJudge, ThreePoints) {
+  Table t;
+  const auto three = noisy(t, full_turn(3), 2 * um);
+  expect_refused(Workshop().measured("C", three).last(), "rotary.sigma-needed");
+  expect_refused(Workshop().with("sigma_um", 2.0).measured("C", three).last(),
+                 "rotary.three-points-squareness");
+  const Evaluation e =
+      Workshop().with("sigma_um", 2.0).with("linear_axes_urad", 10.0).measured("C", three).last();
+  ASSERT_NE(found(e, "rotary.three-points"), nullptr) << ids(e);
+  // sd 2 um sqrt(2/3), and 10 urad of squareness move the centre by R/2 times as much.
+  EXPECT_NEAR(*value(e, "centre_x")->U,
+              2 * std::hypot(2 * um * std::sqrt(2.0 / 3.0), 0.261 * 5e-6 / std::sqrt(3.0)),
+              0.01 * um);
+  EXPECT_EQ(value(e, "s"), nullptr);
+  // The instrument's certificate will do for sigma.
+  Workshop certified;
+  certified.campaign.instrument.U_fixed = 4 * um;
+  const Evaluation same = certified.with("linear_axes_urad", 10.0).measured("C", three).last();
+  EXPECT_NEAR(*value(same, "centre_x")->U, *value(e, "centre_x")->U, 1e-9);
+}
+
+TEST(RotaryJudge, ShortArc) {
+  Table t;
+  const auto part = noisy(t, arc(0, 30 * deg, 11), 10 * um);
+  const Evaluation e = Workshop().measured("B", part).last();
+  expect_refused(e, "rotary.short-arc");
+  const Finding& f = *found(e, "rotary.short-arc");
+  EXPECT_NEAR(evidence(f, "arc"), 30 * deg, 0.02);
+  EXPECT_GT(evidence(f, "U"), 200 * um);
+  EXPECT_FALSE(Workshop().with("tolerance_um", 5000.0).measured("B", part).last().values.empty());
+}
+
+TEST(RotaryJudge, AdviceSaysByHowMuch) {
+  Table t;
+  t.radius = 0.05;
+  const Evaluation e = Workshop()
+                           .with("sigma_um", 10.0)
+                           .with("tolerance_um", 5.0)
+                           .with("tolerance_urad", 50.0)
+                           .measured("C", noisy(t, full_turn(8), 10 * um))
+                           .last();
+  const Finding* more = found(e, "rotary.more-points");
+  ASSERT_NE(more, nullptr) << ids(e);
+  // U = 2 * 10 sqrt(2/8) = 10 um: four times as many points halve it.
+  EXPECT_NEAR(evidence(*more, "U"), 10 * um, 0.01 * um);
+  EXPECT_NEAR(evidence(*more, "wanted"), 32, 1);
+  const Finding* larger = found(e, "rotary.larger-radius");
+  ASSERT_NE(larger, nullptr) << ids(e);
+  EXPECT_NEAR(evidence(*larger, "U"), 200 * urad, 1 * urad);
+  EXPECT_NEAR(evidence(*larger, "radius_wanted"), 0.2, 0.001);
+  EXPECT_NEAR(evidence(*larger, "wanted"), 128, 1);
+}
+
+TEST(RotaryJudge, EllipseAndAxialRunOut) {
+  Table t;
+  t.radius = 0.5;
+  t.linear_axes(0, 1) = 40 * urad;
+  auto centres = noisy(t, full_turn(8), 0.5 * um);
+  const Evaluation e = Workshop().measured("C", centres).last();
+  const Finding* ellipse = found(e, "rotary.ellipse");
+  ASSERT_NE(ellipse, nullptr) << ids(e);
+  EXPECT_NEAR(evidence(*ellipse, "shear"), 40 * urad, 4 * urad);
+  EXPECT_EQ(found(e, "rotary.axial-run-out"), nullptr);
+  t.linear_axes.setIdentity();
+  centres = noisy(t, full_turn(8), 0.5 * um);
+  for (auto& c : centres) c.at[2] += 6 * um * std::cos(2 * (c.angle - 20 * deg));
+  const Evaluation wobble = Workshop().measured("C", centres).last();
+  const Finding* axial = found(wobble, "rotary.axial-run-out");
+  ASSERT_NE(axial, nullptr) << ids(wobble);
+  EXPECT_NEAR(evidence(*axial, "amplitude"), 6 * um, 1 * um);
+  EXPECT_EQ(found(wobble, "rotary.ellipse"), nullptr);
+}
+
+/// 2,000 tables without ellipse or wobble: each is accused as often as its level says.
+TEST(RotaryJudge, FalseAlarms) {
+  const unsigned seed = 99;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  Noise noise(seed);
+  const Table t;
+  int ellipse = 0, axial = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Evaluation e = Workshop().measured("C", noise.on(t.at(full_turn(8)), 1 * um)).last();
+    ellipse += found(e, "rotary.ellipse") != nullptr;
+    axial += found(e, "rotary.axial-run-out") != nullptr;
+  }
+  EXPECT_GE(ellipse, 5);  // 20 expected of 2,000 at 1 %
+  EXPECT_LE(ellipse, 38);
+  EXPECT_GE(axial, 5);
+  EXPECT_LE(axial, 38);
+}
+
+TEST(RotaryJudge, ScatterBeyondTheStatedSigma) {
+  Table t;
+  const auto rough = noisy(t, full_turn(8), 5 * um);
+  const Evaluation e = Workshop().with("sigma_um", 1.0).measured("C", rough).last();
+  ASSERT_NE(found(e, "rotary.scatter"), nullptr) << ids(e);
+  const Evaluation own = Workshop().measured("C", rough).last();
+  EXPECT_EQ(*value(e, "centre_x")->U, *value(own, "centre_x")->U);  // from the residuals
+}
+
+TEST(RotaryJudge, AnglesThatDoNotDeserveTrust) {
+  Table t;
+  auto centres = noisy(t, full_turn(12), 1 * um);
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    centres[i].angle += 100 * urad * std::sin(3.0 * static_cast<double>(i));  // 26 um at R
+  EXPECT_NE(found(Workshop().with("use_angles", true).measured("C", centres).last(),
+                  "rotary.angles-not-trusted"),
+            nullptr);
+  EXPECT_TRUE(Workshop().measured("C", centres).last().findings.empty());
+  const auto good = noisy(t, full_turn(12), 1 * um);
+  EXPECT_EQ(found(Workshop().with("use_angles", true).measured("C", good).last(),
+                  "rotary.angles-not-trusted"),
+            nullptr);
+}
+
+TEST(RotaryJudge, ArcsSayWhatSquarenessDoes) {
+  Table t;
+  const auto part = noisy(t, arc(-60 * deg, 90 * deg, 11), 1 * um);
+  const Evaluation e = Workshop().measured("B", part).last();
+  const Finding* f = found(e, "rotary.arc-squareness");
+  ASSERT_NE(f, nullptr) << ids(e);
+  EXPECT_GT(evidence(*f, "shift"), 2 * um);
+  EXPECT_LT(evidence(*f, "shift"), 4 * um);
+  const Evaluation bounded = Workshop().with("linear_axes_urad", 10.0).measured("B", part).last();
+  EXPECT_EQ(found(bounded, "rotary.arc-squareness"), nullptr);
+  EXPECT_GT(*value(bounded, "centre_x")->U, *value(e, "centre_x")->U);
+}
+
+TEST(RotaryJudge, RunsAtOneAngleAreOneCentre) {
+  Table t;
+  auto all = noisy(t, full_turn(8), 2 * um, 1);
+  const auto second = noisy(t, full_turn(8), 2 * um, 2);
+  all.insert(all.end(), second.begin(), second.end());
+  Workshop w;
+  w.measured("C", all);
+  for (std::size_t i = 0; i < w.all[0].run.size(); ++i) w.all[0].run[i] = i < 24 ? 1 : 2;
+  const Evaluation e = w.last();
+  ASSERT_EQ(e.points.column("n")->values.size(), 8U);
+  EXPECT_EQ(e.points.column("n")->values[3], 2.0);
+  // A full turn on, the axis is where it was.
+  auto closed = noisy(t, full_turn(8), 2 * um);
+  closed.push_back(noisy(t, {360 * deg}, 2 * um, 9)[0]);
+  const Evaluation turn = Workshop().measured("C", closed).last();
+  EXPECT_EQ(turn.points.column("n")->values[0], 2.0);
+  EXPECT_EQ(turn.points.column("n")->values.size(), 8U);
+}
+
+TEST(RotaryJudge, AxesAreComparedOnlyWithOneReference) {
+  Table c, b;
+  b.centre = {0.12, 0.3, 0.05};
+  b.direction = {0, 1, 0};
+  const auto workshop = [&] {
+    Workshop w;
+    w.measured("C", noisy(c, full_turn(8), 1 * um)).measured("B", noisy(b, full_turn(12), 1 * um));
+    return w;
+  };
+  const Evaluation apart = workshop().last();
+  EXPECT_EQ(value(apart, "distance_C"), nullptr);
+  EXPECT_NE(found(apart, "rotary.reference-unknown"), nullptr);
+  EXPECT_TRUE(apart.uses.empty());
+  const Evaluation e = workshop().with("same_reference", std::vector<std::string>{"C", "B"}).last();
+  ASSERT_NE(value(e, "distance_C"), nullptr) << ids(e);
+  EXPECT_NEAR(value(e, "distance_C")->value, 0.12 - 0.102532, *value(e, "distance_C")->U * 2);
+  EXPECT_NEAR(value(e, "angle_C")->value, 90 * deg, *value(e, "angle_C")->U * 2);
+  EXPECT_EQ(e.uses, std::vector<std::string>{"C"});
+  EXPECT_EQ(found(e, "rotary.reference-unknown"), nullptr);
+}
+
+}  // namespace
+}  // namespace nonio
