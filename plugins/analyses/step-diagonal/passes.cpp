@@ -71,10 +71,13 @@ bool count_moves(const Passes& p, const Observations& o, Line& line) {
       const double travel = p.readings.travel[k];
       const double start = p.readings.low[k] + (line.sign[k] > 0 ? 0.0 : travel);
       const double steps =
-          std::fabs(o.axes[k].position[row] - start) / travel * static_cast<double>(line.n);
-      if (!(std::fabs(steps - std::round(steps)) < 1e-3)) return false;
+          line.sign[k] * (o.axes[k].position[row] - start) / travel * static_cast<double>(line.n);
+      if (!(std::fabs(steps - std::round(steps)) < 1e-3) || !(steps > -0.5) ||
+          !(steps < static_cast<double>(line.n) + 0.5))
+        return false;
       moves[k] = static_cast<std::size_t>(std::llround(steps));
     }
+    if (moves[0] + moves[1] + moves[2] == 0) return false;  // before the first move
     line.moves.push_back(moves);
   }
   return true;
@@ -139,12 +142,12 @@ void refuse_missing(Passes& p, const std::vector<Line>& lines) {
       {{"PPP", {1, 1}}, {"NPP", {-1, -1}}, {"PNP", {-1, 1}}, {"PPN", {1, -1}}}};
   std::string missing;
   std::size_t found = 0;
-  for (const auto& [name, pattern] : four) {
+  for (const auto& corner : four) {
     const bool there = std::any_of(lines.begin(), lines.end(), [&](const Line& l) {
-      return l.sign[0] * l.sign[1] == pattern.first && l.sign[0] * l.sign[2] == pattern.second;
+      return std::pair(l.sign[0] * l.sign[1], l.sign[0] * l.sign[2]) == corner.second;
     });
     found += there ? 1 : 0;
-    if (!there) missing += std::string(missing.empty() ? "" : ", ") + name;
+    if (!there) missing += std::string(missing.empty() ? "" : ", ") + corner.first;
   }
   if (found < 4)
     p.refusal.push_back(refused("step-diagonal.too-few-diagonals", {count("found", found)},
