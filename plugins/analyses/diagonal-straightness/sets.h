@@ -2,10 +2,10 @@
 #pragma once
 
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "curves.h"
+#include "nonio/sdk/error.h"
 #include "nonio/sdk/plugin.h"
 
 namespace nonio::diagonals {

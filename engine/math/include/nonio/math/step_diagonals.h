@@ -22,10 +22,11 @@
 ///
 /// Least squares: 9n function values, two set-up angles a pass, the zero of each pass, and the
 /// zero of each axis series d(x) = E_aa(x) + zero. A rotation of the frame moves no reading: EYX,
-/// EZX and EZY are 0 at the far end while it is solved (three gauge rows, if the set-up is open). The rank is found
-/// numerically; without axis series the set-up leaves two scales unknown, and what depends on them
-/// is not given. Where the mirror is square to a beam that does not run along the diagonal, the
-/// path is short by |nu|^2/2 of u.p: subtracted, with nu.E, and solved again, twice.
+/// EZX and EZY are 0 at the far end while it is solved (three gauge rows, if the set-up is open).
+/// The rank is found numerically; without axis series the set-up leaves two scales unknown, and
+/// what depends on them is not given. Where the mirror is square to a beam that does not run along
+/// the diagonal, the path is short by |nu|^2/2 of u.p: subtracted, with nu.E, and solved again,
+/// twice.
 ///
 /// Averaging (perfect set-up only), r = increment of a reading over interval i of axis a:
 ///     dE_aa = mean of r / u_a,   dE_ba = mean of (e_a e_b r) / u_b    over the four diagonals
