@@ -51,7 +51,7 @@
 namespace nonio::math {
 
 /// Largest number of steps: the fit is dense.
-inline constexpr std::size_t most_diagonal_steps = 120;
+inline constexpr std::size_t most_diagonal_steps = 100;
 
 struct StepDiagonals {
   struct Pass {
