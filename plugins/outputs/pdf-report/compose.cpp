@@ -67,6 +67,8 @@ std::string heading_of(const Source& source, const Measured& m) {
     return words.get("measurement.diagonal", {{"id", measurement.id}});
   if (measurement.kind == "ball-centres")
     return ids(words.get("measurement.ball_centres", {{"axis", measurement.axis}}));
+  if (measurement.kind == "step-diagonal")
+    return words.get("measurement.step_diagonal", {{"id", measurement.id}});
   return words.get("measurement.other", {{"id", measurement.id}, {"kind", measurement.kind}});
 }
 
@@ -86,8 +88,10 @@ std::string temperatures(const Source& source, const char* key, const std::vecto
 std::string test_of(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
   if (o.axes.empty() || o.size() == 0) return source.words.get("measurement.unread");
-  if (m.measurement.kind == "ball-centres")
-    return source.words.get("measurement.centres", {{"count", std::to_string(o.size() / 3)}}) +
+  const bool centres = m.measurement.kind == "ball-centres";
+  if (!over_one_position(m.measurement))
+    return source.words.get(centres ? "measurement.centres" : "measurement.readings",
+                            {{"count", std::to_string(centres ? o.size() / 3 : o.size())}}) +
            temperatures(source, "measurement.material", o.material) +
            temperatures(source, "measurement.air", o.air);
   const auto& axis = o.axes.front();

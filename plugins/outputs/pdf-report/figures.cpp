@@ -352,7 +352,7 @@ void add_plots(const Source& source, const Measured& m, Blocks& blocks) {
     if (plot) plots.push_back(std::move(*plot));
   };
   for (const std::string& kind : source.look.plots) {
-    if (kind == "runs" && !circle) add(runs_plot(source, m));
+    if (kind == "runs" && over_one_position(m.measurement)) add(runs_plot(source, m));
     if (kind == "iso") add(iso_plot(source, m));
     if (kind == "vdi") add(vdi_plot(source, m));
     if (kind == "reversal") add(reversal_plot(source, m));

@@ -47,6 +47,10 @@ void add_title(const Source&, Blocks&);
 void add_identity(const Source&, Blocks&);
 void add_status(const Source&, Blocks&);
 
+/// Its readings are runs over one position: of an axis, or along a diagonal.
+inline bool over_one_position(const Measurement& m) {
+  return m.kind == "axis" || m.kind == "straightness" || m.kind == "diagonal";
+}
 void add_results(const Source&, const Measured&, Blocks&);
 void add_targets(const Source&, const Measured&, Blocks&);
 void add_plots(const Source&, const Measured&, Blocks&);
