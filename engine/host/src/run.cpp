@@ -55,7 +55,7 @@ class Runner {
         committer_([this](const std::vector<std::size_t>& batch) {
           std::vector<std::string> ids;
           for (const std::size_t c : batch) ids.push_back(campaigns_[c].id);
-          return commit(options_.out, ids);
+          return commit(options_.out, ids, night_.number);
         }),
         campaigns_per_worker_(context.plugins->all_from(options.own_plugins) ? campaigns_per_worker
                                                                              : 1) {}
@@ -221,7 +221,7 @@ class Runner {
     for (Committer::Done& done : committer_.done()) {
       const CampaignState& c = campaigns_[done.campaign];
       if (done.again) {
-        const auto stored = commit(options_.out, {c.id}).front();
+        const auto stored = commit(options_.out, {c.id}, night_.number).front();
         done.error = stored ? "" : stored.error().message;
       }
       if (!done.error.empty())

@@ -107,12 +107,13 @@ struct Move {
 };
 
 /// What a commit that was cut short has done already is not staged any more.
-Move move_of(const fs::path& folder) {
+Move move_of(const fs::path& folder, std::uint64_t night) {
   Move move{folder, temporaries(folder)};
   const bool staged = std::binary_search(move.names.begin(), move.names.end(), record_name);
   if (!staged) {
     move.names.clear();
-    move.moved = read_record(folder).has_value();
+    const auto record = read_record(folder);
+    move.moved = record && record->night == night;  // an older one would pass for tonight's
     if (!move.moved) move.done = fail("nothing is staged in " + folder.string());
   }
   return move;
@@ -120,9 +121,10 @@ Move move_of(const fs::path& folder) {
 
 }  // namespace
 
-std::vector<Expected<void>> commit(const fs::path& out, const std::vector<std::string>& ids) {
+std::vector<Expected<void>> commit(const fs::path& out, const std::vector<std::string>& ids,
+                                   std::uint64_t night) {
   std::vector<Move> moves;
-  for (const std::string& id : ids) moves.push_back(move_of(out / id));
+  for (const std::string& id : ids) moves.push_back(move_of(out / id, night));
   const auto flush = [&] {
     const auto flushed = flush_file_system(out);
     for (Move& m : moves)
@@ -147,7 +149,7 @@ std::vector<Expected<void>> commit(const fs::path& out, const std::vector<std::s
 Expected<void> store(const fs::path& out, const Evaluated& evaluated, const Context& context,
                      const StoreNote& note) {
   if (auto staged = stage(out, evaluated, context, note); !staged) return staged;
-  return commit(out, {evaluated.campaign.id}).front();
+  return commit(out, {evaluated.campaign.id}, note.night).front();
 }
 
 }  // namespace nonio::host

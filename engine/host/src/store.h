@@ -26,7 +26,7 @@ Expected<void> stage(const std::filesystem::path& out, const Evaluated& evaluate
 /// all of them. The old record is taken away first and the new one gets its name last: whenever a
 /// record is there, all the files it lists belong together. One entry for each id.
 std::vector<Expected<void>> commit(const std::filesystem::path& out,
-                                   const std::vector<std::string>& ids);
+                                   const std::vector<std::string>& ids, std::uint64_t night);
 
 /// Both, for one campaign.
 Expected<void> store(const std::filesystem::path& out, const Evaluated& evaluated,
