@@ -17,6 +17,7 @@
 
 #include "hidden/generator.h"
 #include "nonio/host/plugins.h"
+#include "nonio/math/distributions.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
 
@@ -175,7 +176,8 @@ struct Score {
   std::map<std::string, Tally> of_effect, of_value;
   std::map<std::string, Tally> named_of;  ///< outside: `missing`, by cause
   double false_alarms = 0.0;
-  std::vector<double> cpu;  ///< of each explanation, s
+  double above_floor_expected = 0.0;  ///< sum of chances, of those in `above_floor`
+  std::vector<double> cpu;            ///< of each explanation, s
   std::uint64_t readings = 0, with_rate = 0;
   std::vector<std::uint64_t> failed;
 };
@@ -190,10 +192,26 @@ void score_values(Score& score, const Hidden& h, const model::Fit& fit) {
     }
 }
 
+/// Chance that a model that holds all there is leaves an rms of at most `ratio` floors: its sum of
+/// squares is that of the repeats, with f degrees of freedom, and an independent one with the rest
+/// of the redundancy; their ratio is F distributed.
+std::optional<double> chance_above_floor(const model::Comparison& c, double ratio) {
+  double n = 0.0;
+  for (const double w : c.fit.weight) n += w;
+  const double f = c.floor->dof, rest = static_cast<double>(c.fit.redundancy) - f;
+  if (!(rest >= 1.0)) return {};
+  return 1.0 - math::f_upper((ratio * ratio * n - f) / rest, rest, f);
+}
+
 void score_fit(Score& score, const Hidden& h, const model::Comparison& c) {
+  constexpr double near = 1.05;
   const double ratio = c.fit.s / drawn_noise(h);
   score.noise.add(ratio > 0.95 && ratio < 1.05);
-  if (c.floor) score.above_floor.add(c.fit.rms <= 1.05 * c.floor->s);
+  if (c.floor)
+    if (const auto chance = chance_above_floor(c, near)) {
+      score.above_floor.add(c.fit.rms <= near * c.floor->s);
+      score.above_floor_expected += *chance;
+    }
   if (c.floor) score.floor.add(std::fabs(c.floor->s - h.scenario.noise) <= 2.0 * c.floor->u);
   score_values(score, h, c.fit);
 }
@@ -300,6 +318,9 @@ void print_score(const Score& s, Kind kind) {
   }
   print("s within 5 % of the noise that was drawn", s.noise);
   print("rms at most 1.05 times the floor of the repeats", s.above_floor);
+  if (s.above_floor.of > 0)
+    std::printf("    of right models that is expected (F distribution) %12.2f %%\n",
+                100.0 * s.above_floor_expected / static_cast<double>(s.above_floor.of));
   print("floor of the repeats within 2 u of the true noise", s.floor);
   print("true value within 2 u", s.values);
   for (const auto& [name, tally] : s.of_value) print("    " + name, tally);

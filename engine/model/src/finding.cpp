@@ -45,13 +45,10 @@ class Finder {
  private:
   Expected<void> search() {
     f_.weight = weights_without(f_.part.table.size(), f_.suspects);
-    f_.bench.emplace(f_.part.table, f_.terms, f_.weight, f_.repeats.target);
-    auto start = started(false);
+    f_.bench.emplace(f_.part.table, f_.terms, f_.weight, f_.repeats.target, f_.in_model, &made_);
+    auto start = best_start();
     if (!start) return fail(start.error());
     f_.start = std::move(*start);
-    // Instants and periods of a model hold each other fast: tried from two sides.
-    if (const auto other = started(true); other && other->squares < f_.start.squares)
-      f_.start = *other;
     f_.best = best_explanation(*f_.bench, f_.start);
     // What lies between the values of a grid would be taken for an effect of its own.
     const bool finer = add_refined(f_.start);
@@ -62,12 +59,25 @@ class Finder {
     return {};
   }
 
-  /// The model with its shapes searched; its terms come in as they are written, or those first that
+  /// Instants and periods of a model hold each other fast: tried from two sides. A curve that comes
+  /// in last leaves to the others what they need.
+  Expected<State> best_start() const {
+    std::vector<std::size_t> written(f_.in_model);
+    std::iota(written.begin(), written.end(), std::size_t{0});
+    auto start = started(written, false);
+    const auto other = started(written, true);
+    if (other && (!start || other->squares < start->squares)) return other;
+    if (start) return start;
+    std::stable_partition(written.begin(), written.end(),
+                          [&](std::size_t e) { return !f_.terms[e].effect->curve; });
+    if (auto last = started(written, false)) return last;
+    return start;
+  }
+
+  /// The model with its shapes searched; its terms come in as they are `open`, or those first that
   /// explain most.
-  Expected<State> started(bool largest_first) const {
+  Expected<State> started(std::vector<std::size_t> open, bool largest_first) const {
     State start = f_.bench->state({});
-    std::vector<std::size_t> open(f_.in_model);
-    std::iota(open.begin(), open.end(), std::size_t{0});
     while (!open.empty()) {
       const VectorXd gains = f_.bench->gains(start);
       State best;
@@ -191,6 +201,7 @@ class Finder {
   }
 
   Finding f_;
+  Workbench::Made made_;
 };
 
 }  // namespace

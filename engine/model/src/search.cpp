@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 #include <set>
 
@@ -140,108 +141,105 @@ Shuffles shuffled(const Workbench& bench, const State& complete, const VectorXd&
   for (Index k = 0; k < x.cols(); ++k)
     for (Index i = 0; i < residual.size(); ++i)
       of_stretch(block[static_cast<std::size_t>(i)], k) += x(i, k) * residual(i);
-  of_stretch.bottomRows(basis.cols()).noalias() = -basis.transpose() * x;
+  out.in_complete.noalias() = basis.transpose() * x;
+  of_stretch.bottomRows(basis.cols()) = -out.in_complete;
   MatrixXd factors(blocks + basis.cols(), shuffles);
   factors << sign, said;
-  out.products.noalias() = of_stretch.transpose() * factors;
+  out.products.noalias() = factors.transpose() * of_stretch;
   return out;
 }
 
 namespace {
 
-/// One effect added to a complete model in every shuffle: its p, and whether the criterion falls.
+/// One effect added to a complete model in every shuffle, with the shape that the search chooses.
 struct Added {
-  std::vector<double> p;
-  std::vector<char> better;
+  VectorXd fall, parameters;
+  std::vector<char> better;  ///< the criterion falls
 };
 
 class ChanceOf {
  public:
   ChanceOf(const Workbench& bench, const State& complete, const Shuffles& shuffles)
       : bench_(bench),
-        llt_(bench.gram(complete.blocks)),
-        with_complete_(bench.products(complete.blocks)),
-        products_(shuffles.products),
-        squares_(shuffles.squares) {
-    dof_ = bench.readings() - static_cast<double>(bench.zeros() + complete.parameters);
-  }
+        shuffles_(shuffles),
+        dof_(bench.readings() - static_cast<double>(bench.zeros() + complete.parameters)) {}
 
-  /// p of those only that lower the criterion, if asked for: an F-test costs more than all else.
-  Added add(std::size_t effect, bool better_only) const {
+  Added add(std::size_t effect) const {
     const Workbench::Instance& instance = bench_.instances()[effect];
-    const Index shuffles = products_.cols();
-    Added out{std::vector<double>(static_cast<std::size_t>(shuffles), 1.0),
+    const Index shuffles = shuffles_.squares.size();
+    Added out{VectorXd::Zero(shuffles), VectorXd::Ones(shuffles),
               std::vector<char>(static_cast<std::size_t>(shuffles), 0)};
-    VectorXd fall_of_best = VectorXd::Zero(shuffles);
-    VectorXd k_of_best = VectorXd::Ones(shuffles), price_of_best = VectorXd::Zero(shuffles);
-    // Fall of the criterion: how the search itself would choose.
-    const auto value = [&](Index i, double fall, double price) {
-      return -bench_.readings() * std::log1p(-std::min(fall / squares_(i), 1.0 - 1e-12)) - price;
-    };
+    VectorXd paid = VectorXd::Zero(shuffles);
+    const bool searched = instance.blocks.size() > 1 && !instance.term.effect->curve;
     for (const std::size_t b : instance.blocks) {
       const Workbench::Block& block = bench_.blocks()[b];
-      MatrixXd s = block.own;
-      MatrixXd t = products_.middleRows(block.first, block.count);
-      if (with_complete_.cols() > 0) {
-        MatrixXd w = with_complete_.middleRows(block.first, block.count).transpose();
-        llt_.matrixL().solveInPlace(w);
-        s.noalias() -= w.transpose() * w;
-      }
-      const Eigen::LLT<MatrixXd> llt(s);
+      const auto w = shuffles_.in_complete.middleCols(block.first, block.count);
+      const Eigen::LLT<MatrixXd> llt(block.own - w.transpose() * w);
       if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > 1e-4)) continue;
-      llt.matrixL().solveInPlace(t);
-      const bool searched = instance.blocks.size() > 1 && !instance.term.effect->curve;
+      MatrixXd t = shuffles_.products.middleCols(block.first, block.count);
+      llt.matrixU().solveInPlace<Eigen::OnTheRight>(t);
+      const VectorXd falls = t.rowwise().squaredNorm();
       const double price = bench_.price(effect, block.count);
       const double k = static_cast<double>(block.count) +
                        (searched ? static_cast<double>(instance.term.effect->shapes.size()) : 0.0);
-      const VectorXd falls = t.colwise().squaredNorm().transpose();
       for (Index i = 0; i < shuffles; ++i) {
-        const double fall = falls(i);
-        if (fall_of_best(i) > 0.0 &&
-            (price == price_of_best(i)
-                 ? fall <= fall_of_best(i)
-                 : value(i, fall, price) <= value(i, fall_of_best(i), price_of_best(i))))
+        if (out.fall(i) > 0.0 &&
+            (price == paid(i) ? falls(i) <= out.fall(i)
+                              : fall_of_criterion(i, falls(i)) - price <=
+                                    fall_of_criterion(i, out.fall(i)) - paid(i)))
           continue;
-        fall_of_best(i) = fall;
-        k_of_best(i) = k;
-        price_of_best(i) = price;
+        out.fall(i) = falls(i);
+        out.parameters(i) = k;
+        paid(i) = price;
       }
     }
-    for (Index i = 0; i < shuffles; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      out.better[at] = fall_of_best(i) > 0.0 && value(i, fall_of_best(i), price_of_best(i)) > 0.0;
-      if (better_only && out.better[at] == 0) continue;
-      const double dof = dof_ - k_of_best(i);
-      out.p[at] =
-          math::f_upper(fall_of_best(i) / k_of_best(i) / ((squares_(i) - fall_of_best(i)) / dof),
-                        k_of_best(i), dof);
-    }
+    for (Index i = 0; i < shuffles; ++i)
+      out.better[static_cast<std::size_t>(i)] =
+          out.fall(i) > 0.0 && fall_of_criterion(i, out.fall(i)) > paid(i);
     return out;
   }
 
+  /// Of a fall with so many parameters.
+  double p(Index shuffle, double fall, double parameters) const {
+    const double dof = dof_ - parameters;
+    return math::f_upper(fall / parameters / ((shuffles_.squares(shuffle) - fall) / dof),
+                         parameters, dof);
+  }
+
  private:
+  double fall_of_criterion(Index shuffle, double fall) const {
+    return -bench_.readings() *
+           std::log1p(-std::min(fall / shuffles_.squares(shuffle), 1.0 - 1e-12));
+  }
+
   const Workbench& bench_;
-  Eigen::LLT<MatrixXd> llt_;
-  MatrixXd with_complete_;
-  const MatrixXd& products_;
-  const VectorXd& squares_;
-  double dof_ = 0.0;
+  const Shuffles& shuffles_;
+  double dof_;
 };
 
 }  // namespace
 
 Chance measure_chance(const Workbench& bench, const State& complete, const Shuffles& shuffles) {
   const ChanceOf of(bench, complete, shuffles);
-  std::vector<double> least(static_cast<std::size_t>(shuffles.squares.size()), 1.0);
+  // Largest fall for each number of parameters: an F-test costs more than all else.
+  std::vector<std::map<double, double>> largest(static_cast<std::size_t>(shuffles.squares.size()));
   for (std::size_t e = 0; e < bench.instances().size(); ++e) {
     if (bench.holds(complete, e)) continue;
-    const Added added = of.add(e, false);
-    for (std::size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], added.p[i]);
+    const Added added = of.add(e);
+    for (Index i = 0; i < added.fall.size(); ++i) {
+      double& fall = largest[static_cast<std::size_t>(i)][added.parameters(i)];
+      fall = std::max(fall, added.fall(i));
+    }
   }
   // The smallest of m independent p: -ln(1 - p) is exponential with rate m.
   double sum = 0.0;
-  for (const double p : least) sum -= std::log1p(-std::min(p, 1.0 - 1e-12));
-  return {std::max(static_cast<double>(least.size()) / std::max(sum, 1e-12), 1.0)};
+  for (std::size_t i = 0; i < largest.size(); ++i) {
+    double least = 1.0;
+    for (const auto& [parameters, fall] : largest[i])
+      least = std::min(least, of.p(static_cast<Index>(i), fall, parameters));
+    sum -= std::log1p(-std::min(least, 1.0 - 1e-12));
+  }
+  return {std::max(static_cast<double>(largest.size()) / std::max(sum, 1e-12), 1.0)};
 }
 
 std::vector<char> named_in(const Workbench& bench, const State& complete, const Shuffles& shuffles,
@@ -250,9 +248,13 @@ std::vector<char> named_in(const Workbench& bench, const State& complete, const 
   std::vector<char> named(static_cast<std::size_t>(shuffles.squares.size()), 0);
   for (std::size_t e = 0; e < bench.instances().size(); ++e) {
     if (bench.holds(complete, e)) continue;
-    const Added added = of.add(e, true);
-    for (std::size_t i = 0; i < named.size(); ++i)
-      if (added.better[i] != 0 && chance.corrected(added.p[i]) < named_below) named[i] = 1;
+    const Added added = of.add(e);
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      const auto at = static_cast<Index>(i);
+      if (added.better[i] != 0 &&
+          chance.corrected(of.p(at, added.fall(at), added.parameters(at))) < named_below)
+        named[i] = 1;
+    }
   }
   return named;
 }

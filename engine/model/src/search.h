@@ -24,9 +24,10 @@ struct Chance {
 /// Noise made of `residual`: the signs of short stretches of its passes flipped at random (what
 /// neighbours share within a pass stays), less what the zeros and a state's columns say of it.
 struct Shuffles {
-  MatrixXd noise;     ///< a column for each shuffle
-  MatrixXd products;  ///< of all columns of the bench with them
-  VectorXd squares;   ///< of each shuffle
+  MatrixXd noise;        ///< a column for each shuffle
+  MatrixXd products;     ///< a row for each shuffle: with all columns of the bench
+  MatrixXd in_complete;  ///< of all columns, what they have in the directions of the state
+  VectorXd squares;      ///< of each shuffle
 };
 Shuffles shuffled(const Workbench& bench, const Workbench::State& complete,
                   const VectorXd& residual, const Observations& o,

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <random>
 
 #include "compare.h"
 #include "places.h"
@@ -48,7 +50,7 @@ class Judge {
         static_cast<double>(f_.suspects.size()) / static_cast<double>(f_.part.table.size());
     for (const Place& place : f_.of_model.places)
       if (place.p < place_p) out_.fails.push_back(place);
-    std::vector<Place> serious = this->serious(f_.of_best.places);
+    std::vector<Place> serious = Judge::serious(f_.of_best.places, least_serious(f_.of_best.floor));
     const bool walks = !out_.together.empty() && zero_walks();
     if (contradictory()) {
       v.kind = Verdict::Kind::unrepeatable;
@@ -75,11 +77,11 @@ class Judge {
   /// Whether the model beside a zero that walks is better evidence than the best set of effects.
   bool zero_walks() const {
     MatrixXd model(static_cast<Index>(f_.part.table.size()), 0);
-    for (const Term& term : f_.of_model.fit.terms) {
-      const auto columns = columns_of(f_.part.table, term, term.shape);
-      if (!columns) return false;
-      model.conservativeResize(Eigen::NoChange, model.cols() + columns->cols());
-      model.rightCols(columns->cols()) = *columns;
+    const auto blocks = blocks_of(f_.part.table, f_.of_model.fit.terms, f_.bench->root_weight());
+    if (!blocks) return false;
+    for (const MatrixXd& block : *blocks) {
+      model.conservativeResize(Eigen::NoChange, model.cols() + block.cols());
+      model.rightCols(block.cols()) = block;
     }
     const double price = f_.start.price + std::log(f_.bench->readings()) +
                          2.0 * std::log(static_cast<double>(f_.terms.size()));
@@ -110,14 +112,30 @@ class Judge {
   }
 
   /// Structure smaller than this is not worth a verdict.
-  double least_serious() const {
-    return least_left * (f_.of_best.floor ? f_.of_best.floor->s : f_.of_best.fit.s);
+  double least_serious(const std::optional<NoiseFloor>& floor) const {
+    return least_left * (floor ? floor->s : f_.of_best.fit.s);
   }
 
-  std::vector<Place> serious(const std::vector<Place>& places) const {
+  static std::vector<Place> serious(const std::vector<Place>& places, double least) {
     std::vector<Place> out;
     for (const Place& place : places)
-      if (place.p < serious_p && place.rms > least_serious()) out.push_back(place);
+      if (place.p < serious_p && place.rms > least) out.push_back(place);
+    return out;
+  }
+
+  /// Floors that the repeats of so many campaigns with this noise would give: chi-square
+  /// distributed, by the cube of a normal variate (Wilson and Hilferty 1931).
+  std::vector<std::optional<NoiseFloor>> floors(std::size_t campaigns) const {
+    std::vector<std::optional<NoiseFloor>> out(campaigns, f_.of_best.floor);
+    if (!f_.of_best.floor) return out;
+    const double spread = 2.0 / (9.0 * f_.of_best.floor->dof);
+    std::mt19937_64 random(f_.seed + 1);
+    const auto uniform = [&] { return (static_cast<double>(random() >> 11) + 0.5) * 0x1p-53; };
+    for (auto& floor : out) {
+      const double size = std::sqrt(-2.0 * std::log(uniform()));
+      const double z = size * std::cos(2.0 * std::numbers::pi * uniform());  // Box and Muller
+      floor->s *= std::pow(std::max(1.0 - spread + z * std::sqrt(spread), 0.0), 1.5);
+    }
     return out;
   }
 
@@ -137,11 +155,12 @@ class Judge {
     const std::vector<char> named = named_in(*f_.bench, f_.best, shuffles, f_.chance);
     const PlaceTests tests(f_.part, f_.repeats, f_.bench->root_weight(), f_.bench->basis(f_.best),
                            f_.dof(f_.best));
+    const auto floor = floors(named.size());
     double alarms = 0.0;
     for (std::size_t i = 0; i < named.size(); ++i) {
       const VectorXd one = shuffles.noise.col(static_cast<Index>(i));
-      if (named[i] != 0 || !serious(tests(one, f_.of_best.floor, least_serious())).empty())
-        ++alarms;
+      const double least = least_serious(floor[i]);
+      if (named[i] != 0 || !serious(tests(one, floor[i], least), least).empty()) ++alarms;
     }
     v.trials = named.size();
     v.false_alarms = alarms / static_cast<double>(named.size());

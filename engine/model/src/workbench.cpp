@@ -32,13 +32,25 @@ Index Workbench::unknowns_of(const Block& block) const {
   return block.count + (searched ? static_cast<Index>(instance.term.effect->shapes.size()) : 0);
 }
 
+/// Whether a block, beside so many unknowns of position, comes near to one free value per target.
+bool Workbench::follows_targets(const Block& block, Index of_position) const {
+  if (!block.of_position) return false;
+  const bool stated = block.effect < stated_;
+  if (instances_[block.effect].term.effect->curve && !stated && block.count > most_of_curve_)
+    return true;
+  return of_position + unknowns_of(block) > (stated ? most_stated_ : most_of_position_);
+}
+
 Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
-                     const std::vector<double>& weight, const std::vector<std::uint32_t>& target)
-    : target_(target), several_axes_(o.axes.size() > 1) {
-  most_of_position_ = std::numeric_limits<Index>::max();
+                     const std::vector<double>& weight, const std::vector<std::uint32_t>& target,
+                     std::size_t stated, Made* made)
+    : target_(target), stated_(stated), several_axes_(o.axes.size() > 1) {
+  most_of_position_ = most_stated_ = most_of_curve_ = std::numeric_limits<Index>::max();
   if (!target_.empty()) {
     const std::uint32_t targets = *std::max_element(target_.begin(), target_.end()) + 1;
     most_of_position_ = static_cast<Index>(std::ceil(0.6 * (targets - 1.0)));
+    most_stated_ = static_cast<Index>(std::ceil(0.8 * (targets - 1.0)));
+    most_of_curve_ = static_cast<Index>(targets) / 2 - 1;
   }
   root_ = root_weights(o, weight);
   used_ = static_cast<double>((root_.array() > 0.0).count());
@@ -47,10 +59,11 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
       Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.size())));
   take_out_zeros(o, root_, y);
   y_ = y.col(0);
+  Made own;
   std::vector<MatrixXd> parts;
   for (const Term& term : terms) {
     instances_.push_back({term, {}, {}, 0.0});
-    add(o, instances_.size() - 1, parts);
+    add(o, instances_.size() - 1, parts, made != nullptr ? *made : own);
   }
   Index columns = 0;
   for (const MatrixXd& part : parts) columns += part.cols();
@@ -66,8 +79,13 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
 }
 
 MatrixXd Workbench::columns_for(const Observations& o, Instance& instance,
-                                const std::vector<double>& shape, bool& of_position) const {
-  const auto columns = columns_of(o, instance.term, shape);
+                                const std::vector<double>& shape, bool& of_position,
+                                Made& made) const {
+  const auto effect = static_cast<std::size_t>(&instance - instances_.data());
+  auto at = made.find({effect, shape});
+  if (at == made.end())
+    at = made.emplace(std::pair{effect, shape}, columns_of(o, instance.term, shape)).first;
+  const Expected<MatrixXd>& columns = at->second;
   if (!columns) {
     instance.error = columns.error().message;
     return {};
@@ -84,7 +102,8 @@ MatrixXd Workbench::columns_for(const Observations& o, Instance& instance,
 void Workbench::add_shape(const Observations& o, std::size_t effect,
                           const std::vector<double>& shape) {
   Block block{effect, shape, x_.cols(), 0, false};
-  const MatrixXd part = columns_for(o, instances_[effect], shape, block.of_position);
+  Made made;
+  const MatrixXd part = columns_for(o, instances_[effect], shape, block.of_position, made);
   if (part.cols() == 0) return;
   const Index columns = x_.cols() + part.cols();
   x_.conservativeResize(Eigen::NoChange, columns);
@@ -102,13 +121,14 @@ void Workbench::push(Block block, const MatrixXd& columns) {
   blocks_.push_back(std::move(block));
 }
 
-void Workbench::add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts) {
+void Workbench::add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts,
+                    Made& made) {
   Instance& instance = instances_[effect];
   const auto shapes = shapes_of(o, instance.term);
   Index at = parts.empty() ? 0 : blocks_.back().first + blocks_.back().count;
   for (const std::vector<double>& shape : shapes) {
     bool of_position = false;
-    MatrixXd part = columns_for(o, instance, shape, of_position);
+    MatrixXd part = columns_for(o, instance, shape, of_position, made);
     if (part.cols() == 0) continue;
     push({effect, shape, at, 0, of_position}, part);
     at += part.cols();
@@ -338,8 +358,7 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
   for (const std::size_t b : instances_[effect].blocks) {
     const double fall = gains(static_cast<Index>(b));
     if (std::isnan(fall)) continue;
-    if (blocks_[b].of_position && of_position + unknowns_of(blocks_[b]) > most_of_position_)
-      continue;
+    if (follows_targets(blocks_[b], of_position)) continue;
     const double c =
         criterion(std::max(state.squares - fall, 1e-12 * yy_), price(effect, blocks_[b].count));
     if (c < least) least = c, best = b;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -37,10 +38,16 @@ class Workbench {
         0.0;  ///< n ln(squares/n) + price of parameters, shapes and names; small is good
   };
 
+  /// Columns of each term with each shape as its effect gave them: not made again for other
+  /// weights.
+  using Made = std::map<std::pair<std::size_t, std::vector<double>>, Expected<MatrixXd>>;
+
   /// `target` of each reading: sets whose columns of position alone come near to one free value per
-  /// target are not looked at. Empty: all are.
+  /// target are not looked at. Empty: all are. The first `stated` terms are the model's: that they
+  /// are there is known, and their curves may follow the targets more closely.
   Workbench(const Observations& o, const std::vector<Term>& terms,
-            const std::vector<double>& weight, const std::vector<std::uint32_t>& target = {});
+            const std::vector<double>& weight, const std::vector<std::uint32_t>& target = {},
+            std::size_t stated = 0, Made* made = nullptr);
 
   const std::vector<Instance>& instances() const { return instances_; }
   const std::vector<Block>& blocks() const { return blocks_; }
@@ -85,10 +92,11 @@ class Workbench {
 
  private:
   Index unknowns_of(const Block& block) const;
-  void add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts);
+  bool follows_targets(const Block& block, Index of_position) const;
+  void add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts, Made& made);
   /// Columns of unit length without the zeros of lines; none if the readings cannot show them.
   MatrixXd columns_for(const Observations& o, Instance& instance, const std::vector<double>& shape,
-                       bool& of_position) const;
+                       bool& of_position, Made& made) const;
   struct Projection {
     MatrixXd products;  // of all columns with orthonormal directions of the state's
     VectorXd z;         // of the readings with them
@@ -116,7 +124,9 @@ class Workbench {
   VectorXd y_, root_, xy_;
   double yy_ = 0.0, used_ = 0.0;
   std::vector<std::uint32_t> target_;
-  Index most_of_position_ = 0;  // columns and searched shapes
+  std::size_t stated_ = 0;
+  // Columns and searched shapes of position: of a set, with stated terms, of a curve not stated.
+  Index most_of_position_ = 0, most_stated_ = 0, most_of_curve_ = 0;
   Index zeros_ = 0;
   bool several_axes_ = false;
 };

@@ -8,14 +8,16 @@
 
 using namespace nonio;
 
-/// Numbers of knots: at most 10, and at least two targets for each free value, so that the curve
-/// cannot follow single targets.
+/// Numbers of knots: at most 10, and at least three targets for two free values, so that the curve
+/// cannot follow single targets. `explain` does not name a curve that needs more than half of them.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
   constexpr int fewest = 3, most = 10;
+  constexpr std::size_t fewest_targets = 8;
   const auto r = readings_of(o, axis);
   if (!r) return {};
   const std::vector<double> targets = targets_of(*r);
-  const int last = static_cast<int>(std::min<std::size_t>(targets.size() / 2, most + 1)) - 1;
+  if (targets.size() < fewest_targets) return {};
+  const int last = static_cast<int>(std::min<std::size_t>(targets.size() * 2 / 3, most + 1)) - 1;
   std::vector<double> knots;
   for (int k = fewest; k <= last && math::smooth_basis({}, targets, k); ++k) knots.push_back(k);
   return knots;
