@@ -34,9 +34,9 @@ class Finder {
       if (auto searched = search(); !searched) return fail(searched.error());
       if (!suspect_again()) break;
     }
-    f_.chance = measure_chance(
-        *f_.bench, f_.best,
-        shuffled(f_.residual(f_.best), f_.bench->basis(f_.best), f_.repeats.pass, f_.seed));
+    f_.chance = measure_chance(*f_.bench, f_.best,
+                               shuffled(*f_.bench, f_.best, f_.residual(f_.best), f_.part.table,
+                                        f_.repeats.pass, f_.seed));
     prune();
     if (auto fitted = fit_both(); !fitted) return fail(fitted.error());
     return std::move(f_);
