@@ -96,6 +96,7 @@ struct Prediction {
 struct Artifact {
   std::string name;  ///< a plain file name
   std::string bytes;
+  bool sign = false;  ///< a PDF or an XML file that the host signs before anybody sees it
 };
 
 /// What an output makes of a campaign. A refusal is a finding, not an error.
