@@ -367,8 +367,8 @@ class PlotSetter {
     const double below = caption->height() + 2, edge = 1.6 * size_;
     Frame frame{
         edge, -height + below + edge, width_ - 2 * edge, height - top - below - 2 * edge, {}, {}};
-    const double per_pt =
-        std::max((across.high - across.low) / frame.w, (up.high - up.low) / std::max(frame.h, 1.0));
+    const double per_pt = std::max(
+        {(across.high - across.low) / frame.w, (up.high - up.low) / std::max(frame.h, 1.0), 1e-9});
     widen(across, per_pt * frame.w);
     widen(up, per_pt * frame.h);
     frame.across.from = across.low, frame.across.to = across.high;

@@ -168,8 +168,11 @@ class Gatherer {
   double grid_y(std::size_t i) const { return out_.y0 + step_y() * static_cast<double>(i); }
 
   tl::unexpected<Finding> bad_stop(std::size_t i, const Curve::Stop& stop) const {
-    return refuse("refused-stops", {{"why", out_.x_axis + " " + mm_text(stop.position) + ", " +
-                                                out_.y_axis + " " + mm_text(stop.across) + " mm"},
+    std::string why = out_.x_axis + " " + mm_text(stop.position) + ", " + out_.y_axis + " " +
+                      mm_text(stop.across) + " mm";
+    if (stop.source_line > 0)
+      why += " (" + measurement(i).file + ":" + std::to_string(stop.source_line) + ")";
+    return refuse("refused-stops", {{"why", std::move(why)},
                                     {"one", measurement(i).id},
                                     {"other", measurement(i == out_.D1 ? out_.D2 : out_.D1).id}});
   }

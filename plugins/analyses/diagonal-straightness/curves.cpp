@@ -58,6 +58,7 @@ Curve curve_of(const Observations& o, std::size_t column) {
     Curve::Stop stop;
     stop.position = axis.position[order[begin]];
     if (o.axes.size() > 1) stop.across = o.axes[1 - column].position[order[begin]];
+    if (order[begin] < o.source_line.size()) stop.source_line = o.source_line[order[begin]];
     bool zero = true;
     for (; end < order.size() && axis.position[order[end]] - stop.position <= same_stop; ++end) {
       const bool plus = axis.approach.empty() || axis.approach[order[end]] > 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct Curve {
     double position = 0.0, across = 0.0;  ///< of the axis, and of the second axis if there is one
     double plus = 0.0, minus = 0.0;       ///< means
     std::size_t n_plus = 0, n_minus = 0;
+    std::uint32_t source_line = 0;  ///< of the file, of one reading; 0: not known
     /// Of the readings from one direction, or (0) of both.
     double mean(int direction = 0) const {
       return direction > 0 ? plus : direction < 0 ? minus : (plus + minus) / 2.0;
