@@ -92,7 +92,7 @@ class Volume {
   std::optional<double> C0Y_, B0Z_, A0Z_;
 };
 
-/// From the front, from somewhat to the left and above: X to the right, Y away, Z up.
+/// From the front, the right and above: X to the right, Y away, Z up.
 std::pair<double, double> seen(const Vector& p) {
   constexpr double turn = 32.0 * std::numbers::pi / 180, above = 22.0 * std::numbers::pi / 180;
   return {
@@ -120,19 +120,36 @@ Largest largest(const Volume& v) {
   return most;
 }
 
-/// Lines along each axis at both ends and in the middle of the other two; at the ends of both they
-/// are the edges.
-std::vector<Curve> wires(const Volume& v, double factor, bool edges, Colour colour, double width) {
+enum class Wires { seen, hidden, faces };
+
+/// Edges that are seen, edges that the box hides, or the middle lines of the faces that are seen.
+/// From where we look those are the faces of the largest X, the smallest Y and the largest Z.
+bool drawn(Wires what, std::size_t axis, const Place& half) {
+  constexpr Place face{2, 0, 2};
+  std::size_t in_front = 0, middle = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (k == axis) continue;
+    in_front += half[k] == face[k] ? 1 : 0;
+    middle += half[k] == 1 ? 1 : 0;
+  }
+  if (what == Wires::faces) return middle == 1 && in_front == 1;
+  return middle == 0 && (in_front > 0) == (what == Wires::seen);
+}
+
+/// Lines along each axis at both ends and in the middle of the other two.
+std::vector<Curve> wires(const Volume& v, double factor, Wires what, Colour colour, double width) {
   std::vector<Curve> out;
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::size_t j = 0; j <= 2; ++j)
       for (std::size_t k = 0; k <= 2; ++k) {
-        if ((j != 1 && k != 1) != edges) continue;
-        const std::size_t one = (axis + 1) % 3, other = (axis + 2) % 3;
+        Place half{};
+        half[(axis + 1) % 3] = j, half[(axis + 2) % 3] = k;
+        if (!drawn(what, axis, half)) continue;
         Place p{};
-        p[one] = j * v.last(one) / 2, p[other] = k * v.last(other) / 2;
+        for (std::size_t n = 0; n < 3; ++n) p[n] = half[n] * v.last(n) / 2;
         Curve c;
         c.colour = colour, c.width = width;
+        if (what == Wires::hidden) c.dash = Dash::dotted;
         for (p[axis] = 0; p[axis] <= v.last(axis); ++p[axis]) {
           Vector at = v.nominal(p);
           const Vector e = v.error(p);
@@ -150,21 +167,26 @@ std::string millimetres(const Source& source, double si) {
                         source.language());
 }
 
-/// "X 0 – 800 mm" at the middle of an edge that nothing hides.
-std::vector<Plot::Label> edge_labels(const Source& source, const Volume& v) {
+/// Names of the axes at the middle of edges that nothing hides.
+std::vector<Plot::Label> edge_labels(const Volume& v) {
   std::vector<Plot::Label> labels;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Place p{axis == 1 ? v.last(0) : 0, 0, 0};
     p[axis] = v.last(axis) / 2;
     const auto [x, y] = seen(v.nominal(p));
-    labels.push_back(
-        {x, y,
-         source.words.get("plot.edge", {{"axis", v.name(axis)},
-                                        {"from", millimetres(source, v.position(axis, 0))},
-                                        {"to", millimetres(source, v.position(axis, v.last(axis)))},
-                                        {"unit", unit_text(Quantity::length)}})});
+    labels.push_back({x, y, v.name(axis)});
   }
   return labels;
+}
+
+/// "X 0 – 800, Y 0 – 600, Z 0 – 600 mm."
+std::string extent(const Source& source, const Volume& v) {
+  std::string out;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    out += (out.empty() ? "" : ", ") + v.name(axis) + " " +
+           millimetres(source, v.position(axis, 0)) + " – " +
+           millimetres(source, v.position(axis, v.last(axis)));
+  return out + " " + unit_text(Quantity::length) + ".";
 }
 
 Plot volume_plot(const Source& source, const Volume& v) {
@@ -173,33 +195,39 @@ Plot volume_plot(const Source& source, const Volume& v) {
   double travel = 0.0;
   for (std::size_t k = 0; k < 3; ++k)
     travel = std::max(travel, std::fabs(v.position(k, v.last(k)) - v.position(k, 0)));
-  const double factor = most.size > 0.0 ? round_factor(0.12 * travel / most.size) : 1.0;
+  const double factor = most.size > 0.0 ? round_factor(0.2 * travel / most.size) : 1.0;
   const std::string times = printed_number(factor, Quantity::count, 0, source.language());
   Plot plot;
   plot.title = source.words.get("plot.volume", {{"factor", times}});
   const std::string missing = v.left_out();
-  plot.x_title = source.words.get(
-      "plot.volume_caption",
-      {{"factor", times},
-       {"largest", printed_number(most.size, Quantity::deviation, 1, source.language())},
-       {"unit", unit_text(Quantity::deviation)},
-       {"x", millimetres(source, v.position(0, most.at[0]))},
-       {"y", millimetres(source, v.position(1, most.at[1]))},
-       {"z", millimetres(source, v.position(2, most.at[2]))}});
+  plot.x_title =
+      extent(source, v) + " " +
+      source.words.get(
+          "plot.volume_caption",
+          {{"factor", times},
+           {"largest", printed_number(most.size, Quantity::deviation, 1, source.language())},
+           {"unit", unit_text(Quantity::deviation)},
+           {"x", millimetres(source, v.position(0, most.at[0]))},
+           {"y", millimetres(source, v.position(1, most.at[1]))},
+           {"z", millimetres(source, v.position(2, most.at[2]))}});
   if (!missing.empty())
     plot.x_title += " " + source.words.get("plot.volume_without", {{"curves", missing}});
   plot.language = source.language();
   plot.empty_text = source.words.get("plot.nothing");
   plot.scales = false;
   plot.height = 1.9 * style.plot_height;
-  plot.curves = wires(v, 0.0, true, style.muted, 0.35);
-  plot.curves.front().legend = source.words.get("plot.nominal");
-  for (const bool edges : {false, true}) {
-    auto drawn = wires(v, factor, edges, style.accent, edges ? 1.1 : 0.35);
-    if (edges) drawn.front().legend = source.words.get("plot.drawn");
-    std::move(drawn.begin(), drawn.end(), std::back_inserter(plot.curves));
+  for (const Wires what : {Wires::seen, Wires::hidden}) {
+    auto nominal = wires(v, 0.0, what, style.muted, 0.35);
+    if (what == Wires::seen) nominal.front().legend = source.words.get("plot.nominal");
+    std::move(nominal.begin(), nominal.end(), std::back_inserter(plot.curves));
   }
-  plot.labels = edge_labels(source, v);
+  for (const auto& [what, width] :
+       {std::pair{Wires::hidden, 0.6}, {Wires::faces, 0.4}, {Wires::seen, 1.1}}) {
+    auto machine = wires(v, factor, what, style.accent, width);
+    if (what == Wires::seen) machine.front().legend = source.words.get("plot.drawn");
+    std::move(machine.begin(), machine.end(), std::back_inserter(plot.curves));
+  }
+  plot.labels = edge_labels(v);
   return plot;
 }
 

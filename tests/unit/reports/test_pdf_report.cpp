@@ -330,13 +330,13 @@ Evaluation step_diagonals(bool scales) {
 TEST_F(PdfReport, TheVolumeSaysItsFactorAndItsLargestError) {
   const Case c = spatial("step-diagonal", {{"SD", step_diagonals(true)}});
   const std::string en = text(c), it = text(c, "it");
-  // 12 % of 800 mm is 4000 times 24 um; the factor is 1, 2 or 5 times a power of ten.
-  EXPECT_TRUE(has(en, "The volume, errors × 2000")) << en;
-  EXPECT_TRUE(has(en, "Errors are drawn 2000 times as large as they are"));
+  // A fifth of 800 mm is 6667 times 24 um; the factor is 1, 2 or 5 times a power of ten.
+  EXPECT_TRUE(has(en, "The volume, errors × 5000")) << en;
+  EXPECT_TRUE(has(en, "Errors are drawn 5000 times as large as they are"));
   EXPECT_TRUE(has(en, "The largest is 24.0 µm, at X 800")) << en;
-  EXPECT_TRUE(has(en, "X 0 – 800 mm") && has(en, "Z 0 – 600 mm"));
+  EXPECT_TRUE(has(en, "X 0 – 800, Y 0 – 600,")) << en;
   EXPECT_FALSE(has(en, "Without E"));
-  EXPECT_TRUE(has(it, "disegnati 2000 volte"));
+  EXPECT_TRUE(has(it, "disegnati 5000 volte"));
   const std::string shapes = text(spatial("step-diagonal", {{"SD", step_diagonals(false)}}));
   EXPECT_TRUE(has(shapes, "Without EXX, EYY, EZZ: these scales are not known."));
   Evaluation incomplete = step_diagonals(true);
@@ -381,6 +381,18 @@ TEST_F(PdfReport, PlansAndTheirFindingsAreShown) {
   EXPECT_EQ(occurrences(en, "Flat diagonals"), 2U) << "at the top, and beside the plans";
   for (const char* what : {"Piani: fermate", "passo X", "0,9956"})
     EXPECT_TRUE(has(it, what)) << what;
+}
+
+TEST_F(PdfReport, ManyPredictionsHaveTheirFilesBelowTheTable) {
+  Case c = usual();
+  Results::Written table{"some-control", "1", {}};
+  table.result.artifacts = {{"some-control-X.txt", ""}, {"some-control-XYZ.txt", ""}};
+  for (const char* name : {"E", "B", "PPP", "NPP", "PNP", "PPN"})
+    table.result.predictions.push_back({"X", name, 60.0e-6, 0.7e-6});
+  c.results.outputs.push_back(table);
+  const std::string en = text(c);
+  EXPECT_TRUE(has(en, "some-control: some-control-X.txt, some-control-XYZ.txt")) << en;
+  EXPECT_EQ(occurrences(en, "60.00 → 0.70"), 6U);
 }
 
 TEST_F(PdfReport, ValuesThatNameAnotherMeasurementHaveTheirMeaning) {
