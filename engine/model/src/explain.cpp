@@ -31,7 +31,7 @@ Expected<Explanation> explain_on_means(const Part& part, const std::vector<Term>
   const Repeats repeats(part.table);
   auto suspects = suspects_of(part.table, repeats, part.table.deviation);
   const auto weight = weights_without(part.table.size(), suspects);
-  const Part thin{part.measurements, part.axes, thinned(part.table, weight)};
+  const Part thin = thinned(part, weight);
   auto out = explain_all(thin, model, catalogue, seed);
   if (!out) return out;
   auto whole = compare_without(part, out->comparison.fit.terms, repeats, std::move(suspects));
@@ -57,7 +57,8 @@ Expected<Explanation> explain_on_means(const Part& part, const std::vector<Term>
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed) {
   if (part.table.size() == 0) return fail("there are no readings of an axis to explain");
-  if (part.table.size() <= thin_beyond) return explain_all(part, model, catalogue, seed);
+  if (part.table.size() <= thin_beyond || !can_be_thinned(part.table))
+    return explain_all(part, model, catalogue, seed);
   return explain_on_means(part, model, catalogue, seed);
 }
 

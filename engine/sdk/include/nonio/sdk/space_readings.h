@@ -55,10 +55,18 @@ inline bool of_ball_centres(const Observations& o) {
   return !o.angular && !o.axes.empty() && o.axes.front().rotary;
 }
 
-/// Whether some reading is sensed in direction k at least in part.
-inline bool senses(const Observations& o, std::size_t k) {
-  for (std::size_t i = 0; i < o.size(); ++i)
-    if (std::fabs(o.sense_of(i)[k]) > 1e-9) return true;
+/// Whether coordinate k changes within a line whose readings sense direction `error`: else its zero
+/// takes whatever depends on k.
+inline bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::size_t k,
+                                std::size_t error) {
+  constexpr double never = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> first(std::max<std::size_t>(o.lines.size(), 1), never);
+  for (std::size_t i = 0; i < s.r[k].size(); ++i) {
+    if (!std::isfinite(s.r[k][i]) || !(std::fabs(o.sense_of(i)[error]) > 1e-9)) continue;
+    double& x = first[o.line.empty() ? 0 : o.line[i]];
+    if (!std::isfinite(x)) x = s.r[k][i];
+    if (std::fabs(s.r[k][i] - x) > 1e-9 * s.length[k]) return true;
+  }
   return false;
 }
 
@@ -74,6 +82,21 @@ inline std::vector<double> places_of(const SpaceReadings& s, std::size_t k) {
                            [near](double a, double b) { return b - a <= near; }),
                places.end());
   return places;
+}
+
+/// Numbers of knots for a smooth curve: at most 10, and at least two places for each free value, so
+/// that it cannot follow single places.
+inline std::vector<double> knots_over(const std::vector<double>& places) {
+  std::vector<double> knots;
+  for (std::size_t k = 3; k < std::min<std::size_t>(places.size() / 2, 11); ++k)
+    knots.push_back(static_cast<double>(k));
+  return knots;
+}
+
+inline std::vector<double> finite_or_zero(std::vector<double> x) {
+  for (double& v : x)
+    if (!std::isfinite(v)) v = 0.0;
+  return x;
 }
 
 /// Letter of a coordinate, and back: 3 if it is none.
