@@ -111,8 +111,8 @@ TEST(Machine, BodyDiagonalsDoNotSeeTwoOfThreeScales) {
 }
 
 // At tool offset zero, angles about lines through the middle of the volume, 20 urad at the end of
-// the travel: EBX, ECX, EAY and EBY are microns on a body diagonal, EAX cancels, and those of the
-// tool's end never enter.
+// the travel: EBX, ECX, EAY and EBY are 3.5 to 4.6 um on a body diagonal, EAX cancels, and those of
+// the tool's end never enter.
 TEST(Machine, BodyDiagonalsSeeSomeAngularErrors) {
   const Vector travel(0.8, 0.6, 0.6);
   const auto seen = [&](const char* angle) {
