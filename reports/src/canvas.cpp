@@ -7,10 +7,7 @@
 
 namespace nonio::reports {
 
-void Canvas::number(double value) {
-  append_real(ops, value);
-  ops += ' ';
-}
+void Canvas::number(double value) { append_real(ops, value, ' '); }
 
 void Canvas::colour(Colour c, const char* op) {
   for (const float part : {c.red, c.green, c.blue}) number(part);

@@ -90,7 +90,7 @@ HPDF_STATUS write_widths(HPDF_Dict dict, HPDF_Stream stream) {
 
 /// `compressed` outlives the document.
 void fill(Document& pdf, HPDF_Dict dict, const std::string& compressed) {
-  Source& source = pdf.sources.emplace_back(compressed);
+  Source& source = pdf.sources.emplace_back(Source{compressed});
   HPDF_Stream stream = HPDF_CallbackReader_New(pdf.doc->mmgr, read_source, seek_source, nullptr,
                                                size_of_source, &source);
   if (stream == nullptr) return;  // recorded

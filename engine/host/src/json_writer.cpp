@@ -83,6 +83,17 @@ void JsonWriter::value(double number) {
 void JsonWriter::value(std::int64_t number) { item(std::to_string(number)); }
 void JsonWriter::value(std::uint64_t number) { item(std::to_string(number)); }
 
+void JsonWriter::value(bool yes) { item(yes ? "true" : "false"); }
+
 std::string JsonWriter::take() { return std::exchange(out_, {}) + "\n"; }
+
+void put_error(JsonWriter& json, const Error& error) {
+  json.begin_object();
+  if (!error.file.empty()) json.member("file", error.file);
+  if (error.line != 0) json.member("line", error.line);
+  if (!error.column.empty()) json.member("column", error.column);
+  json.member("message", error.message);
+  json.end_object();
+}
 
 }  // namespace nonio::host
