@@ -93,6 +93,47 @@ inline std::vector<double> knots_over(const std::vector<double>& places) {
   return knots;
 }
 
+/// The readings of one line, as it goes through space.
+struct SpaceLine {
+  using Vector = std::array<double, 3>;
+  std::vector<std::size_t> rows;
+  std::vector<Vector> way;     ///< of each row from the first one, m
+  Vector sense{}, farthest{};  ///< of the first row; the longest way
+  double length = 0.0;         ///< of that
+  bool straight = true;        ///< all on one straight, but for what files round
+
+  static double dot(const Vector& a, const Vector& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+  static Vector cross(const Vector& a, const Vector& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  }
+  /// A step diagonal: aside from the direction of sensing, where a flat mirror is, and along it.
+  bool goes_in_steps() const { return !straight && std::fabs(dot(farthest, sense)) > 0.5 * length; }
+};
+
+inline SpaceLine space_line(const Observations& o, const SpaceReadings& s, std::size_t line) {
+  SpaceLine out;
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    if ((o.line.empty() ? 0 : o.line[i]) != line) continue;
+    out.way.push_back({s.lever(0, i), s.lever(1, i), s.lever(2, i)});
+    out.rows.push_back(i);
+  }
+  if (out.rows.empty()) return out;
+  out.sense = o.sense_of(out.rows.front());
+  const auto first = out.way.front();
+  for (auto& way : out.way) {
+    for (std::size_t k = 0; k < 3; ++k) way[k] -= first[k];
+    if (const double length = std::sqrt(SpaceLine::dot(way, way)); length > out.length)
+      out.length = length, out.farthest = way;
+  }
+  for (const auto& way : out.way) {
+    const auto off = SpaceLine::cross(way, out.farthest);  // times the length
+    if (std::sqrt(SpaceLine::dot(off, off)) > 1e-4 * out.length * out.length) out.straight = false;
+  }
+  return out;
+}
+
 inline std::vector<double> finite_or_zero(std::vector<double> x) {
   for (double& v : x)
     if (!std::isfinite(v)) v = 0.0;
