@@ -149,6 +149,13 @@ std::string ModelWords::below_uncertainty(const std::string& effect) const {
   return says("below-uncertainty", {}, {{"effect", effect}});
 }
 
+std::string ModelWords::not_told(const std::string& effect, std::size_t parameters) const {
+  return says("not-told", {{"parameters", static_cast<double>(parameters), Quantity::count}},
+              {{"effect", effect}});
+}
+
+std::string ModelWords::stood_somewhere() const { return says("stood-somewhere", {}, {}); }
+
 std::string ModelWords::unmeasured(const std::string& effect) const {
   return says("unmeasured", {}, {{"effect", effect}});
 }

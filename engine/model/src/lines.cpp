@@ -129,7 +129,7 @@ void append_lines(Observations& to, const Observations& more, const std::string&
 
 bool sensed_along_one_axis(const Observations& o) {
   if (o.axes.size() != 1 || o.axes.front().approach.size() != o.size()) return false;
-  if (o.angular) return true;
+  if (o.angular) return o.axes.front().rotary;  // yaw of a linear axis is no position of it
   if (o.axes.front().rotary) return false;
   const std::size_t k = coordinate_of(o.axes.front().axis);
   for (std::size_t i = 0; i < o.size(); ++i) {

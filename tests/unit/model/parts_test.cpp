@@ -183,6 +183,17 @@ TEST(Parts, RunsOfAnAxisAreOnePartEach) {
   }
 }
 
+// Yaw read by an autocollimator is no position of the axis.
+TEST(Parts, AnAngleOfALinearAxisIsLeftOut) {
+  Visit t;
+  t.run("yaw", "X", {}).kind = "angle";
+  t.read.back().angular = true;
+  t.run("X", "X", {1, 0, 0});
+  const auto parts = t.parts();
+  ASSERT_EQ(names(parts), Ids{"X"});
+  EXPECT_EQ(parts[0].measurements, Ids{"X"});
+}
+
 TEST(Parts, AStraightnessAloneIsNamedByItsLetters) {
   Visit t;
   t.straightness("a", "X", "Y", {{"Y", 0.5}});
