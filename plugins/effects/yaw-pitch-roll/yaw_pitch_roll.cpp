@@ -57,7 +57,8 @@ bool follows_its_guide(const Observations& o, const Angle& a) {
 bool shown(const Observations& o, const SpaceReadings& s, const Angle& a) {
   if (!s.moves(a.axis)) return false;
   for (const Lever& lever : a.levers)
-    if (s.moves(lever.along) && varies_where_sensed(o, s, a.axis, lever.error)) return true;
+    if (s.moves(lever.along) && varies_where_sensed(o, s, a.axis, lever.error, lever.along))
+      return true;
   return follows_its_guide(o, a) && varies_where_sensed(o, s, a.axis, a.guided);
 }
 

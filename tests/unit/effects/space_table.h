@@ -111,6 +111,11 @@ inline std::vector<Line> two_diagonals() {
   return {straight("D1", {0, 0, 0}, {1, 1, 0}), straight("D2", {0, 1, 0}, {1, 0, 0})};
 }
 
+inline std::vector<Line> upright_diagonals() {
+  return {straight("XZ 1", {0, 0, 0}, {1, 0, 1}), straight("XZ 2", {0, 0, 1}, {1, 0, 0}),
+          straight("YZ 1", {0, 0, 0}, {0, 1, 1}), straight("YZ 2", {0, 0, 1}, {0, 1, 0})};
+}
+
 /// X, then Y, then Z in each step.
 inline std::vector<Line> step_diagonals(int n = 16) {
   std::vector<Line> lines;

@@ -56,13 +56,15 @@ inline bool of_ball_centres(const Observations& o) {
 }
 
 /// Whether coordinate k changes within a line whose readings sense direction `error`: else its zero
-/// takes whatever depends on k.
+/// takes whatever depends on k. `away`: looks only at readings that are away from the corner along
+/// this coordinate.
 inline bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::size_t k,
-                                std::size_t error) {
+                                std::size_t error, std::size_t away = 3) {
   constexpr double never = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> first(std::max<std::size_t>(o.lines.size(), 1), never);
   for (std::size_t i = 0; i < s.r[k].size(); ++i) {
     if (!std::isfinite(s.r[k][i]) || !(std::fabs(o.sense_of(i)[error]) > 1e-9)) continue;
+    if (away < 3 && !(s.lever(away, i) > 1e-9 * s.length[away])) continue;
     double& x = first[o.line.empty() ? 0 : o.line[i]];
     if (!std::isfinite(x)) x = s.r[k][i];
     if (std::fabs(s.r[k][i] - x) > 1e-9 * s.length[k]) return true;
