@@ -95,7 +95,8 @@ inline std::vector<double> knots_over(const std::vector<double>& places) {
   return knots;
 }
 
-/// The readings of one line, as it goes through space.
+/// The readings of one line, as it goes through space; without those that do not know where an axis
+/// was that the first one knows.
 struct SpaceLine {
   using Vector = std::array<double, 3>;
   std::vector<std::size_t> rows;
@@ -116,8 +117,14 @@ struct SpaceLine {
 
 inline SpaceLine space_line(const Observations& o, const SpaceReadings& s, std::size_t line) {
   SpaceLine out;
+  const auto same_are_known = [&s](std::size_t one, std::size_t other) {
+    return std::all_of(s.r.begin(), s.r.end(), [=](const std::vector<double>& r) {
+      return r.empty() || std::isfinite(r[one]) == std::isfinite(r[other]);
+    });
+  };
   for (std::size_t i = 0; i < o.size(); ++i) {
     if ((o.line.empty() ? 0 : o.line[i]) != line) continue;
+    if (!out.rows.empty() && !same_are_known(i, out.rows.front())) continue;
     out.way.push_back({s.lever(0, i), s.lever(1, i), s.lever(2, i)});
     out.rows.push_back(i);
   }
