@@ -103,6 +103,103 @@ def gantry_diagonals():
     return files
 
 
+# --- the model of several axes -----------------------------------------------------------------------
+
+def with_noise(places, mean, reversal, noise, s, runs=3):
+    """Rows with normal scatter, each reading's own: what a test of scatter would see on a machine."""
+    rows = []
+    for run in range(runs):
+        for direction, order in (("+", range(len(places))), ("-", reversed(range(len(places))))):
+            for i in order:
+                value = mean[i] + (500.0 if direction == "+" else -500.0) * reversal + s * noise.normal()
+                rows.append({"run": run + 1, "direction": direction, "target": places[i],
+                             "deviation": round(value)})
+    return rows
+
+
+def model_of_pitch():
+    return ["%s:%s" % (kind, axis) for axis in "XY" for kind in ("scale", "pitch-curve", "backlash")] \
+        + ["squareness:XY"]
+
+
+def expected_square(seed, machine, lines_of_x, ident, customer, place, structure, story):
+    """X on two lines, Y, two diagonals; the model knows pitch, reversal and squareness."""
+    noise, files, measurements = Noise(seed), {}, []
+
+    def add(ident, name, places, mean, reversal, **keys):
+        files[name] = table(with_noise(places, mean, reversal, noise, 450.0), [MADE_UP])
+        measurements.append({"id": ident, "file": name, **keys})
+
+    n = 20
+    for side, y in enumerate(lines_of_x):
+        places, mean = machine.along((0.0, y / machine.Ly), (1.0, y / machine.Ly), n)
+        add("X%d" % (side + 1), "x%d.csv" % (side + 1), places, mean, machine.B_x, kind="axis", axis="X",
+            at={"Y": y})
+    places, mean = machine.along((0.0, 0.0), (0.0, 1.0), n)
+    add("Y", "y.csv", places, mean, machine.B_y, kind="axis", axis="Y", at={"X": 0})
+    length = math.hypot(machine.Lx, machine.Ly)
+    c, s = machine.Lx / length, machine.Ly / length
+    for name, start, end in (("D1", (0.0, 0.0), (1.0, 1.0)), ("D2", (0.0, 1.0), (1.0, 0.0))):
+        places, mean = machine.along(start, end, n)
+        add(name, name.lower() + ".csv", places, mean, c * machine.B_x + s * machine.B_y, kind="diagonal",
+            **{"from": {"X": machine.Lx * start[0], "Y": machine.Ly * start[1]},
+               "to": {"X": machine.Lx * end[0], "Y": machine.Ly * end[1]}})
+    files["campaign.toml"] = manifest(
+        story, ident, customer, place, "2026-05-11",
+        {"maker": "Sample Machines", "model": "PG 4", "serial": "S-01" + ident[:2], "structure": structure},
+        {"X": linear(machine.Lx), "Y": linear(machine.Ly)}, measurements, environment=GOOD_ROOM,
+        analyses=["iso230-2", "model-fit"], model=model_of_pitch())
+    return files
+
+
+class SmallGantry(Gantry):
+    """4 m x 3 m, bent guides of both axes; the portal does not rack."""
+    Lx, Ly = 4000.0, 3000.0
+    lines_of_x = (0.0, 3000.0)
+
+    def x(self, side, t):
+        return 2.0 * math.sin(5.0 * t) - 3.0 * t
+
+    def EYX(self, t):
+        return self.straight * (14.0 * 4.0 * t * (1.0 - t) - 6.0 * math.sin(2.0 * math.pi * t))
+
+    def EXY(self, t):
+        return self.straight * (-10.0 * 4.0 * t * (1.0 - t) + 4.0 * math.sin(2.0 * math.pi * t))
+
+
+def straight_or_square():
+    story = ["After the calibration of pitch the two diagonals were expected to show squareness and nothing else. They do",
+             "not: errors many times larger, at points that do not correspond. `nonio explain` says which effect the",
+             "model lacks: the straightness of X, and of Y."]
+    return expected_square(117, SmallGantry(1.0, 12.0), (0.0, 3000.0), "17-straight-or-square",
+                           "Esempio Diciassette S.p.A.", "Brescia", "gantry", story)
+
+
+class Column(SmallGantry):
+    """One column on a bent guide that it follows: straightness of X is the integral of its yaw."""
+    bow = 12.0  # um
+
+    def yaw(self, t):
+        """rad: slope of the bow 4 b t (1 - t)."""
+        return 4.0 * self.bow * 1e-3 * (1.0 - 2.0 * t) / self.Lx
+
+    def x_at(self, y, t):
+        return self.x(0, t) - 1000.0 * y * self.yaw(t)
+
+    def EYX(self, t):
+        return 4.0 * self.bow * t * (1.0 - t)
+
+    def EXY(self, t):
+        return 0.0
+
+
+def one_column():
+    story = ["The same measurements as 17 on a machine with one column. What the diagonals show looks like straightness",
+             "again, but with the wrong sign: the column turns as it follows its guide. `nonio explain` says yaw."]
+    return expected_square(118, Column(1.0, 12.0), (0.0, 3000.0), "18-one-column",
+                           "Esempio Diciotto S.r.l.", "Bergamo", "single-column", story)
+
+
 # --- rotary axes -----------------------------------------------------------------------------------
 
 def turned(point, centre, direction, degrees):
@@ -282,4 +379,6 @@ STORIES = {
     "14-rotary-table": rotary_table,
     "15-step-diagonal": step_diagonal_800,
     "16-step-diagonal": step_diagonal_900,
+    "17-straight-or-square": straight_or_square,
+    "18-one-column": one_column,
 }

@@ -137,7 +137,7 @@ def toml(value):
 
 
 def manifest(story, ident, customer, place, date, machine, axes, measurements, instrument=None,
-             environment=None, analyses=None):
+             environment=None, analyses=None, model=None):
     out = ["# Constructed: nobody measured this machine, and customer and machine are invented."]
     out += ["# " + line for line in story]
     out += ["format = 1", "", "[campaign]", 'id = "%s"' % ident, 'customer = "%s"' % customer,
@@ -150,6 +150,8 @@ def manifest(story, ident, customer, place, date, machine, axes, measurements, i
         out += ["", "[environment]"] + ["%s = %s" % item for item in environment.items()]
     for keys in measurements:
         out += ["", "[[measurement]]"] + ["%s = %s" % (key, toml(value)) for key, value in keys.items()]
+    if model:
+        out += ["", "[model]", "effects = [%s]" % ", ".join(toml(name) for name in model)]
     if analyses:
         out += ["", "[run]", "analyses = [%s]" % ", ".join(toml(name) for name in analyses)]
     return "\n".join(out) + "\n"
