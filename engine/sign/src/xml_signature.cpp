@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+// XML-DSig, enveloped, over the whole document, with exclusive canonicalisation.
+#include <libxml/parser.h>
+#include <libxml/tree.h>
+#include <xmlsec/crypto.h>
+#include <xmlsec/errors.h>
+#include <xmlsec/openssl/evp.h>
+#include <xmlsec/openssl/x509.h>
+#include <xmlsec/templates.h>
+#include <xmlsec/xmldsig.h>
+#include <xmlsec/xmlsec.h>
+#include <xmlsec/xmltree.h>
+
+#include <array>
+
+#include "key.h"
+#include "pdf_signature.h"
+#include "verify_parts.h"
+
+namespace nonio::sign {
+
+namespace {
+
+using DocumentPtr = std::unique_ptr<xmlDoc, Freed<xmlFreeDoc>>;
+using ContextPtr = std::unique_ptr<xmlSecDSigCtx, Freed<xmlSecDSigCtxDestroy>>;
+using XmlKeyPtr = std::unique_ptr<xmlSecKey, Freed<xmlSecKeyDestroy>>;
+
+const xmlChar* xml(const char* text) { return reinterpret_cast<const xmlChar*>(text); }
+
+/// Once in a process: that is how xmlsec wants it.
+bool started() {
+  static const bool well = [] {
+    xmlInitParser();
+    const bool all_well =
+        xmlSecInit() == 0 && xmlSecCryptoAppInit(nullptr) == 0 && xmlSecCryptoInit() == 0;
+    // What goes wrong is told by what is returned, not on the terminal.
+    xmlSecErrorsSetCallback(nullptr);
+    return all_well;
+  }();
+  return well;
+}
+
+/// Neither network nor a DTD: entities could bring in other files, or grow without limit.
+Expected<DocumentPtr> parse(std::string_view bytes) {
+  if (!started()) return fail("xmlsec does not start");
+  if (bytes.size() > max_file) return fail("is larger than 500 MB");
+  DocumentPtr document(xmlReadMemory(bytes.data(), static_cast<int>(bytes.size()), "document.xml",
+                                     nullptr,
+                                     XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING));
+  if (!document || xmlDocGetRootElement(document.get()) == nullptr)
+    return fail("is not well-formed XML");
+  if (document->intSubset != nullptr || document->extSubset != nullptr)
+    return fail("has a document type: wanted none");
+  return document;
+}
+
+/// xmlsec's own, with the certificate and its chain if they are to be written.
+Expected<XmlKeyPtr> key_of(EVP_PKEY* pkey, const Key::Impl* with_certificates) {
+  EVP_PKEY_up_ref(pkey);
+  xmlSecKeyDataPtr value = xmlSecOpenSSLEvpKeyAdopt(pkey);
+  XmlKeyPtr key(xmlSecKeyCreate());
+  if (value == nullptr || !key || xmlSecKeySetValue(key.get(), value) != 0)
+    return fail("the key cannot be used for XML");
+  if (with_certificates == nullptr) return key;
+  xmlSecKeyDataPtr data = xmlSecKeyEnsureData(key.get(), xmlSecOpenSSLKeyDataX509Id);
+  X509* own = X509_dup(with_certificates->certificate.get());
+  if (data == nullptr || xmlSecOpenSSLKeyDataX509AdoptKeyCert(data, own) != 0)
+    return fail("the certificate cannot be used for XML");
+  xmlSecOpenSSLKeyDataX509AdoptCert(data, X509_dup(own));
+  for (const CertificatePtr& c : with_certificates->chain)
+    xmlSecOpenSSLKeyDataX509AdoptCert(data, X509_dup(c.get()));
+  return key;
+}
+
+xmlNode* add_template(xmlDoc* document, bool rsa) {
+  xmlNode* signature = xmlSecTmplSignatureCreate(
+      document, xmlSecTransformExclC14NId,
+      rsa ? xmlSecTransformRsaSha256Id : xmlSecTransformEcdsaSha256Id, nullptr);
+  if (signature == nullptr) return nullptr;
+  xmlAddChild(xmlDocGetRootElement(document), signature);
+  xmlNode* reference = xmlSecTmplSignatureAddReference(signature, xmlSecTransformSha256Id, nullptr,
+                                                       xml(""), nullptr);
+  xmlNode* key_info = xmlSecTmplSignatureEnsureKeyInfo(signature, nullptr);
+  xmlNode* data = key_info == nullptr ? nullptr : xmlSecTmplKeyInfoAddX509Data(key_info);
+  const bool well = reference != nullptr && data != nullptr &&
+                    xmlSecTmplReferenceAddTransform(reference, xmlSecTransformEnvelopedId) &&
+                    xmlSecTmplReferenceAddTransform(reference, xmlSecTransformExclC14NId) &&
+                    xmlSecTmplX509DataAddCertificate(data);
+  return well ? signature : nullptr;
+}
+
+}  // namespace
+
+Expected<std::string> sign_xml(const Key::Impl& key, std::string_view bytes) {
+  auto document = parse(bytes);
+  if (!document) return fail(document.error());
+  if (xmlSecFindNode(xmlDocGetRootElement(document->get()), xmlSecNodeSignature, xmlSecDSigNs) !=
+      nullptr)
+    return fail("is signed already");
+  xmlNode* signature =
+      add_template(document->get(), EVP_PKEY_get_base_id(key.key.get()) == EVP_PKEY_RSA);
+  if (signature == nullptr) return fail("no place for a signature in the XML document");
+  auto own = key_of(key.key.get(), &key);
+  if (!own) return fail(own.error());
+  const ContextPtr context(xmlSecDSigCtxCreate(nullptr));
+  context->signKey = own->release();
+  if (xmlSecDSigCtxSign(context.get(), signature) != 0)
+    return fail("the key did not sign the XML document: " + reason());
+  xmlChar* data = nullptr;
+  int size = 0;
+  xmlDocDumpMemoryEnc(document->get(), &data, &size, "UTF-8");
+  std::string out(reinterpret_cast<const char*>(data), static_cast<std::size_t>(size));
+  xmlFree(data);
+  return out;
+}
+
+namespace {
+
+bool is(const xmlNode* node, const xmlChar* name) {
+  return node != nullptr &&
+         xmlSecCheckNodeName(const_cast<xmlNode*>(node), name, xmlSecDSigNs) == 1;
+}
+
+xmlNode* next(xmlNode* node) {
+  return node == nullptr ? nullptr : xmlSecGetNextElementNode(node->next);
+}
+xmlNode* first(xmlNode* node) {
+  return node == nullptr ? nullptr : xmlSecGetNextElementNode(node->children);
+}
+
+bool has(xmlNode* node, const xmlChar* attribute, std::string_view wanted) {
+  if (node == nullptr) return false;
+  const std::unique_ptr<xmlChar, void (*)(xmlChar*)> value(xmlGetNoNsProp(node, attribute),
+                                                           [](xmlChar* p) { xmlFree(p); });
+  return value != nullptr && reinterpret_cast<const char*>(value.get()) == wanted;
+}
+
+constexpr std::string_view exclusive = "http://www.w3.org/2001/10/xml-exc-c14n#";
+constexpr std::string_view enveloped = "http://www.w3.org/2000/09/xmldsig#enveloped-signature";
+constexpr std::string_view sha256_method = "http://www.w3.org/2001/04/xmlenc#sha256";
+constexpr std::string_view by_rsa = "http://www.w3.org/2001/04/xmldsig-more#rsa-sha256";
+constexpr std::string_view by_ecdsa = "http://www.w3.org/2001/04/xmldsig-more#ecdsa-sha256";
+
+std::size_t count(xmlNode* node) {
+  std::size_t n = 0;
+  for (; node != nullptr; node = xmlSecGetNextElementNode(node->next)) {
+    if (is(node, xmlSecNodeSignature)) ++n;
+    n += count(xmlSecGetNextElementNode(node->children));
+  }
+  return n;
+}
+
+/// One signature, the last child of the root, over the whole document and nothing else.
+Expected<xmlNode*> find_xml_signature(xmlDoc* document) {
+  xmlNode* root = xmlDocGetRootElement(document);
+  xmlNode* signature = first(root);
+  while (next(signature) != nullptr) signature = next(signature);
+  if (!is(signature, xmlSecNodeSignature)) return fail("is not signed");
+  if (count(first(root)) != 1) return fail("has more than one signature");
+  xmlNode* info = first(signature);
+  xmlNode* canonical = first(info);
+  xmlNode* method = next(canonical);
+  xmlNode* reference = next(method);
+  if (!is(info, xmlSecNodeSignedInfo) || !is(reference, xmlSecNodeReference) ||
+      next(reference) != nullptr || !has(canonical, xmlSecAttrAlgorithm, exclusive) ||
+      !(has(method, xmlSecAttrAlgorithm, by_rsa) || has(method, xmlSecAttrAlgorithm, by_ecdsa)))
+    return fail("is signed in another way than Nonio does");
+  xmlNode* transforms = first(reference);
+  xmlNode* one = first(transforms);
+  xmlNode* two = next(one);
+  if (!has(reference, xmlSecAttrURI, "") || !has(one, xmlSecAttrAlgorithm, enveloped) ||
+      !has(two, xmlSecAttrAlgorithm, exclusive) || next(two) != nullptr ||
+      !has(next(transforms), xmlSecAttrAlgorithm, sha256_method))
+    return fail("has a signature that does not cover the whole document");
+  return signature;
+}
+
+std::string from_base64(std::string_view text) {
+  std::string packed;
+  for (const char c : text)
+    if (std::string_view(" \t\r\n").find(c) == std::string_view::npos) packed += c;
+  std::string out(packed.size() / 4 * 3 + 3, '\0');
+  const int size = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(out.data()), data_of(packed),
+                                   static_cast<int>(packed.size()));
+  if (size < 0) return {};
+  std::size_t real = static_cast<std::size_t>(size);
+  for (std::size_t i = packed.size(); i > 0 && packed[i - 1] == '=' && real > 0; --i) --real;
+  out.resize(real);
+  return out;
+}
+
+Expected<std::vector<CertificatePtr>> certificates_in(xmlNode* signature) {
+  std::vector<CertificatePtr> out;
+  xmlNode* info = next(next(first(signature)));
+  for (xmlNode* c = first(first(info)); c != nullptr; c = next(c)) {
+    if (!is(c, xmlSecNodeX509Certificate)) continue;
+    const std::unique_ptr<xmlChar, void (*)(xmlChar*)> text(xmlNodeGetContent(c),
+                                                            [](xmlChar* p) { xmlFree(p); });
+    const std::string der = from_base64(reinterpret_cast<const char*>(text.get()));
+    const unsigned char* at = data_of(der);
+    CertificatePtr certificate(d2i_X509(nullptr, &at, static_cast<long>(der.size())));
+    if (!certificate || at != data_of(der) + der.size() || out.size() >= 20)
+      return fail("has a certificate that cannot be read");
+    out.push_back(std::move(certificate));
+  }
+  if (out.empty()) return fail("has no certificate");
+  return out;
+}
+
+Expected<void> check_value(xmlNode* signature, X509* certificate) {
+  auto key = key_of(X509_get0_pubkey(certificate), nullptr);
+  if (!key) return fail(key.error());
+  const ContextPtr context(xmlSecDSigCtxCreate(nullptr));
+  context->enabledReferenceUris = xmlSecTransformUriTypeEmpty;
+  context->signKey = key->release();
+  if (xmlSecDSigCtxVerify(context.get(), signature) != 0 ||
+      context->status != xmlSecDSigStatusSucceeded)
+    return fail("the document was changed after it was signed");
+  return {};
+}
+
+template <class T>
+Expected<void> to_void(const Expected<T>& result) {
+  if (result) return {};
+  return fail(result.error());
+}
+
+}  // namespace
+
+Verified verify_xml(std::string_view bytes, const Verifier& verifier, std::string_view wanted) {
+  Verified out;
+  out.at = verifier.now;
+  Report report(out);
+  auto document = parse(bytes);
+  report.add("xml.structure", to_void(document), "XML without a document type");
+  if (!document) return out;
+  const auto signature = find_xml_signature(document->get());
+  report.add("xml.one", to_void(signature), "one signature over the whole document");
+  if (!signature) return out;
+  const auto certificates = certificates_in(*signature);
+  if (!certificates) {
+    report.add("xml.content", fail(certificates.error()), {});
+    return out;
+  }
+  X509* certificate = certificates->front().get();
+  out.certificate = der_of(certificate);
+  auto holds = to_void(algorithm_of(X509_get0_pubkey(certificate), true));
+  if (holds) holds = check_value(*signature, certificate);
+  report.add("xml.content", holds, "the document is as it was signed");
+  if (!wanted.empty()) {
+    report.add("xml.signer",
+               wanted == out.certificate
+                   ? Expected<void>{}
+                   : fail("signed by " + subject_of(certificate) + ", who did not sign the PDF"),
+               "signed by the signer of the PDF");
+    return out;
+  }
+  const auto known = trusted(verifier.trust, verifier.revocation);
+  if (!known) {
+    report.add("certificate.chain", fail(known.error()), {});
+    return out;
+  }
+  report.check_signer(certificate, verifier);
+  report.check_chain(certificate, *certificates, *known, !verifier.revocation.empty());
+  return out;
+}
+
+}  // namespace nonio::sign
