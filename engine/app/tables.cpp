@@ -43,9 +43,21 @@ std::string floor_text(const model::NoiseFloor& floor, Quantity q) {
   return with_unit(floor.s, q) + ", u = " + with_unit(floor.u, q);
 }
 
+const char* head_of(const model::Part& part) {
+  switch (part.kind) {
+    case model::Part::Kind::axis:
+      return "axis ";
+    case model::Part::Kind::space:
+      return "axes ";
+    case model::Part::Kind::balls:
+      break;
+  }
+  return "ball centres ";
+}
+
 void print_head(std::ostream& out, const host::PartModel& part) {
   const std::string effects = host::listed(part.names());
-  out << "axis " << part.axis().name << " (" << host::listed(part.part.measurements)
+  out << head_of(part.part) << part.part.name << " (" << host::listed(part.part.measurements)
       << "): " << part.part.table.size()
       << " readings; model: " << (effects.empty() ? "nothing but the zero" : effects) << "\n";
 }
@@ -64,15 +76,15 @@ void print_parameters(std::ostream& out, const model::Fit& fit) {
 }
 
 void print_places(std::ostream& out, const std::vector<model::Place>& places,
-                  const host::ModelWords& words, bool rotary) {
+                  const host::ModelWords& words, Quantity deviation) {
   bool any = false;
   for (const model::Place& place : places) {
     if (!(place.p < model::place_p)) continue;
     if (!any) out << "  where it fails\n";
     any = true;
-    out << "    " << padded(place.where, 24) << " "
+    out << "    " << padded(place.where + host::on_line(place), 24) << " "
         << padded(fixed_text(100.0 * place.share, 0) + " %", 6) << "  p = " << p_text(place.p)
-        << "\n      " << words.place(place, rotary) << "\n";
+        << "\n      " << words.place(place, deviation) << "\n";
   }
   if (!any) line(out, "where it fails", "nowhere");
 }
@@ -98,11 +110,13 @@ std::string false_alarms_text(const model::Verdict& v) {
 std::string largest_text(const host::Compared& compared, const Campaign& campaign) {
   const host::PartModel& part = compared.part;
   const auto at = host::place_of(part, campaign, compared.comparison.largest_row);
-  const Quantity position = position_of(part.axis().rotary);
   std::string text = with_unit(compared.comparison.largest, part.deviation()) + " at " +
-                     evidence_text({"", at.target, position}) + " " +
-                     std::string(unit_of(position).symbol) + ", run " + std::to_string(at.run) +
-                     ", direction " + (at.direction > 0 ? "+" : "-") + ", " + at.file;
+                     evidence_text({"", at.target, at.position}) + " " +
+                     std::string(unit_of(at.position).symbol) + ", run " + std::to_string(at.run) +
+                     (at.direction == 0  ? ""
+                      : at.direction > 0 ? ", direction +"
+                                         : ", direction -") +
+                     ", " + at.file;
   return at.line == 0 ? text : text + ":" + std::to_string(at.line);
 }
 
@@ -173,7 +187,7 @@ void print_comparison(std::ostream& out, const host::Compared& compared, const C
     line(out, "correlated",
          pair.one->effect + " " + pair.one->name + " and " + pair.other->effect + " " +
              pair.other->name + ": r = " + fixed_text(pair.r, 3));
-  print_places(out, c.places, words, part.axis().rotary);
+  print_places(out, c.places, words, part.deviation());
   if (c.means > 0)
     line(out, "", "told from " + std::to_string(c.means) + " means of neighbouring readings");
   print_suspects(out, c, part, campaign, words);

@@ -18,20 +18,39 @@ std::pair<std::string, std::string> split(const std::string& effect) {
 }
 
 std::vector<std::string> known_names(const ReadCampaign& read) {
+  const Campaign& campaign = read.manifest->campaign;
   std::vector<std::string> names;
-  for (const Axis& axis : read.manifest->campaign.machine.axes)
-    for (const Effect& effect : read.effects) names.push_back(effect.info.name + ":" + axis.name);
+  for (const Effect& effect : read.effects)
+    for (const Axis& axis : campaign.machine.axes)
+      if (!effect.of && !effect.always) names.push_back(effect.info.name + ":" + axis.name);
+  for (const model::Part& part : model::parts_of(campaign, read.observations))
+    for (const Effect& effect : read.effects)
+      if (effect.of && !effect.always)
+        for (std::string& name : model::names_of(part, effect)) names.push_back(std::move(name));
   return names;
+}
+
+/// ISO 230-1 letters: "XY", "EYX", "X".
+bool can_be_in_space(const std::string& of) {
+  return !of.empty() && of.find_first_not_of("EXYZABC0123456789") == std::string::npos;
 }
 
 std::string mistake_of(const std::string& effect, const ReadCampaign& read) {
   const auto [kind, axis] = split(effect);
   const auto is_kind = [&, &k = kind](const Effect& e) { return e.info.name == k; };
-  const bool known = std::any_of(read.effects.begin(), read.effects.end(), is_kind);
+  const auto known = std::find_if(read.effects.begin(), read.effects.end(), is_kind);
   const std::string nearest = suggestion(effect, known_names(read));
   if (kind.empty() || axis.empty())
     return "wanted kind:axis, such as backlash:X; found \"" + effect + "\"" + nearest;
-  if (!known) return "there is no effect \"" + kind + "\"" + nearest;
+  if (known == read.effects.end()) return "there is no effect \"" + kind + "\"" + nearest;
+  if (known->always)
+    return "\"" + effect + "\" belongs to the set-up: it is in every model, and not written";
+  if (known->of)
+    return can_be_in_space(axis)
+               ? ""
+               : "\"" + effect +
+                     "\": wanted what the effect can be of, such as straightness:EYX, " +
+                     "squareness:XY or yaw:X" + nearest;
   if (read.manifest->campaign.machine.axis(axis) == nullptr)
     return "\"" + effect + "\": the machine has no axis \"" + axis + "\"" + nearest;
   return {};
@@ -41,20 +60,42 @@ std::string mistake_of(const std::string& effect, const ReadCampaign& read) {
 
 std::vector<std::string> PartModel::names() const {
   std::vector<std::string> out;
-  for (const model::Term& t : terms) out.push_back(t.name());
+  for (const model::Term& t : terms)
+    if (!t.effect->always) out.push_back(t.name());
   return out;
+}
+
+bool PartModel::shows(const std::string& effect) const {
+  if (part.kind == model::Part::Kind::axis && split(effect).second == part.name) return true;
+  for (const auto* list : {&terms, &catalogue})
+    for (const model::Term& t : *list)
+      if (t.name() == effect) return true;
+  return false;
+}
+
+std::string kind_of(const model::Part& part) {
+  switch (part.kind) {
+    case model::Part::Kind::axis:
+      return "axis";
+    case model::Part::Kind::space:
+      return "space";
+    case model::Part::Kind::balls:
+      break;
+  }
+  return "balls";
 }
 
 ReadingPlace place_of(const PartModel& part, const Campaign& campaign, std::size_t row) {
   const Observations& o = part.part.table;
   ReadingPlace place;
-  place.measurement = o.lines[o.line[row]].name;
+  place.measurement = part.part.measurements[part.part.measurement[row]];
   for (const Measurement& m : campaign.measurements)
     if (m.id == place.measurement) place.file = m.file;
   if (row < o.source_line.size()) place.line = o.source_line[row];
   if (row < o.run.size()) place.run = o.run[row];
-  place.direction = o.axes.front().approach[row] > 0 ? 1 : -1;
-  place.target = o.axes.front().position[row];
+  place.direction = part.part.way[row];
+  place.target = part.part.along[row];
+  place.position = part.position();
   return place;
 }
 
@@ -100,7 +141,7 @@ std::vector<std::string> unmeasured(const std::vector<std::string>& effects,
   std::vector<std::string> out;
   for (const std::string& effect : effects)
     if (std::none_of(parts.begin(), parts.end(),
-                     [&](const PartModel& p) { return p.axis().name == split(effect).second; }))
+                     [&](const PartModel& p) { return p.shows(effect); }))
       out.push_back(effect);
   return out;
 }
@@ -108,6 +149,7 @@ std::vector<std::string> unmeasured(const std::vector<std::string>& effects,
 std::vector<std::string> below_uncertainty(const model::Fit& fit) {
   std::vector<std::string> out;
   for (const model::Term& term : fit.terms) {
+    if (term.effect->always) continue;
     bool any = false, small = true;
     for (const model::Parameter& p : fit.parameters) {
       if (p.effect != term.name() || p.shape) continue;
@@ -121,12 +163,13 @@ std::vector<std::string> below_uncertainty(const model::Fit& fit) {
 
 Expected<model::Comparison> compare_part(const PartModel& part) {
   if (!part.unfit.empty()) return fail(part.unfit);
-  return guarded("axis " + part.axis().name, [&] { return model::compare(part.part, part.terms); });
+  return guarded(kind_of(part.part) + " " + part.part.name,
+                 [&] { return model::compare(part.part, part.terms); });
 }
 
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed) {
   if (!part.unfit.empty()) return fail(part.unfit);
-  return guarded("axis " + part.axis().name,
+  return guarded(kind_of(part.part) + " " + part.part.name,
                  [&] { return model::explain(part.part, part.terms, part.catalogue, seed); });
 }
 

@@ -215,7 +215,10 @@ class CampaignReader {
   std::string copied(const std::vector<model::Part>& parts, const Axis& axis,
                      const Effect& effect) const {
     for (const model::Part& part : parts) {
-      if (part.axes.front().name != axis.name || !effect.applies(part.table, axis)) continue;
+      if (std::none_of(part.axes.begin(), part.axes.end(),
+                       [&](const Axis& a) { return a.name == axis.name; }) ||
+          !effect.applies(part.table, axis))
+        continue;
       const auto same = copy_of(part.table, axis, effect, out_.effects);
       if (!same) return same.error().message;
       if (*same == "zero") return "it says no more than the zero of a measurement";

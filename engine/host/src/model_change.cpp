@@ -13,15 +13,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The part of the effect's axis with this model; none if the axis was not measured.
+/// The part that shows the effect, with this model; none if it was not measured.
 Expected<std::optional<Compared>> compare_axis(const ReadCampaign& read,
                                                const std::vector<std::string>& effects,
                                                const std::string& effect) {
   auto parts = part_models(read, effects);
   if (!parts) return fail(parts.error());
-  const std::string axis = effect.substr(effect.find(':') + 1);
   for (PartModel& part : *parts) {
-    if (part.axis().name != axis) continue;
+    if (!part.shows(effect)) continue;
     auto comparison = compare_part(part);
     if (!comparison) return fail(comparison.error());
     return Compared{std::move(part), std::move(*comparison)};
@@ -94,7 +93,7 @@ Expected<Change> change_model(const fs::path& folder, ReadCampaign& read, const 
     change.after = std::move(*after);
   }
   if (add && !change.after)
-    return fail("no measurement of this campaign shows the axis of \"" + effect + "\"");
+    return fail("no measurement of this campaign can show \"" + effect + "\"");
   change.step = step_of(change, effect, add);
   if (auto written = write(folder, read, change.step); !written) return fail(written.error());
   campaign.model = change.effects;

@@ -68,7 +68,7 @@ class Findings {
     const auto worst = std::find_if(c.places.begin(), c.places.end(),
                                     [](const auto& place) { return place.p < model::place_p; });
     if (worst == c.places.end()) return;
-    Finding f{"model.fails", true, {}, {{"where", worst->where}}};
+    Finding f{"model.fails", true, {}, {{"where", worst->where}, {"line", on_line(*worst)}}};
     f.evidence = {{"share", worst->share, Quantity::ratio},
                   {"percent", std::round(100.0 * worst->share), Quantity::count},
                   {"p", worst->p, Quantity::probability},
@@ -98,13 +98,13 @@ Finding cannot_fit(const std::string& reason) {
   return {"model.cannot-fit", true, {}, {{"reason", reason}}};
 }
 
-void put_readings(ModelFit& out, const Observations& o) {
-  const auto& axis = o.axes.front();
-  out.measurement = o.line;
+void put_readings(ModelFit& out, const model::Part& part) {
+  const Observations& o = part.table;
+  out.measurement = part.measurement;
   out.source_line = o.source_line;
   out.run = o.run;
-  out.target = axis.position;
-  out.direction = axis.approach;
+  out.target = part.along;
+  out.direction = part.way;
   out.time = o.time;
   out.temperature = o.material;
   out.deviation = o.deviation;
@@ -143,31 +143,38 @@ void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& wh
 
 /// The value that documents draw.
 ModelFit value_of(const PartModel& part, const model::Explanation& e) {
-  const Axis& axis = part.axis();
+  const Axis& axis = part.part.axes.front();
+  const bool alone = part.part.kind == model::Part::Kind::axis;
   ModelFit out;
-  out.part = out.axis = axis.name;
+  out.part = out.axis = part.part.name;
   out.measurements = part.part.measurements;
-  out.rotary = axis.rotary;
+  out.rotary = part.position() == Quantity::angle;
   out.angular = part.part.table.angular;
-  if (axis.rotary && axis.teeth)
+  if (alone && axis.rotary && axis.teeth)
     out.period = 2.0 * std::numbers::pi / static_cast<double>(*axis.teeth);
-  else
+  else if (alone)
     out.period = axis.screw_pitch;
-  put_readings(out, part.part.table);
+  put_readings(out, part.part);
   put_fit(out, e.comparison);
   put_steps(out, part, e.comparison);
   out.says = {verdict_finding(e, part)};
-  for (const model::Place& place : e.fails) out.says.push_back(place_finding(place, axis.rotary));
+  for (const model::Place& place : e.fails)
+    out.says.push_back(place_finding(place, part.deviation()));
   return out;
 }
 
-/// Rows that give each target, once from each direction.
+/// Rows of a measurement that give each place, once from each direction.
 std::vector<char> first_of_each(const Observations& o) {
-  std::set<std::pair<double, int>> seen;
+  std::set<std::vector<double>> seen;
   std::vector<char> kept(o.size(), 0);
-  const auto& axis = o.axes.front();
-  for (std::size_t i = 0; i < o.size(); ++i)
-    kept[i] = seen.insert({axis.position[i], axis.approach[i]}).second ? 1 : 0;
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    std::vector<double> place{static_cast<double>(o.line.empty() ? 0 : o.line[i])};
+    for (const auto& axis : o.axes) {
+      place.push_back(axis.position[i]);
+      if (!axis.approach.empty()) place.push_back(axis.approach[i]);
+    }
+    kept[i] = seen.insert(std::move(place)).second ? 1 : 0;
+  }
   return kept;
 }
 
@@ -191,7 +198,7 @@ std::vector<std::string> compensable(const model::Fit& fit) {
 Remark compensated(const PartModel& part, const std::vector<std::string>& effects) {
   Remark remark{effects.empty() ? "model.not-compensated" : "model.compensated",
                 {},
-                {{"axis", part.axis().name}},
+                {{"axis", part.part.name}},
                 part.part.measurements.front()};
   if (!effects.empty()) remark.texts.emplace_back("effects", listed(effects));
   return remark;
@@ -208,10 +215,11 @@ Expected<ModelFits> model_fit(const ReadCampaign& read, const Context& context) 
     Results::Analysed one{model_fit_name, context.version, part.part.measurements.front(), {}};
     Evaluation& evaluation = one.evaluation;
     if (part.part.measurements.size() > 1)
-      evaluation.notes.push_back(
-          {"model.joined",
-           {},
-           {{"measurements", listed(part.part.measurements)}, {"axis", part.axis().name}}});
+      evaluation.notes.push_back({"model.joined",
+                                  {},
+                                  {{"measurements", listed(part.part.measurements)},
+                                   {"part", kind_of(part.part)},
+                                   {"axis", part.part.name}}});
     if (const auto e = explain_part(part, 1)) {
       evaluation.values = values_of(e->comparison, part.deviation());
       evaluation.findings = Findings(part, campaign).of(*e);
@@ -230,6 +238,7 @@ Expected<std::vector<Observations>> compensable_readings(const ReadCampaign& rea
   auto parts = part_models(read, campaign.model);
   if (!parts) return fail(parts.error());
   std::vector<Observations> out = read.observations;
+  std::set<std::size_t> done;  // a measurement that belongs to two states of the machine is in two
   for (const PartModel& part : *parts) {
     const auto compared = compare_part(part);
     if (!compared)
@@ -239,11 +248,13 @@ Expected<std::vector<Observations>> compensable_readings(const ReadCampaign& rea
     const std::vector<double> said = compensable_part(compared->fit);
     const std::vector<std::string> names = compensable(compared->fit);
     notes.push_back(compensated(part, names));
-    std::size_t row = 0;  // of the part: its measurements one after the other
-    for (const std::string& id : part.part.measurements)
+    for (std::size_t k = 0; k < part.part.measurements.size(); ++k)
       for (std::size_t m = 0; m < out.size(); ++m) {
-        if (campaign.measurements[m].id != id) continue;
-        for (double& deviation : out[m].deviation) deviation = said[row++];
+        if (campaign.measurements[m].id != part.part.measurements[k] || done.contains(m)) continue;
+        done.insert(m);
+        if (campaign.measurements[m].kind == "ball-centres") continue;
+        for (std::size_t i = 0; i < said.size(); ++i)
+          if (part.part.measurement[i] == k) out[m].deviation[part.part.row[i]] = said[i];
         keep_rows(out[m],
                   names.empty() ? std::vector<char>(out[m].size(), 0) : first_of_each(out[m]));
         out[m].run.assign(out[m].size(), 1);

@@ -43,14 +43,16 @@ Json parameters_json(const std::vector<model::Parameter>& parameters, bool with_
   return list;
 }
 
-Json places_json(const std::vector<model::Place>& places, const ModelWords& words, bool rotary) {
+Json places_json(const std::vector<model::Place>& places, const ModelWords& words,
+                 Quantity deviation) {
   Json list = Json::array();
   for (const model::Place& place : places) {
     Json one = {{"where", place.where}};
+    if (!place.line.empty()) one["line"] = place.line;
     put(one, "share", place.share, Quantity::ratio);
-    one["says"] = words.place(place, rotary);
+    one["says"] = words.place(place, deviation);
     put(one, "p", place.p, Quantity::probability);
-    put(one, "rms", place.rms, deviation_of(rotary));
+    put(one, "rms", place.rms, deviation);
     if (place.at && place.at_quantity == Quantity::count)
       one["at_run"] = std::llround(*place.at);
     else
@@ -67,12 +69,12 @@ std::vector<model::Place> failing(const std::vector<model::Place>& places) {
   return out;
 }
 
-Json reading_json(const ReadingPlace& at, bool rotary) {
+Json reading_json(const ReadingPlace& at) {
   Json json = {{"measurement", at.measurement}, {"file", at.file}};
   if (at.line != 0) json["line"] = at.line;
   if (at.run != 0) json["run"] = at.run;
-  json["direction"] = at.direction > 0 ? "+" : "-";
-  put(json, "target", at.target, position_of(rotary));
+  if (at.direction != 0) json["direction"] = at.direction > 0 ? "+" : "-";
+  put(json, "target", at.target, at.position);
   return json;
 }
 
@@ -82,7 +84,7 @@ Json suspects_json(const std::vector<model::Suspect>& suspects, const PartModel&
   Json list = Json::array();
   for (const model::Suspect& s : suspects) {
     const ReadingPlace at = place_of(part, campaign, s.row);
-    Json one = reading_json(at, part.axis().rotary);
+    Json one = reading_json(at);
     put(one, "residual", s.residual, q);
     put(one, "t", s.t, Quantity::number);
     put(one, "minimal_detectable", s.minimal_detectable, q);
@@ -117,7 +119,7 @@ Json model_json(const PartModel& part, const model::Comparison& c) {
 }
 
 void put_part(Json& json, const PartModel& part) {
-  json["axis"] = part.axis().name;
+  json["axis"] = part.part.name;
   json["measurements"] = part.part.measurements;
   json["observations"] = part.part.table.size();
 }
@@ -135,8 +137,7 @@ Json compared_json(const Compared& c, const Campaign& campaign, const ModelWords
   json["redundancy"] = comparison.fit.redundancy;
   put_lack_of_fit(json, comparison);
   if (comparison.largest != 0.0) {
-    Json largest =
-        reading_json(place_of(c.part, campaign, comparison.largest_row), c.part.axis().rotary);
+    Json largest = reading_json(place_of(c.part, campaign, comparison.largest_row));
     put(largest, "residual", comparison.largest, q);
     json["largest"] = std::move(largest);
   }
@@ -146,8 +147,8 @@ Json compared_json(const Compared& c, const Campaign& campaign, const ModelWords
                      {"other", pair.other->effect + " " + pair.other->name},
                      {"r", printed(pair.r, Quantity::ratio)}});
   json["correlations"] = std::move(pairs);
-  json["fails"] = places_json(failing(comparison.places), words, c.part.axis().rotary);
-  json["places"] = places_json(comparison.places, words, c.part.axis().rotary);
+  json["fails"] = places_json(failing(comparison.places), words, q);
+  json["places"] = places_json(comparison.places, words, q);
   if (comparison.means > 0) json["means"] = comparison.means;
   json["suspects"] = suspects_json(comparison.suspects, c.part, campaign, words);
   json["warnings"] = warnings_of(comparison.fit, words);
@@ -198,7 +199,7 @@ void put_explained(Json& json, const Explained& e, const Campaign& campaign,
   json["model"] = model_json(e.part, x.comparison);
   put_floor(json, x.comparison, q);
   put_lack_of_fit(json, x.comparison);
-  json["fails"] = places_json(x.fails, words, e.part.axis().rotary);
+  json["fails"] = places_json(x.fails, words, q);
   Json candidates = Json::array(), unseen = Json::array();
   for (const model::Candidate& c : x.candidates)
     if (is_ranked(c))
@@ -295,7 +296,7 @@ std::string explain_json(const std::vector<Explained>& all, const Campaign& camp
                          const std::vector<Error>& errors) {
   Json json = {{"schema", "nonio-explain/1"}, {"campaign", campaign.id}};
   put_explained(json, all[most_severe(all)], campaign, words);
-  json["axis"] = all[most_severe(all)].part.axis().name;
+  json["axis"] = all[most_severe(all)].part.part.name;
   if (all.size() > 1) {
     Json parts = Json::array();
     for (const Explained& e : all) {

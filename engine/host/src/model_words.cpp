@@ -54,12 +54,16 @@ std::string ModelWords::says(const std::string& id, std::vector<Number> numbers,
                       "says");
 }
 
-Finding place_finding(const model::Place& place, bool rotary) {
-  return {.id = "place." + place.where,
+std::string on_line(const model::Place& place) {
+  return place.line.empty() ? "" : " (" + place.line + ")";
+}
+
+Finding place_finding(const model::Place& place, Quantity deviation) {
+  return {.id = (place.line.empty() ? "place." : "place.line.") + place.where,
           .evidence = {percent("share", place.share),
-                       {"rms", place.rms, deviation_of(rotary)},
+                       {"rms", place.rms, deviation},
                        {"p", place.p, Quantity::probability}},
-          .texts = {{"where", place.where}}};
+          .texts = {{"where", place.where}, {"line", place.line}}};
 }
 
 Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
@@ -68,7 +72,7 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
   Finding f{.id = "verdict." + id_of(v.kind), .attention = v.kind != Kind::nothing};
   f.evidence = {{"rms", e.comparison.fit.rms, q}, percent("suspects", v.suspects_share)};
   if (e.comparison.floor) f.evidence.push_back({"floor", e.comparison.floor->s, q});
-  f.texts = {{"axis", part.axis().name}, {"effect", v.effect}};
+  f.texts = {{"part", kind_of(part.part)}, {"axis", part.part.name}, {"effect", v.effect}};
   f.measurement = part.part.measurements.front();
   if (v.kind == Kind::missing && !e.candidates.empty()) {
     const model::Candidate& c = e.candidates.front();
@@ -83,8 +87,8 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
   return f;
 }
 
-std::string ModelWords::place(const model::Place& place, bool rotary) const {
-  Finding f = place_finding(place, rotary);
+std::string ModelWords::place(const model::Place& place, Quantity deviation) const {
+  Finding f = place_finding(place, deviation);
   std::string text = finding_text(templates_, language_, f, "says");
   if (text.empty()) {
     f.id = "place.other";
@@ -99,7 +103,7 @@ std::string ModelWords::place(const model::Place& place, bool rotary) const {
 std::string ModelWords::verdict(const model::Explanation& e, const PartModel& part) const {
   std::string text = finding_text(templates_, language_, verdict_finding(e, part), "says");
   if (e.verdict.kind == Kind::unknown && !e.fails.empty())
-    text += " " + place(e.fails.front(), part.axis().rotary);
+    text += " " + place(e.fails.front(), part.deviation());
   return text;
 }
 
@@ -130,11 +134,10 @@ std::string ModelWords::plan(const model::Plan& plan) const {
 }
 
 std::string ModelWords::suspect(const model::Suspect& s, const ReadingPlace& at, Quantity q) const {
-  const Quantity position = q == Quantity::deviation ? Quantity::length : Quantity::angle;
   return says("suspect",
               {{"residual", s.residual, q},
                {"detectable", s.minimal_detectable, q},
-               {"target", at.target, position},
+               {"target", at.target, at.position},
                {"run", static_cast<double>(at.run), Quantity::count},
                {"line", static_cast<double>(at.line), Quantity::count}},
               {{"direction", at.direction > 0 ? "+" : "-"},

@@ -35,14 +35,11 @@ std::vector<double> cross_validated(const Observations& o, const std::vector<Ter
   if (std::none_of(of_line.begin(), of_line.end(), [](const auto& l) { return l.second > 1; }))
     return {};
   const auto n = static_cast<Index>(o.size()), lines = static_cast<Index>(lines_of(o));
-  std::vector<MatrixXd> blocks;
+  auto made = blocks_of(o, terms, root_weights(o, weight));
+  if (!made) return {};
+  std::vector<MatrixXd> blocks = std::move(*made);
   Index columns = lines;
-  for (const Term& term : terms) {
-    auto block = columns_of(o, term, term.shape);
-    if (!block) return {};
-    columns += block->cols();
-    blocks.push_back(std::move(*block));
-  }
+  for (const MatrixXd& block : blocks) columns += block.cols();
   MatrixXd a = MatrixXd::Zero(n, columns);
   for (Index i = 0; i < n; ++i)
     a(i, static_cast<Index>(line_of(o, static_cast<std::size_t>(i)))) = 1.0;
@@ -111,11 +108,11 @@ std::optional<LackOfFit> lack_of_fit(const Fit& fit, const Saturated& repeats, d
 /// Orthonormal columns of a fit, with root weights and without the zeros of lines.
 MatrixXd basis_of(const Observations& o, const std::vector<Term>& terms, const VectorXd& root) {
   MatrixXd a(static_cast<Index>(o.size()), 0);
-  for (const Term& term : terms) {
-    const auto block = columns_of(o, term, term.shape);
-    if (!block) continue;
-    a.conservativeResize(Eigen::NoChange, a.cols() + block->cols());
-    a.rightCols(block->cols()) = root.asDiagonal() * *block;
+  const auto blocks = blocks_of(o, terms, root);
+  if (!blocks) return a;
+  for (const MatrixXd& block : *blocks) {
+    a.conservativeResize(Eigen::NoChange, a.cols() + block.cols());
+    a.rightCols(block.cols()) = root.asDiagonal() * block;
   }
   if (a.cols() == 0) return a;
   take_out_zeros(o, root, a);
@@ -147,7 +144,7 @@ Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
   const VectorXd root = root_weights(o, fit.weight);
   const VectorXd residual = root.cwiseProduct(
       Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(o.size())));
-  if (o.size() <= thin_beyond) {
+  if (o.size() <= thin_beyond || !can_be_thinned(o)) {
     const MatrixXd basis = basis_of(o, fit.terms, root);
     out.places = PlaceTests(part, repeats, root, basis, static_cast<double>(fit.redundancy))(
         residual, out.floor);
@@ -180,8 +177,8 @@ Expected<Comparison> compare(const Part& part, const std::vector<Term>& model) {
   const Repeats repeats(part.table);
   auto out =
       compare_without(part, model, repeats, suspects_of(part.table, repeats, part.table.deviation));
-  if (!out || part.table.size() <= thin_beyond) return out;
-  const Part thin{part.measurements, part.axes, thinned(part.table, out->fit.weight)};
+  if (!out || part.table.size() <= thin_beyond || !can_be_thinned(part.table)) return out;
+  const Part thin = thinned(part, out->fit.weight);
   auto of_means = compare_without(thin, out->fit.terms, Repeats(thin.table), {});
   if (!of_means) return fail(of_means.error());
   out->places = std::move(of_means->places);

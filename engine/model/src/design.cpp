@@ -5,6 +5,18 @@
 
 namespace nonio::model {
 
+namespace {
+
+/// Errors along an axis as readings sense them that look in another direction.
+void project(const Observations& o, const Axis& axis, MatrixXd& columns) {
+  const std::size_t k = coordinate_of(axis.name);
+  if (axis.rotary || k > 2) return;
+  for (Index i = 0; i < columns.rows(); ++i)
+    columns.row(i) *= o.sense_of(static_cast<std::size_t>(i))[k];
+}
+
+}  // namespace
+
 Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
                               const std::vector<double>& shape) {
   auto made = term.effect->columns(o, term.axis, shape);
@@ -24,7 +36,40 @@ Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
         Eigen::Map<const VectorXd>(column.data(), static_cast<Index>(column.size()));
   }
   if (!out.allFinite()) return fail("effect " + term.name() + " gave a value that is not a number");
+  if (!term.effect->of && o.axes.size() > 1) project(o, term.axis, out);
   return out;
+}
+
+Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vector<Term>& terms,
+                                          const VectorXd& root, std::vector<Index>* lost) {
+  std::vector<MatrixXd> blocks;
+  bool curves = false;
+  for (const Term& term : terms) {
+    auto block = columns_of(o, term, term.shape);
+    if (!block) return fail(block.error());
+    blocks.push_back(std::move(*block));
+    curves = curves || (term.effect->curve && o.axes.size() > 1);
+  }
+  if (lost != nullptr) lost->assign(terms.size(), 0);
+  if (!curves) return blocks;
+  MatrixXd before(static_cast<Index>(o.size()), 0);  // orthonormal: what comes before a term
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    MatrixXd own = root.asDiagonal() * blocks[t];
+    take_out_zeros(o, root, own);
+    const double size = own.norm();
+    for (int twice = 0; twice < 2; ++twice) own -= before * (before.transpose() * own);
+    const Eigen::BDCSVD<MatrixXd> svd(own, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    Index rank = 0;
+    while (rank < own.cols() && svd.singularValues()(rank) > curve_threshold * size) ++rank;
+    if (terms[t].effect->curve && rank > 0 && rank < own.cols()) {
+      if (lost != nullptr) (*lost)[t] = own.cols() - rank;
+      blocks[t] = blocks[t] * svd.matrixV().leftCols(rank);
+    }
+    const Index had = before.cols();
+    before.conservativeResize(Eigen::NoChange, had + rank);
+    before.rightCols(rank) = svd.matrixU().leftCols(rank);
+  }
+  return blocks;
 }
 
 std::vector<std::vector<double>> shapes_of(const Observations& o, const Term& term) {

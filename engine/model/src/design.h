@@ -23,6 +23,16 @@ inline std::size_t lines_of(const Observations& o) { return o.line.empty() ? 1 :
 Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
                               const std::vector<double>& shape);
 
+/// Of the root of the sum of squares of a curve's columns: what its readings must show beyond the
+/// terms before it.
+inline constexpr double curve_threshold = 1e-4;
+
+/// The columns of all terms. Of a curve in space whose readings cannot tell it wholly from the
+/// terms before it (the odd parts of two straightnesses on two diagonals) only the combinations
+/// that they can tell; `lost`: how many of each term's are not.
+Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vector<Term>& terms,
+                                          const VectorXd& root, std::vector<Index>* lost = nullptr);
+
 /// All combinations of the grids of a term's shapes, one empty combination if it has none; a shape
 /// that the term has already is kept. Empty if the readings cannot show the effect.
 std::vector<std::vector<double>> shapes_of(const Observations& o, const Term& term);

@@ -22,7 +22,8 @@ struct Design {
   MatrixXd a;                      // rows times root weights; zeros of lines first, then terms
   std::vector<std::string> names;  // of all columns
   std::vector<Index> first;        // first column of each term, and the end
-  std::vector<MatrixXd> blocks;    // of each term, as its effect gave them
+  std::vector<MatrixXd> blocks;    // of each term
+  std::vector<Index> lost;         // columns of a curve that the readings cannot tell from others
 };
 
 Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms,
@@ -32,13 +33,13 @@ Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms
   Design d;
   Index columns = lines;
   for (Index k = 0; k < lines; ++k) d.names.push_back("the zero of line " + std::to_string(k + 1));
-  for (const Term& term : terms) {
-    auto block = columns_of(o, term, term.shape);
-    if (!block) return fail(block.error());
+  auto blocks = blocks_of(o, terms, root, &d.lost);
+  if (!blocks) return fail(blocks.error());
+  d.blocks = std::move(*blocks);
+  for (std::size_t t = 0; t < terms.size(); ++t) {
     d.first.push_back(columns);
-    columns += block->cols();
-    for (Index k = 0; k < block->cols(); ++k) d.names.push_back(term.name());
-    d.blocks.push_back(std::move(*block));
+    columns += d.blocks[t].cols();
+    for (Index k = 0; k < d.blocks[t].cols(); ++k) d.names.push_back(terms[t].name());
   }
   d.first.push_back(columns);
   d.a.setZero(n, columns);
@@ -239,11 +240,10 @@ void step_shapes(const Observations& o, std::vector<Term>& terms, const std::vec
   }
 }
 
-void name_parameters(Fit& out) {
-  for (const Term& term : out.terms) {
-    const auto k = static_cast<std::size_t>(
-        term.effect->curve ? std::lround(term.shape.empty() ? 0.0 : term.shape[0])
-                           : static_cast<long>(term.effect->linear.size()));
+void name_parameters(Fit& out, const Design& design) {
+  for (std::size_t t = 0; t < out.terms.size(); ++t) {
+    const Term& term = out.terms[t];
+    const auto k = static_cast<std::size_t>(design.blocks[t].cols());
     for (std::size_t i = 0; i < k; ++i) {
       const Effect::Parameter& p = term.effect->linear[term.effect->curve ? 0 : i];
       out.parameters.push_back({term.name(),
@@ -358,7 +358,8 @@ Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
     out.part.emplace_back(part.data(), part.data() + part.size());
   }
   out.residual.assign(residual.data(), residual.data() + residual.size());
-  name_parameters(out);
+  name_parameters(out, *design);
+  for (const Index lost : design->lost) out.lost.push_back(static_cast<std::size_t>(lost));
   Index column = lines;
   for (Parameter& p : out.parameters)
     if (!p.shape) p.value = s->x(column++);

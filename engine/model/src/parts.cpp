@@ -1,73 +1,197 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 
+#include "balls.h"
 #include "design.h"
+#include "lines.h"
 #include "nonio/model/explain.h"
 
 namespace nonio::model {
 
 namespace {
 
-/// Appends a column that one of the tables may not have: then it is NaN there.
-void append(std::vector<double>& to, const std::vector<double>& more, std::size_t before,
-            std::size_t added) {
-  if (to.empty() && more.empty()) return;
-  to.resize(before, std::numeric_limits<double>::quiet_NaN());
-  if (more.empty())
-    to.resize(before + added, std::numeric_limits<double>::quiet_NaN());
-  else
-    to.insert(to.end(), more.begin(), more.end());
+/// What follows the first space of an id: "final" of "D1 final". Measurements of one state of the
+/// machine have the same, those that hold for every state have none.
+std::string state_of(const std::string& id) {
+  const std::size_t space = id.find(' ');
+  return space == std::string::npos ? "" : id.substr(space + 1);
 }
 
-void append(Observations& to, const Observations& more, const std::string& id) {
-  const std::size_t before = to.size(), added = more.size();
-  const auto line = static_cast<std::uint32_t>(to.lines.size());
-  if (to.axes.empty()) {
-    to.axes = {{more.axes.front().axis, more.axes.front().rotary, {}, {}}};
-    to.angular = more.angular;
+class Parts {
+ public:
+  Parts(const Campaign& campaign, const std::vector<Observations>& read)
+      : campaign_(campaign), read_(read) {}
+
+  std::vector<Part> made() {
+    const std::size_t n = std::min(campaign_.measurements.size(), read_.size());
+    for (std::size_t m = 0; m < n; ++m) sort(m);
+    for (const std::size_t m : order_) {
+      if (const auto& what = kind_.at(m); what == Kind::balls)
+        add_balls(m);
+      else if (what == Kind::across)
+        add_space(m);
+      else if (!in_space(m))
+        add_axis(m);
+    }
+    return std::move(parts_);
   }
-  const auto& from = more.axes.front();
-  auto& axis = to.axes.front();
-  axis.position.insert(axis.position.end(), from.position.begin(), from.position.end());
-  axis.approach.insert(axis.approach.end(), from.approach.begin(), from.approach.end());
-  to.lines.push_back({id, more.lines.empty() ? std::array<double, 3>{} : more.lines.front().sense});
-  to.line.insert(to.line.end(), added, line);
-  to.deviation.insert(to.deviation.end(), more.deviation.begin(), more.deviation.end());
-  to.run.insert(to.run.end(), more.run.begin(), more.run.end());
-  to.source_line.insert(to.source_line.end(), more.source_line.begin(), more.source_line.end());
-  append(to.time, more.time, before, added);
-  append(to.material, more.material, before, added);
-  append(to.air, more.air, before, added);
-  to.missing += more.missing;
+
+ private:
+  enum class Kind { axis, across, balls };
+
+  const Measurement& measurement(std::size_t m) const { return campaign_.measurements[m]; }
+
+  void sort(std::size_t m) {
+    const Observations& o = read_[m];
+    if (o.size() == 0 || o.axes.empty()) return;
+    const std::string& kind = measurement(m).kind;
+    if (kind == "ball-centres") {
+      kind_[m] = Kind::balls;
+    } else if (sensed_along_one_axis(o)) {
+      if (campaign_.machine.axis(o.axes.front().axis) == nullptr) return;
+      kind_[m] = Kind::axis;
+    } else if (across(o)) {
+      kind_[m] = Kind::across;
+      states_.insert(state_of(measurement(m).id));
+      for (const std::size_t k : coordinates_of(o)) coordinates_.insert(k);
+      oblique_ = oblique_ || senses_several(o);
+    } else {
+      return;
+    }
+    order_.push_back(m);
+  }
+
+  /// An axis run that the diagonals of its state are explained together with.
+  bool in_space(std::size_t m) const {
+    const std::size_t k = coordinate_of(read_[m].axes.front().axis);
+    if (!oblique_ || read_[m].angular || !coordinates_.contains(k)) return false;
+    const std::string state = state_of(measurement(m).id);
+    return state.empty() || states_.contains(state);
+  }
+
+  void add_axis(std::size_t m) {
+    const Axis& axis = *campaign_.machine.axis(read_[m].axes.front().axis);
+    auto part = std::find_if(parts_.begin(), parts_.end(), [&](const Part& p) {
+      return p.kind == Part::Kind::axis && p.axes.front().name == axis.name;
+    });
+    if (part == parts_.end()) {
+      Part fresh;
+      fresh.name = axis.name;
+      fresh.axes = {axis};
+      part = parts_.insert(parts_.end(), std::move(fresh));
+    }
+    append_run(*part, read_[m], measurement(m).id);
+  }
+
+  void add_balls(std::size_t m) {
+    const Axis* axis = campaign_.machine.axis(measurement(m).axis);
+    if (axis == nullptr) return;
+    if (auto part = balls_of(read_[m], *axis, measurement(m).id))
+      parts_.push_back(std::move(*part));
+  }
+
+  /// All that is sensed in this state of the machine, once; without diagonals only what is sensed
+  /// in the same direction on the same axis.
+  void add_space(std::size_t m) {
+    if (done_.contains(m)) return;
+    const std::string state = state_of(measurement(m).id);
+    if (state.empty() && oblique_ && states_.size() > 1) return;  // goes with every state
+    Part part;
+    part.kind = Part::Kind::space;
+    std::vector<std::size_t> members;
+    for (const std::size_t other : order_)
+      if (kind_.at(other) != Kind::balls && belongs(other, m, state)) members.push_back(other);
+    append_space(part, campaign_, read_, members);
+    done_.insert(members.begin(), members.end());
+    part.name = oblique_ ? "" : "E" + measurement(m).lateral + measurement(m).axis;
+    if (oblique_ || part.name.size() < 3) {
+      part.name.clear();
+      for (const Axis& axis : part.axes) part.name += axis.name;
+    }
+    if (!state.empty()) part.name += " " + state;
+    parts_.push_back(std::move(part));
+  }
+
+  bool belongs(std::size_t other, std::size_t m, const std::string& state) const {
+    const std::string its = state_of(measurement(other).id);
+    if (oblique_)
+      return (its == state || its.empty()) && (kind_.at(other) == Kind::across || in_space(other));
+    return kind_.at(other) == Kind::across && its == state &&
+           measurement(other).axis == measurement(m).axis &&
+           measurement(other).lateral == measurement(m).lateral;
+  }
+
+  const Campaign& campaign_;
+  const std::vector<Observations>& read_;
+  std::map<std::size_t, Kind> kind_;
+  std::vector<std::size_t> order_;
+  std::set<std::string> states_;       // of what is sensed across
+  std::set<std::size_t> coordinates_;  // that it moves or senses
+  std::set<std::size_t> done_;
+  bool oblique_ = false;
+  std::vector<Part> parts_;
+};
+
+/// Whether an effect of one axis has anything to say in this part.
+bool concerns(const Part& part, const Axis& axis) {
+  if (part.kind == Part::Kind::axis) return true;
+  if (part.kind == Part::Kind::balls || axis.rotary) return false;
+  const std::size_t k = coordinate_of(axis.name);
+  const auto* column = part.table.axis(axis.name);
+  if (k > 2 || column == nullptr || column->approach.size() != part.table.size()) return false;
+  for (std::size_t i = 0; i < part.table.size(); ++i)
+    if (column->approach[i] != 0 && std::fabs(part.table.sense_of(i)[k]) > 1e-9) return true;
+  return false;
+}
+
+/// The term of an effect in this part; none if it is not of anything here.
+std::optional<Term> term_of(const Part& part, const Effect& effect, const std::string& of) {
+  if (effect.of) {
+    const auto places = effect.of(part.table);
+    if (std::find(places.begin(), places.end(), of) == places.end()) return std::nullopt;
+    Axis place;
+    place.name = of;
+    return Term{&effect, std::move(place), {}};
+  }
+  for (const Axis& axis : part.axes)
+    if (axis.name == of && concerns(part, axis)) return Term{&effect, axis, {}};
+  return std::nullopt;
+}
+
+std::vector<std::string> offered_by(const Part& part, const Effect& effect) {
+  if (effect.of) return effect.of(part.table);
+  std::vector<std::string> names;
+  for (const Axis& axis : part.axes)
+    if (concerns(part, axis)) names.push_back(axis.name);
+  return names;
 }
 
 }  // namespace
 
 std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observations>& read) {
-  std::vector<Part> parts;
-  for (std::size_t m = 0; m < campaign.measurements.size() && m < read.size(); ++m) {
-    const Measurement& measurement = campaign.measurements[m];
-    const Observations& o = read[m];
-    if (measurement.kind != "axis" || o.size() == 0 || o.axes.empty() ||
-        o.axes.front().approach.size() != o.size())
-      continue;
-    const Axis* axis = campaign.machine.axis(measurement.axis);
-    if (axis == nullptr) continue;
-    auto part = std::find_if(parts.begin(), parts.end(),
-                             [&](const Part& p) { return p.axes.front().name == axis->name; });
-    if (part == parts.end()) part = parts.insert(parts.end(), Part{{}, {*axis}, {}});
-    part->measurements.push_back(measurement.id);
-    append(part->table, o, measurement.id);
-  }
-  return parts;
+  return Parts(campaign, read).made();
+}
+
+std::vector<std::string> names_of(const Part& part, const Effect& effect) {
+  std::vector<std::string> names;
+  for (const std::string& of : offered_by(part, effect))
+    if (const auto term = term_of(part, effect, of); term && effect.applies(part.table, term->axis))
+      names.push_back(term->name());
+  return names;
 }
 
 std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects) {
   std::vector<Term> terms;
-  for (const Axis& axis : part.axes)
-    for (const Effect& effect : effects)
-      if (effect.applies(part.table, axis)) terms.push_back({&effect, axis, {}});
+  for (const Effect& effect : effects) {
+    if (effect.always) continue;
+    for (const std::string& of : offered_by(part, effect))
+      if (auto term = term_of(part, effect, of); term && effect.applies(part.table, term->axis))
+        terms.push_back(std::move(*term));
+  }
   return terms;
 }
 
@@ -82,18 +206,23 @@ Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
     const auto effect = std::find_if(effects.begin(), effects.end(),
                                      [&](const Effect& e) { return e.info.name == kind; });
     if (effect == effects.end()) return fail("there is no effect \"" + kind + "\"");
-    const auto here = std::find_if(part.axes.begin(), part.axes.end(),
-                                   [&](const Axis& a) { return a.name == of; });
-    if (here == part.axes.end()) {
-      if (machine.axis(of) == nullptr)
+    auto term = term_of(part, *effect, of);
+    if (!term) {
+      if (!effect->of && machine.axis(of) == nullptr)
         return fail("effect \"" + name + "\": the machine has no axis \"" + of +
                     "\"; wanted kind:axis, such as backlash:X");
       continue;
     }
-    if (!effect->applies(part.table, *here))
+    if (!effect->applies(part.table, term->axis))
       return fail("effect \"" + name +
                   "\" does not apply to these readings: " + effect->info.summary);
-    terms.push_back({&*effect, *here, {}});
+    terms.push_back(std::move(*term));
+  }
+  for (const Effect& effect : effects) {
+    if (!effect.always) continue;
+    for (const std::string& of : offered_by(part, effect))
+      if (auto term = term_of(part, effect, of); term && effect.applies(part.table, term->axis))
+        terms.push_back(std::move(*term));
   }
   return terms;
 }

@@ -21,6 +21,7 @@ struct Factor {
   bool repeated = false;
   std::vector<double> levels{};  // of dummies: target, run
   Quantity quantity = Quantity::number;
+  std::string line{};  // in space: the line whose places these are
 };
 
 namespace {
@@ -69,19 +70,80 @@ MatrixXd times(const MatrixXd& columns, const VectorXd& by) { return by.asDiagon
 
 }  // namespace
 
-/// Factors of the first axis that moves, and the products of two of them.
+/// What readings are split by: the axis that moves or, in space, the way along each line; and the
+/// products of two factors.
 class Factors {
  public:
   Factors(const Part& part, const Repeats& repeats) {
-    const Observations& o = part.table;
-    if (part.axes.empty()) return;
-    const Axis& axis = part.axes.front();
-    const auto read = readings_of(o, axis);
+    const auto read = readings(part);
     if (!read) return;
     const AxisReadings& r = *read;
-    const VectorXd d = map(r.d), p = map(r.p) / std::max(r.length / 2.0, 1e-12);
-    position_ = p;
+    const VectorXd d = map(r.d);
+    position_ = part.kind == Part::Kind::axis ? VectorXd(map(r.p) / std::max(r.length / 2.0, 1e-12))
+                                              : from_the_middle(part);
     add({"direction", d, false});
+    if (part.kind == Part::Kind::axis)
+      add_axis(part.axes.front(), r, d);
+    else
+      add_lines(part, d);
+    if (repeats.passes <= repeats.sides) return;  // nothing is repeated
+    add_repeated(part.table, r, d, repeats);
+  }
+
+  const std::vector<Factor>& all() const { return all_; }
+  /// A pair with its first factor; of direction and position, the cells, all of both.
+  MatrixXd whole(const Factor& f) const {
+    if (!is_pair(f)) return f.columns;
+    const std::size_t x = f.name.find(" x ");
+    const MatrixXd& first = column(f.name.substr(0, x));
+    MatrixXd main = first.cols() == 1 ? first : position_;
+    if (!f.repeated) {
+      const MatrixXd& second = column(f.name.substr(x + 3), f.line);
+      main.conservativeResize(Eigen::NoChange, main.cols() + second.cols());
+      main.rightCols(second.cols()) = second;
+    }
+    MatrixXd out(f.columns.rows(), f.columns.cols() + main.cols());
+    out << main, f.columns;
+    return out;
+  }
+  const MatrixXd& column(const std::string& name, const std::string& line = {}) const {
+    return std::find_if(all_.begin(), all_.end(),
+                        [&](const Factor& f) { return f.name == name && f.line == line; })
+        ->columns;
+  }
+  static bool is_pair(const Factor& f) { return f.name.find(" x ") != std::string::npos; }
+
+ private:
+  static Expected<AxisReadings> readings(const Part& part) {
+    if (part.axes.empty()) return fail("");
+    if (part.kind == Part::Kind::axis) return readings_of(part.table, part.axes.front());
+    const std::size_t n = part.table.size();
+    AxisReadings r;
+    r.moved.assign(n, 1);
+    for (auto* values : {&r.p, &r.theta, &r.t, &r.K}) values->assign(n, 0.0);
+    r.d.assign(part.way.begin(), part.way.end());
+    detail::fill_times(part.table, r);
+    detail::fill_temperatures(part.table, r);
+    return r;
+  }
+
+  /// Of each line, from -1 to 1.
+  static VectorXd from_the_middle(const Part& part) {
+    const std::size_t lines = lines_of(part.table);
+    std::vector<double> low(lines, INFINITY), high(lines, -INFINITY);
+    for (std::size_t i = 0; i < part.along.size(); ++i) {
+      double &l = low[line_of(part.table, i)], &h = high[line_of(part.table, i)];
+      l = std::min(l, part.along[i]), h = std::max(h, part.along[i]);
+    }
+    VectorXd out(static_cast<Index>(part.along.size()));
+    for (std::size_t i = 0; i < part.along.size(); ++i) {
+      const double l = low[line_of(part.table, i)], h = high[line_of(part.table, i)];
+      out(static_cast<Index>(i)) = h > l ? (2.0 * part.along[i] - l - h) / (h - l) : 0.0;
+    }
+    return out;
+  }
+
+  void add_axis(const Axis& axis, const AxisReadings& r, const VectorXd& d) {
     add(binned("position", r.theta, position_of(axis.rotary)));
     if (axis.screw_pitch)
       add({"screw-phase", waves(map(r.theta) * (2.0 * std::numbers::pi / *axis.screw_pitch), 2)});
@@ -89,7 +151,42 @@ class Factors {
     pair("direction", "position", times(column("position"), d), false);
     if (axis.screw_pitch) pair("direction", "screw-phase", times(column("screw-phase"), d), false);
     if (axis.rotary) pair("direction", "angle", times(column("angle"), d), false);
-    if (repeats.passes <= repeats.sides) return;  // nothing is repeated
+  }
+
+  /// Each line's own places: what sits at one place of one diagonal sits elsewhere on the other.
+  void add_lines(const Part& part, const VectorXd& d) {
+    const Quantity quantity = position_of(part.kind == Part::Kind::balls);
+    for (std::uint32_t line = 0; line < lines_of(part.table); ++line) {
+      VectorXd here = VectorXd::Zero(d.size());
+      for (std::size_t i = 0; i < part.table.size(); ++i)
+        if (line_of(part.table, i) == line) here(static_cast<Index>(i)) = 1.0;
+      Factor f = binned_where(part.along, here, quantity);
+      f.line = part.table.lines[line].name;
+      const MatrixXd reversal = times(f.columns, d);
+      all_.push_back(f);
+      if ((d.array() * here.array()).maxCoeff() > 0.0 &&
+          (d.array() * here.array()).minCoeff() < 0.0)
+        all_.push_back({"direction x position", reversal, false, {}, Quantity::number, f.line});
+    }
+  }
+
+  static Factor binned_where(const std::vector<double>& value, const VectorXd& here,
+                             Quantity quantity) {
+    std::vector<double> some;
+    for (std::size_t i = 0; i < value.size(); ++i)
+      if (here(static_cast<Index>(i)) > 0.0) some.push_back(value[i]);
+    Factor f = binned("position", some, quantity);
+    MatrixXd wide = MatrixXd::Zero(here.size(), f.columns.cols());
+    Index row = 0;
+    for (Index i = 0; i < here.size(); ++i)
+      if (here(i) > 0.0) wide.row(i) = f.columns.row(row++);
+    f.columns = std::move(wide);
+    return f;
+  }
+
+  void add_repeated(const Observations& o, const AxisReadings& r, const VectorXd& d,
+                    const Repeats& repeats) {
+    const VectorXd& p = position_;
     std::vector<double> run(o.run.begin(), o.run.end());
     Factor runs = binned("run", run, Quantity::count);
     runs.repeated = true;
@@ -114,29 +211,6 @@ class Factors {
     pair("direction", "temperature", times(K, d), true);
   }
 
-  const std::vector<Factor>& all() const { return all_; }
-  /// A pair with its first factor; of direction and position, the cells, all of both.
-  MatrixXd whole(const Factor& f) const {
-    if (!is_pair(f)) return f.columns;
-    const std::size_t x = f.name.find(" x ");
-    const MatrixXd& first = column(f.name.substr(0, x));
-    MatrixXd main = first.cols() == 1 ? first : position_;
-    if (!f.repeated) {
-      const MatrixXd& second = column(f.name.substr(x + 3));
-      main.conservativeResize(Eigen::NoChange, main.cols() + second.cols());
-      main.rightCols(second.cols()) = second;
-    }
-    MatrixXd out(f.columns.rows(), f.columns.cols() + main.cols());
-    out << main, f.columns;
-    return out;
-  }
-  const MatrixXd& column(const std::string& name) const {
-    return std::find_if(all_.begin(), all_.end(), [&](const Factor& f) { return f.name == name; })
-        ->columns;
-  }
-  static bool is_pair(const Factor& f) { return f.name.find(" x ") != std::string::npos; }
-
- private:
   void add(Factor f) { all_.push_back(std::move(f)); }
   void pair(const std::string& a, const std::string& b, MatrixXd columns, bool repeated) {
     all_.push_back({a + " x " + b, std::move(columns), repeated});
@@ -184,13 +258,14 @@ std::vector<MatrixXd> bases_of(const Factors& factors, const Part& part, const R
     if (model.cols() > 0) columns -= model * (model.transpose() * columns);
     if (Factors::is_pair(f))
       for (const std::string& name :
-           {f.name.substr(0, f.name.find(" x ")), f.name.substr(f.name.find(" x ") + 3)})
+           {f.name.substr(0, f.name.find(" x ")),
+            f.name.substr(f.name.find(" x ") + 3) + (f.line.empty() ? "" : ":" + f.line)})
         if (single[name].cols() > 0) columns -= single[name] * (single[name].transpose() * columns);
     // A column that the model says already leaves rounding, not a direction.
     for (Index k = 0; k < columns.cols(); ++k)
       if (!(columns.col(k).norm() > 1e-3 * before(k))) columns.col(k).setZero();
     MatrixXd basis = orthonormal(std::move(columns));
-    if (!Factors::is_pair(f)) single[f.name] = basis;
+    if (!Factors::is_pair(f)) single[f.name + (f.line.empty() ? "" : ":" + f.line)] = basis;
     out.push_back(std::move(basis));
   }
   return out;
@@ -259,6 +334,7 @@ std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
     place.rms = std::sqrt(excess / static_cast<double>(residual.size()));
     if (!(place.rms > least)) continue;
     place.where = tests_->factors.all()[f].name;
+    place.line = tests_->factors.all()[f].line;
     place.p = math::f_upper(here / k / s2, k, dof);
     place.share = squares > 0.0 ? excess / squares : 0.0;
     find_level(tests_->factors.all()[f], tests_->root, residual, s2,
@@ -298,6 +374,7 @@ std::vector<Place> seats_of(const Leftover& left) {
     if (best == bases.size()) break;
     Place seat;
     seat.where = factors.all()[best].name;
+    seat.line = factors.all()[best].line;
     seat.share = fall / squares;
     seat.rms = std::sqrt(fall / n);
     const auto k = static_cast<double>(bases[best].cols());

@@ -29,8 +29,22 @@ std::vector<std::size_t> grouped(const std::vector<double>& values, std::size_t 
 
 }  // namespace
 
+bool can_be_thinned(const Observations& o) {
+  return o.axes.size() == 1 && o.axes.front().approach.size() == o.size();
+}
+
+Part thinned(const Part& part, const std::vector<double>& weight) {
+  Part out = part;
+  out.table = thinned(part.table, weight);
+  out.along = out.table.axes.front().position;
+  out.way = out.table.axes.front().approach;
+  out.measurement.clear();
+  out.row.clear();
+  return out;
+}
+
 Observations thinned(const Observations& o, const std::vector<double>& weight) {
-  if (o.axes.size() != 1 || o.axes.front().approach.size() != o.size()) return o;
+  if (!can_be_thinned(o)) return o;
   const auto& axis = o.axes.front();
   std::vector<double> runs(o.run.begin(), o.run.end());
   runs.resize(o.size(), 1.0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "nonio/sdk/observations.h"
+#include "nonio/model/explain.h"
 
 namespace nonio::model {
 
@@ -13,5 +13,9 @@ inline constexpr std::size_t thin_beyond = 6000;
 /// positions. Readings of weight 0 are left out. The noise of a mean is smaller; what varies slowly
 /// stays.
 Observations thinned(const Observations& o, const std::vector<double>& weight);
+Part thinned(const Part& part, const std::vector<double>& weight);
+
+/// Only tables of one axis can: the readings of several seldom lie close together.
+bool can_be_thinned(const Observations& o);
 
 }  // namespace nonio::model

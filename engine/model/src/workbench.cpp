@@ -34,7 +34,7 @@ Index Workbench::unknowns_of(const Block& block) const {
 
 Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
                      const std::vector<double>& weight, const std::vector<std::uint32_t>& target)
-    : target_(target) {
+    : target_(target), several_axes_(o.axes.size() > 1) {
   most_of_position_ = std::numeric_limits<Index>::max();
   if (!target_.empty()) {
     const std::uint32_t targets = *std::max_element(target_.begin(), target_.end()) + 1;
@@ -152,11 +152,23 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
   }
   out.squares = yy_;
   if (!columns.empty()) {
-    const Eigen::LLT<MatrixXd> llt(gram(out.blocks));
-    const VectorXd z = llt.matrixL().solve(xy_(columns));
-    const bool sound = llt.info() == Eigen::Success && z.allFinite() &&
-                       llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent);
-    out.squares = sound ? std::max(yy_ - z.squaredNorm(), 0.0) : nan;
+    const MatrixXd own = gram(out.blocks);
+    const Eigen::LLT<MatrixXd> llt(own);
+    if (llt.info() == Eigen::Success &&
+        llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent)) {
+      const VectorXd z = llt.matrixL().solve(xy_(columns));
+      out.squares = z.allFinite() ? std::max(yy_ - z.squaredNorm(), 0.0) : nan;
+    } else {
+      const Directions d = directions(out.blocks, own);
+      const VectorXd z = d.of_columns.transpose() * xy_(columns);
+      out.squares = d.sound && z.allFinite() ? std::max(yy_ - z.squaredNorm(), 0.0) : nan;
+      out.price = 0.0, out.parameters = 0;
+      for (std::size_t i = 0; i < out.blocks.size(); ++i) {
+        const Block& block = blocks_[out.blocks[i]];
+        out.price += price(block.effect, d.rank[i]);
+        out.parameters += unknowns_of(block) - block.count + d.rank[i];
+      }
+    }
   }
   out.criterion = std::isnan(out.squares) ? std::numeric_limits<double>::infinity()
                                           : criterion(out.squares, out.price);
@@ -172,6 +184,20 @@ double fall_of(const MatrixXd& s, const VectorXd& t) {
       !(llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent)))
     return nan;
   return llt.matrixL().solve(t).squaredNorm();
+}
+
+/// The same in those directions of the block that are independent.
+double fall_of_some(const MatrixXd& s, const VectorXd& t) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(s);
+  const VectorXd along = eigen.eigenvectors().transpose() * t;
+  double fall = 0.0;
+  bool any = false;
+  for (Index k = 0; k < along.size(); ++k) {
+    if (!(eigen.eigenvalues()(k) > independent)) continue;
+    fall += along(k) * along(k) / eigen.eigenvalues()(k);
+    any = true;
+  }
+  return any ? fall : nan;
 }
 
 double fall_of_two(double aa, double ab, double bb, double ta, double tb) {
@@ -221,10 +247,46 @@ MatrixXd Workbench::gram(const std::vector<std::size_t>& blocks) const {
 }
 
 Workbench::Projection Workbench::projection(const State& state) const {
-  Projection out{Eigen::LLT<MatrixXd>(gram(state.blocks)), products(state.blocks), {}};
-  if (!state.blocks.empty()) {
-    out.z = out.llt.matrixL().solve(xy_(columns_of_state(state)));
-    out.llt.matrixU().solveInPlace<Eigen::OnTheRight>(out.products);
+  Projection out{products(state.blocks), {}};
+  if (state.blocks.empty()) return out;
+  const MatrixXd own = gram(state.blocks);
+  const Eigen::LLT<MatrixXd> llt(own);
+  if (!several_axes_ || (llt.info() == Eigen::Success &&
+                         llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent))) {
+    out.z = llt.matrixL().solve(xy_(columns_of_state(state)));
+    llt.matrixU().solveInPlace<Eigen::OnTheRight>(out.products);
+    return out;
+  }
+  const Directions d = directions(state.blocks, own);
+  out.z = d.of_columns.transpose() * xy_(columns_of_state(state));
+  out.products = out.products * d.of_columns;
+  return out;
+}
+
+bool Workbench::reducible(const Block& block) const {
+  return several_axes_ && instances_[block.effect].term.effect->curve;
+}
+
+/// Gram and Schmidt block by block, on scalar products.
+Workbench::Directions Workbench::directions(const std::vector<std::size_t>& blocks,
+                                            const MatrixXd& gram) const {
+  Directions out{MatrixXd(gram.rows(), 0), {}, true};
+  Index first = 0;
+  for (const std::size_t b : blocks) {
+    const Block& block = blocks_[b];
+    const Index k = block.count, had = out.of_columns.cols();
+    const MatrixXd inside = out.of_columns.transpose() * gram.middleCols(first, k);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> own(block.own - inside.transpose() * inside);
+    const Index rank = (own.eigenvalues().array() > independent).count();
+    out.sound = out.sound && rank > 0 && (rank == k || reducible(block));
+    MatrixXd fresh = -out.of_columns * inside;
+    fresh.middleRows(first, k) += MatrixXd::Identity(k, k);
+    out.of_columns.conservativeResize(Eigen::NoChange, had + rank);
+    out.of_columns.rightCols(rank) =
+        fresh * own.eigenvectors().rightCols(rank) *
+        own.eigenvalues().tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+    out.rank.push_back(rank);
+    first += k;
   }
   return out;
 }
@@ -238,10 +300,12 @@ double Workbench::fall_of_block(const Projection& p, const Block& block) const {
     const double s = 1.0 - w.squaredNorm();
     return s > independent ? left(0) * left(0) / s : nan;
   }
-  if (block.count == 2)
+  if (block.count == 2 && !reducible(block))
     return fall_of_two(1.0 - w.row(0).squaredNorm(), block.own(0, 1) - w.row(0).dot(w.row(1)),
                        1.0 - w.row(1).squaredNorm(), left(0), left(1));
-  return fall_of(block.own - w * w.transpose(), left);
+  const MatrixXd s = block.own - w * w.transpose();
+  const double fall = fall_of(s, left);
+  return std::isnan(fall) && reducible(block) ? fall_of_some(s, left) : fall;
 }
 
 void Workbench::add_falls(const Projection& p, std::size_t effect, VectorXd& fall) const {
@@ -264,6 +328,8 @@ VectorXd Workbench::gains(const State& state, std::size_t effect) const {
 
 Workbench::State Workbench::with(const State& state, const VectorXd& gains,
                                  std::size_t effect) const {
+  if (several_axes_ && instances_[effect].term.effect->curve)
+    return with_curve(state, gains, effect);
   std::size_t best = blocks_.size();
   double least = std::numeric_limits<double>::infinity();
   Index of_position = 0;
@@ -286,6 +352,21 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
   more.price += price(effect, blocks_[best].count);
   more.criterion = criterion(more.squares, more.price);
   return more;
+}
+
+/// A curve counts with as many parameters as it has directions of its own beside the state's.
+Workbench::State Workbench::with_curve(const State& state, const VectorXd& gains,
+                                       std::size_t effect) const {
+  State best = state;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::size_t b : instances_[effect].blocks) {
+    if (std::isnan(gains(static_cast<Index>(b)))) continue;
+    std::vector<std::size_t> blocks = state.blocks;
+    blocks.push_back(b);
+    State more = this->state(std::move(blocks));
+    if (more.criterion < least) least = more.criterion, best = std::move(more);
+  }
+  return best;
 }
 
 bool Workbench::holds(const State& state, std::size_t effect) const {
@@ -345,8 +426,13 @@ Expected<std::vector<std::vector<double>>> Workbench::best_shapes() const {
 MatrixXd Workbench::basis(const State& state) const {
   const std::vector<Index> columns = columns_of_state(state);
   if (columns.empty()) return MatrixXd(y_.size(), 0);
-  const Eigen::HouseholderQR<MatrixXd> qr(x_(Eigen::all, columns));
-  return qr.householderQ() * MatrixXd::Identity(y_.size(), static_cast<Index>(columns.size()));
+  if (!several_axes_) {
+    const Eigen::HouseholderQR<MatrixXd> qr(x_(Eigen::all, columns));
+    return qr.householderQ() * MatrixXd::Identity(y_.size(), static_cast<Index>(columns.size()));
+  }
+  const Directions d = directions(state.blocks, gram(state.blocks));
+  const Eigen::HouseholderQR<MatrixXd> qr(x_(Eigen::all, columns) * d.of_columns);
+  return qr.householderQ() * MatrixXd::Identity(y_.size(), d.of_columns.cols());
 }
 
 }  // namespace nonio::model

@@ -90,10 +90,18 @@ class Workbench {
   MatrixXd columns_for(const Observations& o, Instance& instance, const std::vector<double>& shape,
                        bool& of_position) const;
   struct Projection {
-    Eigen::LLT<MatrixXd> llt;
-    MatrixXd products;  // of all columns with the state's
-    VectorXd z;
+    MatrixXd products;  // of all columns with orthonormal directions of the state's
+    VectorXd z;         // of the readings with them
   };
+  /// Directions of a state one of whose curves is not wholly independent of what came before it.
+  struct Directions {
+    MatrixXd of_columns;      // X_state * of_columns is orthonormal
+    std::vector<Index> rank;  // of each block
+    bool sound = true;  // every effect has a direction of its own, and all but curves all of theirs
+  };
+  Directions directions(const std::vector<std::size_t>& blocks, const MatrixXd& gram) const;
+  bool reducible(const Block& block) const;
+  State with_curve(const State& state, const VectorXd& gains, std::size_t effect) const;
   Projection projection(const State& state) const;
   void add_falls(const Projection& projection, std::size_t effect, VectorXd& fall) const;
   double fall_of_block(const Projection& projection, const Block& block) const;
@@ -110,6 +118,7 @@ class Workbench {
   std::vector<std::uint32_t> target_;
   Index most_of_position_ = 0;  // columns and searched shapes
   Index zeros_ = 0;
+  bool several_axes_ = false;
 };
 
 }  // namespace nonio::model

@@ -10,25 +10,35 @@
 /// The model of one campaign against its measurements: what the verbs and the nightly run share.
 namespace nonio::host {
 
-/// The measurements of one axis with the effects that the model and the catalogue have for it. The
-/// terms point into the campaign's effects.
+/// Measurements that are explained together, with the effects that the model and the catalogue have
+/// for it. The terms point into the campaign's effects.
 struct PartModel {
   model::Part part;
   std::vector<model::Term> terms, catalogue;
   std::string unfit;  ///< why these readings cannot show the model; "" if they can
 
-  const Axis& axis() const { return part.axes.front(); }
-  Quantity deviation() const { return deviation_of(axis().rotary); }
+  Quantity deviation() const { return deviation_of(part.table.angular); }
+  /// Of what readings are told apart by along their line: a position or an angle.
+  Quantity position() const {
+    return position_of(part.kind != model::Part::Kind::space && part.axes.front().rotary);
+  }
+  /// Of the model as it is written: without what is always there.
   std::vector<std::string> names() const;
+  /// Whether the effect is of something that is measured here.
+  bool shows(const std::string& effect) const;
 };
+
+/// What a part is called in words: "axis", "space", "balls" (templates/words, term.part).
+std::string kind_of(const model::Part& part);
 
 /// A reading of a part, as a person finds it again.
 struct ReadingPlace {
   std::string measurement, file;
   std::uint64_t line = 0;  ///< 0: the reader does not say
   std::uint32_t run = 0;   ///< 0: the same
-  int direction = 0;
-  double target = 0.0;  ///< m or rad
+  int direction = 0;       ///< 0: the reader does not say
+  double target = 0.0;     ///< along its line, m or rad
+  Quantity position = Quantity::length;
 };
 ReadingPlace place_of(const PartModel& part, const Campaign& campaign, std::size_t row);
 
@@ -37,12 +47,12 @@ ReadingPlace place_of(const PartModel& part, const Campaign& campaign, std::size
 std::vector<std::string> model_mistakes(const std::vector<std::string>& effects,
                                         const ReadCampaign& read);
 
-/// One entry for each axis with readings. `effects` is the model, usually that of the manifest. The
-/// error is a mistake in it, with the line of [model] effects.
+/// One entry for each part of the campaign (model/explain.h). `effects` is the model, usually that
+/// of the manifest. The error is a mistake in it, with the line of [model] effects.
 Expected<std::vector<PartModel>> part_models(const ReadCampaign& read,
                                              const std::vector<std::string>& effects);
 
-/// Effects of the model on axes that were not measured here.
+/// Effects of the model that no measurement here can show.
 std::vector<std::string> unmeasured(const std::vector<std::string>& effects,
                                     const std::vector<PartModel>& parts);
 

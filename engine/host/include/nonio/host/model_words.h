@@ -14,7 +14,7 @@ class ModelWords {
   ModelWords(const Templates& templates, std::string language)
       : templates_(templates), language_(std::move(language)) {}
 
-  std::string place(const model::Place& place, bool rotary) const;
+  std::string place(const model::Place& place, Quantity deviation) const;
   std::string verdict(const model::Explanation& explanation, const PartModel& part) const;
   std::string candidate(const model::Candidate& candidate, const PartModel& part,
                         double rms_before) const;
@@ -39,7 +39,10 @@ class ModelWords {
 
 /// The same as findings, for documents in any language: ids "verdict.*" and "place.*".
 Finding verdict_finding(const model::Explanation& explanation, const PartModel& part);
-Finding place_finding(const model::Place& place, bool rotary);
+Finding place_finding(const model::Place& place, Quantity deviation);
+
+/// " (D1)" of a place on one line, else nothing.
+std::string on_line(const model::Place& place);
 
 /// "12.5 mm", "run 3": where a place is largest; "" if it is not at one place.
 std::string where_largest(const model::Place& place, const std::string& language);

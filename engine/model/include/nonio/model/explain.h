@@ -16,19 +16,43 @@ namespace nonio::model {
 
 /// Measurements that are explained together: they sense the same axes in the same unit.
 struct Part {
+  enum class Kind {
+    axis,   ///< runs of one axis, sensed along it
+    space,  ///< several linear axes: their runs, straightness, diagonals, step diagonals
+    balls   ///< centres of a ball that turns with a rotary axis: radial and axial, m
+  };
+  std::string name;                       ///< "X", "XY", "EYX", "C centres"
   std::vector<std::string> measurements;  ///< ids
-  std::vector<Axis> axes;
-  Observations table;  ///< a line for each measurement, named by it
+  std::vector<Axis> axes;                 ///< one of an axis or balls; else the linear ones
+  Observations table;                     ///< lines named by their measurements
+  Kind kind = Kind::axis;
+  std::vector<std::uint32_t> measurement{};  ///< of each reading: index into `measurements`
+  std::vector<std::uint32_t> row{};          ///< of each reading: row of its measurement's table
+  std::vector<double> along{};               ///< of each reading: its place on its line, m or rad
+  std::vector<std::int8_t> way{};            ///< of each reading: +1 or -1 along its line
 };
 
-/// Measurements of axes, one part for each axis, in their order; others are left out.
+/// A reading that was taken where the manifest does not say where the other axes stood.
+inline bool stood_somewhere(const Part& part) {
+  for (const auto& axis : part.table.axes)
+    for (const double x : axis.position)
+      if (!(x == x)) return true;
+  return false;
+}
+
+/// What can be explained together, in the order of the measurements: runs of one axis; where
+/// something is sensed across the axes or in several at once, all linear axes and their
+/// measurements in one table; ball centres of a rotary axis. Others are left out.
 std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observations>& read);
 
-/// All effects that apply to a part.
+/// All effects that apply to a part, without those that are always in a model.
 std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects);
 
-/// The effects that a model names; an unknown kind or axis is an error with the nearest name.
-/// Effects of axes that other parts hold are left out.
+/// The names that an effect has in this part: "backlash:X", "straightness:EYX".
+std::vector<std::string> names_of(const Part& part, const Effect& effect);
+
+/// The effects that a model names, then those that are always there; an unknown kind or axis is an
+/// error with the nearest name. Effects of axes that other parts hold are left out.
 Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
                                      const std::vector<std::string>& names,
                                      const std::vector<Effect>& effects);
@@ -56,6 +80,7 @@ struct Place {
   /// Where it is largest, if it sits at one place: a target (m or rad), a run, an instant (s).
   std::optional<double> at{};
   Quantity at_quantity = Quantity::number;
+  std::string line{};  ///< in space: "position" along this one
 };
 
 /// A reading that contradicts its neighbours; kept, with weight 0, until the user excludes it.

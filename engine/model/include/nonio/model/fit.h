@@ -10,7 +10,7 @@
 
 namespace nonio::model {
 
-/// An effect on one axis.
+/// An effect on one axis, or of what an effect in space is of (then `axis` has only that name).
 struct Term {
   const Effect* effect = nullptr;
   Axis axis;
@@ -36,7 +36,10 @@ struct Fit {
   std::vector<double> residual;                  ///< of each reading, m or rad
   std::vector<double> weight;  ///< of each reading, 0..1: small where it is a suspected misreading
   std::vector<std::vector<double>> part;  ///< what each term says of each reading, m or rad
-  double rms = 0.0;                       ///< of the weighted residuals, m or rad
+  /// Of each term: columns of a curve that these readings cannot tell from the terms before it
+  /// (the odd part of a second straightness on two diagonals). They are counted to those.
+  std::vector<std::size_t> lost{};
+  double rms = 0.0;            ///< of the weighted residuals, m or rad
   double s = 0.0;              ///< standard deviation of a reading, from residuals and redundancy
   std::size_t redundancy = 0;  ///< readings less unknowns
 };

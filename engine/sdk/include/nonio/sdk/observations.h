@@ -4,11 +4,20 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "nonio/sdk/results.h"
 
 namespace nonio {
+
+/// Component of vectors in space along which a linear axis moves: 0, 1, 2 for X, Y, Z (and X1, Y2,
+/// ...); 3 if the name does not say.
+inline std::size_t coordinate_of(std::string_view axis) {
+  const std::size_t at =
+      axis.empty() ? std::string_view::npos : std::string_view("XYZ").find(axis[0]);
+  return at == std::string_view::npos ? 3 : at;
+}
 
 /// The one table that all measurements reduce to: a row is one reading that was taken. Columns
 /// have `size()` entries, or none where the file did not have them. SI: m, rad, s, degC.
@@ -43,10 +52,18 @@ struct Observations {
   /// Direction of sensing of each reading, where it differs within a line; else empty.
   std::vector<std::array<double, 3>> sense{};
 
+  /// Of the machine (manifest), for effects that depend on it.
+  std::string structure{};
+
   std::uint64_t missing = 0;  ///< readings that were not taken
   std::vector<Remark> notes;  ///< what the reader did that a user would want to know
 
   std::size_t size() const { return deviation.size(); }
+  const AxisColumn* axis(std::string_view name) const {
+    for (const AxisColumn& a : axes)
+      if (a.axis == name) return &a;
+    return nullptr;
+  }
   const std::array<double, 3>& sense_of(std::size_t i) const {
     return sense.empty() ? lines[line.empty() ? 0 : line[i]].sense : sense[i];
   }

@@ -90,6 +90,15 @@ struct Effect {
   std::function<Expected<Columns>(const Observations&, const Axis&,
                                   const std::vector<double>& shape)>
       columns;
+  /// Of an effect in space: what it can be of in these readings, "EYX" (straightness), "XY"
+  /// (squareness) or a line. The Axis that comes in has this name and nothing else, and the columns
+  /// are the deviation as it is sensed (`Observations::sense_of`). Without it: of each axis, the
+  /// columns are the error along the axis, and the engine takes its component where readings are
+  /// sensed in another direction.
+  std::function<std::vector<std::string>(const Observations&)> of{};
+  /// An unknown of the set-up (how a mirror stood): in every model that it applies to, never a
+  /// candidate.
+  bool always = false;
 };
 
 struct AnalysisInput {
@@ -158,7 +167,7 @@ class Registry {
   ~Registry() = default;
 };
 
-inline constexpr int sdk_version = 3;
+inline constexpr int sdk_version = 4;
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
@@ -182,7 +191,7 @@ inline constexpr int sdk_version = 3;
 #endif
 
 /// Everything that must agree before a plugin may be called.
-#define NONIO_ABI_TAG "nonio-sdk 3; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
+#define NONIO_ABI_TAG "nonio-sdk 4; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
 
 /// The one exported symbol, `nonio_plugin`. Plain: the host reads the tag before it calls anything.
 struct PluginEntry {

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "finding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "compare.h"
+#include "nonio/math/distributions.h"
+#include "nonio/math/statistics.h"
+
+namespace nonio::model {
+
+namespace {
+
+using State = Workbench::State;
+
+constexpr double least_rms = 0.2;  // of the noise: smaller effects are not worth a name
+
+class Finder {
+ public:
+  Finder(const Part& part, const std::vector<Term>& model, const std::vector<Term>& catalogue,
+         std::uint64_t seed)
+      : f_{part, Repeats(part.table), model, model.size(), seed} {
+    for (const Term& c : catalogue)
+      if (std::none_of(model.begin(), model.end(),
+                       [&](const Term& m) { return m.name() == c.name(); }))
+        f_.terms.push_back(c);
+  }
+
+  Expected<Finding> run() {
+    f_.suspects = suspects_of(f_.part.table, f_.repeats, f_.part.table.deviation);
+    for (int round = 0; round < 3; ++round) {
+      if (auto searched = search(); !searched) return fail(searched.error());
+      if (!suspect_again()) break;
+    }
+    f_.chance = measure_chance(
+        *f_.bench, f_.best,
+        shuffled(f_.residual(f_.best), f_.bench->basis(f_.best), f_.repeats.pass, f_.seed));
+    prune();
+    if (auto fitted = fit_both(); !fitted) return fail(fitted.error());
+    return std::move(f_);
+  }
+
+ private:
+  Expected<void> search() {
+    f_.weight = weights_without(f_.part.table.size(), f_.suspects);
+    f_.bench.emplace(f_.part.table, f_.terms, f_.weight, f_.repeats.target);
+    auto start = started(false);
+    if (!start) return fail(start.error());
+    f_.start = std::move(*start);
+    // Instants and periods of a model hold each other fast: tried from two sides.
+    if (const auto other = started(true); other && other->squares < f_.start.squares)
+      f_.start = *other;
+    f_.best = best_explanation(*f_.bench, f_.start);
+    // What lies between the values of a grid would be taken for an effect of its own.
+    const bool finer = add_refined(f_.start);
+    if (add_refined(f_.best) || finer) {
+      f_.start = f_.bench->settled(std::move(f_.start));
+      f_.best = best_explanation(*f_.bench, f_.start);
+    }
+    return {};
+  }
+
+  /// The model with its shapes searched; its terms come in as they are written, or those first that
+  /// explain most.
+  Expected<State> started(bool largest_first) const {
+    State start = f_.bench->state({});
+    std::vector<std::size_t> open(f_.in_model);
+    std::iota(open.begin(), open.end(), std::size_t{0});
+    while (!open.empty()) {
+      const VectorXd gains = f_.bench->gains(start);
+      State best;
+      std::size_t at = open.size();
+      for (std::size_t k = 0; k < (largest_first ? open.size() : 1); ++k) {
+        State next = f_.bench->with(start, gains, open[k]);
+        if (next.blocks.size() == start.blocks.size()) {
+          const std::string& why = f_.bench->instances()[open[k]].error;
+          return fail(!why.empty() ? why
+                                   : "the readings cannot tell " + f_.terms[open[k]].name() +
+                                         " from the rest of the model");
+        }
+        if (at == open.size() || next.squares < best.squares) best = std::move(next), at = k;
+      }
+      start = std::move(best);
+      open.erase(open.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    return in_order(f_.bench->settled(std::move(start)));
+  }
+
+  /// Blocks in the order of the model.
+  State in_order(State state) const {
+    std::sort(state.blocks.begin(), state.blocks.end(), [&](std::size_t a, std::size_t b) {
+      return f_.bench->effect_of(a) < f_.bench->effect_of(b);
+    });
+    return state;
+  }
+
+  /// Shapes of a state between the values of their grids, as values of the grids.
+  bool add_refined(const State& state) {
+    const std::vector<Term> coarse = terms_of_state(state);
+    const std::vector<char> searched = flags(state, true);
+    const auto fitted = fit_near(f_.part.table, coarse, searched, f_.weight);
+    if (!fitted) return false;
+    bool any = false;
+    for (std::size_t t = 0; t < coarse.size(); ++t) {
+      if (fitted->terms[t].shape == coarse[t].shape) continue;
+      f_.bench->add_shape(f_.part.table, f_.bench->effect_of(state.blocks[t]),
+                          fitted->terms[t].shape);
+      any = true;
+    }
+    return any;
+  }
+
+  /// Whether the best explanation suspects other readings than before.
+  bool suspect_again() {
+    const std::size_t n = f_.part.table.size();
+    const auto fitted = fit_near(f_.part.table, terms_of_state(f_.best), flags(false), f_.weight);
+    if (!fitted) return false;
+    const std::vector<double>& e = fitted->residual;
+    const double s = math::robust_deviation(e);
+    if (!(s > 0.0)) return false;
+    double least = 3.0;
+    while (math::t_two_sided(least, 50.0) * static_cast<double>(n) > 0.01) least += 0.05;
+    std::vector<std::uint32_t> high;
+    for (std::uint32_t i = 0; i < n; ++i)
+      if (std::fabs(e[i]) >= least * s) high.push_back(i);
+    const std::vector<double> apart = apart_from_others(f_.repeats, high, e);
+    std::vector<Suspect> now;
+    for (std::size_t k = 0; k < high.size(); ++k)
+      if (std::fabs(apart[k]) >= least * s)
+        now.push_back({high[k], e[high[k]], e[high[k]] / s, least * s});
+    if (now.size() > n / 8) return false;
+    const bool changed =
+        now.size() != f_.suspects.size() ||
+        !std::equal(now.begin(), now.end(), f_.suspects.begin(),
+                    [](const Suspect& a, const Suspect& b) { return a.row == b.row; });
+    f_.suspects = std::move(now);
+    return changed;
+  }
+
+  std::vector<Term> terms_of_state(const State& state) const {
+    std::vector<Term> terms;
+    for (const std::size_t b : state.blocks) {
+      terms.push_back(f_.bench->instances()[f_.bench->effect_of(b)].term);
+      terms.back().shape = f_.bench->blocks()[b].shape;
+    }
+    return terms;
+  }
+  std::vector<char> flags(bool searched) const { return flags(f_.best, searched); }
+  std::vector<char> flags(const State& state, bool searched) const {
+    std::vector<char> out;
+    for (const std::size_t b : state.blocks) {
+      const Term& term = f_.bench->instances()[f_.bench->effect_of(b)].term;
+      out.push_back(searched && term.shape.empty() && !term.effect->shapes.empty());
+    }
+    return out;
+  }
+
+  /// Effects that noise could have given, or too small to matter, leave the best explanation.
+  void prune() {
+    while (true) {
+      std::size_t weakest = f_.terms.size();
+      double largest_p = 0.0;
+      const double s = f_.left();
+      for (const std::size_t b : f_.best.blocks) {
+        const std::size_t e = f_.bench->effect_of(b);
+        if (e < f_.in_model) continue;
+        const double p = f_.chance.corrected(p_of(*f_.bench, f_.best, e));
+        const double fall = f_.bench->without(f_.best, e).squares - f_.best.squares;
+        const bool small = std::sqrt(fall / f_.bench->readings()) < least_rms * s;
+        if ((p >= named_below || small) && p >= largest_p) {
+          weakest = e;
+          largest_p = p;
+        }
+      }
+      if (weakest == f_.terms.size()) return;
+      f_.best = f_.bench->settled(f_.bench->without(f_.best, weakest));
+    }
+  }
+
+  Expected<void> fit_both() {
+    auto of_model =
+        fit_near(f_.part.table, terms_of_state(f_.start), flags(f_.start, true), f_.weight);
+    if (!of_model) return fail(of_model.error());
+    f_.of_model = comparison_of(f_.part, f_.repeats, std::move(*of_model), f_.suspects);
+    auto of_best = fit_near(f_.part.table, terms_of_state(f_.best), flags(true), f_.weight);
+    if (!of_best) return fail(of_best.error());
+    f_.of_best = comparison_of(f_.part, f_.repeats, std::move(*of_best), f_.suspects);
+    return {};
+  }
+
+  Finding f_;
+};
+
+}  // namespace
+
+std::size_t Finding::index_of(const std::string& name) const {
+  return static_cast<std::size_t>(
+      std::find_if(terms.begin(), terms.end(), [&](const Term& t) { return t.name() == name; }) -
+      terms.begin());
+}
+
+double Finding::dof(const State& state) const {
+  return bench->readings() - static_cast<double>(bench->zeros() + state.parameters);
+}
+
+double Finding::left() const { return std::sqrt(best.squares / std::max(dof(best), 1.0)); }
+
+VectorXd Finding::residual(const State& state) const {
+  const MatrixXd basis = bench->basis(state);
+  return bench->y() - basis * (basis.transpose() * bench->y());
+}
+
+Expected<Finding> find_best(const Part& part, const std::vector<Term>& model,
+                            const std::vector<Term>& catalogue, std::uint64_t seed) {
+  return Finder(part, model, catalogue, seed).run();
+}
+
+}  // namespace nonio::model

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lines.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include "design.h"
+
+namespace nonio::model {
+
+namespace {
+
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_share = 1e-9;  // of a unit vector
+
+int components(const Vector& sense) {
+  return static_cast<int>(
+      std::count_if(sense.begin(), sense.end(), [](double x) { return std::fabs(x) > no_share; }));
+}
+
+bool moves(const Observations::AxisColumn& axis) {
+  const auto [low, high] = std::minmax_element(axis.position.begin(), axis.position.end());
+  return *low < *high;
+}
+
+/// Appends a column that one of the tables may not have: then it is NaN there.
+void append(std::vector<double>& to, const std::vector<double>& more, std::size_t before,
+            std::size_t added) {
+  if (to.empty() && more.empty()) return;
+  to.resize(before, not_known);
+  if (more.empty())
+    to.resize(before + added, not_known);
+  else
+    to.insert(to.end(), more.begin(), more.end());
+}
+
+/// Everything but positions and lines.
+void append_readings(Part& part, const Observations& more, const std::string& id) {
+  Observations& to = part.table;
+  const std::size_t before = to.size(), added = more.size();
+  part.measurement.insert(part.measurement.end(), added,
+                          static_cast<std::uint32_t>(part.measurements.size()));
+  part.measurements.push_back(id);
+  part.row.resize(before + added);
+  std::iota(part.row.begin() + static_cast<std::ptrdiff_t>(before), part.row.end(), 0U);
+  to.deviation.insert(to.deviation.end(), more.deviation.begin(), more.deviation.end());
+  to.run.insert(to.run.end(), more.run.begin(), more.run.end());
+  to.source_line.insert(to.source_line.end(), more.source_line.begin(), more.source_line.end());
+  append(to.time, more.time, before, added);
+  append(to.material, more.material, before, added);
+  append(to.air, more.air, before, added);
+  to.missing += more.missing;
+}
+
+/// One axis's place in the readings of a measurement that may not have moved it.
+Observations::AxisColumn column_of(const std::string& axis, const Observations& o,
+                                   const Measurement& m) {
+  if (const auto* column = o.axis(axis)) {
+    Observations::AxisColumn out = *column;
+    out.approach.resize(o.size(), 0);
+    return out;
+  }
+  double stood = not_known;
+  for (const auto* places : {&m.at, &m.from})
+    if (const auto place = places->find(axis); place != places->end()) stood = place->second;
+  return {axis, false, std::vector<double>(o.size(), stood), std::vector<std::int8_t>(o.size(), 0)};
+}
+
+Vector point_of(const Observations& o, std::size_t i) {
+  Vector p{};
+  for (const auto& axis : o.axes)
+    if (const std::size_t k = coordinate_of(axis.axis); !axis.rotary && k < 3)
+      p[k] = axis.position[i];
+  return p;
+}
+
+/// Place of each reading along its line, and from which side it was reached: by the one axis that
+/// moves, or along the direction of sensing.
+void append_places(Part& part, const Observations& o, const Measurement& m) {
+  std::vector<const Observations::AxisColumn*> moved;
+  for (const auto& axis : o.axes)
+    if (!axis.rotary && coordinate_of(axis.axis) < 3 && moves(axis)) moved.push_back(&axis);
+  Vector from{};
+  for (const auto& [axis, at] : m.from)
+    if (const std::size_t k = coordinate_of(axis); k < 3) from[k] = at;
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    if (moved.size() == 1) {
+      part.along.push_back(moved.front()->position[i]);
+      part.way.push_back(moved.front()->approach.empty() ? std::int8_t{0}
+                                                         : moved.front()->approach[i]);
+      continue;
+    }
+    const Vector& sense = o.sense_of(i);
+    Vector p = point_of(o, i);
+    for (std::size_t k = 0; k < 3; ++k) p[k] -= from[k];
+    part.along.push_back(dot(p, sense));
+    double way = 0.0;
+    for (const auto* axis : moved)
+      if (!axis->approach.empty()) way += axis->approach[i] * sense[coordinate_of(axis->axis)];
+    part.way.push_back(static_cast<std::int8_t>(way > no_share ? 1 : way < -no_share ? -1 : 0));
+  }
+}
+
+void append_lines(Observations& to, const Observations& more) {
+  const std::size_t before = to.line.size();
+  const auto first = static_cast<std::uint32_t>(to.lines.size());
+  to.lines.insert(to.lines.end(), more.lines.begin(), more.lines.end());
+  for (std::size_t i = 0; i < more.size(); ++i) to.line.push_back(first + line_of(more, i));
+  if (more.sense.empty() && to.sense.empty()) return;
+  for (std::size_t i = to.sense.size(); i < before; ++i)
+    to.sense.push_back(to.lines[to.line[i]].sense);
+  for (std::size_t i = 0; i < more.size(); ++i) to.sense.push_back(more.sense_of(i));
+}
+
+}  // namespace
+
+bool sensed_along_one_axis(const Observations& o) {
+  if (o.axes.size() != 1 || o.axes.front().approach.size() != o.size()) return false;
+  if (o.angular) return true;
+  if (o.axes.front().rotary) return false;
+  const std::size_t k = coordinate_of(o.axes.front().axis);
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    const Vector& sense = o.sense_of(i);
+    if (components(sense) > 0 && (k > 2 || !(sense[k] > 1.0 - no_share))) return false;
+  }
+  return true;
+}
+
+bool across(const Observations& o) {
+  if (o.angular) return false;
+  bool any = false;
+  for (const auto& axis : o.axes) {
+    if (!moves(axis)) continue;
+    if (axis.rotary || coordinate_of(axis.axis) > 2) return false;
+    any = true;
+  }
+  for (std::size_t i = 0; any && i < o.size(); ++i) any = components(o.sense_of(i)) > 0;
+  return any;
+}
+
+bool senses_several(const Observations& o) {
+  for (std::size_t i = 0; i < o.size(); ++i)
+    if (components(o.sense_of(i)) > 1) return true;
+  return false;
+}
+
+std::vector<std::size_t> coordinates_of(const Observations& o) {
+  std::set<std::size_t> out;
+  for (const auto& axis : o.axes)
+    if (!axis.rotary && coordinate_of(axis.axis) < 3 && moves(axis))
+      out.insert(coordinate_of(axis.axis));
+  for (std::size_t i = 0; i < o.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (std::fabs(o.sense_of(i)[k]) > no_share) out.insert(k);
+  return {out.begin(), out.end()};
+}
+
+void append_run(Part& part, const Observations& more, const std::string& id) {
+  Observations& to = part.table;
+  const auto& from = more.axes.front();
+  if (to.axes.empty()) {
+    to.axes = {{from.axis, from.rotary, {}, {}}};
+    to.angular = more.angular;
+  }
+  auto& axis = to.axes.front();
+  axis.position.insert(axis.position.end(), from.position.begin(), from.position.end());
+  axis.approach.insert(axis.approach.end(), from.approach.begin(), from.approach.end());
+  part.along = axis.position;
+  part.way = axis.approach;
+  to.line.insert(to.line.end(), more.size(), static_cast<std::uint32_t>(to.lines.size()));
+  to.lines.push_back({id, more.lines.empty() ? Vector{} : more.lines.front().sense});
+  append_readings(part, more, id);
+}
+
+void append_space(Part& part, const Campaign& campaign, const std::vector<Observations>& read,
+                  const std::vector<std::size_t>& members) {
+  Observations& to = part.table;
+  to.structure = campaign.machine.structure;
+  std::set<std::pair<std::size_t, std::string>> axes;  // in the order of the coordinates
+  const auto add = [&](const std::string& axis) {
+    if (const std::size_t k = coordinate_of(axis); k < 3) axes.insert({k, axis});
+  };
+  for (const std::size_t m : members) {
+    for (const auto& axis : read[m].axes)
+      if (!axis.rotary) add(axis.axis);
+    for (const auto& [axis, at] : campaign.measurements[m].at) add(axis);
+  }
+  for (const auto& [k, name] : axes) {
+    const Axis* known = campaign.machine.axis(name);
+    Axis axis;
+    axis.name = name;
+    part.axes.push_back(known == nullptr ? axis : *known);
+    to.axes.push_back({name, false, {}, {}});
+  }
+  for (const std::size_t m : members) {
+    const Observations& more = read[m];
+    for (auto& axis : to.axes) {
+      const auto column = column_of(axis.axis, more, campaign.measurements[m]);
+      axis.position.insert(axis.position.end(), column.position.begin(), column.position.end());
+      axis.approach.insert(axis.approach.end(), column.approach.begin(), column.approach.end());
+    }
+    append_lines(to, more);
+    append_places(part, more, campaign.measurements[m]);
+    append_readings(part, more, campaign.measurements[m].id);
+  }
+}
+
+}  // namespace nonio::model

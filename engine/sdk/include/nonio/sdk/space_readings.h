@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/sdk/error.h"
+#include "nonio/sdk/observations.h"
+#include "nonio/sdk/plugin.h"
+
+namespace nonio {
+
+/// What the columns of an effect in space are made of.
+struct SpaceReadings {
+  /// x, y, z of each reading from the corner of the measured volume, m; NaN where nobody said where
+  /// the axis stood. A coordinate that no axis has is empty.
+  std::array<std::vector<double>, 3> r;
+  std::array<double, 3> length{};  ///< of the measured volume
+
+  bool moves(std::size_t k) const { return length[k] > 0.0; }
+  /// How far a point is from the corner: 0 where nobody said.
+  double lever(std::size_t k, std::size_t i) const {
+    return r[k].empty() || !std::isfinite(r[k][i]) ? 0.0 : r[k][i];
+  }
+};
+
+inline SpaceReadings space_of(const Observations& o) {
+  SpaceReadings out;
+  for (const auto& axis : o.axes) {
+    const std::size_t k = coordinate_of(axis.axis);
+    if (axis.rotary || k > 2) continue;
+    auto& r = out.r[k];
+    r.resize(o.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < o.size(); ++i)
+      if (std::isfinite(axis.position[i])) r[i] = axis.position[i];
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const double x : out.r[k])
+      if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
+    if (!(low <= high)) continue;
+    out.length[k] = high - low;
+    for (double& x : out.r[k]) x -= low;
+  }
+  return out;
+}
+
+/// Centres of a ball that turns with a rotary axis: lengths over an angle.
+inline bool of_ball_centres(const Observations& o) {
+  return !o.angular && !o.axes.empty() && o.axes.front().rotary;
+}
+
+/// Whether coordinate k changes within a line whose readings sense direction `error`: else its zero
+/// takes whatever depends on k.
+inline bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::size_t k,
+                                std::size_t error) {
+  constexpr double never = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> first(std::max<std::size_t>(o.lines.size(), 1), never);
+  for (std::size_t i = 0; i < s.r[k].size(); ++i) {
+    if (!std::isfinite(s.r[k][i]) || !(std::fabs(o.sense_of(i)[error]) > 1e-9)) continue;
+    double& x = first[o.line.empty() ? 0 : o.line[i]];
+    if (!std::isfinite(x)) x = s.r[k][i];
+    if (std::fabs(s.r[k][i] - x) > 1e-9 * s.length[k]) return true;
+  }
+  return false;
+}
+
+/// The places of coordinate k that were measured, each once, ascending, m from the corner. What
+/// lies nearer than 1e-9 of the length is one.
+inline std::vector<double> places_of(const SpaceReadings& s, std::size_t k) {
+  std::vector<double> places;
+  for (const double x : s.r[k])
+    if (std::isfinite(x)) places.push_back(x);
+  std::sort(places.begin(), places.end());
+  const double near = 1e-9 * s.length[k];
+  places.erase(std::unique(places.begin(), places.end(),
+                           [near](double a, double b) { return b - a <= near; }),
+               places.end());
+  return places;
+}
+
+/// Numbers of knots for a smooth curve: at most 10, and at least two places for each free value, so
+/// that it cannot follow single places.
+inline std::vector<double> knots_over(const std::vector<double>& places) {
+  std::vector<double> knots;
+  for (std::size_t k = 3; k < std::min<std::size_t>(places.size() / 2, 11); ++k)
+    knots.push_back(static_cast<double>(k));
+  return knots;
+}
+
+inline std::vector<double> finite_or_zero(std::vector<double> x) {
+  for (double& v : x)
+    if (!std::isfinite(v)) v = 0.0;
+  return x;
+}
+
+/// Letter of a coordinate, and back: 3 if it is none.
+inline char letter_of(std::size_t k) { return "XYZ"[k]; }
+inline std::size_t coordinate_of(char letter) {
+  return coordinate_of(std::string_view(&letter, 1));
+}
+
+}  // namespace nonio

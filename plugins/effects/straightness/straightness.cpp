@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// EYX: e_y = sum c_k s_k(x), and the five others; s_k: smooth basis of cubic splines without
+// constant and slope over the measured places (nonio/math/spline.h), rms 1; c_k: m. A slope is
+// squareness, or the set-up of the line.
+#include "nonio/math/spline.h"
+#include "nonio/sdk/space_readings.h"
+
+using namespace nonio;
+
+namespace {
+
+struct Name {
+  std::size_t error = 3, axis = 3;  // coordinates
+};
+Name read(const std::string& name) {
+  if (name.size() != 3 || name[0] != 'E') return {};
+  return {coordinate_of(name[1]), coordinate_of(name[2])};
+}
+
+std::vector<std::string> of(const Observations& o) {
+  std::vector<std::string> names;
+  if (of_ball_centres(o)) return names;
+  const SpaceReadings s = space_of(o);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t error = 0; error < 3; ++error)
+      if (axis != error && s.moves(axis) && varies_where_sensed(o, s, axis, error))
+        names.push_back({'E', letter_of(error), letter_of(axis)});
+  return names;
+}
+
+std::vector<double> grid(const Observations& o, const Axis& place) {
+  const Name name = read(place.name);
+  return name.axis > 2 ? std::vector<double>{} : knots_over(places_of(space_of(o), name.axis));
+}
+
+Expected<Effect::Columns> columns(const Observations& o, const Axis& place,
+                                  const std::vector<double>& shape) {
+  const Name name = read(place.name);
+  if (name.axis > 2 || name.error > 2)
+    return fail("straightness: wanted EYX, EZX, EXY, EZY, EXZ or EYZ, found " + place.name);
+  if (shape.size() != 1 || !(shape[0] >= 2.0 && shape[0] <= 1000.0))
+    return fail("straightness: wanted a number of knots, 2 to 1000");
+  const SpaceReadings s = space_of(o);
+  auto out = math::smooth_basis(finite_or_zero(s.r[name.axis]), places_of(s, name.axis),
+                                static_cast<int>(std::lround(shape[0])));
+  if (!out) return fail("straightness: " + out.error().message);
+  for (auto& column : *out)
+    for (std::size_t i = 0; i < column.size(); ++i)
+      column[i] *= std::isfinite(s.r[name.axis][i]) ? o.sense_of(i)[name.error] : 0.0;
+  return out;
+}
+
+}  // namespace
+
+NONIO_PLUGIN(registry) {
+  registry.add(
+      Effect{.info = {"straightness", "1.0.0",
+                      "An axis that does not travel straight: a smooth error across its motion"},
+             .linear = {{"s", "rms of the curve over the places", Quantity::deviation}},
+             .shapes = {{{"knots", "knots of the spline", Quantity::count}, grid, false}},
+             .curve = true,
+             .applies = [](const Observations& o, const Axis& a) { return !grid(o, a).empty(); },
+             .columns = columns,
+             .of = of});
+}

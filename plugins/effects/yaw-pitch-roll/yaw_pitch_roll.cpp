@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// Angular errors of the carriages of X and Y. Chain bed - X - Y - Z - tool, x, y, z from the corner
+// of the measured volume (there positions are taken to be measured), tool in the spindle's axis:
+//     yaw:X   (ECX)  e_x = -y a(x)            pitch:X (EBX)  e_x = +z a(x)
+//     roll:X  (EAX)  e_y = -z a(x), e_z = +y a(x)
+//     pitch:Y (EAY)  e_y = -z a(y)            roll:Y  (EBY)  e_x = +z a(y)
+// and, where one carriage follows its bent guide (structure single-column), the way it goes:
+//     yaw:X   e_y = +integral of a dx         pitch:X  e_z = -integral of a dx
+// a = sum c_k s_k; s_k without constant, which is squareness: the straight line, then the smooth
+// basis (nonio/math/spline.h), rms 1 over the measured places; c_k: rad. ECY and the angles of Z
+// have no lever in this chain: they need a tool offset.
+#include <numeric>
+
+#include "nonio/math/spline.h"
+#include "nonio/sdk/space_readings.h"
+
+using namespace nonio;
+
+namespace {
+
+struct Lever {
+  std::size_t error, along;
+  double sign;
+};
+struct Angle {
+  const char* kind;
+  std::size_t axis;
+  std::vector<Lever> levers;
+  std::size_t guided;  // the direction in which a bent guide leads; 3: in none
+  double guide_sign;
+};
+
+const std::vector<Angle>& angles() {
+  static const std::vector<Angle> all = {
+      {"yaw", 0, {{0, 1, -1.0}}, 1, +1.0},
+      {"pitch", 0, {{0, 2, +1.0}}, 2, -1.0},
+      {"roll", 0, {{1, 2, -1.0}, {2, 1, +1.0}}, 3, 0.0},
+      {"pitch", 1, {{1, 2, -1.0}}, 3, 0.0},
+      {"roll", 1, {{0, 2, +1.0}}, 3, 0.0},
+  };
+  return all;
+}
+
+const Angle* angle_of(const std::string& kind, const std::string& axis) {
+  for (const Angle& a : angles())
+    if (kind == a.kind && axis.size() == 1 && axis[0] == letter_of(a.axis)) return &a;
+  return nullptr;
+}
+
+bool follows_its_guide(const Observations& o, const Angle& a) {
+  return o.structure == "single-column" && a.guided < 3;
+}
+
+/// A lever is seen if readings that sense its error change the angle's axis away from the corner.
+bool shown(const Observations& o, const SpaceReadings& s, const Angle& a) {
+  if (!s.moves(a.axis)) return false;
+  for (const Lever& lever : a.levers)
+    if (s.moves(lever.along) && varies_where_sensed(o, s, a.axis, lever.error)) return true;
+  return follows_its_guide(o, a) && varies_where_sensed(o, s, a.axis, a.guided);
+}
+
+/// The straight line and `knots` smooth functions at x; at least the line.
+Expected<Effect::Columns> basis_at(const std::vector<double>& x, const std::vector<double>& places,
+                                   int knots) {
+  const auto n = static_cast<double>(places.size());
+  const double mean = std::accumulate(places.begin(), places.end(), 0.0) / n;
+  double square = 0.0;
+  for (const double p : places) square += (p - mean) * (p - mean) / n;
+  Effect::Columns out(1);
+  for (const double at : x) out[0].push_back((at - mean) / std::sqrt(square));
+  if (knots < 2) return out;
+  auto smooth = math::smooth_basis(x, places, knots);
+  if (!smooth) return fail(smooth.error());
+  for (auto& column : *smooth) out.push_back(std::move(column));
+  return out;
+}
+
+/// Integrals of the basis from the first place to each: Gauss, two points in each sixteenth of the
+/// way between neighbours (exact for cubics, and knots lie where they like).
+Expected<Effect::Columns> integrals(const std::vector<double>& places, int knots) {
+  constexpr int parts = 16;
+  const double offset = 0.5 / std::sqrt(3.0);
+  std::vector<double> x;
+  for (std::size_t j = 0; j + 1 < places.size(); ++j)
+    for (int part = 0; part < parts; ++part)
+      for (const double side : {-offset, offset})
+        x.push_back(places[j] + (places[j + 1] - places[j]) * (part + 0.5 + side) / parts);
+  auto values = basis_at(x, places, knots);
+  if (!values) return fail(values.error());
+  Effect::Columns out(values->size(), std::vector<double>(places.size(), 0.0));
+  for (std::size_t k = 0; k < out.size(); ++k)
+    for (std::size_t j = 0; j + 1 < places.size(); ++j) {
+      double sum = 0.0;
+      for (std::size_t q = 0; q < 2 * parts; ++q) sum += (*values)[k][2 * parts * j + q];
+      out[k][j + 1] = out[k][j] + sum * (places[j + 1] - places[j]) / (2.0 * parts);
+    }
+  return out;
+}
+
+Expected<Effect::Columns> columns(const Observations& o, const Angle& a, int knots) {
+  const SpaceReadings s = space_of(o);
+  const std::vector<double> places = places_of(s, a.axis);
+  const auto basis = basis_at(finite_or_zero(s.r[a.axis]), places, knots);
+  if (!basis) return fail(basis.error());
+  const bool guided = follows_its_guide(o, a);
+  const auto ways = guided ? integrals(places, knots) : Expected<Effect::Columns>{};
+  if (!ways) return fail(ways.error());
+  Effect::Columns out(basis->size(), std::vector<double>(o.size(), 0.0));
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    if (!std::isfinite(s.r[a.axis][i])) continue;
+    double lever = 0.0;
+    for (const Lever& l : a.levers) lever += l.sign * s.lever(l.along, i) * o.sense_of(i)[l.error];
+    // The measured places themselves: the nearest is the same within rounding.
+    const auto above =
+        std::lower_bound(places.begin(), places.end(), s.r[a.axis][i] - 1e-6 * s.length[a.axis]);
+    const auto place = static_cast<std::size_t>(std::min(above, places.end() - 1) - places.begin());
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      out[k][i] = lever * (*basis)[k][i];
+      if (guided) out[k][i] += a.guide_sign * (*ways)[k][place] * o.sense_of(i)[a.guided];
+    }
+  }
+  return out;
+}
+
+Effect effect_of(const char* kind, const char* summary) {
+  Effect e;
+  e.info = {kind, "1.0.0", summary};
+  e.linear = {{"a", "rms of the angle over the places", Quantity::small_angle}};
+  const auto grid = [kind](const Observations& o, const Axis& place) {
+    const Angle* a = angle_of(kind, place.name);
+    if (a == nullptr) return std::vector<double>{};
+    std::vector<double> knots = knots_over(places_of(space_of(o), a->axis));
+    knots.insert(knots.begin(), 0.0);
+    return knots;
+  };
+  e.shapes = {{{"knots", "knots of the spline beside the straight line; 0: the line alone",
+                Quantity::count},
+               grid,
+               false}};
+  e.curve = true;
+  e.applies = [](const Observations&, const Axis&) { return true; };
+  e.columns = [kind](const Observations& o, const Axis& place,
+                     const std::vector<double>& shape) -> Expected<Effect::Columns> {
+    const Angle* a = angle_of(kind, place.name);
+    if (a == nullptr)
+      return fail(std::string(kind) + ": wanted X or Y, whose angles have a lever; found " +
+                  place.name);
+    if (shape.size() != 1 || !(shape[0] >= 0.0 && shape[0] <= 1000.0))
+      return fail(std::string(kind) + ": wanted a number of knots, 0 to 1000");
+    return columns(o, *a, static_cast<int>(std::lround(shape[0])));
+  };
+  e.of = [kind](const Observations& o) {
+    std::vector<std::string> names;
+    if (of_ball_centres(o)) return names;
+    const SpaceReadings s = space_of(o);
+    for (const Angle& a : angles())
+      if (std::string_view(kind) == a.kind && shown(o, s, a)) names.push_back({letter_of(a.axis)});
+    return names;
+  };
+  return e;
+}
+
+}  // namespace
+
+NONIO_PLUGIN(registry) {
+  registry.add(effect_of(
+      "yaw", "The carriage turns about the vertical as it travels (on a gantry: racking)"));
+  registry.add(effect_of("pitch", "The carriage nods as it travels"));
+  registry.add(effect_of("roll", "The carriage turns about its own direction of travel"));
+}
