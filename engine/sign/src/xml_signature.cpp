@@ -16,12 +16,12 @@
 #include "key.h"
 #include "pdf_signature.h"
 #include "verify_parts.h"
+#include "xml_document.h"
 
 namespace nonio::sign {
 
 namespace {
 
-using DocumentPtr = std::unique_ptr<xmlDoc, Freed<xmlFreeDoc>>;
 using ContextPtr = std::unique_ptr<xmlSecDSigCtx, Freed<xmlSecDSigCtxDestroy>>;
 using XmlKeyPtr = std::unique_ptr<xmlSecKey, Freed<xmlSecKeyDestroy>>;
 
@@ -38,20 +38,6 @@ bool started() {
     return all_well;
   }();
   return well;
-}
-
-/// Neither network nor a DTD: entities could bring in other files, or grow without limit.
-Expected<DocumentPtr> parse(std::string_view bytes) {
-  if (!started()) return fail("xmlsec does not start");
-  if (bytes.size() > max_file) return fail("is larger than 500 MB");
-  DocumentPtr document(xmlReadMemory(bytes.data(), static_cast<int>(bytes.size()), "document.xml",
-                                     nullptr,
-                                     XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING));
-  if (!document || xmlDocGetRootElement(document.get()) == nullptr)
-    return fail("is not well-formed XML");
-  if (document->intSubset != nullptr || document->extSubset != nullptr)
-    return fail("has a document type: wanted none");
-  return document;
 }
 
 /// xmlsec's own, with the certificate and its chain if they are to be written.
@@ -91,8 +77,21 @@ xmlNode* add_template(xmlDoc* document, bool rsa) {
 
 }  // namespace
 
+Expected<DocumentPtr> parse_xml(std::string_view bytes) {
+  if (!started()) return fail("xmlsec does not start");
+  if (bytes.size() > max_file) return fail("is larger than 500 MB");
+  DocumentPtr document(xmlReadMemory(bytes.data(), static_cast<int>(bytes.size()), "document.xml",
+                                     nullptr,
+                                     XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING));
+  if (!document || xmlDocGetRootElement(document.get()) == nullptr)
+    return fail("is not well-formed XML");
+  if (document->intSubset != nullptr || document->extSubset != nullptr)
+    return fail("has a document type: wanted none");
+  return document;
+}
+
 Expected<std::string> sign_xml(const Key::Impl& key, std::string_view bytes) {
-  auto document = parse(bytes);
+  auto document = parse_xml(bytes);
   if (!document) return fail(document.error());
   if (xmlSecFindNode(xmlDocGetRootElement(document->get()), xmlSecNodeSignature, xmlSecDSigNs) !=
       nullptr)
@@ -231,7 +230,7 @@ Verified verify_xml(std::string_view bytes, const Verifier& verifier, std::strin
   Verified out;
   out.at = verifier.now;
   Report report(out);
-  auto document = parse(bytes);
+  auto document = parse_xml(bytes);
   report.add("xml.structure", to_void(document), "XML without a document type");
   if (!document) return out;
   const auto signature = find_xml_signature(document->get());
