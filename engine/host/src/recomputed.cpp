@@ -72,11 +72,15 @@ const Json* find(const Json& results, const std::string& name) {
   return nullptr;
 }
 
+bool is_analysis(const Json& a) {
+  return a.is_object() && a.contains("plugin") && a["plugin"].is_string() &&
+         (!a.contains("measurement") || a["measurement"].is_string()) &&
+         (!a.contains("values") || a["values"].is_object());
+}
+
 bool is_results(const Json& json) {
   if (!json.is_object() || !json.contains("analyses") || !json["analyses"].is_array()) return false;
-  return std::all_of(json["analyses"].begin(), json["analyses"].end(), [](const Json& a) {
-    return a.is_object() && a.contains("plugin") && a["plugin"].is_string();
-  });
+  return std::all_of(json["analyses"].begin(), json["analyses"].end(), is_analysis);
 }
 
 }  // namespace
@@ -108,6 +112,10 @@ Expected<std::string> same_values(std::string_view attached_text, std::string_vi
 
 namespace {
 
+bool is_number(const Json& value, const char* key) {
+  return value.is_object() && value.contains(key) && value[key].is_number();
+}
+
 /// "" if the number is in results.json, else what is wrong.
 std::string contradiction(const sign::DccValue& v, const Json& results) {
   const Json* analysis = find(results, v.analysis);
@@ -116,11 +124,13 @@ std::string contradiction(const sign::DccValue& v, const Json& results) {
       !(*analysis)["values"].contains(v.name))
     return who + " is not in results.json";
   const Json& value = (*analysis)["values"][v.name];
-  if (!value.contains("value") || !same(value["value"].get<double>(), v.value))
-    return who + " is " + std::to_string(v.value) + ", and another number in results.json";
-  if (value.value("unit", "") != v.unit) return who + " has another unit than in results.json";
-  if (value.contains("U") != v.U.has_value() || (v.U && !same(value["U"].get<double>(), *v.U)))
-    return who + " has another uncertainty than in results.json";
+  if (!is_number(value, "value") || !same(value["value"].get<double>(), v.value))
+    return who + " is another number in results.json";
+  if (!value.contains("unit") || value["unit"] != v.unit)
+    return who + " has another unit in results.json";
+  const bool has_U = is_number(value, "U");
+  if (has_U != v.U.has_value() || (has_U && !same(value["U"].get<double>(), *v.U)))
+    return who + " has another uncertainty in results.json";
   return {};
 }
 
