@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "signer.h"
 
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -13,6 +14,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <functional>
 #include <iostream>
 #include <utility>
 
@@ -186,7 +188,9 @@ void answer(const Conversation& stream, const Expected<sign::Key>& key,
   done ? reply("", *done) : reply(done.error().message, {});
 }
 
-Expected<sign::Signed> ask(int channel, std::string_view bytes) {
+/// `while_waiting`: called now and then until the answer begins; may be empty.
+Expected<sign::Signed> ask(int channel, std::string_view bytes,
+                           const std::function<void()>& while_waiting = {}) {
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     return fail(std::string("no channel to the process that signs: ") + std::strerror(errno));
@@ -196,6 +200,8 @@ Expected<sign::Signed> ask(int channel, std::string_view bytes) {
     const Conversation theirs(ends[1]);
     asked = send_descriptor(channel, theirs.get());
   }
+  pollfd answered{own.get(), POLLIN, 0};
+  while (asked && while_waiting && ::poll(&answered, 1, 100) <= 0) while_waiting();
   std::string why;
   sign::Signed done;
   if (!asked || !own.write(bytes) || !own.read(why) || !own.read(done.no_time_stamp) ||
@@ -230,7 +236,11 @@ void Signer::serve() const noexcept {
   settle_child();
   ::prctl(PR_SET_DUMPABLE, 0);  // nobody may look into its memory
   ::close(to_);
-  const auto key = guarded("the signing key", [&] { return open_key(signing_, site_); });
+  constexpr int most_deaths = 5;
+  const auto key = guarded("the signing key", [&]() -> Expected<sign::Key> {
+    if (deaths_ > most_deaths) return fail("the process that opens it dies again and again");
+    return open_key(signing_, site_);
+  });
   const auto stamping = stamping_of(signing_, site_);
   for (int fd; (fd = receive_descriptor(from_)) >= 0;) answer(Conversation(fd), key, stamping);
   ::_exit(0);
@@ -243,7 +253,7 @@ Expected<sign::Identity> Signer::start() {
   to_ = ends[0];
   from_ = ends[1];
   if (auto made = fork_process(); !made) return fail(made.error());
-  const auto hello = ask(to_, {});
+  const auto hello = ask(to_, {}, [this] { revive(); });
   if (!hello) return fail(hello.error());
   sign::Identity who;
   const std::size_t blank = hello->bytes.find(' ');
@@ -255,6 +265,7 @@ Expected<sign::Identity> Signer::start() {
 void Signer::revive() {
   if (pid_ > 0 && ::waitpid(pid_, nullptr, WNOHANG) == 0) return;
   pid_ = -1;
+  ++deaths_;
   // Not now: then a later call tries again.
   [[maybe_unused]] const auto made = fork_process();
 }

@@ -37,6 +37,7 @@ class Signer {
   const Signing& signing_;
   const std::filesystem::path site_;
   pid_t pid_ = -1;
+  int deaths_ = 0;
   int to_ = -1, from_ = -1;  ///< the two ends of the channel on which requests come
 };
 

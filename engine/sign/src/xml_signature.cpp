@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // XML-DSig, enveloped, over the whole document, with exclusive canonicalisation.
+#include <libxml/c14n.h>
 #include <libxml/parser.h>
 #include <libxml/tree.h>
+#include <openssl/bn.h>
+#include <openssl/ecdsa.h>
 #include <xmlsec/crypto.h>
 #include <xmlsec/errors.h>
 #include <xmlsec/openssl/evp.h>
-#include <xmlsec/openssl/x509.h>
 #include <xmlsec/templates.h>
 #include <xmlsec/xmldsig.h>
 #include <xmlsec/xmlsec.h>
 #include <xmlsec/xmltree.h>
-
-#include <array>
 
 #include "key.h"
 #include "pdf_signature.h"
@@ -40,21 +40,13 @@ bool started() {
   return well;
 }
 
-/// xmlsec's own, with the certificate and its chain if they are to be written.
-Expected<XmlKeyPtr> key_of(EVP_PKEY* pkey, const Key::Impl* with_certificates) {
+/// xmlsec's own, of a public key.
+Expected<XmlKeyPtr> key_of(EVP_PKEY* pkey) {
   EVP_PKEY_up_ref(pkey);
   xmlSecKeyDataPtr value = xmlSecOpenSSLEvpKeyAdopt(pkey);
   XmlKeyPtr key(xmlSecKeyCreate());
   if (value == nullptr || !key || xmlSecKeySetValue(key.get(), value) != 0)
     return fail("the key cannot be used for XML");
-  if (with_certificates == nullptr) return key;
-  xmlSecKeyDataPtr data = xmlSecKeyEnsureData(key.get(), xmlSecOpenSSLKeyDataX509Id);
-  X509* own = X509_dup(with_certificates->certificate.get());
-  if (data == nullptr || xmlSecOpenSSLKeyDataX509AdoptKeyCert(data, own) != 0)
-    return fail("the certificate cannot be used for XML");
-  xmlSecOpenSSLKeyDataX509AdoptCert(data, X509_dup(own));
-  for (const CertificatePtr& c : with_certificates->chain)
-    xmlSecOpenSSLKeyDataX509AdoptCert(data, X509_dup(c.get()));
   return key;
 }
 
@@ -70,8 +62,7 @@ xmlNode* add_template(xmlDoc* document, bool rsa) {
   xmlNode* data = key_info == nullptr ? nullptr : xmlSecTmplKeyInfoAddX509Data(key_info);
   const bool well = reference != nullptr && data != nullptr &&
                     xmlSecTmplReferenceAddTransform(reference, xmlSecTransformEnvelopedId) &&
-                    xmlSecTmplReferenceAddTransform(reference, xmlSecTransformExclC14NId) &&
-                    xmlSecTmplX509DataAddCertificate(data);
+                    xmlSecTmplReferenceAddTransform(reference, xmlSecTransformExclC14NId);
   return well ? signature : nullptr;
 }
 
@@ -90,26 +81,81 @@ Expected<DocumentPtr> parse_xml(std::string_view bytes) {
   return document;
 }
 
+namespace {
+
+/// Of the whole document, or of one element and what is in it.
+std::string canonical(xmlDoc* document, const xmlNode* only) {
+  const auto visible = [](void* top, xmlNode* node, xmlNode* parent) {
+    const bool has_parent = node != nullptr && node->type != XML_NAMESPACE_DECL;
+    for (const xmlNode* n = has_parent ? node : parent; n != nullptr; n = n->parent)
+      if (n == top) return 1;
+    return top == nullptr ? 1 : 0;
+  };
+  xmlOutputBuffer* buffer = xmlAllocOutputBuffer(nullptr);
+  std::string out;
+  if (buffer != nullptr && xmlC14NExecute(document, visible, const_cast<xmlNode*>(only),
+                                          XML_C14N_EXCLUSIVE_1_0, nullptr, 0, buffer) >= 0)
+    out.assign(reinterpret_cast<const char*>(xmlOutputBufferGetContent(buffer)),
+               xmlOutputBufferGetSize(buffer));
+  if (buffer != nullptr) xmlOutputBufferClose(buffer);
+  return out;
+}
+
+std::string base64(std::string_view bytes) {
+  std::string out((bytes.size() + 2) / 3 * 4 + 1, '\0');
+  out.resize(
+      static_cast<std::size_t>(EVP_EncodeBlock(reinterpret_cast<unsigned char*>(out.data()),
+                                               data_of(bytes), static_cast<int>(bytes.size()))));
+  return out;
+}
+
+/// XML wants r and s side by side where ECDSA gives a sequence of two numbers (RFC 4050).
+Expected<std::string> side_by_side(const std::string& der, std::size_t size) {
+  const unsigned char* at = data_of(der);
+  const std::unique_ptr<ECDSA_SIG, Freed<ECDSA_SIG_free>> pair(
+      d2i_ECDSA_SIG(nullptr, &at, static_cast<long>(der.size())));
+  std::string out(2 * size, '\0');
+  auto* to = reinterpret_cast<unsigned char*>(out.data());
+  if (!pair || BN_bn2binpad(ECDSA_SIG_get0_r(pair.get()), to, static_cast<int>(size)) < 0 ||
+      BN_bn2binpad(ECDSA_SIG_get0_s(pair.get()), to + size, static_cast<int>(size)) < 0)
+    return fail("the key gave no ECDSA signature");
+  return out;
+}
+
+void set(xmlNode* node, const std::string& text) { xmlNodeSetContent(node, xml(text.c_str())); }
+
+}  // namespace
+
+/// Put together here and not by xmlsec, which cannot sign with a key that is in a token.
 Expected<std::string> sign_xml(const Key::Impl& key, std::string_view bytes) {
   auto document = parse_xml(bytes);
   if (!document) return fail(document.error());
-  if (xmlSecFindNode(xmlDocGetRootElement(document->get()), xmlSecNodeSignature, xmlSecDSigNs) !=
-      nullptr)
+  xmlNode* root = xmlDocGetRootElement(document->get());
+  if (xmlSecFindNode(root, xmlSecNodeSignature, xmlSecDSigNs) != nullptr)
     return fail("is signed already");
-  xmlNode* signature =
-      add_template(document->get(), EVP_PKEY_get_base_id(key.key.get()) == EVP_PKEY_RSA);
+  const std::string content = canonical(document->get(), nullptr);
+  const bool rsa = EVP_PKEY_get_base_id(key.key.get()) == EVP_PKEY_RSA;
+  xmlNode* signature = content.empty() ? nullptr : add_template(document->get(), rsa);
   if (signature == nullptr) return fail("no place for a signature in the XML document");
-  auto own = key_of(key.key.get(), &key);
-  if (!own) return fail(own.error());
-  const ContextPtr context(xmlSecDSigCtxCreate(nullptr));
-  context->signKey = own->release();
-  if (xmlSecDSigCtxSign(context.get(), signature) != 0)
-    return fail("the key did not sign the XML document: " + reason());
-  xmlChar* data = nullptr;
+  set(xmlSecFindNode(signature, xmlSecNodeDigestValue, xmlSecDSigNs), base64(sha256(content)));
+  const xmlNode* info = xmlSecFindNode(signature, xmlSecNodeSignedInfo, xmlSecDSigNs);
+  auto value = key.sign_bytes(canonical(document->get(), info));
+  if (value && !rsa)
+    value =
+        side_by_side(*value, static_cast<std::size_t>(EVP_PKEY_get_bits(key.key.get()) + 7) / 8);
+  if (!value) return fail(value.error());
+  set(xmlSecFindNode(signature, xmlSecNodeSignatureValue, xmlSecDSigNs), base64(*value));
+  xmlNode* data = xmlSecFindNode(signature, xmlSecNodeX509Data, xmlSecDSigNs);
+  const auto add = [&](const CertificatePtr& c) {
+    set(xmlSecAddChild(data, xmlSecNodeX509Certificate, xmlSecDSigNs), base64(der_of(c.get())));
+  };
+  add(key.certificate);
+  for (const CertificatePtr& c : key.chain) add(c);
+  xmlChar* text = nullptr;
   int size = 0;
-  xmlDocDumpMemoryEnc(document->get(), &data, &size, "UTF-8");
-  std::string out(reinterpret_cast<const char*>(data), static_cast<std::size_t>(size));
-  xmlFree(data);
+  xmlDocDumpMemoryEnc(document->get(), &text, &size, "UTF-8");
+  std::string out(reinterpret_cast<const char*>(text), static_cast<std::size_t>(size));
+  xmlFree(text);
   return out;
 }
 
@@ -207,7 +253,7 @@ Expected<std::vector<CertificatePtr>> certificates_in(xmlNode* signature) {
 }
 
 Expected<void> check_value(xmlNode* signature, X509* certificate) {
-  auto key = key_of(X509_get0_pubkey(certificate), nullptr);
+  auto key = key_of(X509_get0_pubkey(certificate));
   if (!key) return fail(key.error());
   const ContextPtr context(xmlSecDSigCtxCreate(nullptr));
   context->enabledReferenceUris = xmlSecTransformUriTypeEmpty;
