@@ -42,6 +42,20 @@ def timed(command, cores):
     return wall, usage.ru_utime + usage.ru_stime, largest[0]
 
 
+def beside(commands):
+    """Wall seconds of commands that run at once, each on a core of its own."""
+    began = time.monotonic()
+    running = {subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                preexec_fn=lambda core=core: os.sched_setaffinity(0, {core})).pid
+               for core, command in enumerate(commands)}
+    walls = []
+    while running:
+        pid, _ = os.wait()
+        running.discard(pid)
+        walls.append(time.monotonic() - began)
+    return walls
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("nonio")
@@ -65,6 +79,9 @@ def main():
         print(f"nonio against Python, per core: {peer / one:.1f} times (CPU time: {peer_cpu / one_cpu:.1f} times, "
               f"{1e3 * one_cpu / n:.1f} against {1e3 * peer_cpu / n:.1f} ms)")
         print(f"two workers against one: {one / two:.2f} times")
+        walls = beside([[*run, root / f"beside-{core}", "--jobs", "1"] for core in range(2)])
+        print(f"two runs of one worker at once, one on each core: {sum(one / wall for wall in walls):.2f} times; "
+              "what this machine and its disk give")
         sample = root / "one" / "bench-000000"
         print("outputs of one campaign:", json.dumps({p.name: p.stat().st_size for p in sorted(sample.iterdir())}))
         small, _, small_memory = timed([*run, root / "one", "--jobs", "1"], 2)

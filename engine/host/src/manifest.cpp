@@ -19,7 +19,7 @@ constexpr double mm = 1e-3, um = 1e-6;
 constexpr double deg = 1.0 / deg_per_rad, arcsec = 1.0 / arcsec_per_rad;
 
 const std::vector<std::string> measurement_kinds = {
-    "axis", "straightness", "diagonal", "step-diagonal", "ball-centres", "observations"};
+    "axis", "straightness", "angle", "diagonal", "step-diagonal", "ball-centres", "observations"};
 
 /// A file that is being read: its name and what was found wrong so far.
 struct Source {
@@ -220,7 +220,8 @@ Measurement read_measurement(Source& source, const toml::table& table) {
   m.file = reader.text("file", true);
   m.reader = reader.text("reader");
   m.axis = reader.text("axis");
-  if (m.axis.empty() && (m.kind == "axis" || m.kind == "straightness" || m.kind == "ball-centres"))
+  if (m.axis.empty() && (m.kind == "axis" || m.kind == "straightness" || m.kind == "angle" ||
+                         m.kind == "ball-centres"))
     reader.error("axis", "is missing: which axis of the machine was measured");
   m.lateral = reader.text("lateral");
   if (m.kind == "straightness" && m.lateral.empty())
@@ -228,6 +229,7 @@ Measurement read_measurement(Source& source, const toml::table& table) {
   if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
     reader.error("lateral", "wanted another axis than " + m.axis +
                                 ", which moves: along it the deviation is one of positioning");
+  if (m.kind == "angle") m.lateral = reader.choice("about", {"X", "Y", "Z"}, true);
   for (const double line : reader.numbers("exclude").value_or(std::vector<double>{}))
     if (line >= 1.0 && line <= 4e9 && line == std::floor(line))
       m.exclude.push_back(static_cast<std::uint32_t>(line));

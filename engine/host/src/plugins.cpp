@@ -170,4 +170,12 @@ std::string Plugins::absence(std::string_view kind, std::string_view name) const
   return words;
 }
 
+std::string Plugins::refusals() const {
+  std::string words;
+  for (const PluginFile& file : files_)
+    if (!file.refused.empty())
+      words += (words.empty() ? "" : "; ") + file.path.string() + " " + file.refused;
+  return words;
+}
+
 }  // namespace nonio::host

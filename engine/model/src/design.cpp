@@ -102,19 +102,22 @@ VectorXd root_weights(const Observations& o, const std::vector<double>& weight) 
 
 void take_out_zeros(const Observations& o, const VectorXd& root_weight, MatrixXd& columns) {
   const auto lines = static_cast<Index>(lines_of(o));
-  MatrixXd sum = MatrixXd::Zero(lines, columns.cols());
-  VectorXd weight = VectorXd::Zero(lines);
   const Index n = columns.rows();
+  std::vector<Index> line(static_cast<std::size_t>(n));
+  VectorXd weight = VectorXd::Zero(lines), sum(lines);
   for (Index i = 0; i < n; ++i) {
-    const auto line = static_cast<Index>(line_of(o, static_cast<std::size_t>(i)));
-    sum.row(line) += root_weight(i) * columns.row(i);
-    weight(line) += root_weight(i) * root_weight(i);
+    line[static_cast<std::size_t>(i)] = static_cast<Index>(line_of(o, static_cast<std::size_t>(i)));
+    weight(line[static_cast<std::size_t>(i)]) += root_weight(i) * root_weight(i);
   }
-  for (Index line = 0; line < lines; ++line)
-    if (weight(line) > 0.0) sum.row(line) /= weight(line);
-  for (Index i = 0; i < n; ++i)
-    columns.row(i) -=
-        root_weight(i) * sum.row(static_cast<Index>(line_of(o, static_cast<std::size_t>(i))));
+  weight = (weight.array() > 0.0).select(weight.cwiseInverse(), 0.0);
+  for (Index k = 0; k < columns.cols(); ++k) {
+    sum.setZero();
+    for (Index i = 0; i < n; ++i)
+      sum(line[static_cast<std::size_t>(i)]) += root_weight(i) * columns(i, k);
+    sum.array() *= weight.array();
+    for (Index i = 0; i < n; ++i)
+      columns(i, k) -= root_weight(i) * sum(line[static_cast<std::size_t>(i)]);
+  }
 }
 
 }  // namespace nonio::model

@@ -244,6 +244,17 @@ MatrixXd orthonormal(MatrixXd columns) {
   return qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
 }
 
+/// Whether what a factor says differs between repeats of a cell: what comes back in every run sits
+/// in the cells, even where a wave of time describes it with fewer columns.
+bool tells_repeats_apart(const Repeats& r, const VectorXd& root, const MatrixXd& basis,
+                         const VectorXd& residual) {
+  constexpr double least = 0.1;  // of its squares; of a line in time over two runs, a fifth
+  MatrixXd said = basis * (basis.transpose() * residual);
+  const double all = said.squaredNorm();
+  take_out_cells(r, root, said);
+  return said.squaredNorm() > least * all;
+}
+
 /// Orthonormal columns of every factor: without zeros of lines, without what the model can say,
 /// pairs without their factors.
 std::vector<MatrixXd> bases_of(const Factors& factors, const Part& part, const Repeats& repeats,
@@ -369,7 +380,9 @@ std::vector<Place> seats_of(const Leftover& left) {
       const double here = (bases[f].transpose() * rest).squaredNorm();
       const double value = -n * std::log1p(-std::min(here / rest.squaredNorm(), 1.0 - 1e-12)) -
                            k * std::log(n) - 10.0;  // 10: one place in a hundred by chance
-      if (value > gain) best = f, gain = value, fall = here;
+      if (value > gain && (!factors.all()[f].repeated ||
+                           tells_repeats_apart(left.repeats, left.root_weight, bases[f], rest)))
+        best = f, gain = value, fall = here;
     }
     if (best == bases.size()) break;
     Place seat;

@@ -12,8 +12,6 @@ namespace nonio::model {
 
 namespace {
 
-constexpr double memory_p = 1e-4;  // noise without a memory looks so once in 10,000
-
 /// Residuals without what a whole pass shares.
 std::vector<double> within_passes(const Repeats& repeats, const std::vector<double>& residual,
                                   const std::vector<double>& weight) {
@@ -92,26 +90,69 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
   return worst;
 }
 
-std::optional<Place> walking_zero(const Repeats& repeats, const std::vector<double>& residual,
-                                  const std::vector<double>& weight) {
-  const Saturated left = saturate(repeats, residual, weight);
-  if (!(left.dof >= 8.0)) return std::nullopt;
-  std::vector<double> before(repeats.passes, std::numeric_limits<double>::quiet_NaN());
-  double products = 0.0, pairs = 0.0, used = 0.0;
-  for (std::size_t i = 0; i < left.e.size(); ++i) {
-    if (!(weight[i] > 0.0)) continue;
-    ++used;
-    double& last = before[repeats.pass[i]];
-    if (std::isfinite(last)) products += last * left.e[i], ++pairs;
-    last = left.e[i];
+namespace {
+
+/// Rows of `columns` (of unit variance and a level that walks by `step2` from one to the next)
+/// without what the rows before predict, of unit variance: the filter of a local level with an
+/// unknown start on each line. Durbin and Koopman, Time Series Analysis by State Space
+/// Methods, 2.2. `row` holds the rows in the order in which they were read, `log_det` the logarithm
+/// of the determinant of their covariance.
+MatrixXd whitened(const Observations& o, const VectorXd& root, const std::vector<Index>& row,
+                  const MatrixXd& columns, double step2, double& log_det) {
+  MatrixXd out = MatrixXd::Zero(static_cast<Index>(row.size()), columns.cols());
+  std::vector<Eigen::RowVectorXd> level(lines_of(o));
+  std::vector<double> variance(lines_of(o), 0.0);
+  log_det = 0.0;
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    const double of_row = 1.0 / (root(row[k]) * root(row[k]));
+    const std::size_t line = line_of(o, static_cast<std::size_t>(row[k]));
+    if (level[line].size() == 0) {
+      level[line] = columns.row(row[k]);
+      variance[line] = of_row;
+      continue;
+    }
+    const double before = variance[line] + step2, all = before + of_row;
+    const Eigen::RowVectorXd v = columns.row(row[k]) - level[line];
+    out.row(static_cast<Index>(k)) = v / std::sqrt(all);
+    log_det += std::log(all);
+    level[line] += before / all * v;
+    variance[line] = before * of_row / all;
   }
-  const double mean_square = left.squares / used;
-  if (!(pairs >= 20.0) || !(mean_square > 0.0)) return std::nullopt;
-  const double r = products / pairs / mean_square;  // 0 +- 1/sqrt(pairs) without a memory
-  const double p = 0.5 * std::erfc(r * std::sqrt(pairs / 2.0));
-  if (!(p < memory_p)) return std::nullopt;
-  const double square = r * mean_square * static_cast<double>(repeats.passes) * 70.0 / 18.0;
-  return Place{"time", 0.0, p, std::sqrt(square)};
+  return out;
+}
+
+}  // namespace
+
+double criterion_of_walk(const Observations& o, const VectorXd& root, const MatrixXd& model) {
+  constexpr int steps = 13;
+  std::vector<Index> row;
+  for (Index i = 0; i < root.size(); ++i)
+    if (root(i) > 0.0) row.push_back(i);
+  if (std::all_of(row.begin(), row.end(), [&](Index i) {
+        return !o.time.empty() && std::isfinite(o.time[static_cast<std::size_t>(i)]);
+      }))
+    std::stable_sort(row.begin(), row.end(), [&](Index a, Index b) {
+      return o.time[static_cast<std::size_t>(a)] < o.time[static_cast<std::size_t>(b)];
+    });
+  MatrixXd columns(root.size(), model.cols() + 1);
+  columns << model, Eigen::Map<const VectorXd>(o.deviation.data(), root.size());
+  const auto n = static_cast<double>(row.size());
+  double none = 0.0, least = std::numeric_limits<double>::infinity();
+  whitened(o, root, row, columns, 0.0, none);
+  for (int k = 0; k < steps; ++k) {
+    double log_det = 0.0;
+    const MatrixXd white = whitened(o, root, row, columns, std::pow(10.0, 0.25 * k - 2.0), log_det);
+    const VectorXd y = white.rightCols(1);
+    const MatrixXd x = white.leftCols(model.cols());
+    double squares = y.squaredNorm();
+    if (x.cols() > 0) {
+      VectorXd rotated = y;
+      rotated.applyOnTheLeft(Eigen::HouseholderQR<MatrixXd>(x).householderQ().transpose());
+      squares = rotated.tail(rotated.size() - x.cols()).squaredNorm();
+    }
+    least = std::min(least, n * std::log(squares / n) + log_det - none);
+  }
+  return least;
 }
 
 }  // namespace nonio::model

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "design.h"
 #include "nonio/model/explain.h"
 #include "repeats.h"
 
@@ -16,10 +17,9 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
                               const std::vector<double>& residual,
                               const std::vector<double>& weight);
 
-/// A zero that walks: what repeats leave has a memory from one reading of a pass to the next. Its
-/// size is that of a random walk over all passes: step^2 n/6 in square, of which a pass of m
-/// readings keeps step^2 3m/70 when its curve of second degree is taken out.
-std::optional<Place> walking_zero(const Repeats& repeats, const std::vector<double>& residual,
-                                  const std::vector<double>& weight);
+/// n ln(squares/n) + ln|V| of the model beside a zero that walks, reading by reading, as far as
+/// makes this least: what `Workbench::State::criterion` is without its price. `model` holds the
+/// model's columns; rows in file order, of weight 0 are left out.
+double criterion_of_walk(const Observations& o, const VectorXd& root_weight, const MatrixXd& model);
 
 }  // namespace nonio::model

@@ -21,17 +21,23 @@ struct Chance {
   double corrected(double p) const;
 };
 
-/// `residual` with the signs of short stretches of its passes flipped at random (what neighbours
-/// share within a pass stays), less what `basis` says of it: a column for each shuffle.
-MatrixXd shuffled(const VectorXd& residual, const MatrixXd& basis,
+/// Noise made of `residual`: the signs of short stretches of its passes flipped at random (what
+/// neighbours share within a pass stays), less what the zeros and a state's columns say of it.
+struct Shuffles {
+  MatrixXd noise;     ///< a column for each shuffle
+  MatrixXd products;  ///< of all columns of the bench with them
+  VectorXd squares;   ///< of each shuffle
+};
+Shuffles shuffled(const Workbench& bench, const Workbench::State& complete,
+                  const VectorXd& residual, const Observations& o,
                   const std::vector<std::uint32_t>& pass, std::uint64_t seed);
 
 Chance measure_chance(const Workbench& bench, const Workbench::State& complete,
-                      const MatrixXd& shuffled);
+                      const Shuffles& shuffles);
 
 /// Of each shuffle, whether an effect would be named.
 std::vector<char> named_in(const Workbench& bench, const Workbench::State& complete,
-                           const MatrixXd& shuffled, const Chance& chance);
+                           const Shuffles& shuffles, const Chance& chance);
 
 /// F-test of one effect of a state against the rest; not corrected for any search.
 double p_of(const Workbench& bench, const Workbench::State& state, std::size_t effect);

@@ -49,36 +49,47 @@ class Judge {
     for (const Place& place : f_.of_model.places)
       if (place.p < place_p) out_.fails.push_back(place);
     std::vector<Place> serious = this->serious(f_.of_best.places);
-    const std::optional<Place> walk = walking_zero(f_.repeats, f_.of_best.fit.residual, f_.weight);
+    const bool walks = !out_.together.empty() && zero_walks();
     if (contradictory()) {
       v.kind = Verdict::Kind::unrepeatable;
       return;
     }
-    for (const std::string& name : out_.together)
-      if (!in_doubt(name, serious, walk)) {
-        v.kind = Verdict::Kind::missing;
-        v.effect = name;
-        break;
-      }
-    if (walk) serious.insert(serious.begin(), *walk);
+    if (!out_.together.empty() && !walks && !in_doubt(out_.together.front(), serious)) {
+      v.kind = Verdict::Kind::missing;
+      v.effect = out_.together.front();
+    }
     if (v.kind == Verdict::Kind::missing) {
       lift(v.effect);
       out_.plans = plans_for(f_.part, f_.of_model.fit.terms, out_.candidates.front(), f_.terms,
                              f_.of_best.fit.s);
-    } else if (!serious.empty()) {
+    } else if (walks || !serious.empty()) {
       v.kind = Verdict::Kind::unknown;
       if (auto seats = seats_in(f_.part, f_.repeats, f_.of_model); !seats.empty())
         out_.fails = std::move(seats);
-      else
-        out_.fails = serious;
+      else if (!serious.empty())
+        out_.fails = std::move(serious);
     }
   }
 
  private:
+  /// Whether the model beside a zero that walks is better evidence than the best set of effects.
+  bool zero_walks() const {
+    MatrixXd model(static_cast<Index>(f_.part.table.size()), 0);
+    for (const Term& term : f_.of_model.fit.terms) {
+      const auto columns = columns_of(f_.part.table, term, term.shape);
+      if (!columns) return false;
+      model.conservativeResize(Eigen::NoChange, model.cols() + columns->cols());
+      model.rightCols(columns->cols()) = *columns;
+    }
+    const double price = f_.start.price + std::log(f_.bench->readings()) +
+                         2.0 * std::log(static_cast<double>(f_.terms.size()));
+    return criterion_of_walk(f_.part.table, f_.bench->root_weight(), model) + price <
+           f_.best.criterion;
+  }
+
   /// Whether something else is left in the places where this effect works: then it may be no more
-  /// than the nearest thing in the catalogue. A zero that walks can look like anything.
-  bool in_doubt(const std::string& name, const std::vector<Place>& serious,
-                const std::optional<Place>& walk) const {
+  /// than the nearest thing in the catalogue.
+  bool in_doubt(const std::string& name, const std::vector<Place>& serious) const {
     for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t) {
       if (f_.of_best.fit.terms[t].name() != name) continue;
       const VectorXd part = Eigen::Map<const VectorXd>(
@@ -88,7 +99,6 @@ class Judge {
       const double rms2 =
           (f_.bench->without(f_.best, f_.index_of(name)).squares - f_.best.squares) /
           f_.bench->readings();
-      if (walk && walk->rms * walk->rms > unexplained_share * rms2) return true;
       const auto works_in = factors_of(f_.part, f_.repeats, f_.bench->root_weight(),
                                        f_.bench->root_weight().cwiseProduct(centred));
       for (const Place& place : serious)
@@ -122,14 +132,14 @@ class Judge {
   }
 
   void count_false_alarms(Verdict& v) const {
-    const MatrixXd basis = f_.bench->basis(f_.best);
-    MatrixXd shuffles = shuffled(noise(), basis, f_.repeats.pass, f_.seed);
-    take_out_zeros(f_.part.table, f_.bench->root_weight(), shuffles);
+    const Shuffles shuffles =
+        shuffled(*f_.bench, f_.best, noise(), f_.part.table, f_.repeats.pass, f_.seed);
     const std::vector<char> named = named_in(*f_.bench, f_.best, shuffles, f_.chance);
-    const PlaceTests tests(f_.part, f_.repeats, f_.bench->root_weight(), basis, f_.dof(f_.best));
+    const PlaceTests tests(f_.part, f_.repeats, f_.bench->root_weight(), f_.bench->basis(f_.best),
+                           f_.dof(f_.best));
     double alarms = 0.0;
     for (std::size_t i = 0; i < named.size(); ++i) {
-      const VectorXd one = shuffles.col(static_cast<Index>(i));
+      const VectorXd one = shuffles.noise.col(static_cast<Index>(i));
       if (named[i] != 0 || !serious(tests(one, f_.of_best.floor, least_serious())).empty())
         ++alarms;
     }

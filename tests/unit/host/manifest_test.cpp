@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 namespace nonio::host {
 
 namespace {
@@ -127,6 +129,25 @@ TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
     EXPECT_NE(found.find(r.wanted), std::string::npos)
         << r.bad << "\ngot: " << found << "wanted: " << r.wanted;
   }
+}
+
+TEST(Manifest, WhereTheOtherAxesStoodStill) {
+  const auto parse = [](const std::string& at) {
+    std::string text = whole;
+    return parse_manifest(text.replace(text.find("file = "), 0, "at = " + at + "\n"),
+                          "campaign.toml");
+  };
+  const auto m = parse("{ X = 300, Z = -50.5, C = 1 }");
+  ASSERT_TRUE(m) << m.error().front().message;
+  const std::map<std::string, double> expected{{"C", 0.001}, {"X", 0.3}, {"Z", -0.0505}};
+  EXPECT_EQ(m->campaign.measurements.front().at, expected);
+  const auto moves = parse("{ X = 300, Y = 1 }");
+  ASSERT_FALSE(moves);
+  EXPECT_EQ(moves.error().front().line, 25U);
+  EXPECT_NE(moves.error().front().message.find("stood still, found Y, which moves"),
+            std::string::npos);
+  EXPECT_NE(complaint("file = ", "at = { X = \"far\" }\nfile = ").find("wanted a number"),
+            std::string::npos);
 }
 
 TEST(Manifest, KeysHaveTheirLines) {

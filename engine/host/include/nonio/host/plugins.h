@@ -41,6 +41,8 @@ class Plugins final : public Registry {
 
   /// Why a plugin of that name is not there, with the nearest name.
   std::string absence(std::string_view kind, std::string_view name) const;
+  /// Every file that was refused, with the reason; empty if none was.
+  std::string refusals() const;
 
   void add(Reader) override;
   void add(Effect) override;
