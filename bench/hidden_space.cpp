@@ -4,7 +4,6 @@
 // Campaigns of seeds SEED .. SEED+COUNT-1 of each story; one error of 3 times the noise is not in
 // the model. Fails if fewer are named first, or in the alias group that is said, than --right says.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -16,9 +15,11 @@
 #include "hidden/space.h"
 #include "nonio/host/plugins.h"
 #include "nonio/model/explain.h"
+#include "tally.h"
 
 namespace fs = std::filesystem;
 using namespace nonio;
+using bench::print, bench::Tally, bench::whole;
 using hidden::SpaceHidden;
 using hidden::Story;
 using model::Verdict;
@@ -27,24 +28,8 @@ namespace {
 
 constexpr double times_the_noise = 3.0;
 
-struct Tally {
-  std::uint64_t yes = 0, of = 0;
-  void add(bool value) { yes += value ? 1 : 0, ++of; }
-};
-
-void print(const std::string& what, const Tally& t) {
-  if (t.of == 0) return;
-  const double n = static_cast<double>(t.of), p = static_cast<double>(t.yes) / n, z = 1.959964;
-  const double middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
-  const double half = z / (1.0 + z * z / n) * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
-  std::printf("  %-44s %5llu of %5llu  %6.2f %%  (%5.1f .. %5.1f)\n", what.c_str(),
-              static_cast<unsigned long long>(t.yes), static_cast<unsigned long long>(t.of),
-              100.0 * p, 100.0 * std::max(0.0, middle - half),
-              100.0 * std::min(1.0, middle + half));
-}
-
 struct Score {
-  Tally found, by_alias, ends, nothing_else, complete, values;
+  Tally found, by_alias, nothing_else, complete;
   std::map<std::string, Tally> of_effect;
   double cpu = 0.0, most_cpu = 0.0, readings = 0.0;
 };
@@ -135,13 +120,6 @@ void run(Story story, std::uint64_t seed, const std::vector<Effect>& effects, bo
     std::printf("  complete model: ");
     tell(h, seed, *complete);
   }
-}
-
-std::optional<std::uint64_t> whole(const std::string& text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return {};
-  return value;
 }
 
 constexpr Story stories[] = {Story::gantry, Story::third, Story::single_column, Story::straightedge,

@@ -148,7 +148,7 @@ def expected_square(seed, machine, lines_of_x, ident, customer, place, structure
         story, ident, customer, place, "2026-05-11",
         {"maker": "Sample Machines", "model": "PG 4", "serial": "S-01" + ident[:2], "structure": structure},
         {"X": linear(machine.Lx), "Y": linear(machine.Ly)}, measurements, environment=GOOD_ROOM,
-        analyses=["iso230-2"], model=model_of_pitch())
+        analyses=["iso230-2", "model-fit"], model=model_of_pitch())
     return files
 
 

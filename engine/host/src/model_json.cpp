@@ -175,6 +175,7 @@ Json plans_json(const std::vector<model::Plan>& plans, const ModelWords& words) 
   for (const model::Plan& plan : plans) {
     Json one = {
         {"plan", plan.id}, {"readings", plan.readings}, {"separates", {plan.one, plan.other}}};
+    if (!plan.of.empty()) one["of"] = plan.of;
     put(one, "power", plan.power, Quantity::number);
     one["says"] = words.plan(plan);
     list.push_back(std::move(one));

@@ -129,7 +129,7 @@ std::string ModelWords::plan(const model::Plan& plan) const {
   std::string text = says("plan." + plan.id,
                           {{"readings", static_cast<double>(plan.readings), Quantity::count},
                            {"power", plan.power, Quantity::number}},
-                          {{"one", plan.one}, {"other", plan.other}});
+                          {{"one", plan.one}, {"other", plan.other}, {"of", plan.of}});
   return text.empty() ? plan.id : text;
 }
 

@@ -183,6 +183,7 @@ void predict_lines(const CrossJob& job, const Corrections& corrections, OutputRe
   };
   std::vector<Prediction> all;  // several runs of a line: the worst of them
   for (const ReadLine& line : job.lines) {
+    if (line.deviation.size() < 2) continue;  // nothing of it was read at whole steps
     const std::string name = line.name.substr(0, line.name.find(' '));
     const Prediction one{job.measurement, name, range(line.deviation), after(line),
                          Quantity::deviation};

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "fixtures.h"
 #include "nonio/reports/number.h"
 #include "pdf_reader.h"
@@ -329,15 +331,20 @@ Evaluation step_diagonals(bool scales) {
 
 TEST_F(PdfReport, TheVolumeSaysItsFactorAndItsLargestError) {
   const Case c = spatial("step-diagonal", {{"SD", step_diagonals(true)}});
-  const std::string en = text(c), it = text(c, "it");
+  const auto on_one_line = [](std::string words) {
+    std::replace(words.begin(), words.end(), '\n', ' ');
+    return words;
+  };
+  const std::string en = on_one_line(text(c)), it = on_one_line(text(c, "it"));
   // A fifth of 800 mm is 6667 times 24 um; the factor is 1, 2 or 5 times a power of ten.
   EXPECT_TRUE(has(en, "The volume, errors × 5000")) << en;
   EXPECT_TRUE(has(en, "Errors are drawn 5000 times as large as they are"));
-  EXPECT_TRUE(has(en, "The largest is 24.0 µm, at X 800")) << en;
+  EXPECT_TRUE(has(en, "The largest is 24.0 µm, at X 800, Y")) << en;
   EXPECT_TRUE(has(en, "X 0 – 800, Y 0 – 600,")) << en;
   EXPECT_FALSE(has(en, "Without E"));
   EXPECT_TRUE(has(it, "disegnati 5000 volte"));
-  const std::string shapes = text(spatial("step-diagonal", {{"SD", step_diagonals(false)}}));
+  const std::string shapes =
+      on_one_line(text(spatial("step-diagonal", {{"SD", step_diagonals(false)}})));
   EXPECT_TRUE(has(shapes, "Without EXX, EYY, EZZ: these scales are not known."));
   Evaluation incomplete = step_diagonals(true);
   incomplete.values.pop_back();
