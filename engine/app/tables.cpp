@@ -241,7 +241,8 @@ void print_change(std::ostream& out, const host::Change& change, const host::Mod
   print_bars(out, step);
   if (!change.after) return;
   print_parameters(out, change.after->comparison.fit);
-  for (const std::string& warning : host::warnings_of(change.after->part, change.after->comparison.fit, words))
+  for (const std::string& warning :
+       host::warnings_of(change.after->part, change.after->comparison.fit, words))
     out << "  warning: " << warning << "\n";
 }
 

@@ -19,7 +19,8 @@ using machine::Vector;
 
 constexpr std::size_t most_waves = 3;
 
-/// A smooth random curve over 0 .. length: a bow and waves down to two thirds of the length, at most `size`.
+/// A smooth random curve over 0 .. length: a bow and waves down to two thirds of the length, at
+/// most `size`.
 Curve wavy(Random& random, double length, double size) {
   std::array<double, most_waves> amplitude{}, phase{};
   for (std::size_t k = 0; k < most_waves; ++k) {

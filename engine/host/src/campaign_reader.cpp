@@ -142,9 +142,9 @@ class CampaignReader {
                 "the format of an installed reader (`nonio plugins`)",
                 m.file});
     if (const std::string refused = context_.plugins->refusals(); !refused.empty())
-      return fail(at("measurement." + m.id + ".kind",
-                     "no reader takes measurements of kind \"" + m.kind +
-                         "\", and of the plugins " + refused));
+      return fail(at("measurement." + m.id + ".kind", "no reader takes measurements of kind \"" +
+                                                          m.kind + "\", and of the plugins " +
+                                                          refused));
     out_.unread.push_back(m.id);
     out_.notes.push_back({"measurement.unread", {}, {{"kind", m.kind}}, m.id});
     return nullptr;
