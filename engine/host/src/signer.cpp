@@ -164,13 +164,11 @@ Expected<sign::TimeStamping> stamping_of(const Signing& s, const fs::path& site)
   return stamping;
 }
 
+/// Waits for whoever asks: one that hangs is ended by the main process, and its stream with it.
 /// An empty request asks who signs. The answer: "" or what went wrong; what there is to say of a
 /// missing time stamp; the bytes.
 void answer(const Conversation& stream, const Expected<sign::Key>& key,
             const Expected<sign::TimeStamping>& stamping) {
-  const timeval patience{30, 0};
-  ::setsockopt(stream.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-  ::setsockopt(stream.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
   std::string request;
   if (!stream.read(request)) return;
   const auto reply = [&](const std::string& why, const sign::Signed& done) {
