@@ -15,7 +15,7 @@ import time
 HERE = pathlib.Path(__file__).parent
 
 
-def timed(command, cores):
+def timed(command, cores, worst_status=1):
     """Wall seconds, CPU seconds with all children, and the largest memory in MB of the main process
     alone, on `cores` cores."""
     began = time.monotonic()
@@ -37,9 +37,23 @@ def timed(command, cores):
     wall = time.monotonic() - began
     ended.set()
     watcher.join()
-    if os.waitstatus_to_exitcode(status) > 1:
+    if os.waitstatus_to_exitcode(status) > worst_status:
         sys.exit(f"{command} failed: {status}")
     return wall, usage.ru_utime + usage.ru_stime, largest[0]
+
+
+def beside(commands):
+    """Wall seconds of commands that run at once, each on a core of its own."""
+    began = time.monotonic()
+    running = {subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                preexec_fn=lambda core=core: os.sched_setaffinity(0, {core})).pid
+               for core, command in enumerate(commands)}
+    walls = []
+    while running:
+        pid, _ = os.wait()
+        running.discard(pid)
+        walls.append(time.monotonic() - began)
+    return walls
 
 
 def main():
@@ -56,7 +70,7 @@ def main():
         rows = []
         one, one_cpu, memory = timed([*run, root / "one", "--jobs", "1"], 1)
         rows.append(("nonio, one worker on one core", n / one, memory))
-        peer, peer_cpu, peer_memory = timed([sys.executable, HERE / "peer.py", site, root / "peer"], 1)
+        peer, peer_cpu, peer_memory = timed([sys.executable, HERE / "peer.py", site, root / "peer"], 1, 0)
         rows.append(("Python pipeline on one core", n / peer, peer_memory))
         two, _, memory2 = timed([*run, root / "two", "--jobs", "2"], 2)
         rows.append(("nonio, two workers on two cores", n / two, memory2))
@@ -65,6 +79,9 @@ def main():
         print(f"nonio against Python, per core: {peer / one:.1f} times (CPU time: {peer_cpu / one_cpu:.1f} times, "
               f"{1e3 * one_cpu / n:.1f} against {1e3 * peer_cpu / n:.1f} ms)")
         print(f"two workers against one: {one / two:.2f} times")
+        walls = beside([[*run, root / f"beside-{core}", "--jobs", "1"] for core in range(2)])
+        print(f"two runs of one worker at once, one on each core: {sum(one / wall for wall in walls):.2f} times; "
+              "what this machine and its disk give")
         sample = root / "one" / "bench-000000"
         print("outputs of one campaign:", json.dumps({p.name: p.stat().st_size for p in sorted(sample.iterdir())}))
         small, _, small_memory = timed([*run, root / "one", "--jobs", "1"], 2)

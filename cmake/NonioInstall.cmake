@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 
 install(TARGETS nonio_sdk nonio_math EXPORT nonio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS nonio_model nonio_host nonio_reports LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS nonio_model nonio_sign nonio_host nonio_reports LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 foreach(part sdk math)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/${part}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endforeach()

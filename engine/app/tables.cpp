@@ -191,7 +191,7 @@ void print_comparison(std::ostream& out, const host::Compared& compared, const C
   if (c.means > 0)
     line(out, "", "told from " + std::to_string(c.means) + " means of neighbouring readings");
   print_suspects(out, c, part, campaign, words);
-  for (const std::string& warning : host::warnings_of(c.fit, words))
+  for (const std::string& warning : host::warnings_of(part, c.fit, words))
     out << "  warning: " << warning << "\n";
 }
 
@@ -203,7 +203,7 @@ void print_model(std::ostream& out, const host::Compared& compared, const host::
   if (c.cv_rms) line(out, "left-out runs", with_unit(*c.cv_rms, q));
   if (c.floor) line(out, "noise floor", floor_text(*c.floor, q));
   print_parameters(out, c.fit);
-  for (const std::string& warning : host::warnings_of(c.fit, words))
+  for (const std::string& warning : host::warnings_of(compared.part, c.fit, words))
     out << "  warning: " << warning << "\n";
 }
 
@@ -219,7 +219,7 @@ void print_explanation(std::ostream& out, const host::Explained& e, const Campai
     if (!host::is_ranked(candidate)) out << "  " << words.unseen(candidate) << "\n";
   print_verdict(out, e, words);
   print_suspects(out, c, e.part, campaign, words);
-  for (const std::string& warning : host::warnings_of(c.fit, words))
+  for (const std::string& warning : host::warnings_of(e.part, c.fit, words))
     out << "  warning: " << warning << "\n";
 }
 
@@ -241,7 +241,8 @@ void print_change(std::ostream& out, const host::Change& change, const host::Mod
   print_bars(out, step);
   if (!change.after) return;
   print_parameters(out, change.after->comparison.fit);
-  for (const std::string& warning : host::warnings_of(change.after->comparison.fit, words))
+  for (const std::string& warning :
+       host::warnings_of(change.after->part, change.after->comparison.fit, words))
     out << "  warning: " << warning << "\n";
 }
 

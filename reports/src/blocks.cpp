@@ -147,7 +147,8 @@ Expected<Laid> lay(const Paragraph& paragraph, double width, const Context& cont
                        small ? style.small : style.body, width, field);
   if (!text) return fail(text.error());
   Laid out;
-  add_text(out.pieces, *text, 0, paragraph.look == Look::muted ? style.muted : style.text);
+  add_text(out.pieces, *text, 0, paragraph.look == Look::muted ? style.muted : style.text,
+           paragraph.with_next);
   out.pieces.back().gap = small ? 1.5 : 3;
   return out;
 }
@@ -247,7 +248,8 @@ Expected<Laid> lay(const Status& status, double width, const Context& context,
 }
 
 Expected<Laid> lay(const Spacer& spacer, double, const Context&, std::string_view) {
-  return Laid{{{0.0, spacer.height, {}, false}}};
+  return Laid{{{0.0, spacer.height, {}, true}}};  // what stands before it may have to stay with
+                                                  // what follows
 }
 
 Expected<Laid> lay(const PageBreak&, double, const Context&, std::string_view) {

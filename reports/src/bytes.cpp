@@ -4,8 +4,10 @@
 #include <libdeflate.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 
 namespace nonio::reports {
@@ -25,20 +27,26 @@ void append_int(std::string& out, long long value) {
   out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
 }
 
-void append_real(std::string& out, double value) {
+/// Written by the ten thousand: digits from the last to the first, by hand.
+void append_real(std::string& out, double value, char behind) {
   if (!(std::fabs(value) < 30000.0))
     value = std::copysign(30000.0, std::isnan(value) ? 0.0 : value);
-  long long hundredths = std::llround(value * 100.0);
-  if (hundredths < 0) {
-    out += '-';
-    hundredths = -hundredths;
+  const double exact = std::fabs(value) * 100.0;
+  auto hundredths = static_cast<std::uint32_t>(exact);
+  if (exact - hundredths >= 0.5) ++hundredths;
+  std::array<char, 12> text;
+  char* at = text.data() + text.size();
+  *--at = behind;
+  std::uint32_t whole = hundredths / 100;
+  if (const std::uint32_t rest = hundredths % 100; rest != 0) {
+    if (rest % 10 != 0) *--at = static_cast<char>('0' + rest % 10);
+    *--at = static_cast<char>('0' + rest / 10);
+    *--at = '.';
   }
-  append_int(out, hundredths / 100);
-  const auto rest = static_cast<int>(hundredths % 100);
-  if (rest == 0) return;
-  out += '.';
-  out += static_cast<char>('0' + rest / 10);
-  if (rest % 10 != 0) out += static_cast<char>('0' + rest % 10);
+  do *--at = static_cast<char>('0' + whole % 10);
+  while ((whole /= 10) != 0);
+  if (value < 0.0 && hundredths != 0) *--at = '-';
+  out.append(at, text.data() + text.size());
 }
 
 }  // namespace nonio::reports

@@ -13,6 +13,6 @@ std::string deflated(std::string_view bytes, int level);
 void append_int(std::string& out, long long value);
 
 /// With at most two decimals, as PDF operands; the size is limited to 30000, as PDF readers do.
-void append_real(std::string& out, double value);
+void append_real(std::string& out, double value, char behind);
 
 }  // namespace nonio::reports

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "canvas.h"
 
+#include <array>
+
 #include "bytes.h"
 
 namespace nonio::reports {
 
-void Canvas::number(double value) {
-  append_real(ops, value);
-  ops += ' ';
-}
+void Canvas::number(double value) { append_real(ops, value, ' '); }
 
 void Canvas::colour(Colour c, const char* op) {
   for (const float part : {c.red, c.green, c.blue}) number(part);
@@ -138,16 +137,19 @@ void Canvas::show(bool bold, double size, std::span<const Glyph> glyphs) {
     state_.size = size;
   }
   ops += '(';
-  for (const Glyph& g : glyphs)
+  std::array<char, 256> part;  // appending byte by byte takes twice as long
+  std::size_t n = 0;
+  for (const Glyph& g : glyphs) {
     for (const int byte : {g.id >> 8, g.id & 0xFF}) {
       const char c = static_cast<char>(byte);
-      if (c == '\r') {
-        ops += "\\r";
-        continue;
-      }
-      if (c == '(' || c == ')' || c == '\\') ops += '\\';
-      ops += c;
+      if (c == '(' || c == ')' || c == '\\' || c == '\r') part[n++] = '\\';
+      part[n++] = c == '\r' ? 'r' : c;
     }
+    if (n + 4 <= part.size()) continue;
+    ops.append(part.data(), n);
+    n = 0;
+  }
+  ops.append(part.data(), n);
   ops += ") Tj ET\n";
 }
 

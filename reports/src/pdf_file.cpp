@@ -6,11 +6,14 @@
 #include <hpdf_doc.h>
 #include <hpdf_objects.h>
 #include <hpdf_pages.h>
+#include <hpdf_streams.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <cstring>
+#include <deque>
 
 #include "bytes.h"
 
@@ -30,8 +33,16 @@ void record(HPDF_STATUS code, HPDF_STATUS detail, void* user) {
   if (failure->code == HPDF_OK) *failure = {code, detail};
 }
 
+/// Bytes that a stream of the document is written from: libharu's own streams copy byte by byte.
+struct Source {
+  std::string_view bytes;
+  std::size_t at = 0;
+};
+
 struct Document {
   Failure failure;
+  std::deque<Source> sources;  ///< what they show outlives the document
+  std::string bytes;           ///< as saved
   HPDF_Doc doc;
   Document() : doc(HPDF_New(record, &failure)) {}
   ~Document() {
@@ -40,6 +51,29 @@ struct Document {
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
 };
+
+HPDF_STATUS read_source(HPDF_Stream stream, HPDF_BYTE* to, HPDF_UINT* size) {
+  auto& source = *static_cast<Source*>(stream->attr);
+  const std::string_view part = source.bytes.substr(source.at, *size);
+  std::memcpy(to, part.data(), part.size());
+  source.at += part.size();
+  *size = static_cast<HPDF_UINT>(part.size());
+  return source.at == source.bytes.size() ? HPDF_STREAM_EOF : HPDF_OK;
+}
+
+HPDF_STATUS seek_source(HPDF_Stream stream, HPDF_INT at, HPDF_WhenceMode) {
+  static_cast<Source*>(stream->attr)->at = static_cast<std::size_t>(at);
+  return HPDF_OK;
+}
+
+HPDF_UINT32 size_of_source(HPDF_Stream stream) {
+  return static_cast<HPDF_UINT32>(static_cast<Source*>(stream->attr)->bytes.size());
+}
+
+HPDF_STATUS append(HPDF_Stream stream, const HPDF_BYTE* bytes, HPDF_UINT size) {
+  static_cast<std::string*>(stream->attr)->append(reinterpret_cast<const char*>(bytes), size);
+  return HPDF_OK;
+}
 
 /// libharu drops a /Filter that it did not apply itself; what is written here stands behind the
 /// dictionary's own entries.
@@ -54,16 +88,21 @@ HPDF_STATUS write_widths(HPDF_Dict dict, HPDF_Stream stream) {
   return status == HPDF_OK ? HPDF_Stream_WriteStr(stream, "\012") : status;
 }
 
-void fill(HPDF_Dict dict, const std::string& compressed) {
-  HPDF_Stream_Write(dict->stream, reinterpret_cast<const HPDF_BYTE*>(compressed.data()),
-                    static_cast<HPDF_UINT>(compressed.size()));
+/// `compressed` outlives the document.
+void fill(Document& pdf, HPDF_Dict dict, const std::string& compressed) {
+  Source& source = pdf.sources.emplace_back(Source{compressed});
+  HPDF_Stream stream = HPDF_CallbackReader_New(pdf.doc->mmgr, read_source, seek_source, nullptr,
+                                               size_of_source, &source);
+  if (stream == nullptr) return;  // recorded
+  HPDF_Stream_Free(dict->stream);
+  dict->stream = stream;
   dict->filter = HPDF_STREAM_FILTER_NONE;
   dict->write_fn = write_filter;
 }
 
-HPDF_Dict compressed_stream(HPDF_Doc doc, const std::string& compressed) {
-  HPDF_Dict dict = HPDF_DictStream_New(doc->mmgr, doc->xref);
-  if (dict != nullptr) fill(dict, compressed);
+HPDF_Dict compressed_stream(Document& pdf, const std::string& compressed) {
+  HPDF_Dict dict = HPDF_DictStream_New(pdf.doc->mmgr, pdf.doc->xref);
+  if (dict != nullptr) fill(pdf, dict, compressed);
   return dict;
 }
 
@@ -74,8 +113,9 @@ HPDF_Dict new_object(HPDF_Doc doc, const char* type) {
   return dict;
 }
 
-HPDF_Dict add_descriptor(HPDF_Doc doc, const Font& font, const Embedded& embedded, bool bold) {
-  HPDF_Dict file = compressed_stream(doc, embedded.file_deflated);
+HPDF_Dict add_descriptor(Document& pdf, const Font& font, const Embedded& embedded, bool bold) {
+  HPDF_Doc doc = pdf.doc;
+  HPDF_Dict file = compressed_stream(pdf, embedded.file_deflated);
   HPDF_Dict descriptor = new_object(doc, "FontDescriptor");
   if (file == nullptr || descriptor == nullptr) return nullptr;
   HPDF_Dict_AddNumber(file, "Length1", static_cast<HPDF_INT32>(embedded.size));
@@ -93,10 +133,11 @@ HPDF_Dict add_descriptor(HPDF_Doc doc, const Font& font, const Embedded& embedde
   return descriptor;
 }
 
-HPDF_Dict add_font(HPDF_Doc doc, const Font& font, bool common, bool bold) {
+HPDF_Dict add_font(Document& pdf, const Font& font, bool common, bool bold) {
+  HPDF_Doc doc = pdf.doc;
   const Embedded& embedded = common ? font.with_common : font.with_all;
-  HPDF_Dict descriptor = add_descriptor(doc, font, embedded, bold);
-  HPDF_Dict to_unicode = compressed_stream(doc, embedded.to_unicode_deflated);
+  HPDF_Dict descriptor = add_descriptor(pdf, font, embedded, bold);
+  HPDF_Dict to_unicode = compressed_stream(pdf, embedded.to_unicode_deflated);
   HPDF_Dict cid_font = new_object(doc, "Font"), type0 = new_object(doc, "Font");
   if (descriptor == nullptr || to_unicode == nullptr || cid_font == nullptr || type0 == nullptr)
     return nullptr;
@@ -123,10 +164,11 @@ HPDF_Dict add_font(HPDF_Doc doc, const Font& font, bool common, bool bold) {
 }
 
 /// One dictionary that all pages share.
-HPDF_Dict add_resources(HPDF_Doc doc, const Fonts& fonts, const PdfFile& pdf) {
+HPDF_Dict add_resources(Document& pdf, const Fonts& fonts, const PdfFile& file) {
+  HPDF_Doc doc = pdf.doc;
   HPDF_Dict resources = new_object(doc, nullptr);
-  HPDF_Dict regular = add_font(doc, fonts.regular, pdf.common_only, false),
-            bold = add_font(doc, fonts.bold, pdf.common_only, true);
+  HPDF_Dict regular = add_font(pdf, fonts.regular, file.common_only, false),
+            bold = add_font(pdf, fonts.bold, file.common_only, true);
   HPDF_Dict state = new_object(doc, "ExtGState");
   if (resources == nullptr || regular == nullptr || bold == nullptr || state == nullptr)
     return nullptr;
@@ -134,7 +176,7 @@ HPDF_Dict add_resources(HPDF_Doc doc, const Fonts& fonts, const PdfFile& pdf) {
   HPDF_Dict_Add(resources, "Font", by_font);
   HPDF_Dict_Add(by_font, "F1", regular);
   HPDF_Dict_Add(by_font, "F2", bold);
-  HPDF_Dict_AddReal(state, "ca", static_cast<HPDF_REAL>(pdf.see_through));
+  HPDF_Dict_AddReal(state, "ca", static_cast<HPDF_REAL>(file.see_through));
   HPDF_Dict by_state = HPDF_Dict_New(doc->mmgr);
   HPDF_Dict_Add(resources, "ExtGState", by_state);
   HPDF_Dict_Add(by_state, "G1", state);
@@ -188,42 +230,39 @@ void add_properties(HPDF_Doc doc, const PdfFile& file) {
     HPDF_Dict_Add(doc->catalog, "Lang", HPDF_String_New(doc->mmgr, file.language.c_str(), nullptr));
 }
 
-void add_page(HPDF_Doc doc, const PdfFile& file, const std::string& content, HPDF_Dict resources) {
-  HPDF_Page page = HPDF_AddPage(doc);
+void add_page(Document& pdf, const PdfFile& file, const std::string& compressed,
+              HPDF_Dict resources) {
+  HPDF_Page page = HPDF_AddPage(pdf.doc);
   if (page == nullptr) return;
   HPDF_Page_SetWidth(page, static_cast<HPDF_REAL>(file.width));
   HPDF_Page_SetHeight(page, static_cast<HPDF_REAL>(file.height));
   HPDF_Dict_RemoveElement(page, "Resources");
   HPDF_Dict_Add(page, "Resources", resources);
-  constexpr int level = 1;  // 6 takes three times as long for a few per cent of the file
-  fill(static_cast<HPDF_PageAttr>(page->attr)->contents, deflated(content, level));
+  fill(pdf, static_cast<HPDF_PageAttr>(page->attr)->contents, compressed);
 }
 
 }  // namespace
 
 Expected<std::string> write_pdf(const PdfFile& file, const Fonts& fonts) {
+  std::vector<std::string> contents;
+  constexpr int level = 1;  // 6 takes three times as long for a few per cent of the file
+  for (const std::string& content : file.pages) contents.push_back(deflated(content, level));
   Document pdf;
   if (pdf.doc == nullptr) return fail("the PDF could not be begun: out of memory");
   pdf.doc->pdf_version = HPDF_VER_17;
   add_properties(pdf.doc, file);
-  std::string bytes;
-  if (HPDF_Dict resources = add_resources(pdf.doc, fonts, file)) {
-    for (const std::string& content : file.pages) add_page(pdf.doc, file, content, resources);
-    if (pdf.failure.code == HPDF_OK && HPDF_SaveToStream(pdf.doc) == HPDF_OK) {
-      HPDF_UINT32 size = HPDF_GetStreamSize(pdf.doc);
-      bytes.resize(size);
-      HPDF_ResetStream(pdf.doc);
-      HPDF_ReadFromStream(pdf.doc, reinterpret_cast<HPDF_BYTE*>(bytes.data()), &size);
-      bytes.resize(size);
-    }
+  if (HPDF_Dict resources = add_resources(pdf, fonts, file)) {
+    for (const std::string& content : contents) add_page(pdf, file, content, resources);
+    pdf.doc->stream = HPDF_CallbackWriter_New(pdf.doc->mmgr, append, &pdf.bytes);
+    if (pdf.failure.code == HPDF_OK) HPDF_SaveToStream(pdf.doc);
   }
-  if (pdf.failure.code != HPDF_OK || bytes.empty()) {
+  if (pdf.failure.code != HPDF_OK || pdf.bytes.empty()) {
     std::array<char, 16> code{};
     std::to_chars(code.data(), code.data() + code.size() - 1, pdf.failure.code, 16);
     return fail("the PDF could not be written: libharu error 0x" + std::string(code.data()) +
                 ", detail " + std::to_string(pdf.failure.detail));
   }
-  return bytes;
+  return std::move(pdf.bytes);
 }
 
 }  // namespace nonio::reports

@@ -241,8 +241,9 @@ class PlotSetter {
       for (const double v : curve.y) up.add(v);
       for (const double v : curve.y2) up.add(v);
     }
-    const auto drawn =
-        across.empty() || up.empty() ? draw_nothing(*top, height) : draw(*top, height, across, up);
+    const auto drawn = across.empty() || up.empty() ? draw_nothing(*top, height)
+                       : plot_.scales               ? draw(*top, height, across, up)
+                                                    : draw_picture(*top, height, across, up);
     if (!drawn) return fail(drawn.error());
     return Laid{{{height, 5, std::move(canvas_.ops), false}}};
   }
@@ -357,6 +358,37 @@ class PlotSetter {
     }
     canvas_.leave();
     return draw_spans(frame);
+  }
+
+  /// One scale both ways, in the middle, and the caption below.
+  Expected<void> draw_picture(double top, double height, Range across, Range up) {
+    auto caption = set_text(context_, plot_.x_title, false, size_, width_, field_);
+    if (!caption) return fail(caption.error());
+    const double below = caption->height() + 2, edge = 1.6 * size_;
+    Frame frame{
+        edge, -height + below + edge, width_ - 2 * edge, height - top - below - 2 * edge, {}, {}};
+    const double per_pt = std::max(
+        {(across.high - across.low) / frame.w, (up.high - up.low) / std::max(frame.h, 1.0), 1e-9});
+    widen(across, per_pt * frame.w);
+    widen(up, per_pt * frame.h);
+    frame.across.from = across.low, frame.across.to = across.high;
+    frame.up.from = up.low, frame.up.to = up.high;
+    canvas_.ops += "1 j\n";
+    for (const Curve& curve : plot_.curves) draw_line(canvas_, frame, curve);
+    canvas_.fill_colour(style_.text);
+    for (const Plot::Label& label : plot_.labels) {
+      auto text = set_line(context_, label.text, true, size_, width_, field_);
+      if (!text) return fail(text.error());
+      const double x = frame.px(label.x), y = frame.py(label.y), half = size_ * 0.9;
+      const double right = x - (frame.x + frame.w / 2), over = y - (frame.y + frame.h / 2);
+      const double far = std::max(std::hypot(right, over), 1e-9);
+      const double wide = text->lines[0].width * size_;
+      text->draw(canvas_, 0, x + right / far * (half + wide / 2) - wide / 2,
+                 y + over / far * half + 0.65 * size_);
+    }
+    canvas_.fill_colour(style_.muted);
+    caption->draw_all(canvas_, 0, -height + caption->height(), width_, 0.5);
+    return {};
   }
 
   Expected<void> draw_axes(const Frame& f, const std::vector<SetText>& labels) {

@@ -94,6 +94,24 @@ Trace mean_by_target(const ModelFit& fit, int direction) {
   return out;
 }
 
+ModelFit of_measurement(const ModelFit& fit, std::uint32_t measurement) {
+  ModelFit out;
+  for (std::size_t i = 0; i < fit.size(); ++i) {
+    if (i >= fit.measurement.size() || fit.measurement[i] != measurement) continue;
+    out.target.push_back(fit.target[i]);
+    out.direction.push_back(static_cast<std::int8_t>(direction_of(fit, i)));
+    out.deviation.push_back(fit.deviation[i]);
+    out.residual.push_back(fit.residual[i]);
+    out.weight.push_back(i < fit.weight.size() ? fit.weight[i] : 1.0);
+  }
+  return out;
+}
+
+bool in_space(const ModelFit& fit) {
+  return std::count_if(fit.axis.begin(), fit.axis.end(),
+                       [](char c) { return c == 'X' || c == 'Y' || c == 'Z'; }) > 1;
+}
+
 Trace mean_by_run(const ModelFit& fit) {
   std::map<std::uint32_t, Mean> means;
   for (std::size_t i = 0; i < fit.size() && i < fit.run.size(); ++i)
@@ -180,8 +198,9 @@ std::array<PictureWords, 9> picture_words(const ModelFit& fit, const Wording& wo
     PictureWords& w = out[i];
     w.title = words.get(key + "title");
     w.says = words.get((names[i] == "mesh" ? "picture.angle." : key) + "says");
-    w.x = words.get(along ? "picture.position.x" : key + "x",
-                    {{"axis", fit.axis}, {"unit", unit != nullptr ? unit : unit_text(q)}});
+    w.x = words.get(
+        along ? (in_space(fit) ? "picture.position.x_lines" : "picture.position.x") : key + "x",
+        {{"axis", fit.axis}, {"unit", unit != nullptr ? unit : unit_text(q)}});
     w.y = words.get(own_y ? key + "y" : "picture.residual", {{"unit", unit_text(up)}});
     w.degrees = fit.rotary && (along || turn) && (along || picture == Picture::phase);
     if (along || picture == Picture::phase) w.x_per_si = unit_of(across).per_si;

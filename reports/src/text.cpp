@@ -73,7 +73,8 @@ Expected<Glyphs> shape(std::string_view text, const Font& font, std::string_view
   out.reserve(text.size());
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t at = i;
-    const char32_t c = next_character(text, i);
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const char32_t c = byte < 0x80 ? (++i, byte) : next_character(text, i);
     const std::uint16_t id = c == not_utf8 || is_control(c) ? 0 : font.glyph(c);
     if (id == 0) return fail(unprintable(text, at, c, field));
     const bool space = c == U' ';

@@ -82,7 +82,7 @@ inline DiagonalReadings read(const Errors& e, const Rectangle& r,
   d.D1 = line(e, r, count(r.n), count(r.n));
   d.D2 = line(e, r, count(r.n), down(r.n));
   for (const double y : x_lines) d.X.push_back(pitch_x(e, r, y));
-  d.Y = pitch_y(e, r);
+  d.Y = {pitch_y(e, r)};
   return d;
 }
 

@@ -120,7 +120,7 @@ TEST(Diagonals, NoiseGainsAreThoseOfTheTable) {
     const Rectangle rect{g.Lx, g.Ly, 40};
     auto r = read({}, rect, {0.5, 7.5});
     for (auto* c : {static_cast<MeanCurve*>(&r.X[0]), static_cast<MeanCurve*>(&r.X[1]),
-                    static_cast<MeanCurve*>(&r.Y)})
+                    static_cast<MeanCurve*>(&r.Y[0])})
       c->u = 1e-6;  // next to nothing: the table has white noise of the diagonals only
     r.D1.u = r.D2.u = 1.0;
     if (g.kind == 0) {
@@ -202,11 +202,11 @@ TEST(Diagonals, TheChecksAreSilentForYawAtMidBeam) {
 TEST(Diagonals, LimitsOfClosureAreThoseOfEqualNoise) {
   const Rectangle rect{12.0, 9.0, 30};
   auto r = read({}, rect, {4.5});
-  r.D1.u = r.D2.u = r.X[0].u = r.Y.u = 1 * um;
+  r.D1.u = r.D2.u = r.X[0].u = r.Y[0].u = 1 * um;
   auto s = solved(r);
   EXPECT_NEAR(s.closure.S_n_limit, 4.0 * std::sqrt(6.0) * um, 1e-9);
   EXPECT_NEAR(s.closure.S_odd_limit, 4.0 * std::sqrt(3.0) * um, 1e-9);
-  r.X[0].u = r.Y.u = 1e-6 * um;
+  r.X[0].u = r.Y[0].u = 1e-6 * um;
   s = solved(r);
   EXPECT_NEAR(s.closure.S_n_limit, 4.0 * std::sqrt(2.0) * um, 1e-9);
   EXPECT_NEAR(s.closure.S_odd_limit, 4.0 * um, 1e-9);
@@ -255,7 +255,7 @@ TEST(Diagonals, UncertaintiesCoverTheTruth) {
                              static_cast<MeanCurve*>(&r.third[0])})
       disturb(*curve, 0.8 * um, rng);
     for (MeanCurve* curve : {static_cast<MeanCurve*>(&r.X[0]), static_cast<MeanCurve*>(&r.X[1]),
-                             static_cast<MeanCurve*>(&r.Y)})
+                             static_cast<MeanCurve*>(&r.Y[0])})
       disturb(*curve, 0.5 * um, rng);
     const auto s = solved(r);
     inside_k += in(s.C0Y, e.C0Y, s.u_C0Y);
@@ -283,7 +283,7 @@ TEST(Diagonals, UnknownNoiseComesFromTheResiduals) {
   auto r = read(random_gantry(rng, rect), rect, {0.5, 8.5});
   for (MeanCurve* curve : {static_cast<MeanCurve*>(&r.D1), static_cast<MeanCurve*>(&r.D2),
                            static_cast<MeanCurve*>(&r.X[0]), static_cast<MeanCurve*>(&r.X[1]),
-                           static_cast<MeanCurve*>(&r.Y)}) {
+                           static_cast<MeanCurve*>(&r.Y[0])}) {
     disturb(*curve, 1 * um, rng);
     curve->u = 0.0;
   }
@@ -299,7 +299,7 @@ TEST(Diagonals, ReadingsThatDoNotFitTheGridAreRefused) {
   r.D1.mean.pop_back();
   EXPECT_FALSE(solve_diagonals(r));
   r = read({}, rect, {0.5, 8.5});
-  r.Y.mean[3] = std::numeric_limits<double>::quiet_NaN();
+  r.Y[0].mean[3] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(solve_diagonals(r));
   r = read({}, rect, {0.5, 0.5});
   EXPECT_FALSE(solve_diagonals(r));

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <iostream>
 #include <stdexcept>
+#include <utility>
 
 #include "bench.h"
 
@@ -51,6 +52,8 @@ struct Workpiece {
   Campaign campaign;
   std::vector<Observations> all;
   double scatter = 0.0;
+  machine::Curve BX = machine::zero, BY = machine::zero;  ///< reversal of positioning
+  std::vector<int> directions{1, -1};                     ///< of approach, along the line
   std::mt19937 rng{seed};
   std::map<std::string, Setting> options;
 
@@ -68,14 +71,18 @@ struct Workpiece {
     o.axes = places;
     for (auto& a : o.axes) a.position.clear(), a.approach.clear();
     for (std::uint32_t run = 1; run <= 2; ++run)
-      for (const int direction : {1, -1})
+      for (const int direction : directions)
         for (std::size_t j = 0; j < mean.size(); ++j) {
+          double reversal = 0.0;
           for (std::size_t k = 0; k < places.size(); ++k) {
-            o.axes[k].position.push_back(places[k].position[j]);
+            const double p = places[k].position[j];
+            o.axes[k].position.push_back(p);
             const bool rising = places[k].position.back() > places[k].position.front();
             o.axes[k].approach.push_back(static_cast<std::int8_t>(rising ? direction : -direction));
+            const bool x = places[k].axis == "X";
+            reversal += sense[x ? 0 : 1] * (x ? BX : BY)(p)*o.axes[k].approach.back() / 2.0;
           }
-          o.deviation.push_back(mean[j] + scatter * normal(rng));
+          o.deviation.push_back(mean[j] + reversal + scatter * normal(rng));
           o.run.push_back(run);
         }
     campaign.measurements.push_back(std::move(m));
@@ -109,6 +116,20 @@ struct Workpiece {
     std::vector<Observations::AxisColumn> places{{"Y", false, {}, {}}};
     for (const std::size_t i : count(rect.n)) places[0].position.push_back(rect.y(i));
     observe(named(id, "axis", "Y"), places, pitch_y(errors, rect).mean, {0.0, 1.0, 0.0});
+  }
+  /// As an autocollimator reads it, to `noise` of its own.
+  void yaw(double noise = 0.0, double factor = 1.0) {
+    std::vector<Observations::AxisColumn> places{{"X", false, {}, {}}};
+    std::vector<double> mean;
+    for (const std::size_t i : count(rect.n)) {
+      places[0].position.push_back(rect.x(i));
+      mean.push_back(3e-6 + factor * errors.ECX(rect.x(i)));  // its zero is free
+    }
+    Measurement m = named("yaw", "angle", "X");
+    m.lateral = "Z";
+    const double lengths = std::exchange(scatter, noise);
+    observe(std::move(m), places, mean, {}).angular = true;
+    scatter = lengths;
   }
   Workpiece& everything() {
     X("X1", 0.5);
@@ -232,6 +253,15 @@ TEST(DiagonalPlugin, ASingleColumnNeverBowsTheOtherWay) {
   w.campaign.machine.structure = "gantry";
   expect_refused(w, "yaw-needed");
 
+  w.campaign.machine.structure = "single-column";
+  w.yaw();
+  const Evaluation with_yaw = w.evaluate();
+  ASSERT_NE(series(with_yaw, "EYX_even"), nullptr) << ids(with_yaw);
+  EXPECT_NEAR(series(with_yaw, "EYX_even")->value[15], 40 * um, 0.05 * um);
+  EXPECT_NEAR(series(with_yaw, "ECX")->value[30], w.errors.ECX(12.0), 1e-9);
+  w.campaign.measurements[0].at.clear();
+  expect_refused(w, "refused-place");
+
   Workpiece measured({12.0, 9.0, 30}, w.errors);
   measured.campaign.machine.structure = "single-column";
   const Evaluation e = measured.everything().evaluate();
@@ -270,9 +300,17 @@ TEST(DiagonalPlugin, BadInputIsRefusedByName) {
   }
   w.all[4].deviation.resize(w.all[4].axes[0].position.size());
   expect_refused(w, "refused-stops");
-  w = good;  // read from one direction only
-  for (auto& a : w.all[3].axes) std::fill(a.approach.begin(), a.approach.end(), std::int8_t{1});
+  w = good;  // positioning of Y from one direction only, and D2 runs against it
+  for (auto& a : w.all[2].axes) std::fill(a.approach.begin(), a.approach.end(), std::int8_t{1});
   expect_refused(w, "refused-one-direction");
+  w = good;  // a stop of D1 that was read from + and another one from - only
+  for (auto& a : w.all[3].axes)
+    for (std::size_t i = 0; i < a.approach.size(); ++i)
+      if (i % 11 == 3 || i % 11 == 5) a.approach[i] = i % 11 == 3 ? 1 : -1;
+  expect_refused(w, "refused-one-direction");
+  w = good;
+  w.yaw(), w.yaw();
+  expect_refused(w, "refused-ambiguous");
   w = good;
   w.Y("Y-again");
   expect_refused(w, "refused-ambiguous");
@@ -290,6 +328,66 @@ TEST(DiagonalPlugin, BadInputIsRefusedByName) {
   for (const std::size_t i : {3UL, 4UL})
     w.campaign.measurements[i].from["Z"] = w.campaign.measurements[i].to["Z"] = 0.1;
   expect_refused(w, "refused-height");
+}
+
+TEST(DiagonalPlugin, OneDirectionGoesWithPositioningInItsDirections) {
+  std::mt19937 rng(seed + 5);
+  std::cout << "seed " << seed + 5 << "\n";
+  const Rectangle rect{12.0, 9.0, 30};
+  for (const bool autocollimator : {false, true}) {
+    Workpiece w(rect, random_gantry(rng, rect));
+    w.BX = [](double x) { return -4 * um - 9 * um * x / 12.0; };
+    w.BY = [](double y) { return 5 * um - 7 * um * y / 9.0; };
+    w.X("X1", 0.5);
+    autocollimator ? w.yaw() : w.X("X2", 8.5);
+    w.Y();
+    w.directions = {1};
+    w.D1();
+    w.D2();
+    w.diagonal("D3", half_diagonal(w.errors, rect));
+    const Evaluation e = w.evaluate();
+    ASSERT_NE(series(e, "EYX"), nullptr) << ids(e);
+    EXPECT_NE(finding(e, "one-direction"), nullptr);
+    EXPECT_EQ(finding(e, "reversal"), nullptr);
+    EXPECT_NEAR(value(e, "C0Y"), w.errors.C0Y, 0.01e-6);
+    for (std::size_t i = 0; i <= rect.n; ++i) {
+      EXPECT_NEAR(series(e, "EYX")->value[i], w.errors.EYX(rect.x(i)), 0.05 * um);
+      EXPECT_NEAR(series(e, "EXY")->value[i], w.errors.EXY(rect.y(i)), 0.05 * um);
+    }
+  }
+}
+
+/// What the finding says of lateral reversal: Y comes back on another line, which changes along Y.
+TEST(DiagonalPlugin, LateralReversalIsWorthWhatIsSaid) {
+  const Rectangle rect{12.0, 9.0, 30};
+  Workpiece w(rect);
+  w.X("X1", 0.5), w.X("X2", 8.5), w.Y();
+  w.directions = {1};
+  const auto b = [](double y) { return 2 * um * std::sin(std::numbers::pi * y / 9.0); };
+  w.errors.EXY = [b](double y) { return b(y) / 2.0; };  // Y moves towards plus on D1,
+  w.D1();
+  w.errors.EXY = [b](double y) { return -b(y) / 2.0; };  // and towards minus on D2
+  w.D2();
+  const Evaluation e = w.evaluate();
+  ASSERT_NE(finding(e, "one-direction"), nullptr) << ids(e);
+  const double per_um = finding(e, "one-direction")->evidence[0].value;
+  EXPECT_NEAR(series(e, "EYX_even")->value[15], b(4.5) * per_um / um, 0.02 * um);
+  EXPECT_EQ(finding(e, "one-direction")->texts[1].second, "EYX");
+}
+
+TEST(DiagonalPlugin, AYawThatContradictsTwoLinesIsSaid) {
+  std::mt19937 rng(seed + 6);
+  std::cout << "seed " << seed + 6 << "\n";
+  const Rectangle rect{12.0, 9.0, 20};
+  for (const bool turned : {false, true}) {
+    Workpiece w(rect, random_gantry(rng, rect));
+    w.scatter = 0.3 * um;
+    w.everything();
+    w.yaw(0.05e-6, turned ? -1.0 : 1.0);
+    const Evaluation e = w.evaluate();
+    EXPECT_EQ(finding(e, "yaw-disagrees") != nullptr, turned) << ids(e);
+    EXPECT_NE(series(e, "EYX_even"), nullptr);
+  }
 }
 
 TEST(DiagonalPlugin, ADiagonalNamedFromTheOtherEndIsTheSame) {
@@ -355,35 +453,48 @@ TEST(DiagonalPlugin, SetsBeforeAndAfterAreApart) {
   EXPECT_FALSE(the_analysis().applies(w.campaign, w.campaign.measurements[w.index("D2 00")]));
 }
 
+/// Two lines of X; yaw by an autocollimator; diagonals from one direction; a third diagonal.
 TEST(DiagonalPlugin, UncertaintiesFromTheScatterCoverTheTruth) {
-  std::mt19937 rng(seed + 2);
-  std::cout << "seed " << seed + 2 << "\n";
   const Rectangle rect{12.0, 9.0, 6};
-  const Errors errors = random_gantry(rng, rect);
   constexpr int campaigns = 2000;
-  double inside = 0.0, inside_k = 0.0, solved = 0.0;
-  for (int c = 0; c < campaigns; ++c) {
-    Workpiece w(rect, errors);
-    w.rng.seed(seed + 100 + static_cast<unsigned>(c));
+  const auto prepare = [](Workpiece& w, const std::string& how) {
     w.scatter = 1 * um;
-    w.everything();
-    const Evaluation e = w.evaluate();
-    const Series* f = series(e, "EYX_even");
-    if (f == nullptr) continue;  // the closure has its own rate of false alarms
-    solved += 1.0;
-    for (std::size_t i = 1; i < rect.n; ++i) {
-      const double truth = (errors.EYX(rect.x(i)) + errors.EYX(rect.x(rect.n - i))) / 2.0;
-      inside += (std::fabs(f->value[i] - truth) <= f->U[i]) / static_cast<double>(rect.n - 1);
+    w.X("X1", 0.5);
+    how == "autocollimator" ? w.yaw(0.2e-6) : w.X("X2", 8.5);
+    w.Y();
+    if (how == "one direction") w.directions = {1};
+    w.D1();
+    w.D2();
+    if (how == "third diagonal") w.diagonal("D3", half_diagonal(w.errors, w.rect));
+  };
+  for (const std::string how : {"two lines", "autocollimator", "one direction", "third diagonal"}) {
+    std::mt19937 rng(seed + 2);
+    const Errors errors = random_gantry(rng, rect);
+    double inside = 0.0, inside_k = 0.0, solved = 0.0;
+    for (int c = 0; c < campaigns; ++c) {
+      Workpiece w(rect, errors);
+      w.rng.seed(seed + 100 + static_cast<unsigned>(c));
+      prepare(w, how);
+      const Evaluation e = w.evaluate();
+      const bool both = how == "third diagonal";
+      const Series* f = series(e, both ? "EYX" : "EYX_even");
+      if (f == nullptr) continue;  // the closure has its own rate of false alarms
+      solved += 1.0;
+      for (std::size_t i = 1; i < rect.n; ++i) {
+        const double here = errors.EYX(rect.x(i)), across = errors.EYX(rect.x(rect.n - i));
+        const double truth = both ? here : (here + across) / 2.0;
+        inside += (std::fabs(f->value[i] - truth) <= f->U[i]) / static_cast<double>(rect.n - 1);
+      }
+      for (const Value& v : e.values)
+        if (v.name == "C0Y") inside_k += std::fabs(v.value - errors.C0Y) <= *v.U;
     }
-    for (const Value& v : e.values)
-      if (v.name == "C0Y") inside_k += std::fabs(v.value - errors.C0Y) <= *v.U;
-  }
-  std::cout << "EYX_even " << 100.0 * inside / solved << " %, C0Y " << 100.0 * inside_k / solved
-            << " % of " << solved << "\n";
-  EXPECT_GE(solved, 0.99 * campaigns);
-  for (const double hit : {inside, inside_k}) {
-    EXPECT_GE(hit, 0.93 * solved);
-    EXPECT_LE(hit, 0.97 * solved);
+    std::cout << "seed " << seed + 2 << ", " << how << ": EYX " << 100.0 * inside / solved
+              << " %, C0Y " << 100.0 * inside_k / solved << " % of " << solved << "\n";
+    EXPECT_GE(solved, 0.99 * campaigns) << how;
+    for (const double hit : {inside, inside_k}) {
+      EXPECT_GE(hit, 0.93 * solved) << how;
+      EXPECT_LE(hit, 0.97 * solved) << how;
+    }
   }
 }
 

@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <iostream>
 #include <numbers>
 #include <random>
 
@@ -76,6 +79,56 @@ TEST(Machine, AMirrorThatStandsAskewReadsAStepOfEachAxisWrong) {
   const auto read = flat_mirror({}, stops, beam, {0.3e-3, 0.0});
   EXPECT_GT(std::fabs(read[1]), 1e-6);
   EXPECT_LT(std::fabs(read[3]), 3e-9);  // the sum over a cycle: second order only
+}
+
+/// The four body diagonals of a volume, by the largest reading.
+std::array<double, 4> body_diagonals(const Errors& e, const Vector& travel) {
+  std::array<double, 4> most{};
+  const std::array<Vector, 4> signs{{{1, 1, 1}, {-1, 1, 1}, {1, -1, 1}, {1, 1, -1}}};
+  for (std::size_t k = 0; k < 4; ++k) {
+    std::vector<Vector> stops;
+    for (int i = 0; i <= 40; ++i) {
+      Vector p;
+      for (int c = 0; c < 3; ++c) p[c] = travel[c] * (signs[k][c] > 0 ? i : 40 - i) / 40.0;
+      stops.push_back(p);
+    }
+    for (const double r : interferometer(e, stops)) most[k] = std::max(most[k], std::fabs(r));
+  }
+  return most;
+}
+
+double largest(const std::array<double, 4>& of) { return *std::max_element(of.begin(), of.end()); }
+
+// Scales whose sum weighted with the squares of the travels is 0 leave every body diagonal perfect:
+// a good test of the diagonals does not prove a good machine.
+TEST(Machine, BodyDiagonalsDoNotSeeTwoOfThreeScales) {
+  const Vector travel(0.8, 0.6, 0.6);
+  Errors e;
+  e.EXX = [](double x) { return 100e-6 * x; };
+  e.EYY = [](double y) { return -100e-6 * y * 0.64 / 0.36; };
+  EXPECT_GT(e.EXX(0.8), 79e-6);
+  EXPECT_LT(largest(body_diagonals(e, travel)), 0.05e-6);
+}
+
+// At tool offset zero, angles about lines through the middle of the volume, 20 urad at the end of
+// the travel: EBX, ECX, EAY and EBY are 3.5 to 4.6 um on a body diagonal, EAX cancels, and those of
+// the tool's end never enter.
+TEST(Machine, BodyDiagonalsSeeSomeAngularErrors) {
+  const Vector travel(0.8, 0.6, 0.6);
+  const auto seen = [&](const char* angle) {
+    Errors e;
+    e.y_ref = travel.y() / 2, e.z_ref = travel.z() / 2;
+    const double length = travel[angle[2] - 'X'];
+    e[angle] = [length](double p) { return 20e-6 * p / length; };
+    return largest(body_diagonals(e, travel));
+  };
+  for (const char* angle : {"EBX", "ECX", "EAY", "EBY"}) {
+    EXPECT_GT(seen(angle), 1.2e-6) << angle;
+    EXPECT_LT(seen(angle), 5e-6) << angle;
+    std::cout << angle << " " << 1e6 * seen(angle) << " um\n";
+  }
+  for (const char* angle : {"EAX", "ECY", "EAZ", "EBZ", "ECZ"})
+    EXPECT_LT(seen(angle), 0.01e-6) << angle;
 }
 
 }  // namespace

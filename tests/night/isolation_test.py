@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """A plugin that misbehaves costs its campaign, never the night."""
 import os
+import pathlib
+import shutil
+import subprocess
 import unittest
 
-from nightly import PLUGINS, NightTest, manifest, tree
+from nightly import NONIO, PLUGINS, NightTest, manifest, tree
 
 
 class Isolation(NightTest):
@@ -74,6 +77,26 @@ class Isolation(NightTest):
         self.campaign("a")
         done = self.run_nonio("--plugin-path", str(PLUGINS / "dies_on_load"), expect=0)
         self.assertIn("did not survive loading: signal 11", done.stderr)
+
+    def test_what_a_refused_reader_would_have_read_has_failed(self):
+        """A program without its csv-reader, in whose place lies a plugin of another build."""
+        self.campaign("a")
+        program = self.root / "program"
+        own = pathlib.Path(NONIO).resolve().parents[1]
+        shutil.copytree(own / "lib", program / "lib", symlinks=True)
+        (program / "bin").mkdir()
+        shutil.copy2(NONIO, program / "bin")
+        (program / "share").symlink_to(own / "share")
+        reader = next(program.rglob("csv-reader.so"))
+        reader.unlink()
+        shutil.copy(next((PLUGINS / "wrong_abi").glob("*.so")), reader)
+        done = subprocess.run([program / "bin" / "nonio", "run", self.site, "--out", self.out],
+                              capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, 1, done.stderr + done.stdout)
+        self.assertEqual(self.ids("failed"), ["a"])
+        message = self.results("a")["errors"][0]["message"]
+        self.assertIn('measurement.X.kind: no reader takes measurements of kind "axis"', message)
+        self.assertIn('csv-reader.so was built for "nonio-sdk 0; another compiler"', message)
 
     def test_duplicate_name_names_both_files(self):
         self.campaign("a")

@@ -118,7 +118,8 @@ class CampaignReader {
   }
 
   /// The reader that is named, or the first that knows the content; none if no plugin reads this
-  /// kind of measurement at all, which is noted and leaves the others to be evaluated.
+  /// kind of measurement at all, which is noted and leaves the others to be evaluated. Where a
+  /// plugin was refused, it may be the one that is wanted, and the measurement was not read.
   Expected<const Reader*> choose_reader(const Measurement& m, std::string_view bytes) {
     const auto& readers = context_.plugins->readers();
     if (!m.reader.empty()) {
@@ -140,6 +141,10 @@ class CampaignReader {
           Error{"no reader knows the format of this file; wanted a CSV with a header row, or "
                 "the format of an installed reader (`nonio plugins`)",
                 m.file});
+    if (const std::string refused = context_.plugins->refusals(); !refused.empty())
+      return fail(at("measurement." + m.id + ".kind", "no reader takes measurements of kind \"" +
+                                                          m.kind + "\", and of the plugins " +
+                                                          refused));
     out_.unread.push_back(m.id);
     out_.notes.push_back({"measurement.unread", {}, {{"kind", m.kind}}, m.id});
     return nullptr;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "json_values.h"
+#include "nonio/sdk/format.h"
 
 namespace nonio::host {
 
@@ -63,8 +64,12 @@ void JsonWriter::value(std::string_view text) {
 /// The shortest number that reads back the same, with ".0" if it is whole.
 void JsonWriter::value(double number) {
   if (!std::isfinite(number)) return null();
-  char text[32];
   const double size = std::fabs(number);
+  if (const auto decimal = size >= 1e-4 ? shortest_decimal(size) : std::nullopt)
+    return item(decimal->places == 0
+                    ? decimal_text(10 * decimal->digits, 1, number < 0.0)
+                    : decimal_text(decimal->digits, decimal->places, number < 0.0));
+  char text[32];
   const bool plain = number == 0.0 || (size >= 1e-4 && size < 1e15);
   const auto format = plain ? std::chars_format::fixed : std::chars_format::scientific;
   char* end = std::to_chars(text, text + sizeof text - 2, number, format).ptr;
@@ -78,6 +83,17 @@ void JsonWriter::value(double number) {
 void JsonWriter::value(std::int64_t number) { item(std::to_string(number)); }
 void JsonWriter::value(std::uint64_t number) { item(std::to_string(number)); }
 
+void JsonWriter::value(bool yes) { item(yes ? "true" : "false"); }
+
 std::string JsonWriter::take() { return std::exchange(out_, {}) + "\n"; }
+
+void put_error(JsonWriter& json, const Error& error) {
+  json.begin_object();
+  if (!error.file.empty()) json.member("file", error.file);
+  if (error.line != 0) json.member("line", error.line);
+  if (!error.column.empty()) json.member("column", error.column);
+  json.member("message", error.message);
+  json.end_object();
+}
 
 }  // namespace nonio::host

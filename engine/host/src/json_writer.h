@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "nonio/sdk/error.h"
+
 namespace nonio::host {
 
 /// JSON written straight into a text, laid out as `dump` of json_values.h does it with a tree: for
@@ -22,6 +24,7 @@ class JsonWriter {
   void value(double number);
   void value(std::int64_t number);
   void value(std::uint64_t number);
+  void value(bool yes);
   void null() { item("null"); }
   template <class T>
   void member(std::string_view name, const T& of) {
@@ -44,5 +47,7 @@ class JsonWriter {
   bool empty_ = true;  // the innermost object or array
   bool after_key_ = false;
 };
+
+void put_error(JsonWriter& json, const Error& error);
 
 }  // namespace nonio::host

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <sstream>
 
 #include "formula_reader.h"
 #include "nonio/host/nearest.h"
@@ -18,7 +19,7 @@ constexpr double mm = 1e-3, um = 1e-6;
 constexpr double deg = 1.0 / deg_per_rad, arcsec = 1.0 / arcsec_per_rad;
 
 const std::vector<std::string> measurement_kinds = {
-    "axis", "straightness", "diagonal", "step-diagonal", "ball-centres", "observations"};
+    "axis", "straightness", "angle", "diagonal", "step-diagonal", "ball-centres", "observations"};
 
 /// A file that is being read: its name and what was found wrong so far.
 struct Source {
@@ -168,6 +169,42 @@ Environment read_environment(Source& source, const toml::table* table) {
   return environment;
 }
 
+Signing read_signing(Source& source, const toml::table& table) {
+  Signing s;
+  TableReader reader = source.reader(table, "signing");
+  s.pkcs12 = reader.text("pkcs12");
+  s.pkcs11 = reader.text("pkcs11");
+  s.module = reader.text("module");
+  s.certificates = reader.text("certificates");
+  s.password_file = reader.text("password_file");
+  s.password_env = reader.text("password_env");
+  s.password_credential = reader.text("password_credential");
+  s.trust = reader.text("trust");
+  s.revocation = reader.text("revocation");
+  s.signer = reader.text("signer");
+  s.time_stamp = reader.text("time_stamp");
+  s.time_stamp_required = reader.choice("time_stamp_missing", {"fail", "sign"}) != "sign";
+  s.time_stamp_seconds = reader.whole("time_stamp_seconds").value_or(s.time_stamp_seconds);
+  if (s.pkcs12.empty() == s.pkcs11.empty())
+    reader.error("pkcs12", "wanted the key in either pkcs12 (a file) or pkcs11 (a token)");
+  if (!s.pkcs11.empty() && s.module.empty())
+    reader.error("module", "is missing: the PKCS#11 library of the token");
+  const int passwords = int{!s.password_file.empty()} + int{!s.password_env.empty()} +
+                        int{!s.password_credential.empty()};
+  if (passwords != 1)
+    reader.error("password_file",
+                 "wanted one of password_file, password_env, password_credential (of systemd)");
+  if (!s.time_stamp.empty() && !s.time_stamp.starts_with("http://"))
+    reader.error("time_stamp", "wanted http://..., found \"" + s.time_stamp +
+                                   "\" (a time stamp is signed; it needs no https)");
+  if (!s.time_stamp.empty() && s.trust.empty())
+    reader.error("trust", "is missing: a PEM file with the root of the time-stamp server");
+  if (s.time_stamp_seconds < 1 || s.time_stamp_seconds > 300)
+    reader.error("time_stamp_seconds", "wanted 1 to 300");
+  reader.finish();
+  return s;
+}
+
 bool is_measurement_id(std::string_view id) {
   return !id.empty() && id.size() <= 60 && id.front() != '.' && id.front() != ' ' &&
          id.find_first_of("/\\\n\t") == std::string_view::npos;
@@ -183,7 +220,8 @@ Measurement read_measurement(Source& source, const toml::table& table) {
   m.file = reader.text("file", true);
   m.reader = reader.text("reader");
   m.axis = reader.text("axis");
-  if (m.axis.empty() && (m.kind == "axis" || m.kind == "straightness" || m.kind == "ball-centres"))
+  if (m.axis.empty() && (m.kind == "axis" || m.kind == "straightness" || m.kind == "angle" ||
+                         m.kind == "ball-centres"))
     reader.error("axis", "is missing: which axis of the machine was measured");
   m.lateral = reader.text("lateral");
   if (m.kind == "straightness" && m.lateral.empty())
@@ -191,6 +229,7 @@ Measurement read_measurement(Source& source, const toml::table& table) {
   if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
     reader.error("lateral", "wanted another axis than " + m.axis +
                                 ", which moves: along it the deviation is one of positioning");
+  if (m.kind == "angle") m.lateral = reader.choice("about", {"X", "Y", "Z"}, true);
   for (const double line : reader.numbers("exclude").value_or(std::vector<double>{}))
     if (line >= 1.0 && line <= 4e9 && line == std::floor(line))
       m.exclude.push_back(static_cast<std::uint32_t>(line));
@@ -325,6 +364,20 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
   return manifest;
 }
 
+namespace {
+
+std::string settings_of(const toml::table& root) {
+  toml::table out;
+  for (const char* key : {"run", "options"})
+    if (const toml::table* table = root[key].as_table()) out.insert(key, *table);
+  if (out.empty()) return {};
+  std::ostringstream text;
+  text << out << "\n";
+  return text.str();
+}
+
+}  // namespace
+
 Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   auto root = parse_toml(text, file);
   if (!root) return tl::unexpected(std::vector<Error>{root.error()});
@@ -350,7 +403,9 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   }
   site.run = read_run(source, top.table("run"));
   site.options = read_options(source, top.table("options"));
-  for (const char* later : {"certificate", "signing", "database"})
+  site.settings = settings_of(*root);
+  if (const toml::table* table = top.table("signing")) site.signing = read_signing(source, *table);
+  for (const char* later : {"certificate", "database"})
     if (top.table(later) != nullptr)
       site.notes.push_back(file + ", line " + std::to_string(top.line_of(later)) + ": [" + later +
                            "] has no effect in this version");

@@ -151,7 +151,7 @@ Json compared_json(const Compared& c, const Campaign& campaign, const ModelWords
   json["places"] = places_json(comparison.places, words, q);
   if (comparison.means > 0) json["means"] = comparison.means;
   json["suspects"] = suspects_json(comparison.suspects, c.part, campaign, words);
-  json["warnings"] = warnings_of(comparison.fit, words);
+  json["warnings"] = warnings_of(c.part, comparison.fit, words);
   return json;
 }
 
@@ -175,6 +175,7 @@ Json plans_json(const std::vector<model::Plan>& plans, const ModelWords& words) 
   for (const model::Plan& plan : plans) {
     Json one = {
         {"plan", plan.id}, {"readings", plan.readings}, {"separates", {plan.one, plan.other}}};
+    if (!plan.of.empty()) one["of"] = plan.of;
     put(one, "power", plan.power, Quantity::number);
     one["says"] = words.plan(plan);
     list.push_back(std::move(one));
@@ -216,7 +217,7 @@ void put_explained(Json& json, const Explained& e, const Campaign& campaign,
     json["false_alarm_trials"] = x.verdict.trials;
   }
   json["suspects"] = suspects_json(x.comparison.suspects, e.part, campaign, words);
-  json["warnings"] = warnings_of(x.comparison.fit, words);
+  json["warnings"] = warnings_of(e.part, x.comparison.fit, words);
 }
 
 Json steps_json(const std::vector<ModelStep>& steps) {
@@ -270,10 +271,15 @@ std::size_t most_severe(const std::vector<Explained>& all) {
   return 0;
 }
 
-std::vector<std::string> warnings_of(const model::Fit& fit, const ModelWords& words) {
+std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
+                                     const ModelWords& words) {
   std::vector<std::string> out;
   for (const std::string& effect : below_uncertainty(fit))
     out.push_back(words.below_uncertainty(effect));
+  for (std::size_t t = 0; t < fit.lost.size(); ++t)
+    if (fit.lost[t] > 0) out.push_back(words.not_told(fit.terms[t].name(), fit.lost[t]));
+  if (part.part.kind == model::Part::Kind::space && model::stood_somewhere(part.part))
+    out.push_back(words.stood_somewhere());
   return out;
 }
 

@@ -129,7 +129,7 @@ std::string ModelWords::plan(const model::Plan& plan) const {
   std::string text = says("plan." + plan.id,
                           {{"readings", static_cast<double>(plan.readings), Quantity::count},
                            {"power", plan.power, Quantity::number}},
-                          {{"one", plan.one}, {"other", plan.other}});
+                          {{"one", plan.one}, {"other", plan.other}, {"of", plan.of}});
   return text.empty() ? plan.id : text;
 }
 
@@ -148,6 +148,13 @@ std::string ModelWords::suspect(const model::Suspect& s, const ReadingPlace& at,
 std::string ModelWords::below_uncertainty(const std::string& effect) const {
   return says("below-uncertainty", {}, {{"effect", effect}});
 }
+
+std::string ModelWords::not_told(const std::string& effect, std::size_t parameters) const {
+  return says("not-told", {{"parameters", static_cast<double>(parameters), Quantity::count}},
+              {{"effect", effect}});
+}
+
+std::string ModelWords::stood_somewhere() const { return says("stood-somewhere", {}, {}); }
 
 std::string ModelWords::unmeasured(const std::string& effect) const {
   return says("unmeasured", {}, {{"effect", effect}});

@@ -7,11 +7,13 @@
 #include <boost/dll/shared_library.hpp>
 #include <cstring>
 #include <iostream>
+#include <span>
 
 #include "child.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
+#include "worker.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -42,45 +44,66 @@ Expected<const PluginEntry*> open_entry(const fs::path& path) {
   return entry;
 }
 
-/// Loads and registers in a child; what it says through the pipe is why it must be refused.
-std::string probe(const fs::path& path) {
-  int ends[2];
-  if (::pipe(ends) != 0) return "cannot be tried: no pipe";
+/// Why this one must be refused; empty if it registers as it should.
+std::string try_registering(const fs::path& path) {
+  struct Nobody final : Registry {
+    void add(Reader) override {}
+    void add(Effect) override {}
+    void add(Analysis) override {}
+    void add(Output) override {}
+  } nobody;
+  try {
+    const auto entry = open_entry(path);
+    if (!entry) return entry.error().message;
+    (*entry)->add_to(nobody);
+  } catch (const std::exception& e) {
+    return std::string("threw while registering: ") + e.what();
+  } catch (...) {
+    return "threw while registering";
+  }
+  return "";
+}
+
+struct Probed {
+  std::vector<std::string> refusals;  ///< as far as the child came
+  ChildEnd end;
+};
+
+/// Loads and registers in a child, one after the other.
+Probed probe_in_child(std::span<const fs::path> paths) {
+  std::vector<SharedWords> said(paths.size());  // empty until that one is through
+  for (const SharedWords& words : said)
+    if (!words.valid()) return {{}, {false, "no memory"}};
   std::cout.flush();
   const pid_t child = ::fork();
   if (child == 0) {
     settle_child();
-    struct Nobody final : Registry {
-      void add(Reader) override {}
-      void add(Effect) override {}
-      void add(Analysis) override {}
-      void add(Output) override {}
-    } nobody;
-    std::string refusal;
-    try {
-      const auto entry = open_entry(path);
-      if (entry)
-        (*entry)->add_to(nobody);
-      else
-        refusal = entry.error().message;
-    } catch (const std::exception& e) {
-      refusal = std::string("threw while registering: ") + e.what();
-    } catch (...) {
-      refusal = "threw while registering";
-    }
-    [[maybe_unused]] const ssize_t n =
-        ::write(ends[1], refusal.data(), std::min<std::size_t>(refusal.size(), 4000));
+    for (std::size_t i = 0; i < paths.size(); ++i) said[i].set("." + try_registering(paths[i]));
     ::_exit(0);
   }
-  ::close(ends[1]);
-  const ChildEnd end =
-      child < 0 ? ChildEnd{false, "no process"} : wait_for_child(child, probe_seconds);
-  std::string refusal(4000, '\0');
-  const ssize_t n = end.well ? ::read(ends[0], refusal.data(), refusal.size()) : 0;
-  ::close(ends[0]);
-  if (!end.well) return "did not survive loading: " + end.words;
-  refusal.resize(static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
-  return refusal;
+  Probed probed;
+  probed.end = child < 0 ? ChildEnd{false, "no process"} : wait_for_child(child, probe_seconds);
+  for (const SharedWords& words : said) {
+    const std::string answer = words.get();
+    if (answer.empty()) break;
+    probed.refusals.push_back(answer.substr(1));
+  }
+  return probed;
+}
+
+/// Why each must be refused. All together, since a child takes longer than a plugin; one that the
+/// child did not survive is tried again alone, so that none pays for those before it.
+std::vector<std::string> probe(std::span<const fs::path> paths) {
+  std::vector<std::string> refusals;
+  while (refusals.size() < paths.size()) {
+    for (std::string& r : probe_in_child(paths.subspan(refusals.size())).refusals)
+      refusals.push_back(std::move(r));
+    if (refusals.size() == paths.size()) break;
+    const Probed alone = probe_in_child(paths.subspan(refusals.size(), 1));
+    refusals.push_back(alone.refusals.empty() ? "did not survive loading: " + alone.end.words
+                                              : alone.refusals.front());
+  }
+  return refusals;
 }
 
 }  // namespace
@@ -99,11 +122,12 @@ void Plugins::load(const std::vector<fs::path>& folders) {
     std::sort(here.begin(), here.end());
     paths.insert(paths.end(), here.begin(), here.end());
   }
-  for (const fs::path& path : paths) load_file(path);
+  const std::vector<std::string> refusals = probe(paths);
+  for (std::size_t i = 0; i < paths.size(); ++i) load_file(paths[i], refusals[i]);
 }
 
-void Plugins::load_file(const fs::path& path) {
-  files_.push_back(PluginFile{.path = path, .refused = probe(path), .brought = {}, .sha256 = {}});
+void Plugins::load_file(const fs::path& path, const std::string& refusal) {
+  files_.push_back(PluginFile{.path = path, .refused = refusal, .brought = {}, .sha256 = {}});
   PluginFile& file = files_.back();
   if (!file.refused.empty()) return;
   const auto bytes = MappedFile::open(path);
@@ -167,6 +191,14 @@ std::string Plugins::absence(std::string_view kind, std::string_view name) const
   for (const PluginFile& file : files_)
     if (!file.refused.empty() && file.path.stem().string().find(name) != std::string::npos)
       words += "; " + file.path.string() + " " + file.refused;
+  return words;
+}
+
+std::string Plugins::refusals() const {
+  std::string words;
+  for (const PluginFile& file : files_)
+    if (!file.refused.empty())
+      words += (words.empty() ? "" : "; ") + file.path.string() + " " + file.refused;
   return words;
 }
 

@@ -3,20 +3,37 @@
 
 #include <simdjson.h>
 
-#include "json_values.h"
+#include "json_writer.h"
 
 namespace nonio::host {
 
 namespace {
 
-Json findings_json(const std::vector<KnownFinding>& findings) {
-  Json json = Json::array();
-  for (const KnownFinding& f : findings)
-    json.push_back({{"measurement", f.measurement},
-                    {"id", f.id},
-                    {"title", f.title},
-                    {"severity", f.attention ? "attention" : "info"}});
-  return json;
+void put_findings(JsonWriter& json, const char* key, const std::vector<KnownFinding>& findings) {
+  json.key(key);
+  json.begin_array();
+  for (const KnownFinding& f : findings) {
+    json.begin_object();
+    json.member("measurement", f.measurement);
+    json.member("id", f.id);
+    json.member("title", f.title);
+    json.member("severity", f.attention ? "attention" : "info");
+    json.end_object();
+  }
+  json.end_array();
+}
+
+void put_files(JsonWriter& json, const std::vector<RecordedFile>& files) {
+  json.key("files");
+  json.begin_object();
+  for (const RecordedFile& f : files) {
+    json.key(f.name);
+    json.begin_array();
+    json.value(f.size);
+    json.value(f.sha256);
+    json.end_array();
+  }
+  json.end_object();
 }
 
 namespace dom = simdjson::dom;
@@ -59,23 +76,27 @@ Record record_of(dom::object json) {
 }  // namespace
 
 std::string to_json(const Record& r) {
-  Json inputs = Json::object();
-  for (const auto& [name, digest] : r.inputs) inputs[name] = digest;
-  Json files = Json::object();
-  for (const RecordedFile& f : r.files) files[f.name] = {f.size, f.sha256};
-  Json errors = Json::array();
-  for (const Error& e : r.errors) errors.push_back(to_json(e));
-  return dump(Json{{"schema", "nonio-run/2"},
-                   {"folder", r.folder},
-                   {"night", r.night},
-                   {"reason", r.reason},
-                   {"status", r.status},
-                   {"retry", r.retry},
-                   {"inputs", std::move(inputs)},
-                   {"files", std::move(files)},
-                   {"errors", std::move(errors)},
-                   {"findings", findings_json(r.findings)},
-                   {"previous_findings", findings_json(r.previous)}});
+  JsonWriter json;
+  json.begin_object();
+  json.member("schema", "nonio-run/2");
+  json.member("folder", r.folder);
+  json.member("night", r.night);
+  json.member("reason", r.reason);
+  json.member("status", r.status);
+  json.member("retry", r.retry);
+  json.key("inputs");
+  json.begin_object();
+  for (const auto& [name, digest] : r.inputs) json.member(name, digest);
+  json.end_object();
+  put_files(json, r.files);
+  json.key("errors");
+  json.begin_array();
+  for (const Error& e : r.errors) put_error(json, e);
+  json.end_array();
+  put_findings(json, "findings", r.findings);
+  put_findings(json, "previous_findings", r.previous);
+  json.end_object();
+  return json.take();
 }
 
 Expected<Record> read_record(const std::filesystem::path& campaign_output) {

@@ -61,15 +61,6 @@ void put_campaign(JsonWriter& json, const Campaign& c) {
   json.end_object();
 }
 
-void put_error(JsonWriter& json, const Error& error) {
-  json.begin_object();
-  put(json, "file", error.file);
-  if (error.line != 0) json.member("line", error.line);
-  put(json, "column", error.column);
-  json.member("message", error.message);
-  json.end_object();
-}
-
 void put_value(JsonWriter& json, const Value& v, const Results::Analysed& a,
                const std::vector<Conformity>& conformity) {
   json.key(v.name);

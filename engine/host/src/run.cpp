@@ -8,13 +8,16 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <iostream>
 
+#include "certificates.h"
 #include "committer.h"
 #include "context.h"
 #include "night_state.h"
 #include "nonio/host/files.h"
 #include "nonio/host/results_json.h"
+#include "signer.h"
 #include "store.h"
 #include "summary.h"
 #include "survey.h"
@@ -46,11 +49,12 @@ constexpr std::size_t campaigns_per_worker = 64;
 class Runner {
  public:
   Runner(const RunOptions& options, const RunEvents& events, const Context& context,
-         const NightState& night, std::vector<CampaignState>& campaigns)
+         const NightState& night, Signer* signer, std::vector<CampaignState>& campaigns)
       : options_(options),
         events_(events),
         context_(context),
         night_(night),
+        signer_(signer),
         campaigns_(campaigns),
         committer_([this](const std::vector<std::size_t>& batch) {
           std::vector<std::string> ids;
@@ -143,13 +147,22 @@ class Runner {
 
   /// In the worker's process.
   Answer work(std::size_t index, bool first, SharedWords& stage) const {
+    if (first && signer_ != nullptr) signer_->leave_to_worker();
     const CampaignState& c = campaigns_[index];
-    const Evaluated evaluated = evaluate(options_.site / c.folder, c.id, context_,
-                                         [&](const std::string& s) { stage.set(s); });
+    const fs::path folder = options_.site / c.folder;
+    Evaluated evaluated =
+        evaluate(folder, c.id, context_, [&](const std::string& s) { stage.set(s); });
+    stage.set("signing");
+    const auto is_signed = sign_artifacts(evaluated, folder, context_, signer_, std::time(nullptr));
+    if (!is_signed) {
+      remove_unsigned(evaluated.results);
+      evaluated.results.errors.push_back(is_signed.error());
+      evaluated.status = "failed";
+    }
     if (evaluated.status == "failed" && !first) return Answer::again;
     stage.set("writing the results");
-    const auto staged =
-        host::stage(options_.out, evaluated, context_, {c.folder, night_.number, c.reason, false});
+    const auto staged = host::stage(options_.out, evaluated, context_,
+                                    {c.folder, night_.number, c.reason, !is_signed});
     if (!staged) {
       stage.set(staged.error().message);
       return Answer::not_stored;
@@ -160,6 +173,7 @@ class Runner {
   }
 
   void wait() {
+    if (signer_ != nullptr) signer_->revive();
     wait_for_answer(workers_, committer_.channel());
     take_stored();
     for (std::size_t i = workers_.size(); i-- > 0;) {
@@ -275,6 +289,7 @@ class Runner {
   const RunEvents& events_;
   const Context& context_;
   const NightState& night_;
+  Signer* signer_;  ///< null: nobody signs
   std::vector<CampaignState>& campaigns_;
   Committer committer_;
   const std::size_t campaigns_per_worker_;
@@ -322,6 +337,17 @@ void store_collisions(const RunOptions& options, const Context& context, const N
   }
 }
 
+/// What the morning's reader should know of the key.
+void note_key(Signer& signer, std::vector<std::string>& notes) {
+  constexpr sign::Time month = 30 * 86400;
+  const auto who = signer.start();
+  if (!who)
+    notes.push_back("nothing can be signed: " + who.error().message);
+  else if (who->not_after - std::time(nullptr) < month)
+    notes.push_back("the signing certificate of " + who->subject + " runs out on " +
+                    sign::text_of(who->not_after) + ": have a new one made");
+}
+
 }  // namespace
 
 void request_stop() { stop_requested = true; }
@@ -344,6 +370,9 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   if (!site) return refuse(all_of(site.error()));
   context.site = std::move(*site);
   night.notes = context.site.notes;
+  std::optional<Signer> signer;  // before any plugin is in the memory
+  if (context.site.signing && !options.dry_run)
+    note_key(signer.emplace(*context.site.signing, options.site), night.notes);
   std::vector<fs::path> template_folders = options.template_folders;
   if (fs::is_directory(options.site / "templates", error))
     template_folders.push_back(options.site / "templates");
@@ -390,7 +419,8 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   if (options.dry_run) return night;
 
   store_collisions(options, context, *state, night.campaigns);
-  if (!Runner(options, events, context, *state, night.campaigns).run()) {
+  if (!Runner(options, events, context, *state, signer ? &*signer : nullptr, night.campaigns)
+           .run()) {
     night.end = Night::End::interrupted;
     return night;
   }

@@ -60,7 +60,10 @@ Expected<void> stage(const fs::path& out, const Evaluated& e, const Context& con
   std::vector<Artifact> files;
   for (const auto& w : e.results.outputs)
     files.insert(files.end(), w.result.artifacts.begin(), w.result.artifacts.end());
-  for (const Artifact& a : files) record.files.push_back(recorded(a));
+  for (const Artifact& a : files) {
+    if (a.sign) return fail(a.name + " is not signed; nothing was written");
+    record.files.push_back(recorded(a));
+  }
   // Last, so that it never speaks of a file that is not there.
   files.push_back({results_name, results_json(e, context, record.files)});
   record.files.push_back(recorded(files.back()));

@@ -43,6 +43,29 @@ Expected<void> check_line(const GridLine& line, std::size_t n, const std::string
   return {};
 }
 
+/// The curves of one direction of approach, by their places.
+template <class T>
+std::vector<std::size_t> of_direction(const std::vector<T>& curves, int direction) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < curves.size(); ++k)
+    if (curves[k].direction == direction) out.push_back(k);
+  return out;
+}
+
+/// What belongs to a line: positioning, and yaw, in the directions in which it was read.
+Expected<void> check_positioning(const DiagonalReadings& r, const GridLine& line,
+                                 const std::string& what) {
+  const auto X = of_direction(r.X, line.x_direction);
+  if (X.empty() || X.size() > 2) return fail(what + ": wanted positioning of X on one line or two");
+  if (X.size() == 2 && !(std::fabs(r.X[X[1]].across - r.X[X[0]].across) > 0.0))
+    return fail(what + ": wanted two different lines of X");
+  if (of_direction(r.Y, line.y_direction).size() != 1)
+    return fail(what + ": wanted one positioning of Y");
+  if (!r.ECX.empty() && of_direction(r.ECX, line.x_direction).size() != 1)
+    return fail(what + ": wanted one yaw of X");
+  return {};
+}
+
 Expected<void> check(const DiagonalReadings& r) {
   if (!(r.Lx > 0.0 && r.Ly > 0.0)) return fail("wanted lengths above 0");
   if (r.n < 3 || r.n > most_steps)
@@ -50,15 +73,16 @@ Expected<void> check(const DiagonalReadings& r) {
                 std::to_string(r.n));
   if (r.D1.mean.size() != r.n + 1 || r.D2.mean.size() != r.n + 1)
     return fail("wanted " + std::to_string(r.n + 1) + " stops on each diagonal");
-  if (r.X.empty() || r.X.size() > 2) return fail("wanted positioning of X on one line or two");
-  if (r.X.size() == 2 && !(std::fabs(r.X[1].across - r.X[0].across) > 0.0))
-    return fail("wanted two different lines of X");
   std::vector<std::pair<const GridLine*, std::string>> lines{{&r.D1, "D1"}, {&r.D2, "D2"}};
   for (const GridLine& line : r.third) lines.emplace_back(&line, "third line");
-  for (const auto& [line, what] : lines)
+  for (const auto& [line, what] : lines) {
     if (auto ok = check_line(*line, r.n, what); !ok) return ok;
-  std::vector<std::pair<const MeanCurve*, std::string>> curves{{&r.Y, "Y"}};
+    if (auto ok = check_positioning(r, *line, what); !ok) return ok;
+  }
+  std::vector<std::pair<const MeanCurve*, std::string>> curves;
   for (const PitchLine& line : r.X) curves.emplace_back(&line, "X");
+  for (const PitchLine& line : r.Y) curves.emplace_back(&line, "Y");
+  for (const MeanCurve& yaw : r.ECX) curves.emplace_back(&yaw, "ECX");
   if (r.EYX) curves.emplace_back(&*r.EYX, "EYX");
   if (r.EXY) curves.emplace_back(&*r.EXY, "EXY");
   for (const auto& [curve, what] : curves)
@@ -123,7 +147,8 @@ class System {
     return N_ * Eigen::Map<const Vector>(sigma.data(), at(sigma.size())).asDiagonal();
   }
 
-  /// Y, X, then lines and direct straightness. False if some noise is not known: all count alike.
+  /// Y, X, yaw, then lines and direct straightness. False if some noise is not known: all lengths
+  /// count alike.
   bool add_sources() {
     bool known = true;
     const auto add = [&](const MeanCurve& c, double unit) {
@@ -135,8 +160,12 @@ class System {
         equal_.push_back(on);
       }
     };
-    add(r_.Y, 0.0);
+    for (const PitchLine& line : r_.Y) add(line, 0.0);
     for (const PitchLine& line : r_.X) add(line, 0.0);
+    for (const MeanCurve& yaw : r_.ECX) {
+      add(yaw, 0.0);
+      std::fill(equal_.end() - static_cast<std::ptrdiff_t>(n_ + 1), equal_.end(), 0.0);
+    }
     first_of_lines_ = sigma_.size();
     add(r_.D1, 1.0);
     add(r_.D2, 1.0);
@@ -165,11 +194,21 @@ class System {
     const std::size_t a = line.ix[j], b = line.iy[j];
     const double y = r_.Ly * static_cast<double>(b) / static_cast<double>(n_);
     A_.row(row) += sign * (line.cx * (g(b) - y * k()) + line.cy * f(a));
-    subtract(row, r_.Y, 0, b, sign * line.cy);
+    const std::size_t curve = n_ + 1, first_x = r_.Y.size(), first_yaw = first_x + r_.X.size();
+    const std::size_t Y = of_direction(r_.Y, line.y_direction).front();
+    subtract(row, r_.Y[Y], Y * curve, b, sign * line.cy);
+    const auto X = of_direction(r_.X, line.x_direction);
+    const auto source = [&](std::size_t k) { return (first_x + X[k]) * curve; };
+    const double beside = y - r_.X[X[0]].across;
     double second = 0.0;
-    if (r_.X.size() == 2) second = (y - r_.X[0].across) / (r_.X[1].across - r_.X[0].across);
-    subtract(row, r_.X[0], n_ + 1, a, sign * line.cx * (1.0 - second));
-    if (r_.X.size() == 2) subtract(row, r_.X[1], 2 * (n_ + 1), a, sign * line.cx * second);
+    if (X.size() == 2) {
+      second = beside / (r_.X[X[1]].across - r_.X[X[0]].across);
+      subtract(row, r_.X[X[1]], source(1), a, sign * line.cx * second);
+    } else if (!r_.ECX.empty()) {
+      const std::size_t yaw = of_direction(r_.ECX, line.x_direction).front();
+      subtract(row, r_.ECX[yaw], (first_yaw + yaw) * curve, a, -sign * line.cx * beside);
+    }
+    subtract(row, r_.X[X[0]], source(0), a, sign * line.cx * (1.0 - second));
   }
 
   void add_line(const GridLine& line, std::size_t source) {
@@ -333,10 +372,17 @@ Closure closure_of(const System& system, std::size_t n, double factor) {
 }
 
 void fill_yaw(const DiagonalReadings& r, DiagonalResult& out) {
-  if (r.X.size() != 2) return;
-  const double W = r.X[1].across - r.X[0].across;
+  const auto X = of_direction(r.X, r.D1.x_direction);
+  if (X.size() == 1 && r.ECX.empty()) return;
+  if (X.size() == 1) {
+    const auto& yaw = r.ECX[of_direction(r.ECX, r.D1.x_direction).front()].mean;
+    for (const double v : yaw) out.ECX.push_back(v - yaw.front());
+    return;
+  }
+  const PitchLine &one = r.X[X[0]], &other = r.X[X[1]];
+  const double W = other.across - one.across;
   for (std::size_t i = 0; i <= r.n; ++i)
-    out.ECX.push_back(((r.X[0].mean[i] - r.X[0].mean[0]) - (r.X[1].mean[i] - r.X[1].mean[0])) / W);
+    out.ECX.push_back(((one.mean[i] - one.mean[0]) - (other.mean[i] - other.mean[0])) / W);
   out.slave_shift = W * out.C0Y;
 }
 

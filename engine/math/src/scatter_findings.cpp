@@ -136,6 +136,7 @@ Suspect most_suspect(const AxisTest& test, const PassModel& m, bool slopes) {
     taken += 1.0;
   }
   Suspect worst;
+  double dof = 0.0;
   for (std::size_t k = 0; k < m.e.size(); ++k) {
     const bool minus = m.passes[m.pass[k]].minus;
     const auto& side = m.side[minus ? 1 : 0];
@@ -148,9 +149,10 @@ Suspect most_suspect(const AxisTest& test, const PassModel& m, bool slopes) {
     const double rest = std::max(0.0, side.squares - m.e[k] * m.e[k] / free) / (side.dof - 1.0);
     const double t = m.e[k] / std::sqrt(rest * free);
     if (std::fabs(t) <= std::fabs(worst.t)) continue;
-    worst = {k, t, std::min(1.0, taken * t_two_sided(t, side.dof - 1.0)),
-             test.readings()[k].deviation - m.e[k] / free};
+    worst = {k, t, 1.0, test.readings()[k].deviation - m.e[k] / free};
+    dof = side.dof - 1.0;
   }
+  worst.p = std::min(1.0, taken * t_two_sided(worst.t, dof));
   return worst;
 }
 

@@ -80,7 +80,9 @@ std::optional<Part> balls_of(const Observations& read, const Axis& axis, const s
       const auto& approach = read.axes.front().approach;
       o.axes[0].position.push_back(angle);
       o.axes[0].approach.push_back(approach.empty() ? std::int8_t{1} : approach[ball.row]);
-      for (std::size_t k = 0; k < 3; ++k) o.axes[1 + k].position.push_back(place[k]);
+      // On the circle itself: the noise of readings makes no effect independent of another.
+      for (std::size_t k = 0; k < 3; ++k)
+        o.axes[1 + k].position.push_back(circle->centre[k] + circle->radius * out[k]);
       o.sense.push_back(sense);
       o.deviation.push_back(dot(less(ball.at, circle->centre), sense) -
                             (radial ? circle->radius : 0.0));

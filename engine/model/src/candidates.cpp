@@ -55,11 +55,18 @@ class CandidateOf {
     for (std::size_t other = f_.in_model; other < f_.terms.size(); ++other) {
       if (other == member || f_.bench->holds(f_.best, other)) continue;
       const State changed = f_.bench->settled(f_.bench->with(rest, gains, other));
-      if (changed.blocks.size() > rest.blocks.size() &&
-          changed.criterion < f_.best.criterion + alias_evidence)
+      if (changed.blocks.size() > rest.blocks.size() && as_good(changed))
         names.push_back(f_.terms[other].name());
     }
     return names;
+  }
+
+  /// Hardly any evidence is lost; in space, where one curve can hold another effect wholly, also
+  /// where the readings lose nothing and only the parameters cost more.
+  bool as_good(const State& changed) const {
+    if (changed.criterion < f_.best.criterion + alias_evidence) return true;
+    return f_.part.table.axes.size() > 1 &&
+           f_.bench->readings() * std::log(changed.squares / f_.best.squares) < alias_evidence;
   }
 
   /// Evidence of an effect outside the best explanation: added to it, or instead of a member.
@@ -79,8 +86,7 @@ class CandidateOf {
       if (score <= c.score) continue;
       c.score = score;
       c.p = f_.chance.corrected(p_of(*f_.bench, changed, e));
-      if (changed.criterion < f_.best.criterion + alias_evidence)
-        c.aliases = {f_.terms[member].name()};
+      if (as_good(changed)) c.aliases = {f_.terms[member].name()};
     }
   }
 

@@ -175,8 +175,7 @@ Expected<Comparison> compare_without(const Part& part, const std::vector<Term>& 
 Expected<Comparison> compare(const Part& part, const std::vector<Term>& model) {
   if (part.table.size() == 0) return fail("there are no readings of an axis to compare with");
   const Repeats repeats(part.table);
-  auto out =
-      compare_without(part, model, repeats, suspects_of(part.table, repeats, part.table.deviation));
+  auto out = compare_without(part, model, repeats, suspects_of(part.table, repeats, model));
   if (!out || part.table.size() <= thin_beyond || !can_be_thinned(part.table)) return out;
   const Part thin = thinned(part, out->fit.weight);
   auto of_means = compare_without(thin, out->fit.terms, Repeats(thin.table), {});

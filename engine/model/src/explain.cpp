@@ -29,7 +29,7 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
 Expected<Explanation> explain_on_means(const Part& part, const std::vector<Term>& model,
                                        const std::vector<Term>& catalogue, std::uint64_t seed) {
   const Repeats repeats(part.table);
-  auto suspects = suspects_of(part.table, repeats, part.table.deviation);
+  auto suspects = suspects_of(part.table, repeats, model);
   const auto weight = weights_without(part.table.size(), suspects);
   const Part thin = thinned(part, weight);
   auto out = explain_all(thin, model, catalogue, seed);

@@ -21,7 +21,7 @@ class Finder {
  public:
   Finder(const Part& part, const std::vector<Term>& model, const std::vector<Term>& catalogue,
          std::uint64_t seed)
-      : f_{part, Repeats(part.table), model, model.size(), seed} {
+      : f_{part, Repeats(part.table), model, model.size(), seed}, model_(model) {
     for (const Term& c : catalogue)
       if (std::none_of(model.begin(), model.end(),
                        [&](const Term& m) { return m.name() == c.name(); }))
@@ -29,7 +29,7 @@ class Finder {
   }
 
   Expected<Finding> run() {
-    f_.suspects = suspects_of(f_.part.table, f_.repeats, f_.part.table.deviation);
+    f_.suspects = suspects_of(f_.part.table, f_.repeats, model_);
     for (int round = 0; round < 3; ++round) {
       if (auto searched = search(); !searched) return fail(searched.error());
       if (!suspect_again()) break;
@@ -201,6 +201,7 @@ class Finder {
   }
 
   Finding f_;
+  const std::vector<Term>& model_;
   Workbench::Made made_;
 };
 

@@ -84,9 +84,11 @@ void append_places(Part& part, const Observations& o, const Measurement& m) {
   std::vector<const Observations::AxisColumn*> moved;
   for (const auto& axis : o.axes)
     if (!axis.rotary && coordinate_of(axis.axis) < 3 && moves(axis)) moved.push_back(&axis);
-  Vector from{};
+  Vector from{}, to{};
   for (const auto& [axis, at] : m.from)
-    if (const std::size_t k = coordinate_of(axis); k < 3) from[k] = at;
+    if (const std::size_t k = coordinate_of(axis); k < 3) from[k] = to[k] = at;
+  for (const auto& [axis, at] : m.to)
+    if (const std::size_t k = coordinate_of(axis); k < 3) to[k] = at;
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (moved.size() == 1) {
       part.along.push_back(moved.front()->position[i]);
@@ -96,7 +98,8 @@ void append_places(Part& part, const Observations& o, const Measurement& m) {
     }
     const Vector& sense = o.sense_of(i);
     Vector p = point_of(o, i);
-    for (std::size_t k = 0; k < 3; ++k) p[k] -= from[k];
+    for (std::size_t k = 0; k < 3; ++k)  // of three of four step diagonals not all at `from`
+      p[k] -= (to[k] - from[k]) * sense[k] < 0.0 ? to[k] : from[k];
     part.along.push_back(dot(p, sense));
     double way = 0.0;
     for (const auto* axis : moved)
@@ -105,10 +108,16 @@ void append_places(Part& part, const Observations& o, const Measurement& m) {
   }
 }
 
-void append_lines(Observations& to, const Observations& more) {
+void append_lines(Observations& to, const Observations& more, const std::string& id) {
   const std::size_t before = to.line.size();
   const auto first = static_cast<std::uint32_t>(to.lines.size());
-  to.lines.insert(to.lines.end(), more.lines.begin(), more.lines.end());
+  for (Observations::Line line : more.lines) {
+    // Two tables may both have a line "1"; in one part a name is one line.
+    if (std::any_of(to.lines.begin(), to.lines.end(),
+                    [&](const auto& known) { return known.name == line.name; }))
+      line.name = id + " " + line.name;
+    to.lines.push_back(std::move(line));
+  }
   for (std::size_t i = 0; i < more.size(); ++i) to.line.push_back(first + line_of(more, i));
   if (more.sense.empty() && to.sense.empty()) return;
   for (std::size_t i = to.sense.size(); i < before; ++i)
@@ -120,7 +129,7 @@ void append_lines(Observations& to, const Observations& more) {
 
 bool sensed_along_one_axis(const Observations& o) {
   if (o.axes.size() != 1 || o.axes.front().approach.size() != o.size()) return false;
-  if (o.angular) return true;
+  if (o.angular) return o.axes.front().rotary;  // yaw of a linear axis is no position of it
   if (o.axes.front().rotary) return false;
   const std::size_t k = coordinate_of(o.axes.front().axis);
   for (std::size_t i = 0; i < o.size(); ++i) {
@@ -203,7 +212,7 @@ void append_space(Part& part, const Campaign& campaign, const std::vector<Observ
       axis.position.insert(axis.position.end(), column.position.begin(), column.position.end());
       axis.approach.insert(axis.approach.end(), column.approach.begin(), column.approach.end());
     }
-    append_lines(to, more);
+    append_lines(to, more, campaign.measurements[m].id);
     append_places(part, more, campaign.measurements[m]);
     append_readings(part, more, campaign.measurements[m].id);
   }

@@ -89,6 +89,18 @@ std::vector<Course> courses_of(const Observations& o, const AxisReadings& r) {
   return out;
 }
 
+std::vector<Further> further_runs(const Part& part, const Candidate& candidate) {
+  std::vector<Further> out;
+  const auto read = readings_of(part.table, candidate.term.axis);
+  if (!read) return out;
+  const double interval = std::max(read->duration, 1.0) / static_cast<double>(part.table.size());
+  for (const Course& course : courses_of(part.table, *read)) {
+    out.push_back({course.id, "", part.table});
+    append(out.back().table, course, interval);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
@@ -96,20 +108,18 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
                             double s) {
   std::vector<Plan> plans;
   if (candidate.aliases.empty() || !(s > 0.0)) return plans;
-  const auto read = readings_of(part.table, candidate.term.axis);
-  if (!read) return plans;
-  const double interval = std::max(read->duration, 1.0) / static_cast<double>(part.table.size());
   VectorXd value(static_cast<Index>(candidate.parameters.size()));
   Index linear = 0;
   for (const Parameter& p : candidate.parameters)
     if (!p.shape) value(linear++) = p.value;
   value.conservativeResize(linear);
-  for (const Course& course : courses_of(part.table, *read)) {
-    Observations o = part.table;
-    append(o, course, interval);
+  const auto further =
+      part.kind == Part::Kind::axis ? further_runs(part, candidate) : further_in_space(part);
+  for (const Further& f : further) {
+    const Observations& o = f.table;
     const auto columns = columns_of(o, candidate.term, candidate.term.shape);
     if (!columns || columns->cols() != linear) continue;
-    Plan plan{course.id, o.size() - part.table.size(), INFINITY, candidate.term.name(), ""};
+    Plan plan{f.id, o.size() - part.table.size(), INFINITY, candidate.term.name(), "", f.of};
     for (const std::string& alias : candidate.aliases) {
       const auto other = std::find_if(catalogue.begin(), catalogue.end(),
                                       [&](const Term& t) { return t.name() == alias; });

@@ -5,6 +5,15 @@
 
 namespace nonio::model {
 
+/// A table with one measurement more, whose deviations are 0.
+struct Further {
+  std::string id, of;  ///< as in Plan
+  Observations table;
+};
+
+/// What could be measured besides on a machine with several axes, or on a ball.
+std::vector<Further> further_in_space(const Part& part);
+
 /// Further measurements that would tell a candidate from its aliases: each plan's readings are laid
 /// beside those that are there, and the distance that the alias cannot bridge is computed. Plans
 /// that reach four standard deviations, cheapest first; the best one if none does.

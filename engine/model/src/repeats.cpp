@@ -245,8 +245,32 @@ std::vector<double> apart_from_others(const Repeats& r, const std::vector<std::u
   return out;
 }
 
-std::vector<Suspect> suspects_of(const Observations&, const Repeats& r,
-                                 const std::vector<double>& y) {
+namespace {
+
+/// Deviations without what the set-up says of them (a mirror's tilt jumps from reading to reading):
+/// by least absolute residuals, which a misread value does not move much.
+std::vector<double> without_set_up(const Observations& o, const std::vector<Term>& model) {
+  std::vector<Term> set_up;
+  for (const Term& term : model)
+    if (term.effect->always) set_up.push_back(term);
+  if (set_up.empty()) return o.deviation;
+  std::vector<double> weight(o.size(), 1.0);
+  std::vector<double> e = o.deviation;
+  for (int round = 0; round < 8; ++round) {
+    const auto fitted = fit_near(o, set_up, std::vector<char>(set_up.size(), 0), weight);
+    if (!fitted) return o.deviation;
+    e = fitted->residual;
+    const double s = std::max(math::robust_deviation(e), 1e-12);
+    for (std::size_t i = 0; i < e.size(); ++i) weight[i] = s / std::max(std::fabs(e[i]), s);
+  }
+  return e;
+}
+
+}  // namespace
+
+std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
+                                 const std::vector<Term>& model) {
+  const std::vector<double> y = without_set_up(o, model);
   const std::size_t n = y.size();
   if (n < 10) return {};
   const std::vector<double> e = polished(r, y);

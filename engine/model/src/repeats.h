@@ -34,7 +34,9 @@ std::vector<double> apart_from_others(const Repeats&, const std::vector<std::uin
                                       const std::vector<double>& e);
 
 /// Readings that contradict their repeats and their neighbours: found by medians, then tested
-/// against the scatter of the others (Student, corrected for the number of readings).
-std::vector<Suspect> suspects_of(const Observations&, const Repeats&, const std::vector<double>& y);
+/// against the scatter of the others (Student, corrected for the number of readings). Of the model
+/// only the set-up is taken out.
+std::vector<Suspect> suspects_of(const Observations&, const Repeats&,
+                                 const std::vector<Term>& model);
 
 }  // namespace nonio::model

@@ -10,6 +10,9 @@ namespace nonio::model {
 namespace {
 // Of a column of unit length, what must be left when the others are taken out.
 constexpr double independent = 1e-7;
+// In space columns run along with each other (a step diagonal's mirror and its three axes): not
+// curves, which would rather be taken for the noise of rounding.
+constexpr double independent_in_space = 1e-11;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 bool varies_with_target_only(const MatrixXd& columns, const std::vector<std::uint32_t>& target) {
   if (target.empty()) return false;
@@ -198,10 +201,9 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
 namespace {
 
 /// t^T S^-1 t of one block; NaN if S is not safely positive definite.
-double fall_of(const MatrixXd& s, const VectorXd& t) {
+double fall_of(const MatrixXd& s, const VectorXd& t, double least) {
   const Eigen::LLT<MatrixXd> llt(s);
-  if (llt.info() != Eigen::Success ||
-      !(llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent)))
+  if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > std::sqrt(least)))
     return nan;
   return llt.matrixL().solve(t).squaredNorm();
 }
@@ -220,10 +222,10 @@ double fall_of_some(const MatrixXd& s, const VectorXd& t) {
   return any ? fall : nan;
 }
 
-double fall_of_two(double aa, double ab, double bb, double ta, double tb) {
-  if (!(aa > independent)) return nan;
+double fall_of_two(double aa, double ab, double bb, double ta, double tb, double least) {
+  if (!(aa > least)) return nan;
   const double l = ab / aa, rest = bb - l * ab;
-  if (!(rest > independent)) return nan;
+  if (!(rest > least)) return nan;
   const double second = tb - l * ta;
   return ta * ta / aa + second * second / rest;
 }
@@ -283,6 +285,10 @@ Workbench::Projection Workbench::projection(const State& state) const {
   return out;
 }
 
+double Workbench::least_of(const Block& block) const {
+  return several_axes_ && !reducible(block) ? independent_in_space : independent;
+}
+
 bool Workbench::reducible(const Block& block) const {
   return several_axes_ && instances_[block.effect].term.effect->curve;
 }
@@ -297,7 +303,7 @@ Workbench::Directions Workbench::directions(const std::vector<std::size_t>& bloc
     const Index k = block.count, had = out.of_columns.cols();
     const MatrixXd inside = out.of_columns.transpose() * gram.middleCols(first, k);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> own(block.own - inside.transpose() * inside);
-    const Index rank = (own.eigenvalues().array() > independent).count();
+    const Index rank = (own.eigenvalues().array() > least_of(block)).count();
     out.sound = out.sound && rank > 0 && (rank == k || reducible(block));
     MatrixXd fresh = -out.of_columns * inside;
     fresh.middleRows(first, k) += MatrixXd::Identity(k, k);
@@ -318,13 +324,13 @@ double Workbench::fall_of_block(const Projection& p, const Block& block) const {
   if (p.z.size() > 0) left.noalias() -= w * p.z;
   if (block.count == 1) {
     const double s = 1.0 - w.squaredNorm();
-    return s > independent ? left(0) * left(0) / s : nan;
+    return s > least_of(block) ? left(0) * left(0) / s : nan;
   }
   if (block.count == 2 && !reducible(block))
     return fall_of_two(1.0 - w.row(0).squaredNorm(), block.own(0, 1) - w.row(0).dot(w.row(1)),
-                       1.0 - w.row(1).squaredNorm(), left(0), left(1));
+                       1.0 - w.row(1).squaredNorm(), left(0), left(1), least_of(block));
   const MatrixXd s = block.own - w * w.transpose();
-  const double fall = fall_of(s, left);
+  const double fall = fall_of(s, left, least_of(block));
   return std::isnan(fall) && reducible(block) ? fall_of_some(s, left) : fall;
 }
 

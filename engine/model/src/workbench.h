@@ -109,6 +109,7 @@ class Workbench {
   };
   Directions directions(const std::vector<std::size_t>& blocks, const MatrixXd& gram) const;
   bool reducible(const Block& block) const;
+  double least_of(const Block& block) const;
   State with_curve(const State& state, const VectorXd& gains, std::size_t effect) const;
   Projection projection(const State& state) const;
   void add_falls(const Projection& projection, std::size_t effect, VectorXd& fall) const;

@@ -8,14 +8,25 @@
 
 namespace nonio::diagonals {
 
-bool Curve::both_directions() const {
-  return std::all_of(stops.begin(), stops.end(),
-                     [](const Stop& p) { return p.n_plus > 0 && p.n_minus > 0; });
+bool Curve::has(int direction) const {
+  return std::all_of(stops.begin(), stops.end(), [&](const Stop& p) {
+    return (p.n_plus > 0 || direction < 0) && (p.n_minus > 0 || direction > 0);
+  });
 }
 
-double Curve::u_mean() const {
+std::optional<int> Curve::direction() const {
+  for (const int d : {0, 1, -1})
+    if (has(d)) return d;
+  return std::nullopt;
+}
+
+double Curve::u_mean(int direction) const {
   std::size_t plus = std::numeric_limits<std::size_t>::max(), minus = plus;
   for (const Stop& p : stops) plus = std::min(plus, p.n_plus), minus = std::min(minus, p.n_minus);
+  if (direction != 0) {
+    const std::size_t n = direction > 0 ? plus : minus;
+    return n == 0 ? 0.0 : s / std::sqrt(static_cast<double>(n));
+  }
   if (plus == 0 || minus == 0) return 0.0;
   return s / 2.0 * std::sqrt(1.0 / static_cast<double>(plus) + 1.0 / static_cast<double>(minus));
 }
@@ -47,6 +58,7 @@ Curve curve_of(const Observations& o, std::size_t column) {
     Curve::Stop stop;
     stop.position = axis.position[order[begin]];
     if (o.axes.size() > 1) stop.across = o.axes[1 - column].position[order[begin]];
+    if (order[begin] < o.source_line.size()) stop.source_line = o.source_line[order[begin]];
     bool zero = true;
     for (; end < order.size() && axis.position[order[end]] - stop.position <= same_stop; ++end) {
       const bool plus = axis.approach.empty() || axis.approach[order[end]] > 0;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "nonio/math/diagonals.h"
@@ -19,16 +21,23 @@ struct Curve {
     double position = 0.0, across = 0.0;  ///< of the axis, and of the second axis if there is one
     double plus = 0.0, minus = 0.0;       ///< means
     std::size_t n_plus = 0, n_minus = 0;
-    double mean() const { return (plus + minus) / 2.0; }
+    std::uint32_t source_line = 0;  ///< of the file, of one reading; 0: not known
+    /// Of the readings from one direction, or (0) of both.
+    double mean(int direction = 0) const {
+      return direction > 0 ? plus : direction < 0 ? minus : (plus + minus) / 2.0;
+    }
     double reversal() const { return plus - minus; }
   };
   std::vector<Stop> stops;  ///< ascending
   double s = 0.0;           ///< pooled standard deviation of a reading; 0: no repetition
   bool zeroed = false;      ///< every reading at the first stop is 0
 
-  bool both_directions() const;
-  /// Standard uncertainty of the mean of both directions; 0 if unknown.
-  double u_mean() const;
+  /// Whether every stop was read from this direction, or (0) from both.
+  bool has(int direction) const;
+  /// 0 if every stop was read from both directions, else the one from which every stop was read.
+  std::optional<int> direction() const;
+  /// Standard uncertainty of the mean of this direction, or (0) of both; 0 if unknown.
+  double u_mean(int direction = 0) const;
   double mean_reversal() const;
   /// Index of the stop at this position, or the number of stops.
   std::size_t find(double position) const;

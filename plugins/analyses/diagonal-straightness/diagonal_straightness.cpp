@@ -101,7 +101,7 @@ class Report {
     value("C0Y", r_.C0Y, Quantity::small_angle, r_.u_C0Y);
     value("C0Y_LSQ", r_.lsq.C0Y, Quantity::small_angle, r_.lsq.u_C0Y);
     if (r_.slave_shift) {
-      const double W = c_.readings.X[1].across - c_.readings.X[0].across;
+      const double W = c_.readings.X.back().across - c_.readings.X.front().across;
       value("slave_shift", *r_.slave_shift, Quantity::deviation, std::fabs(W) * r_.u_C0Y);
     }
   }
@@ -219,6 +219,13 @@ std::vector<Option> options() {
            0.0,
            "um",
            "Standard uncertainty of every mean; 0: from the scatter of the readings.",
+           {},
+           0.0,
+           {}},
+          {"yaw_u_urad",
+           0.0,
+           "urad",
+           "Standard uncertainty of every mean of a yaw read for itself; 0: from the scatter.",
            {},
            0.0,
            {}}};

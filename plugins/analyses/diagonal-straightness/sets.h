@@ -16,6 +16,8 @@ struct Set {
   std::vector<std::size_t> lines;  ///< measurements of kind diagonal, in the manifest's order
 };
 
+/// What an id has behind its first blank: "final" of "D1 final".
+std::string ending(const std::string& id);
 std::vector<Set> sets_of(const Campaign&);
 /// The set whose first line this measurement is; none for the others.
 const Set* set_led_by(const std::vector<Set>&, const Campaign&, const Measurement&);
@@ -27,6 +29,7 @@ struct Collected {
   double x0 = 0.0, y0 = 0.0;      ///< origin of the grid, m
   std::vector<std::string> uses;  ///< ids
   std::string lines_of_x;         ///< ids of the positioning of X, in words
+  bool one_direction = false;     ///< a diagonal was not read from both at every stop
   double reversal_of_diagonals = 0.0, reversal_of_axes = 0.0, u_reversal = 0.0;
   std::vector<Finding> findings;  ///< what does not hinder
   std::size_t D1 = 0, D2 = 0;     ///< measurements

@@ -62,8 +62,9 @@ std::size_t steps_of(const Passes& p, const Observations& o, const Line& line) {
   return n;
 }
 
-/// Whether every reading lies a whole number of steps from the start; the numbers go to the line.
-bool count_moves(const Passes& p, const Observations& o, Line& line) {
+/// The first row that does not lie a whole number of steps from the start, or none; the numbers go
+/// to the line.
+std::optional<std::size_t> count_moves(const Passes& p, const Observations& o, Line& line) {
   line.n = steps_of(p, o, line);
   for (const std::size_t row : line.rows) {
     std::array<std::size_t, 3> moves{};
@@ -74,13 +75,13 @@ bool count_moves(const Passes& p, const Observations& o, Line& line) {
           line.sign[k] * (o.axes[k].position[row] - start) / travel * static_cast<double>(line.n);
       if (!(std::fabs(steps - std::round(steps)) < 1e-3) || !(steps > -0.5) ||
           !(steps < static_cast<double>(line.n) + 0.5))
-        return false;
+        return row;
       moves[k] = static_cast<std::size_t>(std::llround(steps));
     }
-    if (moves[0] + moves[1] + moves[2] == 0) return false;  // before the first move
+    if (moves[0] + moves[1] + moves[2] == 0) return row;  // before the first move
     line.moves.push_back(moves);
   }
-  return true;
+  return std::nullopt;
 }
 
 std::vector<Line> lines_of(const Observations& o) {
@@ -94,12 +95,14 @@ std::vector<Line> lines_of(const Observations& o) {
   return lines;
 }
 
-bool fits(const Line& line, const std::array<std::size_t, 3>& order) {
+/// How many readings of the line come in this order before the first one that does not.
+std::size_t in_order(const Line& line, const std::array<std::size_t, 3>& order) {
   math::StepDiagonals d;
   d.order = order;
-  for (const auto& m : line.moves)
-    if (d.counts(m[0] + m[1] + m[2]) != m) return false;
-  return true;
+  const auto broken = std::find_if(line.moves.begin(), line.moves.end(), [&](const auto& m) {
+    return d.counts(m[0] + m[1] + m[2]) != m;
+  });
+  return static_cast<std::size_t>(broken - line.moves.begin());
 }
 
 std::string words(const std::array<std::size_t, 3>& order) {
@@ -108,13 +111,19 @@ std::string words(const std::array<std::size_t, 3>& order) {
   return out;
 }
 
-/// The order in which the axes of a line move, all the way.
-std::optional<std::array<std::size_t, 3>> order_of(const Line& line) {
-  std::array<std::size_t, 3> order{0, 1, 2};
+/// The order in which the axes of a line move: the one that holds longest.
+std::array<std::size_t, 3> order_of(const Line& line) {
+  std::array<std::size_t, 3> order{0, 1, 2}, best = order;
   do
-    if (fits(line, order)) return order;
+    if (in_order(line, order) > in_order(line, best)) best = order;
   while (std::next_permutation(order.begin(), order.end()));
-  return std::nullopt;
+  return best;
+}
+
+/// "sd.csv:17", for words; only the file where nobody said which line it was.
+std::string place_of(const AnalysisInput& in, std::size_t row) {
+  const auto& lines = in.observations.source_line;
+  return in.measurement.file + (row < lines.size() ? ":" + std::to_string(lines[row]) : "");
 }
 
 Finding refused(const char* id, std::vector<Number> evidence,
@@ -122,16 +131,23 @@ Finding refused(const char* id, std::vector<Number> evidence,
   return {.id = id, .attention = true, .evidence = std::move(evidence), .texts = std::move(texts)};
 }
 
-void refuse_order(Passes& p, const std::vector<Line>& lines) {
+void refuse_order(Passes& p, const AnalysisInput& in, const std::vector<Line>& lines) {
   std::optional<std::array<std::size_t, 3>> first;
   for (const Line& line : lines) {
+    if (first && in_order(line, *first) == line.moves.size()) continue;
     const auto order = order_of(line);
-    if (!order)
-      return p.refusal.push_back(refused("step-diagonal.order-broken", {}, {{"pass", line.name}}));
-    if (first && *first != *order)
+    const std::size_t kept = in_order(line, order);
+    if (kept < line.moves.size())
+      return p.refusal.push_back(
+          refused("step-diagonal.order-broken", {},
+                  {{"pass", line.name}, {"at", place_of(in, line.rows[kept])}}));
+    if (first)
       return p.refusal.push_back(
           refused("step-diagonal.order-differs", {},
-                  {{"pass", line.name}, {"order", words(*order)}, {"first", words(*first)}}));
+                  {{"pass", line.name},
+                   {"order", words(order)},
+                   {"first", words(*first)},
+                   {"at", place_of(in, line.rows[in_order(line, *first)])}}));
     first = order;
   }
   if (first) p.readings.order = *first;
@@ -154,13 +170,13 @@ void refuse_missing(Passes& p, const std::vector<Line>& lines) {
                                 {{"missing", missing}}));
 }
 
-void refuse_steps(Passes& p, const Observations& o, std::vector<Line>& lines) {
+void refuse_steps(Passes& p, const AnalysisInput& in, std::vector<Line>& lines) {
   for (Line& line : lines) {
-    const bool even = count_moves(p, o, line);
-    if (even && line.n == lines.front().n) continue;
-    return p.refusal.push_back(refused("step-diagonal.unequal-steps",
-                                       {count("steps", line.n), count("first", lines.front().n)},
-                                       {{"pass", line.name}}));
+    const auto uneven = count_moves(p, in.observations, line);
+    if (!uneven && line.n == lines.front().n) continue;
+    return p.refusal.push_back(refused(
+        "step-diagonal.unequal-steps", {count("steps", line.n), count("first", lines.front().n)},
+        {{"pass", line.name}, {"at", place_of(in, uneven.value_or(line.rows.front()))}}));
   }
   const std::size_t n = lines.front().n;
   if (n < 3 || n > math::most_diagonal_steps)
@@ -181,8 +197,8 @@ Expected<Passes> passes_of(const AnalysisInput& in) {
       lines.end());
   refuse_missing(p, lines);
   if (lines.empty()) return p;
-  refuse_steps(p, o, lines);
-  if (p.refusal.empty()) refuse_order(p, lines);
+  refuse_steps(p, in, lines);
+  if (p.refusal.empty()) refuse_order(p, in, lines);
   if (!p.refusal.empty()) return p;
   for (const Line& line : lines) {
     math::StepDiagonals::Pass pass{line.sign, std::vector<double>(3 * line.n, std::nan(""))};

@@ -8,6 +8,7 @@
 
 #include "nonio/math/axis_findings.h"
 #include "nonio/sdk/format.h"
+#include "series_jobs.h"
 
 namespace nonio::controllers {
 namespace {
@@ -100,6 +101,7 @@ Expected<std::map<std::string, AxisSettings>> settings_of_axes(const OutputInput
   for (const Axis& a : input.campaign.machine.axes) known.insert(a.name);
   for (const Measurement& m : input.campaign.measurements)
     if (m.kind == "axis") known.insert(m.axis);
+  for (const AxisJob& job : series_jobs(input)) known.insert(job.axis);
   for (const auto& [axis, settings] : out)
     if (known.count(axis) == 0)
       return wrong_axes("option axes: no axis " + axis + "; there are " + joined(known));
@@ -165,8 +167,6 @@ AxisJob job_of(const OutputInput& input, std::size_t index) {
   AxisJob job;
   job.axis = m.axis;
   job.measurement = m.id;
-  job.stem = file_part(m.axis);
-  job.number = place_of(input.campaign.machine, m.axis);
   job.rotary = test.rotary;
   job.curve = math::error_curve(test);
   if (input.measured != nullptr && index < input.measured->size())
@@ -185,7 +185,9 @@ void say_what_was_left_out(const AxisJob& job, OutputResult& result) {
   if (job.curve.left_out > 0)
     say("table.left-out").evidence = {
         {"targets", static_cast<double>(job.curve.left_out), Quantity::count}};
-  if (!job.curve.bidirectional())
+  if (job.from_diagonals)
+    say("table.from-diagonals").texts.emplace_back("id", job.measurement);
+  else if (!job.curve.bidirectional())
     say("table.one-direction").texts.emplace_back("direction", job.curve.plus.empty() ? "-" : "+");
   else if (job.reversal.kind == math::Reversal::Kind::unknown)
     say("table.reversal-unjudged");
@@ -223,6 +225,12 @@ Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
 
 }  // namespace
 
+bool has_tables(const Campaign& campaign) {
+  return std::any_of(
+      campaign.measurements.begin(), campaign.measurements.end(),
+      [](const Measurement& m) { return m.kind == "axis" || m.kind == "step-diagonal"; });
+}
+
 Remark remark(const AxisJob& job, std::string id) {
   return {std::move(id), {}, {{"axis", job.axis}, {"unit", std::string(job.unit())}}};
 }
@@ -242,26 +250,29 @@ Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
                                          OutputResult& result) {
   auto settings = settings_of_axes(input, full_keys(keys));
   if (!settings) return tl::unexpected<Error>(settings.error());
-  std::vector<AxisJob> jobs;
+  std::vector<AxisJob> all, jobs;
   const auto& measurements = input.campaign.measurements;
-  for (std::size_t i = 0; i < std::min(measurements.size(), input.observations.size()); ++i) {
-    const Measurement& m = measurements[i];
-    if (m.kind != "axis" || input.observations[i].size() == 0) continue;
-    AxisJob job = job_of(input, i);
+  for (std::size_t i = 0; i < std::min(measurements.size(), input.observations.size()); ++i)
+    if (measurements[i].kind == "axis" && input.observations[i].size() > 0)
+      all.push_back(job_of(input, i));
+  for (AxisJob& job : series_jobs(input)) all.push_back(std::move(job));
+  for (AxisJob& job : all) {
     if (job.curve.position.size() < 2) {
       result.findings.push_back(
           {"table.too-few-targets",
            true,
            {{"targets", static_cast<double>(job.curve.position.size()), Quantity::count}},
-           {{"axis", m.axis}},
-           m.id,
+           {{"axis", job.axis}},
+           job.measurement,
            "A table needs two targets, each from every direction measured."});
       continue;
     }
-    if (const auto it = settings->find(m.axis); it != settings->end()) job.settings = it->second;
+    job.stem = file_part(job.axis);
+    job.number = place_of(input.campaign.machine, job.axis);
+    if (const auto it = settings->find(job.axis); it != settings->end()) job.settings = it->second;
     if (const auto n = job.setting("number")) {
       if (!(*n >= 1.0 && *n <= 99.0 && *n == std::floor(*n)))
-        return wrong_axes("option axes, axis " + m.axis +
+        return wrong_axes("option axes, axis " + job.axis +
                           ": number must be a whole number from 1 to 99");
       job.number = static_cast<std::size_t>(*n);
     }
@@ -356,6 +367,8 @@ std::vector<std::string> warnings(const AxisJob& job, OutputResult& result) {
 }
 
 std::string reversal_words(const AxisJob& job, bool directions) {
+  if (job.from_diagonals)
+    return "from the step diagonals of " + plain(job.measurement) + ": no backlash value";
   if (!job.curve.bidirectional()) return "measured from one direction only: no backlash value";
   const std::string mean = deviation_words(job, job.curve.mean_reversal());
   if (directions)
@@ -397,7 +410,7 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
       result.predictions.push_back({job.measurement, name, before, after, q});
   };
   const bool both = curve.bidirectional();
-  add(both ? "E" : (curve.plus.empty() ? "E-" : "E+"), was.E(), will.E());
+  add(both ? "E" : job.from_diagonals ? "M" : curve.plus.empty() ? "E-" : "E+", was.E(), will.E());
   add("B", was.B(), will.B());
   add("M", was.M(), will.M());
   if (!(will.E() < was.E()))

@@ -26,11 +26,15 @@ struct AxisJob {
   math::ErrorCurve curve;                    ///< to be compensated: as measured, or the model's
   std::optional<math::ErrorCurve> measured;  ///< as measured, where `curve` is the model's
   std::optional<math::ErrorCurve> turn;      ///< of a rotary axis measured over the whole turn
+  bool from_diagonals = false;  ///< positioning from step diagonals: nothing is known of reversal
   math::Reversal reversal;
   std::map<std::string, double, std::less<>> settings;  ///< of this axis: option `axes`
   std::vector<std::string> drift;     ///< ids of the findings that ask for attention
   std::vector<std::string> suspects;  ///< readings: "190.0 mm (3, +)"
   std::vector<std::string> about;     ///< machine, axis, date: plain ASCII lines
+
+  /// What the control adds once its table is loaded; the writer puts it here.
+  std::optional<math::Correction> loaded{};
 
   const math::ErrorCurve& table_curve() const { return turn ? *turn : curve; }
   /// What the control's backlash parameter held while the axis was measured; setting `backlash`.
@@ -47,7 +51,11 @@ struct AxisJob {
   std::optional<double> setting(std::string_view name) const;
 };
 
-/// The axis measurements with readings, in the campaign's order. `keys` are the settings that
+/// Something of which there may be a pitch table: axis runs, or step diagonals.
+bool has_tables(const Campaign&);
+
+/// The axis measurements with readings, in the campaign's order, and what step diagonals know of
+/// axes without them. `keys` are the settings that
 /// option `axes` takes for one axis: "reference" stands for reference_mm and reference_deg, a
 /// name with ':' at its end for a plain number. Findings and notes go to `result`.
 Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,

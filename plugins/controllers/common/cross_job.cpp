@@ -8,9 +8,29 @@ namespace nonio::controllers {
 
 namespace {
 
+/// Straightness and what of squareness belongs to it: error of `output` over `input` is the series
+/// plus `sign` times the value times the way. C0Y turns +Y towards -X, B0Z turns +Z towards +X, A0Z
+/// turns +Z towards -Y (ISO 230-1).
+struct Part {
+  const char *series, *squareness;
+  double sign;
+};
+constexpr std::array<Part, 6> parts{{{"EYX", nullptr, 0.0},
+                                     {"EZX", nullptr, 0.0},
+                                     {"EXY", "C0Y", -1.0},
+                                     {"EZY", nullptr, 0.0},
+                                     {"EXZ", "B0Z", 1.0},
+                                     {"EYZ", "A0Z", -1.0}}};
+
 const Series* series_of(const Evaluation& e, std::string_view name) {
   for (const Series& s : e.series)
     if (s.name == name) return &s;
+  return nullptr;
+}
+
+const Value* value_of(const Evaluation& e, std::string_view name) {
+  for (const Value& v : e.values)
+    if (v.name == name) return &v;
   return nullptr;
 }
 
@@ -19,54 +39,173 @@ double range(const std::vector<double>& v) {
   return *high - *low;
 }
 
+/// The curve of one part towards `output`; nothing where a number of it is not known.
+std::optional<CrossCurve> curve_of(const Evaluation& e, const Part& part,
+                                   const std::string& output) {
+  const Series* s = series_of(e, part.series);
+  const Value* square = part.squareness == nullptr ? nullptr : value_of(e, part.squareness);
+  if (s == nullptr || s->position.size() < 2 || (part.squareness != nullptr && square == nullptr))
+    return std::nullopt;
+  CrossCurve curve{s->over, output, s->position, s->value};
+  for (std::size_t i = 0; i < curve.value.size(); ++i) {
+    curve.value[i] -= s->value.front();
+    if (square != nullptr)
+      curve.value[i] += part.sign * square->value * (s->position[i] - s->position.front());
+  }
+  return curve;
+}
+
+/// Both diagonals as read, at the stops of the curves.
+std::optional<CrossJob> of_diagonals(const Results::Analysed& a) {
+  const Evaluation& e = a.evaluation;
+  const Series *f = series_of(e, "EYX"), *g = series_of(e, "EXY");
+  const auto *D1 = e.points.column("D1"), *D2 = e.points.column("D2");
+  if (f == nullptr || g == nullptr || D1 == nullptr || D2 == nullptr) return std::nullopt;
+  const auto along_x = curve_of(e, parts[0], g->over), along_y = curve_of(e, parts[2], f->over);
+  if (!along_x || !along_y) return std::nullopt;
+  CrossJob job{a.measurement, e.uses, {*along_x, *along_y}, {}};
+  const auto &x = f->position, &y = g->position;
+  const double Lx = x.back() - x.front(), Ly = y.back() - y.front(), L = std::hypot(Lx, Ly);
+  for (const bool rising : {true, false}) {
+    ReadLine line{rising ? "D1" : "D2",
+                  {{f->over, Lx / L}, {g->over, (rising ? Ly : -Ly) / L}},
+                  {},
+                  (rising ? D1 : D2)->values};
+    for (std::size_t i = 0; i < x.size(); ++i)
+      line.at.push_back({{f->over, x[i]}, {g->over, y[rising ? i : y.size() - 1 - i]}});
+    job.lines.push_back(std::move(line));
+  }
+  return job;
+}
+
+/// The body diagonals as read where all axes have moved as far: what a mirror that stands askew
+/// adds to single moves is not in these.
+std::vector<ReadLine> body_diagonals(const Measurement& m, const Observations& o) {
+  constexpr double same_part = 1e-6;
+  std::vector<ReadLine> lines;
+  for (const Observations::Line& of : o.lines) {
+    ReadLine line{of.name.substr(std::min(m.id.size() + 1, of.name.size())), {}, {{}}, {0.0}};
+    for (std::size_t k = 0; k < o.axes.size(); ++k) {
+      const auto from = m.from.find(o.axes[k].axis), to = m.to.find(o.axes[k].axis);
+      if (k > 2 || from == m.from.end() || to == m.to.end()) return {};
+      line.sense[from->first] = of.sense[k];
+      const auto [low, high] = std::minmax(from->second, to->second);
+      line.at.front()[from->first] = of.sense[k] > 0.0 ? low : high;
+    }
+    lines.push_back(std::move(line));
+  }
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    ReadLine& line = lines[o.line.empty() ? 0 : o.line[i]];
+    std::map<std::string, double> at;
+    std::vector<double> gone;
+    for (const auto& axis : o.axes) {
+      at[axis.axis] = axis.position[i];
+      gone.push_back((axis.position[i] - line.at.front()[axis.axis]) /
+                     (m.to.at(axis.axis) - m.from.at(axis.axis)));
+    }
+    const auto [least, most] = std::minmax_element(
+        gone.begin(), gone.end(), [](double a, double b) { return std::fabs(a) < std::fabs(b); });
+    if (std::fabs(*most) - std::fabs(*least) > same_part) continue;
+    line.at.push_back(std::move(at));
+    line.deviation.push_back(o.deviation[i]);
+  }
+  return lines;
+}
+
+std::optional<CrossJob> of_volume(const OutputInput& in, const Results::Analysed& a,
+                                  std::size_t index) {
+  const Evaluation& e = a.evaluation;
+  const Observations& o = in.observations[index];
+  if (o.axes.size() != 3) return std::nullopt;
+  CrossJob job{a.measurement, e.uses, {}, {}, true};
+  for (const Part& part : parts)
+    if (auto curve = curve_of(e, part, o.axes[static_cast<std::size_t>(part.series[1] - 'X')].axis))
+      job.curves.push_back(std::move(*curve));
+  if (job.curves.empty()) return std::nullopt;
+  job.lines = body_diagonals(in.campaign.measurements[index], o);
+  return job;
+}
+
 }  // namespace
 
-std::vector<CrossJob> cross_jobs(const Results& results) {
+std::string CrossJob::axes() const {
+  std::vector<std::string> names;
+  for (const CrossCurve& c : curves)
+    for (const std::string& name : {c.input, c.output})
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  std::sort(names.begin(), names.end());
+  std::string out;
+  for (const std::string& name : names) out += name;
+  return out;
+}
+
+std::vector<CrossJob> cross_jobs(const OutputInput& in) {
   std::vector<CrossJob> jobs;
-  for (const Results::Analysed& a : results.analyses) {
-    const Evaluation& e = a.evaluation;
-    const Series *f = series_of(e, "EYX"), *g = series_of(e, "EXY");
-    const auto *D1 = e.points.column("D1"), *D2 = e.points.column("D2");
-    const auto k = std::find_if(e.values.begin(), e.values.end(),
-                                [](const Value& v) { return v.name == "C0Y"; });
-    if (f == nullptr || g == nullptr || D1 == nullptr || D2 == nullptr || k == e.values.end())
-      continue;
-    CrossJob job{a.measurement,
-                 {f->over, g->over, f->position, f->value},
-                 {g->over, f->over, g->position, g->value},
-                 D1->values,
-                 D2->values};
-    for (std::size_t i = 0; i < job.along_y.value.size(); ++i)
-      job.along_y.value[i] -= k->value * (g->position[i] - g->position.front());
-    jobs.push_back(std::move(job));
+  const auto& measurements = in.campaign.measurements;
+  for (const Results::Analysed& a : in.results.analyses) {
+    const auto of = std::find_if(measurements.begin(), measurements.end(),
+                                 [&](const Measurement& m) { return m.id == a.measurement; });
+    const auto index = static_cast<std::size_t>(of - measurements.begin());
+    const bool volume =
+        of != measurements.end() && of->kind == "step-diagonal" && index < in.observations.size();
+    if (auto job = volume ? of_volume(in, a, index) : of_diagonals(a))
+      jobs.push_back(std::move(*job));
   }
   return jobs;
 }
 
-void predict_diagonals(const CrossJob& job, const math::Correction& of_y,
-                       const math::Correction& of_x, OutputResult& result) {
-  const auto &x = job.along_x.position, &y = job.along_y.position;
-  const double Lx = x.back() - x.front(), Ly = y.back() - y.front(), L = std::hypot(Lx, Ly);
-  const std::size_t n = x.size() - 1;
-  for (const bool rising : {true, false}) {
-    const auto& before = rising ? job.D1 : job.D2;
-    std::vector<double> after;
-    for (std::size_t i = 0; i <= n; ++i) {
-      const double at_y = y[rising ? i : n - i];
-      after.push_back(before[i] + Lx / L * of_x(at_y, rising ? 1 : -1) +
-                      (rising ? 1.0 : -1.0) * Ly / L * of_y(x[i], 1));
+bool together(const CrossJob& set, const AxisJob& job, const Campaign& campaign) {
+  if (set.measurement == job.measurement) return true;
+  bool names_one = false;
+  for (const std::string& id : set.uses) {
+    if (id == job.measurement) return true;
+    for (const Measurement& m : campaign.measurements)
+      names_one = names_one || (m.id == id && m.kind == "axis" && m.axis == job.axis);
+  }
+  return !set.volume && !names_one;  // step diagonals use runs of their own occasion only
+}
+
+void predict_lines(const CrossJob& job, const Corrections& corrections, OutputResult& result) {
+  const auto after = [&](const ReadLine& line) {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < line.deviation.size(); ++i) {
+      double v = line.deviation[i];
+      for (const auto& [axes, correction] : corrections) {
+        const auto sense = line.sense.find(axes.second);
+        const auto input = line.at[i].find(axes.first);
+        if (sense == line.sense.end() || input == line.at[i].end()) continue;
+        const int direction = line.sense.at(axes.first) < 0.0 ? -1 : 1;
+        v += sense->second * correction(input->second, direction);
+      }
+      out.push_back(v);
     }
-    const char* name = rising ? "D1" : "D2";
-    result.predictions.push_back(
-        {job.measurement, name, range(before), range(after), Quantity::deviation});
-    if (!(range(after) < range(before)))
+    return range(out);
+  };
+  std::vector<Prediction> all;  // several runs of a line: the worst of them
+  for (const ReadLine& line : job.lines) {
+    if (line.deviation.size() < 2) continue;  // nothing of it was read at whole steps
+    const std::string name = line.name.substr(0, line.name.find(' '));
+    const Prediction one{job.measurement, name, range(line.deviation), after(line),
+                         Quantity::deviation};
+    const auto known =
+        std::find_if(all.begin(), all.end(), [&](const Prediction& p) { return p.name == name; });
+    if (known == all.end()) {
+      all.push_back(one);
+    } else {
+      known->before = std::max(known->before, one.before);
+      known->after = std::max(known->after, one.after);
+    }
+  }
+  for (Prediction& p : all) {
+    if (!(p.after < p.before))
       result.findings.push_back({.id = "table.no-gain",
                                  .attention = true,
-                                 .evidence = {{"before", range(before), Quantity::deviation},
-                                              {"after", range(after), Quantity::deviation}},
-                                 .texts = {{"axis", name}},
+                                 .evidence = {{"before", p.before, Quantity::deviation},
+                                              {"after", p.after, Quantity::deviation}},
+                                 .texts = {{"axis", p.name}},
                                  .measurement = job.measurement,
                                  .advice = "These tables would not make the diagonal better."});
+    result.predictions.push_back(std::move(p));
   }
 }
 

@@ -335,12 +335,6 @@ Expected<OutputResult> write(const OutputInput& input) {
   return result;
 }
 
-bool applies(const Campaign& campaign) {
-  for (const Measurement& m : campaign.measurements)
-    if (m.kind == "axis") return true;
-  return false;
-}
-
 Option whole(std::string name, std::int64_t otherwise, std::string help, double least,
              double most) {
   return {std::move(name), otherwise, "", std::move(help), {}, least, most};
@@ -388,7 +382,7 @@ NONIO_PLUGIN(registry) {
                  "Stored pitch error compensation (3620-3627) and backlash (1851) for FANUC.",
                  nonio::options()};
   output.stage = nonio::Output::Stage::table;
-  output.applies = nonio::applies;
+  output.applies = nonio::controllers::has_tables;
   output.write = nonio::write;
   registry.add(std::move(output));
 }

@@ -11,6 +11,7 @@ namespace {
 
 using controllers::AxisJob;
 using controllers::CrossCurve;
+using controllers::CrossJob;
 using controllers::signed_decimal;
 
 enum class Layout { tnc407, itnc530, tnc640 };
@@ -25,8 +26,10 @@ struct Choices {
 // One row of a table before it is text. mm or deg.
 struct Row {
   double position, value;
-  std::optional<double> negative, cross;  ///< cross: of another axis
+  std::optional<double> negative;
+  std::vector<double> cross{};  ///< of other axes
 };
+using Crosses = std::vector<const CrossCurve*>;
 
 // Columns as the table editor has them: a cell starts where its heading starts.
 struct Columns {
@@ -53,7 +56,7 @@ std::vector<std::string> axis_columns(const Campaign& campaign, const AxisJob& j
 
 // The .COM text; it takes no comments, the words are in the file beside it.
 std::string com_table(const AxisJob& job, const std::vector<Row>& rows,
-                      const std::vector<std::string>& axes, const CrossCurve* cross,
+                      const std::vector<std::string>& axes, const Crosses& crosses,
                       const Choices& choices) {
   const Columns& c = choices.listed() ? listed_columns : equidistant_columns;
   std::string out = "BEGIN " + com_name(job, choices);
@@ -66,21 +69,20 @@ std::string com_table(const AxisJob& job, const std::vector<Row>& rows,
     put(head, c.position, "AXISPOS");
     put(head, c.negative, "BACKLASH");
   }
-  std::size_t own = c.first_axis, other = c.first_axis;
-  for (std::size_t k = 0; k < axes.size(); ++k) {
-    put(head, c.first_axis + c.width * k, axes[k]);
-    if (axes[k] == controllers::plain(job.axis)) own = c.first_axis + c.width * k;
-    if (cross != nullptr && axes[k] == controllers::plain(cross->output))
-      other = c.first_axis + c.width * k;
-  }
+  const auto column = [&](const std::string& axis) {
+    const auto at = std::find(axes.begin(), axes.end(), controllers::plain(axis));
+    return c.first_axis + c.width * static_cast<std::size_t>(at - axes.begin());
+  };
+  for (const std::string& axis : axes) put(head, column(axis), axis);
   out += head + "\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
     std::string line = std::to_string(i);
     put(line, c.position, signed_decimal(rows[i].position, 4));
     if (rows[i].negative) put(line, c.negative, signed_decimal(*rows[i].negative, 4));
-    if (rows[i].cross && other < own) put(line, other, signed_decimal(*rows[i].cross, 4));
-    put(line, own, signed_decimal(rows[i].value, 4));
-    if (rows[i].cross && other > own) put(line, other, signed_decimal(*rows[i].cross, 4));
+    std::map<std::size_t, double> cells{{column(job.axis), rows[i].value}};
+    for (std::size_t k = 0; k < crosses.size(); ++k)
+      cells[column(crosses[k]->output)] = rows[i].cross[k];
+    for (const auto& [at, value] : cells) put(line, at, signed_decimal(value, 4));
     out += line + "\n";
   }
   return choices.listed() ? out + "[END]\n" : out;
@@ -92,10 +94,21 @@ bool unfit_for_columns(const std::vector<std::string>& axes) {
   return false;
 }
 
+/// Where the rows of a table are wanted: at the targets, and where other axes have their points.
+std::vector<double> wanted(const AxisJob& job, const Crosses& crosses, const Choices& choices) {
+  std::vector<double> at = job.table_curve().position;
+  if (crosses.empty()) return at;
+  if (!choices.listed()) return crosses.front()->position;  // these are evenly spaced
+  for (const CrossCurve* cross : crosses)
+    at.insert(at.end(), cross->position.begin(), cross->position.end());
+  std::sort(at.begin(), at.end());
+  return at;
+}
+
 Expected<std::vector<double>> positions(const AxisJob& job, const OutputInput& input,
-                                        const Choices& choices) {
+                                        const Crosses& crosses, const Choices& choices) {
   const double step = controllers::wished_step(job, input.options);
-  const auto& measured = job.table_curve().position;
+  const auto measured = wanted(job, crosses, choices);
   if (choices.listed() && step == 0.0) {
     // Targets that the 4 decimals do not tell apart are one row.
     std::vector<double> rows;
@@ -123,7 +136,7 @@ Expected<std::vector<double>> positions(const AxisJob& job, const OutputInput& i
 }
 
 std::vector<Row> rows_of(const AxisJob& job, const std::vector<double>& at, bool directions,
-                         const CrossCurve* cross) {
+                         const Crosses& crosses) {
   const auto& curve = job.table_curve();
   const auto reference = job.position_setting("reference");
   const double zero =
@@ -132,13 +145,13 @@ std::vector<Row> rows_of(const AxisJob& job, const std::vector<double>& at, bool
     return (math::ErrorCurve::at(curve.position, values, x) - zero) * job.per_si();
   };
   std::vector<Row> rows;
-  for (const double x : at)
+  for (const double x : at) {
     rows.push_back({x * job.per_si(), entry(directions ? curve.plus : curve.mean, x),
-                    directions ? std::optional(entry(curve.minus, x)) : std::nullopt,
-                    cross == nullptr
-                        ? std::nullopt
-                        : std::optional(math::ErrorCurve::at(cross->position, cross->value, x) *
-                                        job.per_si())});
+                    directions ? std::optional(entry(curve.minus, x)) : std::nullopt});
+    for (const CrossCurve* cross : crosses)
+      rows.back().cross.push_back(math::ErrorCurve::at(cross->position, cross->value, x) *
+                                  job.per_si());
+  }
   return rows;
 }
 
@@ -164,7 +177,7 @@ std::string words(const AxisJob& job, const Choices& choices, bool directions,
   return out;
 }
 
-Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const CrossCurve* cross,
+Expected<void> write_axis(AxisJob& job, const OutputInput& input, const Crosses& crosses,
                           const Choices& choices, OutputResult& result) {
   const bool directions = choices.directions && job.curve.bidirectional();
   if (controllers::refused(job, directions, result)) return {};
@@ -172,12 +185,12 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Cr
   if (unfit_for_columns(axes))
     return fail("axis " + job.axis +
                 ": the table has columns for axis names of 1 to 9 characters without blanks");
-  const auto at = positions(job, input, choices);
+  const auto at = positions(job, input, crosses, choices);
   if (!at) return tl::unexpected<Error>(at.error());
   const std::string stem = "heidenhain-tnc-" + job.stem;
   const auto warning = controllers::warnings(job, result);
   Artifact com{stem + ".COM",
-               com_table(job, rows_of(job, *at, directions, cross), axes, cross, choices)};
+               com_table(job, rows_of(job, *at, directions, crosses), axes, crosses, choices)};
   Artifact text{stem + ".txt", words(job, choices, directions, com.name, warning)};
 
   heidenhain::Machine control{controllers::plain(job.axis), job.rotary, choices.max_points,
@@ -193,6 +206,7 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Cr
     return fail("axis " + job.axis +
                 ": the table written cannot be read back: " + correction.error().message);
   controllers::predict(job, *correction, result);
+  job.loaded = *correction;
   result.artifacts.push_back(std::move(com));
   result.artifacts.push_back(std::move(text));
   return {};
@@ -227,21 +241,45 @@ std::string cma_table(const std::vector<const AxisJob*>& written,
   return choices.listed() ? out + "[END]\n" : out;
 }
 
-/// What the control makes of the columns of the other axis, read from the tables of each.
-void predict_cross(const controllers::CrossJob& set, const std::vector<const AxisJob*>& written,
-                   const Choices& choices, OutputResult& result) {
-  const auto read = [&](const CrossCurve& curve) -> Expected<math::Correction> {
-    for (const AxisJob* job : written)
-      for (const Artifact& a : result.artifacts)
-        if (job->axis == curve.input && a.name == "heidenhain-tnc-" + job->stem + ".COM")
-          return heidenhain::load(
-              a.bytes, {controllers::plain(curve.output), false, choices.max_points, 0.0});
-    return fail("no table of axis " + curve.input);
-  };
-  const auto of_y = read(set.along_x), of_x = read(set.along_y);
-  if (!of_y || !of_x) return;  // a table was refused; its finding says why
-  controllers::predict_diagonals(set, *of_y, *of_x, result);
-  result.notes.push_back({"heidenhain.cross"});
+/// The columns that belong into the table of this axis, if one state of the machine alone has them.
+Crosses columns_of(const std::vector<CrossJob>& sets, const AxisJob& job,
+                   const OutputInput& input) {
+  Crosses columns;
+  std::size_t states = 0;
+  for (const CrossJob& set : sets) {
+    if (!controllers::together(set, job, input.campaign)) continue;
+    ++states;
+    for (const CrossCurve& curve : set.curves)
+      if (curve.input == job.axis) columns.push_back(&curve);
+  }
+  return states == 1 ? columns : Crosses{};
+}
+
+/// What the control makes of the columns of other axes, read from the tables of each.
+void predict_cross(const CrossJob& set, const std::vector<const AxisJob*>& written,
+                   const OutputInput& input, const Choices& choices, OutputResult& result) {
+  controllers::Corrections corrections;
+  for (const AxisJob* job : written) {
+    if (!controllers::together(set, *job, input.campaign)) continue;
+    const auto com = std::find_if(
+        result.artifacts.begin(), result.artifacts.end(),
+        [&](const Artifact& a) { return a.name == "heidenhain-tnc-" + job->stem + ".COM"; });
+    for (const CrossCurve& curve : set.curves) {
+      if (job->axis != curve.input) continue;
+      auto read = heidenhain::load(
+          com->bytes, {controllers::plain(curve.output), false, choices.max_points, 0.0});
+      if (read) corrections[{curve.input, curve.output}] = std::move(*read);
+    }
+    if (set.volume) corrections[{job->axis, job->axis}] = *job->loaded;
+  }
+  // A table that was refused takes its columns with it; its finding says why.
+  for (const CrossCurve& curve : set.curves)
+    if (corrections.count({curve.input, curve.output}) == 0) return;
+  controllers::predict_lines(set, corrections, result);
+  const char* note = set.volume ? "heidenhain.cross-volume" : "heidenhain.cross";
+  if (std::none_of(result.notes.begin(), result.notes.end(),
+                   [&](const Remark& r) { return r.id == note; }))
+    result.notes.push_back({note});
 }
 
 void notes(const Choices& choices, OutputResult& result) {
@@ -269,37 +307,24 @@ Expected<OutputResult> write(const OutputInput& input) {
   OutputResult result;
   const auto choices = choices_of(input.options);
   if (!choices) return tl::unexpected<Error>(choices.error());
-  const auto jobs =
-      controllers::axis_jobs(input, {"step", "first", "reference", "backlash"}, result);
+  auto jobs = controllers::axis_jobs(input, {"step", "first", "reference", "backlash"}, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   // The columns of other axes are for one state of the machine, and have no direction.
-  const auto sets = controllers::cross_jobs(input.results);
-  const controllers::CrossJob* set =
-      sets.size() == 1 && !choices->directions ? &sets.front() : nullptr;
+  const auto sets = choices->directions ? std::vector<CrossJob>{} : controllers::cross_jobs(input);
   std::vector<const AxisJob*> written;
-  for (const AxisJob& job : *jobs) {
+  for (AxisJob& job : *jobs) {
     const std::size_t files = result.artifacts.size();
-    const CrossCurve* cross = set == nullptr                   ? nullptr
-                              : job.axis == set->along_x.input ? &set->along_x
-                              : job.axis == set->along_y.input ? &set->along_y
-                                                               : nullptr;
-    if (auto done = write_axis(job, input, cross, *choices, result); !done)
+    if (auto done = write_axis(job, input, columns_of(sets, job, input), *choices, result); !done)
       return tl::unexpected<Error>(done.error());
     if (result.artifacts.size() > files) written.push_back(&job);
   }
   if (written.empty()) return result;
-  if (set != nullptr) predict_cross(*set, written, *choices, result);
+  for (const CrossJob& set : sets) predict_cross(set, written, input, *choices, result);
   result.artifacts.push_back(
       {"heidenhain-tnc-CONFIG.CMA",
        cma_table(written, axis_columns(input.campaign, *written.front()), *choices)});
   notes(*choices, result);
   return result;
-}
-
-bool applies(const Campaign& campaign) {
-  for (const Measurement& m : campaign.measurements)
-    if (m.kind == "axis") return true;
-  return false;
 }
 
 std::vector<Option> options() {
@@ -329,7 +354,7 @@ NONIO_PLUGIN(registry) {
                  "Non-linear axis error tables (.COM, .CMA) and backlash for HEIDENHAIN TNC.",
                  nonio::options()};
   output.stage = nonio::Output::Stage::table;
-  output.applies = nonio::applies;
+  output.applies = nonio::controllers::has_tables;
   output.write = nonio::write;
   registry.add(std::move(output));
 }

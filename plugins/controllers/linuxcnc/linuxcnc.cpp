@@ -155,12 +155,6 @@ Expected<OutputResult> write(const OutputInput& input) {
   return result;
 }
 
-bool applies(const Campaign& campaign) {
-  for (const Measurement& m : campaign.measurements)
-    if (m.kind == "axis") return true;
-  return false;
-}
-
 std::vector<Option> options() {
   std::vector<Option> list = controllers::step_options();
   list.push_back({"type",
@@ -186,7 +180,7 @@ NONIO_PLUGIN(registry) {
                  "Screw compensation files (COMP_FILE, types 0 and 1) for LinuxCNC.",
                  nonio::options()};
   output.stage = nonio::Output::Stage::table;
-  output.applies = nonio::applies;
+  output.applies = nonio::controllers::has_tables;
   output.write = nonio::write;
   registry.add(std::move(output));
 }

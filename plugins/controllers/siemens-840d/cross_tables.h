@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "axis_job.h"
 #include "nonio/sdk/plugin.h"
 
 namespace nonio::siemens {
@@ -15,8 +16,10 @@ struct CrossChoices {
   std::map<std::string, std::size_t> numbers{};  ///< n of AXn by axis
 };
 
-/// Two CEC tables for each set of diagonals that gave both straightnesses: axis Y by the position
-/// of X, and X by that of Y with the squareness in it.
-Expected<void> write_cross_tables(const OutputInput&, const CrossChoices&, OutputResult&);
+/// A CEC table for each curve of one axis over another that diagonals or step diagonals gave: Y by
+/// the position of X, and X by that of Y with the squareness in it; of a volume six. `pitch`: what
+/// was written of the axes themselves.
+Expected<void> write_cross_tables(const OutputInput&, const CrossChoices&,
+                                  const std::vector<controllers::AxisJob>& pitch, OutputResult&);
 
 }  // namespace nonio::siemens

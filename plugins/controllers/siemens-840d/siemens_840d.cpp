@@ -113,7 +113,7 @@ std::string direction_tables(const AxisJob& job, const Grid& grid, const Choices
   return out + "M17\n";
 }
 
-Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Choices& choices,
+Expected<void> write_axis(AxisJob& job, const OutputInput& input, const Choices& choices,
                           OutputResult& result) {
   const bool directions = choices.directions && job.curve.bidirectional();
   if (controllers::refused(job, directions, result)) return {};
@@ -142,6 +142,7 @@ Expected<void> write_axis(const AxisJob& job, const OutputInput& input, const Ch
     return fail("axis " + job.axis +
                 ": the table written cannot be read back: " + correction.error().message);
   controllers::predict(job, *correction, result);
+  job.loaded = *correction;
   Remark zero = controllers::remark(
       job, job.position_setting("reference") ? "siemens.zero-at" : "siemens.zero-taken");
   zero.evidence = {{"reference", reference, position_of(job.rotary)}};
@@ -161,10 +162,10 @@ Expected<OutputResult> write(const OutputInput& input) {
   const Choices choices{
       o.flag("directions"), o.integer("measuring_system"), o.integer("first_cec_table"),
       static_cast<std::size_t>(o.integer("max_points", 200)), o.flag("quoted_axes")};
-  const auto jobs =
+  auto jobs =
       controllers::axis_jobs(input, {"number:", "step", "first", "reference", "backlash"}, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
-  for (const AxisJob& job : *jobs)
+  for (AxisJob& job : *jobs)
     if (auto done = write_axis(job, input, choices, result); !done)
       return tl::unexpected<Error>(done.error());
   siemens::CrossChoices cross{choices.first_cec_table, choices.max_points, choices.quoted_axes};
@@ -172,16 +173,10 @@ Expected<OutputResult> write(const OutputInput& input) {
   for (std::size_t i = 0; i < axes.size(); ++i) cross.numbers[axes[i].name] = i + 1;
   for (const AxisJob& job : *jobs) cross.numbers[job.axis] = job.number;
   if (choices.directions) cross.first_table += 2 * static_cast<std::int64_t>(axes.size());
-  if (auto done = siemens::write_cross_tables(input, cross, result); !done)
+  if (auto done = siemens::write_cross_tables(input, cross, *jobs, result); !done)
     return tl::unexpected<Error>(done.error());
   if (!result.artifacts.empty()) notes(choices, result);
   return result;
-}
-
-bool applies(const Campaign& campaign) {
-  for (const Measurement& m : campaign.measurements)
-    if (m.kind == "axis") return true;
-  return false;
 }
 
 std::vector<Option> options() {
@@ -221,7 +216,7 @@ NONIO_PLUGIN(registry) {
                  "Leadscrew error tables (EEC), direction tables (CEC) and backlash for SINUMERIK.",
                  nonio::options()};
   output.stage = nonio::Output::Stage::table;
-  output.applies = nonio::applies;
+  output.applies = nonio::controllers::has_tables;
   output.write = nonio::write;
   registry.add(std::move(output));
 }

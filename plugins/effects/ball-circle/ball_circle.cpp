@@ -14,7 +14,7 @@ namespace {
 
 /// Coordinates across the axis; none if the table has no axial reading.
 std::vector<std::size_t> across(const Observations& o) {
-  for (std::size_t i = 0; i < o.size(); ++i) {
+  for (std::size_t i = 0; i < o.line.size(); ++i) {
     if (o.line[i] != 1) continue;
     std::size_t along = 0;
     for (std::size_t k = 1; k < 3; ++k)

@@ -13,6 +13,7 @@ namespace {
 /// Waves of 2 .. m + 1 a turn; of n angles n - 3 values are left beside the circle, half of which
 /// are looked at.
 std::vector<double> grid(const Observations& o, const Axis&) {
+  if (!of_ball_centres(o)) return {};
   const std::set<double> angles(o.axes.front().position.begin(), o.axes.front().position.end());
   std::vector<double> waves;
   for (std::size_t m = 1;
@@ -25,9 +26,10 @@ Expected<Effect::Columns> columns(const Observations& o, const std::vector<doubl
                                   std::uint32_t line) {
   if (shape.size() != 1 || !(shape[0] >= 1.0 && shape[0] <= 100.0))
     return fail("run-out: wanted a number of waves, 1 to 100");
+  if (!of_ball_centres(o)) return fail("run-out: wanted centres of a ball");
   const auto waves = static_cast<std::size_t>(std::lround(shape[0]));
   Effect::Columns out(2 * waves, std::vector<double>(o.size(), 0.0));
-  for (std::size_t i = 0; i < o.size(); ++i) {
+  for (std::size_t i = 0; i < o.line.size(); ++i) {
     if (o.line[i] != line) continue;
     for (std::size_t w = 0; w < waves; ++w) {
       const double angle = static_cast<double>(w + 2) * o.axes.front().position[i];

@@ -59,6 +59,7 @@ NONIO_PLUGIN(registry) {
              .linear = {{"s", "rms of the curve over the places", Quantity::deviation}},
              .shapes = {{{"knots", "knots of the spline", Quantity::count}, grid, false}},
              .curve = true,
+             .compensable = true,
              .applies = [](const Observations& o, const Axis& a) { return !grid(o, a).empty(); },
              .columns = columns,
              .of = of});

@@ -4,6 +4,8 @@
 //     yaw:X   (ECX)  e_x = -y a(x)            pitch:X (EBX)  e_x = +z a(x)
 //     roll:X  (EAX)  e_y = -z a(x), e_z = +y a(x)
 //     pitch:Y (EAY)  e_y = -z a(y)            roll:Y  (EBY)  e_x = +z a(y)
+// with a flat mirror on the tool (step diagonals), which turns with it, besides
+//     (w x n) . (P - Q) a,  w: axis of the angle, n: direction of sensing, Q: a point on the beam
 // and, where one carriage follows its bent guide (structure single-column), the way it goes:
 //     yaw:X   e_y = +integral of a dx         pitch:X  e_z = -integral of a dx
 // a = sum c_k s_k; s_k without constant, which is squareness: the straight line, then the smooth
@@ -24,7 +26,7 @@ struct Lever {
 };
 struct Angle {
   const char* kind;
-  std::size_t axis;
+  std::size_t axis, about;
   std::vector<Lever> levers;
   std::size_t guided;  // the direction in which a bent guide leads; 3: in none
   double guide_sign;
@@ -32,11 +34,11 @@ struct Angle {
 
 const std::vector<Angle>& angles() {
   static const std::vector<Angle> all = {
-      {"yaw", 0, {{0, 1, -1.0}}, 1, +1.0},
-      {"pitch", 0, {{0, 2, +1.0}}, 2, -1.0},
-      {"roll", 0, {{1, 2, -1.0}, {2, 1, +1.0}}, 3, 0.0},
-      {"pitch", 1, {{1, 2, -1.0}}, 3, 0.0},
-      {"roll", 1, {{0, 2, +1.0}}, 3, 0.0},
+      {"yaw", 0, 2, {{0, 1, -1.0}}, 1, +1.0},
+      {"pitch", 0, 1, {{0, 2, +1.0}}, 2, -1.0},
+      {"roll", 0, 0, {{1, 2, -1.0}, {2, 1, +1.0}}, 3, 0.0},
+      {"pitch", 1, 0, {{1, 2, -1.0}}, 3, 0.0},
+      {"roll", 1, 1, {{0, 2, +1.0}}, 3, 0.0},
   };
   return all;
 }
@@ -55,7 +57,8 @@ bool follows_its_guide(const Observations& o, const Angle& a) {
 bool shown(const Observations& o, const SpaceReadings& s, const Angle& a) {
   if (!s.moves(a.axis)) return false;
   for (const Lever& lever : a.levers)
-    if (s.moves(lever.along) && varies_where_sensed(o, s, a.axis, lever.error)) return true;
+    if (s.moves(lever.along) && varies_where_sensed(o, s, a.axis, lever.error, lever.along))
+      return true;
   return follows_its_guide(o, a) && varies_where_sensed(o, s, a.axis, a.guided);
 }
 
@@ -97,25 +100,47 @@ Expected<Effect::Columns> integrals(const std::vector<double>& places, int knots
   return out;
 }
 
+/// What a reading changes by for an angle of 1.
+std::vector<double> levers_of(const Observations& o, const SpaceReadings& s, const Angle& a) {
+  std::vector<double> out(o.size(), 0.0);
+  for (std::size_t i = 0; i < o.size(); ++i)
+    for (const Lever& l : a.levers) out[i] += l.sign * s.lever(l.along, i) * o.sense_of(i)[l.error];
+  SpaceLine::Vector about{};
+  about[a.about] = 1.0;
+  for (std::size_t number = 0; number < o.lines.size(); ++number) {
+    const SpaceLine line = space_line(o, s, number);
+    if (!line.goes_in_steps()) continue;
+    const auto turned = SpaceLine::cross(about, line.sense);
+    // The beam meets the far corner: there all axes have gone all steps.
+    const auto far = *std::max_element(
+        line.way.begin(), line.way.end(), [&](const auto& one, const auto& other) {
+          return SpaceLine::dot(one, line.sense) < SpaceLine::dot(other, line.sense);
+        });
+    for (std::size_t i = 0; i < line.rows.size(); ++i)
+      out[line.rows[i]] += SpaceLine::dot(turned, line.way[i]) - SpaceLine::dot(turned, far);
+  }
+  return out;
+}
+
 Expected<Effect::Columns> columns(const Observations& o, const Angle& a, int knots) {
   const SpaceReadings s = space_of(o);
+  if (!s.moves(a.axis)) return fail(std::string(a.kind) + ": these readings do not move the axis");
   const std::vector<double> places = places_of(s, a.axis);
   const auto basis = basis_at(finite_or_zero(s.r[a.axis]), places, knots);
   if (!basis) return fail(basis.error());
+  const std::vector<double> levers = levers_of(o, s, a);
   const bool guided = follows_its_guide(o, a);
   const auto ways = guided ? integrals(places, knots) : Expected<Effect::Columns>{};
   if (!ways) return fail(ways.error());
   Effect::Columns out(basis->size(), std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (!std::isfinite(s.r[a.axis][i])) continue;
-    double lever = 0.0;
-    for (const Lever& l : a.levers) lever += l.sign * s.lever(l.along, i) * o.sense_of(i)[l.error];
     // The measured places themselves: the nearest is the same within rounding.
     const auto above =
         std::lower_bound(places.begin(), places.end(), s.r[a.axis][i] - 1e-6 * s.length[a.axis]);
     const auto place = static_cast<std::size_t>(std::min(above, places.end() - 1) - places.begin());
     for (std::size_t k = 0; k < out.size(); ++k) {
-      out[k][i] = lever * (*basis)[k][i];
+      out[k][i] = levers[i] * (*basis)[k][i];
       if (guided) out[k][i] += a.guide_sign * (*ways)[k][place] * o.sense_of(i)[a.guided];
     }
   }

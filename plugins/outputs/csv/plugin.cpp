@@ -20,10 +20,9 @@ namespace {
 /// Empty where the value is not known.
 std::string number(double si, Quantity quantity) {
   if (!std::isfinite(si)) return {};
-  std::array<char, 40> buffer{};
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), printed(si, quantity)).ptr;
-  return {buffer.data(), end};
+  std::string text;
+  append_shortest(text, printed(si, quantity));
+  return text;
 }
 
 /// A field that is text: quoted where RFC 4180 asks for it. A spreadsheet takes text that starts

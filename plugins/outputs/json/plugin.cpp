@@ -22,9 +22,8 @@ std::string json_text(std::string_view text) {
   return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-template <class T>
-void append_number(std::string& out, T value) {
-  std::array<char, 40> buffer{};
+void append_count(std::string& out, std::uint64_t value) {
+  std::array<char, 24> buffer{};
   out.append(buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr);
 }
 
@@ -60,7 +59,7 @@ class Object {
     if (si.empty()) return;
     list(name, si.size(), [&](std::string& out, std::size_t i) {
       if (std::isfinite(si[i]))
-        append_number(out, printed(si[i], quantity));
+        append_shortest(out, printed(si[i], quantity));
       else
         out += "null";
     });
@@ -68,7 +67,7 @@ class Object {
   void counts(const std::string& name, const std::vector<std::uint32_t>& values) {
     if (values.empty()) return;
     list(name, values.size(),
-         [&](std::string& out, std::size_t i) { append_number(out, values[i]); });
+         [&](std::string& out, std::size_t i) { append_count(out, values[i]); });
   }
 
  private:
@@ -107,7 +106,7 @@ void places(Object& to, const Observations& obs) {
   };
   for (std::size_t k = 0; k < 3; ++k)
     to.list(std::string("n") + "xyz"[k], obs.size(), [&](std::string& out, std::size_t i) {
-      append_number(out, line_of(i) < obs.lines.size() ? obs.lines[line_of(i)].sense[k] : 0.0);
+      append_shortest(out, line_of(i) < obs.lines.size() ? obs.lines[line_of(i)].sense[k] : 0.0);
     });
   to.list("line", obs.size(), [&](std::string& out, std::size_t i) {
     out += json_text(line_of(i) < obs.lines.size() ? obs.lines[line_of(i)].name : "");
@@ -143,7 +142,7 @@ void measurement(std::string& out, const Measurement& m, const Observations& obs
     units.text("deviation", unit_of(deviation_of(obs.angular)).symbol);
     units.close();
   }
-  append_number(object.member("missing"), obs.missing);
+  append_count(object.member("missing"), obs.missing);
   if (!obs.notes.empty())
     object.list("notes", obs.notes.size(),
                 [&](std::string& to, std::size_t i) { to += json_text(obs.notes[i].english); });

@@ -63,6 +63,9 @@ std::string heading_of(const Source& source, const Measured& m) {
   if (measurement.kind == "straightness")
     return ids(words.get("measurement.straightness",
                          {{"axis", measurement.axis}, {"lateral", measurement.lateral}}));
+  if (measurement.kind == "angle")
+    return ids(words.get("measurement.angle",
+                         {{"axis", measurement.axis}, {"about", measurement.lateral}}));
   if (measurement.kind == "diagonal")
     return words.get("measurement.diagonal", {{"id", measurement.id}});
   if (measurement.kind == "ball-centres")
@@ -127,7 +130,7 @@ void add_measurements(const Source& source, Blocks& blocks) {
   for (const Measured& m : measured(source)) {
     const std::string field = "measurement " + m.measurement.id;
     blocks.push_back({Heading{heading_of(source, m), 1}, field});
-    blocks.push_back({Paragraph{test_of(source, m), Paragraph::Look::small}, field});
+    blocks.push_back({Paragraph{test_of(source, m), Paragraph::Look::small, true}, field});
     for (const std::string& part : source.look.measurement) {
       if (part == "results") add_results(source, m, blocks);
       if (part == "plots") add_plots(source, m, blocks);
@@ -193,7 +196,10 @@ Document compose(const Source& source) {
     if (block == "title") add_title(source, document.blocks);
     if (block == "identity") add_identity(source, document.blocks);
     if (block == "status") add_status(source, document.blocks);
-    if (block == "measurements") add_measurements(source, document.blocks);
+    if (block == "measurements") {
+      add_measurements(source, document.blocks);
+      add_plans(source, document.blocks);
+    }
     if (block == "models") add_models(source, document.blocks);
     if (block == "tables") add_tables(source, document.blocks);
     if (block == "notes") add_notes(source, document.blocks);

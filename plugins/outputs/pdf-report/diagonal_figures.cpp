@@ -91,7 +91,7 @@ class Plane {
     for (std::size_t j = 0; j < g.value.size(); ++j) most = std::max(most, std::fabs(along_x(j)));
     const double size =
         std::max(f.position.back() - f.position.front(), g.position.back() - g.position.front());
-    if (most > 0.0) factor_ = rounded_down(0.06 * size / most);
+    if (most > 0.0) factor_ = round_factor(0.06 * size / most);
   }
   double factor() const { return factor_; }
 
@@ -121,11 +121,6 @@ class Plane {
   double along_x(std::size_t j) const {
     return g_.value[j] - k_ * (g_.position[j] - g_.position.front());
   }
-  /// 1, 2 or 5 times a power of ten.
-  static double rounded_down(double v) {
-    const double ten = std::pow(10.0, std::floor(std::log10(v)));
-    return ten * (v >= 5.0 * ten ? 5.0 : v >= 2.0 * ten ? 2.0 : 1.0);
-  }
   const Series &f_, &g_;
   double k_, factor_ = 1.0;
 };
@@ -145,6 +140,9 @@ std::optional<Plot> plane_plot(const Source& source, const Evaluation& e) {
   plot.y_title = source.words.get("plot.position", {{"axis", g->over}, {"unit", mm}});
   plot.language = source.language();
   plot.empty_text = source.words.get("plot.nothing");
+  plot.same_scale = true;
+  plot.zero_line = false;
+  plot.height = 1.4 * source.look.style.plot_height;
   plot.curves = plane.lines(source.look.style.muted, 0.3, 0.0);
   plot.curves.front().legend = source.words.get("plot.nominal");
   auto drawn = plane.lines(source.look.style.accent, 1.0, plane.factor());

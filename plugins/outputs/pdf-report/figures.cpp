@@ -357,6 +357,7 @@ void add_plots(const Source& source, const Measured& m, Blocks& blocks) {
     if (kind == "vdi") add(vdi_plot(source, m));
     if (kind == "reversal") add(reversal_plot(source, m));
     if (kind == "diagonals") add_diagonals(source, m, plots);
+    if (kind == "volume") add_volume(source, m, plots);
     if (kind == "circle" && circle) add_circle(source, m, plots);
     if (kind == "series" && !circle) series_plots(source, m, plots);
   }

@@ -158,6 +158,13 @@ void add_status(const Source& source, Blocks& blocks) {
           w.get("status.of_measurement",
                 {{"measurement", m.measurement.id}, {"what", w.get("measurement.unread")}}));
   }
+  for (const Results::Analysed& a : results.analyses)
+    for (const Finding& f : a.evaluation.findings)
+      if (a.measurement.empty() && f.attention)
+        status.lines.push_back(w.get(
+            "status.of_measurement",
+            {{"measurement", w.get_or("analysis." + a.plugin, a.plugin)},
+             {"what", typeset(finding_text(source.in.templates, source.language(), f, "title"))}}));
   for (const TableFinding& f : table_findings(source))
     if (f.finding->attention) status.lines.push_back(title_of(source, f));
   if (status.lines.empty() && !results.errors.empty()) return;

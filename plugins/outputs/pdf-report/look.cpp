@@ -138,8 +138,8 @@ Expected<Look> read_look(const Templates& templates, const std::string& name) {
   look.blocks = keys.names("blocks", {"title", "identity", "status", "measurements", "models",
                                       "tables", "notes", "residuals"});
   look.measurement = keys.names("measurement", {"results", "plots", "findings", "targets"});
-  look.plots =
-      keys.names("plots", {"runs", "iso", "vdi", "reversal", "diagonals", "circle", "series"});
+  look.plots = keys.names(
+      "plots", {"runs", "iso", "vdi", "reversal", "diagonals", "volume", "circle", "series"});
   look.plots_per_row = static_cast<int>(keys.number("plots_per_row", 1, 3));
   look.regular = keys.text("font.regular");
   look.bold = keys.text("font.bold");

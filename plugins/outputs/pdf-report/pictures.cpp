@@ -160,8 +160,13 @@ class Pictures {
   void position(Plot& plot) const {
     const double across = unit_of(position_).per_si;
     scatter(plot, scaled(fit_.target, across), scaled(fit_.residual, per_si_));
+    for (std::uint32_t m = 0; m < std::max<std::size_t>(fit_.measurements.size(), 1); ++m)
+      mean_lines(plot, fit_.measurements.size() > 1 ? of_measurement(fit_, m) : fit_, across);
+  }
+
+  void mean_lines(Plot& plot, const ModelFit& fit, double across) const {
     for (const int d : {+1, -1, 0}) {
-      const Trace mean = mean_by_target(fit_, d);
+      const Trace mean = mean_by_target(fit, d);
       line(plot, scaled(mean.x, across), scaled(mean.y, per_si_),
            d > 0   ? style_.plus
            : d < 0 ? style_.minus
@@ -173,9 +178,21 @@ class Pictures {
   void reversal(Plot& plot) const {
     plot.range.reset();
     plot.belts.clear();
-    const Reversal r = reversal_of(fit_);
+    if (fit_.measurements.size() <= 1) return reversal_line(plot, reversal_of(fit_), true);
+    double widest = 0;
+    for (std::uint32_t m = 0; m < fit_.measurements.size(); ++m) {
+      const Reversal r = reversal_of(of_measurement(fit_, m));
+      for (const double spread : r.spread) widest = std::max(widest, spread);
+      if (!r.values.x.empty()) reversal_line(plot, r, false);
+    }
+    // One belt for all lines: bands would darken each other.
+    const double half = fit_.floor ? 2 * widest * *fit_.floor * per_si_ : 0;
+    if (half > 0) plot.belts.push_back({-half, half, style_.rule});
+  }
+
+  void reversal_line(Plot& plot, const Reversal& r, bool with_band) const {
     const auto x = scaled(r.values.x, unit_of(position_).per_si);
-    if (fit_.floor) {
+    if (with_band && fit_.floor) {
       Curve band;
       band.kind = Curve::Kind::band;
       band.x = x;

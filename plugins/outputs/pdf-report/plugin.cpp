@@ -72,8 +72,8 @@ Expected<OutputResult> write(const OutputInput& in) {
   auto bytes = reports::pdf(document, **fonts);
   if (!bytes) return fail(bytes.error());
   OutputResult result;
-  result.artifacts.push_back(
-      {language == "en" ? "report.pdf" : "report-" + language + ".pdf", std::move(*bytes)});
+  result.artifacts.push_back({language == "en" ? "report.pdf" : "report-" + language + ".pdf",
+                              std::move(*bytes), in.options.flag("sign")});
   return result;
 }
 
@@ -87,7 +87,8 @@ NONIO_PLUGIN(registry) {
       "1.0.0",
       "The campaign's report as a PDF with plots, in English or Italian.",
       {{"language", std::string("en"), "", "Language of the report.", {"en", "it"}},
-       {"template", std::string("report"), "", "Name of the template: templates/<name>.toml."}}};
+       {"template", std::string("report"), "", "Name of the template: templates/<name>.toml."},
+       {"sign", false, "", "Have it signed with the key of [signing] in site.toml."}}};
   output.stage = nonio::Output::Stage::document;
   output.applies = nonio::pdf_report::applies;
   output.write = nonio::pdf_report::write;

@@ -49,14 +49,20 @@ void add_status(const Source&, Blocks&);
 
 /// Its readings are runs over one position: of an axis, or along a diagonal.
 inline bool over_one_position(const Measurement& m) {
-  return m.kind == "axis" || m.kind == "straightness" || m.kind == "diagonal";
+  return m.kind == "axis" || m.kind == "straightness" || m.kind == "angle" || m.kind == "diagonal";
 }
 void add_results(const Source&, const Measured&, Blocks&);
+/// What analyses of the whole campaign say: rows of a plan, and their findings.
+void add_plans(const Source&, Blocks&);
 void add_targets(const Source&, const Measured&, Blocks&);
 void add_plots(const Source&, const Measured&, Blocks&);
 void add_findings(const Source&, const Measured&, Blocks&);
 /// Diagonals before and after, and their plane with its errors exaggerated.
 void add_diagonals(const Source&, const Measured&, std::vector<reports::Plot>&);
+/// The volume of step diagonals as a box of wire, its errors exaggerated.
+void add_volume(const Source&, const Measured&, std::vector<reports::Plot>&);
+/// How much larger errors are drawn: 1, 2 or 5 times a power of ten, not above `v` > 0.
+double round_factor(double v);
 /// The circle of ball centres with exaggerated residuals, and the residuals over the angle.
 void add_circle(const Source&, const Measured&, std::vector<reports::Plot>&);
 

@@ -50,12 +50,23 @@ struct Shape {
   std::string unit;
 };
 
+/// What a value is, in words; of one that names another measurement ("distance_C") with its name.
+std::string meaning_of(const Source& source, const std::string& name) {
+  const std::string known = source.words.get_or("value." + name, "");
+  if (!known.empty()) return known;
+  const std::size_t end = name.find('_');
+  if (end == std::string::npos) return "";
+  const std::string key = "value_of." + name.substr(0, end);
+  if (source.words.get_or(key, "").empty()) return "";
+  return source.words.get(key, {{"id", name.substr(end + 1)}});
+}
+
 Shape shape_of(const Source& source, const Results::Analysed& a) {
   Shape s;
   const auto& values = a.evaluation.values;
   s.unit = values.empty() ? "" : unit_text(values.front().quantity);
   for (const Value& v : values) {
-    s.meaning |= !source.words.get_or("value." + v.name, "").empty();
+    s.meaning |= !meaning_of(source, v.name).empty();
     s.U |= v.U.has_value();
     s.decision |= conformity_of(source, a, v.name) != nullptr;
     s.own_units |= unit_text(v.quantity) != s.unit;
@@ -86,7 +97,7 @@ Block value_table(const Source& source, const Results::Analysed& a) {
     const Printed shown = printed_result(v.value, v.U, v.quantity, source.language());
     const Conformity* c = conformity_of(source, a, v.name);
     std::vector<Table::Cell> row = {{symbol(v.name), true}};
-    if (shape.meaning) row.push_back({w.get_or("value." + v.name, "")});
+    if (shape.meaning) row.push_back({meaning_of(source, v.name)});
     row.push_back({shown.value});
     if (shape.U) row.push_back({shown.U.empty() ? "–" : shown.U});
     if (shape.decision) row.push_back({tolerance_text(source, c)});
@@ -214,6 +225,31 @@ std::optional<double> common_count(const Joined& joined) {
 }
 
 }  // namespace
+
+void add_plans(const Source& source, Blocks& blocks) {
+  const Wording& w = source.words;
+  for (const Results::Analysed& a : source.in.results.analyses) {
+    const PointTable& rows = a.evaluation.rows;
+    if (!a.measurement.empty() || (rows.columns.empty() && a.evaluation.findings.empty())) continue;
+    blocks.push_back({Heading{analysis_title(source, a), 1}, "analysis " + a.plugin});
+    Table table;
+    std::vector<int> decimals;
+    for (const PointTable::Column& c : rows.columns) {
+      table.columns.push_back(
+          {w.get_or("column." + c.name, symbol(c.name)), unit_text(c.quantity), true});
+      decimals.push_back(c.quantity == Quantity::ratio ? 4 : decimals_for(c.values, c.quantity, 4));
+    }
+    for (std::size_t i = 0; !rows.columns.empty() && i < rows.columns.front().values.size(); ++i) {
+      std::vector<Table::Cell> row;
+      for (std::size_t k = 0; k < rows.columns.size(); ++k)
+        row.push_back({printed_number(rows.columns[k].values[i], rows.columns[k].quantity,
+                                      decimals[k], source.language())});
+      table.rows.push_back(std::move(row));
+    }
+    if (!table.rows.empty()) blocks.push_back({std::move(table), "rows of " + a.plugin});
+    for (const Finding& f : a.evaluation.findings) blocks.push_back(note_of(source, f));
+  }
+}
 
 void add_targets(const Source& source, const Measured& m, Blocks& blocks) {
   const Wording& w = source.words;

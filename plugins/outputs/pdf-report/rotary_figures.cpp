@@ -37,15 +37,13 @@ Centres centres_of(const Measured& m) {
   return {};
 }
 
-/// 1, 2 or 5 times a power of ten, so that the largest residual is about a quarter of the radius.
+/// So that the largest residual is about a quarter of the radius.
 double exaggeration(const Centres& c) {
   double largest = 0.0;
   for (const double r : c.radial) largest = std::max(largest, std::fabs(r));
   if (!(largest > 0.0)) return 1.0;
   const double wanted = 0.25 * c.radius / largest;
-  if (!(wanted > 1.0)) return 1.0;
-  const double power = std::pow(10.0, std::floor(std::log10(wanted)));
-  return wanted >= 5.0 * power ? 5.0 * power : wanted >= 2.0 * power ? 2.0 * power : power;
+  return wanted > 1.0 ? round_factor(wanted) : 1.0;
 }
 
 Plot circle(const Source& source, const Centres& c, double height) {

@@ -54,7 +54,8 @@ std::vector<Row> prediction_rows(const Source& source, std::vector<std::string>&
   return rows;
 }
 
-Table predictions(const Source& source) {
+/// With many results there is no room for the names of files, which then stand below.
+Table predictions(const Source& source, bool& with_files) {
   const Wording& w = source.words;
   std::vector<std::string> names;
   const std::vector<Row> rows = prediction_rows(source, names);
@@ -64,16 +65,17 @@ Table predictions(const Source& source) {
   const bool own_units = units.size() > 1;
   Table table;
   table.title = w.get("tables.change");
-  table.columns = {{w.get("tables.output"), "", false},
-                   {w.get("tables.file"), "", false},
-                   {w.get("tables.measurement"), "", false}};
+  with_files = names.size() <= 4;
+  table.columns = {{w.get("tables.output"), "", false}};
+  if (with_files) table.columns.push_back({w.get("tables.file"), "", false});
+  table.columns.push_back({w.get("tables.measurement"), "", false});
   for (const std::string& name : names)
     table.columns.push_back({symbol(name), own_units ? "" : *units.begin(), true});
   for (const Row& row : rows) {
     const bool first = &row == &rows.front() || (&row)[-1].output != row.output;
-    std::vector<Table::Cell> cells = {{first ? row.output->plugin : "", true},
-                                      {first ? file_names(row.output->result) : ""},
-                                      {row.measurement}};
+    std::vector<Table::Cell> cells = {{first ? row.output->plugin : "", true}};
+    if (with_files) cells.push_back({first ? file_names(row.output->result) : ""});
+    cells.push_back({row.measurement});
     for (const std::string& name : names) {
       const auto p = row.by_name.find(name);
       const auto number = [&](double v) {
@@ -151,8 +153,15 @@ void add_tables(const Source& source, Blocks& blocks) {
                    [](const auto& output) { return speaks(output.result); }))
     return;
   blocks.push_back({Heading{w.get("tables.title"), 1}, "tables.title"});
-  if (Table table = predictions(source); !table.rows.empty()) {
+  bool with_files = true;
+  if (Table table = predictions(source, with_files); !table.rows.empty()) {
     blocks.push_back({std::move(table), "tables"});
+    for (const Results::Written& output : outputs)
+      if (!with_files && !output.result.predictions.empty())
+        blocks.push_back({Paragraph{w.get("tables.note", {{"output", output.plugin},
+                                                          {"note", file_names(output.result)}}),
+                                    Paragraph::Look::small},
+                          "tables"});
     blocks.push_back({Paragraph{w.get("tables.predicted"), Paragraph::Look::muted}, "tables"});
   }
   for (const TableFinding& f : table_findings(source)) {

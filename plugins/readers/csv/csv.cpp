@@ -241,14 +241,16 @@ Expected<Expectation> expectation_of(const ReadInput& input) {
   if (axis == nullptr)
     return fail("expected the axis of measurement \"" + m.id + "\" in [machine.axes], found " +
                 (m.axis.empty() ? "none" : "\"" + m.axis + "\""));
-  const bool straightness = m.kind == "straightness";
-  if (straightness && axis->rotary)
-    return fail("expected a linear axis for a straightness, found the rotary axis \"" + m.axis +
-                "\"");
+  const bool straightness = m.kind == "straightness", angle = m.kind == "angle";
+  if ((straightness || angle) && axis->rotary)
+    return fail("expected a linear axis for " + std::string(angle ? "an angle" : "a straightness") +
+                ", found the rotary axis \"" + m.axis + "\"");
   if (straightness && m.lateral.empty())
     return fail("expected `lateral`, the direction of the deviation, in measurement \"" + m.id +
                 "\"");
-  return Expectation{m.axis, axis->rotary, straightness};
+  if (angle && m.lateral.empty())
+    return fail("expected `about`, the axis about which it turns, in measurement \"" + m.id + "\"");
+  return Expectation{m.axis, axis->rotary, straightness, angle};
 }
 
 Observations empty_observations(const Measurement& m, const Expectation& e) {
@@ -376,7 +378,7 @@ bool recognises(std::string_view head) {
 }
 
 bool reads(std::string_view kind) {
-  return kind == "axis" || kind == "straightness" || kind == "diagonal" ||
+  return kind == "axis" || kind == "straightness" || kind == "angle" || kind == "diagonal" ||
          kind == "step-diagonal" || kind == "ball-centres" || kind == "observations";
 }
 

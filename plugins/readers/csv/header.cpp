@@ -72,6 +72,7 @@ std::optional<Error> wrong_unit(const Known& column, const Expectation& e) {
   std::string why = "axis \"" + e.axis + "\" is " + (e.rotary ? "rotary" : "linear");
   if (e.axis.empty()) why = "distance and deviation of a diagonal are lengths";
   if (e.straightness && !target) why = "the deviation of a straightness is a length";
+  if (e.angle && !target) why = "yaw, pitch and roll are angles";
   Error error{"wrong unit: found column \"" + std::string(column.name) + "\", but " + why +
               "; expected \"" + want + "\""};
   error.column = column.name;
@@ -88,7 +89,7 @@ std::optional<Error> missing_column(const Header& header, const Expectation& e) 
     missing = "\"" + e.target() + "\"";
   else if (!header.has(Role::reading)) {
     missing = "\"" + e.deviation() + "\"";
-    if (!e.straightness) missing += e.rotary ? " (or \"position_deg\")" : " (or \"position_mm\")";
+    if (!e.across()) missing += e.rotary ? " (or \"position_deg\")" : " (or \"position_mm\")";
   }
   if (missing.empty()) return std::nullopt;
   std::string found;
@@ -137,10 +138,10 @@ Expected<Header> parse_header(std::string_view row, const Expectation& e) {
     if (same != header.roles.end())
       return twice(header.names[static_cast<std::size_t>(same - header.roles.begin())], names[i]);
     if (auto error = wrong_unit(*column, e)) return fail(std::move(*error));
-    if (column->position && e.straightness)
-      return fail_at(names[i],
-                     "a position along the axis says nothing of its straightness; expected \"" +
-                         e.deviation() + "\"");
+    if (column->position && e.across())
+      return fail_at(names[i], "a position along the axis says nothing of its " +
+                                   std::string(e.angle ? "angle" : "straightness") +
+                                   "; expected \"" + e.deviation() + "\"");
     header.roles.push_back(column->role);
     header.names.emplace_back(names[i]);
     header.reading_is_position |= column->position;

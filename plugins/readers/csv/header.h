@@ -28,8 +28,10 @@ struct Expectation {
   std::string axis;
   bool rotary = false;
   bool straightness = false;
+  bool angle = false;  ///< yaw, pitch or roll of a linear axis
 
-  bool angular_reading() const { return rotary && !straightness; }
+  bool across() const { return straightness || angle; }
+  bool angular_reading() const { return angle || (rotary && !straightness); }
   std::string target() const { return rotary ? "target_deg" : "target_mm"; }
   std::string deviation() const { return angular_reading() ? "deviation_arcsec" : "deviation_um"; }
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes give observations that hold together, or an error in readable words.
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -8,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "csv.h"
@@ -77,6 +79,11 @@ void check_spatial(const nonio::Observations& obs, std::string_view bytes) {
 }
 
 struct World {
+  static constexpr std::array spatial_kinds{"diagonal", "step-diagonal", "ball-centres",
+                                            "observations"};
+  static constexpr std::array<std::pair<std::string_view, std::size_t>, 4> spatial_by_words{
+      {{"#diagonal", 0}, {"moved", 1}, {"angle", 2}, {"nx", 3}}};
+
   nonio::Campaign campaign;
   nonio::Measurement linear, rotary, straightness;
   std::vector<nonio::Measurement> spatial;
@@ -93,7 +100,7 @@ struct World {
     straightness.lateral = "Y";
     linear.axis = straightness.axis = "X";
     rotary.axis = "C";
-    for (const char* kind : {"diagonal", "step-diagonal", "ball-centres", "observations"}) {
+    for (const char* kind : spatial_kinds) {
       nonio::Measurement m;
       m.id = m.kind = kind;
       m.axis = "C";
@@ -110,19 +117,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const World world;
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   nonio::csv::recognises(bytes);
-  for (const nonio::Measurement& m : world.spatial) {
+  // The file says by its columns, or in a comment, what it is to be.
+  const auto says = [&](std::string_view words) { return bytes.find(words) != bytes.npos; };
+  for (const auto& [words, kind] : World::spatial_by_words) {
+    if (!says(words)) continue;
+    const nonio::Measurement& m = world.spatial[kind];
     const auto table = nonio::csv::read({bytes, world.campaign, m, world.options, {}});
     if (table)
       check_spatial(*table, bytes);
     else
       check_error(table.error(), bytes);
   }
-  // The file says by its columns, or in a comment, what it is to be.
-  const bool deg = bytes.find("_deg") != bytes.npos;
-  const bool straight = bytes.find("#straightness") != bytes.npos;
-  const nonio::Measurement& measurement = deg        ? world.rotary
-                                          : straight ? world.straightness
-                                                     : world.linear;
+  const nonio::Measurement& measurement = says("_deg")            ? world.rotary
+                                          : says("#straightness") ? world.straightness
+                                                                  : world.linear;
   const auto read = nonio::csv::read({bytes, world.campaign, measurement, world.options, {}});
   if (read)
     check_observations(*read, bytes);

@@ -2,10 +2,13 @@
 // Tables of one axis over the other, from the diagonals.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "heidenhain-tnc/consumer.h"
+#include "machine.h"
 #include "siemens-840d/consumer.h"
 #include "workshop.h"
 
@@ -120,6 +123,216 @@ TEST(Cross, MorePointsThanTheControlTakesAreRefused) {
   Bench bench = gantry();
   bench.results.analyses.push_back(analysed(true));
   EXPECT_FALSE(bench.write(siemens_plugin(), {{"max_points", std::int64_t{20}}}));
+}
+
+/// A machine without angular errors: with these nine functions and three squarenesses step
+/// diagonals know all of it.
+machine::Errors volume_errors() {
+  machine::Errors e;
+  double size = 10 * um, waves = 1.0;
+  for (const char axis : {'X', 'Y', 'Z'})
+    for (const char along : {'X', 'Y', 'Z'}) {
+      e[std::string("E") + along + axis] = [size, waves](double p) {
+        return size * std::sin(waves * std::numbers::pi * p / 0.6) + 0.3 * size * p;
+      };
+      size = -1.15 * size, waves += 0.4;
+    }
+  e.C0Y = 31e-6, e.B0Z = -47e-6, e.A0Z = 23e-6;
+  return e;
+}
+
+constexpr std::array<double, 3> travel{0.8, 0.6, 0.5};
+constexpr std::size_t steps = 20;
+
+/// What the analysis of step diagonals gives of it, and the readings of all four.
+Bench volume(bool with_lengths) {
+  Bench bench;
+  machine::Errors errors = volume_errors();
+  Results::Analysed a{"step-diagonal", "1.0.0", "SD", {}};
+  a.evaluation.values = {{"C0Y", errors.C0Y, Quantity::small_angle},
+                         {"B0Z", errors.B0Z, Quantity::small_angle},
+                         {"A0Z", errors.A0Z, Quantity::small_angle}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::string axis(1, "XYZ"[k]);
+    for (const char along : {'X', 'Y', 'Z'}) {
+      Series s{"E" + std::string(1, along) + axis,
+               axis,
+               Quantity::length,
+               Quantity::deviation,
+               {},
+               {},
+               {}};
+      for (std::size_t i = 0; i <= steps; ++i) {
+        s.position.push_back(travel[k] * static_cast<double>(i) / steps);
+        s.value.push_back(errors[s.name](s.position.back()) + 5 * um);  // its zero is free
+      }
+      a.evaluation.series.push_back(std::move(s));
+    }
+    const auto pitch = [curve = errors["E" + axis + axis]](double p) { return curve(p); };
+    if (with_lengths) {
+      bench.add({.axis = axis,
+                 .id = axis,
+                 .targets = even(0.0, travel[k] / steps, steps + 1),
+                 .plus = pitch,
+                 .minus = [pitch](double p) { return pitch(p) - 3 * um; }});
+      a.evaluation.uses.push_back(axis);
+    }
+  }
+  bench.results.analyses.push_back(std::move(a));
+  Measurement m;
+  m.id = "SD", m.kind = "step-diagonal";
+  Observations o;
+  o.measurement = "SD";
+  const double L = std::hypot(travel[0], travel[1], travel[2]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::string axis(1, "XYZ"[k]);
+    m.from[axis] = 0.0, m.to[axis] = travel[k];
+    o.axes.push_back({axis, false, {}, {}});
+  }
+  for (const auto& [name, sign] : {std::pair{"PPP", machine::Vector(1, 1, 1)},
+                                   {"NPP", {-1, 1, 1}},
+                                   {"PNP", {1, -1, 1}},
+                                   {"PPN", {1, 1, -1}}}) {
+    std::array<double, 3> u{};
+    const auto at = [&sign = sign](std::size_t k, std::size_t moved) {
+      const double part = static_cast<double>(moved) / steps;
+      return travel[k] * (sign[static_cast<int>(k)] > 0 ? part : 1.0 - part);
+    };
+    for (std::size_t k = 0; k < 3; ++k) u[k] = sign[static_cast<int>(k)] * travel[k] / L;
+    o.lines.push_back({std::string("SD ") + name, u});
+    const auto error = [&](const machine::Vector& p) {
+      return (machine::point(errors, p) - p).dot(machine::Vector(u[0], u[1], u[2]));
+    };
+    const double start = error({at(0, 0), at(1, 0), at(2, 0)});
+    for (std::size_t move = 1; move <= 3 * steps; ++move) {
+      const machine::Vector p(at(0, (move + 2) / 3), at(1, (move + 1) / 3), at(2, move / 3));
+      for (std::size_t k = 0; k < 3; ++k) {
+        o.axes[k].position.push_back(p[static_cast<int>(k)]);
+        o.axes[k].approach.push_back(sign[static_cast<int>(k)] > 0 ? 1 : -1);
+      }
+      o.deviation.push_back(error(p) - start);
+      o.line.push_back(static_cast<std::uint32_t>(o.lines.size() - 1));
+    }
+  }
+  for (const char* axis : {"X", "Y", "Z"})
+    if (bench.campaign.machine.axis(axis) == nullptr)
+      bench.campaign.machine.axes.push_back(Axis{.name = axis});
+  bench.campaign.measurements.push_back(std::move(m));
+  bench.observations.push_back(std::move(o));
+  return bench;
+}
+
+using Tables = std::map<std::pair<int, int>, math::Correction>;  ///< by the position of, of
+
+/// Largest error in the volume with these tables in the control, less that of its corner.
+double worst(const Tables& tables) {
+  const machine::Errors errors = volume_errors();
+  const auto error = [&](const machine::Vector& p) {
+    machine::Vector commanded = p;
+    for (const auto& [axes, table] : tables) commanded[axes.second] += table(p[axes.first], 1);
+    return machine::Vector(machine::point(errors, commanded) - p);
+  };
+  const machine::Vector corner = error({0, 0, 0});
+  double most = 0.0;
+  for (double x = 0.0; x < 0.81; x += 0.1)
+    for (double y = 0.0; y < 0.61; y += 0.15)
+      for (double z = 0.0; z < 0.51; z += 0.125)
+        most = std::max(most, (error({x, y, z}) - corner).norm());
+  return most;
+}
+
+void expect_diagonals_fall(const OutputResult& result, double to) {
+  for (const char* diagonal : {"PPP", "NPP", "PNP", "PPN"}) {
+    EXPECT_GT(prediction(result, diagonal).before, 10 * um) << diagonal;
+    EXPECT_LT(prediction(result, diagonal).after, to) << diagonal;
+  }
+}
+
+TEST(Cross, TablesOfStepDiagonalsStraightenTheVolume) {
+  const double before = worst({});
+  EXPECT_GT(before, 60 * um);
+  for (const bool with_lengths : {true, false}) {
+    const Bench bench = volume(with_lengths);
+    const auto result = bench.write(siemens_plugin());
+    ASSERT_TRUE(result) << result.error().message;
+    const std::string cross = file(*result, "siemens-840d-XYZ-CEC.ini");
+    Tables tables;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) {
+        const std::string in = "AX" + std::to_string(i + 1), out = "AX" + std::to_string(k + 1);
+        const std::string pitch =
+            file(*result, std::string("siemens-840d-") + "XYZ"[i] + "-EEC.ini");
+        siemens::Machine control;
+        control.axis = in;
+        auto table =
+            i == k ? siemens::load({pitch}, control) : siemens::load_cross({cross}, in, out, {});
+        ASSERT_TRUE(table) << table.error().message;
+        tables[{i, k}] = *table;
+      }
+    EXPECT_LT(worst(tables), 0.6 * um) << "before " << before;
+    expect_diagonals_fall(*result, 0.3 * um);
+    EXPECT_EQ(has_file(*result, "siemens-840d-X-backlash.ini"), with_lengths);
+    // A sign that is wrong makes it worse.
+    for (const auto& wrong : {std::pair{0, 1}, {0, 2}, {1, 0}, {1, 2}, {2, 0}, {2, 1}}) {
+      Tables other = tables;
+      other[wrong] = [right = tables[wrong]](double p, int d) { return -right(p, d); };
+      EXPECT_GT(worst(other), 10 * um) << wrong.first << wrong.second;
+    }
+  }
+}
+
+TEST(Cross, HeidenhainColumnsOfTheVolume) {
+  for (const char* layout : {"tnc640", "itnc530"})
+    for (const bool with_lengths : {true, false}) {
+      const auto result =
+          volume(with_lengths).write(heidenhain_plugin(), {{"layout", std::string(layout)}});
+      ASSERT_TRUE(result) << result.error().message;
+      Tables tables;
+      for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) {
+          const std::string com = file(*result, std::string("heidenhain-tnc-") + "XYZ"[i] + ".COM");
+          const auto table = heidenhain::load(com, {std::string(1, "XYZ"[k]), false, 256, 0.0});
+          ASSERT_TRUE(table) << table.error().message << com;
+          tables[{i, k}] = *table;
+        }
+      EXPECT_LT(worst(tables), 0.8 * um) << layout;  // four decimals of a millimetre
+      expect_diagonals_fall(*result, 0.5 * um);
+    }
+}
+
+TEST(Cross, PitchOfStepDiagonalsGoesToEveryControl) {
+  for (const Output& output : {fanuc_plugin(), linuxcnc_plugin()}) {
+    const Bench bench = volume(false);
+    EXPECT_TRUE(output.applies(bench.campaign));
+    const auto result =
+        bench.write(output, output.info.name == "fanuc" ? Options{{"extended", true}} : Options{});
+    ASSERT_TRUE(result) << output.info.name << ": " << result.error().message;
+    EXPECT_GT(prediction(*result, "M").before, 10 * um) << output.info.name;
+    EXPECT_LT(prediction(*result, "M").after, 2 * um) << output.info.name;
+  }
+}
+
+TEST(Cross, EachStateOfAVolumeHasItsOwnColumns) {
+  Bench bench = volume(true);
+  Results::Analysed again = bench.results.analyses.front();
+  again.measurement = "SD final";
+  again.evaluation.uses.clear();
+  for (Series& s : again.evaluation.series)
+    for (double& v : s.value) v /= 10.0;
+  bench.results.analyses.push_back(again);
+  Measurement later = bench.campaign.measurements.back();
+  later.id = again.measurement;
+  bench.campaign.measurements.push_back(later);
+  bench.observations.push_back(bench.observations.back());
+  const auto result = bench.write(heidenhain_plugin());
+  ASSERT_TRUE(result) << result.error().message;
+  const auto y = [&](const std::string& name) {
+    const auto table = heidenhain::load(file(*result, name), {"Y", false, 256, 0.0});
+    EXPECT_TRUE(table) << name;
+    return table ? (*table)(0.4, 1) : 0.0;
+  };
+  EXPECT_GT(std::fabs(y("heidenhain-tnc-X-X.COM")), 2 * um);
+  EXPECT_NEAR(y("heidenhain-tnc-X-SD_final.COM"), y("heidenhain-tnc-X-X.COM") / 10.0, 0.2 * um);
 }
 
 }  // namespace

@@ -424,6 +424,17 @@ TEST(Csv, StraightnessIsSensedAlongLateral) {
   EXPECT_EQ(obs->lines[0].sense, (std::array<double, 3>{0, 0, 1}));
 }
 
+TEST(Csv, AnAngleOfALinearAxisIsAnAngleOverALength) {
+  const auto obs =
+      read_text("run,direction,target_mm,deviation_arcsec\n1,+,500,2\n", "angle", "X", "Z");
+  ASSERT_TRUE(obs) << obs.error().message;
+  EXPECT_TRUE(obs->angular);
+  EXPECT_FALSE(obs->axes[0].rotary);
+  EXPECT_DOUBLE_EQ(obs->axes[0].position[0], 0.5);
+  EXPECT_NEAR(obs->deviation[0], 2.0 / arcsec_per_rad, 1e-15);
+  EXPECT_EQ(obs->lines[0].sense, (std::array<double, 3>{}));
+}
+
 TEST(Csv, NoteNamesCountAndFirstLine) {
   const auto obs = read_text(head + "1,+,1,2\n1,+,2,2\n1,+,2,2\n1,+,1,2\n");
   ASSERT_TRUE(obs);
@@ -499,8 +510,8 @@ TEST(Csv, RecognisesItsHeader) {
 }
 
 TEST(Csv, ReadsItsKinds) {
-  for (const char* kind :
-       {"axis", "straightness", "diagonal", "step-diagonal", "ball-centres", "observations"})
+  for (const char* kind : {"axis", "straightness", "angle", "diagonal", "step-diagonal",
+                           "ball-centres", "observations"})
     EXPECT_TRUE(reads(kind)) << kind;
   for (const char* kind : {"", "Axis", "circular"}) EXPECT_FALSE(reads(kind)) << kind;
 }

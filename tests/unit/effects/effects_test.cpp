@@ -76,6 +76,12 @@ const std::vector<std::string> kinds = {
     "zero-drift",   "growth-drift", "warm-up",   "temperature",     "run-jump",
     "eccentricity", "harmonic2",    "gear-mesh", "elastic-reversal"};
 
+/// Of several axes, of the set-up and of ball centres; space_effects_test.cpp has their columns.
+const std::vector<std::string> kinds_in_space = {
+    "squareness",    "straightness",      "yaw",         "pitch",     "roll",
+    "line-slope",    "mirror-tilt",       "centre",      "direction", "radial-run-out",
+    "axial-run-out", "linear-squareness", "linear-scale"};
+
 std::vector<double> first_shape(const Effect& e, const Observations& o, const Axis& axis) {
   std::vector<double> shape;
   for (const auto& s : e.shapes) {
@@ -201,7 +207,9 @@ TEST(Effects, EveryOneHasACardInEveryLanguage) {
       ++wanted;
       EXPECT_FALSE(words->text(name).empty()) << language << " " << name;
     };
-    for (const auto& kind : kinds) {
+    auto all = kinds;
+    all.insert(all.end(), kinds_in_space.begin(), kinds_in_space.end());
+    for (const auto& kind : all) {
       for (const char* part : {"title", "is", "size", "looks", "alike", "cure"})
         expect("effect." + kind + "." + part);
       for (const auto& p : effect(kind).linear) expect("effect." + kind + ".parameter." + p.name);

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <limits>
+#include <random>
+#include <string>
 
 #include "nonio/host/evaluate.h"
 #include "nonio/host/nearest.h"
@@ -41,6 +47,29 @@ TEST(Format, ShortTextHasNoExponentWhereNobodyExpectsOne) {
   EXPECT_EQ(fixed_text(0.0, 2), "0.00");
   EXPECT_EQ(fixed_text(1e-300, 2), "0.00");
   EXPECT_EQ(fixed_text(123456.789, 2), "123456.79");
+}
+
+/// The quick ways to digits give what the slow ones give, also beside ties and powers of ten.
+TEST(Format, QuickWaysGiveTheSameDigits) {
+  const std::uint64_t seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> fraction(-1.0, 1.0), exponent(-14.0, 14.0);
+  for (int i = 0; i < 300000; ++i) {
+    double value = fraction(random) * std::pow(10.0, exponent(random));
+    if (i % 3 == 0) value = std::round(value * 2e4) / 2e4;  // few digits, ties
+    if (i % 5 == 0) value = std::pow(10.0, std::round(exponent(random))) * (1.0 + 1e-16 * (i % 7));
+    ASSERT_EQ(printed(value, Quantity::number), rounded_by_digits(value)) << value;
+    for (const int decimals : {0, 1, 3, 6})
+      ASSERT_EQ(fixed_text(value, decimals), fixed_text_by_digits(value, decimals)) << value;
+    for (const double number : {value, printed(value, Quantity::number)}) {
+      std::array<char, 40> buffer{};
+      std::string quick;
+      append_shortest(quick, number);
+      ASSERT_EQ(quick, std::string(buffer.data(),
+                                   std::to_chars(buffer.data(), buffer.data() + 40, number).ptr));
+    }
+  }
 }
 
 TEST(Suggestion, NearestOrNothing) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 namespace nonio::host {
 
 namespace {
@@ -129,6 +131,25 @@ TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
   }
 }
 
+TEST(Manifest, WhereTheOtherAxesStoodStill) {
+  const auto parse = [](const std::string& at) {
+    std::string text = whole;
+    return parse_manifest(text.replace(text.find("file = "), 0, "at = " + at + "\n"),
+                          "campaign.toml");
+  };
+  const auto m = parse("{ X = 300, Z = -50.5, C = 1 }");
+  ASSERT_TRUE(m) << m.error().front().message;
+  const std::map<std::string, double> expected{{"C", 0.001}, {"X", 0.3}, {"Z", -0.0505}};
+  EXPECT_EQ(m->campaign.measurements.front().at, expected);
+  const auto moves = parse("{ X = 300, Y = 1 }");
+  ASSERT_FALSE(moves);
+  EXPECT_EQ(moves.error().front().line, 25U);
+  EXPECT_NE(moves.error().front().message.find("stood still, found Y, which moves"),
+            std::string::npos);
+  EXPECT_NE(complaint("file = ", "at = { X = \"far\" }\nfile = ").find("wanted a number"),
+            std::string::npos);
+}
+
 TEST(Manifest, KeysHaveTheirLines) {
   const auto m = parse_manifest(whole, "campaign.toml");
   ASSERT_TRUE(m);
@@ -154,12 +175,34 @@ TEST(Manifest, SalvagesTheIdOfABrokenFile) {
 
 TEST(Manifest, SiteFile) {
   const auto site =
-      parse_site("[limits]\nseconds = 5\nmemory_MB = 512\n[signing]\nkey = 1\n", "site.toml");
+      parse_site("[limits]\nseconds = 5\nmemory_MB = 512\n[database]\nkey = 1\n", "site.toml");
   ASSERT_TRUE(site);
   EXPECT_EQ(site->limits.seconds, 5.0);
   ASSERT_EQ(site->notes.size(), 1u);
   EXPECT_NE(site->notes[0].find("line 4"), std::string::npos) << site->notes[0];
   EXPECT_FALSE(parse_site("[limits]\nsecond = 5\n", "site.toml"));
+}
+
+TEST(Manifest, Signing) {
+  const auto parse = [](const std::string& keys) {
+    return parse_site("[run]\noutputs = [\"csv\"]\n[signing]\n" + keys, "site.toml");
+  };
+  const std::string key = "pkcs12 = \"k.p12\"\n", password = "password_env = \"P\"\n";
+  const auto good = parse(key + password);
+  ASSERT_TRUE(good);
+  EXPECT_EQ(good->signing->pkcs12, "k.p12");
+  EXPECT_TRUE(good->signing->time_stamp_required);
+  // What goes into a certificate has a say in the results, and nothing of the key.
+  EXPECT_NE(good->settings.find("csv"), std::string::npos);
+  EXPECT_EQ(good->settings.find("k.p12"), std::string::npos);
+  EXPECT_FALSE(parse(key));
+  EXPECT_FALSE(parse(password));
+  EXPECT_FALSE(parse(key + password + "password_file = \"f\"\n"));
+  EXPECT_FALSE(parse(key + password + "pkcs11 = \"pkcs11:x\"\n"));
+  EXPECT_FALSE(parse(password + "pkcs11 = \"pkcs11:x\"\n"));
+  EXPECT_FALSE(parse(key + password + "time_stamp = \"http://x\"\n"));
+  EXPECT_FALSE(parse(key + password + "trust = \"t\"\ntime_stamp = \"https://x\"\n"));
+  EXPECT_FALSE(parse(key + password + "password = \"secret\"\n"));
 }
 
 TEST(Options, DefaultsSiteCampaignInThisOrder) {

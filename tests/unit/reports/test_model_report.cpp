@@ -121,7 +121,7 @@ TEST_F(ModelReport, PlacesAreSaidInTheLanguageOfTheReport) {
                                  {{"percent", 64, Quantity::count},
                                   {"rms", 1.5e-6, Quantity::deviation},
                                   {"p", 1e-9, Quantity::probability}},
-                                 {{"where", "direction x time"}}}};
+                                 {{"where", "direction x time"}, {"line", ""}}}};
   for (const auto& [language, says] :
        {std::pair("en", "goes with the direction of approach together with the time (p < 0.0001)"),
         std::pair("it", "dipende dalla direzione di avvicinamento e insieme dal tempo")}) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "fixtures.h"
 #include "nonio/reports/number.h"
 #include "pdf_reader.h"
@@ -260,6 +262,154 @@ TEST_F(PdfReport, TemplatesAreCheckedWithFileAndKey) {
   EXPECT_TRUE(has(complaint(c, "nowhere"), "nowhere"));
   templates.tables["words/en/report"].values.erase("status.attention");
   EXPECT_TRUE(has(complaint(c), "templates/words/en/report.toml: the key \"status.attention\""));
+}
+
+Series curve(const std::string& name, double length, double size) {
+  Series s{name, name.substr(2), Quantity::length, Quantity::deviation, {}, {}, {}};
+  for (int i = 0; i <= 10; ++i) {
+    s.position.push_back(length * i / 10);
+    s.value.push_back(size * std::sin(std::numbers::pi * i / 10));
+  }
+  return s;
+}
+
+/// A campaign with measurements of this kind, and what an analysis said of each.
+Case spatial(const std::string& kind, const std::vector<std::pair<std::string, Evaluation>>& said) {
+  Case c = simple_case();
+  for (const auto& [id, e] : said) {
+    c.add("X", {});
+    c.campaign.measurements.back().id = id;
+    c.campaign.measurements.back().kind = kind;
+    c.results.analyses.push_back({kind, "1", id, e});
+  }
+  return c;
+}
+
+Evaluation diagonals(double size, bool separable) {
+  Evaluation e;
+  e.values = {{"C0Y", 4e-6, Quantity::small_angle, 1e-7}};
+  PointTable::Column target{"target", Quantity::length, {}}, D1{"D1", Quantity::deviation, {}};
+  for (int i = 0; i <= 10; ++i) {
+    target.values.push_back(1.5 * i);
+    D1.values.push_back(size * i);
+  }
+  PointTable::Column D2 = D1;
+  D2.name = "D2";
+  e.points.columns = {target, D1, D2};
+  if (separable) e.series = {curve("EYX", 12.0, size), curve("EXY", 9.0, -size)};
+  return e;
+}
+
+TEST_F(PdfReport, DiagonalsShowTheEarlierSetAndThePlaneWithItsFactor) {
+  // Largest error of the plane: 4 urad over 9 m; 6 % of 12 m is 20000 times that.
+  const Case c = spatial(
+      "diagonal", {{"D1 00", diagonals(4e-6, true)}, {"D1 final", diagonals(0.4e-6, false)}});
+  const std::string en = text(c), it = text(c, "it");
+  EXPECT_EQ(occurrences(en, "Both diagonals as read"), 2U);
+  EXPECT_EQ(occurrences(en, "D1, D1 00"), 1U) << "the first set in the figure of the later one";
+  EXPECT_EQ(occurrences(en, "D2, D1 00"), 1U);
+  EXPECT_EQ(occurrences(en, "The plane, errors × 20000"), 1U)
+      << "what was not separated is not drawn";
+  EXPECT_TRUE(has(en, "Position of X / mm") && has(en, "Position of Y / mm"));
+  EXPECT_EQ(occurrences(it, "Il piano, errori × 20000"), 1U);
+}
+
+Evaluation step_diagonals(bool scales) {
+  Evaluation e;
+  for (const char* name : {"C0Y", "B0Z", "A0Z"})
+    e.values.push_back({name, 0.0, Quantity::small_angle, 1e-7});
+  for (const char* name : {"EYX", "EZX", "EXY", "EZY", "EXZ", "EYZ"})
+    e.series.push_back(curve(name, name[2] == 'X' ? 0.8 : 0.6, 0.0));
+  for (const char* name : {"EXX", "EYY", "EZZ"})
+    e.series.push_back(
+        curve(name + std::string(scales ? "" : "_shape"), name[2] == 'X' ? 0.8 : 0.6, 0.0));
+  for (Series& s : e.series) s.over = s.name.substr(2, 1);
+  for (double& v : e.series[0].value) v = 0.0;
+  e.series[0].value.back() = 24e-6;  // of EYX, at the far end of X
+  return e;
+}
+
+TEST_F(PdfReport, TheVolumeSaysItsFactorAndItsLargestError) {
+  const Case c = spatial("step-diagonal", {{"SD", step_diagonals(true)}});
+  const auto on_one_line = [](std::string words) {
+    std::replace(words.begin(), words.end(), '\n', ' ');
+    return words;
+  };
+  const std::string en = on_one_line(text(c)), it = on_one_line(text(c, "it"));
+  // A fifth of 800 mm is 6667 times 24 um; the factor is 1, 2 or 5 times a power of ten.
+  EXPECT_TRUE(has(en, "The volume, errors × 5000")) << en;
+  EXPECT_TRUE(has(en, "Errors are drawn 5000 times as large as they are"));
+  EXPECT_TRUE(has(en, "The largest is 24.0 µm, at X 800, Y")) << en;
+  EXPECT_TRUE(has(en, "X 0 – 800, Y 0 – 600,")) << en;
+  EXPECT_FALSE(has(en, "Without E"));
+  EXPECT_TRUE(has(it, "disegnati 5000 volte"));
+  const std::string shapes =
+      on_one_line(text(spatial("step-diagonal", {{"SD", step_diagonals(false)}})));
+  EXPECT_TRUE(has(shapes, "Without EXX, EYY, EZZ: these scales are not known."));
+  Evaluation incomplete = step_diagonals(true);
+  incomplete.values.pop_back();
+  EXPECT_FALSE(has(text(spatial("step-diagonal", {{"SD", incomplete}})), "The volume"));
+}
+
+TEST_F(PdfReport, AHeadingWithOneLineBelowItGoesToTheNextPageToo) {
+  std::size_t seen = 0;
+  for (int targets = 5; targets < 80; targets += 2) {
+    Case c = simple_case();
+    Behaviour b;
+    b.targets = targets;
+    c.add("X", b);
+    c.add("Y", {});
+    c.analyse(plugins);
+    const auto result = write(c);
+    ASSERT_TRUE(result) << result.error().message;
+    for (const std::string& page : read_pdf(result->artifacts.front().bytes).pages) {
+      const std::size_t at = page.find("Axis Y, linear");
+      if (at == page.npos) continue;
+      ++seen;
+      EXPECT_NE(page.find("Symbol", at), page.npos) << targets;
+    }
+  }
+  EXPECT_EQ(seen, 38U);
+}
+
+TEST_F(PdfReport, PlansAndTheirFindingsAreShown) {
+  Case c = usual();
+  Evaluation plan;
+  plan.rows.columns = {{"a", Quantity::count, {56, 45}},
+                       {"step_x", Quantity::length, {0.448, 0.495}},
+                       {"cover_x", Quantity::ratio, {0.9956, 0.95}}};
+  plan.findings = {
+      {.id = "triples.flat", .attention = true, .evidence = {{"gain", 3.4, Quantity::ratio}}}};
+  c.results.analyses.push_back({"triple-planner", "1", "", plan});
+  const std::string en = text(c), it = text(c, "it");
+  for (const char* what :
+       {"Plans: stops for the diagonals", "step X", "448", "0.9956", "Flat diagonals"})
+    EXPECT_TRUE(has(en, what)) << what;
+  EXPECT_EQ(occurrences(en, "Flat diagonals"), 2U) << "at the top, and beside the plans";
+  for (const char* what : {"Piani: fermate", "passo X", "0,9956"})
+    EXPECT_TRUE(has(it, what)) << what;
+}
+
+TEST_F(PdfReport, ManyPredictionsHaveTheirFilesBelowTheTable) {
+  Case c = usual();
+  Results::Written table{"some-control", "1", {}};
+  table.result.artifacts = {{"some-control-X.txt", ""}, {"some-control-XYZ.txt", ""}};
+  for (const char* name : {"E", "B", "PPP", "NPP", "PNP", "PPN"})
+    table.result.predictions.push_back({"X", name, 60.0e-6, 0.7e-6});
+  c.results.outputs.push_back(table);
+  const std::string en = text(c);
+  EXPECT_TRUE(has(en, "some-control: some-control-X.txt, some-control-XYZ.txt")) << en;
+  EXPECT_EQ(occurrences(en, "60.00 → 0.70"), 6U);
+}
+
+TEST_F(PdfReport, ValuesThatNameAnotherMeasurementHaveTheirMeaning) {
+  Case c = usual();
+  Evaluation e;
+  e.values = {{"distance_C 2", 1e-4, Quantity::length, 1e-6},
+              {"angle_C 2", 1.57, Quantity::angle, {}}};
+  c.results.analyses.push_back({"rotary-kinematics", "1", "X", e});
+  EXPECT_TRUE(has(text(c), "Distance from the axis of C 2"));
+  EXPECT_TRUE(has(text(c, "it"), "Angolo con l'asse di C 2"));
 }
 
 }  // namespace

@@ -50,6 +50,7 @@ struct Paragraph {
   enum class Look : std::uint8_t { body, bold, small, muted };
   std::string text;
   Look look = Look::body;
+  bool with_next = false;  ///< not the last thing on a page
 };
 
 /// Labels with values beside them; a value that is empty has no row.
@@ -100,9 +101,15 @@ struct Plot {
     double from, to;
     std::string text;
   };
+  /// A word in the picture, beside its place as seen from the middle.
+  struct Label {
+    double x, y;
+    std::string text;
+  };
   std::string title, x_title, y_title;
   std::string language{};  ///< of the numbers
   std::vector<Curve> curves;
+  std::vector<Label> labels{};  ///< of a picture without scales
   std::vector<Span> spans{};
   std::vector<Belt> belts{};
   std::optional<std::pair<double, double>> range{};  ///< of the vertical axis; else what is drawn
@@ -110,6 +117,7 @@ struct Plot {
   bool whole = false;    ///< the horizontal axis counts: ticks at whole numbers
   bool zero_line = true;
   bool same_scale = false;   ///< a length is as long across as up: a picture of something
+  bool scales = true;        ///< false: nothing but the picture, and x_title as its caption
   double height = 0;         ///< with title and legend; 0: the style's
   std::string empty_text{};  ///< what is said where there is nothing to draw
 };

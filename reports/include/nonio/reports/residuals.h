@@ -47,6 +47,10 @@ bool counts(const ModelFit&, std::size_t row);
 
 /// Mean residual of the readings of one direction at each target.
 Trace mean_by_target(const ModelFit&, int direction);
+/// The readings of one measurement: means over those of several lines would mix their places.
+ModelFit of_measurement(const ModelFit&, std::uint32_t measurement);
+/// Several axes: places are those on each line.
+bool in_space(const ModelFit&);
 
 /// Mean residual in each of up to 12 equal parts of the range of x that hold three readings or
 /// more.

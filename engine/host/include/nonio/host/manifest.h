@@ -42,12 +42,25 @@ struct Limits {
   double memory_MB = 4096.0;
 };
 
+/// `[signing]` of site.toml: where the key is, where its password comes from, time stamps, and whom
+/// `verify` expects and trusts. Paths are relative to the site.
+struct Signing {
+  std::string pkcs12, pkcs11, module, certificates;
+  std::string password_file, password_env, password_credential;  ///< exactly one
+  std::string trust, revocation, signer;
+  std::string time_stamp;           ///< address of the server; empty: none
+  bool time_stamp_required = true;  ///< no answer: no certificate
+  int time_stamp_seconds = 10;
+};
+
 struct SiteFile {
+  std::optional<Signing> signing;
   Laboratory laboratory;
   RunChoice run;
   RawOptions options;
   Limits limits;
   KeyLines lines;
+  std::string settings;            ///< TOML: what of the file has a say in results
   std::vector<std::string> notes;  ///< sections that this version does not use yet
 };
 

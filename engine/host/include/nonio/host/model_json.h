@@ -19,7 +19,8 @@ struct Explained {
 std::size_t most_severe(const std::vector<Explained>& all);
 
 /// Sentences about values below their uncertainty and effects that nothing here measures.
-std::vector<std::string> warnings_of(const model::Fit& fit, const ModelWords& words);
+std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
+                                     const ModelWords& words);
 
 /// docs/formats.md: nonio-compare/1, nonio-explain/1 and nonio-model/1. `all` is not empty;
 /// `warnings` and `errors` are those of the campaign.

@@ -24,6 +24,10 @@ class ModelWords {
   std::string suspect(const model::Suspect& suspect, const ReadingPlace& place,
                       Quantity deviation) const;
   std::string below_uncertainty(const std::string& effect) const;
+  /// A curve in space some of whose parameters are counted to other effects.
+  std::string not_told(const std::string& effect, std::size_t parameters) const;
+  /// Measurements that do not say where the other axes stood.
+  std::string stood_somewhere() const;
   std::string unmeasured(const std::string& effect) const;
   /// What the catalogue says of an effect by its kind: "is", "size", "looks", "cure"; "" if
   /// nothing.

@@ -21,9 +21,9 @@ struct PluginFile {
 /// All plugins of this process. Loaded once, never unloaded.
 class Plugins final : public Registry {
  public:
-  /// Loads every shared library of the folders, in their order. Each is first loaded and registered
-  /// in a child process, so that one which crashes or hangs there is refused instead of loaded; the
-  /// ABI tag is compared before anything in it is called.
+  /// Loads every shared library of the folders, in their order. They are first loaded and
+  /// registered in a child process, so that one which crashes or hangs there is refused instead of
+  /// loaded; the ABI tag is compared before anything in it is called.
   void load(const std::vector<std::filesystem::path>& folders);
 
   const std::vector<PluginFile>& files() const { return files_; }
@@ -41,6 +41,8 @@ class Plugins final : public Registry {
 
   /// Why a plugin of that name is not there, with the nearest name.
   std::string absence(std::string_view kind, std::string_view name) const;
+  /// Every file that was refused, with the reason; empty if none was.
+  std::string refusals() const;
 
   void add(Reader) override;
   void add(Effect) override;
@@ -48,7 +50,7 @@ class Plugins final : public Registry {
   void add(Output) override;
 
  private:
-  void load_file(const std::filesystem::path& path);
+  void load_file(const std::filesystem::path& path, const std::string& refusal);
   bool accept(std::string_view kind, const Info& info);
 
   std::vector<PluginFile> files_;

@@ -18,6 +18,12 @@
 ///
 ///     D = cx [Ex(x_a, y_b) + g_b - k y_b] + cy [f_a + EYY(y_b)]  less the same at the first stop.
 ///
+/// With positioning on one line and yaw by another instrument (mirror and autocollimator), ECX is
+/// that; with positioning on two lines it is (EXX_1 - EXX_2)/(y_2 - y_1).
+///
+/// A line that was read from one direction only goes with positioning in the directions in which
+/// its axes moved.
+///
 /// First-order form of the product of the transforms of both carriages (Schwenke et al., CIRP
 /// Annals 57 (2008) 660); tests hold it against the exact product. What two full diagonals leave
 /// open is EXY = a, EYX = -(Lx/Ly) a for every a that is odd about mid-travel: floor((n - 1)/2)
@@ -31,6 +37,7 @@ struct MeanCurve {
   /// The first stop was not read, or the instrument was set to zero there each time: 0 by
   /// definition.
   bool zeroed = true;
+  int direction = 0;  ///< of approach: +1, -1; 0: mean of both
 };
 
 struct PitchLine : MeanCurve {
@@ -39,8 +46,9 @@ struct PitchLine : MeanCurve {
 
 /// Readings along a straight line whose stops are points of the grid.
 struct GridLine : MeanCurve {
-  std::vector<std::size_t> ix, iy;  ///< of each stop
-  double cx = 0.0, cy = 0.0;        ///< unit vector of sensing
+  std::vector<std::size_t> ix, iy;       ///< of each stop
+  double cx = 0.0, cy = 0.0;             ///< unit vector of sensing
+  int x_direction = 0, y_direction = 0;  ///< of approach, as in MeanCurve
 };
 
 /// Straightness by another instrument, against a line that is its own.
@@ -57,8 +65,10 @@ struct DiagonalReadings {
   std::size_t n = 0;
   GridLine D1, D2;              ///< (0, 0) -> (Lx, Ly), (0, Ly) -> (Lx, 0)
   std::vector<GridLine> third;  ///< further lines, which may close what the two leave open
-  std::vector<PitchLine> X;     ///< positioning of X on one line, or on two: then with yaw
-  PitchLine Y;
+  /// Positioning of X on one line, or on two: then with yaw; and of Y. Of each direction of
+  /// approach in which lines were read.
+  std::vector<PitchLine> X, Y;
+  std::vector<MeanCurve> ECX;  ///< yaw, rad, of each direction; counts where X has one line
   std::optional<DirectStraightness> EYX, EXY;
 };
 
@@ -92,7 +102,7 @@ struct DiagonalResult {
   KnownCurve EYX_even, EXY_even, q_odd;  ///< always; q = c EXY + s EYX
   LsqGauge lsq;
   std::vector<double> d1, d2;         ///< readings less positioning and yaw
-  std::vector<double> ECX;            ///< yaw from two lines; else empty
+  std::vector<double> ECX;            ///< yaw as it was subtracted; empty if there was none
   std::optional<double> slave_shift;  ///< of the second line's zero, removes C0Y; from two lines
   Closure closure;
   /// Standard deviation of a mean as the residuals of the fit say, with its degrees of freedom.

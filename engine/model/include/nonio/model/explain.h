@@ -127,6 +127,7 @@ struct Plan {
   std::size_t readings = 0;  ///< to be taken
   double power = 0.0;        ///< distance of the two explanations in standard deviations
   std::string one, other;    ///< the two effects
+  std::string of{};          ///< in space: the axes, or what is measured ("EYX")
 };
 
 struct Verdict {

@@ -61,9 +61,9 @@ struct Laboratory {
 
 struct Measurement {
   std::string id;
-  std::string kind;  ///< axis, straightness, diagonal, step-diagonal, ball-centres, observations
+  std::string kind;  ///< axis, straightness, angle, diagonal, step-diagonal, ball-centres, ...
   std::string axis;
-  std::string lateral;  ///< of a straightness: the axis in whose direction the deviation is
+  std::string lateral;  ///< direction of a straightness; axis about which an angle turns (`about`)
   std::string file;
   std::string reader;                      ///< empty: chosen by content
   std::map<std::string, double> from, to;  ///< ends of a diagonal, m

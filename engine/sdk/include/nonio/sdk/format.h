@@ -5,6 +5,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,11 +17,57 @@
 /// Numbers and words as people and programs read them; the locale of the process has no part in it.
 namespace nonio {
 
-/// With `decimals` digits after the point, half away from zero as by hand: 0.15 is a tie although
-/// its binary value is a little less, so the 15 digits that a double holds are what is rounded.
-/// Never "-0.0".
-inline std::string fixed_text(double value, int decimals) {
-  if (!std::isfinite(value)) return "";
+/// The powers of ten that a double holds exactly.
+inline constexpr std::array<double, 23> exact_powers_of_10 = {
+    1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+    1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+/// size * 10^places, rounded, where that is quick and sure: below 10^12, and not so near to a tie
+/// that the last digits of the double could decide (they are worth less than 0.01 there).
+inline std::optional<std::int64_t> quickly_rounded(double size, int places) {
+  if (places < 0 || places >= static_cast<int>(exact_powers_of_10.size())) return std::nullopt;
+  const double product = size * exact_powers_of_10[static_cast<std::size_t>(places)];
+  if (!(product < 1e12)) return std::nullopt;
+  const auto whole = static_cast<std::int64_t>(product);
+  const double rest = product - static_cast<double>(whole);
+  if (std::fabs(rest - 0.5) < 0.01) return std::nullopt;
+  return rest > 0.5 ? whole + 1 : whole;
+}
+
+/// digits * 10^-places = a number rounded to 12 significant digits.
+struct Decimal {
+  std::int64_t digits;
+  int places;
+  double value() const {
+    return static_cast<double>(digits) / exact_powers_of_10[static_cast<std::size_t>(places)];
+  }
+};
+
+/// Of a size that is not negative; nothing where `quickly_rounded` gives nothing.
+inline std::optional<Decimal> quick_decimal(double size) {
+  if (!(size >= 1e-11 && size < 1e12)) return std::nullopt;
+  int places = 11;
+  while (size >= exact_powers_of_10[static_cast<std::size_t>(12 - places)]) --places;
+  while (size * exact_powers_of_10[static_cast<std::size_t>(places - 11)] < 1.0) ++places;
+  const auto digits = quickly_rounded(size, places);
+  return digits ? std::optional(Decimal{*digits, places}) : std::nullopt;
+}
+
+/// digits * 10^-places with all its places, "-" before it if it is negative and not zero.
+inline std::string decimal_text(std::int64_t digits, int places, bool negative) {
+  std::array<char, 64> text{};
+  char* const end = text.data() + text.size();
+  char* at = end;
+  for (int i = 0; i <= places || digits != 0; ++i, digits /= 10) {
+    if (i == places && places > 0) *--at = '.';
+    *--at = static_cast<char>('0' + digits % 10);
+  }
+  if (negative && std::any_of(at, end, [](char c) { return c >= '1' && c <= '9'; })) *--at = '-';
+  return {at, end};
+}
+
+/// What `fixed_text` means, for every finite value.
+inline std::string fixed_text_by_digits(double value, int decimals) {
   constexpr int held = 15;
   std::array<char, 32> buffer{};  // d.dddddddddddddde+xx
   const char* const end = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
@@ -50,6 +98,16 @@ inline std::string fixed_text(double value, int decimals) {
   return negative ? "-" + digits : digits;
 }
 
+/// With `decimals` digits after the point, half away from zero as by hand: 0.15 is a tie although
+/// its binary value is a little less, so the 15 digits that a double holds are what is rounded.
+/// Never "-0.0".
+inline std::string fixed_text(double value, int decimals) {
+  if (!std::isfinite(value)) return "";
+  if (const auto digits = quickly_rounded(std::fabs(value), decimals))
+    return decimal_text(*digits, decimals, value < 0.0);
+  return fixed_text_by_digits(value, decimals);
+}
+
 /// With about `significant` digits and without an exponent where a person expects none.
 inline std::string short_text(double value, int significant = 3) {
   if (!std::isfinite(value)) return "";
@@ -65,11 +123,8 @@ inline std::string short_text(double value, int significant = 3) {
   return fixed_text(value, std::clamp(significant - 1 - magnitude, 0, 9));
 }
 
-/// The value that programs get: SI converted to its printed unit, rounded to 12 significant digits
-/// so that 0.0252 m gives 25.2 mm and not its neighbour.
-inline double printed(double si, Quantity quantity) {
-  const double value = si * unit_of(quantity).per_si;
-  if (!std::isfinite(value)) return value;
+/// To 12 significant digits.
+inline double rounded_by_digits(double value) {
   std::array<char, 64> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
                                  std::chars_format::scientific, 11)
@@ -77,6 +132,37 @@ inline double printed(double si, Quantity quantity) {
   double rounded = value;
   std::from_chars(buffer.data(), end, rounded);
   return rounded == 0.0 ? 0.0 : rounded;
+}
+
+/// The value that programs get: SI converted to its printed unit, rounded to 12 significant digits
+/// so that 0.0252 m gives 25.2 mm and not its neighbour.
+inline double printed(double si, Quantity quantity) {
+  const double value = si * unit_of(quantity).per_si;
+  if (!std::isfinite(value)) return value;
+  if (value == 0.0) return 0.0;  // never -0
+  if (const auto decimal = quick_decimal(std::fabs(value)))
+    return std::copysign(decimal->value(), value);
+  return rounded_by_digits(value);
+}
+
+/// The digits of the shortest text that reads back the same; nothing where that is not quick.
+inline std::optional<Decimal> shortest_decimal(double size) {
+  auto decimal = quick_decimal(size);
+  if (!decimal || decimal->value() != size) return std::nullopt;
+  for (; decimal->places > 0 && decimal->digits % 10 == 0; --decimal->places) decimal->digits /= 10;
+  return decimal;
+}
+
+/// The shortest text that reads back the same, as std::to_chars writes it.
+inline void append_shortest(std::string& out, double value) {
+  const double size = std::fabs(value);
+  if (size >= 1e-3 && size < 1e5)  // there it has no exponent
+    if (const auto decimal = shortest_decimal(size)) {
+      out += decimal_text(decimal->digits, decimal->places, value < 0.0);
+      return;
+    }
+  std::array<char, 40> buffer{};
+  out.append(buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr);
 }
 
 /// Decimal comma for languages that use one.

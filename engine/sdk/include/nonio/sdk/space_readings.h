@@ -56,13 +56,15 @@ inline bool of_ball_centres(const Observations& o) {
 }
 
 /// Whether coordinate k changes within a line whose readings sense direction `error`: else its zero
-/// takes whatever depends on k.
+/// takes whatever depends on k. `away`: looks only at readings that are away from the corner along
+/// this coordinate.
 inline bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::size_t k,
-                                std::size_t error) {
+                                std::size_t error, std::size_t away = 3) {
   constexpr double never = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> first(std::max<std::size_t>(o.lines.size(), 1), never);
   for (std::size_t i = 0; i < s.r[k].size(); ++i) {
     if (!std::isfinite(s.r[k][i]) || !(std::fabs(o.sense_of(i)[error]) > 1e-9)) continue;
+    if (away < 3 && !(s.lever(away, i) > 1e-9 * s.length[away])) continue;
     double& x = first[o.line.empty() ? 0 : o.line[i]];
     if (!std::isfinite(x)) x = s.r[k][i];
     if (std::fabs(s.r[k][i] - x) > 1e-9 * s.length[k]) return true;
@@ -91,6 +93,54 @@ inline std::vector<double> knots_over(const std::vector<double>& places) {
   for (std::size_t k = 3; k < std::min<std::size_t>(places.size() / 2, 11); ++k)
     knots.push_back(static_cast<double>(k));
   return knots;
+}
+
+/// The readings of one line, as it goes through space; without those that do not know where an axis
+/// was that the first one knows.
+struct SpaceLine {
+  using Vector = std::array<double, 3>;
+  std::vector<std::size_t> rows;
+  std::vector<Vector> way;     ///< of each row from the first one, m
+  Vector sense{}, farthest{};  ///< of the first row; the longest way
+  double length = 0.0;         ///< of that
+  bool straight = true;        ///< all on one straight, but for what files round
+
+  static double dot(const Vector& a, const Vector& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+  static Vector cross(const Vector& a, const Vector& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  }
+  /// A step diagonal: aside from the direction of sensing, where a flat mirror is, and along it.
+  bool goes_in_steps() const { return !straight && std::fabs(dot(farthest, sense)) > 0.5 * length; }
+};
+
+inline SpaceLine space_line(const Observations& o, const SpaceReadings& s, std::size_t line) {
+  SpaceLine out;
+  const auto same_are_known = [&s](std::size_t one, std::size_t other) {
+    return std::all_of(s.r.begin(), s.r.end(), [=](const std::vector<double>& r) {
+      return r.empty() || std::isfinite(r[one]) == std::isfinite(r[other]);
+    });
+  };
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    if ((o.line.empty() ? 0 : o.line[i]) != line) continue;
+    if (!out.rows.empty() && !same_are_known(i, out.rows.front())) continue;
+    out.way.push_back({s.lever(0, i), s.lever(1, i), s.lever(2, i)});
+    out.rows.push_back(i);
+  }
+  if (out.rows.empty()) return out;
+  out.sense = o.sense_of(out.rows.front());
+  const auto first = out.way.front();
+  for (auto& way : out.way) {
+    for (std::size_t k = 0; k < 3; ++k) way[k] -= first[k];
+    if (const double length = std::sqrt(SpaceLine::dot(way, way)); length > out.length)
+      out.length = length, out.farthest = way;
+  }
+  for (const auto& way : out.way) {
+    const auto off = SpaceLine::cross(way, out.farthest);  // times the length
+    if (std::sqrt(SpaceLine::dot(off, off)) > 1e-4 * out.length * out.length) out.straight = false;
+  }
+  return out;
 }
 
 inline std::vector<double> finite_or_zero(std::vector<double> x) {

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common.h"
+#include "nonio/host/verify.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+struct Wanted {
+  std::vector<std::string> files;
+  std::string site, trust, revoked, signer;
+};
+
+const char* to_text(sign::Check::State state) {
+  switch (state) {
+    case sign::Check::State::holds:
+      return "holds";
+    case sign::Check::State::fails:
+      return "fails";
+    case sign::Check::State::not_checked:
+      break;
+  }
+  return "not checked";
+}
+
+Json to_json(const std::string& file, const sign::Verified& v) {
+  Json checks = Json::array();
+  for (const sign::Check& c : v.checks)
+    checks.push_back({{"id", c.id}, {"state", to_text(c.state)}, {"says", c.says}});
+  return {{"schema", "nonio-verify/1"},
+          {"file", file},
+          {"holds", v.holds()},
+          {"signer", v.subject},
+          {"checks", std::move(checks)}};
+}
+
+void print(const std::string& file, const sign::Verified& v, bool quiet) {
+  if (!quiet)
+    for (const sign::Check& c : v.checks)
+      std::cout << file << ": " << c.id << " " << to_text(c.state) << ": " << c.says << "\n";
+  std::cout << file << ": " << (v.holds() ? "HOLDS" : "DOES NOT HOLD") << "\n";
+}
+
+int verify(const Wanted& wanted, const Common& common) {
+  const auto verifier =
+      host::verifier_of({wanted.site, wanted.trust, wanted.revoked, wanted.signer});
+  if (!verifier) {
+    for (const Error& e : verifier.error())
+      std::cerr << "nonio verify: " << (e.file.empty() ? "" : e.file + ": ") << e.message << "\n";
+    return exit_usage;
+  }
+  const auto place =
+      host::open_to_verify(common.plugin_folders(), common.template_folders(), NONIO_VERSION);
+  if (!place) {
+    std::cerr << "nonio verify: " << place.error().message << "\n";
+    return exit_usage;
+  }
+  bool all = true;
+  for (const std::string& file : wanted.files) {
+    const sign::Verified v = host::verify_file(file, *verifier, (*place)->context);
+    all = all && v.holds();
+    if (common.json)
+      std::cout << to_json(file, v).dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
+    else
+      print(file, v, common.quiet);
+  }
+  return all ? exit_done : exit_failed;
+}
+
+}  // namespace
+
+void add_verify_verb(CLI::App& cli, Common& common, Outcome& outcome) {
+  auto wanted = std::make_shared<Wanted>();
+  CLI::App* verb = cli.add_subcommand(
+      "verify",
+      "Whether signed certificates are what their signer signed, and their numbers right");
+  verb->add_option("FILE", wanted->files, "Certificates (PDF) and DCC (XML)")->required();
+  verb->add_option("--site", wanted->site,
+                   "Site whose site.toml, [signing], says whom to trust and expect")
+      ->check(CLI::ExistingDirectory);
+  verb->add_option(
+      "--trust", wanted->trust,
+      "PEM file with the roots that certificates must lead to (nobody else is trusted)");
+  verb->add_option("--revoked", wanted->revoked, "PEM file with revocation lists");
+  verb->add_option("--signer", wanted->signer,
+                   "Who should have signed: subject of the certificate, or its SHA-256");
+  add_templates(*verb, common);
+  add_common(*verb, common);
+  verb->footer(
+      "One line for each check; exit status 0 only if all hold. Without --trust and --signer (or\n"
+      "--site) a signature proves nothing, and the answer is no. Needs no network.\n\n"
+      "Example: nonio verify --site site out/c1/certificate.pdf");
+  verb->callback([wanted, &common, &outcome] { outcome = verify(*wanted, common); });
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "nonio/host/campaign_reader.h"
+#include "nonio/sign/verify.h"
+
+namespace nonio::host {
+
+/// What `nonio verify` is told; paths may be empty.
+struct VerifyOptions {
+  std::filesystem::path site;  ///< whose [signing] says whom to trust and expect
+  std::filesystem::path trust, revocation;
+  std::string signer;
+};
+
+/// Trust, revocation lists and expected signer; what is given by itself goes before the site's.
+Checked<sign::Verifier> verifier_of(const VerifyOptions& options);
+
+/// Plugins and templates, and no site: nothing of the folder that one happens to stand in has a
+/// say.
+Expected<std::unique_ptr<Workplace>> open_to_verify(
+    const std::vector<std::filesystem::path>& plugin_folders,
+    const std::vector<std::filesystem::path>& template_folders, const std::string& version);
+
+/// A certificate (PDF) or a DCC (XML): its signature first, then, where that holds, its content:
+/// every attached DCC, and the attached readings evaluated again by the plugins of `context`.
+/// Whatever the file holds, there is an answer.
+sign::Verified verify_file(const std::filesystem::path& path, const sign::Verifier& verifier,
+                           const Context& context);
+
+}  // namespace nonio::host

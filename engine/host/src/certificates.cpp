@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "certificates.h"
+
+#include <algorithm>
+
+#include "nonio/host/digest.h"
+#include "nonio/host/files.h"
+#include "nonio/host/results_json.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio::host {
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_pdf(const Artifact& a) { return a.bytes.starts_with("%PDF-"); }
+
+bool is_asked(const Results& results) {
+  return std::any_of(results.outputs.begin(), results.outputs.end(), [](const auto& w) {
+    return std::any_of(w.result.artifacts.begin(), w.result.artifacts.end(),
+                       [](const Artifact& a) { return a.sign; });
+  });
+}
+
+/// A certificate on its way: out of the list of artifacts while its attachments are made, since
+/// results.json cannot name the digest of a file that it is part of.
+struct Draft {
+  std::size_t output, place;
+  Artifact artifact;
+};
+
+class Desk {
+ public:
+  Desk(Evaluated& evaluated, const fs::path& folder, const Context& context, const Signer& signer,
+       sign::Time now)
+      : e_(evaluated), folder_(folder), context_(context), signer_(signer), now_(now) {}
+
+  Expected<void> run() {
+    auto done = sign_documents();
+    if (done) done = attach_inputs();
+    if (done) done = attach_results();
+    for (Draft& d : drafts_) {
+      if (done) done = sign_pdf(d);
+      auto& artifacts = e_.results.outputs[d.output].result.artifacts;
+      artifacts.insert(artifacts.begin() + static_cast<std::ptrdiff_t>(d.place),
+                       std::move(d.artifact));
+    }
+    return done;
+  }
+
+ private:
+  std::vector<Results::Written>& outputs() { return e_.results.outputs; }
+
+  Expected<void> sign(Artifact& a, std::size_t output) {
+    auto done = signer_.sign(a.bytes);
+    if (!done) return fail(a.name + " could not be signed: " + done.error().message);
+    if (!done->no_time_stamp.empty())
+      outputs()[output].result.findings.push_back(
+          {.id = "signature.no-time-stamp",
+           .attention = true,
+           .texts = {{"file", a.name}, {"why", done->no_time_stamp}}});
+    a.bytes = std::move(done->bytes);
+    a.sign = false;
+    return {};
+  }
+
+  /// And takes the certificates out.
+  Expected<void> sign_documents() {
+    for (std::size_t o = 0; o < outputs().size(); ++o) {
+      auto& artifacts = outputs()[o].result.artifacts;
+      for (std::size_t i = 0; i < artifacts.size(); ++i)
+        if (artifacts[i].sign && !is_pdf(artifacts[i])) {
+          if (auto done = sign(artifacts[i], o); !done) return done;
+          add(artifacts[i].name, artifacts[i].bytes, "application/xml", "Data",
+              "digital calibration certificate, with a signature of its own");
+        }
+      for (std::size_t i = 0, place = 0; i < artifacts.size(); ++place) {
+        if (!artifacts[i].sign) {
+          ++i;
+          continue;
+        }
+        drafts_.push_back({o, place, std::move(artifacts[i])});
+        artifacts.erase(artifacts.begin() + static_cast<std::ptrdiff_t>(i));
+      }
+    }
+    return {};
+  }
+
+  void add(std::string name, std::string bytes, const char* type, const char* relation,
+           const char* says) {
+    attachments_.push_back({std::move(name), std::move(bytes), type, relation, says});
+  }
+
+  /// As they were evaluated, byte by byte.
+  Expected<void> attach_inputs() {
+    if (drafts_.empty()) return {};
+    const std::string prefix = input_name("");
+    for (const auto& [input, digest] : e_.inputs) {
+      const bool is_file = input.starts_with(prefix);
+      const std::string name = is_file ? input.substr(prefix.size()) : input;
+      const auto path = path_inside(folder_, name);
+      if (!path) return fail(path.error());
+      auto bytes = read_file(*path);
+      if (!bytes) return fail(bytes.error());
+      if (sha256(*bytes) != digest)
+        return fail(name + " was changed while the campaign was evaluated");
+      const bool csv = name.ends_with(".csv");
+      add(name, std::move(*bytes),
+          !is_file ? "application/toml"
+          : csv    ? "text/csv"
+                   : "application/octet-stream",
+          "Source",
+          is_file ? "readings" : "the campaign: what was measured, and how it is evaluated");
+    }
+    if (!context_.site.settings.empty())
+      add(settings_name, context_.site.settings, "application/toml", "Source",
+          "what of the laboratory's settings has a say in the results");
+    return {};
+  }
+
+  Expected<void> attach_results() {
+    if (drafts_.empty()) return {};
+    std::vector<RecordedFile> files;
+    for (const auto& w : outputs())
+      for (const Artifact& a : w.result.artifacts)
+        files.push_back({a.name, a.bytes.size(), sha256(a.bytes)});
+    add(results_name, results_json(e_, context_, files), "application/json", "Data",
+        "the results as numbers");
+    return {};
+  }
+
+  Expected<void> sign_pdf(Draft& d) {
+    auto reserved = sign::reserve(d.artifact.bytes, attachments_, now_);
+    if (!reserved) return fail(d.artifact.name + " " + reserved.error().message);
+    d.artifact.bytes = std::move(*reserved);
+    return sign(d.artifact, d.output);
+  }
+
+  Evaluated& e_;
+  const fs::path& folder_;
+  const Context& context_;
+  const Signer& signer_;
+  const sign::Time now_;
+  std::vector<Draft> drafts_;
+  std::vector<sign::Attachment> attachments_;
+};
+
+}  // namespace
+
+void remove_unsigned(Results& results) {
+  for (Results::Written& w : results.outputs)
+    std::erase_if(w.result.artifacts, [](const Artifact& a) { return a.sign; });
+}
+
+Expected<void> sign_artifacts(Evaluated& evaluated, const fs::path& folder, const Context& context,
+                              const Signer* signer, sign::Time now) {
+  if (!is_asked(evaluated.results)) return {};
+  if (evaluated.status == "failed") {
+    remove_unsigned(evaluated.results);
+    return {};
+  }
+  if (signer == nullptr)
+    return fail("an output is to be signed, and site.toml says nothing of a key; wanted [signing]");
+  auto done = Desk(evaluated, folder, context, *signer, now).run();
+  if (!done) return done;
+  for (auto& w : evaluated.results.outputs)
+    for (Finding& f : w.result.findings)
+      if (f.id == "signature.no-time-stamp") {
+        f.advice = finding_text(context.templates, "en", f, "advice");
+        evaluated.status = "attention";
+      }
+  return {};
+}
+
+}  // namespace nonio::host

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "nonio/sdk/error.h"
+#include "nonio/sign/verify.h"
+
+namespace nonio::host {
+
+/// Whether two results.json give the same values, points, rows, series and decisions; findings and
+/// versions may differ. How much was compared, or the first difference.
+Expected<std::string> same_values(std::string_view attached, std::string_view recomputed);
+
+/// A DCC's units and list lengths, and its numbers against those of results.json if it is there.
+sign::Check check_dcc(const sign::Attachment& dcc, const sign::Attachment* results);
+
+}  // namespace nonio::host

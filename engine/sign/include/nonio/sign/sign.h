@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/sdk/error.h"
+
+/// Between the content of a certificate and its signature lies this and no more: a finished PDF and
+/// its attachments go in, a signed PDF comes out.
+///
+///   reserve(pdf, attachments, time)  puts the attachments and an empty signature into the PDF, in
+///                                    its one revision. Needs no key: any process may do it.
+///   Key::sign(bytes, stamp)          fills the signature. Only the process that holds the key.
+///
+/// Whoever writes the content need not know of the signature: a PDF of one revision with a plain
+/// cross-reference table (as reports::pdf makes it), without a form and attachments of its own. An
+/// XML document is signed as it is; its signature becomes the last child of the root.
+namespace nonio::sign {
+
+/// A file inside the PDF.
+struct Attachment {
+  std::string name;  ///< with folders, "data/x.csv"
+  std::string bytes;
+  std::string type;      ///< "text/csv"
+  std::string relation;  ///< PDF 2.0 /AFRelationship: Source, Data, Supplement, Alternative
+  std::string says;      ///< one line for people
+};
+
+/// Seconds since 1970-01-01 UTC. Signatures and their checks take it as a value; nothing here but a
+/// time-stamp server looks at a clock.
+using Time = std::int64_t;
+std::string text_of(Time time);  ///< "2026-11-21 15:00:07 UTC"
+
+/// Bytes for the CMS object if nothing else is said: enough for a time stamp with a long chain.
+inline constexpr std::size_t usual_room = 16384;
+
+/// `pdf` with attachments, a signature field without appearance on its first page, and `room` bytes
+/// of zeros for the signature. Same input, same bytes.
+Expected<std::string> reserve(std::string_view pdf, const std::vector<Attachment>& attachments,
+                              Time time, std::size_t room = usual_room);
+
+/// Where a key is. Either a PKCS#12 file, or a token.
+struct KeyPlace {
+  std::string pkcs12{};  ///< path of the file
+  std::string pkcs11{};  ///< pkcs11:token=...;object=... of key and certificate
+  std::string module{};  ///< path of the token's PKCS#11 library
+  std::string
+      certificates{};  ///< PEM file with what leads from the certificate to the root; or empty
+};
+
+struct Identity {
+  std::string subject;    ///< RFC 2253, "CN=Ada,O=Lab"
+  std::string sha256;     ///< of the certificate, lower-case hexadecimal
+  std::string algorithm;  ///< "RSA-3072", "P-256"
+  Time not_before = 0, not_after = 0;
+};
+
+/// An RFC 3161 time-stamp server; none if the address is empty.
+struct TimeStamping {
+  std::string url{};     ///< http://host[:port]/path
+  bool required = true;  ///< no answer: no signature; else one without time stamp
+  int seconds = 10;      ///< to wait for an answer
+  std::string trust{};   ///< PEM of the roots that its certificate must lead to
+};
+
+struct Signed {
+  std::string bytes;
+  /// Why there is no time stamp although one was wanted; empty if all is as configured.
+  std::string no_time_stamp{};
+};
+
+/// A private key and its certificate, opened once. It never leaves the process that opened it.
+class Key {
+ public:
+  /// An error says what is wrong with key, certificate or password, never the password. `now`: the
+  /// certificate must be valid.
+  static Expected<Key> open(const KeyPlace& place, const std::string& password, Time now);
+  Key(Key&&) noexcept;
+  Key& operator=(Key&&) noexcept;
+  ~Key();
+
+  const Identity& identity() const;
+  /// A PDF from `reserve`: PAdES B-B, or B-T with a time stamp. An XML document: XML-DSig,
+  /// enveloped. Anything else is an error.
+  Expected<Signed> sign(std::string bytes, const TimeStamping& stamping = {}) const;
+
+  struct Impl;
+
+ private:
+  explicit Key(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace nonio::sign

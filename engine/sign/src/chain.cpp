@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <openssl/err.h>
+#include <openssl/pem.h>
+#include <openssl/x509_vfy.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "signed_data.h"
+
+namespace nonio::sign {
+
+namespace {
+
+using StorePtr = std::unique_ptr<X509_STORE, Freed<X509_STORE_free>>;
+using StoreContextPtr = std::unique_ptr<X509_STORE_CTX, Freed<X509_STORE_CTX_free>>;
+
+Expected<std::vector<RevocationPtr>> lists_of(const std::string& pem) {
+  std::vector<RevocationPtr> out;
+  const BioPtr in(BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())));
+  while (X509_CRL* list = PEM_read_bio_X509_CRL(in.get(), nullptr, nullptr, nullptr))
+    out.emplace_back(list);
+  const bool at_end = ERR_GET_REASON(ERR_peek_last_error()) == PEM_R_NO_START_LINE;
+  ERR_clear_error();
+  if (out.empty() || !at_end) return fail("holds no revocation list in PEM form");
+  return out;
+}
+
+}  // namespace
+
+Expected<Trusted> trusted(const std::string& roots_pem, const std::string& lists_pem) {
+  Trusted out;
+  ERR_clear_error();
+  if (!roots_pem.empty()) {
+    auto roots = certificates_of(roots_pem);
+    if (!roots) return fail("the trust file " + roots.error().message);
+    out.roots = std::move(*roots);
+  }
+  if (!lists_pem.empty()) {
+    auto lists = lists_of(lists_pem);
+    if (!lists) return fail("the revocation file " + lists.error().message);
+    out.lists = std::move(*lists);
+  }
+  return out;
+}
+
+Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,
+                                               const std::vector<CertificatePtr>& all,
+                                               const Trusted& known, Time at) {
+  ERR_clear_error();
+  const StorePtr store(X509_STORE_new());
+  for (const CertificatePtr& root : known.roots) X509_STORE_add_cert(store.get(), root.get());
+  const Borrowed others(sk_X509_new_null());
+  for (const CertificatePtr& c : all) sk_X509_push(others.get(), c.get());
+  const StoreContextPtr context(X509_STORE_CTX_new());
+  if (X509_STORE_CTX_init(context.get(), store.get(), certificate, others.get()) != 1)
+    return fail("cannot be checked: " + reason());
+  X509_VERIFY_PARAM* wanted = X509_STORE_CTX_get0_param(context.get());
+  X509_VERIFY_PARAM_set_time(wanted, static_cast<std::time_t>(at));
+  X509_VERIFY_PARAM_set_auth_level(wanted, 2);  // RSA of 2048 bits, SHA-256, or better
+  if (X509_verify_cert(context.get()) != 1) {
+    const int code = X509_STORE_CTX_get_error(context.get());
+    const X509* where = X509_STORE_CTX_get_current_cert(context.get());
+    ERR_clear_error();
+    return fail(std::string(X509_verify_cert_error_string(code)) +
+                (where == nullptr ? "" : ", at " + subject_of(where)));
+  }
+  std::vector<CertificatePtr> out;
+  const STACK_OF(X509)* chain = X509_STORE_CTX_get0_chain(context.get());
+  for (int i = 0; i < sk_X509_num(chain); ++i) {
+    X509_up_ref(sk_X509_value(chain, i));
+    out.emplace_back(sk_X509_value(chain, i));
+  }
+  return out;
+}
+
+Expected<void> check_issued(const std::vector<CertificatePtr>& certificates, const Trusted& known) {
+  const auto issued = [](const CertificatePtr& one, const CertificatePtr& by) {
+    return X509_check_issued(by.get(), one.get()) == X509_V_OK &&
+           X509_get0_pubkey(by.get()) != nullptr &&
+           X509_verify(one.get(), X509_get0_pubkey(by.get())) == 1;
+  };
+  for (const CertificatePtr& one : certificates) {
+    const auto by = [&](const CertificatePtr& c) { return issued(one, c); };
+    const bool fits = std::any_of(certificates.begin(), certificates.end(), by) ||
+                      std::any_of(known.roots.begin(), known.roots.end(), by);
+    ERR_clear_error();
+    if (!fits)
+      return fail("the certificate of " + subject_of(one.get()) +
+                  " is damaged, or nobody who is known issued it");
+  }
+  return {};
+}
+
+Expected<std::string> check_revocation(const std::vector<CertificatePtr>& chain,
+                                       const Trusted& known, Time at, bool& looked) {
+  std::string says;
+  looked = false;
+  for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+    X509* one = chain[i].get();
+    X509* issuer = chain[i + 1].get();
+    const auto list =
+        std::find_if(known.lists.begin(), known.lists.end(), [&](const RevocationPtr& l) {
+          return X509_NAME_cmp(X509_CRL_get_issuer(l.get()), X509_get_subject_name(issuer)) == 0 &&
+                 X509_CRL_verify(l.get(), X509_get0_pubkey(issuer)) == 1;
+        });
+    ERR_clear_error();
+    if (!says.empty()) says += "; ";
+    if (list == known.lists.end()) {
+      says += "no list of " + subject_of(issuer);
+      continue;
+    }
+    X509_REVOKED* entry = nullptr;
+    const Time made = time_of(X509_CRL_get0_lastUpdate(list->get()));
+    if (X509_CRL_get0_by_cert(list->get(), &entry, one) == 1) {
+      const Time when = time_of(X509_REVOKED_get0_revocationDate(entry));
+      if (when <= at)
+        return fail("the certificate of " + subject_of(one) + " was revoked on " + text_of(when));
+    }
+    if (i == 0) looked = true;
+    says += subject_of(one) + " is not revoked by the list of " + text_of(made);
+  }
+  return says;
+}
+
+}  // namespace nonio::sign

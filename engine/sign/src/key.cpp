@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "key.h"
+
+#include <openssl/err.h>
+#include <openssl/pkcs12.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "certificate_use.h"
+#include "pdf_signature.h"
+
+namespace nonio::sign {
+
+namespace {
+
+Expected<std::string> read(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (!file.is_open() || file.bad()) return fail("cannot read " + path);
+  return bytes;
+}
+
+Expected<Key::Impl> open_pkcs12(const std::string& path, const std::string& password) {
+  const auto bytes = read(path);
+  if (!bytes) return fail(bytes.error());
+  ERR_clear_error();
+  const unsigned char* at = data_of(*bytes);
+  const std::unique_ptr<PKCS12, Freed<PKCS12_free>> file(
+      d2i_PKCS12(nullptr, &at, static_cast<long>(bytes->size())));
+  if (!file) return fail(path + " is no PKCS#12 file: " + reason());
+  EVP_PKEY* key = nullptr;
+  X509* certificate = nullptr;
+  STACK_OF(X509)* others = nullptr;
+  if (PKCS12_parse(file.get(), password.c_str(), &key, &certificate, &others) != 1) {
+    const bool old = ERR_GET_REASON(ERR_peek_last_error()) == ERR_R_UNSUPPORTED;
+    ERR_clear_error();
+    if (old)
+      return fail(path +
+                  " is protected in a way that is too old (RC2 or 3DES); make it anew with openssl "
+                  "pkcs12 -export");
+    return fail(path + " cannot be opened: wrong password, or a damaged file");
+  }
+  Key::Impl impl{PrivateKeyPtr(key), CertificatePtr(certificate), {}};
+  const Owned owned(others);
+  for (int i = 0; others != nullptr && i < sk_X509_num(others); ++i) {
+    X509_up_ref(sk_X509_value(others, i));
+    impl.chain.emplace_back(sk_X509_value(others, i));
+  }
+  if (!impl.key || !impl.certificate)
+    return fail(path + " holds no private key with its certificate");
+  return impl;
+}
+
+/// The root is in the trust file of whoever verifies; without it every file is smaller.
+void leave_roots_out(std::vector<CertificatePtr>& chain) {
+  std::erase_if(chain, [](const CertificatePtr& c) {
+    return (X509_get_extension_flags(c.get()) & EXFLAG_SS) != 0;
+  });
+}
+
+Expected<void> check(Key::Impl& impl, Time now) {
+  X509* certificate = impl.certificate.get();
+  auto algorithm = algorithm_of(impl.key.get(), false);
+  if (!algorithm) return fail("the signing key is " + algorithm.error().message);
+  if (X509_check_private_key(certificate, impl.key.get()) != 1) {
+    ERR_clear_error();
+    return fail("the signing key does not belong to the certificate");
+  }
+  impl.identity = {subject_of(certificate), hex(sha256(der_of(certificate))), std::move(*algorithm),
+                   time_of(X509_get0_notBefore(certificate)),
+                   time_of(X509_get0_notAfter(certificate))};
+  if (now < impl.identity.not_before)
+    return fail("the signing certificate is not valid before " + text_of(impl.identity.not_before));
+  if (now > impl.identity.not_after)
+    return fail("the signing certificate ran out on " + text_of(impl.identity.not_after));
+  if (auto fit = check_signer_use(certificate); !fit)
+    return fail("the signing certificate " + fit.error().message);
+  return {};
+}
+
+}  // namespace
+
+Key::Key(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Key::Key(Key&&) noexcept = default;
+Key& Key::operator=(Key&&) noexcept = default;
+Key::~Key() = default;
+const Identity& Key::identity() const { return impl_->identity; }
+
+Expected<Key> Key::open(const KeyPlace& place, const std::string& password, Time now) {
+  auto impl =
+      place.pkcs12.empty() ? open_token(place, password) : open_pkcs12(place.pkcs12, password);
+  if (!impl) return fail(impl.error());
+  if (!place.certificates.empty()) {
+    const auto pem = read(place.certificates);
+    if (!pem) return fail(pem.error());
+    auto more = certificates_of(*pem);
+    if (!more) return fail(place.certificates + " " + more.error().message);
+    std::move(more->begin(), more->end(), std::back_inserter(impl->chain));
+  }
+  leave_roots_out(impl->chain);
+  if (auto sound = check(*impl, now); !sound) return fail(sound.error());
+  return Key(std::make_unique<Impl>(std::move(*impl)));
+}
+
+Expected<std::string> Key::Impl::sign_bytes(std::string_view bytes) const {
+  ERR_clear_error();
+  const std::unique_ptr<EVP_MD_CTX, Freed<EVP_MD_CTX_free>> context(EVP_MD_CTX_new());
+  std::size_t size = 0;
+  if (EVP_DigestSignInit(context.get(), nullptr, EVP_sha256(), nullptr, key.get()) != 1 ||
+      EVP_DigestSign(context.get(), nullptr, &size, data_of(bytes), bytes.size()) != 1)
+    return fail("the key did not sign: " + reason());
+  std::string signature(size, '\0');
+  if (EVP_DigestSign(context.get(), reinterpret_cast<unsigned char*>(signature.data()), &size,
+                     data_of(bytes), bytes.size()) != 1)
+    return fail("the key did not sign: " + reason());
+  signature.resize(size);
+  return signature;
+}
+
+namespace {
+
+Expected<Signed> sign_pdf(const Key::Impl& key, std::string bytes, const TimeStamping& stamping) {
+  const auto file = pdf::parse(bytes);
+  if (!file) return fail("is not a PDF that can be signed: " + file.error().message);
+  const auto dictionary = find_signature(*file);
+  if (!dictionary) return fail("is not prepared for a signature: " + dictionary.error().message);
+  const auto place = signature_of(*file, **dictionary);
+  if (!place) return fail("is not prepared for a signature: " + place.error().message);
+  if (place->contents.find_first_not_of('0') != std::string_view::npos)
+    return fail("is signed already");
+  Signed out;
+  const auto cms = make_cms(key, place->before, place->behind, stamping, out.no_time_stamp);
+  if (!cms) return fail(cms.error());
+  if (cms->size() > place->room())
+    return fail("the signature has " + std::to_string(cms->size()) +
+                " bytes and does not fit into " + std::to_string(place->room()));
+  bytes.replace(place->gap + 1, 2 * cms->size(), hex(*cms));
+  out.bytes = std::move(bytes);
+  return out;
+}
+
+}  // namespace
+
+Expected<Signed> Key::sign(std::string bytes, const TimeStamping& stamping) const {
+  if (bytes.starts_with("%PDF-")) return sign_pdf(*impl_, std::move(bytes), stamping);
+  if (!bytes.starts_with("<?xml")) return fail("is neither a PDF nor an XML document");
+  auto document = sign_xml(*impl_, bytes);
+  if (!document) return fail(document.error());
+  return Signed{std::move(*document)};
+}
+
+}  // namespace nonio::sign

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "nonio/sign/sign.h"
+#include "openssl.h"
+
+namespace nonio::sign {
+
+/// A key with its certificate and what leads from there to the root.
+struct Key::Impl {
+  PrivateKeyPtr key;
+  CertificatePtr certificate;
+  std::vector<CertificatePtr> chain;
+  Identity identity{};
+
+  Expected<std::string> sign_bytes(std::string_view bytes) const;  ///< with SHA-256
+};
+
+Expected<Key::Impl> open_token(const KeyPlace& place, const std::string& password);
+
+/// The CMS object over two parts of a file, in DER.
+Expected<std::string> make_cms(const Key::Impl& key, std::string_view before,
+                               std::string_view behind, const TimeStamping& stamping,
+                               std::string& no_time_stamp);
+
+Expected<std::string> sign_xml(const Key::Impl& key, std::string_view document);
+
+}  // namespace nonio::sign

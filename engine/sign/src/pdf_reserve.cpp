@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <libdeflate.h>
+#include <openssl/sha.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <set>
+
+#include "nonio/sign/sign.h"
+#include "pdf_reader.h"
+#include "pdf_signature.h"
+
+namespace nonio::sign {
+
+using pdf::File;
+using pdf::Object;
+using pdf::Value;
+
+namespace {
+
+template <class... Numbers>
+std::string formatted(const char* format, Numbers... numbers) {
+  std::array<char, 64> text{};
+  const int n = std::snprintf(text.data(), text.size(), format, numbers...);
+  return {text.data(), static_cast<std::size_t>(n)};
+}
+
+struct Calendar {
+  int year;
+  unsigned month, day;
+  int hours, minutes, seconds;
+};
+
+Calendar calendar(Time time) {
+  namespace chrono = std::chrono;
+  const chrono::sys_seconds at{chrono::seconds(time)};
+  const auto day = chrono::floor<chrono::days>(at);
+  const chrono::year_month_day date(day);
+  const chrono::hh_mm_ss clock(at - day);
+  return {static_cast<int>(date.year()),
+          static_cast<unsigned>(date.month()),
+          static_cast<unsigned>(date.day()),
+          static_cast<int>(clock.hours().count()),
+          static_cast<int>(clock.minutes().count()),
+          static_cast<int>(clock.seconds().count())};
+}
+
+std::string pdf_date(Time time) {
+  const Calendar c = calendar(time);
+  return formatted("(D:%04d%02u%02u%02d%02d%02dZ)", c.year, c.month, c.day, c.hours, c.minutes,
+                   c.seconds);
+}
+
+std::string hexadecimal(std::string_view bytes) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string out = "<";
+  for (const char c : bytes) {
+    out += digits[static_cast<unsigned char>(c) >> 4];
+    out += digits[static_cast<unsigned char>(c) & 15];
+  }
+  return out + ">";
+}
+
+/// UTF-16 with a byte-order mark, from UTF-8; an error if it is none.
+Expected<std::string> utf16(std::string_view text) {
+  std::string out = "\xFE\xFF";
+  const auto put = [&](std::uint32_t unit) {
+    out += static_cast<char>(unit >> 8);
+    out += static_cast<char>(unit & 0xFF);
+  };
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const std::size_t more = lead < 0x80 ? 0 : lead < 0xE0 ? 1 : lead < 0xF0 ? 2 : 3;
+    if ((lead >= 0x80 && lead < 0xC2) || lead > 0xF4 || i + more >= text.size())
+      return fail("wanted text in UTF-8");
+    std::uint32_t c = more == 0 ? lead : lead & (0x3FU >> more);
+    for (std::size_t k = 1; k <= more; ++k) {
+      const auto next = static_cast<unsigned char>(text[i + k]);
+      if ((next & 0xC0) != 0x80) return fail("wanted text in UTF-8");
+      c = c << 6 | (next & 0x3FU);
+    }
+    i += more + 1;
+    if (c < 0x10000) {
+      put(c);
+    } else {
+      put(0xD800 + ((c - 0x10000) >> 10));
+      put(0xDC00 + ((c - 0x10000) & 0x3FF));
+    }
+  }
+  return out;
+}
+
+/// What every reader shows: letters, digits and a few marks; others become "_".
+std::string plain(std::string_view name) {
+  std::string out;
+  for (const char c : name) {
+    const bool kept = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                      std::string_view("-_./ ").find(c) != std::string_view::npos;
+    out += kept ? c : '_';
+  }
+  return out;
+}
+
+/// Of a MIME type: "text/csv" becomes /text#2Fcsv.
+std::string name_of(std::string_view text) {
+  std::string out = "/";
+  for (const char c : text) {
+    const bool kept = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                      c == '-' || c == '.';
+    out += kept ? std::string(1, c) : "#" + hexadecimal({&c, 1}).substr(1, 2);
+  }
+  return out;
+}
+
+std::string deflated(std::string_view bytes) {
+  constexpr int level = 6;
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
+      libdeflate_alloc_compressor(level), &libdeflate_free_compressor);
+  if (!compressor) return {};
+  std::string out(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
+  out.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), out.data(),
+                                      out.size()));
+  return out;
+}
+
+std::string reference(std::size_t number) { return std::to_string(number) + " 0 R"; }
+
+/// The file written anew: its own objects as they stand, two of them with more entries, then those
+/// of the attachments and of the signature.
+class Reservation {
+ public:
+  Reservation(const File& file, Time time, std::size_t room)
+      : file_(file), time_(time), room_(room), offsets_(file.objects.size()) {}
+
+  Expected<std::string> make(const std::vector<Attachment>& attachments) {
+    if (auto fit = check(); !fit) return fail(fit.error());
+    const std::size_t page = file_.first_page(), signature = offsets_.size(), field = signature + 1;
+    offsets_.resize(field + 1);
+    std::string names;
+    for (const std::size_t i : in_order_of_names(attachments))
+      if (auto added = attach(attachments[i], names); !added) return fail(added.error());
+
+    out_.assign(file_.bytes.substr(0, file_.body));
+    for (const std::size_t number : file_.order) copy(number, page, field, names);
+    for (const auto& [number, text] : attached_) put(number, text);
+    put_signature(signature);
+    put(field,
+        "<<\n/Type /Annot\n/Subtype /Widget\n/FT /Sig\n/T (Signature1)\n/F 132\n/Rect [0 0 0 0]\n"
+        "/P " +
+            reference(page) + "\n/V " + reference(signature) + "\n>>");
+    put_table();
+    fill_range();
+    return std::move(out_);
+  }
+
+ private:
+  Expected<void> check() const {
+    const Value* catalog = file_.catalog();
+    const std::size_t page = file_.first_page();
+    if (catalog == nullptr || page == 0) return fail("wanted a PDF with pages");
+    for (const char* key : {"AcroForm", "Names", "AF", "Perms"})
+      if (catalog->find(key) != nullptr)
+        return fail(std::string("the PDF has /") + key +
+                    " already: wanted neither form nor attachments");
+    const Value* annotations = file_.objects[page].value.find("Annots");
+    if (annotations != nullptr && !annotations->is(Value::Kind::array))
+      return fail("the first page's /Annots is not a plain list");
+    if (room_ < 1000 || room_ > max_room) return fail("wanted 1000 to 32000 bytes for a signature");
+    return {};
+  }
+
+  /// A name tree is sorted by its keys.
+  static std::vector<std::size_t> in_order_of_names(const std::vector<Attachment>& attachments) {
+    std::vector<std::size_t> order(attachments.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return attachments[a].name < attachments[b].name;
+    });
+    return order;
+  }
+
+  Expected<void> attach(const Attachment& a, std::string& names) {
+    const auto name = utf16(a.name), says = utf16(a.says);
+    if (!name || !says || a.name.empty() || a.name.size() > 255)
+      return fail("the attachment \"" + a.name + "\": wanted a name and a description in UTF-8");
+    if (!names_.insert(a.name).second) return fail("two attachments are called " + a.name);
+    const std::string packed = deflated(a.bytes);
+    if (packed.empty()) return fail("no memory for the attachment " + a.name);
+    const std::size_t stream = offsets_.size(), specification = stream + 1;
+    offsets_.resize(specification + 1);
+    attached_.emplace_back(
+        stream, "<<\n/Type /EmbeddedFile\n/Subtype " + name_of(a.type) + "\n/Params << /Size " +
+                    std::to_string(a.bytes.size()) + " /ModDate " + pdf_date(time_) +
+                    " >>\n/Filter /FlateDecode\n/Length " + std::to_string(packed.size()) +
+                    "\n>>\nstream\n" + packed + "\nendstream");
+    attached_.emplace_back(specification, "<<\n/Type /Filespec\n/F (" + plain(a.name) + ")\n/UF " +
+                                              hexadecimal(*name) + "\n/Desc " + hexadecimal(*says) +
+                                              "\n/AFRelationship " + name_of(a.relation) +
+                                              "\n/EF << /F " + reference(stream) + " /UF " +
+                                              reference(stream) + " >>\n>>");
+    names += hexadecimal(a.name) + " " + reference(specification) + "\n";
+    files_ += reference(specification) + " ";
+    return {};
+  }
+
+  void copy(std::size_t number, std::size_t page, std::size_t field, const std::string& names) {
+    const Object& object = file_.objects[number];
+    offsets_[number] = out_.size();
+    const std::string_view text = file_.bytes.substr(object.begin, object.end - object.begin);
+    std::size_t at = 0;
+    std::string more;
+    if (number == page) {
+      const Value* annotations = object.value.find("Annots");
+      at = annotations != nullptr ? annotations->end - 1 : object.value.end - 2;
+      more = annotations != nullptr ? " " + reference(field)
+                                    : "/Annots [ " + reference(field) + " ]\n";
+    } else if (&object.value == file_.catalog()) {
+      at = object.value.end - 2;
+      more = "/AcroForm << /Fields [ " + reference(field) + " ] /SigFlags 3 >>\n";
+      if (!names.empty())
+        more +=
+            "/Names << /EmbeddedFiles << /Names [\n" + names + "] >> >>\n/AF [ " + files_ + "]\n";
+    }
+    if (more.empty()) {
+      out_ += text;
+      return;
+    }
+    out_ += text.substr(0, at - object.begin);
+    out_ += more;
+    out_ += text.substr(at - object.begin);
+  }
+
+  void put(std::size_t number, const std::string& text) {
+    offsets_[number] = out_.size();
+    out_ += std::to_string(number) + " 0 obj\n" + text + "\nendobj\n";
+  }
+
+  void put_signature(std::size_t number) {
+    const std::string head = "<<\n/Type /Sig\n/Filter /Adobe.PPKLite\n/SubFilter /" +
+                             std::string(sub_filter) + "\n/M " + pdf_date(time_) + "\n/ByteRange ";
+    const std::string range = "[0 0000000000 0000000000 0000000000]";
+    range_ = out_.size() + std::to_string(number).size() + 7 + head.size();
+    gap_ = range_ + range.size() + std::string_view("\n/Contents ").size();
+    put(number, head + range + "\n/Contents <" + std::string(2 * room_, '0') + ">\n>>");
+  }
+
+  void put_table() {
+    const std::size_t table = out_.size();
+    out_ += "xref\n0 " + std::to_string(offsets_.size()) + "\n0000000000 65535 f\r\n";
+    for (std::size_t i = 1; i < offsets_.size(); ++i)
+      out_ += formatted("%010zu 00000 n\r\n", offsets_[i]);
+    out_ += "trailer\n<<\n";
+    for (std::size_t i = 0; i < file_.trailer.keys.size(); ++i) {
+      const Value& value = file_.trailer.items[i];
+      if (const std::string& key = file_.trailer.keys[i]; key != "Size" && key != "ID")
+        out_ += name_of(key) + " " +
+                std::string(file_.bytes.substr(value.begin, value.end - value.begin)) + "\n";
+    }
+    out_ += "/Size " + std::to_string(offsets_.size()) + "\n";
+    const std::string id = hexadecimal(identifier());
+    out_ += "/ID [ " + id + " " + id + " ]\n>>\nstartxref\n" + std::to_string(table) + "\n%%EOF\n";
+  }
+
+  /// Of what went in, not of the time.
+  std::string identifier() const {
+    std::array<unsigned char, SHA256_DIGEST_LENGTH> digest{};
+    SHA256(reinterpret_cast<const unsigned char*>(file_.bytes.data()), file_.bytes.size(),
+           digest.data());
+    return {reinterpret_cast<const char*>(digest.data()), 16};
+  }
+
+  void fill_range() {
+    const std::size_t behind = gap_ + 2 * room_ + 2;
+    out_.replace(range_, 36,
+                 formatted("[0 %010zu %010zu %010zu]", gap_, behind, out_.size() - behind));
+  }
+
+  const File& file_;
+  const Time time_;
+  const std::size_t room_;
+  std::vector<std::size_t> offsets_;  ///< by number, of the new file
+  std::vector<std::pair<std::size_t, std::string>> attached_;
+  std::string files_;
+  std::set<std::string> names_;
+  std::string out_;
+  std::size_t range_ = 0, gap_ = 0;
+};
+
+}  // namespace
+
+std::string text_of(Time time) {
+  const Calendar c = calendar(time);
+  return formatted("%04d-%02u-%02u %02d:%02d:%02d UTC", c.year, c.month, c.day, c.hours, c.minutes,
+                   c.seconds);
+}
+
+Expected<std::string> reserve(std::string_view bytes, const std::vector<Attachment>& attachments,
+                              Time time, std::size_t room) {
+  const auto file = pdf::parse(bytes);
+  if (!file)
+    return fail("cannot be signed, since it is no PDF as Nonio writes it: " + file.error().message);
+  std::size_t total = bytes.size();
+  for (const Attachment& a : attachments) total += a.bytes.size();
+  if (total > max_file) return fail("is with its attachments larger than 500 MB");
+  return Reservation(*file, time, room).make(attachments);
+}
+
+}  // namespace nonio::sign

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "openssl.h"
+
+namespace nonio::sign {
+
+/// Whom the verifier trusts, and what he knows to be revoked.
+struct Trusted {
+  std::vector<CertificatePtr> roots;
+  std::vector<RevocationPtr> lists;
+};
+Expected<Trusted> trusted(const std::string& roots_pem, const std::string& lists_pem);
+
+/// A CMS SignedData of one signer (RFC 5652): the signature of a PDF, or a time-stamp token.
+class SignedData {
+ public:
+  enum class Content { detached, time_stamp };
+
+  /// Strict: one signer, DER, known algorithms, nothing beside what is wanted. Every byte that is
+  /// not signed has one value that is accepted.
+  static Expected<SignedData> parse(std::string_view der, Content content);
+
+  /// The digest of the content and the signature over it hold.
+  Expected<void> check_signature(std::string_view before, std::string_view behind) const;
+  /// The signed attributes name the signer's certificate (ESS signing-certificate, RFC 5035).
+  Expected<void> check_certificate_named() const;
+
+  /// Whatever certificates were put in.
+  const std::vector<CertificatePtr>& certificates() const { return certificates_; }
+  X509* certificate() const { return signer_certificate_; }
+  std::string_view certificate_der() const { return signer_der_; }
+  std::string_view signature() const { return signature_; }
+  /// Of a time stamp: TSTInfo.
+  std::string_view content() const { return content_; }
+  /// Of a signature: its time-stamp token; empty if there is none.
+  std::string_view time_stamp() const { return token_; }
+
+ private:
+  Expected<void> read_outside(Content content);
+  Expected<void> read_content(std::string_view text, Content content);
+  Expected<void> read_certificates(std::string_view text);
+  Expected<void> read_signer(std::string_view text, Content content);
+  Expected<void> read_unsigned(std::string_view text, Content content);
+  Expected<void> find_certificate(std::string_view identifier);
+
+  std::string der_;
+  CmsPtr cms_;
+  CMS_SignerInfo* signer_ = nullptr;
+  const EVP_MD* digest_ = nullptr;
+  std::vector<CertificatePtr> certificates_;
+  std::vector<std::string_view> certificate_ders_;
+  X509* signer_certificate_ = nullptr;
+  std::string_view signer_der_, signature_, content_, token_;
+};
+
+/// From this certificate to a root by way of the others, all valid at that time; itself first.
+Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,
+                                               const std::vector<CertificatePtr>& others,
+                                               const Trusted& trusted, Time at);
+/// None of them is damaged or has nothing to do with the others.
+Expected<void> check_issued(const std::vector<CertificatePtr>& certificates,
+                            const Trusted& trusted);
+
+/// "was revoked on ..." as an error if a list says so; else what was and was not looked at.
+Expected<std::string> check_revocation(const std::vector<CertificatePtr>& chain,
+                                       const Trusted& trusted, Time at, bool& looked);
+
+}  // namespace nonio::sign

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "nonio/sign/sign.h"
+#include "signed_data.h"
+
+namespace nonio::sign {
+
+/// A token (RFC 3161) over a signature value, from the configured server and checked as `verify`
+/// will check it.
+Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::string_view signature);
+
+struct Stamp {
+  Time time = 0;
+  std::string by;
+  std::string nonce;  ///< as in the token; empty if it has none
+};
+/// Over this signature value, by somebody who may and whom the verifier trusts.
+Expected<Stamp> check_time_stamp(std::string_view token, std::string_view signature,
+                                 const Trusted& trusted);
+
+}  // namespace nonio::sign

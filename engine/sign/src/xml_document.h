@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <libxml/tree.h>
+
+#include <memory>
+#include <string_view>
+
+#include "openssl.h"
+
+namespace nonio::sign {
+
+using DocumentPtr = std::unique_ptr<xmlDoc, Freed<xmlFreeDoc>>;
+
+/// Without network and without a document type: entities could bring in other files, or grow
+/// without limit.
+Expected<DocumentPtr> parse_xml(std::string_view bytes);
+
+}  // namespace nonio::sign

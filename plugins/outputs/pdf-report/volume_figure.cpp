@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The volume of step diagonals as a box of wire, as it should be and as the machine draws it, its
+// errors exaggerated.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "nonio/reports/number.h"
+#include "report.h"
+
+namespace nonio::pdf_report {
+
+using namespace reports;
+using Curve = Plot::Curve;
+
+namespace {
+
+using Vector = std::array<double, 3>;
+using Place = std::array<std::size_t, 3>;  ///< indices into the positions of X, Y, Z
+
+class Volume {
+ public:
+  explicit Volume(const Evaluation& e) {
+    for (const Series& s : e.series) {
+      const std::size_t along = coordinate(s.name, 1), axis = coordinate(s.name, 2);
+      if (s.name.size() != 3 || along > 2 || axis > 2 || s.position.size() < 2) continue;
+      if (!axes_[axis].position.empty() && axes_[axis].position.size() != s.position.size())
+        continue;
+      axes_[axis].name = s.over;
+      axes_[axis].position = s.position;
+      axes_[axis].error[along] = s.value;
+    }
+    for (const Value& v : e.values) {
+      if (v.name == "C0Y") C0Y_ = v.value;
+      if (v.name == "B0Z") B0Z_ = v.value;
+      if (v.name == "A0Z") A0Z_ = v.value;
+    }
+  }
+
+  /// Of three axes with their squarenesses.
+  bool known() const {
+    return C0Y_ && B0Z_ && A0Z_ && std::all_of(axes_.begin(), axes_.end(), [](const auto& a) {
+             return !a.position.empty();
+           });
+  }
+  const std::string& name(std::size_t axis) const { return axes_[axis].name; }
+  std::size_t last(std::size_t axis) const { return axes_[axis].position.size() - 1; }
+  double position(std::size_t axis, std::size_t i) const { return axes_[axis].position[i]; }
+  /// Positionings whose scale is not known, which are not drawn.
+  std::string left_out() const {
+    std::string out;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (axes_[k].error[k].empty())
+        out += (out.empty() ? "" : ", ") + ("E" + std::string(2, "XYZ"[k]));
+    return out;
+  }
+
+  Vector nominal(const Place& p) const {
+    return {position(0, p[0]), position(1, p[1]), position(2, p[2])};
+  }
+  /// Of the tool, less that at the corner (ISO 230-1: C0Y turns +Y towards -X, B0Z +Z towards +X,
+  /// A0Z +Z towards -Y).
+  Vector error(const Place& p) const {
+    Vector e{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t along = 0; along < 3; ++along)
+        if (const auto& curve = axes_[axis].error[along]; !curve.empty())
+          e[along] += curve[p[axis]] - curve.front();
+    const double y = way(1, p), z = way(2, p);
+    e[0] += *B0Z_ * z - *C0Y_ * y;
+    e[1] -= *A0Z_ * z;
+    return e;
+  }
+
+ private:
+  struct AxisErrors {
+    std::string name;
+    std::vector<double> position;
+    std::array<std::vector<double>, 3> error;
+  };
+  static std::size_t coordinate(const std::string& name, std::size_t letter) {
+    return name.size() > letter ? std::string_view("XYZ").find(name[letter]) : 3;
+  }
+  double way(std::size_t axis, const Place& p) const {
+    return axes_[axis].position[p[axis]] - axes_[axis].position.front();
+  }
+
+  std::array<AxisErrors, 3> axes_;
+  std::optional<double> C0Y_, B0Z_, A0Z_;
+};
+
+/// From the front, the right and above: X to the right, Y away, Z up.
+std::pair<double, double> seen(const Vector& p) {
+  constexpr double turn = 32.0 * std::numbers::pi / 180, above = 22.0 * std::numbers::pi / 180;
+  return {
+      p[0] * std::cos(turn) + p[1] * std::sin(turn),
+      (p[1] * std::cos(turn) - p[0] * std::sin(turn)) * std::sin(above) + p[2] * std::cos(above)};
+}
+
+/// The largest error at the nodes of a lattice over the volume, and where.
+struct Largest {
+  double size = 0.0;
+  Place at{};
+};
+
+Largest largest(const Volume& v) {
+  constexpr std::size_t parts = 8;
+  Largest most;
+  for (std::size_t i = 0; i <= parts; ++i)
+    for (std::size_t j = 0; j <= parts; ++j)
+      for (std::size_t k = 0; k <= parts; ++k) {
+        const Place p{i * v.last(0) / parts, j * v.last(1) / parts, k * v.last(2) / parts};
+        const Vector e = v.error(p);
+        const double size = std::hypot(e[0], e[1], e[2]);
+        if (size > most.size) most = {size, p};
+      }
+  return most;
+}
+
+enum class Wires { seen, hidden, faces };
+
+/// Edges that are seen, edges that the box hides, or the middle lines of the faces that are seen.
+/// From where we look those are the faces of the largest X, the smallest Y and the largest Z.
+bool drawn(Wires what, std::size_t axis, const Place& half) {
+  constexpr Place face{2, 0, 2};
+  std::size_t in_front = 0, middle = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (k == axis) continue;
+    in_front += half[k] == face[k] ? 1 : 0;
+    middle += half[k] == 1 ? 1 : 0;
+  }
+  if (what == Wires::faces) return middle == 1 && in_front == 1;
+  return middle == 0 && (in_front > 0) == (what == Wires::seen);
+}
+
+/// Lines along each axis at both ends and in the middle of the other two.
+std::vector<Curve> wires(const Volume& v, double factor, Wires what, Colour colour, double width) {
+  std::vector<Curve> out;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t j = 0; j <= 2; ++j)
+      for (std::size_t k = 0; k <= 2; ++k) {
+        Place half{};
+        half[(axis + 1) % 3] = j, half[(axis + 2) % 3] = k;
+        if (!drawn(what, axis, half)) continue;
+        Place p{};
+        for (std::size_t n = 0; n < 3; ++n) p[n] = half[n] * v.last(n) / 2;
+        Curve c;
+        c.colour = colour, c.width = width;
+        if (what == Wires::hidden) c.dash = Dash::dotted;
+        for (p[axis] = 0; p[axis] <= v.last(axis); ++p[axis]) {
+          Vector at = v.nominal(p);
+          const Vector e = v.error(p);
+          for (std::size_t n = 0; n < 3; ++n) at[n] += factor * e[n];
+          const auto [x, y] = seen(at);
+          c.x.push_back(x), c.y.push_back(y);
+        }
+        out.push_back(std::move(c));
+      }
+  return out;
+}
+
+std::string millimetres(const Source& source, double si) {
+  return printed_number(si, Quantity::length, decimals_for({si}, Quantity::length, 3),
+                        source.language());
+}
+
+/// Names of the axes at the middle of edges that nothing hides.
+std::vector<Plot::Label> edge_labels(const Volume& v) {
+  std::vector<Plot::Label> labels;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Place p{axis == 1 ? v.last(0) : 0, 0, 0};
+    p[axis] = v.last(axis) / 2;
+    const auto [x, y] = seen(v.nominal(p));
+    labels.push_back({x, y, v.name(axis)});
+  }
+  return labels;
+}
+
+/// "X 0 – 800, Y 0 – 600, Z 0 – 600 mm."
+std::string extent(const Source& source, const Volume& v) {
+  std::string out;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    out += (out.empty() ? "" : ", ") + v.name(axis) + " " +
+           millimetres(source, v.position(axis, 0)) + " – " +
+           millimetres(source, v.position(axis, v.last(axis)));
+  return out + " " + unit_text(Quantity::length) + ".";
+}
+
+Plot volume_plot(const Source& source, const Volume& v) {
+  const Style& style = source.look.style;
+  const Largest most = largest(v);
+  double travel = 0.0;
+  for (std::size_t k = 0; k < 3; ++k)
+    travel = std::max(travel, std::fabs(v.position(k, v.last(k)) - v.position(k, 0)));
+  const double factor = most.size > 0.0 ? round_factor(0.2 * travel / most.size) : 1.0;
+  const std::string times = printed_number(factor, Quantity::count, 0, source.language());
+  Plot plot;
+  plot.title = source.words.get("plot.volume", {{"factor", times}});
+  const std::string missing = v.left_out();
+  plot.x_title =
+      extent(source, v) + " " +
+      source.words.get(
+          "plot.volume_caption",
+          {{"factor", times},
+           {"largest", printed_number(most.size, Quantity::deviation, 1, source.language())},
+           {"unit", unit_text(Quantity::deviation)},
+           {"x", millimetres(source, v.position(0, most.at[0]))},
+           {"y", millimetres(source, v.position(1, most.at[1]))},
+           {"z", millimetres(source, v.position(2, most.at[2]))}});
+  if (!missing.empty())
+    plot.x_title += " " + source.words.get("plot.volume_without", {{"curves", missing}});
+  plot.language = source.language();
+  plot.empty_text = source.words.get("plot.nothing");
+  plot.scales = false;
+  plot.height = 1.9 * style.plot_height;
+  for (const Wires what : {Wires::seen, Wires::hidden}) {
+    auto nominal = wires(v, 0.0, what, style.muted, 0.35);
+    if (what == Wires::seen) nominal.front().legend = source.words.get("plot.nominal");
+    std::move(nominal.begin(), nominal.end(), std::back_inserter(plot.curves));
+  }
+  for (const auto& [what, width] :
+       {std::pair{Wires::hidden, 0.6}, {Wires::faces, 0.4}, {Wires::seen, 1.1}}) {
+    auto machine = wires(v, factor, what, style.accent, width);
+    if (what == Wires::seen) machine.front().legend = source.words.get("plot.drawn");
+    std::move(machine.begin(), machine.end(), std::back_inserter(plot.curves));
+  }
+  plot.labels = edge_labels(v);
+  return plot;
+}
+
+}  // namespace
+
+double round_factor(double v) {
+  const double ten = std::pow(10.0, std::floor(std::log10(v)));
+  return ten * (v >= 5.0 * ten ? 5.0 : v >= 2.0 * ten ? 2.0 : 1.0);
+}
+
+void add_volume(const Source& source, const Measured& m, std::vector<Plot>& plots) {
+  for (const auto* a : m.analyses)
+    if (const Volume v(a->evaluation); v.known()) plots.push_back(volume_plot(source, v));
+}
+
+}  // namespace nonio::pdf_report

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "authority.h"
+#include "nonio/sign/verify.h"
+
+namespace nonio::sign_tests {
+namespace {
+
+TEST(Reserve, IsReproducibleAndKeepsThePages) {
+  const std::vector<sign::Attachment> files = {{"a.csv", "1", "text/csv", "Source", "a"}};
+  const auto one = sign::reserve(small_pdf(), files, now),
+             two = sign::reserve(small_pdf(), files, now);
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_EQ(*one, *two);
+  EXPECT_NE(one->find("BT /F1 12 Tf 50 800 Td (E = 4.5 um) Tj ET"), std::string::npos);
+  EXPECT_EQ(one->find("startxref"), one->rfind("startxref"));
+}
+
+TEST(Reserve, RefusesWhatItWouldHaveToGuess) {
+  const auto why = [](const std::string& pdf, const std::vector<sign::Attachment>& files = {}) {
+    const auto done = sign::reserve(pdf, files, now);
+    return done ? "" : done.error().message;
+  };
+  EXPECT_EQ(why(small_pdf()), "");
+  EXPECT_NE(why(""), "");
+  EXPECT_NE(why("hello"), "");
+  EXPECT_NE(why(small_pdf() + "x"), "");
+  EXPECT_NE(why(small_pdf() + small_pdf()), "");
+  EXPECT_NE(why(" " + small_pdf()), "");
+  EXPECT_NE(why(small_pdf(), {{"", "", "text/csv", "Source", ""}}), "");
+  EXPECT_NE(why(small_pdf(), {{"\xFF", "", "text/csv", "Source", ""}}), "");
+  EXPECT_NE(
+      why(small_pdf(), {{"a", "", "text/csv", "Source", ""}, {"a", "", "text/csv", "Source", ""}}),
+      "");
+  std::string hidden = small_pdf();
+  hidden.replace(hidden.find("\nendobj"), 1, "%");
+  EXPECT_NE(why(hidden), "");
+}
+
+TEST(Verify, SaysNoToWhatIsNoSignedPdf) {
+  sign::Verifier verifier;
+  verifier.now = now;
+  for (const std::string& bytes :
+       {std::string(), std::string("hello"), small_pdf(), *sign::reserve(small_pdf(), {}, now),
+        std::string(1000, '('), std::string("%PDF-1.7\n") + std::string(1000, '[')}) {
+    const auto verified = sign::verify_pdf(bytes, verifier);
+    EXPECT_FALSE(verified.holds());
+    ASSERT_FALSE(verified.checks.empty());
+    EXPECT_FALSE(verified.checks.back().says.empty());
+  }
+}
+
+}  // namespace
+}  // namespace nonio::sign_tests
