@@ -198,12 +198,12 @@ Expected<sign::Signed> ask(int channel, std::string_view bytes,
     const Conversation theirs(ends[1]);
     asked = send_descriptor(channel, theirs.get());
   }
+  asked = asked && own.write(bytes);
   pollfd answered{own.get(), POLLIN, 0};
   while (asked && while_waiting && ::poll(&answered, 1, 100) <= 0) while_waiting();
   std::string why;
   sign::Signed done;
-  if (!asked || !own.write(bytes) || !own.read(why) || !own.read(done.no_time_stamp) ||
-      !own.read(done.bytes))
+  if (!asked || !own.read(why) || !own.read(done.no_time_stamp) || !own.read(done.bytes))
     return fail("the process that signs died");
   if (!why.empty()) return fail(why);
   return done;
