@@ -101,6 +101,13 @@ class Space(VerbTest):
             self.assertIn(words, done.stderr + done.stdout)
             self.assertEqual((self.folder / "campaign.toml").read_bytes(), before)
 
+    def test_what_is_left_in_space_has_its_place(self):
+        self.sample("15-step-diagonal")  # nothing in the model: more is left than three effects say
+        for part in self.json_of("explain", self.folder)["parts"]:
+            self.assertIn(part["verdict"]["kind"], ("missing", "unknown", "unrepeatable"))
+            self.assertTrue(part["fails"])
+            self.assertTrue(all(place["says"] for place in part["fails"]))
+
     def test_ball_centres(self):
         self.sample("14-rotary-table")
         parts = {part["axis"]: part for part in self.json_of("compare", self.folder)["parts"]}

@@ -95,8 +95,8 @@ class Factors {
   MatrixXd whole(const Factor& f) const {
     if (!is_pair(f)) return f.columns;
     const std::size_t x = f.name.find(" x ");
-    const MatrixXd& first = column(f.name.substr(0, x));
-    MatrixXd main = first.cols() == 1 ? first : position_;
+    // In space places belong to lines: there is no factor of all positions.
+    MatrixXd main = f.name.starts_with("direction") ? column("direction") : position_;
     if (!f.repeated) {
       const MatrixXd& second = column(f.name.substr(x + 3), f.line);
       main.conservativeResize(Eigen::NoChange, main.cols() + second.cols());

@@ -52,15 +52,33 @@ bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
   return static_cast<double>(mixed) > 0.25 * static_cast<double>(repeats.cells);
 }
 
+namespace {
+
+/// Rows of lines with more than one run: of the others nobody knows whether a run is wild.
+std::vector<char> on_repeated_lines(const Observations& o) {
+  std::vector<std::uint32_t> first(lines_of(o), 0);
+  std::vector<char> several(lines_of(o), 0), out(o.size(), 0);
+  for (std::size_t i = 0; i < o.size() && !o.run.empty(); ++i) {
+    std::uint32_t& run = first[line_of(o, i)];
+    if (run == 0) run = o.run[i];
+    if (run != o.run[i]) several[line_of(o, i)] = 1;
+  }
+  for (std::size_t i = 0; i < o.size(); ++i) out[i] = several[line_of(o, i)];
+  return out;
+}
+
+}  // namespace
+
 std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
                               const std::vector<double>& residual,
                               const std::vector<double>& weight) {
   std::vector<std::vector<double>> of_run;
   const std::vector<double> e_of = within_passes(repeats, residual, weight);
+  const std::vector<char> repeated = on_repeated_lines(o);
   for (std::size_t i = 0; i < o.size(); ++i) {
     const std::size_t run = o.run.empty() ? 0 : o.run[i];
     if (run >= of_run.size()) of_run.resize(run + 1);
-    of_run[run].push_back(e_of[i]);
+    if (repeated[i] != 0) of_run[run].push_back(e_of[i]);
   }
   double all = 0.0, n = 0.0, runs = 0.0;
   for (const auto& e : of_run) {

@@ -59,7 +59,7 @@ bool shown(const Observations& o, const SpaceReadings& s, const Angle& a) {
   for (const Lever& lever : a.levers)
     if (s.moves(lever.along) && varies_where_sensed(o, s, a.axis, lever.error, lever.along))
       return true;
-  return follows_its_guide(o, a) && varies_where_sensed(o, s, a.axis, a.guided);
+  return false;
 }
 
 /// The straight line and `knots` smooth functions at x; at least the line.
