@@ -36,6 +36,19 @@ std::optional<Der> Der::only(std::string_view text, std::uint8_t tag) {
   return text.empty() ? out : std::nullopt;
 }
 
+bool Der::sound(std::string_view text, int depth) {
+  if (depth > 40) return false;
+  while (!text.empty()) {
+    const auto one = take(text);
+    if (!one) return false;
+    const bool constructed = (one->tag & 0x20) != 0, universal = (one->tag & 0xC0) == 0;
+    const int number = one->tag & 0x1F;
+    if (universal && constructed != (number == 16 || number == 17)) return false;
+    if (constructed && !sound(one->content, depth + 1)) return false;
+  }
+  return true;
+}
+
 namespace {
 
 constexpr std::string_view null_parameters = "\x05\x00"sv;

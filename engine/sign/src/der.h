@@ -23,6 +23,10 @@ struct Der {
   static std::optional<Der> take(std::string_view& rest);
   /// The same, of this tag.
   static std::optional<Der> take(std::string_view& rest, std::uint8_t tag);
+  /// Whether the whole text is elements of DER, down to the innermost: sequences and sets, and
+  /// nothing else that has a tag of its own, are made of others. OpenSSL reads more than that, and
+  /// puts it right before it looks at the signature.
+  static bool sound(std::string_view text, int depth = 0);
   /// The whole text as one element of this tag.
   static std::optional<Der> only(std::string_view text, std::uint8_t tag);
 };

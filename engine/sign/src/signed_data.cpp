@@ -61,7 +61,7 @@ Expected<SignedData> SignedData::parse(std::string_view der, Content content) {
 /// RFC 5652, 5.1: what OpenSSL reads generously and nobody signs.
 Expected<void> SignedData::read_outside(Content content) {
   const auto info = Der::only(der_, Der::sequence);
-  if (!info) return malformed("no DER");
+  if (!info || !Der::sound(der_)) return malformed("no DER");
   std::string_view rest = info->content;
   const auto type = Der::take(rest, Der::object);
   const auto wrapped = Der::only(rest, Der::context(0));
