@@ -339,7 +339,7 @@ void store_collisions(const RunOptions& options, const Context& context, const N
 
 /// What the morning's reader should know of the key.
 void note_key(Signer& signer, std::vector<std::string>& notes) {
-  constexpr sign::Time month = 30 * 86400;
+  constexpr sign::Time month = sign::Time{30} * 86400;
   const auto who = signer.start();
   if (!who)
     notes.push_back("nothing can be signed: " + who.error().message);
