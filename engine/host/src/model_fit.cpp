@@ -14,6 +14,8 @@ namespace {
 
 using Kind = model::Verdict::Kind;
 
+constexpr double least_said = 0.005;  // of what is left: less would be read as "0 %"
+
 Number count(const char* name, std::size_t n) {
   return {name, static_cast<double>(n), Quantity::count};
 }
@@ -159,7 +161,7 @@ ModelFit value_of(const PartModel& part, const model::Explanation& e) {
   put_steps(out, part, e.comparison);
   out.says = {verdict_finding(e, part)};
   for (const model::Place& place : e.fails)
-    out.says.push_back(place_finding(place, part.deviation()));
+    if (place.share >= least_said) out.says.push_back(place_finding(place, part.deviation()));
   return out;
 }
 
