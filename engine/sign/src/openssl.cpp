@@ -60,8 +60,8 @@ Time time_of(const ASN1_TIME* time) {
   namespace chrono = std::chrono;
   const chrono::sys_days day =
       chrono::year(parts.tm_year + 1900) / (parts.tm_mon + 1) / parts.tm_mday;
-  return chrono::sys_seconds(day).time_since_epoch().count() + parts.tm_hour * 3600 +
-         parts.tm_min * 60 + parts.tm_sec;
+  return chrono::sys_seconds(day).time_since_epoch().count() + parts.tm_hour * Time{3600} +
+         parts.tm_min * Time{60} + parts.tm_sec;
 }
 
 Expected<std::string> algorithm_of(EVP_PKEY* key, bool old) {

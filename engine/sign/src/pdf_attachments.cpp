@@ -44,8 +44,8 @@ Expected<Attachment> attachment_of(const File& file, const Value* reference, std
   const Value* parameters = stream == nullptr ? nullptr : file.find(&stream->value, "Params");
   const Value* size = file.find(parameters, "Size");
   const auto name = utf8(text_at(file, specification, "UF"));
-  if (size == nullptr || !size->is(Value::Kind::integer) || size->integer < 0 || !name ||
-      name->empty())
+  if (stream == nullptr || size == nullptr || !size->is(Value::Kind::integer) ||
+      size->integer < 0 || !name || name->empty())
     return fail("an attachment without name or size");
   const auto bytes = static_cast<std::size_t>(size->integer);
   if (bytes > max_file - total) return fail("attachments of more than 500 MB");

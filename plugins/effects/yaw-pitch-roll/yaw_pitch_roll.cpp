@@ -81,13 +81,15 @@ Expected<Effect::Columns> basis_at(const std::vector<double>& x, const std::vect
 /// Integrals of the basis from the first place to each: Gauss, two points in each sixteenth of the
 /// way between neighbours (exact for cubics, and knots lie where they like).
 Expected<Effect::Columns> integrals(const std::vector<double>& places, int knots) {
-  constexpr int parts = 16;
+  constexpr std::size_t parts = 16;
   const double offset = 0.5 / std::sqrt(3.0);
   std::vector<double> x;
   for (std::size_t j = 0; j + 1 < places.size(); ++j)
-    for (int part = 0; part < parts; ++part)
+    for (std::size_t part = 0; part < parts; ++part)
       for (const double side : {-offset, offset})
-        x.push_back(places[j] + (places[j + 1] - places[j]) * (part + 0.5 + side) / parts);
+        x.push_back(places[j] + (places[j + 1] - places[j]) *
+                                    (static_cast<double>(part) + 0.5 + side) /
+                                    static_cast<double>(parts));
   auto values = basis_at(x, places, knots);
   if (!values) return fail(values.error());
   Effect::Columns out(values->size(), std::vector<double>(places.size(), 0.0));
@@ -95,7 +97,8 @@ Expected<Effect::Columns> integrals(const std::vector<double>& places, int knots
     for (std::size_t j = 0; j + 1 < places.size(); ++j) {
       double sum = 0.0;
       for (std::size_t q = 0; q < 2 * parts; ++q) sum += (*values)[k][2 * parts * j + q];
-      out[k][j + 1] = out[k][j] + sum * (places[j + 1] - places[j]) / (2.0 * parts);
+      out[k][j + 1] =
+          out[k][j] + sum * (places[j + 1] - places[j]) / (2.0 * static_cast<double>(parts));
     }
   return out;
 }
