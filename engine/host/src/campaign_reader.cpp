@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "certificate_reader.h"
 #include "guarded.h"
 #include "names.h"
 #include "nonio/host/digest.h"
@@ -62,7 +63,9 @@ class CampaignReader {
       return false;
     }
     out_.manifest = std::move(*manifest);
-    out_.manifest->campaign.laboratory = context_.site.laboratory;
+    Campaign& campaign = out_.manifest->campaign;
+    campaign.laboratory = context_.site.laboratory;
+    campaign.certificate = certificate_of(context_.site.certificate, campaign.certificate);
     return true;
   }
 

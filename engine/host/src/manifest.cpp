@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "certificate_reader.h"
 #include "formula_reader.h"
 #include "nonio/host/nearest.h"
 #include "toml_reader.h"
@@ -114,6 +115,8 @@ Machine read_machine(Source& source, const toml::table* table) {
   machine.maker = reader.text("maker");
   machine.model = reader.text("model");
   machine.serial = reader.text("serial");
+  machine.description = reader.text("description");
+  machine.condition = reader.text("condition");
   machine.control = reader.text("control");
   machine.structure = reader.choice("structure", {"gantry", "single-column", "bridge", "other"});
   if (const toml::table* axes = reader.table("axes"))
@@ -224,6 +227,7 @@ Measurement read_measurement(Source& source, const toml::table& table) {
                          m.kind == "ball-centres"))
     reader.error("axis", "is missing: which axis of the machine was measured");
   m.lateral = reader.text("lateral");
+  m.adjustment = reader.choice("adjustment", {"before", "after"});
   if (m.kind == "straightness" && m.lateral.empty())
     reader.error("lateral", "is missing: the axis in whose direction the deviation was measured");
   if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
@@ -285,7 +289,12 @@ void read_campaign(Source& source, TableReader& top, Campaign& campaign) {
   campaign.customer = reader.text("customer");
   campaign.site = reader.text("site");
   campaign.operator_name = reader.text("operator");
+  campaign.customer_address = reader.text("customer_address");
   campaign.date = reader.date("date");
+  campaign.end_date = reader.date("end_date");
+  campaign.received = reader.date("received");
+  if (!campaign.end_date.empty() && campaign.end_date < campaign.date)
+    reader.error("end_date", "wanted a day that is not before date, " + campaign.date);
   reader.finish();
 }
 
@@ -348,6 +357,12 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
   restore_axis_order(*root, campaign.machine);
   campaign.instrument = read_instrument(source, top.table("instrument"));
   campaign.environment = read_environment(source, top.table("environment"));
+  if (const toml::table* table = top.table("certificate")) {
+    TableReader reader = source.reader(*table, "certificate");
+    campaign.certificate = read_certificate(reader);
+    read_certificate_of_campaign(reader, campaign.certificate);
+    reader.finish();
+  }
   manifest.run = read_run(source, top.table("run"));
   read_measurements(source, top, campaign, manifest.run.analyses && manifest.run.outputs);
   if (const toml::table* model = top.table("model")) {
@@ -366,9 +381,9 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
 
 namespace {
 
-std::string settings_of(const toml::table& root) {
+std::string settings_of(const toml::table& root, std::initializer_list<const char*> keys) {
   toml::table out;
-  for (const char* key : {"run", "options"})
+  for (const char* key : keys)
     if (const toml::table* table = root[key].as_table()) out.insert(key, *table);
   if (out.empty()) return {};
   std::ostringstream text;
@@ -387,8 +402,9 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   if (root->contains("format")) check_format(top);
   if (const toml::table* table = top.table("laboratory")) {
     TableReader reader = source.reader(*table, "laboratory");
-    site.laboratory = {reader.text("name"), reader.text("address"), reader.text("country"),
-                       reader.text("accreditation"), reader.text("authoriser")};
+    site.laboratory = {reader.text("name"),       reader.text("address"),
+                       reader.text("country"),    reader.text("accreditation"),
+                       reader.text("authoriser"), reader.text("contact")};
     reader.finish();
   }
   if (const toml::table* table = top.table("limits")) {
@@ -403,12 +419,18 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   }
   site.run = read_run(source, top.table("run"));
   site.options = read_options(source, top.table("options"));
-  site.settings = settings_of(*root);
+  site.settings = settings_of(*root, {"run", "options", "laboratory", "certificate"});
+  site.evaluation = settings_of(*root, {"run", "options"});
   if (const toml::table* table = top.table("signing")) site.signing = read_signing(source, *table);
-  for (const char* later : {"certificate", "database"})
-    if (top.table(later) != nullptr)
-      site.notes.push_back(file + ", line " + std::to_string(top.line_of(later)) + ": [" + later +
-                           "] has no effect in this version");
+  if (const toml::table* table = top.table("certificate")) {
+    TableReader reader = source.reader(*table, "certificate");
+    site.certificate = read_certificate(reader);
+    site.numbering = read_numbering(reader);
+    reader.finish();
+  }
+  if (top.table("database") != nullptr)
+    site.notes.push_back(file + ", line " + std::to_string(top.line_of("database")) +
+                         ": [database] has no effect in this version");
   top.finish();
   if (!source.errors.empty()) return tl::unexpected(std::move(source.errors));
   note_lines(*root, "", site.lines);

@@ -53,14 +53,23 @@ struct Signing {
   int time_stamp_seconds = 10;
 };
 
+/// `[certificate]` of site.toml: what its certificates say, and how they are numbered.
+struct Numbering {
+  std::string pattern = "{year}-{number:4}";          ///< the sequence begins anew with each year
+  std::string register_file = "certificates.sqlite";  ///< relative to the site
+};
+
 struct SiteFile {
   std::optional<Signing> signing;
+  CertificateTexts certificate;
+  Numbering numbering;
   Laboratory laboratory;
   RunChoice run;
   RawOptions options;
   Limits limits;
   KeyLines lines;
-  std::string settings;            ///< TOML: what of the file has a say in results
+  std::string settings;            ///< TOML: what of the file has a say in a certificate
+  std::string evaluation;          ///< TOML: what of it has a say in results
   std::vector<std::string> notes;  ///< sections that this version does not use yet
 };
 

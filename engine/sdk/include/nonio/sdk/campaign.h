@@ -25,8 +25,9 @@ struct Axis {
 
 struct Machine {
   std::string maker, model, serial;
-  std::string structure;  ///< gantry, single-column, bridge, other; empty if not said
-  std::string control;    ///< name of the output plugin that writes its tables; empty: any
+  std::string description, condition;  ///< "gantry milling machine"; its state at the calibration
+  std::string structure;               ///< gantry, single-column, bridge, other; empty if not said
+  std::string control;  ///< name of the output plugin that writes its tables; empty: any
   std::vector<Axis> axes;
 
   const Axis* axis(std::string_view name) const {
@@ -56,7 +57,22 @@ struct Environment {
 };
 
 struct Laboratory {
-  std::string name, address, country, accreditation, authoriser;
+  std::string name, address, country, accreditation, authoriser, contact;
+};
+
+/// What a certificate says beside the results (ISO/IEC 17025:2017, 7.8): of site.toml, and of the
+/// campaign where it says otherwise.
+struct CertificateTexts {
+  std::vector<std::string> languages;        ///< one or two, of templates/words
+  std::map<std::string, std::string> title;  ///< by language; none: the words' own
+  std::string form;                          ///< name of a file in templates/, without .toml
+  std::string location;                      ///< as a DCC names it: customer, laboratory, ...
+  std::string procedure;                     ///< the laboratory's own, beside the standards
+  std::string deviations;                    ///< additions to the method, deviations, exclusions
+  std::string conditions;                    ///< what influences the results and no reading says
+  std::string opinions;                      ///< opinions and interpretations, marked as such
+  std::string amendment;                     ///< why an earlier certificate is replaced
+  std::vector<std::string> customer_data;    ///< keys of the manifest that the customer stated
 };
 
 struct Measurement {
@@ -69,6 +85,7 @@ struct Measurement {
   std::map<std::string, double> from, to;  ///< ends of a diagonal, m
   std::vector<std::uint32_t> exclude{};    ///< lines of the file whose readings do not count
   std::map<std::string, double> at{};      ///< where the axes that stood still were, m
+  std::string adjustment{};                ///< "before" or "after" one; empty: not said
 };
 
 /// An effect of the user's own, without compiling.
@@ -86,10 +103,13 @@ struct Formula {
 
 struct Campaign {
   std::string id, customer, site, operator_name, date;  ///< date as YYYY-MM-DD, or empty
+  std::string customer_address;
+  std::string end_date, received;  ///< of the last measurement; of the item; YYYY-MM-DD, or empty
   Machine machine;
   Instrument instrument;
   Environment environment;
   Laboratory laboratory;
+  CertificateTexts certificate;
   std::vector<Measurement> measurements;
   std::vector<std::string> model;  ///< effects, `kind:axis`
   bool compensate_model = false;   ///< tables take what the model says, not the readings' means

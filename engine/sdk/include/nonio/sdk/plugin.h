@@ -138,6 +138,7 @@ struct OutputInput {
   /// For a table: the readings themselves, where `observations` is what the campaign's model says
   /// of them (manifest, compensate = "model"); else null.
   const std::vector<Observations>* measured = nullptr;
+  const Issue* issue = nullptr;  ///< of an output with `lacks`; null while that is asked
 };
 
 /// results -> artifacts
@@ -153,6 +154,12 @@ struct Output {
   /// Optional: called once in a run, before any campaign, to pay for what all documents share
   /// (fonts). It must not change what `write` gives.
   void (*prepare)(const Templates&) = nullptr;
+  /// Of what is issued under a number, once and for good: everything that is missing for it, as
+  /// keys to fill. The host draws a number when nothing is, and then calls `write`; the same data
+  /// are never issued anew.
+  std::vector<std::string> (*lacks)(const OutputInput&) = nullptr;
+  /// Optional: what is wrong with the templates and words that this output uses.
+  std::vector<Error> (*check_templates)(const Templates&) = nullptr;
 };
 
 /// What the host gives to a plugin's registration function.
@@ -167,7 +174,7 @@ class Registry {
   ~Registry() = default;
 };
 
-inline constexpr int sdk_version = 4;
+inline constexpr int sdk_version = 5;
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
@@ -191,7 +198,7 @@ inline constexpr int sdk_version = 4;
 #endif
 
 /// Everything that must agree before a plugin may be called.
-#define NONIO_ABI_TAG "nonio-sdk 4; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
+#define NONIO_ABI_TAG "nonio-sdk 5; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
 
 /// The one exported symbol, `nonio_plugin`. Plain: the host reads the tag before it calls anything.
 struct PluginEntry {

@@ -107,6 +107,14 @@ struct OutputResult {
   std::vector<Remark> notes;  ///< what is only inferred about a format, for example
 };
 
+/// The number under which something is issued, drawn by the host; dates as YYYY-MM-DD.
+struct Issue {
+  std::string number, date;
+  std::string replaces, replaces_date;  ///< the one that this amends; empty: none
+  std::vector<std::string> changes;     ///< files that are other than in the one that it replaces
+  std::string readings_sha256;          ///< of the files of readings, one behind the other
+};
+
 /// ISO 14253-1 with an upper limit.
 enum class Decision { conforms, does_not_conform, cannot_be_decided };
 
