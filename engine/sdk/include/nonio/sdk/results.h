@@ -55,6 +55,7 @@ struct PointTable {
     std::string name;
     Quantity quantity = Quantity::number;
     std::vector<double> values;
+    std::optional<double> U{};  ///< of each of its values, k = 2: an upper bound
   };
   std::vector<Column> columns;  ///< all of the same length
 
