@@ -41,7 +41,8 @@ int check(const std::string& site, const Common& common) {
     std::string outputs;
     for (const std::string& name : found->outputs) outputs += (outputs.empty() ? "" : ", ") + name;
     if (!common.quiet)
-      std::cout << found->errors.size() << " errors in the templates of " << outputs << "\n";
+      std::cout << found->errors.size() << (found->errors.size() == 1 ? " error" : " errors")
+                << " in the templates of " << outputs << "\n";
   }
   return found->errors.empty() ? exit_done : exit_failed;
 }

@@ -40,11 +40,10 @@ void merge(Grid& a, const Grid& b) {
   }
 }
 
-/// Titles of axes have a stroke before their unit.
+/// Titles of axes have a stroke before their unit. Upwards there is no room for two.
 void merge(Plot& a, const Plot& b) {
   join(a.title, b.title);
   join(a.x_title, b.x_title, " · ");
-  join(a.y_title, b.y_title, " · ");
   join(a.empty_text, b.empty_text);
   for (std::size_t i = 0; i < a.curves.size(); ++i) join(a.curves[i].legend, b.curves[i].legend);
 }
