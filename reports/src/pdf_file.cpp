@@ -16,6 +16,7 @@
 #include <deque>
 
 #include "bytes.h"
+#include "font_subset.h"
 
 // The one place that knows libharu. Its own text functions are not used: libharu 2.3.0 would parse
 // and compress both fonts again for each document, lose glyphs in silence and write a 128 kB
@@ -133,9 +134,9 @@ HPDF_Dict add_descriptor(Document& pdf, const Font& font, const Embedded& embedd
   return descriptor;
 }
 
-HPDF_Dict add_font(Document& pdf, const Font& font, bool common, bool bold) {
+/// `embedded` outlives the document.
+HPDF_Dict add_font(Document& pdf, const Font& font, const Embedded& embedded, bool bold) {
   HPDF_Doc doc = pdf.doc;
-  const Embedded& embedded = common ? font.with_common : font.with_all;
   HPDF_Dict descriptor = add_descriptor(pdf, font, embedded, bold);
   HPDF_Dict to_unicode = compressed_stream(pdf, embedded.to_unicode_deflated);
   HPDF_Dict cid_font = new_object(doc, "Font"), type0 = new_object(doc, "Font");
@@ -164,11 +165,15 @@ HPDF_Dict add_font(Document& pdf, const Font& font, bool common, bool bold) {
 }
 
 /// One dictionary that all pages share.
-HPDF_Dict add_resources(Document& pdf, const Fonts& fonts, const PdfFile& file) {
+HPDF_Dict add_resources(Document& pdf, const Fonts& fonts, const PdfFile& file,
+                        const Embedded& wide) {
   HPDF_Doc doc = pdf.doc;
   HPDF_Dict resources = new_object(doc, nullptr);
-  HPDF_Dict regular = add_font(pdf, fonts.regular, file.common_only, false),
-            bold = add_font(pdf, fonts.bold, file.common_only, true);
+  const auto with = [&](const Font& font) -> const Embedded& {
+    return file.common_only ? font.with_common : font.with_all;
+  };
+  HPDF_Dict regular = add_font(pdf, fonts.regular, with(fonts.regular), false),
+            bold = add_font(pdf, fonts.bold, with(fonts.bold), true);
   HPDF_Dict state = new_object(doc, "ExtGState");
   if (resources == nullptr || regular == nullptr || bold == nullptr || state == nullptr)
     return nullptr;
@@ -176,6 +181,7 @@ HPDF_Dict add_resources(Document& pdf, const Fonts& fonts, const PdfFile& file) 
   HPDF_Dict_Add(resources, "Font", by_font);
   HPDF_Dict_Add(by_font, "F1", regular);
   HPDF_Dict_Add(by_font, "F2", bold);
+  if (!file.wide.empty()) HPDF_Dict_Add(by_font, "F3", add_font(pdf, fonts.wide, wide, false));
   HPDF_Dict_AddReal(state, "ca", static_cast<HPDF_REAL>(file.see_through));
   HPDF_Dict by_state = HPDF_Dict_New(doc->mmgr);
   HPDF_Dict_Add(resources, "ExtGState", by_state);
@@ -247,11 +253,16 @@ Expected<std::string> write_pdf(const PdfFile& file, const Fonts& fonts) {
   std::vector<std::string> contents;
   constexpr int level = 1;  // 6 takes three times as long for a few per cent of the file
   for (const std::string& content : file.pages) contents.push_back(deflated(content, level));
+  Embedded wide;
+  if (!file.wide.empty()) wide = embedded_part(fonts.wide, file.wide);
+  if (!file.wide.empty() && wide.name.empty())
+    return fail(
+        Error{"a TrueType font was expected, but no part of it can be taken out", fonts.wide.name});
   Document pdf;
   if (pdf.doc == nullptr) return fail("the PDF could not be begun: out of memory");
   pdf.doc->pdf_version = HPDF_VER_17;
   add_properties(pdf.doc, file);
-  if (HPDF_Dict resources = add_resources(pdf, fonts, file)) {
+  if (HPDF_Dict resources = add_resources(pdf, fonts, file, wide)) {
     for (const std::string& content : contents) add_page(pdf, file, content, resources);
     pdf.doc->stream = HPDF_CallbackWriter_New(pdf.doc->mmgr, append, &pdf.bytes);
     if (pdf.failure.code == HPDF_OK) HPDF_SaveToStream(pdf.doc);

@@ -27,13 +27,17 @@ struct Laid {
   std::size_t rows_from = 0;
 };
 
+/// What a document embeds of the fonts.
+struct GlyphUse {
+  bool common_only = true;  ///< no glyph was set that is not one of Font::common
+  std::vector<char> wide;   ///< by glyph of Fonts::wide; empty: none
+};
+
 struct Context {
   const Style& style;
   const Fonts& fonts;
-  double page_room;   ///< height between head and foot
-  bool& common_only;  ///< false once a glyph was set that is not one of Font::common
-
-  const Font& font(bool bold) const { return bold ? fonts.bold : fonts.regular; }
+  double page_room;  ///< height between head and foot
+  GlyphUse& use;
 };
 
 /// A text that is set at one size, in lines.
