@@ -223,7 +223,7 @@ TEST_F(RegisterTest, OnlyAFileInsideTheSiteThatIsARegister) {
 }
 
 /// Ends the test program's child in the middle of whatever it does.
-void kill_after(pid_t child, unsigned microseconds) {
+void kill_after(pid_t child, useconds_t microseconds) {
   ::usleep(microseconds);
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
@@ -254,7 +254,7 @@ TEST_F(RegisterTest, ProcessesAtOnceAndKilledOnesLoseAndRepeatNothing) {
       children.push_back(child);
     }
     ::usleep(static_cast<useconds_t>(random() % 30000));
-    for (const pid_t child : children) kill_after(child, random() % 3000);
+    for (const pid_t child : children) kill_after(child, static_cast<useconds_t>(random() % 3000));
   }
   const auto all = entries();
   std::set<std::string> numbers, orders;
