@@ -331,7 +331,6 @@ SITE = """# What holds for all sample campaigns. The laboratory is invented.
 name = "Sample Calibration Laboratory"
 address = "Via dell'Esempio 1, 10100 Torino"
 country = "IT"
-accreditation = "none (sample)"
 authoriser = "B. Sample"
 
 [run]
