@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "nonio/sdk/campaign.h"
+#include "nonio/sdk/control.h"
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/results.h"
@@ -160,6 +161,9 @@ struct Output {
   std::vector<std::string> (*lacks)(const OutputInput&) = nullptr;
   /// Optional: what is wrong with the templates and words that this output uses.
   std::vector<Error> (*check_templates)(const Templates&) = nullptr;
+  /// Of a table: what the control takes, and what it makes of files that are in it.
+  std::optional<ControlTable> control{};
+  Expected<std::vector<LoadedTable>> (*parse)(const TableInput&) = nullptr;
 };
 
 /// What the host gives to a plugin's registration function.
