@@ -5,16 +5,24 @@
 
 namespace nonio::reports {
 
-Wording::Wording(const Templates& templates, std::string language, std::string file)
-    : language_(std::move(language)), file_("words/" + language_ + "/" + std::move(file)) {
-  const auto it = templates.tables.find(file_);
-  if (it != templates.tables.end()) settings_ = &it->second;
+Wording::Wording(const Templates& templates, std::string language, std::vector<std::string> files)
+    : language_(std::move(language)) {
+  for (const std::string& name : files) {
+    file_ = "words/" + language_ + "/" + name;
+    const auto it = templates.tables.find(file_);
+    if (it != templates.tables.end())
+      settings_.push_back(&it->second);
+    else if (absent_.empty())
+      absent_ = file_;
+  }
 }
 
 const std::string* Wording::find(std::string_view key) const {
-  if (settings_ == nullptr) return nullptr;
-  const auto it = settings_->values.find(key);
-  return it == settings_->values.end() ? nullptr : std::get_if<std::string>(&it->second);
+  for (const Settings* settings : settings_) {
+    const auto it = settings->values.find(key);
+    if (it != settings->values.end()) return std::get_if<std::string>(&it->second);
+  }
+  return nullptr;
 }
 
 std::string Wording::get(std::string_view key) const {
@@ -50,9 +58,10 @@ std::string Wording::get_or(std::string_view key, std::string otherwise) const {
 }
 
 Expected<void> Wording::complete() const {
-  const std::string file = "templates/" + file_ + ".toml";
-  if (settings_ == nullptr) return fail(Error{"the words of this language are missing", file});
-  if (!missing_.empty()) return fail(Error{"the key \"" + missing_ + "\" is missing", file});
+  if (!absent_.empty())
+    return fail(Error{"the words of this language are missing", "templates/" + absent_ + ".toml"});
+  if (!missing_.empty())
+    return fail(Error{"the key \"" + missing_ + "\" is missing", "templates/" + file_ + ".toml"});
   return {};
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "nonio/sdk/error.h"
@@ -25,6 +27,19 @@ inline Json to_json(const Error& error) {
   if (!error.column.empty()) json["column"] = error.column;
   json["message"] = error.message;
   return json;
+}
+
+/// A name with its unit: "rms_um".
+inline std::string key(const std::string& name, Quantity q) {
+  return name + std::string(unit_of(q).suffix);
+}
+
+/// What is not a number, or not there, is left out.
+inline void put(Json& json, const std::string& name, const std::optional<double>& value,
+                Quantity q) {
+  if (!value) return;
+  const double shown = printed(*value, q);
+  if (std::isfinite(shown)) json[key(name, q)] = shown;
 }
 
 }  // namespace nonio::host

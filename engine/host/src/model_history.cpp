@@ -8,12 +8,6 @@ namespace nonio::host {
 
 namespace {
 
-std::string key(const char* name, Quantity q) { return name + std::string(unit_of(q).suffix); }
-
-void put(Json& json, const char* name, std::optional<double> value, Quantity q) {
-  if (value) json[key(name, q)] = printed(*value, q);
-}
-
 std::optional<double> get(const Json& json, const char* name, Quantity q) {
   const auto found = json.find(key(name, q));
   if (found == json.end()) return std::nullopt;

@@ -13,19 +13,6 @@ namespace {
 
 constexpr double high_correlation = 0.9;
 
-std::string key(const std::string& name, Quantity q) {
-  return name + std::string(unit_of(q).suffix);
-}
-
-/// What is not a number is left out.
-void put(Json& json, const std::string& name, double value, Quantity q) {
-  const double shown = printed(value, q);
-  if (std::isfinite(shown)) json[key(name, q)] = shown;
-}
-void put(Json& json, const std::string& name, const std::optional<double>& value, Quantity q) {
-  if (value) put(json, name, *value, q);
-}
-
 Json parameters_json(const std::vector<model::Parameter>& parameters, bool with_effect) {
   Json list = Json::array();
   for (const model::Parameter& p : parameters) {

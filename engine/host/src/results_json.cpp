@@ -13,7 +13,7 @@ namespace nonio::host {
 
 namespace {
 
-void put(JsonWriter& json, const char* key, const std::string& text) {
+void put_text(JsonWriter& json, const char* key, const std::string& text) {
   if (!text.empty()) json.member(key, text);
 }
 
@@ -24,7 +24,7 @@ void put_texts(JsonWriter& json, const char* key,
     return;
   json.key(key);
   json.begin_object();
-  for (const auto& [name, text] : texts) put(json, name, text);
+  for (const auto& [name, text] : texts) put_text(json, name, text);
   json.end_object();
 }
 
@@ -42,10 +42,10 @@ void put_campaign(JsonWriter& json, const Campaign& c) {
   json.key("campaign");
   json.begin_object();
   json.member("id", c.id);
-  put(json, "customer", c.customer);
-  put(json, "site", c.site);
-  put(json, "operator", c.operator_name);
-  put(json, "date", c.date);
+  put_text(json, "customer", c.customer);
+  put_text(json, "site", c.site);
+  put_text(json, "operator", c.operator_name);
+  put_text(json, "date", c.date);
   put_texts(json, "machine",
             {{"maker", c.machine.maker},
              {"model", c.machine.model},
@@ -134,7 +134,7 @@ void put_findings(JsonWriter& json, const std::vector<Finding>& findings, bool w
     json.begin_object();
     json.member("id", f.id);
     json.member("severity", f.attention ? "attention" : "info");
-    if (with_measurement) put(json, "measurement", f.measurement);
+    if (with_measurement) put_text(json, "measurement", f.measurement);
     json.key("evidence");
     json.begin_object();
     for (const Number& n : f.evidence) {
@@ -154,7 +154,7 @@ void put_analysis(JsonWriter& json, const Results::Analysed& a,
   json.begin_object();
   json.member("plugin", a.plugin);
   json.member("version", a.version);
-  put(json, "measurement", a.measurement);
+  put_text(json, "measurement", a.measurement);
   if (!a.evaluation.uses.empty()) {
     json.key("uses");
     json.begin_array();
@@ -179,14 +179,14 @@ void put_conformity(JsonWriter& json, const std::vector<Conformity>& all) {
   json.begin_array();
   for (const Conformity& c : all) {
     json.begin_object();
-    put(json, "measurement", c.measurement);
+    put_text(json, "measurement", c.measurement);
     json.member("axis", c.axis);
-    put(json, "plugin", c.plugin);
+    put_text(json, "plugin", c.plugin);
     json.member("name", c.name);
     json.member("tolerance", printed(c.tolerance, c.quantity));
     json.member("unit", unit_of(c.quantity).symbol);
     json.member("decision", to_text(c.decision));
-    put(json, "reason", c.reason);
+    put_text(json, "reason", c.reason);
     json.end_object();
   }
   json.end_array();

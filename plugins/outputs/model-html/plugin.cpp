@@ -25,7 +25,7 @@ std::string file_name(const std::string& part) {
 }
 
 Expected<OutputResult> write(const OutputInput& in) {
-  const reports::Wording words(in.templates, in.options.text("language", "en"), "pictures");
+  const reports::Wording words(in.templates, in.options.text("language", "en"), {"pictures"});
   OutputResult result;
   for (const ModelFit& fit : in.results.models) {
     std::string bytes = page_of({in, fit, words, reports::picture_words(fit, words)});

@@ -11,123 +11,10 @@ namespace nonio::pdf_report {
 
 using namespace reports;
 
-std::string symbol(std::string_view name) {
-  std::string out(name);
-  if (out.size() > 1 && (out.back() == '+' || out.back() == '-')) {
-    const bool plus = out.back() == '+';
-    out.pop_back();
-    out += plus ? "↑" : "↓";
-  }
-  std::replace(out.begin(), out.end(), '_', ' ');
-  return out;
-}
-
-std::string plain_number(const Source& source, double si, Quantity q) {
-  std::string text = short_text(printed(si, q), 4);
-  if (text.find('.') != std::string::npos && text.find('e') == std::string::npos) {
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-  }
-  return localised(text, source.language());
-}
-
 namespace {
 
-/// The same thing found by two analyses is said once; attention before information.
-std::vector<const Finding*> findings_of(const std::vector<const Results::Analysed*>& analyses) {
-  std::vector<const Finding*> out;
-  for (const auto* analysed : analyses)
-    for (const Finding& f : analysed->evaluation.findings) {
-      const auto same = std::find_if(out.begin(), out.end(),
-                                     [&](const Finding* known) { return known->id == f.id; });
-      if (same == out.end())
-        out.push_back(&f);
-      else if (f.attention && !(*same)->attention)
-        *same = &f;
-    }
-  std::stable_partition(out.begin(), out.end(), [](const Finding* f) { return f->attention; });
-  return out;
-}
-
-std::string heading_of(const Source& source, const Measured& m) {
-  const Wording& words = source.words;
-  const Measurement& measurement = m.measurement;
-  const auto ids = [&](const std::string& heading) {
-    return measurement.id == measurement.axis
-               ? heading
-               : words.get("measurement.of", {{"heading", heading}, {"id", measurement.id}});
-  };
-  if (measurement.kind == "axis")
-    return ids(words.get(m.rotary ? "measurement.rotary" : "measurement.linear",
-                         {{"axis", measurement.axis}}));
-  if (measurement.kind == "straightness")
-    return ids(words.get("measurement.straightness",
-                         {{"axis", measurement.axis}, {"lateral", measurement.lateral}}));
-  if (measurement.kind == "angle")
-    return ids(words.get("measurement.angle",
-                         {{"axis", measurement.axis}, {"about", measurement.lateral}}));
-  if (measurement.kind == "diagonal")
-    return words.get("measurement.diagonal", {{"id", measurement.id}});
-  if (measurement.kind == "ball-centres")
-    return ids(words.get("measurement.ball_centres", {{"axis", measurement.axis}}));
-  if (measurement.kind == "step-diagonal")
-    return words.get("measurement.step_diagonal", {{"id", measurement.id}});
-  return words.get("measurement.other", {{"id", measurement.id}, {"kind", measurement.kind}});
-}
-
-/// "Material 19.8 to 20.3 °C.", or nothing.
-std::string temperatures(const Source& source, const char* key, const std::vector<double>& values) {
-  double low = 1e9, high = -1e9;
-  for (const double v : values)
-    if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
-  if (low > high) return {};
-  const auto text = [&](double v) {
-    return printed_number(v, Quantity::temperature, 1, source.language());
-  };
-  return " " + source.words.get(key, {{"from", text(low)}, {"to", text(high)}});
-}
-
-/// How the test was made, as the readings show it.
-std::string test_of(const Source& source, const Measured& m) {
-  const Observations& o = m.observations;
-  if (o.axes.empty() || o.size() == 0) return source.words.get("measurement.unread");
-  const bool centres = m.measurement.kind == "ball-centres";
-  if (!over_one_position(m.measurement))
-    return source.words.get(centres ? "measurement.centres" : "measurement.readings",
-                            {{"count", std::to_string(centres ? o.size() / 3 : o.size())}}) +
-           temperatures(source, "measurement.material", o.material) +
-           temperatures(source, "measurement.air", o.air);
-  const auto& axis = o.axes.front();
-  std::vector<double> targets = axis.position;
-  std::sort(targets.begin(), targets.end());
-  targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
-  std::vector<std::uint32_t> runs = o.run;
-  std::sort(runs.begin(), runs.end());
-  const auto run_count = std::unique(runs.begin(), runs.end()) - runs.begin();
-  bool plus = false, minus = false;
-  for (const std::int8_t a : axis.approach) plus |= a > 0, minus |= a < 0;
-  const Quantity q = position_of(axis.rotary);
-  const auto position = [&](double p) {
-    return printed_number(p, q, decimals_for({p}, q, 4), source.language());
-  };
-  std::string text =
-      source.words.get(run_count == 1 ? "measurement.test_one" : "measurement.test",
-                       {{"targets", std::to_string(targets.size())},
-                        {"from", position(targets.front())},
-                        {"to", position(targets.back())},
-                        {"unit", unit_text(q)},
-                        {"runs", std::to_string(run_count)},
-                        {"directions", source.words.get(plus && minus ? "measurement.both"
-                                                        : minus       ? "measurement.minus"
-                                                                      : "measurement.plus")}});
-  if (o.missing > 0)
-    text += " " + source.words.get("measurement.missing", {{"count", std::to_string(o.missing)}});
-  return text + temperatures(source, "measurement.material", o.material) +
-         temperatures(source, "measurement.air", o.air);
-}
-
 void add_measurements(const Source& source, Blocks& blocks) {
-  for (const Measured& m : measured(source)) {
+  for (const Measured& m : measured(source.in)) {
     const std::string field = "measurement " + m.measurement.id;
     blocks.push_back({Heading{heading_of(source, m), 1}, field});
     blocks.push_back({Paragraph{test_of(source, m), Paragraph::Look::small, true}, field});
@@ -140,34 +27,13 @@ void add_measurements(const Source& source, Blocks& blocks) {
   }
 }
 
-/// Parts of a line that are not known leave no gap: "worn-screw · " becomes "worn-screw".
-std::string without_gaps(std::string line) {
-  constexpr std::string_view between = " · ";
-  const std::string twice = std::string(between) + std::string(between);
-  while (line.find(twice) != std::string::npos) line.erase(line.find(twice), between.size());
-  if (line.starts_with(between)) line.erase(0, between.size());
-  if (line.ends_with(between)) line.resize(line.size() - between.size());
-  return line;
-}
-
 }  // namespace
 
-std::vector<Measured> measured(const Source& source) {
-  static const Observations nothing;
-  std::vector<Measured> out;
-  const Campaign& campaign = source.in.campaign;
-  for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
-    const Measurement& measurement = campaign.measurements[i];
-    const Observations& observations =
-        i < source.in.observations.size() ? source.in.observations[i] : nothing;
-    const Axis* axis = campaign.machine.axis(measurement.axis);
-    Measured m{measurement, observations, axis != nullptr && axis->rotary, {}, {}};
-    for (const Results::Analysed& a : source.in.results.analyses)
-      if (a.measurement == measurement.id) m.analyses.push_back(&a);
-    m.findings = findings_of(m.analyses);
-    out.push_back(std::move(m));
-  }
-  return out;
+Expected<pages::Look> look_of(const Templates& templates, const std::string& name) {
+  return pages::read_look(
+      templates, name,
+      {"title", "identity", "status", "measurements", "models", "tables", "notes", "residuals"},
+      {"results", "plots", "findings", "targets"});
 }
 
 Document compose(const Source& source) {

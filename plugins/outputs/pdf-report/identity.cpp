@@ -38,27 +38,6 @@ void add_title(const Source& source, Blocks& blocks) {
   blocks.push_back({Spacer{6}});
 }
 
-namespace {
-
-std::string instrument_U(const Source& source, const Instrument& i) {
-  std::string text;
-  const auto add = [&](const std::optional<double>& value, Quantity q, const char* times) {
-    if (!value) return;
-    text +=
-        (text.empty() ? "" : " + ") + plain_number(source, *value, q) + " " + unit_text(q) + times;
-  };
-  add(i.U_fixed, Quantity::deviation, "");
-  add(i.U_per_length, Quantity::deviation_per_length, " · L");
-  if (i.U_angle) {
-    if (!text.empty()) text += "; ";
-    text += plain_number(source, *i.U_angle, Quantity::angular_deviation) + " " +
-            unit_text(Quantity::angular_deviation);
-  }
-  return text;
-}
-
-}  // namespace
-
 void add_identity(const Source& source, Blocks& blocks) {
   const Campaign& c = source.in.campaign;
   const Wording& w = source.words;
@@ -87,7 +66,7 @@ void add_identity(const Source& source, Blocks& blocks) {
                    {label("serial"), i.serial, "instrument.serial"},
                    {label("calibrated"), i.calibrated, "instrument.calibrated"},
                    {label("certificate"), i.certificate, "instrument.certificate"},
-                   {label("uncertainty"), instrument_U(source, i), "instrument.U"}}};
+                   {label("uncertainty"), instrument_U(source), "instrument.U"}}};
   const auto empty = [](const Grid::Row& row) { return row.value.empty(); };
   if (std::all_of(instrument.rows.begin(), instrument.rows.end(), empty))
     instrument.rows = {{label("model"), label("not_given"), "instrument"}};
@@ -145,7 +124,7 @@ void add_status(const Source& source, Blocks& blocks) {
     status = {};
   }
   add_conformity(source, status.lines);
-  for (const Measured& m : measured(source)) {
+  for (const Measured& m : measured(source.in)) {
     for (const Finding* f : m.findings)
       if (f->attention)
         status.lines.push_back(

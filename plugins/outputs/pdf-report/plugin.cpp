@@ -14,7 +14,8 @@ constexpr const char* default_template = "report";
 bool applies(const Campaign&) { return true; }
 
 void prepare(const Templates& templates) {
-  if (const auto look = read_look(templates, default_template)) (void)fonts_of(templates, *look);
+  if (const auto look = look_of(templates, default_template))
+    (void)pages::fonts_of(templates, *look);
 }
 
 /// What the manifest brings, before it is lost in sentences: by key, so that the host can say
@@ -60,13 +61,14 @@ Expected<void> check_texts(const Campaign& c, const reports::Fonts& fonts) {
 
 Expected<OutputResult> write(const OutputInput& in) {
   const std::string language = in.options.text("language", "en");
-  const auto look = read_look(in.templates, in.options.text("template", default_template));
+  const auto look = look_of(in.templates, in.options.text("template", default_template));
   if (!look) return fail(look.error());
-  const auto fonts = fonts_of(in.templates, *look);
+  const auto fonts = pages::fonts_of(in.templates, *look);
   if (!fonts) return fail(fonts.error());
   if (const auto sound = check_texts(in.campaign, **fonts); !sound) return fail(sound.error());
-  const Wording words(in.templates, language), pictures(in.templates, language, "pictures");
-  const reports::Document document = compose({in, *look, words, pictures, **fonts});
+  const Wording words(in.templates, language, {"results", "report"}),
+      pictures(in.templates, language, {"pictures"});
+  const reports::Document document = compose({{in, *look, words, **fonts}, pictures});
   for (const Wording* asked : {&words, &pictures})
     if (const auto complete = asked->complete(); !complete) return fail(complete.error());
   auto bytes = reports::pdf(document, **fonts);

@@ -187,6 +187,31 @@ void add_tables(const Source& source, Blocks& blocks) {
   }
 }
 
+void add_plans(const Source& source, Blocks& blocks) {
+  const Wording& w = source.words;
+  for (const Results::Analysed& a : source.in.results.analyses) {
+    const PointTable& rows = a.evaluation.rows;
+    if (!a.measurement.empty() || (rows.columns.empty() && a.evaluation.findings.empty())) continue;
+    blocks.push_back({Heading{analysis_title(source, a), 1}, "analysis " + a.plugin});
+    Table table;
+    std::vector<int> decimals;
+    for (const PointTable::Column& c : rows.columns) {
+      table.columns.push_back(
+          {w.get_or("column." + c.name, symbol(c.name)), unit_text(c.quantity), true});
+      decimals.push_back(c.quantity == Quantity::ratio ? 4 : decimals_for(c.values, c.quantity, 4));
+    }
+    for (std::size_t i = 0; !rows.columns.empty() && i < rows.columns.front().values.size(); ++i) {
+      std::vector<Table::Cell> row;
+      for (std::size_t k = 0; k < rows.columns.size(); ++k)
+        row.push_back({printed_number(rows.columns[k].values[i], rows.columns[k].quantity,
+                                      decimals[k], source.language())});
+      table.rows.push_back(std::move(row));
+    }
+    if (!table.rows.empty()) blocks.push_back({std::move(table), "rows of " + a.plugin});
+    for (const Finding& f : a.evaluation.findings) blocks.push_back(note_of(source, f));
+  }
+}
+
 void add_notes(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
   const Results& results = source.in.results;

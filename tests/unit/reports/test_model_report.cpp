@@ -60,7 +60,7 @@ TEST_F(ModelReport, NinePicturesStandOnOnePageInBothLanguagesWhateverTheDataAre)
   for (const MadeModel& made : {MadeModel{}, bare(), turn()})
     for (const char* language : {"en", "it"}) {
       const std::string page = pictures(made_model(made), language);
-      const reports::Wording words(templates, language, "pictures");
+      const reports::Wording words(templates, language, {"pictures"});
       for (const auto& said : reports::picture_words(made_model(made), words))
         EXPECT_TRUE(has(page, said.title)) << language << ": " << said.title << "\n" << page;
     }

@@ -5,19 +5,20 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/settings.h"
 
 namespace nonio::reports {
 
-/// The words of templates/words/<language>/<file>.toml. A word that is missing is remembered, and
-/// the document then fails.
+/// The words of templates/words/<language>/<file>.toml, of the first of some files that has them. A
+/// word that is missing is remembered, and the document then fails.
 class Wording {
  public:
   using Places = std::initializer_list<std::pair<std::string_view, std::string_view>>;
 
-  Wording(const Templates&, std::string language, std::string file = "report");
+  Wording(const Templates&, std::string language, std::vector<std::string> files);
 
   const std::string& language() const { return language_; }
   std::string get(std::string_view key) const;
@@ -30,8 +31,9 @@ class Wording {
 
  private:
   const std::string* find(std::string_view key) const;
-  const Settings* settings_ = nullptr;
-  std::string language_, file_;
+  std::vector<const Settings*> settings_;
+  std::string language_, file_;  ///< of the last file, where a missing word is looked for
+  std::string absent_;           ///< a file that is not there
   mutable std::string missing_;
 };
 

@@ -8,9 +8,9 @@
 
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
-#include "report.h"
+#include "pages.h"
 
-namespace nonio::pdf_report {
+namespace nonio::pages {
 
 using namespace reports;
 using Curve = Plot::Curve;
@@ -122,4 +122,4 @@ void add_circle(const Source& source, const Measured& m, std::vector<Plot>& plot
   plots.push_back(residuals(source, m, c, height));
 }
 
-}  // namespace nonio::pdf_report
+}  // namespace nonio::pages

@@ -9,9 +9,9 @@
 #include <optional>
 
 #include "nonio/reports/number.h"
-#include "report.h"
+#include "pages.h"
 
-namespace nonio::pdf_report {
+namespace nonio::pages {
 
 using namespace reports;
 using Curve = Plot::Curve;
@@ -243,4 +243,4 @@ void add_volume(const Source& source, const Measured& m, std::vector<Plot>& plot
     if (const Volume v(a->evaluation); v.known()) plots.push_back(volume_plot(source, v));
 }
 
-}  // namespace nonio::pdf_report
+}  // namespace nonio::pages

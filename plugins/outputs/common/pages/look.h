@@ -7,21 +7,25 @@
 #include "nonio/reports/document.h"
 #include "nonio/sdk/settings.h"
 
-namespace nonio::pdf_report {
+namespace nonio::pages {
 
 /// A template: templates/<name>.toml, checked.
 struct Look {
   std::vector<std::string> blocks, measurement, plots;
   int plots_per_row = 2;
   std::string regular, bold;  ///< names of the font files
+  std::string logo, mark;     ///< pictures: of the laboratory, of its accreditation; may be empty
+  double logo_height = 0.0;   ///< pt
   reports::Style style;
 };
 
 /// An unknown key or block, a missing key or one of the wrong kind is an error that names file and
-/// key.
-Expected<Look> read_look(const Templates&, const std::string& name);
+/// key. `blocks` and `measurement`: the parts that there are to choose from.
+Expected<Look> read_look(const Templates&, const std::string& name,
+                         const std::vector<std::string>& blocks,
+                         const std::vector<std::string>& measurement);
 
 /// The template's two fonts, parsed and compressed once in a process.
 Expected<std::shared_ptr<const reports::Fonts>> fonts_of(const Templates&, const Look&);
 
-}  // namespace nonio::pdf_report
+}  // namespace nonio::pages

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-namespace nonio::pdf_report {
+namespace nonio::pages {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -25,6 +25,11 @@ class Keys {
   std::string text(const char* key) {
     const auto* value = find<std::string>(key, "a text");
     return value != nullptr ? *value : std::string();
+  }
+
+  std::string text_if_given(const char* key) {
+    known_.insert(key);
+    return settings_.has(key) ? text(key) : std::string();
   }
 
   double number(const char* key, double least, double most) {
@@ -128,21 +133,24 @@ Expected<std::string_view> font_file(const Templates& templates, const std::stri
 
 }  // namespace
 
-Expected<Look> read_look(const Templates& templates, const std::string& name) {
+Expected<Look> read_look(const Templates& templates, const std::string& name, const Names& blocks,
+                         const Names& measurement) {
   const std::string file = "templates/" + name + ".toml";
   const auto it = templates.tables.find(name);
   if (it == templates.tables.end())
     return fail(Error{"there is no template of the name \"" + name + "\"", file});
   Keys keys(it->second, file);
   Look look;
-  look.blocks = keys.names("blocks", {"title", "identity", "status", "measurements", "models",
-                                      "tables", "notes", "residuals"});
-  look.measurement = keys.names("measurement", {"results", "plots", "findings", "targets"});
+  look.blocks = keys.names("blocks", blocks);
+  look.measurement = keys.names("measurement", measurement);
   look.plots = keys.names(
       "plots", {"runs", "iso", "vdi", "reversal", "diagonals", "volume", "circle", "series"});
   look.plots_per_row = static_cast<int>(keys.number("plots_per_row", 1, 3));
   look.regular = keys.text("font.regular");
   look.bold = keys.text("font.bold");
+  look.logo = keys.text_if_given("logo.file");
+  look.mark = keys.text_if_given("logo.mark");
+  if (!look.logo.empty() || !look.mark.empty()) look.logo_height = keys.mm("logo.height_mm", 3, 80);
   read_style(keys, look.style);
   if (auto done = keys.done(); !done) return fail(done.error());
   return look;
@@ -157,4 +165,4 @@ Expected<std::shared_ptr<const reports::Fonts>> fonts_of(const Templates& templa
   return reports::shared_fonts(*regular, look.regular, *bold, look.bold);
 }
 
-}  // namespace nonio::pdf_report
+}  // namespace nonio::pages

@@ -5,9 +5,9 @@
 #include "nonio/reports/model.h"
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
-#include "report.h"
+#include "pages.h"
 
-namespace nonio::pdf_report {
+namespace nonio::pages {
 
 using namespace reports;
 
@@ -20,24 +20,13 @@ const Value* value_of(const Measured& m, std::string_view name) {
   return nullptr;
 }
 
-const Conformity* conformity_of(const Source& source, const Results::Analysed& a,
-                                const std::string& name) {
-  for (const Conformity& c : source.in.results.conformity)
-    if (c.measurement == a.measurement && c.plugin == a.plugin && c.name == name) return &c;
-  return nullptr;
-}
-
 Table::Cell decision_cell(const Source& source, const Conformity* c) {
   if (c == nullptr) return {""};
-  switch (c->decision) {
-    case Decision::conforms:
-      return {source.words.get("results.conforms"), false, Level::good};
-    case Decision::does_not_conform:
-      return {source.words.get("results.does_not_conform"), true, Level::failed};
-    case Decision::cannot_be_decided:
-      break;
-  }
-  return {source.words.get("results.cannot_be_decided"), true, Level::attention};
+  const bool good = c->decision == Decision::conforms;
+  return {decision_text(source, c->decision), !good,
+          good                                        ? Level::good
+          : c->decision == Decision::does_not_conform ? Level::failed
+                                                      : Level::attention};
 }
 
 std::string tolerance_text(const Source& source, const Conformity* c) {
@@ -61,21 +50,20 @@ std::string meaning_of(const Source& source, const std::string& name) {
   return source.words.get(key, {{"id", name.substr(end + 1)}});
 }
 
+bool left_out(const Source& source, const Value& v) { return source.certificate && !v.U; }
+
 Shape shape_of(const Source& source, const Results::Analysed& a) {
   Shape s;
   const auto& values = a.evaluation.values;
   s.unit = values.empty() ? "" : unit_text(values.front().quantity);
   for (const Value& v : values) {
+    if (left_out(source, v)) continue;
     s.meaning |= !meaning_of(source, v.name).empty();
     s.U |= v.U.has_value();
-    s.decision |= conformity_of(source, a, v.name) != nullptr;
+    s.decision |= !source.certificate && conformity_of(source.in, a, v.name) != nullptr;
     s.own_units |= unit_text(v.quantity) != s.unit;
   }
   return s;
-}
-
-std::string analysis_title(const Source& source, const Results::Analysed& a) {
-  return source.words.get_or("analysis." + a.plugin, a.plugin);
 }
 
 Block value_table(const Source& source, const Results::Analysed& a) {
@@ -94,8 +82,9 @@ Block value_table(const Source& source, const Results::Analysed& a) {
   if (shape.own_units) table.columns.push_back({"", "", false});
   if (shape.decision) column("results.decision", false, false);
   for (const Value& v : a.evaluation.values) {
+    if (left_out(source, v)) continue;
     const Printed shown = printed_result(v.value, v.U, v.quantity, source.language());
-    const Conformity* c = conformity_of(source, a, v.name);
+    const Conformity* c = conformity_of(source.in, a, v.name);
     std::vector<Table::Cell> row = {{symbol(v.name), true}};
     if (shape.meaning) row.push_back({meaning_of(source, v.name)});
     row.push_back({shown.value});
@@ -126,7 +115,7 @@ void add_what_is_hidden(const Source& source, const Measured& m, Blocks& blocks)
     const double small = std::min(plus->value, minus->value);
     const double ratio = std::max(plus->value, minus->value) / small;
     if (small > 0 && found(m, "repeatability."))
-      lines.push_back(w.get("results.hides_repeatability",
+      lines.push_back(w.get("hidden.repeatability",
                             {{"plus", text(plus)},
                              {"minus", text(minus)},
                              {"ps", text(ps)},
@@ -137,18 +126,35 @@ void add_what_is_hidden(const Source& source, const Measured& m, Blocks& blocks)
   const Value *U_mean = value_of(m, "U_mean"), *U_max = value_of(m, "U_max");
   if (B != nullptr && mean != nullptr && U_mean != nullptr && U_max != nullptr &&
       found(m, "reversal."))
-    lines.push_back(w.get("results.hides_reversal", {{"mean", text(mean)},
-                                                     {"largest", text(B)},
-                                                     {"u_mean", text(U_mean)},
-                                                     {"u_max", text(U_max)},
-                                                     {"unit", unit_text(B->quantity)}}));
+    lines.push_back(w.get("hidden.reversal", {{"mean", text(mean)},
+                                              {"largest", text(B)},
+                                              {"u_mean", text(U_mean)},
+                                              {"u_max", text(U_max)},
+                                              {"unit", unit_text(B->quantity)}}));
   if (lines.empty()) return;
-  blocks.push_back({Heading{w.get("results.hides"), 2}, "results.hides"});
+  blocks.push_back({Heading{w.get("hidden.title"), 2}, "hidden.title"});
   for (const std::string& line : lines)
-    blocks.push_back({Paragraph{line, Paragraph::Look::small}, "results.hides"});
+    blocks.push_back({Paragraph{line, Paragraph::Look::small}, "hidden"});
 }
 
 }  // namespace
+
+std::string analysis_title(const Source& source, const Results::Analysed& a) {
+  return source.words.get_or("analysis." + a.plugin, a.plugin);
+}
+
+std::string decision_text(const Source& source, Decision decision) {
+  return source.words.get(decision == Decision::conforms           ? "results.conforms"
+                          : decision == Decision::does_not_conform ? "results.does_not_conform"
+                                                                   : "results.cannot_be_decided");
+}
+
+const Conformity* conformity_of(const OutputInput& in, const Results::Analysed& a,
+                                const std::string& name) {
+  for (const Conformity& c : in.results.conformity)
+    if (c.measurement == a.measurement && c.plugin == a.plugin && c.name == name) return &c;
+  return nullptr;
+}
 
 /// Two tables stand side by side; with tolerances and decisions they need the whole width, and what
 /// is said of the second one stands beside it.
@@ -156,13 +162,17 @@ void add_results(const Source& source, const Measured& m, Blocks& blocks) {
   std::vector<Blocks> parts;
   bool decisions = false, second_decides = false;
   for (const auto* a : m.analyses) {
-    if (a->evaluation.values.empty() || a->plugin == model_analysis) continue;
+    const auto& values = a->evaluation.values;
+    if (a->plugin == model_analysis ||
+        std::all_of(values.begin(), values.end(),
+                    [&](const Value& v) { return left_out(source, v); }))
+      continue;
     parts.push_back({value_table(source, *a)});
     if (parts.size() == 2) second_decides = shape_of(source, *a).decision;
     if (parts.size() <= 2) decisions |= shape_of(source, *a).decision;
   }
   Blocks hidden;
-  if (parts.size() > 1) add_what_is_hidden(source, m, hidden);
+  if (parts.size() > 1 && !source.certificate) add_what_is_hidden(source, m, hidden);
   if (decisions && !second_decides && !hidden.empty())
     parts[1] = {{Columns{{std::move(parts[1]), std::move(hidden)}, {0.55, 0.45}}, "results"}};
   else if (parts.size() > 1)
@@ -226,31 +236,6 @@ std::optional<double> common_count(const Joined& joined) {
 
 }  // namespace
 
-void add_plans(const Source& source, Blocks& blocks) {
-  const Wording& w = source.words;
-  for (const Results::Analysed& a : source.in.results.analyses) {
-    const PointTable& rows = a.evaluation.rows;
-    if (!a.measurement.empty() || (rows.columns.empty() && a.evaluation.findings.empty())) continue;
-    blocks.push_back({Heading{analysis_title(source, a), 1}, "analysis " + a.plugin});
-    Table table;
-    std::vector<int> decimals;
-    for (const PointTable::Column& c : rows.columns) {
-      table.columns.push_back(
-          {w.get_or("column." + c.name, symbol(c.name)), unit_text(c.quantity), true});
-      decimals.push_back(c.quantity == Quantity::ratio ? 4 : decimals_for(c.values, c.quantity, 4));
-    }
-    for (std::size_t i = 0; !rows.columns.empty() && i < rows.columns.front().values.size(); ++i) {
-      std::vector<Table::Cell> row;
-      for (std::size_t k = 0; k < rows.columns.size(); ++k)
-        row.push_back({printed_number(rows.columns[k].values[i], rows.columns[k].quantity,
-                                      decimals[k], source.language())});
-      table.rows.push_back(std::move(row));
-    }
-    if (!table.rows.empty()) blocks.push_back({std::move(table), "rows of " + a.plugin});
-    for (const Finding& f : a.evaluation.findings) blocks.push_back(note_of(source, f));
-  }
-}
-
 void add_targets(const Source& source, const Measured& m, Blocks& blocks) {
   const Wording& w = source.words;
   for (const Joined& joined : joined_points(m)) {
@@ -287,4 +272,4 @@ void add_targets(const Source& source, const Measured& m, Blocks& blocks) {
   }
 }
 
-}  // namespace nonio::pdf_report
+}  // namespace nonio::pages

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "nonio/reports/number.h"
-#include "report.h"
+#include "pages.h"
 
-namespace nonio::pdf_report {
+namespace nonio::pages {
 
 using namespace reports;
 using Curve = Plot::Curve;
@@ -161,4 +161,4 @@ void add_diagonals(const Source& source, const Measured& m, std::vector<Plot>& p
     }
 }
 
-}  // namespace nonio::pdf_report
+}  // namespace nonio::pages

@@ -6,9 +6,9 @@
 
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
-#include "report.h"
+#include "pages.h"
 
-namespace nonio::pdf_report {
+namespace nonio::pages {
 
 using namespace reports;
 using Curve = Plot::Curve;
@@ -372,4 +372,4 @@ void add_plots(const Source& source, const Measured& m, Blocks& blocks) {
   }
 }
 
-}  // namespace nonio::pdf_report
+}  // namespace nonio::pages

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "look.h"
+#include "nonio/reports/wording.h"
+#include "nonio/sdk/plugin.h"
+
+/// What the documents about a campaign share: tables and figures of a measurement. Compiled into
+/// each plugin. Blocks are of one language.
+namespace nonio::pages {
+
+/// What a document is made from.
+struct Source {
+  const OutputInput& in;
+  const Look& look;
+  const reports::Wording& words;
+  const reports::Fonts& fonts;
+  /// A certificate: only what has an uncertainty, nothing that explains.
+  bool certificate = false;
+
+  const std::string& language() const { return words.language(); }
+};
+
+using Blocks = std::vector<reports::Block>;
+
+/// One measurement with all that is known of it.
+struct Measured {
+  const Measurement& measurement;
+  const Observations& observations;
+  bool rotary = false;
+  std::vector<const Results::Analysed*> analyses;
+  std::vector<const Finding*> findings;  ///< each id once, what needs attention first
+};
+std::vector<Measured> measured(const OutputInput&);
+
+/// "A+" as the standards print it: "A↑".
+std::string symbol(std::string_view name);
+
+/// A given number, tolerance or uncertainty: as short as it is, "20" and not "20.00".
+std::string plain_number(const Source&, double si, Quantity);
+
+/// U of the instrument's certificate: "0.1 µm + 0.5 µm/m · L".
+std::string instrument_U(const Source&);
+
+/// Parts of a line that are not known leave no gap: "worn-screw · " becomes "worn-screw".
+std::string without_gaps(std::string line);
+
+/// Its readings are runs over one position: of an axis, or along a diagonal.
+inline bool over_one_position(const Measurement& m) {
+  return m.kind == "axis" || m.kind == "straightness" || m.kind == "angle" || m.kind == "diagonal";
+}
+
+std::string heading_of(const Source&, const Measured&);
+/// How the test was made, as the readings show it.
+std::string test_of(const Source&, const Measured&);
+std::string analysis_title(const Source&, const Results::Analysed&);
+const Conformity* conformity_of(const OutputInput&, const Results::Analysed&,
+                                const std::string& name);
+std::string decision_text(const Source&, Decision);
+
+void add_results(const Source&, const Measured&, Blocks&);
+void add_targets(const Source&, const Measured&, Blocks&);
+void add_plots(const Source&, const Measured&, Blocks&);
+
+/// Diagonals before and after, and their plane with its errors exaggerated.
+void add_diagonals(const Source&, const Measured&, std::vector<reports::Plot>&);
+/// The volume of step diagonals as a box of wire, its errors exaggerated.
+void add_volume(const Source&, const Measured&, std::vector<reports::Plot>&);
+/// How much larger errors are drawn: 1, 2 or 5 times a power of ten, not above `v` > 0.
+double round_factor(double v);
+/// The circle of ball centres with exaggerated residuals, and the residuals over the angle.
+void add_circle(const Source&, const Measured&, std::vector<reports::Plot>&);
+
+}  // namespace nonio::pages
