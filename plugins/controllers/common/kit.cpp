@@ -32,7 +32,7 @@ math::GridRule rule_of(const AxisJob& job, const OutputInput& input, const Write
   math::GridRule rule;
   rule.unit = t.position_step.of(job.rotary);
   rule.most = t.points == 0 ? 100000 : t.points;
-  rule.step = wished_step(job, input.options);
+  rule.step = w.fixed_step > 0.0 ? w.fixed_step : wished_step(job, input.options);
   rule.rotary = job.rotary;
   rule.axis = job.axis;
   rule.turn = job.turn.has_value() && w.wraps;
@@ -201,10 +201,10 @@ void note_zero(const Sheet& s, OutputResult& result) {
   result.notes.push_back(std::move(zero));
 }
 
-Expected<Sheet> sheet_of(const AxisJob& job, const OutputInput& input, const Writer& w,
-                         bool directions, OutputResult& result) {
+Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table, const OutputInput& input,
+                         const Writer& w, bool directions, OutputResult& result) {
   Sheet s{.job = job,
-          .table = w.table,
+          .table = table,
           .input = input,
           .directions = directions,
           .position = {},
@@ -214,11 +214,11 @@ Expected<Sheet> sheet_of(const AxisJob& job, const OutputInput& input, const Wri
           .minus_steps = {}};
   set_reference(s, result);
   if (auto placed = place_points(s, w); !placed) return tl::unexpected<Error>(placed.error());
-  if (w.table.zero == ControlTable::Zero::reference && !anchored(w.table))
+  if (table.zero == ControlTable::Zero::reference && !anchored(table))
     s.reference = reference_position(job, s.position.front(), s.position.back());
   fill(s, w);
-  s.plus_steps = steps_of(s.plus, s.value_step(), w.table.entry);
-  s.minus_steps = steps_of(s.minus, s.value_step(), w.table.entry);
+  s.plus_steps = steps_of(s.plus, s.value_step(), table.entry);
+  s.minus_steps = steps_of(s.minus, s.value_step(), table.entry);
   if (auto fits = check_range(s, w); !fits) return tl::unexpected<Error>(fits.error());
   s.warning = warnings(job, result);
   return s;
@@ -233,7 +233,9 @@ Expected<bool> write_axis(AxisJob& job, const OutputInput& input, const Writer& 
   if (refused(job, directions, result)) return false;
   if (job.rotary && !w.table.rotary)
     return fail("axis " + job.axis + ": these tables are of linear axes only");
-  const auto sheet = sheet_of(job, input, w, directions, result);
+  const auto table = w.of_axis ? w.of_axis(job, w.table) : Expected<ControlTable>(w.table);
+  if (!table) return tl::unexpected<Error>(table.error());
+  const auto sheet = sheet_of(job, *table, input, w, directions, result);
   if (!sheet) return tl::unexpected<Error>(sheet.error());
   auto files = w.files(*sheet);
   if (!files) return tl::unexpected<Error>(files.error());
@@ -386,9 +388,10 @@ Expected<LoadedTable> loaded(const ControlTable& t, const RawTable& raw) {
 
 Output controller(Info info, const ControlTable& table,
                   Expected<OutputResult> (*write)(const OutputInput&),
-                  Expected<std::vector<LoadedTable>> (*parse)(const TableInput&)) {
+                  Expected<std::vector<LoadedTable>> (*parse)(const TableInput&), bool on_request) {
   Output output;
   output.info = std::move(info);
+  output.info.on_request = on_request;
   output.stage = Output::Stage::table;
   output.applies = has_tables;
   output.write = write;

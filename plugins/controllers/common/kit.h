@@ -60,6 +60,9 @@ struct Writer {
   bool wraps = true;               ///< a turn repeats itself; else it is closed by hand
   bool power_of_two = false;       ///< the step of linear axes
   int zero_of = 0;                 ///< the direction whose entry is 0 at the reference; 0: the mean
+  double fixed_step = 0.0;         ///< of a control whose points nobody chooses
+  /// The declaration for one axis, where its units are of the axis.
+  std::function<Expected<ControlTable>(const AxisJob&, ControlTable)> of_axis{};
   /// Where the points are wanted; else at the targets.
   std::function<std::vector<double>(const AxisJob&)> wanted{};
   /// An option that makes a step of the table coarser, its present and its largest value.
@@ -99,9 +102,10 @@ Expected<LoadedTable> loaded(const ControlTable&, const RawTable&);
 /// Notes of all that is not documented.
 void note_facts(const Writer&, OutputResult&);
 
-/// Registers an output of stage `table`.
+/// An output of stage `table`; `on_request`: only where the manifest names it.
 Output controller(Info, const ControlTable&, Expected<OutputResult> (*write)(const OutputInput&),
-                  Expected<std::vector<LoadedTable>> (*parse)(const TableInput&));
+                  Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
+                  bool on_request = true);
 
 /// The axes of the manifest, and those that are only in readings, as a parser needs them.
 Campaign with_axes_of(const OutputInput&, const std::vector<AxisJob>&);

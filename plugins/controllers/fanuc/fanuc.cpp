@@ -253,5 +253,5 @@ NONIO_PLUGIN(registry) {
       {"fanuc", "1.1.0",
        "Stored pitch error compensation (3620-3627) and backlash (1851) for FANUC.",
        fanuc::options()},
-      fanuc::declared(), fanuc::write, fanuc::parse));
+      fanuc::declared(), fanuc::write, fanuc::parse, false));
 }

@@ -272,5 +272,5 @@ NONIO_PLUGIN(registry) {
       {"heidenhain-tnc", "1.1.0",
        "Non-linear axis error tables (.COM, .CMA) and backlash for HEIDENHAIN TNC.",
        heidenhain::options()},
-      heidenhain::declared(), heidenhain::write, heidenhain::parse));
+      heidenhain::declared(), heidenhain::write, heidenhain::parse, false));
 }

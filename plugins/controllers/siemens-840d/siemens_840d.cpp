@@ -149,5 +149,5 @@ NONIO_PLUGIN(registry) {
       {"siemens-840d", "1.1.0",
        "Leadscrew error tables (EEC), direction tables (CEC) and backlash for SINUMERIK.",
        siemens::options()},
-      siemens::declared(), siemens::write, siemens::parse));
+      siemens::declared(), siemens::write, siemens::parse, false));
 }
