@@ -109,8 +109,8 @@ TEST(Text, WhatCannotBePrintedNamesCharacterAndField) {
     const char *text, *says;
   };
   const Line lines[] = {{"กข", "\"ก\" (U+0E01)"}, {"a\tb", "control character U+0009"},
-                        {"a\xffz", "byte 0xFF"},     {"a\xc0\x80", "byte 0xC0"},
-                        {"e\u0323", "U+1EB9"},       {"\U0001F600", "U+1F600"}};
+                        {"a\xffz", "byte 0xFF"},  {"a\xc0\x80", "byte 0xC0"},
+                        {"e\u0323", "U+1EB9"},    {"\U0001F600", "U+1F600"}};
   for (const Line& l : lines) {
     const auto bytes = pdf(of({{Paragraph{l.text}, "campaign.customer"}}), *fonts());
     ASSERT_FALSE(bytes) << l.text;

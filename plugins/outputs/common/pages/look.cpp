@@ -163,8 +163,7 @@ Expected<std::shared_ptr<const reports::Fonts>> fonts_of(const Templates& templa
   if (!regular) return fail(regular.error());
   const auto bold = font_file(templates, look.bold);
   if (!bold) return fail(bold.error());
-  if (look.wide.empty())
-    return reports::shared_fonts({*regular, look.regular}, {*bold, look.bold});
+  if (look.wide.empty()) return reports::shared_fonts({*regular, look.regular}, {*bold, look.bold});
   const auto wide = font_file(templates, look.wide);
   if (!wide) return fail(wide.error());
   return reports::shared_fonts({*regular, look.regular}, {*bold, look.bold}, {*wide, look.wide});
