@@ -34,6 +34,7 @@ void add_compare_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_explain_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_model_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_plan_verb(CLI::App& cli, Common& common, Outcome& outcome);
+void add_template_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_verify_verb(CLI::App& cli, Common& common, Outcome& outcome);
 
 }  // namespace nonio::app

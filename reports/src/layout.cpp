@@ -58,7 +58,7 @@ class Pages {
 };
 
 std::string numbered(std::string text, std::string_view place, std::size_t number) {
-  if (const std::size_t at = text.find(place); at != std::string::npos)
+  for (std::size_t at; (at = text.find(place)) != std::string::npos;)
     text.replace(at, place.size(), std::to_string(number));
   return text;
 }

@@ -103,6 +103,17 @@ void put_table(JsonWriter& json, const PointTable& table, const char* name, cons
   json.end_array();
 }
 
+/// One of each column that has it.
+void put_point_U(JsonWriter& json, const PointTable& points) {
+  const auto has_U = [](const PointTable::Column& c) { return c.U.has_value(); };
+  if (std::none_of(points.columns.begin(), points.columns.end(), has_U)) return;
+  json.key("point_U");
+  json.begin_object();
+  for (const PointTable::Column& c : points.columns)
+    if (c.U) json.member(c.name, printed(*c.U, c.quantity));
+  json.end_object();
+}
+
 void put_series(JsonWriter& json, const std::vector<Series>& all) {
   if (all.empty()) return;
   const auto list = [&](const char* key, const std::vector<double>& values, Quantity q) {
@@ -166,6 +177,7 @@ void put_analysis(JsonWriter& json, const Results::Analysed& a,
   for (const Value& v : a.evaluation.values) put_value(json, v, a, conformity);
   json.end_object();
   put_table(json, a.evaluation.points, "points", "point_units");
+  put_point_U(json, a.evaluation.points);
   put_table(json, a.evaluation.rows, "rows", "row_units");
   put_series(json, a.evaluation.series);
   put_findings(json, a.evaluation.findings, false);
