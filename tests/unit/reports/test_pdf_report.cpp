@@ -99,7 +99,7 @@ TEST_F(PdfReport, NoCellOfAValuesTableWithTolerancesIsDivided) {
       number.replace(number.find('|'), 1, mark);
       EXPECT_TRUE(has_line(report, number)) << language << ": " << number;
     }
-    const auto& words = templates.tables.at("words/" + language + "/report").values;
+    const auto& words = templates.tables.at("words/" + language + "/results").values;
     for (const char* key : {"symbol", "meaning", "value", "uncertainty", "tolerance", "decision",
                             "conforms", "does_not_conform", "cannot_be_decided"}) {
       const auto word = std::get<std::string>(words.at("results." + std::string(key)));
