@@ -149,6 +149,7 @@ Expected<Look> read_look(const Templates& templates, const std::string& name, co
   look.regular = keys.text("font.regular");
   look.bold = keys.text("font.bold");
   look.wide = keys.text_if_given("font.wide");
+  look.profile = keys.text_if_given("colour.profile");
   look.logo = keys.text_if_given("logo.file");
   look.mark = keys.text_if_given("logo.mark");
   if (!look.logo.empty() || !look.mark.empty()) look.logo_height = keys.mm("logo.height_mm", 3, 80);
