@@ -5,6 +5,7 @@
 #include "fixtures.h"
 #include "nonio/reports/number.h"
 #include "pdf_reader.h"
+#include "png_file.h"
 
 namespace nonio::fixtures {
 namespace {
@@ -306,6 +307,19 @@ TEST_F(Certificate, ATemplateMayMovePartsButNotLeaveThemOut) {
   std::erase(blocks, "statements");
   EXPECT_TRUE(has(complaint(whole()), "statements"));
   EXPECT_EQ(output().check_templates(templates).size(), 1U);
+}
+
+TEST_F(Certificate, ALogoStandsAboveTheLaboratory) {
+  auto& values = templates.tables["certificate"].values;
+  values["logo.file"] = std::string("logo.png");
+  values["logo.height_mm"] = 14.0;
+  EXPECT_TRUE(has(complaint(whole()), "logo.png"));  // not there
+  templates.files["logo.png"] = "no picture";
+  EXPECT_TRUE(has(complaint(whole()), "templates/logo.png"));
+  templates.files["logo.png"] = png(2, 2, PNG_FORMAT_GRAY, "abcd");
+  const auto with = write(whole());
+  ASSERT_TRUE(with) << with.error().message;
+  EXPECT_TRUE(has(with->artifacts.front().bytes, "/Subtype /Image"));
 }
 
 TEST_F(Certificate, AWordWithAPlaceThatNobodyFillsIsAnError) {
