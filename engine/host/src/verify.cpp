@@ -7,6 +7,7 @@
 #include "content_check.h"
 #include "context.h"
 #include "nonio/host/files.h"
+#include "nonio/host/record.h"
 #include "recomputed.h"
 
 namespace nonio::host {
