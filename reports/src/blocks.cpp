@@ -21,10 +21,10 @@ void note_glyphs(const Context& context, const Glyphs& glyphs, bool bold) {
   const std::vector<char>& common = context.fonts.weight(bold).common;
   for (const Glyph& g : glyphs)
     if (g.wide) {
-      context.use.wide.resize(context.fonts.wide.common.size());
-      context.use.wide[g.id] = 1;
+      context.used.wide.resize(context.fonts.wide.common.size());
+      context.used.wide[g.id] = 1;
     } else if (common[g.id] == 0) {
-      context.use.common_only = false;
+      context.used.common_only = false;
     }
 }
 
@@ -251,6 +251,20 @@ Expected<Laid> lay(const Status& status, double width, const Context& context,
     y -= text.height();
   }
   return Laid{{{height, 6, std::move(canvas.ops), false}}};
+}
+
+Expected<Laid> lay(const Image& image, double width, const Context& context, std::string_view) {
+  auto picture = shared_picture(image.bytes, image.name);
+  if (!picture) return fail(picture.error());
+  auto& pictures = context.used.pictures;
+  auto it = std::find(pictures.begin(), pictures.end(), *picture);
+  if (it == pictures.end()) it = pictures.insert(it, *picture);
+  const double shape = static_cast<double>((*it)->width) / (*it)->height;
+  const double height = std::min({image.height, width / shape, context.page_room});
+  Canvas canvas;
+  canvas.picture(it - pictures.begin(), image.align * (width - shape * height), -height,
+                 shape * height, height);
+  return Laid{{{height, 4, std::move(canvas.ops), false}}};
 }
 
 Expected<Laid> lay(const Spacer& spacer, double, const Context&, std::string_view) {

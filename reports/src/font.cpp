@@ -158,7 +158,7 @@ Expected<Font> parse_font(FontFile file) {
   if (r.u32(0) != 0x00010000) return broken("the file does not begin as one");
   const auto head = r.table("head"), hhea = r.table("hhea"), hmtx = r.table("hmtx");
   const auto cmap = r.table("cmap"), maxp = r.table("maxp");
-  if (!head || !hhea || !hmtx || !cmap || !maxp || !r.table("glyf"))
+  if (!head || !hhea || !hmtx || !cmap || !maxp || !r.table("glyf") || !r.table("loca"))
     return broken("a table of it is missing");
   const double units = r.u16(*head + 18);
   if (units < 16) return broken("its units per em are " + std::to_string(r.u16(*head + 18)));
@@ -166,6 +166,7 @@ Expected<Font> parse_font(FontFile file) {
     return static_cast<int>(value * 1000.0 / units + (value < 0 ? -0.5 : 0.5));
   };
   Font font;
+  font.units = static_cast<int>(units);
   for (std::size_t i = 0; i < 4; ++i) font.box[i] = scaled(r.s16(*head + 36 + 2 * i));
   font.ascent = scaled(r.s16(*hhea + 4));
   font.descent = scaled(r.s16(*hhea + 6));

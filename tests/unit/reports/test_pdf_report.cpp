@@ -99,7 +99,7 @@ TEST_F(PdfReport, NoCellOfAValuesTableWithTolerancesIsDivided) {
       number.replace(number.find('|'), 1, mark);
       EXPECT_TRUE(has_line(report, number)) << language << ": " << number;
     }
-    const auto& words = templates.tables.at("words/" + language + "/report").values;
+    const auto& words = templates.tables.at("words/" + language + "/results").values;
     for (const char* key : {"symbol", "meaning", "value", "uncertainty", "tolerance", "decision",
                             "conforms", "does_not_conform", "cannot_be_decided"}) {
       const auto word = std::get<std::string>(words.at("results." + std::string(key)));
@@ -131,7 +131,7 @@ TEST_F(PdfReport, WhatVdiHidesIsSaidOnlyWhereATestSaysSo) {
 TEST_F(PdfReport, RemarksSpeakTheLanguageOfTheReport) {
   Case c = usual();
   Results::Written table{"some-control", "1", {}};
-  table.result.notes = {{"fanuc.sign-inferred"}, {.id = "unknown", .english = "As it came."}};
+  table.result.notes = {{"fanuc.sign"}, {.id = "unknown", .english = "As it came."}};
   c.results.outputs.push_back(table);
   c.results.notes = {{"csv.empty-rows", {{"rows", 3.0, Quantity::count}}, {}, "X"}};
   const std::string en = text(c), it = text(c, "it");
