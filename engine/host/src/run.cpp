@@ -183,9 +183,8 @@ class Runner {
   }
 
   static void fail_certificate(Evaluated& evaluated, const Error& why) {
-    remove_unsigned(evaluated.results);
+    remove_unsigned(evaluated);
     evaluated.results.errors.push_back(why);
-    evaluated.certificate.reset();
     evaluated.status = "failed";
     evaluated.retry = true;
   }
