@@ -191,6 +191,12 @@ class Certificates(SigningTest):
         self.assertIn("123.5", self.finding("c1", "certificate.differs")["evidence"]["why"])
         self.assertEqual(self.ids("attention"), ["c1"])
 
+    def test_one_number_for_one_campaign(self):
+        self.signed_campaign("c1")
+        (self.site / "site.toml").write_text((self.site / "site.toml").read_text().replace('"dcc"]', '"numbered-too"]'))
+        self.assertIn("wanted one of them", self.night(expect=1).stderr)
+        self.assertEqual(self.entries(), [])
+
     def test_what_is_withdrawn_is_issued_anew(self):
         self.signed_campaign("c1")
         self.signed_campaign("c2")
