@@ -312,21 +312,24 @@ class CampaignRun {
       return numbered->output.lacks(input(*numbered));
     });
     if (!missing) return report(missing.error());
-    if (!missing->empty()) {
+    if (draw_) {
+      auto drawn = draw_(out_, missing->empty());
+      if (!drawn) {
+        out_.retry = true;
+        return report(std::move(drawn.error()));
+      }
+      if (!drawn->issue.number.empty()) {
+        out_.certificate = std::move(*drawn);
+        out_.certificate->output = info.name;
+      }
+    }
+    if (!missing->empty() && !out_.certificate) {
       OutputResult incomplete;
       incomplete.findings.push_back({.id = "certificate.incomplete",
                                      .attention = true,
                                      .texts = {{"missing", list(*missing)}}});
-      return keep(info, std::move(incomplete));
+      keep(info, std::move(incomplete));
     }
-    if (!draw_) return;
-    auto drawn = draw_(out_);
-    if (!drawn) {
-      out_.retry = true;
-      return report(std::move(drawn.error()));
-    }
-    out_.certificate = std::move(*drawn);
-    out_.certificate->output = info.name;
   }
 
   static std::string list(const std::vector<std::string>& names) {
