@@ -18,14 +18,19 @@ void SetText::draw_all(Canvas& canvas, double x, double y, double width, double 
 }
 
 void note_glyphs(const Context& context, const Glyphs& glyphs, bool bold) {
-  const std::vector<char>& common = context.font(bold).common;
+  const std::vector<char>& common = context.fonts.weight(bold).common;
   for (const Glyph& g : glyphs)
-    if (common[g.id] == 0) context.common_only = false;
+    if (g.wide) {
+      context.used.wide.resize(context.fonts.wide.common.size());
+      context.used.wide[g.id] = 1;
+    } else if (common[g.id] == 0) {
+      context.used.common_only = false;
+    }
 }
 
 Expected<SetText> set_text(const Context& context, std::string_view text, bool bold, double size,
                            double width, std::string_view field) {
-  auto glyphs = shape(text, context.font(bold), field);
+  auto glyphs = shape(text, context.fonts, bold, field);
   if (!glyphs) return fail(glyphs.error());
   note_glyphs(context, *glyphs, bold);
   SetText out{std::move(*glyphs), {}, bold, size};
@@ -35,9 +40,10 @@ Expected<SetText> set_text(const Context& context, std::string_view text, bool b
 
 Expected<SetText> set_line(const Context& context, std::string_view text, bool bold, double size,
                            double width, std::string_view field) {
-  auto glyphs = shape(text, context.font(bold), field);
+  auto glyphs = shape(text, context.fonts, bold, field);
   if (!glyphs) return fail(glyphs.error());
-  SetText out{shortened(std::move(*glyphs), width / size, context.font(bold)), {}, bold, size};
+  SetText out{
+      shortened(std::move(*glyphs), width / size, context.fonts.weight(bold)), {}, bold, size};
   note_glyphs(context, out.glyphs, bold);
   out.lines.push_back({0, out.glyphs.size(), width_of(out.glyphs)});
   return out;
@@ -164,7 +170,7 @@ Expected<Laid> lay(const Grid& grid, double width, const Context& context, std::
   }
   double label_width = 0;
   for (const Grid::Row& row : grid.rows)
-    if (auto label = shape(row.label, context.fonts.regular, row.field))
+    if (auto label = shape(row.label, context.fonts, false, row.field))
       label_width = std::max(label_width, width_of(*label) * style.small);
   label_width = std::min(label_width, 0.45 * width);
   for (const Grid::Row& row : grid.rows) {
@@ -245,6 +251,20 @@ Expected<Laid> lay(const Status& status, double width, const Context& context,
     y -= text.height();
   }
   return Laid{{{height, 6, std::move(canvas.ops), false}}};
+}
+
+Expected<Laid> lay(const Image& image, double width, const Context& context, std::string_view) {
+  auto picture = shared_picture(image.bytes, image.name);
+  if (!picture) return fail(picture.error());
+  auto& pictures = context.used.pictures;
+  auto it = std::find(pictures.begin(), pictures.end(), *picture);
+  if (it == pictures.end()) it = pictures.insert(it, *picture);
+  const double shape = static_cast<double>((*it)->width) / (*it)->height;
+  const double height = std::min({image.height, width / shape, context.page_room});
+  Canvas canvas;
+  canvas.picture(it - pictures.begin(), image.align * (width - shape * height), -height,
+                 shape * height, height);
+  return Laid{{{height, 4, std::move(canvas.ops), false}}};
 }
 
 Expected<Laid> lay(const Spacer& spacer, double, const Context&, std::string_view) {

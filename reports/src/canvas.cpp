@@ -128,14 +128,49 @@ void Canvas::leave() {
   state_ = State{};
 }
 
+void Canvas::font(int which, double size) {
+  if (which == state_.font && size == state_.size) return;
+  ops += "/F";
+  append_int(ops, which);
+  ops += ' ';
+  number(size);
+  ops += "Tf ";
+  state_.font = which;
+  state_.size = size;
+}
+
+/// Stretches of one font, and accents each by itself.
 void Canvas::show(bool bold, double size, std::span<const Glyph> glyphs) {
-  if (bold != state_.bold || size != state_.size) {
-    ops += bold ? "/F2 " : "/F1 ";
-    number(size);
-    ops += "Tf ";
-    state_.bold = bold;
-    state_.size = size;
+  const auto is_accent = [](const Glyph& g) { return g.shift != 0 || g.rise != 0; };
+  for (std::size_t i = 0; i < glyphs.size();) {
+    const Glyph& first = glyphs[i];
+    font(first.wide ? 3 : bold ? 2 : 1, size);
+    if (is_accent(first)) {
+      number(size * first.rise / 1000.0);
+      ops += "Ts [";
+      number(-first.shift);
+      shown(glyphs.subspan(i, 1));
+      number(first.shift);
+      ops += "] TJ 0 Ts ";
+      ++i;
+      continue;
+    }
+    std::size_t end = i + 1;
+    while (end < glyphs.size() && glyphs[end].wide == first.wide && !is_accent(glyphs[end])) ++end;
+    const bool outlined = bold && first.wide;
+    if (outlined) {  // the wide font has no bold one beside it
+      stroke_colour(state_.fill);
+      line(0.03 * size);
+      ops += "2 Tr ";
+    }
+    shown(glyphs.subspan(i, end - i));
+    ops += outlined ? " Tj 0 Tr " : " Tj ";
+    i = end;
   }
+  ops += "ET\n";
+}
+
+void Canvas::shown(std::span<const Glyph> glyphs) {
   ops += '(';
   std::array<char, 256> part;  // appending byte by byte takes twice as long
   std::size_t n = 0;
@@ -150,7 +185,7 @@ void Canvas::show(bool bold, double size, std::span<const Glyph> glyphs) {
     n = 0;
   }
   ops.append(part.data(), n);
-  ops += ") Tj ET\n";
+  ops += ')';
 }
 
 void Canvas::text(double x, double y, bool bold, double size, std::span<const Glyph> glyphs) {
@@ -170,6 +205,16 @@ void Canvas::text_upwards(double x, double y, bool bold, double size,
   number(y);
   ops += "Tm ";
   show(bold, size, glyphs);
+}
+
+void Canvas::picture(long which, double x, double y, double w, double h) {
+  ops += "q ";
+  number(w);
+  ops += "0 0 ";
+  for (const double v : {h, x, y}) number(v);
+  ops += "cm /P";
+  append_int(ops, which);
+  ops += " Do Q\n";
 }
 
 void Canvas::place(double x, double y, const std::string& operators) {

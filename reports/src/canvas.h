@@ -45,6 +45,7 @@ class Canvas {
   void text(double x, double y, bool bold, double size, std::span<const Glyph>);
   /// The same upwards, for the titles of vertical axes.
   void text_upwards(double x, double y, bool bold, double size, std::span<const Glyph>);
+  void picture(long number, double x, double y, double w, double h);
   void place(double x, double y, const std::string& operators);
 
  private:
@@ -52,12 +53,15 @@ class Canvas {
     Colour fill{-1, -1, -1}, stroke{-1, -1, -1};
     double width = -1;
     Dash dash = Dash::solid;
-    bool see_through = false, bold = false;
-    double size = -1;  ///< of the font
+    bool see_through = false;
+    int font = 0;  ///< 1 regular, 2 bold, 3 wide
+    double size = -1;
   };
   void number(double value);
   void colour(Colour, const char* op);
   void show(bool bold, double size, std::span<const Glyph>);
+  void font(int number, double size);
+  void shown(std::span<const Glyph>);
   State state_, kept_;
 };
 

@@ -119,22 +119,46 @@ bool is_common(std::size_t c) {
 }
 
 Embedded embedded(const Font& font, const std::string& file, const std::vector<char>& kept,
-                  std::string_view path) {
-  return {subset_name(file, path), file.size(), deflated(file, 12),
-          widths_array(font.advance, kept), deflated(to_unicode(font, kept), 12)};
+                  int level) {
+  return {subset_name(file, font.name), file.size(), deflated(file, level),
+          widths_array(font.advance, kept), deflated(to_unicode(font, kept), level)};
+}
+
+/// For a font of which documents embed all, or the common part.
+void compress(Font& font) {
+  constexpr int level = 12;  // once in a process
+  font.with_all = embedded(font, font.bytes, std::vector<char>(font.common.size(), 1), level);
+  const std::string subset = font_subset(font.bytes, font.common);
+  font.with_common = subset.empty() ? font.with_all : embedded(font, subset, font.common, level);
+}
+
+/// By size and table directory, which holds a checksum of each table: a whole font of megabytes
+/// would have to be compared for every document.
+bool same_font(const Font& font, FontFile file) {
+  const std::size_t directory = 12 + 16 * std::size_t{FontReader(font.bytes).u16(4)};
+  return font.name == file.name && font.bytes.size() == file.bytes.size() &&
+         std::string_view(font.bytes).substr(0, directory) == file.bytes.substr(0, directory);
 }
 
 }  // namespace
 
-Expected<Font> parse_font(std::string bytes, std::string_view name) {
-  const FontReader r(bytes);
+Embedded embedded_part(const Font& font, std::vector<char> used) {
+  used[0] = 1;
+  constexpr int level = 6;
+  const std::string subset = font_subset(font.bytes, used);
+  return subset.empty() ? Embedded{} : embedded(font, subset, used, level);
+}
+
+Expected<Font> parse_font(FontFile file) {
+  const FontReader r(file.bytes);
   const auto broken = [&](std::string_view why) {
-    return fail(Error{"a TrueType font was expected, but " + std::string(why), std::string(name)});
+    return fail(
+        Error{"a TrueType font was expected, but " + std::string(why), std::string(file.name)});
   };
   if (r.u32(0) != 0x00010000) return broken("the file does not begin as one");
   const auto head = r.table("head"), hhea = r.table("hhea"), hmtx = r.table("hmtx");
   const auto cmap = r.table("cmap"), maxp = r.table("maxp");
-  if (!head || !hhea || !hmtx || !cmap || !maxp || !r.table("glyf"))
+  if (!head || !hhea || !hmtx || !cmap || !maxp || !r.table("glyf") || !r.table("loca"))
     return broken("a table of it is missing");
   const double units = r.u16(*head + 18);
   if (units < 16) return broken("its units per em are " + std::to_string(r.u16(*head + 18)));
@@ -142,6 +166,7 @@ Expected<Font> parse_font(std::string bytes, std::string_view name) {
     return static_cast<int>(value * 1000.0 / units + (value < 0 ? -0.5 : 0.5));
   };
   Font font;
+  font.units = static_cast<int>(units);
   for (std::size_t i = 0; i < 4; ++i) font.box[i] = scaled(r.s16(*head + 36 + 2 * i));
   font.ascent = scaled(r.s16(*hhea + 4));
   font.descent = scaled(r.s16(*hhea + 6));
@@ -161,34 +186,32 @@ Expected<Font> parse_font(std::string bytes, std::string_view name) {
   font.common[0] = 1;
   for (std::size_t c = 0; c < font.glyphs.size(); ++c)
     if (is_common(c)) font.common[font.glyphs[c]] = 1;
-  font.with_all = embedded(font, bytes, std::vector<char>(glyphs, 1), name);
-  const std::string subset = font_subset(bytes, font.common);
-  font.with_common = subset.empty() ? font.with_all : embedded(font, subset, font.common, name);
-  font.bytes = std::move(bytes);
+  font.name = file.name;
+  font.bytes = file.bytes;
   return font;
 }
 
-Expected<std::shared_ptr<const Fonts>> shared_fonts(std::string_view regular_bytes,
-                                                    std::string_view regular_name,
-                                                    std::string_view bold_bytes,
-                                                    std::string_view bold_name) {
+Expected<std::shared_ptr<const Fonts>> shared_fonts(FontFile regular, FontFile bold,
+                                                    FontFile wide) {
   struct Memo {
     std::mutex mutex;
-    std::string regular_name, bold_name;
     std::shared_ptr<const Fonts> fonts;
   };
   static Memo memo;  // never changes what is given, only how long it takes
   const std::lock_guard lock(memo.mutex);
-  if (memo.fonts && memo.regular_name == regular_name && memo.bold_name == bold_name &&
-      memo.fonts->regular.bytes == regular_bytes && memo.fonts->bold.bytes == bold_bytes)
+  if (memo.fonts && same_font(memo.fonts->regular, regular) && same_font(memo.fonts->bold, bold) &&
+      same_font(memo.fonts->wide, wide))
     return memo.fonts;
-  auto regular = parse_font(std::string(regular_bytes), regular_name);
-  if (!regular) return fail(regular.error());
-  auto bold = parse_font(std::string(bold_bytes), bold_name);
-  if (!bold) return fail(bold.error());
-  memo.fonts = std::make_shared<const Fonts>(Fonts{std::move(*regular), std::move(*bold)});
-  memo.regular_name = regular_name;
-  memo.bold_name = bold_name;
+  Fonts fonts;
+  for (const auto& [font, file] :
+       {std::pair(&fonts.regular, regular), {&fonts.bold, bold}, {&fonts.wide, wide}}) {
+    if (file.bytes.empty() && font == &fonts.wide) continue;
+    auto parsed = parse_font(file);
+    if (!parsed) return fail(parsed.error());
+    *font = std::move(*parsed);
+    if (font != &fonts.wide) compress(*font);
+  }
+  memo.fonts = std::make_shared<const Fonts>(std::move(fonts));
   return memo.fonts;
 }
 

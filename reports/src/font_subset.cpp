@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Tables and formats: ISO/IEC 14496-22 (OpenType), 5.2 and 5.3.
 #include "font_subset.h"
 
 #include <algorithm>
 #include <map>
 
-#include "font_reader.h"
+#include "font_outlines.h"
 
 namespace nonio::reports {
 namespace {
@@ -31,39 +29,6 @@ std::uint32_t checksum(const std::string& padded) {
   for (std::size_t i = 0; i < padded.size(); i += 4) sum += r.u32(i);
   return sum;
 }
-
-/// Where the outlines of a font are.
-class Outlines {
- public:
-  Outlines(const FontReader& r, std::size_t head, std::size_t loca, std::size_t glyf)
-      : r_(r), loca_(loca), glyf_(glyf), long_(r.u16(head + 50) != 0) {}
-
-  std::size_t begin(std::size_t glyph) const {
-    return glyf_ + (long_ ? r_.u32(loca_ + 4 * glyph) : 2 * r_.u16(loca_ + 2 * glyph));
-  }
-  std::size_t size(std::size_t glyph) const {
-    const std::size_t from = begin(glyph), to = begin(glyph + 1);
-    return to > from ? to - from : 0;
-  }
-  /// The glyphs that this one is composed of.
-  std::vector<std::size_t> components(std::size_t glyph) const {
-    std::vector<std::size_t> out;
-    if (size(glyph) < 10 || r_.s16(begin(glyph)) >= 0) return out;
-    for (std::size_t at = begin(glyph) + 10; at + 4 <= begin(glyph + 1) && r_.ok();) {
-      const std::uint32_t flags = r_.u16(at);
-      out.push_back(r_.u16(at + 2));
-      at += 4 + (flags & 0x01 ? 4 : 2);
-      at += flags & 0x80 ? 8 : flags & 0x40 ? 4 : flags & 0x08 ? 2 : 0;
-      if ((flags & 0x20) == 0) break;
-    }
-    return out;
-  }
-
- private:
-  const FontReader& r_;
-  std::size_t loca_, glyf_;
-  bool long_;
-};
 
 /// With everything that the glyphs are composed of.
 std::vector<char> closed(std::vector<char> kept, const Outlines& outlines) {
@@ -111,26 +76,37 @@ std::string font_subset(std::string_view font, const std::vector<char>& glyphs) 
   for (const char* tag : {"head", "hhea", "hmtx", "maxp", "name", "loca", "glyf"}) {
     const auto at = r.table(tag), size = r.table_size(tag);
     if (!at || !size || *at + *size > font.size()) return {};
-    tables[tag] = font.substr(*at, *size);
+    if (tag != std::string_view("glyf")) tables[tag] = font.substr(*at, *size);
   }
   const std::size_t metrics = r.u16(*r.table("hhea") + 34);
   if (tables["head"].size() < 54 || tables["hmtx"].size() < 4 * metrics) return {};
   const Outlines outlines(r, *r.table("head"), *r.table("loca"), *r.table("glyf"));
   const std::vector<char> kept = closed(glyphs, outlines);
-  std::string glyf, loca;
+  std::string glyf, &hmtx = tables["hmtx"];
+  std::vector<std::size_t> offsets;
   for (std::size_t g = 0; g < kept.size(); ++g) {
-    put16(loca, static_cast<std::uint32_t>(glyf.size() / 2));
-    if (kept[g] != 0)
+    offsets.push_back(glyf.size());
+    if (kept[g] != 0) {
       glyf += font.substr(std::min(outlines.begin(g), font.size()), outlines.size(g));
-    if (glyf.size() % 2 != 0) glyf += '\0';
-    if (kept[g] == 0 && g < metrics) tables["hmtx"].replace(4 * g, 4, 4, '\0');
+      glyf.resize((glyf.size() + 1) / 2 * 2, '\0');
+    } else if (const std::size_t size = g < metrics ? 4 : 2,
+               at = g < metrics ? 4 * g : 2 * (g + metrics);
+               at + size <= hmtx.size()) {
+      hmtx.replace(at, size, size, '\0');
+    }
   }
-  put16(loca, static_cast<std::uint32_t>(glyf.size() / 2));
-  if (!r.ok() || glyf.size() > 0x1FFFE) return {};
+  offsets.push_back(glyf.size());
+  if (!r.ok()) return {};
+  const bool halves = glyf.size() <= 0x1FFFE;  // what loca's short format can hold
+  std::string loca;
+  for (const std::size_t offset : offsets)
+    halves ? put16(loca, static_cast<std::uint32_t>(offset / 2))
+           : put32(loca, static_cast<std::uint32_t>(offset));
   tables["glyf"] = std::move(glyf);
   tables["loca"] = std::move(loca);
   set32(tables["head"], 8, 0);
-  tables["head"].replace(50, 2, 2, '\0');  // loca holds halves of offsets
+  tables["head"][50] = '\0';
+  tables["head"][51] = halves ? '\0' : '\1';
   return joined(tables);
 }
 

@@ -58,7 +58,7 @@ class Pages {
 };
 
 std::string numbered(std::string text, std::string_view place, std::size_t number) {
-  if (const std::size_t at = text.find(place); at != std::string::npos)
+  for (std::size_t at; (at = text.find(place)) != std::string::npos;)
     text.replace(at, place.size(), std::to_string(number));
   return text;
 }
@@ -111,12 +111,12 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
   if (!(width > 100 && room > 100))
     return fail("the page's margins leave no room: " + std::to_string(width) + " pt by " +
                 std::to_string(room) + " pt");
-  bool common_only = true;
-  const Context context{style, fonts, room, common_only};
+  Used used;
+  const Context context{style, fonts, room, used};
   for (const auto& [text, field] :
        {std::pair(&document.title, "title"), std::pair(&document.author, "author"),
         std::pair(&document.subject, "subject")})
-    if (auto glyphs = shape(*text, fonts.regular, field); !glyphs) return fail(glyphs.error());
+    if (auto glyphs = shape(*text, fonts, false, field); !glyphs) return fail(glyphs.error());
   Laid waiting;  // headings wait for what follows them
   Pages pages(style, !document.head.empty());
   for (const Block& block : document.blocks) {
@@ -137,11 +137,12 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
   pages.add(waiting);
   std::vector<Canvas> drawn = pages.take();
   if (auto ok = add_heads_and_feet(drawn, document, context); !ok) return fail(ok.error());
-  PdfFile file{
-      document.title,   document.author,   document.subject,  document.language, document.date,
-      style.page_width, style.page_height, style.see_through, common_only,       {}};
+  PdfFile file{document.title,   document.author,      document.subject,         document.language,
+               document.date,    style.page_width,     style.page_height,        style.see_through,
+               used.common_only, std::move(used.wide), std::move(used.pictures), {}};
+  file.profile = document.profile;
   for (Canvas& canvas : drawn) file.pages.push_back(std::move(canvas.ops));
-  return write_pdf(file, fonts);
+  return write_pdf(std::move(file), fonts);
 }
 
 }  // namespace nonio::reports

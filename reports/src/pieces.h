@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "axis_scale.h"
 #include "canvas.h"
 #include "nonio/reports/document.h"
+#include "nonio/reports/picture.h"
 
 namespace nonio::reports {
 
@@ -27,13 +29,18 @@ struct Laid {
   std::size_t rows_from = 0;
 };
 
+/// What a document embeds.
+struct Used {
+  bool common_only = true;  ///< no glyph was set that is not one of Font::common
+  std::vector<char> wide;   ///< by glyph of Fonts::wide; empty: none
+  std::vector<std::shared_ptr<const Picture>> pictures;
+};
+
 struct Context {
   const Style& style;
   const Fonts& fonts;
-  double page_room;   ///< height between head and foot
-  bool& common_only;  ///< false once a glyph was set that is not one of Font::common
-
-  const Font& font(bool bold) const { return bold ? fonts.bold : fonts.regular; }
+  double page_room;  ///< height between head and foot
+  Used& used;
 };
 
 /// A text that is set at one size, in lines.

@@ -250,10 +250,10 @@ class PlotSetter {
 
  private:
   Expected<double> draw_title() {
-    auto title = set_line(context_, plot_.title, true, style_.small + 0.5, width_, field_);
+    auto title = set_text(context_, plot_.title, true, style_.small + 0.5, width_, field_);
     if (!title) return fail(title.error());
     canvas_.fill_colour(style_.text);
-    title->draw(canvas_, 0, 0, 0);
+    title->draw_all(canvas_, 0, 0);
     return title->height() + 1;
   }
 

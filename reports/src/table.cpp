@@ -86,9 +86,9 @@ class TableSetter {
       if (number) ask(needs.numbers, std::min(all, most));
     };
     for (std::size_t c = 0; c < n; ++c) {
-      auto title = shape(table_.columns[c].title, context_.fonts.bold, names[c]);
+      auto title = shape(table_.columns[c].title, context_.fonts, true, names[c]);
       if (!title) return fail(title.error());
-      auto unit = shape(table_.columns[c].unit, context_.fonts.regular, names[c]);
+      auto unit = shape(table_.columns[c].unit, context_.fonts, false, names[c]);
       if (!unit) return fail(unit.error());
       measure(c, *title, false);
       measure(c, *unit, false);
@@ -98,7 +98,7 @@ class TableSetter {
     for (const auto& row : table_.rows) {
       Cells cells;
       for (std::size_t c = 0; c < n && c < row.size(); ++c) {
-        auto text = shape(row[c].text, context_.font(row[c].bold), names[c]);
+        auto text = shape(row[c].text, context_.fonts, row[c].bold, names[c]);
         if (!text) return fail(text.error());
         measure(c, *text, table_.columns[c].number);
         cells.text.push_back(std::move(*text));

@@ -6,40 +6,12 @@
 #include <charconv>
 #include <cmath>
 
+#include "characters.h"
+#include "font_outlines.h"
 #include "nonio/reports/text.h"
 
 namespace nonio::reports {
 namespace {
-
-constexpr char32_t not_utf8 = 0xFFFFFFFF;
-
-/// The next character; `i` moves behind it. What is not UTF-8 gives not_utf8 and moves by a byte.
-char32_t next_character(std::string_view text, std::size_t& i) {
-  const auto byte = [&](std::size_t at) {
-    return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U;
-  };
-  const unsigned lead = byte(i);
-  const std::size_t size = lead < 0x80                    ? 1
-                           : lead >= 0xC2 && lead <= 0xDF ? 2
-                           : lead >= 0xE0 && lead <= 0xEF ? 3
-                           : lead >= 0xF0 && lead <= 0xF4 ? 4
-                                                          : 0;
-  char32_t c = size == 1 ? lead : lead & (0x7FU >> size);
-  bool right = size != 0;
-  for (std::size_t k = 1; k < size; ++k) {
-    right = right && (byte(i + k) & 0xC0) == 0x80;
-    c = c << 6 | (byte(i + k) & 0x3F);
-  }
-  constexpr std::array<char32_t, 5> least = {0, 0, 0x80, 0x800, 0x10000};
-  if (!right || c < least[size] || (c >= 0xD800 && c < 0xE000) || c > 0x10FFFF) {
-    ++i;
-    return not_utf8;
-  }
-  i += size;
-  return c;
-}
-
-bool is_control(char32_t c) { return c < 0x20 || (c >= 0x7F && c < 0xA0); }
 
 std::string hex(std::uint32_t value, int digits) {
   std::array<char, 16> buffer{};
@@ -51,41 +23,81 @@ std::string hex(std::uint32_t value, int digits) {
   return text;
 }
 
-Error unprintable(std::string_view text, std::size_t at, char32_t c, std::string_view field) {
+/// `part` of the text is the character `c`.
+Error unprintable(std::string_view part, char32_t c, std::string_view field) {
   std::string what;
   if (c == not_utf8)
-    what = "the byte 0x" + hex(static_cast<unsigned char>(text[at]), 2) + ", which is not UTF-8";
+    what = "the byte 0x" + hex(static_cast<unsigned char>(part[0]), 2) + ", which is not UTF-8";
   else if (is_control(c))
     what = "the control character U+" + hex(c, 4);
-  else {
-    std::size_t end = at;
-    next_character(text, end);
-    what = "the character \"" + std::string(text.substr(at, end - at)) + "\" (U+" + hex(c, 4) +
+  else
+    what = "the character \"" + std::string(part) + "\" (U+" + hex(c, 4) +
            "), which the report's fonts do not have";
-  }
   return Error{std::string(field) + ": printable text was expected, found " + what};
+}
+
+struct Box {
+  int left, right, low, high;  ///< 1/1000 of the font size
+};
+
+Box box_of(const Font& font, std::uint16_t glyph) {
+  const FontReader r(font.bytes);
+  const std::size_t head = *r.table("head");
+  const std::size_t at = Outlines(r, head, *r.table("loca"), *r.table("glyf")).begin(glyph);
+  const auto side = [&](std::size_t k) { return r.s16(at + k) * 1000 / font.units; };
+  return {side(2), side(6), side(4), side(8)};
+}
+
+/// An accent centred above the letter before it; it takes no room.
+Glyph accent_over(const Font& font, std::uint16_t letter, std::uint16_t accent) {
+  constexpr int gap = 50;  // as that of the fonts' own letters with an accent
+  const Box below = box_of(font, letter), above = box_of(font, accent);
+  Glyph out{accent, 0, false, false};
+  out.shift = static_cast<std::int16_t>((below.left + below.right - above.left - above.right) / 2 -
+                                        font.advance[letter]);
+  out.rise = static_cast<std::int16_t>(below.high + gap - above.low);
+  return out;
+}
+
+Glyph glyph_of(char32_t c, const Font& font, const Font& wide) {
+  if (c == not_utf8 || is_control(c)) return {0, 0, false, false};
+  if (const std::uint16_t id = font.glyph(c); id != 0) {
+    const bool space = c == U' ';
+    return {id, font.advance[id], space, space || c == U'-' || c == U'\u2013'};
+  }
+  const std::uint16_t id = wide.glyph(c);
+  const bool space = c == U'\u3000';
+  return {id, id == 0 ? std::uint16_t{0} : wide.advance[id], space, space, true};
 }
 
 }  // namespace
 
-Expected<Glyphs> shape(std::string_view text, const Font& font, std::string_view field) {
+Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold,
+                       std::string_view field) {
+  const Font& font = fonts.weight(bold);
   Glyphs out;
   out.reserve(text.size());
+  char32_t last = 0;
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t at = i;
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const char32_t c = byte < 0x80 ? (++i, byte) : next_character(text, i);
-    const std::uint16_t id = c == not_utf8 || is_control(c) ? 0 : font.glyph(c);
-    if (id == 0) return fail(unprintable(text, at, c, field));
-    const bool space = c == U' ';
-    out.push_back({id, font.advance[id], space, space || c == U'-' || c == U'\u2013'});
+    const char32_t c = next_composed(text, i);
+    Glyph glyph = glyph_of(c, font, fonts.wide);
+    const bool accent = c == acute_above;
+    if (glyph.id == 0 || (accent && !bears_accent(last)))
+      return fail(unprintable(text.substr(at, i - at), c, field));
+    if (accent) glyph = accent_over(font, out.back().id, glyph.id);
+    if (!out.empty() && (glyph.wide || out.back().wide) && !begins_no_line(c) &&
+        !ends_no_line(last))
+      out.back().break_after = true;
+    out.push_back(glyph);
+    last = c;
   }
   return out;
 }
 
 Expected<void> check_text(std::string_view text, const Fonts& fonts, std::string_view field) {
-  for (const Font* font : {&fonts.regular, &fonts.bold})
-    if (auto glyphs = shape(text, *font, field); !glyphs) return fail(glyphs.error());
+  for (const bool bold : {false, true})
+    if (auto glyphs = shape(text, fonts, bold, field); !glyphs) return fail(glyphs.error());
   return {};
 }
 
@@ -93,13 +105,16 @@ std::string visible_text(std::string_view text, const Fonts& fonts) {
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t at = i;
-    const char32_t c = next_character(text, i);
+    const char32_t c = next_composed(text, i);
+    if (std::size_t behind = i; bears_accent(c) && next_character(text, behind) == acute_above)
+      i = behind;
+    const std::string_view part = text.substr(at, i - at);
     if (c == not_utf8)
-      out += "<0x" + hex(static_cast<unsigned char>(text[at]), 2) + ">";
-    else if (is_control(c) || fonts.regular.glyph(c) == 0 || fonts.bold.glyph(c) == 0)
+      out += "<0x" + hex(static_cast<unsigned char>(part[0]), 2) + ">";
+    else if (!check_text(part, fonts, ""))
       out += c == U'\n' || c == U'\t' || c == U'\r' ? " " : "<U+" + hex(c, 4) + ">";
     else
-      out += text.substr(at, i - at);
+      out += part;
   }
   return out;
 }

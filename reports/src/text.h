@@ -12,15 +12,17 @@ namespace nonio::reports {
 
 struct Glyph {
   std::uint16_t id;
-  std::uint16_t advance;  ///< 1/1000 of the font size
-  bool space;             ///< may vanish at the end of a line
-  bool break_after;       ///< a line may end here
+  std::uint16_t advance;             ///< 1/1000 of the font size
+  bool space;                        ///< may vanish at the end of a line
+  bool break_after;                  ///< a line may end here
+  bool wide = false;                 ///< of Fonts::wide
+  std::int16_t shift = 0, rise = 0;  ///< where an accent stands, 1/1000 of the font size
 };
 using Glyphs = std::vector<Glyph>;
 
-/// UTF-8 (NFC) to glyphs. What cannot be printed is an error that names the character and `field`;
-/// nothing is left out in silence.
-Expected<Glyphs> shape(std::string_view text, const Font&, std::string_view field);
+/// UTF-8 to glyphs; letters and their marks are composed (NFC). What cannot be printed is an error
+/// that names the character and `field`; nothing is left out in silence.
+Expected<Glyphs> shape(std::string_view text, const Fonts&, bool bold, std::string_view field);
 
 /// In units of the font size.
 double width_of(const Glyph* begin, const Glyph* end);

@@ -27,7 +27,8 @@ const std::string* Wording::find(std::string_view key) const {
 
 std::string Wording::get(std::string_view key) const {
   const std::string* text = find(key);
-  if (text == nullptr && missing_.empty()) missing_ = key;
+  if (text == nullptr && complaint_.empty())
+    complaint_ = "the key \"" + std::string(key) + "\" is missing";
   return text != nullptr ? *text : std::string();
 }
 
@@ -43,6 +44,9 @@ std::string Wording::get(std::string_view key, Places places) const {
           out += value;
           found = true;
         }
+    if (!found && close != std::string::npos && complaint_.empty())
+      complaint_ = "the key \"" + std::string(key) + "\" has a place that is not known, " +
+                   text.substr(i, close - i + 1);
     if (found)
       i = close + 1;
     else
@@ -60,8 +64,7 @@ std::string Wording::get_or(std::string_view key, std::string otherwise) const {
 Expected<void> Wording::complete() const {
   if (!absent_.empty())
     return fail(Error{"the words of this language are missing", "templates/" + absent_ + ".toml"});
-  if (!missing_.empty())
-    return fail(Error{"the key \"" + missing_ + "\" is missing", "templates/" + file_ + ".toml"});
+  if (!complaint_.empty()) return fail(Error{complaint_, "templates/" + file_ + ".toml"});
   return {};
 }
 

@@ -71,7 +71,7 @@ void put_value(JsonWriter& json, const Value& v, const Results::Analysed& a,
   for (const Conformity& c : conformity)
     if (c.measurement == a.measurement && c.plugin == a.plugin && c.name == v.name) {
       json.member("tolerance", printed(c.tolerance, c.quantity));
-      json.member("decision", to_text(c.decision));
+      json.member("decision", host::to_text(c.decision));
     }
   json.end_object();
 }
@@ -101,6 +101,17 @@ void put_table(JsonWriter& json, const PointTable& table, const char* name, cons
     json.end_object();
   }
   json.end_array();
+}
+
+/// One of each column that has it.
+void put_point_U(JsonWriter& json, const PointTable& points) {
+  const auto has_U = [](const PointTable::Column& c) { return c.U.has_value(); };
+  if (std::none_of(points.columns.begin(), points.columns.end(), has_U)) return;
+  json.key("point_U");
+  json.begin_object();
+  for (const PointTable::Column& c : points.columns)
+    if (c.U) json.member(c.name, printed(*c.U, c.quantity));
+  json.end_object();
 }
 
 void put_series(JsonWriter& json, const std::vector<Series>& all) {
@@ -166,6 +177,7 @@ void put_analysis(JsonWriter& json, const Results::Analysed& a,
   for (const Value& v : a.evaluation.values) put_value(json, v, a, conformity);
   json.end_object();
   put_table(json, a.evaluation.points, "points", "point_units");
+  put_point_U(json, a.evaluation.points);
   put_table(json, a.evaluation.rows, "rows", "row_units");
   put_series(json, a.evaluation.series);
   put_findings(json, a.evaluation.findings, false);
@@ -185,7 +197,7 @@ void put_conformity(JsonWriter& json, const std::vector<Conformity>& all) {
     json.member("name", c.name);
     json.member("tolerance", printed(c.tolerance, c.quantity));
     json.member("unit", unit_of(c.quantity).symbol);
-    json.member("decision", to_text(c.decision));
+    json.member("decision", host::to_text(c.decision));
     put_text(json, "reason", c.reason);
     json.end_object();
   }
@@ -222,6 +234,27 @@ void put_predictions(JsonWriter& json, const std::vector<Prediction>& prediction
     json.end_object();
   }
   json.end_array();
+}
+
+void put_certificate(JsonWriter& json, const std::optional<Certificate>& certificate) {
+  if (!certificate) return;
+  const Issue& issue = certificate->issue;
+  json.key("certificate");
+  json.begin_object();
+  json.member("plugin", certificate->output);
+  json.member("number", issue.number);
+  json.member("date", issue.date);
+  put_text(json, "replaces", issue.replaces);
+  put_text(json, "replaces_date", issue.replaces_date);
+  if (!issue.replaces.empty()) {
+    json.key("changes");
+    json.begin_array();
+    for (const std::string& file : issue.changes) json.value(file);
+    json.end_array();
+  }
+  json.member("readings_sha256", issue.readings_sha256);
+  json.member("templates_sha256", certificate->templates_sha256);
+  json.end_object();
 }
 
 /// What outputs predict, find and note stands once, not with each of their files.
@@ -276,6 +309,7 @@ std::string results_json(const Evaluated& e, const Context& context,
   for (const Results::Analysed& a : e.results.analyses) put_analysis(json, a, e.results.conformity);
   json.end_array();
   put_conformity(json, e.results.conformity);
+  put_certificate(json, e.certificate);
   put_files(json, e.results.outputs, files);
   put_tables(json, e.results.outputs);
   put_notes(json, e.results.notes);

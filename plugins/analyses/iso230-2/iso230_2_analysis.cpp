@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // ISO 230-2: accuracy and repeatability of positioning of a linear or rotary axis.
+#include <cmath>
+
 #include "nonio/math/axis_analysis.h"
 #include "nonio/math/iso230_2.h"
 #include "nonio/sdk/plugin.h"
@@ -30,26 +32,29 @@ void add_values(Evaluation& e, const AxisAnalysis& a, const Iso230Result& r) {
   add_value(e, a, "B_mean", r.B_mean, U.B_mean);
 }
 
+/// U at each target is that of the largest: of a mean that of M, of s that of R = 2 k s.
 PointTable table(const AxisAnalysis& a, const Iso230Result& r) {
+  const Iso230Uncertainty U = iso230_2_uncertainty(a.budget.value_or(Budget{}), a.approaches, r.k);
   PointTable points;
-  const auto column = [&](const char* name, Quantity quantity, auto value_of) {
+  const auto column = [&](const char* name, Quantity quantity, double uncertainty, auto value_of) {
     PointTable::Column c{name, quantity, {}};
     for (const Iso230Point& p : r.points) c.values.push_back(static_cast<double>(value_of(p)));
+    if (a.budget && std::isfinite(uncertainty)) c.U = uncertainty;
     points.columns.push_back(std::move(c));
   };
   using P = Iso230Point;
-  column("target", a.position, [](const P& p) { return p.target; });
-  column("mean+", a.deviation, [](const P& p) { return p.mean_plus; });
-  column("mean-", a.deviation, [](const P& p) { return p.mean_minus; });
-  column("mean", a.deviation, [](const P& p) { return p.mean; });
-  column("B", a.deviation, [](const P& p) { return p.B; });
-  column("s+", a.deviation, [](const P& p) { return p.s_plus; });
-  column("s-", a.deviation, [](const P& p) { return p.s_minus; });
-  column("R+", a.deviation, [](const P& p) { return p.R_plus; });
-  column("R-", a.deviation, [](const P& p) { return p.R_minus; });
-  column("R", a.deviation, [](const P& p) { return p.R; });
-  column("n+", Quantity::count, [](const P& p) { return p.n_plus; });
-  column("n-", Quantity::count, [](const P& p) { return p.n_minus; });
+  column("target", a.position, NAN, [](const P& p) { return p.target; });
+  column("mean+", a.deviation, U.M, [](const P& p) { return p.mean_plus; });
+  column("mean-", a.deviation, U.M, [](const P& p) { return p.mean_minus; });
+  column("mean", a.deviation, U.M, [](const P& p) { return p.mean; });
+  column("B", a.deviation, U.B, [](const P& p) { return p.B; });
+  column("s+", a.deviation, U.R_plus / (2.0 * r.k), [](const P& p) { return p.s_plus; });
+  column("s-", a.deviation, U.R_minus / (2.0 * r.k), [](const P& p) { return p.s_minus; });
+  column("R+", a.deviation, U.R_plus, [](const P& p) { return p.R_plus; });
+  column("R-", a.deviation, U.R_minus, [](const P& p) { return p.R_minus; });
+  column("R", a.deviation, U.R, [](const P& p) { return p.R; });
+  column("n+", Quantity::count, NAN, [](const P& p) { return p.n_plus; });
+  column("n-", Quantity::count, NAN, [](const P& p) { return p.n_minus; });
   return points;
 }
 

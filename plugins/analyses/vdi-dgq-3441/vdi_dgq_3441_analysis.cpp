@@ -28,17 +28,19 @@ void add_values(Evaluation& e, const AxisAnalysis& a, const VdiResult& r) {
 }
 
 PointTable table(const AxisAnalysis& a, const VdiResult& r) {
+  const VdiUncertainty U = vdi3441_uncertainty(a.budget.value_or(Budget{}), a.approaches);
   PointTable points;
-  const auto column = [&](const char* name, Quantity quantity, auto value_of) {
+  const auto column = [&](const char* name, Quantity quantity, double uncertainty, auto value_of) {
     PointTable::Column c{name, quantity, {}};
     for (const VdiPoint& p : r.points) c.values.push_back(value_of(p));
+    if (a.budget && std::isfinite(uncertainty)) c.U = uncertainty;
     points.columns.push_back(std::move(c));
   };
-  column("target", a.position, [](const VdiPoint& p) { return p.target; });
-  column("mean", a.deviation, [](const VdiPoint& p) { return p.mean; });
-  column("S", a.deviation, [](const VdiPoint& p) { return p.S; });
-  column("U", a.deviation, [](const VdiPoint& p) { return p.U; });
-  column("Ps", a.deviation, [](const VdiPoint& p) { return p.Ps; });
+  column("target", a.position, NAN, [](const VdiPoint& p) { return p.target; });
+  column("mean", a.deviation, U.Pa, [](const VdiPoint& p) { return p.mean; });
+  column("S", a.deviation, U.Ps_max / 6.0, [](const VdiPoint& p) { return p.S; });
+  column("U", a.deviation, U.U_max, [](const VdiPoint& p) { return p.U; });
+  column("Ps", a.deviation, U.Ps_max, [](const VdiPoint& p) { return p.Ps; });
   return points;
 }
 

@@ -3,7 +3,6 @@
 // The report of a campaign as a PDF, for people. What it says and shows is in templates/.
 #include "nonio/sdk/plugin.h"
 
-#include "nonio/reports/text.h"
 #include "report.h"
 
 namespace nonio::pdf_report {
@@ -18,54 +17,14 @@ void prepare(const Templates& templates) {
     (void)pages::fonts_of(templates, *look);
 }
 
-/// What the manifest brings, before it is lost in sentences: by key, so that the host can say
-/// where.
-Expected<void> check_texts(const Campaign& c, const reports::Fonts& fonts) {
-  const Machine& m = c.machine;
-  const Instrument& i = c.instrument;
-  const Laboratory& l = c.laboratory;
-  std::vector<std::pair<std::string, std::string>> texts = {
-      {"campaign.customer", c.customer},
-      {"campaign.site", c.site},
-      {"campaign.operator", c.operator_name},
-      {"machine.maker", m.maker},
-      {"machine.model", m.model},
-      {"machine.serial", m.serial},
-      {"instrument.maker", i.maker},
-      {"instrument.model", i.model},
-      {"instrument.serial", i.serial},
-      {"instrument.certificate", i.certificate},
-      {"laboratory.name", l.name},
-      {"laboratory.address", l.address},
-      {"laboratory.country", l.country},
-      {"laboratory.accreditation", l.accreditation},
-      {"laboratory.authoriser", l.authoriser}};
-  for (const Axis& a : m.axes) {
-    texts.emplace_back("machine.axes." + a.name, a.name);
-    for (const auto& [name, limit] : a.tolerance)
-      texts.emplace_back("machine.axes." + a.name, name);
-  }
-  for (const Measurement& one : c.measurements) {
-    const std::string key = "measurement." + one.id + ".";
-    texts.emplace_back(key + "id", one.id);
-    texts.emplace_back(key + "axis", one.axis);
-    texts.emplace_back(key + "lateral", one.lateral);
-  }
-  for (const auto& [key, text] : texts)
-    if (auto printable = reports::check_text(text, fonts, key); !printable) {
-      printable.error().key = key;
-      return printable;
-    }
-  return {};
-}
-
 Expected<OutputResult> write(const OutputInput& in) {
   const std::string language = in.options.text("language", "en");
   const auto look = look_of(in.templates, in.options.text("template", default_template));
   if (!look) return fail(look.error());
   const auto fonts = pages::fonts_of(in.templates, *look);
   if (!fonts) return fail(fonts.error());
-  if (const auto sound = check_texts(in.campaign, **fonts); !sound) return fail(sound.error());
+  if (const auto sound = pages::check_texts(in.campaign, **fonts); !sound)
+    return fail(sound.error());
   const Wording words(in.templates, language, {"results", "report"}),
       pictures(in.templates, language, {"pictures"});
   const reports::Document document = compose({{in, *look, words, **fonts}, pictures});
@@ -77,6 +36,10 @@ Expected<OutputResult> write(const OutputInput& in) {
   result.artifacts.push_back({language == "en" ? "report.pdf" : "report-" + language + ".pdf",
                               std::move(*bytes), in.options.flag("sign")});
   return result;
+}
+
+std::vector<Error> check_templates(const Templates& templates) {
+  return pages::check_templates(templates, "report", look_of);
 }
 
 }  // namespace
@@ -93,6 +56,7 @@ NONIO_PLUGIN(registry) {
        {"sign", false, "", "Have it signed with the key of [signing] in site.toml."}}};
   output.stage = nonio::Output::Stage::document;
   output.applies = nonio::pdf_report::applies;
+  output.check_templates = nonio::pdf_report::check_templates;
   output.write = nonio::pdf_report::write;
   output.prepare = nonio::pdf_report::prepare;
   registry.add(std::move(output));

@@ -173,7 +173,7 @@ inline Case simple_case() {
   c.campaign.site = "Torino";
   c.campaign.operator_name = "M. Bianchi";
   c.campaign.date = "2026-11-03";
-  c.campaign.machine = {"Fonderie Po", "FP 12", "0417", "gantry", "siemens-840d", {}};
+  c.campaign.machine = {"Fonderie Po", "FP 12", "0417", "", "", "gantry", "siemens-840d", {}};
   c.campaign.instrument.maker = "Lasertec";
   c.campaign.instrument.model = "LX 80";
   c.campaign.instrument.serial = "55821";

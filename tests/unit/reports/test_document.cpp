@@ -13,10 +13,11 @@ namespace nonio::reports {
 namespace {
 
 std::shared_ptr<const Fonts> fonts() {
-  const Templates templates = fixtures::read_templates(NONIO_TEMPLATES);
+  static const Templates templates = fixtures::read_templates(NONIO_TEMPLATES);
   const std::string regular = "fonts/LiberationSans-Regular.ttf",
-                    bold = "fonts/LiberationSans-Bold.ttf";
-  auto fonts = shared_fonts(templates.files.at(regular), regular, templates.files.at(bold), bold);
+                    bold = "fonts/LiberationSans-Bold.ttf", wide = "fonts/DroidSansFallback.ttf";
+  auto fonts = shared_fonts({templates.files.at(regular), regular},
+                            {templates.files.at(bold), bold}, {templates.files.at(wide), wide});
   EXPECT_TRUE(fonts) << fonts.error().message;
   return fonts ? *fonts : nullptr;
 }
@@ -94,11 +95,11 @@ TEST(Fonts, ARareCharacterTakesTheWholeFont) {
 }
 
 TEST(Fonts, WhatIsNoFontIsRefused) {
-  EXPECT_FALSE(parse_font("", "x.ttf"));
-  EXPECT_FALSE(parse_font("%PDF-1.7", "x.ttf"));
+  EXPECT_FALSE(parse_font({"", "x.ttf"}));
+  EXPECT_FALSE(parse_font({"%PDF-1.7", "x.ttf"}));
   const std::string whole = fonts()->regular.bytes;
   for (std::size_t size = 0; size < whole.size(); size += 97)
-    if (parse_font(whole.substr(0, size), "x.ttf")) {
+    if (parse_font({std::string_view(whole).substr(0, size), "x.ttf"})) {
       EXPECT_GT(size, whole.size() / 4) << "a font cut to " << size << " bytes was accepted";
     }
 }
@@ -107,16 +108,16 @@ TEST(Text, WhatCannotBePrintedNamesCharacterAndField) {
   struct Line {
     const char *text, *says;
   };
-  const Line lines[] = {{"校准", "\"校\" (U+6821)"}, {"a\tb", "control character U+0009"},
-                        {"a\xffz", "byte 0xFF"},     {"a\xc0\x80", "byte 0xC0"},
-                        {"e\u0301", "U+0301"},       {"\U0001F600", "U+1F600"}};
+  const Line lines[] = {{"กข", "\"ก\" (U+0E01)"}, {"a\tb", "control character U+0009"},
+                        {"a\xffz", "byte 0xFF"},  {"a\xc0\x80", "byte 0xC0"},
+                        {"e\u0323", "U+1EB9"},    {"\U0001F600", "U+1F600"}};
   for (const Line& l : lines) {
     const auto bytes = pdf(of({{Paragraph{l.text}, "campaign.customer"}}), *fonts());
     ASSERT_FALSE(bytes) << l.text;
     EXPECT_NE(bytes.error().message.find(l.says), std::string::npos) << bytes.error().message;
     EXPECT_NE(bytes.error().message.find("campaign.customer"), std::string::npos);
   }
-  EXPECT_EQ(visible_text("a校\xff\n", *fonts()), "a<U+6821><0xFF> ");
+  EXPECT_EQ(visible_text("aก\xff\n", *fonts()), "a<U+0E01><0xFF> ");
 }
 
 TEST(Text, ComesBackAsItWent) {
@@ -294,6 +295,41 @@ TEST(Pdf, TheSameBytesTwice) {
   EXPECT_EQ(one->find("/ID"), std::string::npos);
   document.date = "2026-13-45";  // no date: none is written
   EXPECT_TRUE(pdf(document, *f));
+}
+
+TEST(Pdf, KeptForLongItSaysColoursPropertiesAndIdentifier) {
+  Document document = of({{Heading{"Heading"}}, {Paragraph{"text"}}});
+  document.title = "Prüfbericht <7> & \"mehr\"";
+  document.author = "R&D";
+  document.date = "2026-11-03";
+  document.profile = "an ICC profile";
+  const auto one = pdf(document, *fonts()), again = pdf(document, *fonts());
+  ASSERT_TRUE(one && again);
+  EXPECT_EQ(*one, *again);
+  for (const char* says :
+       {"<rdf:li xml:lang=\"x-default\">Prüfbericht &lt;7&gt; &amp; &quot;mehr&quot;</rdf:li>",
+        "<rdf:li>R&amp;D</rdf:li>", "<xmp:CreateDate>2026-11-03T00:00:00Z</xmp:CreateDate>",
+        "<pdf:Producer>Haru", "/Subtype /XML", "/DestOutputProfile ", "/S /GTS_PDFA1"})
+    EXPECT_EQ(count(*one, says), 1U) << says;
+  EXPECT_EQ(one->find("pdfaid"), std::string::npos);
+  const auto identifier = [](const std::string& bytes) {
+    const std::size_t at = bytes.find("/ID [");
+    return at == std::string::npos ? "" : bytes.substr(at, bytes.find(']', at) - at);
+  };
+  const std::string id = identifier(*one);
+  ASSERT_GE(id.size(), 2 * 34U);
+  EXPECT_EQ(id.substr(id.find('<'), 34), id.substr(id.rfind('<'), 34));
+  document.blocks.push_back({Paragraph{"more"}});
+  EXPECT_NE(identifier(*pdf(document, *fonts())), id);
+}
+
+TEST(Pdf, ALabelIsCutBetweenCharacters) {
+  Document document = of({{Paragraph{"text"}}});
+  for (int i = 0; i < 1500; ++i) document.title += "é";
+  document.profile = "an ICC profile";
+  const auto bytes = pdf(document, *fonts());
+  ASSERT_TRUE(bytes);
+  EXPECT_EQ(count(*bytes, "é"), 999U) << "after the letter T 1999 bytes are left";
 }
 
 }  // namespace

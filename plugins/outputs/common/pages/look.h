@@ -13,9 +13,10 @@ namespace nonio::pages {
 struct Look {
   std::vector<std::string> blocks, measurement, plots;
   int plots_per_row = 2;
-  std::string regular, bold;  ///< names of the font files
-  std::string logo, mark;     ///< pictures: of the laboratory, of its accreditation; may be empty
-  double logo_height = 0.0;   ///< pt
+  std::string regular, bold, wide;  ///< names of the font files; `wide` may be empty
+  std::string logo, mark;    ///< pictures: of the laboratory, of its accreditation; may be empty
+  std::string profile;       ///< ICC profile of sRGB; may be empty
+  double logo_height = 0.0;  ///< pt
   reports::Style style;
 };
 
@@ -25,7 +26,7 @@ Expected<Look> read_look(const Templates&, const std::string& name,
                          const std::vector<std::string>& blocks,
                          const std::vector<std::string>& measurement);
 
-/// The template's two fonts, parsed and compressed once in a process.
+/// The template's fonts, parsed and compressed once in a process.
 Expected<std::shared_ptr<const reports::Fonts>> fonts_of(const Templates&, const Look&);
 
 }  // namespace nonio::pages

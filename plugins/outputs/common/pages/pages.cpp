@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "nonio/reports/number.h"
+#include "nonio/reports/text.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::pages {
@@ -171,6 +173,124 @@ std::vector<Measured> measured(const OutputInput& in) {
     out.push_back(std::move(m));
   }
   return out;
+}
+
+Expected<void> check_texts(const Campaign& c, const Fonts& fonts) {
+  const Machine& m = c.machine;
+  const Instrument& i = c.instrument;
+  const Laboratory& l = c.laboratory;
+  const CertificateTexts& t = c.certificate;
+  std::vector<std::pair<std::string, std::string>> texts = {
+      {"campaign.customer", c.customer},
+      {"campaign.customer_address", c.customer_address},
+      {"campaign.site", c.site},
+      {"campaign.operator", c.operator_name},
+      {"machine.description", m.description},
+      {"machine.condition", m.condition},
+      {"machine.maker", m.maker},
+      {"machine.model", m.model},
+      {"machine.serial", m.serial},
+      {"instrument.maker", i.maker},
+      {"instrument.model", i.model},
+      {"instrument.serial", i.serial},
+      {"instrument.certificate", i.certificate},
+      {"laboratory.name", l.name},
+      {"laboratory.address", l.address},
+      {"laboratory.country", l.country},
+      {"laboratory.accreditation", l.accreditation},
+      {"laboratory.authoriser", l.authoriser},
+      {"laboratory.contact", l.contact},
+      {"certificate.procedure", t.procedure},
+      {"certificate.deviations", t.deviations},
+      {"certificate.conditions", t.conditions},
+      {"certificate.opinions", t.opinions},
+      {"certificate.amendment", t.amendment}};
+  for (const auto& [language, title] : t.title) texts.emplace_back("certificate.title", title);
+  for (const Axis& a : m.axes) {
+    texts.emplace_back("machine.axes." + a.name, a.name);
+    for (const auto& [name, limit] : a.tolerance)
+      texts.emplace_back("machine.axes." + a.name, name);
+  }
+  for (const Measurement& one : c.measurements) {
+    const std::string key = "measurement." + one.id + ".";
+    texts.emplace_back(key + "id", one.id);
+    texts.emplace_back(key + "axis", one.axis);
+    texts.emplace_back(key + "lateral", one.lateral);
+  }
+  for (const auto& [key, text] : texts)
+    if (auto printable = check_text(text, fonts, key); !printable) {
+      printable.error().key = key;
+      return printable;
+    }
+  return {};
+}
+
+namespace {
+
+/// The places of a text, "{name}", each once, in order.
+std::set<std::string> places_of(const std::string& text) {
+  std::set<std::string> out;
+  for (std::size_t open = text.find('{'); open != std::string::npos;
+       open = text.find('{', open + 1))
+    if (const std::size_t close = text.find('}', open); close != std::string::npos)
+      out.insert(text.substr(open, close - open + 1));
+  return out;
+}
+
+/// Of one file in one language against the same in English.
+void check_file(const Settings& words, const Settings& english, const Fonts& fonts,
+                const std::string& file, std::vector<Error>& errors) {
+  for (const auto& [key, value] : english.values)
+    if (!words.has(key)) errors.push_back(Error{"the key \"" + key + "\" is missing", file});
+  for (const auto& [key, value] : words.values) {
+    const auto* text = std::get_if<std::string>(&value);
+    const auto known = english.values.find(key);
+    if (known == english.values.end() || text == nullptr)
+      errors.push_back(Error{
+          "the key \"" + key + "\" " + (text == nullptr ? "should be a text" : "is not known"),
+          file});
+    else if (const auto* wanted = std::get_if<std::string>(&known->second);
+             wanted != nullptr && places_of(*wanted) != places_of(*text))
+      errors.push_back(
+          Error{"the places in braces of \"" + key + "\" are others than in English", file});
+    else if (auto printable = check_text(*text, fonts, key); !printable)
+      errors.push_back(Error{printable.error().message, file});
+  }
+}
+
+void check_words(const Templates& templates, const std::string& name, const Fonts& fonts,
+                 std::vector<Error>& errors) {
+  for (const auto& [table, settings] : templates.tables) {
+    if (!table.starts_with("words/") || !table.ends_with("/" + name)) continue;
+    const std::string language = table.substr(6, table.size() - 7 - name.size());
+    for (const std::string& file : {std::string("results"), name}) {
+      const auto english = templates.tables.find("words/en/" + file);
+      const auto words = templates.tables.find("words/" + language + "/" + file);
+      const std::string path = "templates/words/" + language + "/" + file + ".toml";
+      if (english == templates.tables.end() || words == templates.tables.end())
+        errors.push_back(Error{"the words of this language are missing", path});
+      else
+        check_file(words->second, english->second, fonts, path, errors);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Error> check_templates(const Templates& templates, const std::string& name,
+                                   Expected<Look> (*look_of)(const Templates&,
+                                                             const std::string&)) {
+  std::vector<Error> errors;
+  for (const auto& [table, settings] : templates.tables) {
+    if (table != name && !table.starts_with(name + "-")) continue;
+    const auto look = look_of(templates, table);
+    const auto fonts = look ? fonts_of(templates, *look) : fail(look.error());
+    if (!fonts)
+      errors.push_back(fonts.error());
+    else if (table == name)
+      check_words(templates, name, **fonts, errors);
+  }
+  return errors;
 }
 
 }  // namespace nonio::pages

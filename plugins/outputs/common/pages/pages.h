@@ -65,6 +65,16 @@ void add_results(const Source&, const Measured&, Blocks&);
 void add_targets(const Source&, const Measured&, Blocks&);
 void add_plots(const Source&, const Measured&, Blocks&);
 
+/// What manifest and site bring, before it is lost in sentences: an error names the key, so that
+/// the host can say where it stands.
+Expected<void> check_texts(const Campaign&, const reports::Fonts&);
+
+/// What is wrong with templates/<name>*.toml, and with the words of every language that has
+/// words/<language>/<name>.toml, against English: keys, places in braces, letters that the fonts do
+/// not have.
+std::vector<Error> check_templates(const Templates&, const std::string& name,
+                                   Expected<Look> (*look_of)(const Templates&, const std::string&));
+
 /// Diagonals before and after, and their plane with its errors exaggerated.
 void add_diagonals(const Source&, const Measured&, std::vector<reports::Plot>&);
 /// The volume of step diagonals as a box of wire, its errors exaggerated.

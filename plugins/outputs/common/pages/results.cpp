@@ -236,6 +236,29 @@ std::optional<double> common_count(const Joined& joined) {
 
 }  // namespace
 
+namespace {
+
+/// The column as its cells, then its U where a certificate wants it.
+std::vector<std::string> cells_of(const Source& source, const PointTable::Column& c, bool target,
+                                  std::size_t rows) {
+  const int decimals = target                          ? decimals_for(c.values, c.quantity, 4)
+                       : c.quantity == Quantity::count ? 0
+                                                       : 3;
+  const bool by_U = source.certificate && c.U;
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < rows; ++i)
+    out.push_back(i >= c.values.size() ? "–"
+                  : by_U ? printed_result(c.values[i], c.U, c.quantity, source.language()).value
+                         : printed_number(c.values[i], c.quantity, decimals, source.language()));
+  if (source.certificate)
+    out.push_back(target ? source.words.get("targets.uncertainty")
+                  : by_U ? printed_result(0.0, c.U, c.quantity, source.language()).U
+                         : "");
+  return out;
+}
+
+}  // namespace
+
 void add_targets(const Source& source, const Measured& m, Blocks& blocks) {
   const Wording& w = source.words;
   for (const Joined& joined : joined_points(m)) {
@@ -245,27 +268,22 @@ void add_targets(const Source& source, const Measured& m, Blocks& blocks) {
     if (n)
       table.title += " (" + w.get("targets.number") + " = " +
                      printed_number(*n, Quantity::count, 0, source.language()) + ")";
-    std::vector<const PointTable::Column*> shown;
-    std::vector<int> decimals;
+    std::vector<std::vector<std::string>> columns;
     for (const auto* c : joined.columns) {
-      if ((n && c->quantity == Quantity::count) || all_missing(*c)) continue;
-      const bool target = c == joined.columns.front();
+      const bool target = c == joined.columns.front(), count = c->quantity == Quantity::count;
+      if ((n && count) || all_missing(*c)) continue;
+      if (source.certificate && !target && !count && !c->U) continue;
       const std::string title = target && c->name == "target"
                                     ? w.get("targets.target")
                                     : w.get_or("column." + c->name, symbol(c->name));
       table.columns.push_back({title, unit_text(c->quantity), true});
-      shown.push_back(c);
-      decimals.push_back(target                           ? decimals_for(c->values, c->quantity, 4)
-                         : c->quantity == Quantity::count ? 0
-                                                          : 3);
+      columns.push_back(cells_of(source, *c, target, joined.base->columns.front().values.size()));
     }
-    for (std::size_t i = 0; i < joined.base->columns.front().values.size(); ++i) {
+    if (source.certificate && columns.size() < 2) continue;
+    for (std::size_t i = 0; i < columns.front().size(); ++i) {
       std::vector<Table::Cell> row;
-      for (std::size_t k = 0; k < shown.size(); ++k)
-        row.push_back({i < shown[k]->values.size()
-                           ? printed_number(shown[k]->values[i], shown[k]->quantity, decimals[k],
-                                            source.language())
-                           : "–"});
+      const bool last = source.certificate && i + 1 == columns.front().size();
+      for (const auto& column : columns) row.push_back({column[i], last});
       table.rows.push_back(std::move(row));
     }
     blocks.push_back({std::move(table), "targets of measurement " + m.measurement.id});

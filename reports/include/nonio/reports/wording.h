@@ -13,7 +13,8 @@
 namespace nonio::reports {
 
 /// The words of templates/words/<language>/<file>.toml, of the first of some files that has them. A
-/// word that is missing is remembered, and the document then fails.
+/// word that is missing, or that has a place nobody fills, is remembered, and the document then
+/// fails.
 class Wording {
  public:
   using Places = std::initializer_list<std::pair<std::string_view, std::string_view>>;
@@ -34,7 +35,7 @@ class Wording {
   std::vector<const Settings*> settings_;
   std::string language_, file_;  ///< of the last file, where a missing word is looked for
   std::string absent_;           ///< a file that is not there
-  mutable std::string missing_;
+  mutable std::string complaint_;
 };
 
 /// Units and signs of a plugin's sentence as they are printed: "-8.1 um" becomes "−8.1 µm".

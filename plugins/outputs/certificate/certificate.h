@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pages.h"
+
+/// The document that goes to the customer: what ISO/IEC 17025:2017, 7.8 asks for.
+namespace nonio::certificate {
+
+using pages::Blocks;
+using pages::Source;
+
+/// The name of an analysis as a method, with the edition and k that it used.
+std::string method_of(const Source&, const Results::Analysed&);
+
+/// Where the conditions of a measurement stand in its readings, degC, hPa, %: lowest and highest.
+struct Range {
+  double low, high;
+  bool known() const { return low <= high; }
+};
+struct Conditions {
+  Range material, air, pressure, humidity;
+};
+Conditions conditions_of(const std::vector<Observations>&);
+
+/// An analysis whose values a certificate prints.
+bool is_printed(const Results::Analysed&);
+
+/// The title in the document's language: the laboratory's, or that of the words.
+std::string title_of(const Source&);
+
+/// Everything that is missing, as keys with their file.
+std::vector<std::string> lacks(const OutputInput&);
+
+/// What of the template cannot be had without an accreditation: a title that claims one, a mark.
+std::string accredited_claim(const OutputInput&);
+
+Expected<pages::Look> look_of(const Templates&, const std::string& name);
+
+/// The parts, in the language of the source.
+void add_title(const Source&, Blocks&);
+void add_amendment(const Source&, Blocks&);
+void add_parties(const Source&, Blocks&);
+void add_item(const Source&, Blocks&);
+void add_method(const Source&, Blocks&);
+void add_conditions(const Source&, Blocks&);
+void add_conformity(const Source&, Blocks&);
+void add_opinions(const Source&, Blocks&);
+void add_statements(const Source&, Blocks&);
+void add_authority(const Source&, Blocks&);
+
+/// The document in one language.
+reports::Document compose(const Source&);
+
+}  // namespace nonio::certificate
