@@ -2,7 +2,7 @@
 #include <cmath>
 #include <map>
 
-#include "list.h"
+#include "nonio/controllers/list.h"
 
 namespace nonio {
 namespace {

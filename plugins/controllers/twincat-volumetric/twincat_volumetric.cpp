@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <map>
 
-#include "kit.h"
+#include "nonio/controllers/kit.h"
 
 namespace nonio {
 namespace {
