@@ -17,7 +17,7 @@ MAY = {
     "plugins/readers": {"sdk", "math"},
     "plugins/analyses": {"sdk", "math"},
     "plugins/effects": {"sdk", "math"},
-    "plugins/controllers": {"sdk", "math"},
+    "plugins/controllers": {"sdk", "math", "controllers"},
     "plugins/outputs": {"sdk", "math", "reports"},
 }
 # third-party header -> the parts that are its home
