@@ -227,7 +227,8 @@ TEST_F(Certificate, EveryLanguageIsWhole) {
   for (const auto& [name, table] : templates.tables)
     if (name.starts_with("words/") && name.ends_with("/certificate"))
       languages.insert(name.substr(6, 2));
-  EXPECT_TRUE(languages.contains("en") && languages.contains("it"));
+  for (const char* language : {"de", "en", "es", "it", "zh"})
+    EXPECT_TRUE(languages.contains(language)) << language;
   Case c = whole();
   issue.replaces = "2026-0003", issue.replaces_date = "2026-10-01", issue.changes = {"x.csv"};
   decide(c, "iso230-2", "A", 1e-6, Decision::does_not_conform);
@@ -270,6 +271,28 @@ TEST_F(Certificate, ATitleOrMarkOfAccreditationNeedsOne) {
   templates.files["mark.png"] = "x";
   ASSERT_EQ(lacks(c).size(), 1U);
   EXPECT_TRUE(has(lacks(c)[0], "mark.png"));
+}
+
+TEST_F(Certificate, ALogoIsPrintedAndABrokenOneIsAnError) {
+  const auto pictures = [](const std::string& bytes) {
+    return bytes.find("/Subtype /Image") != std::string::npos;
+  };
+  const auto plain = write(whole());
+  ASSERT_TRUE(plain);
+  EXPECT_FALSE(pictures(plain->artifacts.front().bytes));
+  templates.tables["certificate"].values["logo.file"] = std::string("logo.jpg");
+  templates.tables["certificate"].values["logo.height_mm"] = 12.0;
+  EXPECT_TRUE(has(complaint(whole()), "logo.jpg"));
+  templates.files["logo.jpg"] =
+      std::string("\xFF\xD8\xFF\xC0\0\x0B\x08\0\x10\0\x20\x01\x01\x11\0\xFF\xD9", 17);
+  EXPECT_TRUE(output().check_templates(templates).empty());
+  const auto logo = write(whole());
+  ASSERT_TRUE(logo) << logo.error().message;
+  EXPECT_TRUE(pictures(logo->artifacts.front().bytes));
+  templates.files["logo.jpg"] = "broken";
+  EXPECT_TRUE(has(complaint(whole()), "templates/logo.jpg"));
+  ASSERT_EQ(output().check_templates(templates).size(), 1U);
+  EXPECT_EQ(output().check_templates(templates)[0].file, "templates/logo.jpg");
 }
 
 TEST_F(Certificate, WhatTheCustomerStatedIsMarked) {
