@@ -66,7 +66,7 @@ void print_summary(const host::Night& night, const fs::path& out, bool json) {
               << "\n";
   else
     std::cout << done << " done, " << unchanged << " unchanged, " << failed << " failed; "
-              << attention << " ask for attention: " << (out / "summary.txt").string() << "\n";
+              << attention << (attention == 1 ? " asks" : " ask") << " for attention: " << (out / "summary.txt").string() << "\n";
 }
 
 int run(host::RunOptions options, const Common& common) {

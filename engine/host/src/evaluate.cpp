@@ -83,7 +83,9 @@ class CampaignRun {
     const auto& names = campaign ? campaign : site;
     if (!names) {
       for (const Plugin& p : all)
-        if (!p.info.on_request || read_.manifest->options.contains(p.info.name)) out.push_back(&p);
+        if (!p.info.on_request || read_.manifest->options.contains(p.info.name) ||
+            out_.campaign.machine.control == p.info.name)
+          out.push_back(&p);
       return out;
     }
     for (const std::string& name : *names) {

@@ -433,9 +433,7 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   Plugins plugins;
   plugins.load(options.plugin_folders);
   if (!plugins.conflicts().empty()) return refuse(plugins.conflicts().front());
-  for (const PluginFile& f : plugins.files())
-    if (!f.refused.empty())
-      night.notes.push_back("plugin " + f.path.filename().string() + " " + f.refused);
+  for (std::string& note : plugins.refusal_notes()) night.notes.push_back(std::move(note));
   for (const std::string& note : night.notes) events.note(note);
   context.plugins = &plugins;
   context.plugins_sha256 = plugins.digest();

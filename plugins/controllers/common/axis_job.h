@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstddef>
-#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "axes.h"
 #include "nonio/math/compensation.h"
 #include "nonio/math/reversal.h"
 #include "nonio/sdk/plugin.h"
@@ -28,13 +28,13 @@ struct AxisJob {
   std::optional<math::ErrorCurve> turn;      ///< of a rotary axis measured over the whole turn
   bool from_diagonals = false;  ///< positioning from step diagonals: nothing is known of reversal
   math::Reversal reversal;
-  std::map<std::string, double, std::less<>> settings;  ///< of this axis: option `axes`
+  AxisSettings settings;              ///< of this axis: option `axes`
   std::vector<std::string> drift;     ///< ids of the findings that ask for attention
   std::vector<std::string> suspects;  ///< readings: "190.0 mm (3, +)"
   std::vector<std::string> about;     ///< machine, axis, date: plain ASCII lines
 
-  /// What the control adds once its table is loaded; the writer puts it here.
-  std::optional<math::Correction> loaded{};
+  /// What its files are to the control once they are loaded; nothing where it was refused.
+  std::optional<std::vector<LoadedTable>> loaded{};
 
   const math::ErrorCurve& table_curve() const { return turn ? *turn : curve; }
   /// What the control's backlash parameter held while the axis was measured; setting `backlash`.
@@ -59,7 +59,7 @@ bool has_tables(const Campaign&);
 /// option `axes` takes for one axis: "reference" stands for reference_mm and reference_deg, a
 /// name with ':' at its end for a plain number. Findings and notes go to `result`.
 Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
-                                         std::initializer_list<std::string_view> keys,
+                                         const std::vector<std::string_view>& keys,
                                          OutputResult& result);
 
 /// A note about this axis; its words find {axis} and {unit}.
@@ -96,14 +96,6 @@ void predict(const AxisJob& job, const math::Correction& correction, OutputResul
 /// table has it, else its nearest end.
 double reference_position(const AxisJob& job, double first, double last);
 
-/// Printable ASCII on one line, whatever the manifest says.
-std::string plain(std::string_view text);
-/// For file names.
-std::string file_part(std::string_view text);
-/// Fixed decimals, zeros at the end left out down to one.
-std::string decimal(double value, int decimals);
-/// Fixed decimals with a sign in any case.
-std::string signed_decimal(double value, int decimals);
 /// In the axis' unit with it: "12.5 mm".
 std::string with_unit(const AxisJob& job, double si, int decimals);
 /// "8.143 um" or "1.2 arcsec".

@@ -46,11 +46,18 @@ std::vector<CrossJob> cross_jobs(const OutputInput&);
 /// Whether this pitch table and these curves are of one state of the machine.
 bool together(const CrossJob&, const AxisJob&, const Campaign&);
 
-/// What a control adds to axis `second` by the position of axis `first`.
-using Corrections = std::map<std::pair<std::string, std::string>, math::Correction>;
+/// More points than option `max_points` allows are an error.
+Expected<void> fits(const CrossJob&, const Settings& options);
 
-/// Ranges of the lines before, and after with what the control adds; tables that make one of them
-/// worse give a finding.
-void predict_lines(const CrossJob&, const Corrections&, OutputResult& result);
+/// Ranges of the lines before, and after with these tables; tables that make one of them worse
+/// give a finding.
+void predict_lines(const CrossJob&, const std::vector<LoadedTable>&, OutputResult& result);
+
+/// The same with what `parse` makes of these files, and of a volume with the pitch tables beside
+/// them. An error where a curve is not found in the files.
+Expected<void> predict_cross(const CrossJob&, const std::vector<Artifact>&,
+                             Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
+                             const std::vector<AxisJob>& pitch, const OutputInput&,
+                             OutputResult& result);
 
 }  // namespace nonio::controllers

@@ -1,27 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <png.h>
-
 #include "fixtures.h"
 #include "nonio/reports/document.h"
 #include "nonio/reports/picture.h"
 #include "pdf_reader.h"
+#include "png_file.h"
 
 namespace nonio::reports {
 namespace {
 
-std::string png(unsigned width, unsigned height, unsigned format, const std::string& pixels) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = width;
-  image.height = height;
-  image.format = format;
-  png_alloc_size_t size = 0;
-  png_image_write_to_memory(&image, nullptr, &size, 0, pixels.data(), 0, nullptr);
-  std::string out(size, '\0');
-  EXPECT_NE(png_image_write_to_memory(&image, out.data(), &size, 0, pixels.data(), 0, nullptr), 0);
-  out.resize(size);
-  return out;
-}
+using fixtures::png;
 
 /// A frame header and an end, which is what a document needs to know of it.
 std::string jpeg(unsigned width, unsigned height, char components = 3) {
