@@ -30,6 +30,7 @@ void add_templates(CLI::App& verb, Common& common);
 /// Exit status of the verb that was given, once it has run.
 using Outcome = std::optional<int>;
 
+void add_certificates_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_compare_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_explain_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_model_verb(CLI::App& cli, Common& common, Outcome& outcome);

@@ -221,6 +221,7 @@ int main(int argc, char** argv) {
   add_common(*plugins_verb, common);
 
   Outcome outcome;
+  add_certificates_verb(cli, common, outcome);
   add_compare_verb(cli, common, outcome);
   add_explain_verb(cli, common, outcome);
   add_model_verb(cli, common, outcome);

@@ -24,7 +24,20 @@ Inputs data_of(const Evaluated& evaluated, const Context& context) {
   return data;
 }
 
-/// SHA-256 of the files of readings, one behind the other, as they were evaluated.
+/// The register's files in place of what has been made now.
+void take_issued(Evaluated& evaluated) {
+  for (Results::Written& w : evaluated.results.outputs)
+    for (const IssuedFile& f : evaluated.certificate->files) {
+      auto& artifacts = w.result.artifacts;
+      const auto same = std::find_if(artifacts.begin(), artifacts.end(),
+                                     [&](const Artifact& a) { return a.name == f.name; });
+      if (w.plugin == f.output && same != artifacts.end()) *same = {f.name, f.bytes};
+    }
+  remove_unsigned(evaluated.results);
+}
+
+}  // namespace
+
 Expected<std::string> readings_digest(const Inputs& inputs, const fs::path& folder) {
   std::string all;
   const std::string prefix = input_name("");
@@ -40,20 +53,6 @@ Expected<std::string> readings_digest(const Inputs& inputs, const fs::path& fold
   }
   return sha256(all);
 }
-
-/// The register's files in place of what has been made now.
-void take_issued(Evaluated& evaluated) {
-  for (Results::Written& w : evaluated.results.outputs)
-    for (const IssuedFile& f : evaluated.certificate->files) {
-      auto& artifacts = w.result.artifacts;
-      const auto same = std::find_if(artifacts.begin(), artifacts.end(),
-                                     [&](const Artifact& a) { return a.name == f.name; });
-      if (w.plugin == f.output && same != artifacts.end()) *same = {f.name, f.bytes};
-    }
-  remove_unsigned(evaluated.results);
-}
-
-}  // namespace
 
 Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& folder) const {
   auto opened = Register::open(site_, context_.site.numbering);

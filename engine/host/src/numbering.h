@@ -8,6 +8,9 @@
 
 namespace nonio::host {
 
+/// SHA-256 of the files of readings, one behind the other, as they were evaluated.
+Expected<std::string> readings_digest(const Inputs& inputs, const std::filesystem::path& folder);
+
 /// What a night does with the site's register. Every call opens it by itself: no process inherits
 /// it from another.
 class Numbers {

@@ -71,7 +71,7 @@ void put_value(JsonWriter& json, const Value& v, const Results::Analysed& a,
   for (const Conformity& c : conformity)
     if (c.measurement == a.measurement && c.plugin == a.plugin && c.name == v.name) {
       json.member("tolerance", printed(c.tolerance, c.quantity));
-      json.member("decision", to_text(c.decision));
+      json.member("decision", host::to_text(c.decision));
     }
   json.end_object();
 }
@@ -197,7 +197,7 @@ void put_conformity(JsonWriter& json, const std::vector<Conformity>& all) {
     json.member("name", c.name);
     json.member("tolerance", printed(c.tolerance, c.quantity));
     json.member("unit", unit_of(c.quantity).symbol);
-    json.member("decision", to_text(c.decision));
+    json.member("decision", host::to_text(c.decision));
     put_text(json, "reason", c.reason);
     json.end_object();
   }
