@@ -308,6 +308,7 @@ Expected<Laid> lay(const Columns& columns, double width, const Context& context,
   const double room = width - gutter * static_cast<double>(n - 1);
   Canvas canvas;
   double x = 0, height = 0;
+  bool with_next = false;
   for (std::size_t i = 0; i < n; ++i) {
     const double share =
         i < columns.shares.size() ? columns.shares[i] : 1.0 / static_cast<double>(n);
@@ -319,9 +320,10 @@ Expected<Laid> lay(const Columns& columns, double width, const Context& context,
       y += piece.height + piece.gap;
     }
     height = std::max(height, y);
+    with_next = with_next || (!part->pieces.empty() && part->pieces.back().with_next);
     x += room * share + gutter;
   }
-  if (height <= context.page_room) return Laid{{{height, 0, std::move(canvas.ops), false}}};
+  if (height <= context.page_room) return Laid{{{height, 0, std::move(canvas.ops), with_next}}};
   Laid out;
   for (const std::vector<Block>& blocks : columns.parts) {
     auto part = lay_all(blocks, width, context);

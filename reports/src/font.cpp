@@ -112,7 +112,7 @@ std::string subset_name(std::string_view bytes, std::string_view path) {
 
 bool is_common(std::size_t c) {
   constexpr std::u16string_view signs =
-      u"\u2013\u2014\u2018\u2019\u201C\u201D\u2022\u2026"
+      u"\u2013\u2014\u2018\u2019\u201C\u201D\u201E\u2022\u2026"
       u"\u2190\u2191\u2192\u2193\u2212\u2248\u2264\u2265";
   return (c >= 0x20 && c < 0x7F) || (c > 0xA0 && c <= 0xFF) ||
          signs.find(static_cast<char16_t>(c)) != std::u16string_view::npos;
