@@ -17,14 +17,20 @@ void SetText::draw_all(Canvas& canvas, double x, double y, double width, double 
     draw(canvas, i, x, y - leading() * static_cast<double>(i), width, align);
 }
 
-void note_glyphs(const Context& context, const Glyphs& glyphs, bool bold) {
+void note_glyphs(const Context& context, Glyphs& glyphs, bool bold) {
   const std::vector<char>& common = context.fonts.weight(bold).common;
-  for (const Glyph& g : glyphs)
+  auto& [common_only, wide, numbers, pictures] = context.used;
+  for (Glyph& g : glyphs)
     if (g.wide) {
-      context.used.wide.resize(context.fonts.wide.common.size());
-      context.used.wide[g.id] = 1;
+      if (wide.empty()) wide.push_back(0);
+      numbers.resize(context.fonts.wide.common.size());
+      if (numbers[g.id] == 0) {
+        numbers[g.id] = static_cast<std::uint16_t>(wide.size());
+        wide.push_back(g.id);
+      }
+      g.id = numbers[g.id];
     } else if (common[g.id] == 0) {
-      context.used.common_only = false;
+      common_only = false;
     }
 }
 
