@@ -152,7 +152,7 @@ bool same_font(const Font& font, FontFile file) {
 }  // namespace
 
 Embedded embedded_part(const Font& font, const std::vector<std::uint16_t>& glyphs) {
-  constexpr int level = 6;
+  constexpr int level = 1;  // as pages
   const std::string part = font_part(font.bytes, glyphs);
   return part.empty() ? Embedded{}
                       : embedded(font, part, Numbers(glyphs.begin(), glyphs.end()), level);
