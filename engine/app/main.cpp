@@ -223,6 +223,9 @@ int main(int argc, char** argv) {
   Outcome outcome;
   add_certificates_verb(cli, common, outcome);
   add_compare_verb(cli, common, outcome);
+  add_controllers_verb(cli, common, outcome);
+  add_diff_verb(cli, common, outcome);
+  add_apply_verb(cli, common, outcome);
   add_explain_verb(cli, common, outcome);
   add_model_verb(cli, common, outcome);
   add_plan_verb(cli, common, outcome);

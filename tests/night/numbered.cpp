@@ -72,5 +72,7 @@ NONIO_PLUGIN(registry) {
   output.applies = [](const Campaign&) { return true; };
   output.write = write;
   output.lacks = lacks;
+  registry.add(output);
+  output.info.name = "numbered-too";
   registry.add(std::move(output));
 }

@@ -33,7 +33,7 @@ void take_issued(Evaluated& evaluated) {
                                      [&](const Artifact& a) { return a.name == f.name; });
       if (w.plugin == f.output && same != artifacts.end()) *same = {f.name, f.bytes};
     }
-  remove_unsigned(evaluated.results);
+  remove_unsigned(evaluated);
 }
 
 }  // namespace
@@ -73,11 +73,7 @@ Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& 
 }
 
 Expected<void> Numbers::issue(Evaluated& evaluated) const {
-  if (!evaluated.certificate) return {};
-  if (evaluated.status == "failed") {
-    if (!evaluated.certificate->issued) evaluated.certificate.reset();
-    return {};
-  }
+  if (!evaluated.certificate || evaluated.status == "failed") return {};
   if (evaluated.certificate->issued) {
     take_issued(evaluated);
     note_differences(evaluated);

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "list.h"
+#include "nonio/controllers/list.h"
 
 namespace nonio {
 namespace {

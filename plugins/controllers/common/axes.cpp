@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "axes.h"
+#include "nonio/controllers/axes.h"
 
 #include <set>
 
-#include "text.h"
+#include "nonio/controllers/text.h"
 
 namespace nonio::controllers {
 namespace {

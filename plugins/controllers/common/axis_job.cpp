@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "axis_job.h"
+#include "nonio/controllers/axis_job.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "nonio/controllers/text.h"
 #include "nonio/math/axis_findings.h"
 #include "nonio/sdk/format.h"
 #include "series_jobs.h"
-#include "text.h"
 
 namespace nonio::controllers {
 namespace {

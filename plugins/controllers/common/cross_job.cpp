@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cross_job.h"
+#include "nonio/controllers/cross_job.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "kit.h"
+#include "nonio/controllers/kit.h"
 #include "nonio/math/loaded_table.h"
 
 namespace nonio::controllers {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kit.h"
+#include "nonio/controllers/kit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,6 +79,9 @@ Expected<void> place_points(Sheet& s, const Writer& w) {
     s.position = listed(s.job, w, t);
     if (t.points == 0 || s.position.size() <= t.points) return {};
   }
+  if (w.fixed_step > 0.0 && wished_step(s.job, s.input.options) != 0.0)
+    return fail("axis " + s.job.axis + ": this control has its points every " +
+                with_unit(s.job, w.fixed_step, 4) + ", step_mm has no say");
   const math::GridRule rule = rule_of(s.job, s.input, w, t, s.reference);
   const auto grid = math::choose_grid(wanted(s.job, w), rule);
   if (!grid) return tl::unexpected<Error>(grid.error());

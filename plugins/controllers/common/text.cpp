@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "text.h"
+#include "nonio/controllers/text.h"
 
 #include <algorithm>
 #include <charconv>

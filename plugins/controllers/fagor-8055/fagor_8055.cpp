@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "list.h"
+#include "nonio/controllers/list.h"
 
 namespace nonio {
 namespace {

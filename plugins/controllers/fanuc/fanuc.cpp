@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kit.h"
+#include "nonio/controllers/kit.h"
 #include "nonio/sdk/format.h"
 #include "parse.h"
 

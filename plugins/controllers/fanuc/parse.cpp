@@ -6,9 +6,9 @@
 #include <map>
 #include <numbers>
 
-#include "axes.h"
+#include "nonio/controllers/axes.h"
+#include "nonio/controllers/text.h"
 #include "nonio/math/loaded_table.h"
-#include "text.h"
 
 namespace nonio::fanuc {
 namespace {

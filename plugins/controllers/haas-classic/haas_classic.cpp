@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "list.h"
+#include "nonio/controllers/list.h"
 
 namespace nonio {
 namespace {
@@ -32,10 +32,8 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
 Expected<std::vector<Artifact>> files(const controllers::Sheet& s) {
   if (s.grid.last() > inch / 4.0)
     return fail("axis " + s.job.axis +
-                ": the table lies at and below machine zero, the targets "
-                "reach " +
-                controllers::with_unit(s.job, s.job.curve.position.back(), 4) +
-                ": set reference_mm to machine zero, or measure in machine coordinates");
+                ": the table lies at and below machine zero, the targets do "
+                "not: measure in machine coordinates");
   return controllers::list_file(s, "haas-classic");
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "kit.h"
+#include "nonio/controllers/kit.h"
 #include "parse.h"
 
 namespace nonio::heidenhain {

@@ -2,11 +2,12 @@
 #include "parse.h"
 
 #include <cmath>
+#include <map>
 #include <optional>
 
-#include "axes.h"
+#include "nonio/controllers/axes.h"
+#include "nonio/controllers/text.h"
 #include "nonio/math/loaded_table.h"
-#include "text.h"
 
 namespace nonio::heidenhain {
 namespace {
@@ -124,23 +125,27 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   const auto axes = controllers::known_axes(in);
   if (!axes) return tl::unexpected<Error>(axes.error());
   std::vector<LoadedTable> tables;
-  std::optional<double> backlash;
+  std::map<std::string, double> backlash;  // by axis; "": whatever axis it is
   const auto most = static_cast<std::size_t>(in.options.integer("max_points", 256));
   for (const Artifact& f : in.files) {
     const Lines lines = controllers::lines_of(f.bytes);
     const bool is_table = !lines.empty() && lines[0].rfind("BEGIN ", 0) == 0;
     if (is_table && lines[0].rfind("BEGIN CONFIG.CMA", 0) == 0) continue;
     for (const std::string_view line : lines)
-      if (const auto v = after(line, "backLash = "); v && !is_table) backlash = *v;
-    if (!is_table && !backlash && in.files.size() == 1) return fail("not a .COM table");
+      if (const auto v = after(line, "backLash = "); v && !is_table)
+        backlash[f.name.empty() ? "" : axis_of_file(*axes, f.name, "heidenhain-tnc-").name] = *v;
+    if (!is_table && in.files.size() == 1) return fail("not a .COM table");
     if (!is_table) continue;
     auto read = com(f.bytes, *axes, most);
     if (!read) return read;
     tables.insert(tables.end(), read->begin(), read->end());
   }
-  for (LoadedTable& t : tables)
-    if (t.output == t.input.front() && backlash)
-      t.backlash = *backlash / (t.rotary ? deg_per_rad : 1e3);
+  for (LoadedTable& t : tables) {
+    auto it = backlash.find(t.output);
+    if (it == backlash.end()) it = backlash.find("");
+    if (t.output == t.input.front() && it != backlash.end())
+      t.backlash = it->second / (t.rotary ? deg_per_rad : 1e3);
+  }
   return tables;
 }
 

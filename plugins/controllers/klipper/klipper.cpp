@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "skew.h"
+#include "nonio/controllers/skew.h"
 
 namespace nonio {
 namespace {

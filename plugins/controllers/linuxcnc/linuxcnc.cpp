@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "kit.h"
+#include "nonio/controllers/kit.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <map>
 
-#include "list.h"
+#include "nonio/controllers/list.h"
 
 namespace nonio {
 namespace {
@@ -64,10 +65,11 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   const auto axes = controllers::known_axes(in);
   if (!axes) return tl::unexpected<Error>(axes.error());
   std::vector<LoadedTable> tables;
-  std::optional<double> backlash;
+  std::map<std::string, double> backlash;
   for (const Artifact& f : in.files) {
     if (f.bytes.rfind('#', 0) != 0) {  // the words beside it
-      backlash = controllers::parameter_in(f.bytes, declared().backlash);
+      if (const auto v = controllers::parameter_in(f.bytes, declared().backlash))
+        backlash[axis_of_file(*axes, f.name, "pmac-").name] = *v;
       continue;
     }
     const auto w = controllers::words_of(f.bytes, " ,\t\r\n");
@@ -92,7 +94,8 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
     tables.push_back(std::move(*read));
   }
   if (tables.empty()) return fail("no DEFINE COMP");
-  for (LoadedTable& t : tables) t.backlash = backlash;
+  for (LoadedTable& t : tables)
+    if (const auto it = backlash.find(t.output); it != backlash.end()) t.backlash = it->second;
   return tables;
 }
 

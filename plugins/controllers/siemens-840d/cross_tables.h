@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kit.h"
+#include "nonio/controllers/kit.h"
 
 namespace nonio::siemens {
 

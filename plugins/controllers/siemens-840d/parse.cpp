@@ -5,9 +5,9 @@
 #include <map>
 #include <optional>
 
-#include "axes.h"
+#include "nonio/controllers/axes.h"
+#include "nonio/controllers/text.h"
 #include "nonio/math/loaded_table.h"
-#include "text.h"
 
 namespace nonio::siemens {
 namespace {

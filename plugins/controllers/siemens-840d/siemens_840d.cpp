@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cross_tables.h"
-#include "kit.h"
+#include "nonio/controllers/kit.h"
 #include "parse.h"
 
 namespace nonio::siemens {

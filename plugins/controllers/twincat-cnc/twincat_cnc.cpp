@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "list.h"
+#include "nonio/controllers/list.h"
 
 namespace nonio {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "list.h"
+#include "nonio/controllers/list.h"
 
 namespace nonio {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <map>
 
-#include "kit.h"
+#include "nonio/controllers/kit.h"
 
 namespace nonio {
 namespace {
@@ -131,14 +131,16 @@ Expected<OutputResult> write(const OutputInput& in) {
     return j.axis.size() != 1 || j.axis < "X" || j.axis > "Z" ||
            controllers::refused(j, false, result);
   });
-  auto sets = controllers::cross_jobs(in);
-  if (sets.size() > 1 || std::any_of(jobs->begin(), jobs->end(), [&](const AxisJob& j) {
-        return std::count_if(jobs->begin(), jobs->end(),
+  const auto twice =
+      [all = *jobs](const AxisJob& j) {  // whose positioning is it? Not told apart here
+        return std::count_if(all.begin(), all.end(),
                              [&](const AxisJob& o) { return o.axis == j.axis; }) > 1;
-      }))
+      };
+  std::erase_if(*jobs, twice);
+  const auto sets = controllers::cross_jobs(in);
+  if (sets.size() > 1)
     return fail(
-        "one file holds one state of the machine: leave one measurement of each axis and "
-        "one set of diagonals in the campaign");
+        "one file holds one state of the machine: leave one set of diagonals in the campaign");
   const auto blocks = blocks_of(*jobs, sets);
   if (blocks.empty()) return result;
   std::string axes;

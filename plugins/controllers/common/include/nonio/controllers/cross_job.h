@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "axis_job.h"
+#include "nonio/controllers/axis_job.h"
 #include "nonio/math/compensation.h"
 #include "nonio/sdk/plugin.h"
 

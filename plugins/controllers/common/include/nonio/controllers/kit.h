@@ -6,12 +6,12 @@
 #include <string_view>
 #include <vector>
 
-#include "axes.h"
-#include "axis_job.h"
-#include "cross_job.h"
+#include "nonio/controllers/axes.h"
+#include "nonio/controllers/axis_job.h"
+#include "nonio/controllers/cross_job.h"
+#include "nonio/controllers/text.h"
 #include "nonio/math/loaded_table.h"
 #include "nonio/sdk/plugin.h"
-#include "text.h"
 
 /// A controller plugin is a declaration (ControlTable), a format and a parser; what lies between
 /// the readings and the numbers of a table, and between a table and what it does, is here.

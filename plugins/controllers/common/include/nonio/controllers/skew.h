@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "kit.h"
+#include "nonio/controllers/kit.h"
 
 /// Squareness as two diagonals and a side of each plane, as printers' firmware takes it.
 namespace nonio::controllers {

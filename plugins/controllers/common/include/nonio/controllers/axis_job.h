@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "axes.h"
+#include "nonio/controllers/axes.h"
 #include "nonio/math/compensation.h"
 #include "nonio/math/reversal.h"
 #include "nonio/sdk/plugin.h"

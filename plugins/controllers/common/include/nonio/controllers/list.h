@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kit.h"
+#include "nonio/controllers/kit.h"
 
 /// Tables of one axis a file; and tables that have no file: a list to be typed in, a point a line,
 /// words behind '#'.
