@@ -125,6 +125,7 @@ class Axis(BenchTest):
     def test_ecmc(self):
         for release, of in ((10, 1.0), (9, -1.0)):  # 9: the value was added to the reading
             text = self.write("ecmc", "ecmc-X.corr", "[options.ecmc]\nrelease = %d\n" % release)
+            self.assertIn("mean reversal B = -3.0 um: it stays", text)
             rows = points_of(text)
             mean = lambda x: wave(x) + LOST / 2
             self.expect_correction([(x, of * v * 1e3) for x, v in rows], lambda x: -mean(x), 0.002)

@@ -162,7 +162,7 @@ class Runner {
     const fs::path folder = options_.site / c.folder;
     Evaluated evaluated = evaluate(
         folder, c.id, context_, [&](const std::string& s) { stage.set(s); },
-        [&](const Evaluated& e) { return numbers_.draw(e, folder); });
+        [&](const Evaluated& e, bool complete) { return numbers_.draw(e, folder, complete); });
     stage.set("signing");
     auto certified = sign_artifacts(evaluated, folder, context_, signer_, std::time(nullptr));
     if (certified) certified = numbers_.issue(evaluated);

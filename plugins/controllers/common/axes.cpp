@@ -76,7 +76,8 @@ Expected<std::vector<KnownAxis>> known_axes(const TableInput& in) {
   std::vector<KnownAxis> axes;
   for (const Axis& a : in.campaign.machine.axes) {
     KnownAxis axis{a.name, axes.size() + 1, a.rotary, (*settings)[a.name]};
-    if (const auto n = axis.setting("number")) axis.number = static_cast<std::size_t>(*n);
+    if (const auto n = axis.setting("number"); n && *n >= 1.0 && *n < 1e6)
+      axis.number = static_cast<std::size_t>(*n);
     axes.push_back(std::move(axis));
   }
   return axes;

@@ -227,6 +227,14 @@ Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table, const Ou
   return s;
 }
 
+/// What of the reversal is left to a parameter, or to nobody.
+void look_at_reversal(const AxisJob& job, const ControlTable& t, OutputResult& result) {
+  if (!t.backlash.empty()) return doubt_backlash(job, result);
+  Remark stays = remark(job, "table.reversal-stays");
+  stays.evidence = {{"mean", job.curve.mean_reversal(), deviation_of(job.rotary)}};
+  result.notes.push_back(std::move(stays));
+}
+
 /// True with its files, false where the table is refused.
 Expected<bool> write_axis(AxisJob& job, const OutputInput& input, const Writer& w,
                           OutputResult& result) {
@@ -249,7 +257,7 @@ Expected<bool> write_axis(AxisJob& job, const OutputInput& input, const Writer& 
   if (!correction)
     return fail("axis " + job.axis + ": the table written cannot be read back: " +
                 (read ? "it is of another axis" : read.error().message));
-  if (!sheet->directions && job.curve.bidirectional()) doubt_backlash(job, result);
+  if (!sheet->directions && job.curve.bidirectional()) look_at_reversal(job, *table, result);
   predict(job, *correction, result);
   note_zero(*sheet, result);
   job.loaded = std::move(*read);
@@ -273,7 +281,10 @@ std::vector<std::string> Sheet::words() const {
                       : "sign: the opposite of the measured deviation (actual - nominal)");
   if (table.zero != ControlTable::Zero::free)
     lines.push_back("zero at " + with_unit(job, reference, 4));
-  lines.push_back(reversal_words(job, directions));
+  const bool stays = table.backlash.empty() && !directions && job.curve.bidirectional();
+  lines.push_back(stays ? "mean reversal B = " + deviation_words(job, job.curve.mean_reversal()) +
+                              ": it stays, the table is of the mean of both directions"
+                        : reversal_words(job, directions));
   if (!table.backlash.empty() && job.curve.bidirectional())
     lines.push_back(table.backlash + " = " + with_unit(job, backlash(), 6));
   return lines;
@@ -291,7 +302,7 @@ std::vector<Option> table_options(const ControlTable& t, std::string keys_of_axe
                     "",
                     "Points of one table.",
                     {},
-                    3.0,
+                    2.0,
                     100000.0});
   for (const ControlTable::Fact& f : t.facts)
     if (f.id == "sign" && f.confidence == ControlTable::Confidence::unsure)

@@ -37,7 +37,9 @@ Expected<void> block(Memory& memory, std::string_view line) {
     if (letter == 'P') value = n, has_value = true;
     line.remove_prefix(static_cast<std::size_t>(r.ptr - line.data()));
   }
-  if (number < 0 || !has_value) return fail("not a block: " + whole_line);
+  constexpr std::int64_t word = 1000000000;  // what a parameter of a control can be
+  if (number < 0 || number > word || !has_value || std::abs(value) > word || std::abs(axis) > word)
+    return fail("not a block: " + whole_line);
   if (number < 10000) {
     memory.parameter[axis][number] = value;
     return {};

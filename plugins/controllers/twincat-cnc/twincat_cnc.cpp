@@ -107,7 +107,8 @@ Expected<LoadedTable> screw(const List& list, const controllers::KnownAxis& axis
 Expected<LoadedTable> cross(const List& list, const std::vector<controllers::KnownAxis>& axes,
                             const controllers::KnownAxis& slave, double sign) {
   const auto master = list.find("kw.crosscomp.master_ax_nr");
-  if (master == list.end()) return fail("no kw.crosscomp.master_ax_nr");
+  if (master == list.end() || !(master->second >= 1.0 && master->second < 1e6))
+    return fail("no kw.crosscomp.master_ax_nr");
   LoadedTable t{.output = slave.name,
                 .input = {axis_numbered(axes, static_cast<std::size_t>(master->second)).name},
                 .position = {column(list, "kw.crosscomp.table", ".setpoint")},
@@ -127,7 +128,8 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   for (const Artifact& f : in.files) {
     const List list = read_list(f.bytes);
     const auto number = list.find("kopf.achs_nr");
-    if (number == list.end() || !(number->second >= 1.0)) return fail("no kopf.achs_nr");
+    if (number == list.end() || !(number->second >= 1.0 && number->second < 1e6))
+      return fail("no kopf.achs_nr");
     const auto axis = axis_numbered(*axes, static_cast<std::size_t>(number->second));
     if (list.count("kw.ssfk.kw_nr_max") != 0) {
       auto read = screw(list, axis);
