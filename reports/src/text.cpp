@@ -83,7 +83,9 @@ Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold,
     const char32_t c = next_composed(text, i);
     Glyph glyph = glyph_of(c, font, fonts.wide);
     const bool accent = c == acute_above;
-    if (glyph.id == 0 || (accent && !bears_accent(last)))
+    const bool over_a_letter = bears_accent(last) && !glyph.wide && !out.back().wide &&
+                               glyph.advance == 0;  // what the canvas relies on
+    if (glyph.id == 0 || (accent && !over_a_letter))
       return fail(unprintable(text.substr(at, i - at), c, field));
     if (accent) glyph = accent_over(font, out.back().id, glyph.id);
     if (!out.empty() && (glyph.wide || out.back().wide) && !begins_no_line(c) &&
