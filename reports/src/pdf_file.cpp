@@ -292,11 +292,13 @@ struct Kept {
   std::string profile, xmp, identifier;
 };
 
-Kept kept_of(HPDF_Doc doc, const PdfFile& file) {
+/// `contents`: the pages, compressed.
+Kept kept_of(HPDF_Doc doc, const PdfFile& file, const std::vector<std::string>& contents,
+             const Deflater& fast) {
   const char* producer = HPDF_GetInfoAttr(doc, HPDF_INFO_PRODUCER);
-  Kept kept{deflated(file.profile, 6), xmp_packet(file, producer != nullptr ? producer : ""), {}};
+  Kept kept{fast(file.profile), xmp_packet(file, producer != nullptr ? producer : ""), {}};
   std::string content = kept.xmp;
-  for (const std::string& page : file.pages) content += page;
+  for (const std::string& page : contents) content += page;
   std::array<unsigned char, SHA256_DIGEST_LENGTH> digest{};
   SHA256(reinterpret_cast<const unsigned char*>(content.data()), content.size(), digest.data());
   kept.identifier.assign(digest.begin(), digest.begin() + 16);
@@ -348,8 +350,8 @@ Expected<std::string> write_pdf(PdfFile file, const Fonts& fonts) {
     *text = label(std::move(*text));
   if (!date_of(file.date)) file.date.clear();
   std::vector<std::string> contents;
-  constexpr int level = 1;  // 6 takes three times as long for a few per cent of the file
-  for (const std::string& content : file.pages) contents.push_back(deflated(content, level));
+  const Deflater fast(1);  // 6 takes three times as long for a few per cent of the file
+  for (const std::string& content : file.pages) contents.push_back(fast(content));
   Embedded wide;
   if (!file.wide.empty()) wide = embedded_part(fonts.wide, file.wide);
   if (!file.wide.empty() && wide.name.empty())
@@ -360,7 +362,7 @@ Expected<std::string> write_pdf(PdfFile file, const Fonts& fonts) {
   if (pdf.doc == nullptr) return fail("the PDF could not be begun: out of memory");
   pdf.doc->pdf_version = HPDF_VER_17;
   add_properties(pdf.doc, file);
-  if (!file.profile.empty()) add_kept(pdf, kept = kept_of(pdf.doc, file));
+  if (!file.profile.empty()) add_kept(pdf, kept = kept_of(pdf.doc, file, contents, fast));
   if (HPDF_Dict resources = add_resources(pdf, fonts, file, wide)) {
     for (const std::string& content : contents) add_page(pdf, file, content, resources);
     pdf.doc->stream = HPDF_CallbackWriter_New(pdf.doc->mmgr, append, &pdf.bytes);

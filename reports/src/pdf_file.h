@@ -18,7 +18,8 @@ struct PdfFile {
   double width = 0.0, height = 0.0;
   double see_through = 1.0;  ///< opacity of areas drawn under /G1
   bool common_only = false;  ///< every glyph is one of Font::common
-  std::vector<char> wide;    ///< glyphs of Fonts::wide that are used; empty: none
+  /// Glyphs of Fonts::wide by the numbers that the pages have for them; empty: none.
+  std::vector<std::uint16_t> wide;
   std::vector<std::shared_ptr<const Picture>> pictures;
   std::vector<std::string> pages;
   std::string profile{};  ///< as in Document

@@ -61,6 +61,7 @@ std::vector<std::string> lacks(const OutputInput& in) {
   std::vector<std::string> missing;
   if (in.campaign.customer.empty()) missing.emplace_back("campaign.customer");
   if (in.campaign.machine.serial.empty()) missing.emplace_back("machine.serial");
+  if (asked_to("want more")) missing.emplace_back("what nobody has");
   return missing;
 }
 
@@ -72,5 +73,7 @@ NONIO_PLUGIN(registry) {
   output.applies = [](const Campaign&) { return true; };
   output.write = write;
   output.lacks = lacks;
+  registry.add(output);
+  output.info.name = "numbered-too";
   registry.add(std::move(output));
 }

@@ -176,9 +176,14 @@ class Desk {
 
 }  // namespace
 
-void remove_unsigned(Results& results) {
-  for (Results::Written& w : results.outputs)
-    std::erase_if(w.result.artifacts, [](const Artifact& a) { return a.sign; });
+void remove_unsigned(Evaluated& evaluated) {
+  auto& certificate = evaluated.certificate;
+  const bool draft = certificate && !certificate->issued;
+  for (Results::Written& w : evaluated.results.outputs)
+    std::erase_if(w.result.artifacts, [&](const Artifact& a) {
+      return a.sign || (draft && w.plugin == certificate->output);
+    });
+  if (draft) certificate.reset();
 }
 
 void note_finding(Evaluated& evaluated, const std::string& output, Finding finding,
@@ -202,7 +207,7 @@ Expected<void> sign_artifacts(Evaluated& evaluated, const fs::path& folder, cons
                               const Signer* signer, sign::Time now) {
   if (!evaluated.certificate && !is_asked(evaluated.results)) return {};
   if (evaluated.status == "failed") {
-    remove_unsigned(evaluated.results);
+    remove_unsigned(evaluated);
     return {};
   }
   if (evaluated.certificate && evaluated.certificate->issued) return {};

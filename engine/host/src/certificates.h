@@ -25,8 +25,8 @@ inline constexpr const char* no_key =
 Expected<void> sign_artifacts(Evaluated& evaluated, const std::filesystem::path& folder,
                               const Context& context, const Signer* signer, sign::Time now);
 
-/// Takes away what is to be signed and is not.
-void remove_unsigned(Results& results);
+/// Takes away what is to be signed and is not, and all of a certificate that is not issued.
+void remove_unsigned(Evaluated& evaluated);
 
 /// Adds a finding to what one of its outputs found.
 void note_finding(Evaluated& evaluated, const std::string& output, Finding finding,

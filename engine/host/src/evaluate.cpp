@@ -293,18 +293,24 @@ class CampaignRun {
     }
   }
 
-  /// Before the documents: the number under which one of them is issued, if one is.
-  void draw_number(const std::vector<Wanted>& wanted) {
+  /// The output that is issued under a number; null if there is none, or an error.
+  const Wanted* numbered_output(const std::vector<Wanted>& wanted) {
     const Wanted* numbered = nullptr;
     for (const Wanted& w : wanted) {
       if (w.output.lacks == nullptr) continue;
       if (numbered != nullptr)
-        return report(at("run.outputs", "both " + numbered->output.info.name + " and " +
-                                            w.output.info.name +
-                                            " are issued under a number; wanted one of them"));
+        report(at("run.outputs", "both " + numbered->output.info.name + " and " +
+                                     w.output.info.name +
+                                     " are issued under a number; wanted one of them"));
       numbered = &w;
     }
-    if (numbered == nullptr || failed()) return;
+    return failed() ? nullptr : numbered;
+  }
+
+  /// Before the documents, which may print it.
+  void draw_number(const std::vector<Wanted>& wanted) {
+    const Wanted* numbered = numbered_output(wanted);
+    if (numbered == nullptr) return;
     const Info& info = numbered->output.info;
     const std::string who = "output " + info.name;
     stage_(who);
@@ -312,21 +318,24 @@ class CampaignRun {
       return numbered->output.lacks(input(*numbered));
     });
     if (!missing) return report(missing.error());
-    if (!missing->empty()) {
+    if (draw_) {
+      auto drawn = draw_(out_, missing->empty());
+      if (!drawn) {
+        out_.retry = true;
+        return report(std::move(drawn.error()));
+      }
+      if (!drawn->issue.number.empty()) {
+        out_.certificate = std::move(*drawn);
+        out_.certificate->output = info.name;
+      }
+    }
+    if (!missing->empty() && !out_.certificate) {
       OutputResult incomplete;
       incomplete.findings.push_back({.id = "certificate.incomplete",
                                      .attention = true,
                                      .texts = {{"missing", list(*missing)}}});
-      return keep(info, std::move(incomplete));
+      keep(info, std::move(incomplete));
     }
-    if (!draw_) return;
-    auto drawn = draw_(out_);
-    if (!drawn) {
-      out_.retry = true;
-      return report(std::move(drawn.error()));
-    }
-    out_.certificate = std::move(*drawn);
-    out_.certificate->output = info.name;
   }
 
   static std::string list(const std::vector<std::string>& names) {

@@ -33,7 +33,7 @@ void take_issued(Evaluated& evaluated) {
                                      [&](const Artifact& a) { return a.name == f.name; });
       if (w.plugin == f.output && same != artifacts.end()) *same = {f.name, f.bytes};
     }
-  remove_unsigned(evaluated.results);
+  remove_unsigned(evaluated);
 }
 
 }  // namespace
@@ -54,7 +54,15 @@ Expected<std::string> readings_digest(const Inputs& inputs, const fs::path& fold
   return sha256(all);
 }
 
-Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& folder) const {
+bool Numbers::has_register() const {
+  const auto path = register_path(site_, context_.site.numbering);
+  std::error_code error;
+  return path && fs::exists(*path, error);
+}
+
+Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& folder,
+                                    bool complete) const {
+  if (!complete && !has_register()) return Certificate{};
   auto opened = Register::open(site_, context_.site.numbering);
   if (!opened) return fail(opened.error());
   const std::string& campaign = evaluated.campaign.id;
@@ -62,6 +70,7 @@ Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& 
   auto found = opened->find(campaign, data);
   if (!found) return fail(found.error());
   if (*found) return std::move(**found);
+  if (!complete) return Certificate{};
   if (!can_sign_) return fail(no_key);
   const auto readings = readings_digest(evaluated.inputs, folder);
   if (!readings) return fail(readings.error());
@@ -73,11 +82,7 @@ Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& 
 }
 
 Expected<void> Numbers::issue(Evaluated& evaluated) const {
-  if (!evaluated.certificate) return {};
-  if (evaluated.status == "failed") {
-    if (!evaluated.certificate->issued) evaluated.certificate.reset();
-    return {};
-  }
+  if (!evaluated.certificate || evaluated.status == "failed") return {};
   if (evaluated.certificate->issued) {
     take_issued(evaluated);
     note_differences(evaluated);
@@ -111,9 +116,7 @@ void Numbers::note_differences(Evaluated& evaluated) const {
 }
 
 void Numbers::note_failure(const std::string& campaign, const std::string& why) const {
-  const auto path = register_path(site_, context_.site.numbering);
-  std::error_code error;
-  if (!path || !fs::exists(*path, error)) return;
+  if (!has_register()) return;
   auto opened = Register::open(site_, context_.site.numbering);
   if (!opened) return;
   [[maybe_unused]] const auto noted = opened->note_failure(campaign, why);

@@ -19,8 +19,9 @@ class Numbers {
   Numbers(std::filesystem::path site, const Context& context, std::string today, bool can_sign)
       : site_(std::move(site)), context_(context), today_(std::move(today)), can_sign_(can_sign) {}
 
-  /// What a campaign was issued for these data, or the number that it is to be issued under.
-  Expected<Certificate> draw(const Evaluated& evaluated, const std::filesystem::path& folder) const;
+  /// See `Draw`.
+  Expected<Certificate> draw(const Evaluated& evaluated, const std::filesystem::path& folder,
+                             bool complete) const;
   /// After signing: enters what is issued into the register, and gives the campaign what the
   /// register holds. Of what was issued before it is said if its numbers are others now.
   Expected<void> issue(Evaluated& evaluated) const;
@@ -29,6 +30,7 @@ class Numbers {
   void note_failure(const std::string& campaign, const std::string& why) const;
 
  private:
+  bool has_register() const;
   void note_differences(Evaluated& evaluated) const;
 
   const std::filesystem::path site_;

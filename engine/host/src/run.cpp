@@ -162,7 +162,7 @@ class Runner {
     const fs::path folder = options_.site / c.folder;
     Evaluated evaluated = evaluate(
         folder, c.id, context_, [&](const std::string& s) { stage.set(s); },
-        [&](const Evaluated& e) { return numbers_.draw(e, folder); });
+        [&](const Evaluated& e, bool complete) { return numbers_.draw(e, folder, complete); });
     stage.set("signing");
     auto certified = sign_artifacts(evaluated, folder, context_, signer_, std::time(nullptr));
     if (certified) certified = numbers_.issue(evaluated);
@@ -183,9 +183,8 @@ class Runner {
   }
 
   static void fail_certificate(Evaluated& evaluated, const Error& why) {
-    remove_unsigned(evaluated.results);
+    remove_unsigned(evaluated);
     evaluated.results.errors.push_back(why);
-    evaluated.certificate.reset();
     evaluated.status = "failed";
     evaluated.retry = true;
   }
@@ -368,13 +367,17 @@ void note_key(Signer& signer, std::vector<std::string>& notes) {
                     sign::text_of(who->not_after) + ": have a new one made");
 }
 
-/// A register in the output folder would be lost with it.
+/// A register in an output folder below the site would be lost with it.
 Expected<std::vector<RegisterEntry>> numbers_of(const RunOptions& options, const Context& context) {
   const auto path = register_path(options.site, context.site.numbering);
   if (!path) return fail(path.error());
   std::error_code error;
-  const fs::path below = path->lexically_relative(fs::weakly_canonical(options.out, error));
-  if (!below.empty() && *below.begin() != "..")
+  const auto is_below = [](const fs::path& one, const fs::path& folder) {
+    const fs::path way = one.lexically_relative(folder);
+    return !way.empty() && *way.begin() != "..";
+  };
+  const fs::path out = fs::weakly_canonical(options.out, error);
+  if (is_below(*path, out) && is_below(out, fs::weakly_canonical(options.site, error)))
     return fail("the register of certificates " + path->string() +
                 " would lie in the output folder; wanted it elsewhere in the site");
   return Register::entries(options.site, context.site.numbering);

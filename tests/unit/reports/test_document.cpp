@@ -183,6 +183,19 @@ TEST(Layout, AHeadingDoesNotStayBehindAlone) {
   }
 }
 
+TEST(Layout, WhatStandsSideBySideDoesNotStayBehindAloneEither) {
+  for (int lines = 60; lines < 75; ++lines) {
+    std::vector<Block> blocks;
+    for (int i = 0; i < lines; ++i) blocks.push_back({Paragraph{"line"}});
+    const Paragraph one{"beside", Paragraph::Look::body, true};
+    blocks.push_back({Columns{{{{one}}, {{one}}}}});
+    blocks.push_back({Paragraph{"following"}});
+    const auto text = pages_of(of(std::move(blocks)));
+    for (const std::string& page : text.pages)
+      EXPECT_EQ(count(page, "beside"), 2 * count(page, "following")) << lines;
+  }
+}
+
 TEST(Layout, ARowThatIsLongerThanAPageIsDivided) {
   Table table;
   table.columns = {{"A", "", false}};

@@ -67,8 +67,9 @@ struct Evaluated {
 /// Told what is about to be called, for the case that it does not come back.
 using Stage = std::function<void(const std::string&)>;
 
-/// The number for what was evaluated, asked when nothing is missing for a certificate.
-using Draw = std::function<Expected<Certificate>(const Evaluated&)>;
+/// What was issued for what is evaluated here, whatever is missing for it today; else, if it is
+/// `complete`, a number; else a certificate without one.
+using Draw = std::function<Expected<Certificate>(const Evaluated&, bool complete)>;
 
 /// One campaign from its folder to its artifacts; writes nothing. Without `draw` there is no
 /// certificate.
