@@ -16,4 +16,4 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/nonio-config-versio
   COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/nonio-config.cmake
   ${CMAKE_CURRENT_BINARY_DIR}/nonio-config-version.cmake
-  ${CMAKE_CURRENT_LIST_DIR}/NonioPlugin.cmake DESTINATION ${package})
+  ${CMAKE_CURRENT_LIST_DIR}/NonioPlugin.cmake ${CMAKE_CURRENT_LIST_DIR}/NonioCase.cmake DESTINATION ${package})

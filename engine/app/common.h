@@ -38,6 +38,7 @@ void add_diff_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_explain_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_model_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_plan_verb(CLI::App& cli, Common& common, Outcome& outcome);
+void add_plugin_verb(CLI::App& cli, Common& common, Outcome& outcome);
 /// Below `plan`.
 void add_sign_probe(CLI::App& plan_verb, Common& common, Outcome& outcome);
 void add_template_verb(CLI::App& cli, Common& common, Outcome& outcome);

@@ -229,6 +229,7 @@ int main(int argc, char** argv) {
   add_explain_verb(cli, common, outcome);
   add_model_verb(cli, common, outcome);
   add_plan_verb(cli, common, outcome);
+  add_plugin_verb(cli, common, outcome);
   add_template_verb(cli, common, outcome);
   add_verify_verb(cli, common, outcome);
 

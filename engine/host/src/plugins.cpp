@@ -13,6 +13,7 @@
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
+#include "plugin_file.h"
 #include "worker.h"
 
 namespace nonio::host {
@@ -29,7 +30,8 @@ std::vector<dll::shared_library>& libraries() {
   return *kept;
 }
 
-/// The entry of a library that may be called, or why not.
+}  // namespace
+
 Expected<const PluginEntry*> open_entry(const fs::path& path) {
   boost::dll::fs::error_code error;
   dll::shared_library library(path.string(), error, dll::load_mode::rtld_now);
@@ -43,6 +45,8 @@ Expected<const PluginEntry*> open_entry(const fs::path& path) {
   if (entry->add_to == nullptr) return fail("has no registration function");
   return entry;
 }
+
+namespace {
 
 /// Why this one must be refused; empty if it registers as it should.
 std::string try_registering(const fs::path& path) {

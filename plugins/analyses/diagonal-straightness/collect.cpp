@@ -65,7 +65,9 @@ class Gatherer {
     const double a = measurement(i).from.at(axis), b = measurement(i).to.at(axis);
     return std::minmax(a, b);
   }
-  bool in_plane(std::size_t i) const { return observations(i).axes.size() == 2; }
+  bool in_plane(std::size_t i) const {
+    return observations(i).size() > 0 && observations(i).axes.size() == 2;
+  }
   bool rises(std::size_t i) const {
     const auto& sense = observations(i).lines.front().sense;
     return sense[0] * sense[1] > 0.0;

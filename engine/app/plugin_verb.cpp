@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common.h"
+#include "nonio/host/plugin_check.h"
+#include "nonio/host/plugin_new.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct CheckOptions {
+  host::PluginCheckRequest request;
+  std::string subject;
+  std::vector<std::string> cases;
+};
+
+/// What is printed of each check, and how many there were.
+class CheckReport {
+ public:
+  CheckReport(const CheckOptions& options, const Common& common)
+      : options_(options), common_(common) {}
+
+  void operator()(const host::PluginCheck& c) {
+    ++counts_[static_cast<std::size_t>(c.state)];
+    const bool bad =
+        c.state == host::PluginCheck::State::failed || c.state == host::PluginCheck::State::crashed;
+    if (bad) again_ = repeat(c);
+    if (common_.json) {
+      Json one = {{"file", c.file},
+                  {"plugin", c.plugin},
+                  {"check", c.name},
+                  {"state", host::to_text(c.state)},
+                  {"says", c.says}};
+      if (bad) one["again"] = again_;
+      checks_.push_back(std::move(one));
+      return;
+    }
+    if (common_.quiet && !bad) return;
+    if (const std::string head = c.file + (c.plugin.empty() ? "" : ", " + c.plugin); head != head_)
+      std::cout << (head_ = head) << "\n";
+    std::string name = c.name;
+    name.resize(std::max<std::size_t>(name.size(), 13), ' ');
+    std::cout << "  " << host::to_text(c.state) << "  " << name << c.says << std::endl;
+    if (bad) std::cout << "           again: " << again_ << "\n";
+  }
+
+  int end() const {
+    const std::size_t passed = counts_[0], failed = counts_[1], crashed = counts_[2];
+    if (common_.json)
+      std::cout << Json{{"schema", "nonio-plugin-check/1"},
+                        {"seed", options_.request.seed},
+                        {"checks", checks_},
+                        {"passed", passed},
+                        {"failed", failed},
+                        {"crashed", crashed},
+                        {"skipped", counts_[3]}}
+                       .dump(1, ' ', false, Json::error_handler_t::replace)
+                << "\n";
+    else
+      std::cout << passed << " passed, " << failed << " failed, " << crashed << " crashed, "
+                << counts_[3] << " skipped; seed " << options_.request.seed << "\n";
+    return failed + crashed == 0 ? exit_done : exit_failed;
+  }
+
+ private:
+  std::string repeat(const host::PluginCheck& c) const {
+    std::string words = "nonio plugin check " + c.file + " --only " + c.name + " --seed " +
+                        std::to_string(options_.request.seed);
+    if (fs::is_directory(options_.subject) &&
+        fs::is_directory(fs::path(options_.subject) / "cases"))
+      words += " --cases " + (fs::path(options_.subject) / "cases").string();
+    for (const std::string& folder : options_.cases) words += " --cases " + folder;
+    return words;
+  }
+
+  const CheckOptions& options_;
+  const Common& common_;
+  std::size_t counts_[4] = {};
+  std::string head_, again_;
+  Json checks_ = Json::array();
+};
+
+int check(CheckOptions& options, const Common& common) {
+  host::PluginCheckRequest& request = options.request;
+  request.subject = options.subject;
+  request.own_plugins = Common::own_plugins();
+  request.template_folders = common.template_folders();
+  request.version = NONIO_VERSION;
+  request.cases.assign(options.cases.begin(), options.cases.end());
+  CheckReport report(options, common);
+  const auto done = host::check_plugins(request, std::ref(report));
+  if (done) return report.end();
+  std::cerr << "nonio plugin check: " << done.error().message << "\n";
+  return exit_usage;
+}
+
+struct NewOptions {
+  std::string kind, name, out;
+};
+
+int make(const NewOptions& options, const Common& common) {
+  const fs::path folder = options.out.empty() ? options.name : options.out;
+  const fs::path skeletons = common.template_folders().front().parent_path() / "plugin";
+  const auto files = host::new_plugin(skeletons, options.kind, options.name, fs::absolute(folder));
+  if (!files) {
+    std::cerr << "nonio plugin new: " << files.error().message << "\n";
+    return exit_usage;
+  }
+  if (common.json)
+    std::cout << Json{{"folder", fs::absolute(folder).string()}, {"files", *files}}.dump(1) << "\n";
+  else if (!common.quiet)
+    std::cout << "Written: " << folder.string() << "\n\n"
+              << "    cmake -S " << folder.string() << " -B " << folder.string() << "/build\n"
+              << "    cmake --build " << folder.string() << "/build\n"
+              << "    ctest --test-dir " << folder.string() << "/build --output-on-failure\n";
+  return exit_done;
+}
+
+std::string all_checks() {
+  std::string words = "Checks:\n";
+  for (auto [name, law] : host::plugin_check_names()) {
+    name.resize(std::max<std::size_t>(name.size(), 13), ' ');
+    words += "  " + name + law + "\n";
+  }
+  return words +
+         "\nExit status: 0 none failed or crashed; 1 some did; 2 usage.\n\n"
+         "Example: nonio plugin check build";
+}
+
+void add_new(CLI::App& verb, Common& common, Outcome& outcome) {
+  auto options = std::make_shared<NewOptions>();
+  CLI::App* one = verb.add_subcommand(
+      "new", "Writes a folder that builds, is tested, and does something useful at once");
+  one->add_option("KIND", options->kind, "reader, analysis, effect, output or controller")
+      ->required();
+  one->add_option("NAME", options->name, "Small letters, digits and '-'")->required();
+  one->add_option("--out", options->out, "The folder; it must not exist (default: NAME)");
+  add_common(*one, common);
+  one->footer("Example: nonio plugin new controller my-control");
+  one->callback([options, &common, &outcome] { outcome = make(*options, common); });
+}
+
+}  // namespace
+
+void add_plugin_verb(CLI::App& cli, Common& common, Outcome& outcome) {
+  CLI::App* verb =
+      cli.add_subcommand("plugin", "A plugin of your own: begin it, hold it against the laws");
+  verb->require_subcommand(1);
+  add_new(*verb, common, outcome);
+  auto options = std::make_shared<CheckOptions>();
+  CLI::App* one = verb->add_subcommand(
+      "check", "Holds plugins against the laws of their kind, each in a process with limits");
+  one->add_option("FILE|FOLDER", options->subject,
+                  "A plugin; or a folder: every .so below it, and cases/*/campaign.toml as samples")
+      ->required()
+      ->check(CLI::ExistingPath);
+  one->add_option("--seed", options->request.seed, "Of the samples that are made (default: 1)");
+  one->add_option("--only", options->request.only, "One check of those below");
+  one->add_option("--cases", options->cases, "A folder with campaigns below it: more samples")
+      ->check(CLI::ExistingDirectory)
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  one->add_option("--seconds", options->request.seconds,
+                  "Processor time that one check may take (default: 20)")
+      ->check(CLI::Range(1.0, 3600.0));
+  add_templates(*one, common);
+  add_common(*one, common);
+  one->footer(all_checks());
+  one->callback([options, &common, &outcome] { outcome = check(*options, common); });
+}
+
+}  // namespace nonio::app

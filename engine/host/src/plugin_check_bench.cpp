@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "guarded.h"
+#include "model_fit.h"
+#include "nonio/host/manifest.h"
+#include "plugin_checks.h"
+
+namespace nonio::host::kit {
+
+namespace {
+
+const Artifact* file_named(const Source& source, const std::string& name) {
+  for (const Artifact& f : source.files)
+    if (f.name == name) return &f;
+  return nullptr;
+}
+
+const Reader* reader_of(const Measurement& m, std::string_view bytes,
+                        const std::vector<Reader>& readers) {
+  for (const Reader& r : readers)
+    if (m.reader.empty() ? r.reads(m.kind) && r.recognises(bytes.substr(0, 4096))
+                         : r.info.name == m.reader)
+      return &r;
+  return nullptr;
+}
+
+template <class Column>
+void rearrange(Column& column, const std::vector<std::size_t>& order) {
+  if (column.empty()) return;
+  Column out;
+  for (const std::size_t i : order) out.push_back(column[i]);
+  column = std::move(out);
+}
+
+}  // namespace
+
+Expected<Sample> open_source(const Source& source, const std::vector<Reader>& readers) {
+  auto manifest = parse_manifest(source.manifest, source.name + "/" + manifest_name);
+  if (!manifest) return fail(manifest.error().front());
+  Sample s{source.name, std::move(manifest->campaign), std::move(manifest->options), {}};
+  for (const Measurement& m : s.campaign.measurements) {
+    const std::string place = "sample " + source.name + ", " + m.file;
+    const Artifact* file = file_named(source, m.file);
+    if (file == nullptr) return fail(place + ": there is no such file");
+    const Reader* reader = reader_of(m, file->bytes, readers);
+    if (reader == nullptr) return fail(place + ": no reader knows it");
+    const Settings options = settings_for(reader->info, s);
+    auto read = guarded("reader " + reader->info.name, [&] {
+      return reader->read({file->bytes, s.campaign, m, options});
+    });
+    if (!read) return fail(place + ": " + read.error().message);
+    if (const std::string why = unsound(*read); !why.empty()) return fail(place + ": " + why);
+    s.observations.push_back(std::move(*read));
+  }
+  return s;
+}
+
+std::vector<std::size_t> shuffled(std::size_t n, Random& random) {
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = n; i > 1; --i)
+    std::swap(order[i - 1],
+              order[static_cast<std::size_t>(random.uniform() * static_cast<double>(i))]);
+  return order;
+}
+
+Observations rearranged(const Observations& o, const std::vector<std::size_t>& order) {
+  Observations out = o;
+  for (auto& axis : out.axes) {
+    rearrange(axis.position, order);
+    rearrange(axis.approach, order);
+  }
+  for (auto* column :
+       {&out.deviation, &out.u, &out.time, &out.material, &out.air, &out.pressure, &out.humidity})
+    rearrange(*column, order);
+  for (auto* column : {&out.run, &out.line, &out.source_line}) rearrange(*column, order);
+  rearrange(out.sense, order);
+  return out;
+}
+
+std::string unsound(const Observations& o) {
+  const std::size_t n = o.size();
+  const auto fits = [n](const auto& column) { return column.empty() || column.size() == n; };
+  bool same = fits(o.u) && fits(o.run) && fits(o.line) && fits(o.source_line) && fits(o.time) &&
+              fits(o.material) && fits(o.air) && fits(o.pressure) && fits(o.humidity) &&
+              fits(o.sense);
+  const auto finite = [](double x) { return std::isfinite(x); };
+  for (const auto& axis : o.axes) {
+    same = same && axis.position.size() == n && fits(axis.approach);
+    if (!std::all_of(axis.position.begin(), axis.position.end(), finite))
+      return "position of " + axis.axis + " that is not a number";
+  }
+  if (!same) return "columns of different lengths";
+  if (!std::all_of(o.deviation.begin(), o.deviation.end(), finite))
+    return "a deviation that is not a number";
+  for (const std::uint32_t line : o.line)
+    if (line >= o.lines.size()) return "a line that does not exist";
+  return {};
+}
+
+Settings settings_for(const Info& info, const Sample& sample) {
+  auto settled = settle_options(info, {}, sample.options);
+  if (settled) return std::move(*settled);
+  Settings defaults;
+  for (const Option& o : info.options) defaults.values[o.name] = o.otherwise;
+  return defaults;
+}
+
+Results results_of(const Sample& s, const Bench& bench) {
+  Results results;
+  const auto add = [&](const Analysis& a, const Measurement* m, const auto& call) {
+    auto evaluation = guarded("analysis " + a.info.name, call);
+    if (!evaluation) return;
+    const std::string id = m == nullptr ? "" : m->id;
+    for (Finding& f : evaluation->findings) f.measurement = id;
+    results.analyses.push_back({a.info.name, a.info.version, id, std::move(*evaluation)});
+  };
+  for (const Analysis& a : bench.analyses) {
+    const Settings options = settings_for(a.info, s);
+    if (a.analyse_campaign)
+      add(a, nullptr, [&] { return a.analyse_campaign({s.campaign, s.observations, options}); });
+    for (const Measurement& m : s.campaign.measurements)
+      if (a.applies && a.applies(s.campaign, m))
+        add(a, &m, [&] { return a.analyse({s.campaign, m, s.of(m), options, &s.observations}); });
+  }
+  if (s.campaign.model.empty()) return results;
+  ReadCampaign read;
+  read.manifest.emplace().campaign = s.campaign;
+  read.observations = s.observations;
+  read.effects = bench.effects;
+  auto fitted = guarded("the model", [&] { return model_fit(read, bench.context); });
+  if (!fitted) return results;
+  results.models = std::move(fitted->models);
+  for (auto& one : fitted->analyses) results.analyses.push_back(std::move(one));
+  return results;
+}
+
+}  // namespace nonio::host::kit

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "nonio/host/evaluate.h"
+#include "nonio/host/plugins.h"
+#include "nonio/sdk/plugin.h"
+#include "random.h"
+
+/// What the checks of all kinds of plugins share. They run in a child process, so that a plugin may
+/// crash or hang there.
+namespace nonio::host::kit {
+
+/// A campaign as it lies in a folder.
+struct Source {
+  std::string name, manifest;
+  std::vector<Artifact> files;
+};
+
+/// The same, read.
+struct Sample {
+  std::string name;
+  Campaign campaign;
+  RawOptions options;
+  std::vector<Observations> observations;
+
+  const Observations& of(const Measurement& m) const {
+    return observations[static_cast<std::size_t>(&m - campaign.measurements.data())];
+  }
+};
+
+/// Campaigns of every kind of measurement, made up by the seed.
+std::vector<Source> made_sources(std::uint64_t seed);
+/// With the first reader that knows each file; an error that names the sample and the file.
+Expected<Sample> open_source(const Source& source, const std::vector<Reader>& readers);
+
+/// Where a check takes everything from.
+struct Bench {
+  std::uint64_t seed = 1;
+  std::vector<Source> sources;
+  std::vector<Sample> samples;  ///< of all sources that could be read
+  std::vector<Reader> readers;  ///< the file's own, then the program's
+  std::vector<Effect> effects;
+  std::vector<Analysis> analyses;
+  Templates templates;
+  Context context;  ///< for the model: without a site
+  Stage stage;      ///< told what is being tried, for the case that it does not come back
+
+  Random random(std::uint64_t stream) const { return {seed, stream}; }
+};
+
+struct Verdict {
+  enum class State { passed, failed, skipped } state = State::passed;
+  std::string says{};
+};
+inline Verdict passed() { return {}; }
+inline Verdict failed(std::string says) { return {Verdict::State::failed, std::move(says)}; }
+inline Verdict skipped(std::string says) { return {Verdict::State::skipped, std::move(says)}; }
+
+template <class Plugin>
+struct Check {
+  const char* name;
+  const char* law;  ///< one sentence, for --help
+  std::function<Verdict(const Plugin&, const Bench&)> run;
+};
+
+const std::vector<Check<Info>>& info_checks();
+const std::vector<Check<Reader>>& reader_checks();
+const std::vector<Check<Effect>>& effect_checks();
+const std::vector<Check<Analysis>>& analysis_checks();
+const std::vector<Check<Output>>& output_checks();
+const std::vector<Check<Output>>& controller_checks();
+
+/// A rearrangement of n rows.
+std::vector<std::size_t> shuffled(std::size_t n, Random& random);
+/// The rows in this order; of lines and their names nothing changes.
+Observations rearranged(const Observations& o, const std::vector<std::size_t>& order);
+/// What the host would refuse: columns of different length, numbers that are not finite.
+std::string unsound(const Observations& o);
+/// The plugin's defaults, and what the sample says.
+Settings settings_for(const Info& info, const Sample& sample);
+/// All that the program's own analyses and its model say of a sample.
+Results results_of(const Sample& sample, const Bench& bench);
+
+}  // namespace nonio::host::kit
