@@ -3,8 +3,10 @@
 
 #include <vector>
 
+#include "ballbar.h"
 #include "camonitor.h"
 #include "ecmc_iso230.h"
+#include "linuxcnc_probe.h"
 #include "nonio/sdk/format.h"
 #include "rta.h"
 #include "rtl.h"
@@ -17,7 +19,8 @@ namespace reader_cases {
 inline const std::vector<nonio::Reader>& readers() {
   static const std::vector<nonio::Reader> all{
       nonio::renishaw::rtl_reader(), nonio::renishaw::rta_reader(), nonio::wide_table::reader(),
-      nonio::ecmc_iso230::reader(), nonio::camonitor::reader()};
+      nonio::ecmc_iso230::reader(),  nonio::camonitor::reader(),    nonio::linuxcnc_probe::reader(),
+      nonio::ballbar::reader()};
   return all;
 }
 
