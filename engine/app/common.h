@@ -32,6 +32,7 @@ using Outcome = std::optional<int>;
 
 void add_compare_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_explain_verb(CLI::App& cli, Common& common, Outcome& outcome);
+void add_import_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_model_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_plan_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_template_verb(CLI::App& cli, Common& common, Outcome& outcome);

@@ -223,6 +223,7 @@ int main(int argc, char** argv) {
   Outcome outcome;
   add_compare_verb(cli, common, outcome);
   add_explain_verb(cli, common, outcome);
+  add_import_verb(cli, common, outcome);
   add_model_verb(cli, common, outcome);
   add_plan_verb(cli, common, outcome);
   add_template_verb(cli, common, outcome);
