@@ -13,6 +13,7 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import for_customers  # noqa: E402 (this folder is no package)
 import in_space  # noqa: E402 (this folder is no package)
 from parts import (GOOD_ROOM, MADE_UP, ROTARY_CALIBRATOR, Noise, axis_measurement, behind, decimal,
                    drawn, even, linear, manifest, smooth, standard_cycle, table, targets, toml)
@@ -331,7 +332,6 @@ SITE = """# What holds for all sample campaigns. The laboratory is invented.
 name = "Sample Calibration Laboratory"
 address = "Via dell'Esempio 1, 10100 Torino"
 country = "IT"
-accreditation = "none (sample)"
 authoriser = "B. Sample"
 
 [run]
@@ -351,11 +351,15 @@ def write(path, text):
 
 def main():
     here = os.path.dirname(os.path.abspath(__file__))
-    folder = sys.argv[1] if len(sys.argv) > 1 else os.path.join(here, "site")
-    write(os.path.join(folder, "site.toml"), SITE)
+    folder = sys.argv[1] if len(sys.argv) > 1 else here
+    write(os.path.join(folder, "site", "site.toml"), SITE)
     for name, story in STORIES.items():
         for file, text in story().items():
-            write(os.path.join(folder, name, file), text)
+            write(os.path.join(folder, "site", name, file), text)
+    for file, text in for_customers.FILES.items():
+        write(os.path.join(folder, "certificates", file), text)
+    for file in for_customers.EXECUTABLE:
+        os.chmod(os.path.join(folder, "certificates", file), 0o755)
 
 
 if __name__ == "__main__":

@@ -30,11 +30,17 @@ void add_templates(CLI::App& verb, Common& common);
 /// Exit status of the verb that was given, once it has run.
 using Outcome = std::optional<int>;
 
+void add_apply_verb(CLI::App& cli, Common& common, Outcome& outcome);
+void add_certificates_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_compare_verb(CLI::App& cli, Common& common, Outcome& outcome);
+void add_controllers_verb(CLI::App& cli, Common& common, Outcome& outcome);
+void add_diff_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_explain_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_import_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_model_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_plan_verb(CLI::App& cli, Common& common, Outcome& outcome);
+/// Below `plan`.
+void add_sign_probe(CLI::App& plan_verb, Common& common, Outcome& outcome);
 void add_template_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_verify_verb(CLI::App& cli, Common& common, Outcome& outcome);
 

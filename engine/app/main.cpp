@@ -66,7 +66,7 @@ void print_summary(const host::Night& night, const fs::path& out, bool json) {
               << "\n";
   else
     std::cout << done << " done, " << unchanged << " unchanged, " << failed << " failed; "
-              << attention << " ask for attention: " << (out / "summary.txt").string() << "\n";
+              << attention << (attention == 1 ? " asks" : " ask") << " for attention: " << (out / "summary.txt").string() << "\n";
 }
 
 int run(host::RunOptions options, const Common& common) {
@@ -221,7 +221,11 @@ int main(int argc, char** argv) {
   add_common(*plugins_verb, common);
 
   Outcome outcome;
+  add_certificates_verb(cli, common, outcome);
   add_compare_verb(cli, common, outcome);
+  add_controllers_verb(cli, common, outcome);
+  add_diff_verb(cli, common, outcome);
+  add_apply_verb(cli, common, outcome);
   add_explain_verb(cli, common, outcome);
   add_import_verb(cli, common, outcome);
   add_model_verb(cli, common, outcome);

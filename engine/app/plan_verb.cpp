@@ -344,6 +344,7 @@ void add_plan_verb(CLI::App& cli, Common& common, Outcome& outcome) {
   verb->require_subcommand(1);
   add_triples(*verb, common, outcome);
   add_program(*verb, common, outcome);
+  add_sign_probe(*verb, common, outcome);
 }
 
 }  // namespace nonio::app

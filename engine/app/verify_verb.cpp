@@ -56,8 +56,8 @@ int verify(const Wanted& wanted, const Common& common) {
       std::cerr << "nonio verify: " << (e.file.empty() ? "" : e.file + ": ") << e.message << "\n";
     return exit_usage;
   }
-  const auto place =
-      host::open_to_verify(common.plugin_folders(), common.template_folders(), NONIO_VERSION);
+  const auto place = host::open_to_verify(common.plugin_folders(), common.template_folders(),
+                                          wanted.site, NONIO_VERSION);
   if (!place) {
     std::cerr << "nonio verify: " << place.error().message << "\n";
     return exit_usage;

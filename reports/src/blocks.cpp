@@ -17,14 +17,20 @@ void SetText::draw_all(Canvas& canvas, double x, double y, double width, double 
     draw(canvas, i, x, y - leading() * static_cast<double>(i), width, align);
 }
 
-void note_glyphs(const Context& context, const Glyphs& glyphs, bool bold) {
+void note_glyphs(const Context& context, Glyphs& glyphs, bool bold) {
   const std::vector<char>& common = context.fonts.weight(bold).common;
-  for (const Glyph& g : glyphs)
+  auto& [common_only, wide, numbers, pictures] = context.used;
+  for (Glyph& g : glyphs)
     if (g.wide) {
-      context.use.wide.resize(context.fonts.wide.common.size());
-      context.use.wide[g.id] = 1;
+      if (wide.empty()) wide.push_back(0);
+      numbers.resize(context.fonts.wide.common.size());
+      if (numbers[g.id] == 0) {
+        numbers[g.id] = static_cast<std::uint16_t>(wide.size());
+        wide.push_back(g.id);
+      }
+      g.id = numbers[g.id];
     } else if (common[g.id] == 0) {
-      context.use.common_only = false;
+      common_only = false;
     }
 }
 
@@ -253,6 +259,20 @@ Expected<Laid> lay(const Status& status, double width, const Context& context,
   return Laid{{{height, 6, std::move(canvas.ops), false}}};
 }
 
+Expected<Laid> lay(const Image& image, double width, const Context& context, std::string_view) {
+  auto picture = shared_picture(image.bytes, image.name);
+  if (!picture) return fail(picture.error());
+  auto& pictures = context.used.pictures;
+  auto it = std::find(pictures.begin(), pictures.end(), *picture);
+  if (it == pictures.end()) it = pictures.insert(it, *picture);
+  const double shape = static_cast<double>((*it)->width) / (*it)->height;
+  const double height = std::min({image.height, width / shape, context.page_room});
+  Canvas canvas;
+  canvas.picture(it - pictures.begin(), image.align * (width - shape * height), -height,
+                 shape * height, height);
+  return Laid{{{height, 4, std::move(canvas.ops), false}}};
+}
+
 Expected<Laid> lay(const Spacer& spacer, double, const Context&, std::string_view) {
   return Laid{{{0.0, spacer.height, {}, true}}};  // what stands before it may have to stay with
                                                   // what follows
@@ -294,6 +314,7 @@ Expected<Laid> lay(const Columns& columns, double width, const Context& context,
   const double room = width - gutter * static_cast<double>(n - 1);
   Canvas canvas;
   double x = 0, height = 0;
+  bool with_next = false;
   for (std::size_t i = 0; i < n; ++i) {
     const double share =
         i < columns.shares.size() ? columns.shares[i] : 1.0 / static_cast<double>(n);
@@ -305,9 +326,10 @@ Expected<Laid> lay(const Columns& columns, double width, const Context& context,
       y += piece.height + piece.gap;
     }
     height = std::max(height, y);
+    with_next = with_next || (!part->pieces.empty() && part->pieces.back().with_next);
     x += room * share + gutter;
   }
-  if (height <= context.page_room) return Laid{{{height, 0, std::move(canvas.ops), false}}};
+  if (height <= context.page_room) return Laid{{{height, 0, std::move(canvas.ops), with_next}}};
   Laid out;
   for (const std::vector<Block>& blocks : columns.parts) {
     auto part = lay_all(blocks, width, context);

@@ -8,17 +8,17 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 
 namespace nonio::reports {
 
-std::string deflated(std::string_view bytes, int level) {
-  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
-      libdeflate_alloc_compressor(level), &libdeflate_free_compressor);
-  if (!compressor) return "";
-  std::string out(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
-  out.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), out.data(),
-                                      out.size()));
+Deflater::Deflater(int level) : compressor_(libdeflate_alloc_compressor(level)) {}
+Deflater::~Deflater() { libdeflate_free_compressor(compressor_); }
+
+std::string Deflater::operator()(std::string_view bytes) const {
+  if (compressor_ == nullptr) return "";
+  std::string out(libdeflate_zlib_compress_bound(compressor_, bytes.size()), '\0');
+  out.resize(
+      libdeflate_zlib_compress(compressor_, bytes.data(), bytes.size(), out.data(), out.size()));
   return out;
 }
 

@@ -4,10 +4,23 @@
 #include <string>
 #include <string_view>
 
+struct libdeflate_compressor;
+
 namespace nonio::reports {
 
-/// In zlib's format; level 1 (fast) to 12 (small).
-std::string deflated(std::string_view bytes, int level);
+/// Into zlib's format; level 1 (fast) to 12 (small).
+class Deflater {
+ public:
+  explicit Deflater(int level);
+  ~Deflater();
+  Deflater(const Deflater&) = delete;
+  Deflater& operator=(const Deflater&) = delete;
+  std::string operator()(std::string_view bytes) const;
+
+ private:
+  libdeflate_compressor* compressor_;
+};
+inline std::string deflated(std::string_view bytes, int level) { return Deflater(level)(bytes); }
 
 /// Decimal digits of an integer.
 void append_int(std::string& out, long long value);

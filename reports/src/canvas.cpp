@@ -207,6 +207,16 @@ void Canvas::text_upwards(double x, double y, bool bold, double size,
   show(bold, size, glyphs);
 }
 
+void Canvas::picture(long which, double x, double y, double w, double h) {
+  ops += "q ";
+  number(w);
+  ops += "0 0 ";
+  for (const double v : {h, x, y}) number(v);
+  ops += "cm /P";
+  append_int(ops, which);
+  ops += " Do Q\n";
+}
+
 void Canvas::place(double x, double y, const std::string& operators) {
   if (operators.empty()) return;
   ops += "q 1 0 0 1 ";

@@ -47,9 +47,13 @@ void append_hex(std::string& out, std::uint32_t value) {
   for (int shift = 12; shift >= 0; shift -= 4) out += digits[value >> shift & 15];
 }
 
+/// By the number that a glyph has in a document: its number in the font, or none.
+using Numbers = std::vector<int>;
+constexpr int none = -1;
+
 /// Glyphs back to characters. The minus sign is given back as "-", so that numbers copied out of a
 /// report are numbers.
-std::string to_unicode(const Font& font, const std::vector<char>& kept) {
+std::string to_unicode(const Font& font, const Numbers& numbers) {
   std::vector<std::uint16_t> character(font.advance.size());
   for (std::size_t c = font.glyphs.size(); c-- > 0;)
     if (font.glyphs[c] < character.size())
@@ -57,12 +61,13 @@ std::string to_unicode(const Font& font, const std::vector<char>& kept) {
   constexpr std::size_t minus = 0x2212;
   if (minus < font.glyphs.size() && font.glyphs[minus] != 0) character[font.glyphs[minus]] = u'-';
   std::vector<std::string> lines;
-  for (std::size_t g = 1; g < character.size(); ++g) {
-    if (character[g] == 0 || kept[g] == 0) continue;
+  for (std::size_t n = 1; n < numbers.size(); ++n) {
+    const std::uint32_t c = numbers[n] == none ? 0U : character[static_cast<unsigned>(numbers[n])];
+    if (c == 0) continue;
     std::string line = "<";
-    append_hex(line, static_cast<std::uint32_t>(g));
+    append_hex(line, static_cast<std::uint32_t>(n));
     line += "> <";
-    append_hex(line, character[g]);
+    append_hex(line, c);
     lines.push_back(line + ">\n");
   }
   std::string out =
@@ -81,17 +86,17 @@ std::string to_unicode(const Font& font, const std::vector<char>& kept) {
   return out + "endcmap\nCMapName currentdict /CMap defineresource pop\nend\nend\n";
 }
 
-/// Glyphs that are kept, in stretches: [0 [365 278 ...] 97 [556]].
-std::string widths_array(const std::vector<std::uint16_t>& advance, const std::vector<char>& kept) {
+/// In stretches: [0 [365 278 ...] 97 [556]].
+std::string widths_array(const std::vector<std::uint16_t>& advance, const Numbers& numbers) {
   std::string out = "[";
-  for (std::size_t g = 0; g < advance.size(); ++g) {
-    if (kept[g] == 0) continue;
-    if (g == 0 || kept[g - 1] == 0) {
-      append_int(out, static_cast<long long>(g));
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    if (numbers[n] == none) continue;
+    if (n == 0 || numbers[n - 1] == none) {
+      append_int(out, static_cast<long long>(n));
       out += " [";
     }
-    append_int(out, advance[g]);
-    out += g + 1 < advance.size() && kept[g + 1] != 0 ? ' ' : ']';
+    append_int(out, advance[static_cast<unsigned>(numbers[n])]);
+    out += n + 1 < numbers.size() && numbers[n + 1] != none ? ' ' : ']';
   }
   return out + "]";
 }
@@ -112,24 +117,28 @@ std::string subset_name(std::string_view bytes, std::string_view path) {
 
 bool is_common(std::size_t c) {
   constexpr std::u16string_view signs =
-      u"\u2013\u2014\u2018\u2019\u201C\u201D\u2022\u2026"
+      u"\u2013\u2014\u2018\u2019\u201C\u201D\u201E\u2022\u2026"
       u"\u2190\u2191\u2192\u2193\u2212\u2248\u2264\u2265";
   return (c >= 0x20 && c < 0x7F) || (c > 0xA0 && c <= 0xFF) ||
          signs.find(static_cast<char16_t>(c)) != std::u16string_view::npos;
 }
 
-Embedded embedded(const Font& font, const std::string& file, const std::vector<char>& kept,
-                  int level) {
+Embedded embedded(const Font& font, const std::string& file, const Numbers& numbers, int level) {
   return {subset_name(file, font.name), file.size(), deflated(file, level),
-          widths_array(font.advance, kept), deflated(to_unicode(font, kept), level)};
+          widths_array(font.advance, numbers), deflated(to_unicode(font, numbers), level)};
 }
 
 /// For a font of which documents embed all, or the common part.
 void compress(Font& font) {
   constexpr int level = 12;  // once in a process
-  font.with_all = embedded(font, font.bytes, std::vector<char>(font.common.size(), 1), level);
+  Numbers all, common;
+  for (std::size_t g = 0; g < font.common.size(); ++g) {
+    all.push_back(static_cast<int>(g));
+    common.push_back(font.common[g] != 0 ? static_cast<int>(g) : none);
+  }
+  font.with_all = embedded(font, font.bytes, all, level);
   const std::string subset = font_subset(font.bytes, font.common);
-  font.with_common = subset.empty() ? font.with_all : embedded(font, subset, font.common, level);
+  font.with_common = subset.empty() ? font.with_all : embedded(font, subset, common, level);
 }
 
 /// By size and table directory, which holds a checksum of each table: a whole font of megabytes
@@ -142,11 +151,11 @@ bool same_font(const Font& font, FontFile file) {
 
 }  // namespace
 
-Embedded embedded_part(const Font& font, std::vector<char> used) {
-  used[0] = 1;
-  constexpr int level = 6;
-  const std::string subset = font_subset(font.bytes, used);
-  return subset.empty() ? Embedded{} : embedded(font, subset, used, level);
+Embedded embedded_part(const Font& font, const std::vector<std::uint16_t>& glyphs) {
+  constexpr int level = 1;  // as pages
+  const std::string part = font_part(font.bytes, glyphs);
+  return part.empty() ? Embedded{}
+                      : embedded(font, part, Numbers(glyphs.begin(), glyphs.end()), level);
 }
 
 Expected<Font> parse_font(FontFile file) {
@@ -158,7 +167,7 @@ Expected<Font> parse_font(FontFile file) {
   if (r.u32(0) != 0x00010000) return broken("the file does not begin as one");
   const auto head = r.table("head"), hhea = r.table("hhea"), hmtx = r.table("hmtx");
   const auto cmap = r.table("cmap"), maxp = r.table("maxp");
-  if (!head || !hhea || !hmtx || !cmap || !maxp || !r.table("glyf"))
+  if (!head || !hhea || !hmtx || !cmap || !maxp || !r.table("glyf") || !r.table("loca"))
     return broken("a table of it is missing");
   const double units = r.u16(*head + 18);
   if (units < 16) return broken("its units per em are " + std::to_string(r.u16(*head + 18)));
@@ -166,6 +175,7 @@ Expected<Font> parse_font(FontFile file) {
     return static_cast<int>(value * 1000.0 / units + (value < 0 ? -0.5 : 0.5));
   };
   Font font;
+  font.units = static_cast<int>(units);
   for (std::size_t i = 0; i < 4; ++i) font.box[i] = scaled(r.s16(*head + 36 + 2 * i));
   font.ascent = scaled(r.s16(*hhea + 4));
   font.descent = scaled(r.s16(*hhea + 6));

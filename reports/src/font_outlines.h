@@ -20,13 +20,13 @@ class Outlines {
     const std::size_t from = begin(glyph), to = begin(glyph + 1);
     return to > from ? to - from : 0;
   }
-  /// The glyphs that this one is composed of.
+  /// Where in the file the numbers of the glyphs stand that this one is composed of.
   std::vector<std::size_t> components(std::size_t glyph) const {
     std::vector<std::size_t> out;
     if (size(glyph) < 10 || r_.s16(begin(glyph)) >= 0) return out;
     for (std::size_t at = begin(glyph) + 10; at + 4 <= begin(glyph + 1) && r_.ok();) {
       const std::uint32_t flags = r_.u16(at);
-      out.push_back(r_.u16(at + 2));
+      out.push_back(at + 2);
       at += 4 + (flags & 0x01 ? 4 : 2);
       at += flags & 0x80 ? 8 : flags & 0x40 ? 4 : flags & 0x08 ? 2 : 0;
       if ((flags & 0x20) == 0) break;

@@ -111,8 +111,8 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
   if (!(width > 100 && room > 100))
     return fail("the page's margins leave no room: " + std::to_string(width) + " pt by " +
                 std::to_string(room) + " pt");
-  GlyphUse use;
-  const Context context{style, fonts, room, use};
+  Used used;
+  const Context context{style, fonts, room, used};
   for (const auto& [text, field] :
        {std::pair(&document.title, "title"), std::pair(&document.author, "author"),
         std::pair(&document.subject, "subject")})
@@ -137,19 +137,12 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
   pages.add(waiting);
   std::vector<Canvas> drawn = pages.take();
   if (auto ok = add_heads_and_feet(drawn, document, context); !ok) return fail(ok.error());
-  PdfFile file{document.title,
-               document.author,
-               document.subject,
-               document.language,
-               document.date,
-               style.page_width,
-               style.page_height,
-               style.see_through,
-               use.common_only,
-               std::move(use.wide),
-               {}};
+  PdfFile file{document.title,   document.author,      document.subject,         document.language,
+               document.date,    style.page_width,     style.page_height,        style.see_through,
+               used.common_only, std::move(used.wide), std::move(used.pictures), {}};
+  file.profile = document.profile;
   for (Canvas& canvas : drawn) file.pages.push_back(std::move(canvas.ops));
-  return write_pdf(file, fonts);
+  return write_pdf(std::move(file), fonts);
 }
 
 }  // namespace nonio::reports

@@ -7,6 +7,7 @@
 #include <hpdf_objects.h>
 #include <hpdf_pages.h>
 #include <hpdf_streams.h>
+#include <openssl/sha.h>
 
 #include <algorithm>
 #include <array>
@@ -14,9 +15,11 @@
 #include <chrono>
 #include <cstring>
 #include <deque>
+#include <optional>
 
 #include "bytes.h"
 #include "font_subset.h"
+#include "xmp.h"
 
 // The one place that knows libharu. Its own text functions are not used: libharu 2.3.0 would parse
 // and compress both fonts again for each document, lose glyphs in silence and write a 128 kB
@@ -81,6 +84,9 @@ HPDF_STATUS append(HPDF_Stream stream, const HPDF_BYTE* bytes, HPDF_UINT size) {
 HPDF_STATUS write_filter(HPDF_Dict, HPDF_Stream stream) {
   return HPDF_Stream_WriteStr(stream, "/Filter /FlateDecode\012");
 }
+HPDF_STATUS write_jpeg_filter(HPDF_Dict, HPDF_Stream stream) {
+  return HPDF_Stream_WriteStr(stream, "/Filter /DCTDecode\012");
+}
 
 HPDF_STATUS write_widths(HPDF_Dict dict, HPDF_Stream stream) {
   const auto* font = static_cast<const Embedded*>(dict->attr);
@@ -89,21 +95,21 @@ HPDF_STATUS write_widths(HPDF_Dict dict, HPDF_Stream stream) {
   return status == HPDF_OK ? HPDF_Stream_WriteStr(stream, "\012") : status;
 }
 
-/// `compressed` outlives the document.
-void fill(Document& pdf, HPDF_Dict dict, const std::string& compressed) {
-  Source& source = pdf.sources.emplace_back(Source{compressed});
+/// `bytes`, compressed or not, outlive the document.
+void fill(Document& pdf, HPDF_Dict dict, const std::string& bytes, bool compressed = true) {
+  Source& source = pdf.sources.emplace_back(Source{bytes});
   HPDF_Stream stream = HPDF_CallbackReader_New(pdf.doc->mmgr, read_source, seek_source, nullptr,
                                                size_of_source, &source);
   if (stream == nullptr) return;  // recorded
   HPDF_Stream_Free(dict->stream);
   dict->stream = stream;
   dict->filter = HPDF_STREAM_FILTER_NONE;
-  dict->write_fn = write_filter;
+  dict->write_fn = compressed ? write_filter : nullptr;
 }
 
-HPDF_Dict compressed_stream(Document& pdf, const std::string& compressed) {
+HPDF_Dict new_stream(Document& pdf, const std::string& bytes, bool compressed = true) {
   HPDF_Dict dict = HPDF_DictStream_New(pdf.doc->mmgr, pdf.doc->xref);
-  if (dict != nullptr) fill(pdf, dict, compressed);
+  if (dict != nullptr) fill(pdf, dict, bytes, compressed);
   return dict;
 }
 
@@ -116,7 +122,7 @@ HPDF_Dict new_object(HPDF_Doc doc, const char* type) {
 
 HPDF_Dict add_descriptor(Document& pdf, const Font& font, const Embedded& embedded, bool bold) {
   HPDF_Doc doc = pdf.doc;
-  HPDF_Dict file = compressed_stream(pdf, embedded.file_deflated);
+  HPDF_Dict file = new_stream(pdf, embedded.file_deflated);
   HPDF_Dict descriptor = new_object(doc, "FontDescriptor");
   if (file == nullptr || descriptor == nullptr) return nullptr;
   HPDF_Dict_AddNumber(file, "Length1", static_cast<HPDF_INT32>(embedded.size));
@@ -138,7 +144,7 @@ HPDF_Dict add_descriptor(Document& pdf, const Font& font, const Embedded& embedd
 HPDF_Dict add_font(Document& pdf, const Font& font, const Embedded& embedded, bool bold) {
   HPDF_Doc doc = pdf.doc;
   HPDF_Dict descriptor = add_descriptor(pdf, font, embedded, bold);
-  HPDF_Dict to_unicode = compressed_stream(pdf, embedded.to_unicode_deflated);
+  HPDF_Dict to_unicode = new_stream(pdf, embedded.to_unicode_deflated);
   HPDF_Dict cid_font = new_object(doc, "Font"), type0 = new_object(doc, "Font");
   if (descriptor == nullptr || to_unicode == nullptr || cid_font == nullptr || type0 == nullptr)
     return nullptr;
@@ -164,6 +170,29 @@ HPDF_Dict add_font(Document& pdf, const Font& font, const Embedded& embedded, bo
   return type0;
 }
 
+HPDF_Dict add_samples(Document& pdf, const Picture& picture, const std::string& compressed,
+                      bool grey) {
+  HPDF_Dict samples = new_stream(pdf, compressed);
+  if (samples == nullptr) return nullptr;
+  HPDF_Dict_AddName(samples, "Type", "XObject");
+  HPDF_Dict_AddName(samples, "Subtype", "Image");
+  HPDF_Dict_AddNumber(samples, "Width", static_cast<HPDF_INT32>(picture.width));
+  HPDF_Dict_AddNumber(samples, "Height", static_cast<HPDF_INT32>(picture.height));
+  HPDF_Dict_AddName(samples, "ColorSpace", grey ? "DeviceGray" : "DeviceRGB");
+  HPDF_Dict_AddNumber(samples, "BitsPerComponent", 8);
+  return samples;
+}
+
+/// `picture` outlives the document.
+HPDF_Dict add_picture(Document& pdf, const Picture& picture) {
+  HPDF_Dict colours = add_samples(pdf, picture, picture.colours, picture.grey);
+  if (colours == nullptr) return nullptr;
+  if (picture.jpeg) colours->write_fn = write_jpeg_filter;
+  if (!picture.opacity.empty())
+    HPDF_Dict_Add(colours, "SMask", add_samples(pdf, picture, picture.opacity, true));
+  return colours;
+}
+
 /// One dictionary that all pages share.
 HPDF_Dict add_resources(Document& pdf, const Fonts& fonts, const PdfFile& file,
                         const Embedded& wide) {
@@ -182,6 +211,13 @@ HPDF_Dict add_resources(Document& pdf, const Fonts& fonts, const PdfFile& file,
   HPDF_Dict_Add(by_font, "F1", regular);
   HPDF_Dict_Add(by_font, "F2", bold);
   if (!file.wide.empty()) HPDF_Dict_Add(by_font, "F3", add_font(pdf, fonts.wide, wide, false));
+  if (!file.pictures.empty()) {
+    HPDF_Dict by_picture = HPDF_Dict_New(doc->mmgr);
+    HPDF_Dict_Add(resources, "XObject", by_picture);
+    for (std::size_t i = 0; i < file.pictures.size(); ++i)
+      HPDF_Dict_Add(by_picture, ("P" + std::to_string(i)).c_str(),
+                    add_picture(pdf, *file.pictures[i]));
+  }
   HPDF_Dict_AddReal(state, "ca", static_cast<HPDF_REAL>(file.see_through));
   HPDF_Dict by_state = HPDF_Dict_New(doc->mmgr);
   HPDF_Dict_Add(resources, "ExtGState", by_state);
@@ -202,8 +238,6 @@ std::string utf16(std::string_view text) {
     out += static_cast<char>(c & 0xFF);
     i += size;
   }
-  constexpr std::size_t most = 2000;  // a property is a label; the text itself stands in the report
-  if (out.size() > most) out.resize(most);
   return out;
 }
 
@@ -215,25 +249,87 @@ void add_property(HPDF_Doc doc, const char* key, std::string_view text) {
                                 static_cast<HPDF_UINT>(bytes.size())));
 }
 
-void add_properties(HPDF_Doc doc, const PdfFile& file) {
-  add_property(doc, "Title", file.title);
-  add_property(doc, "Author", file.author);
-  add_property(doc, "Subject", file.subject);
+/// A property is a label; the text itself stands in the document.
+std::string label(std::string text) {
+  constexpr std::size_t most = 2000;
+  if (text.size() <= most) return text;
+  std::size_t end = most;
+  while ((static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  text.resize(end);
+  return text;
+}
+
+/// What is not one gives none.
+std::optional<HPDF_Date> date_of(const std::string& text) {
   HPDF_Date date{};
   date.ind = 'Z';
   const auto part = [&](std::size_t at, std::size_t size, HPDF_INT& value) {
-    const char* from = file.date.data() + at;
+    const char* from = text.data() + at;
     return std::from_chars(from, from + size, value).ptr == from + size;
   };
-  if (file.date.size() == 10 && part(0, 4, date.year) && part(5, 2, date.month) &&
+  if (text.size() == 10 && part(0, 4, date.year) && part(5, 2, date.month) &&
       part(8, 2, date.day) &&
       std::chrono::year_month_day(std::chrono::year(date.year),
                                   std::chrono::month(static_cast<unsigned>(date.month)),
                                   std::chrono::day(static_cast<unsigned>(date.day)))
           .ok())
-    HPDF_SetInfoDateAttr(doc, HPDF_INFO_CREATION_DATE, date);
+    return date;
+  return {};
+}
+
+void add_properties(HPDF_Doc doc, const PdfFile& file) {
+  add_property(doc, "Title", file.title);
+  add_property(doc, "Author", file.author);
+  add_property(doc, "Subject", file.subject);
+  if (const auto date = date_of(file.date))
+    HPDF_SetInfoDateAttr(doc, HPDF_INFO_CREATION_DATE, *date);
   if (!file.language.empty())
     HPDF_Dict_Add(doc->catalog, "Lang", HPDF_String_New(doc->mmgr, file.language.c_str(), nullptr));
+}
+
+/// What a file that is kept for long says of itself.
+struct Kept {
+  std::string profile, xmp, identifier;
+};
+
+/// `contents`: the pages, compressed.
+Kept kept_of(HPDF_Doc doc, const PdfFile& file, const std::vector<std::string>& contents,
+             const Deflater& fast) {
+  const char* producer = HPDF_GetInfoAttr(doc, HPDF_INFO_PRODUCER);
+  Kept kept{fast(file.profile), xmp_packet(file, producer != nullptr ? producer : ""), {}};
+  std::string content = kept.xmp;
+  for (const std::string& page : contents) content += page;
+  std::array<unsigned char, SHA256_DIGEST_LENGTH> digest{};
+  SHA256(reinterpret_cast<const unsigned char*>(content.data()), content.size(), digest.data());
+  kept.identifier.assign(digest.begin(), digest.begin() + 16);
+  return kept;
+}
+
+void add_kept(Document& pdf, const Kept& kept) {
+  HPDF_Doc doc = pdf.doc;
+  HPDF_Dict profile = new_stream(pdf, kept.profile), metadata = new_stream(pdf, kept.xmp, false);
+  HPDF_Dict intent = new_object(doc, "OutputIntent");
+  if (profile == nullptr || metadata == nullptr || intent == nullptr) return;
+  HPDF_Dict_AddNumber(profile, "N", 3);  // its colours
+  HPDF_Dict_AddName(metadata, "Type", "Metadata");
+  HPDF_Dict_AddName(metadata, "Subtype", "XML");
+  HPDF_Dict_Add(doc->catalog, "Metadata", metadata);
+  HPDF_Dict_AddName(intent, "S", "GTS_PDFA1");
+  const auto text = [&](const char* value) { return HPDF_String_New(doc->mmgr, value, nullptr); };
+  HPDF_Dict_Add(intent, "OutputConditionIdentifier", text("sRGB IEC61966-2.1"));
+  HPDF_Dict_Add(intent, "Info", text("sRGB IEC61966-2.1"));
+  HPDF_Dict_Add(intent, "DestOutputProfile", profile);
+  HPDF_Array intents = HPDF_Array_New(doc->mmgr);
+  HPDF_Dict_Add(doc->catalog, "OutputIntents", intents);
+  HPDF_Array_Add(intents, intent);
+  HPDF_Array identifiers = HPDF_Array_New(doc->mmgr);
+  HPDF_Dict_Add(doc->trailer, "ID", identifiers);
+  for (int i = 0; i < 2; ++i) {
+    std::string bytes = kept.identifier;
+    HPDF_Array_Add(identifiers,
+                   HPDF_Binary_New(doc->mmgr, reinterpret_cast<HPDF_BYTE*>(bytes.data()),
+                                   static_cast<HPDF_UINT>(bytes.size())));
+  }
 }
 
 void add_page(Document& pdf, const PdfFile& file, const std::string& compressed,
@@ -249,19 +345,24 @@ void add_page(Document& pdf, const PdfFile& file, const std::string& compressed,
 
 }  // namespace
 
-Expected<std::string> write_pdf(const PdfFile& file, const Fonts& fonts) {
+Expected<std::string> write_pdf(PdfFile file, const Fonts& fonts) {
+  for (std::string* text : {&file.title, &file.author, &file.subject})
+    *text = label(std::move(*text));
+  if (!date_of(file.date)) file.date.clear();
   std::vector<std::string> contents;
-  constexpr int level = 1;  // 6 takes three times as long for a few per cent of the file
-  for (const std::string& content : file.pages) contents.push_back(deflated(content, level));
+  const Deflater fast(1);  // 6 takes three times as long for a few per cent of the file
+  for (const std::string& content : file.pages) contents.push_back(fast(content));
   Embedded wide;
   if (!file.wide.empty()) wide = embedded_part(fonts.wide, file.wide);
   if (!file.wide.empty() && wide.name.empty())
     return fail(
         Error{"a TrueType font was expected, but no part of it can be taken out", fonts.wide.name});
+  Kept kept;  // outlives the document, as all that it is written from
   Document pdf;
   if (pdf.doc == nullptr) return fail("the PDF could not be begun: out of memory");
   pdf.doc->pdf_version = HPDF_VER_17;
   add_properties(pdf.doc, file);
+  if (!file.profile.empty()) add_kept(pdf, kept = kept_of(pdf.doc, file, contents, fast));
   if (HPDF_Dict resources = add_resources(pdf, fonts, file, wide)) {
     for (const std::string& content : contents) add_page(pdf, file, content, resources);
     pdf.doc->stream = HPDF_CallbackWriter_New(pdf.doc->mmgr, append, &pdf.bytes);

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "axis_scale.h"
 #include "canvas.h"
 #include "nonio/reports/document.h"
+#include "nonio/reports/picture.h"
 
 namespace nonio::reports {
 
@@ -27,17 +30,19 @@ struct Laid {
   std::size_t rows_from = 0;
 };
 
-/// What a document embeds of the fonts.
-struct GlyphUse {
-  bool common_only = true;  ///< no glyph was set that is not one of Font::common
-  std::vector<char> wide;   ///< by glyph of Fonts::wide; empty: none
+/// What a document embeds.
+struct Used {
+  bool common_only = true;             ///< no glyph was set that is not one of Font::common
+  std::vector<std::uint16_t> wide;     ///< glyphs of Fonts::wide by their number in the document
+  std::vector<std::uint16_t> numbers;  ///< the other way round; 0: not used yet
+  std::vector<std::shared_ptr<const Picture>> pictures;
 };
 
 struct Context {
   const Style& style;
   const Fonts& fonts;
   double page_room;  ///< height between head and foot
-  GlyphUse& use;
+  Used& used;
 };
 
 /// A text that is set at one size, in lines.
@@ -56,8 +61,8 @@ struct SetText {
   void draw_all(Canvas&, double x, double y, double width = 0.0, double align = 0.0) const;
 };
 
-/// For text that is set in another way than by the next two.
-void note_glyphs(const Context&, const Glyphs&, bool bold);
+/// For text that is set in another way than by the next two; the document's numbers of glyphs.
+void note_glyphs(const Context&, Glyphs&, bool bold);
 Expected<SetText> set_text(const Context&, std::string_view text, bool bold, double size,
                            double width, std::string_view field);
 /// In one line, with an ellipsis if it is too long for it.

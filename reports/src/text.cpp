@@ -44,9 +44,7 @@ Box box_of(const Font& font, std::uint16_t glyph) {
   const FontReader r(font.bytes);
   const std::size_t head = *r.table("head");
   const std::size_t at = Outlines(r, head, *r.table("loca"), *r.table("glyf")).begin(glyph);
-  const auto side = [&](std::size_t k) {
-    return r.s16(at + k) * 1000 / static_cast<int>(r.u16(head + 18));
-  };
+  const auto side = [&](std::size_t k) { return r.s16(at + k) * 1000 / font.units; };
   return {side(2), side(6), side(4), side(8)};
 }
 

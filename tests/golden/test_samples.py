@@ -80,9 +80,9 @@ class Samples(unittest.TestCase):
                 maker.main()
             finally:
                 sys.argv = argv
-            self.assertEqual(files_below(folder), files_below(SITE))
-            for name in files_below(SITE):
-                self.assertTrue(filecmp.cmp(os.path.join(folder, name), os.path.join(SITE, name),
+            self.assertEqual(files_below(os.path.join(folder, "site")), files_below(SITE))
+            for name in files_below(folder):
+                self.assertTrue(filecmp.cmp(os.path.join(folder, name), os.path.join(SAMPLES, name),
                                             shallow=False), name)
 
     def test_every_file_says_that_it_is_constructed(self):

@@ -57,7 +57,7 @@ class Input(NightTest):
         self.campaign("file", text=manifest("file").replace("x.csv", "y.csv"))
         self.campaign("axes", run='[run]\noutputs = ["fanuc"]\n[options.fanuc]\naxes = ["Q number=1"]\n')
         self.campaign("customer", text=manifest("customer").replace(
-            "date = 2026-11-03", 'customer = "上海"'))
+            "date = 2026-11-03", 'customer = "😀"'))
         self.campaign("newline", text=manifest("newline").replace(
             "date = 2026-11-03", 'customer = "a\\nb"'))
         self.run_nonio(expect=1)

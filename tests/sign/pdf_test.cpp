@@ -38,6 +38,22 @@ TEST(Reserve, RefusesWhatItWouldHaveToGuess) {
   EXPECT_NE(why(hidden), "");
 }
 
+TEST(Pages, AreWhatWasDrawn) {
+  const auto plain = sign::page_contents(small_pdf("a")),
+             reserved = sign::page_contents(*sign::reserve(small_pdf("a"), {}, now));
+  ASSERT_TRUE(plain && reserved);
+  EXPECT_EQ(*plain, *reserved);
+  EXPECT_EQ(*plain, std::vector<std::string>{"BT /F1 12 Tf 50 800 Td (a) Tj ET\n"});
+  EXPECT_NE(*plain, *sign::page_contents(small_pdf("b")));
+  std::string broken = small_pdf();
+  broken.replace(broken.find("/Kids [ 4 0 R ]"), 15, "/Kids [ 2 0 R ]");
+  EXPECT_FALSE(sign::page_contents(broken));
+  broken = small_pdf();
+  broken.replace(broken.find("/Contents 5 0 R"), 15, "/Contents 9 0 R");
+  EXPECT_FALSE(sign::page_contents(broken));
+  EXPECT_FALSE(sign::page_contents("hello"));
+}
+
 TEST(Verify, SaysNoToWhatIsNoSignedPdf) {
   sign::Verifier verifier;
   verifier.now = now;

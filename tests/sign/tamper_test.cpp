@@ -2,7 +2,10 @@
 // What an attacker may do to a signed file: every byte flipped once, and the tricks that at least
 // one of pdfsig, openssl and qpdf was seen to accept.
 #include <gtest/gtest.h>
+#include <openssl/cms.h>
+#include <openssl/x509.h>
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <random>
@@ -157,6 +160,71 @@ TEST(Tamper, TheCertificateIsAnother) {
   EXPECT_EQ(s.fails(forged), "signer.expected");
 }
 
+std::string hex_of(const std::string& bytes) {
+  std::string out;
+  for (const unsigned char c : bytes) {
+    std::array<char, 3> two{};
+    std::snprintf(two.data(), two.size(), "%02x", c);
+    out += two.data();
+  }
+  return out;
+}
+
+template <class T>
+std::string der(T* object, int (*encode)(const T*, unsigned char**)) {
+  unsigned char* made = nullptr;
+  const int size = encode(object, &made);
+  std::string out(reinterpret_cast<const char*>(made), static_cast<std::size_t>(size));
+  OPENSSL_free(made);
+  return out;
+}
+
+/// A certificate of the same key, issuer, serial number and size for another name: ECDSA signatures
+/// differ in length, so it is signed until it fits.
+Holder twin_of_ada(const Scene& s) {
+  Wish eva;
+  eva.name = "Eva Bianchi";
+  const Holder twin = renamed(s.ada, eva, s.root);
+  X509* c = twin.certificate.get();
+  X509_set_serialNumber(c, X509_get_serialNumber(s.ada.certificate.get()));
+  const std::size_t wanted = der(s.ada.certificate.get(), &i2d_X509).size();
+  for (int trial = 0; trial < 1000; ++trial) {
+    X509_sign(c, s.root.key.get(), EVP_sha256());
+    if (der(c, &i2d_X509).size() == wanted) break;
+  }
+  return twin;
+}
+
+TEST(Tamper, TheCertificateInsideTheSignatureIsSwapped) {
+  const Scene& s = scene();
+  const std::string ada = hex_of(der(s.ada.certificate.get(), &i2d_X509));
+  const std::string eva = hex_of(der(twin_of_ada(s).certificate.get(), &i2d_X509));
+  ASSERT_EQ(ada.size(), eva.size());
+  EXPECT_EQ(s.fails(with(s.plain, ada, eva)), "signature.certificate");
+}
+
+/// What openssl cms -verify accepts: a signer named by the key alone fits every certificate of it.
+TEST(Tamper, ASignerNamedByTheKeyAlone) {
+  const Scene& s = scene();
+  const std::size_t gap = s.plain.find("/Contents <30") + 10, end = s.plain.find('>', gap) + 1;
+  const std::string content = s.plain.substr(0, gap) + s.plain.substr(end);
+  for (const unsigned extra : {0U, unsigned{CMS_CADES}}) {
+    const unsigned flags = CMS_BINARY | CMS_DETACHED;
+    BIO* in = BIO_new_mem_buf(content.data(), static_cast<int>(content.size()));
+    CMS_ContentInfo* cms = CMS_sign(nullptr, nullptr, nullptr, nullptr, flags | CMS_PARTIAL);
+    CMS_add1_signer(cms, s.ada.certificate.get(), s.ada.key.get(), EVP_sha256(),
+                    flags | CMS_USE_KEYID | CMS_NOSMIMECAP | extra);
+    EXPECT_EQ(CMS_final(cms, in, nullptr, flags), 1);
+    std::string digits = hex_of(der(cms, &i2d_CMS_ContentInfo));
+    CMS_ContentInfo_free(cms);
+    BIO_free(in);
+    ASSERT_LE(digits.size(), end - gap - 2);
+    digits.resize(end - gap - 2, '0');
+    EXPECT_EQ(s.fails(with(s.plain, s.plain.substr(gap + 1, end - gap - 2), digits)),
+              "signature.form");
+  }
+}
+
 TEST(Tamper, AnExpiredCertificate) {
   const Scene& s = scene();
   sign::Verifier later = s.verifier;
@@ -202,6 +270,7 @@ TEST(Tamper, RandomDamage) {
     }
     if (bytes == s.stamped) continue;
     ASSERT_NE(s.fails(bytes), "none");
+    [[maybe_unused]] const auto pages = sign::page_contents(bytes);
   }
 }
 

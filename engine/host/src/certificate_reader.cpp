@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "nonio/host/register.h"
+
 namespace nonio::host {
 
 namespace {
@@ -69,17 +71,8 @@ Numbering read_numbering(TableReader& reader) {
   Numbering n;
   if (const std::string pattern = reader.text("numbering"); !pattern.empty()) n.pattern = pattern;
   if (const std::string file = reader.text("register"); !file.empty()) n.register_file = file;
-  const std::size_t at = n.pattern.find("{number");
-  const bool more =
-      at != std::string::npos && n.pattern.find("{number", at + 1) != std::string::npos;
-  const std::string rest = at == std::string::npos ? "" : n.pattern.substr(at + 7);
-  const bool digits = rest.starts_with('}') || (rest.size() > 2 && rest[0] == ':' &&
-                                                rest[1] >= '1' && rest[1] <= '9' && rest[2] == '}');
-  if (!digits || more)
-    reader.error("numbering",
-                 "wanted {number} or {number:4} once, and {year} if the sequence is to begin anew "
-                 "with each year; found \"" +
-                     n.pattern + "\"");
+  if (const auto sound = number_text(n.pattern, "2026", 1); !sound)
+    reader.error("numbering", sound.error().message);
   return n;
 }
 

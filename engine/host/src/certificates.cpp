@@ -36,6 +36,17 @@ class Desk {
       : e_(evaluated), folder_(folder), context_(context), signer_(signer), now_(now) {}
 
   Expected<void> run() {
+    auto done = sign_all();
+    if (!done) return done;
+    if (e_.certificate) return keep_for_register();
+    for (const IssuedFile& file : signed_) note_time_stamp(e_, file, context_.templates);
+    for (auto& w : outputs())
+      for (Artifact& a : w.result.artifacts) a.sign = false;
+    return done;
+  }
+
+ private:
+  Expected<void> sign_all() {
     auto done = sign_documents();
     if (done) done = attach_inputs();
     if (done) done = attach_results();
@@ -48,19 +59,36 @@ class Desk {
     return done;
   }
 
- private:
+  /// All that the numbered output has made, and what of the others is signed with it.
+  Expected<void> keep_for_register() {
+    Certificate& certificate = *e_.certificate;
+    const auto is_own = [&](const IssuedFile& f) { return f.output == certificate.output; };
+    if (std::none_of(signed_.begin(), signed_.end(), is_own))
+      return fail("output " + certificate.output +
+                  " makes nothing that is signed, and nothing else is issued under a number");
+    for (const auto& w : outputs())
+      if (w.plugin == certificate.output)
+        for (const Artifact& a : w.result.artifacts)
+          certificate.files.push_back({w.plugin, a.name, a.bytes, time_stamp_of(a.name)});
+    for (IssuedFile& file : signed_)
+      if (!is_own(file)) certificate.files.push_back(std::move(file));
+    certificate.results = std::move(attachments_.back().bytes);
+    return {};
+  }
+
+  std::string time_stamp_of(const std::string& name) const {
+    for (const IssuedFile& file : signed_)
+      if (file.name == name) return file.no_time_stamp;
+    return {};
+  }
+
   std::vector<Results::Written>& outputs() { return e_.results.outputs; }
 
   Expected<void> sign(Artifact& a, std::size_t output) {
     auto done = signer_.sign(a.bytes);
     if (!done) return fail(a.name + " could not be signed: " + done.error().message);
-    if (!done->no_time_stamp.empty())
-      outputs()[output].result.findings.push_back(
-          {.id = "signature.no-time-stamp",
-           .attention = true,
-           .texts = {{"file", a.name}, {"why", done->no_time_stamp}}});
     a.bytes = std::move(done->bytes);
-    a.sign = false;
+    signed_.push_back({outputs()[output].plugin, a.name, a.bytes, std::move(done->no_time_stamp)});
     return {};
   }
 
@@ -75,7 +103,7 @@ class Desk {
               "digital calibration certificate, with a signature of its own");
         }
       for (std::size_t i = 0, place = 0; i < artifacts.size(); ++place) {
-        if (!artifacts[i].sign) {
+        if (!artifacts[i].sign || !is_pdf(artifacts[i])) {
           ++i;
           continue;
         }
@@ -93,7 +121,7 @@ class Desk {
 
   /// As they were evaluated, byte by byte.
   Expected<void> attach_inputs() {
-    if (drafts_.empty()) return {};
+    if (drafts_.empty() && !e_.certificate) return {};
     const std::string prefix = input_name("");
     for (const auto& [input, digest] : e_.inputs) {
       const bool is_file = input.starts_with(prefix);
@@ -119,7 +147,7 @@ class Desk {
   }
 
   Expected<void> attach_results() {
-    if (drafts_.empty()) return {};
+    if (drafts_.empty() && !e_.certificate) return {};
     std::vector<RecordedFile> files;
     for (const auto& w : outputs())
       for (const Artifact& a : w.result.artifacts)
@@ -143,33 +171,48 @@ class Desk {
   const sign::Time now_;
   std::vector<Draft> drafts_;
   std::vector<sign::Attachment> attachments_;
+  std::vector<IssuedFile> signed_;
 };
 
 }  // namespace
 
-void remove_unsigned(Results& results) {
-  for (Results::Written& w : results.outputs)
-    std::erase_if(w.result.artifacts, [](const Artifact& a) { return a.sign; });
+void remove_unsigned(Evaluated& evaluated) {
+  auto& certificate = evaluated.certificate;
+  const bool draft = certificate && !certificate->issued;
+  for (Results::Written& w : evaluated.results.outputs)
+    std::erase_if(w.result.artifacts, [&](const Artifact& a) {
+      return a.sign || (draft && w.plugin == certificate->output);
+    });
+  if (draft) certificate.reset();
+}
+
+void note_finding(Evaluated& evaluated, const std::string& output, Finding finding,
+                  const Templates& templates) {
+  finding.advice = finding_text(templates, "en", finding, "advice");
+  if (finding.attention) evaluated.status = "attention";
+  for (Results::Written& w : evaluated.results.outputs)
+    if (w.plugin == output) return w.result.findings.push_back(std::move(finding));
+}
+
+void note_time_stamp(Evaluated& evaluated, const IssuedFile& file, const Templates& templates) {
+  if (file.no_time_stamp.empty()) return;
+  note_finding(evaluated, file.output,
+               {.id = "signature.no-time-stamp",
+                .attention = true,
+                .texts = {{"file", file.name}, {"why", file.no_time_stamp}}},
+               templates);
 }
 
 Expected<void> sign_artifacts(Evaluated& evaluated, const fs::path& folder, const Context& context,
                               const Signer* signer, sign::Time now) {
-  if (!is_asked(evaluated.results)) return {};
+  if (!evaluated.certificate && !is_asked(evaluated.results)) return {};
   if (evaluated.status == "failed") {
-    remove_unsigned(evaluated.results);
+    remove_unsigned(evaluated);
     return {};
   }
-  if (signer == nullptr)
-    return fail("an output is to be signed, and site.toml says nothing of a key; wanted [signing]");
-  auto done = Desk(evaluated, folder, context, *signer, now).run();
-  if (!done) return done;
-  for (auto& w : evaluated.results.outputs)
-    for (Finding& f : w.result.findings)
-      if (f.id == "signature.no-time-stamp") {
-        f.advice = finding_text(context.templates, "en", f, "advice");
-        evaluated.status = "attention";
-      }
-  return {};
+  if (evaluated.certificate && evaluated.certificate->issued) return {};
+  if (signer == nullptr) return fail(no_key);
+  return Desk(evaluated, folder, context, *signer, now).run();
 }
 
 }  // namespace nonio::host

@@ -12,14 +12,26 @@ namespace nonio::host {
 /// How the attachments of a certificate are called.
 inline constexpr const char* settings_name = "site-settings.toml";
 
+/// Why nothing can be signed where `signer` is null.
+inline constexpr const char* no_key =
+    "an output is to be signed, and site.toml says nothing of a key; wanted [signing]";
+
 /// Signs the artifacts that outputs want signed: XML documents first, then PDFs, into which go the
-/// manifest, the readings, what of site.toml has a say in the results, results.json and the signed
-/// XML documents. Of a failed campaign nothing is signed: these artifacts are taken away.
-/// `signer` is null where site.toml has no [signing].
+/// manifest, the readings, what of site.toml has a say in them, results.json and the signed XML
+/// documents. What is to be issued under a number is then in `Evaluated::certificate`, and is taken
+/// from the register in the end; what is issued already is not signed again. Of a failed campaign
+/// nothing is signed: these artifacts are taken away. `signer` is null where site.toml has no
+/// [signing].
 Expected<void> sign_artifacts(Evaluated& evaluated, const std::filesystem::path& folder,
                               const Context& context, const Signer* signer, sign::Time now);
 
-/// Takes away what is to be signed and is not.
-void remove_unsigned(Results& results);
+/// Takes away what is to be signed and is not, and all of a certificate that is not issued.
+void remove_unsigned(Evaluated& evaluated);
+
+/// Adds a finding to what one of its outputs found.
+void note_finding(Evaluated& evaluated, const std::string& output, Finding finding,
+                  const Templates& templates);
+/// That a file was signed without time stamp, if it was.
+void note_time_stamp(Evaluated& evaluated, const IssuedFile& file, const Templates& templates);
 
 }  // namespace nonio::host

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "guarded.h"
 #include "model_fit.h"
@@ -20,8 +21,8 @@ namespace {
 
 class CampaignRun {
  public:
-  CampaignRun(const fs::path& folder, const Context& context, const Stage& stage)
-      : folder_(folder), context_(context), stage_(stage) {}
+  CampaignRun(const fs::path& folder, const Context& context, const Stage& stage, const Draw& draw)
+      : folder_(folder), context_(context), stage_(stage), draw_(draw) {}
 
   Evaluated run(const std::string& id) {
     id_ = out_.campaign.id = id;
@@ -82,7 +83,9 @@ class CampaignRun {
     const auto& names = campaign ? campaign : site;
     if (!names) {
       for (const Plugin& p : all)
-        if (!p.info.on_request || read_.manifest->options.contains(p.info.name)) out.push_back(&p);
+        if (!p.info.on_request || read_.manifest->options.contains(p.info.name) ||
+            out_.campaign.machine.control == p.info.name)
+          out.push_back(&p);
       return out;
     }
     for (const std::string& name : *names) {
@@ -245,17 +248,24 @@ class CampaignRun {
         f.advice = finding_text(context_.templates, "en", f, "advice");
   }
 
-  void write_outputs() {
+  /// An output that is to be written. Without `asked` a table that the control cannot have is worth
+  /// a finding, not the campaign: it was tried only because nobody said which control the machine
+  /// has.
+  struct Wanted {
+    const Output& output;
+    Settings options;
+    bool asked;
+  };
+
+  std::vector<Wanted> wanted_outputs() {
+    std::vector<Wanted> wanted;
     auto outputs = chosen(context_.plugins->outputs(), "output", "run.outputs",
                           read_.manifest->run.outputs, context_.site.run.outputs);
     const bool all = !read_.manifest->run.outputs && !context_.site.run.outputs;
     check_control();
-    if (failed()) return;
+    if (failed()) return wanted;
     std::stable_partition(outputs.begin(), outputs.end(),
                           [](const Output* o) { return o->stage == Output::Stage::table; });
-    if (out_.campaign.compensate_model)
-      for_tables_ = compensable_readings(read_, out_.results.notes);
-    word(out_.results.notes);
     for (const Output* output : outputs) {
       const std::string& control = out_.campaign.machine.control;
       if (all && output->stage == Output::Stage::table && !control.empty() &&
@@ -264,8 +274,85 @@ class CampaignRun {
       if (!output->applies(out_.campaign)) continue;
       const bool asked =
           !all || output->stage != Output::Stage::table || control == output->info.name;
-      if (const auto options = settle(output->info)) write_output(*output, *options, asked);
+      if (auto options = settle(output->info))
+        wanted.push_back({*output, std::move(*options), asked});
     }
+    return wanted;
+  }
+
+  void write_outputs() {
+    const auto wanted = wanted_outputs();
+    if (out_.campaign.compensate_model)
+      for_tables_ = compensable_readings(read_, out_.results.notes);
+    word(out_.results.notes);
+    bool numbered = false;
+    for (const Wanted& w : wanted) {
+      if (w.output.stage == Output::Stage::document && !std::exchange(numbered, true))
+        draw_number(wanted);
+      write_output(w);
+    }
+  }
+
+  /// The output that is issued under a number; null if there is none, or an error.
+  const Wanted* numbered_output(const std::vector<Wanted>& wanted) {
+    const Wanted* numbered = nullptr;
+    for (const Wanted& w : wanted) {
+      if (w.output.lacks == nullptr) continue;
+      if (numbered != nullptr)
+        report(at("run.outputs", "both " + numbered->output.info.name + " and " +
+                                     w.output.info.name +
+                                     " are issued under a number; wanted one of them"));
+      numbered = &w;
+    }
+    return failed() ? nullptr : numbered;
+  }
+
+  /// Before the documents, which may print it.
+  void draw_number(const std::vector<Wanted>& wanted) {
+    const Wanted* numbered = numbered_output(wanted);
+    if (numbered == nullptr) return;
+    const Info& info = numbered->output.info;
+    const std::string who = "output " + info.name;
+    stage_(who);
+    const auto missing = guarded(who, [&]() -> Expected<std::vector<std::string>> {
+      return numbered->output.lacks(input(*numbered));
+    });
+    if (!missing) return report(missing.error());
+    if (draw_) {
+      auto drawn = draw_(out_, missing->empty());
+      if (!drawn) {
+        out_.retry = true;
+        return report(std::move(drawn.error()));
+      }
+      if (!drawn->issue.number.empty()) {
+        out_.certificate = std::move(*drawn);
+        out_.certificate->output = info.name;
+      }
+    }
+    if (!missing->empty() && !out_.certificate) {
+      OutputResult incomplete;
+      incomplete.findings.push_back({.id = "certificate.incomplete",
+                                     .attention = true,
+                                     .texts = {{"missing", list(*missing)}}});
+      keep(info, std::move(incomplete));
+    }
+  }
+
+  static std::string list(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+  }
+
+  OutputInput input(const Wanted& w) const {
+    const bool of_model = w.output.stage == Output::Stage::table && for_tables_ && *for_tables_;
+    return {out_.campaign,
+            of_model ? **for_tables_ : read_.observations,
+            out_.results,
+            w.options,
+            context_.templates,
+            of_model ? &read_.observations : nullptr,
+            out_.certificate ? &out_.certificate->issue : nullptr};
   }
 
   void check_control() {
@@ -274,10 +361,8 @@ class CampaignRun {
     for (const Output& o : context_.plugins->outputs())
       if (o.stage == Output::Stage::table) tables.push_back(o.info.name);
     if (control.empty() || std::find(tables.begin(), tables.end(), control) != tables.end()) return;
-    std::string list;
-    for (const std::string& name : tables) list += (list.empty() ? "" : ", ") + name;
     report(at("machine.control", "no output writes tables for \"" + control + "\"" +
-                                     suggestion(control, tables) + "; there are " + list));
+                                     suggestion(control, tables) + "; there are " + list(tables)));
   }
 
   static OutputResult without_model(const Output& output, const std::string& why) {
@@ -288,18 +373,17 @@ class CampaignRun {
     return nothing;
   }
 
-  /// Without `asked` a table that the control cannot have is worth a finding, not the campaign: it
-  /// was tried only because nobody said which control the machine has.
-  void write_output(const Output& output, const Settings& options, bool asked) {
+  void write_output(const Wanted& w) {
+    const Output& output = w.output;
+    if (output.lacks != nullptr && !out_.certificate) return;
+    if (output.lacks != nullptr && out_.certificate->issued) return keep_issued(output.info);
     const std::string who = "output " + output.info.name;
     stage_(who);
-    const bool of_model = output.stage == Output::Stage::table && for_tables_;
     auto result = guarded(who, [&]() -> Expected<OutputResult> {
-      if (of_model && !*for_tables_) return without_model(output, for_tables_->error().message);
-      auto written =
-          output.write({out_.campaign, of_model ? **for_tables_ : read_.observations, out_.results,
-                        options, context_.templates, of_model ? &read_.observations : nullptr});
-      if (!written && !asked && written.error().key.empty()) {
+      if (output.stage == Output::Stage::table && for_tables_ && !*for_tables_)
+        return without_model(output, for_tables_->error().message);
+      auto written = output.write(input(w));
+      if (!written && !w.asked && written.error().key.empty()) {
         const std::string why = std::move(written.error().message);
         written = OutputResult();
         written->findings.push_back({.id = "table.not-written",
@@ -315,11 +399,23 @@ class CampaignRun {
       locate(result.error(), output.info.name);
       return report(std::move(result.error()));
     }
-    word(result->notes);
-    for (Finding& f : result->findings)
+    keep(output.info, std::move(*result));
+  }
+
+  /// What was issued is not written again.
+  void keep_issued(const Info& output) {
+    OutputResult issued;
+    for (const IssuedFile& f : out_.certificate->files)
+      if (f.output == output.name) issued.artifacts.push_back({f.name, f.bytes});
+    keep(output, std::move(issued));
+  }
+
+  void keep(const Info& output, OutputResult result) {
+    word(result.notes);
+    for (Finding& f : result.findings)
       f.advice = finding_text(context_.templates, "en", f, "advice");
-    for (const Artifact& a : result->artifacts) names_.insert(a.name);
-    out_.results.outputs.push_back({output.info.name, output.info.version, std::move(*result)});
+    for (const Artifact& a : result.artifacts) names_.insert(a.name);
+    out_.results.outputs.push_back({output.name, output.version, std::move(result)});
   }
 
   Expected<void> check(const OutputResult& result) const {
@@ -358,6 +454,7 @@ class CampaignRun {
   const fs::path& folder_;
   const Context& context_;
   const Stage& stage_;
+  const Draw& draw_;
   std::string id_;
   Evaluated out_;
   ReadCampaign read_;
@@ -385,8 +482,8 @@ Inputs shared_inputs(const Context& context) {
 }
 
 Evaluated evaluate(const fs::path& folder, const std::string& id, const Context& context,
-                   const Stage& stage) {
-  return CampaignRun(folder, context, stage).run(id);
+                   const Stage& stage, const Draw& draw) {
+  return CampaignRun(folder, context, stage, draw).run(id);
 }
 
 }  // namespace nonio::host

@@ -191,7 +191,7 @@ Expected<void> publish(const fs::path& folder, const std::vector<Artifact>& file
   if (!is_new) return fail(is_new.error());
   auto done = fill_and_flush(folder, files);
   // After the files: a journal that was committed for them holds the new folder already.
-  if (done && *is_new) done = flush_folder(folder.parent_path());
+  if (done && *is_new) done = flush_folder(fs::absolute(folder).parent_path());
   std::vector<std::string> names;
   for (const Artifact& file : files) names.push_back(file.name);
   if (done) done = rename_temporaries(folder, names);

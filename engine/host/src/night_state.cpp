@@ -21,18 +21,21 @@ constexpr const char* state_folder = ".nonio";
 constexpr const char* state_name = "night.json";
 
 Expected<void> write_state(const fs::path& out, const NightState& night, bool running) {
-  const Json json = {{"schema", "nonio-night/1"},
-                     {"night", night.number},
-                     {"state", running ? "running" : "complete"},
-                     {"force", night.force}};
+  Json json = {{"schema", "nonio-night/1"},
+               {"night", night.number},
+               {"state", running ? "running" : "complete"},
+               {"force", night.force}};
+  if (running) json["issued_before"] = night.issued_before;
   return publish(out / state_folder, {{state_name, dump(json)}});
 }
 
 }  // namespace
 
-Expected<NightState> begin_night(const fs::path& out, bool force, bool dry_run) {
+Expected<NightState> begin_night(const fs::path& out, bool force, bool dry_run,
+                                 std::uint64_t issued_so_far) {
   NightState night;
   night.force = force;
+  night.issued_before = issued_so_far;
   if (const auto file = MappedFile::open(out / state_folder / state_name)) {
     const Json json = Json::parse(file->bytes(), nullptr, false);
     if (json.is_discarded() || !json.is_object() || !json.contains("night") ||
@@ -43,6 +46,7 @@ Expected<NightState> begin_night(const fs::path& out, bool force, bool dry_run) 
     night.number = json["night"].get<std::uint64_t>() + (night.resumed ? 0 : 1);
     // A forced run that was interrupted is finished as what it was.
     if (night.resumed) night.force = force || json.value("force", false);
+    if (night.resumed) night.issued_before = json.value("issued_before", issued_so_far);
   }
   if (dry_run) return night;
   if (auto written = write_state(out, night, true); !written) return fail(written.error());

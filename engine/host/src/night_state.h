@@ -14,9 +14,11 @@ struct NightState {
   std::uint64_t number = 1;
   bool force = false;
   bool resumed = false;
+  std::uint64_t issued_before = 0;  ///< certificates in the register when it began
 };
 
-Expected<NightState> begin_night(const std::filesystem::path& out, bool force, bool dry_run);
+Expected<NightState> begin_night(const std::filesystem::path& out, bool force, bool dry_run,
+                                 std::uint64_t issued_so_far);
 Expected<void> end_night(const std::filesystem::path& out, const NightState& night);
 
 /// Held while a run uses an output folder; an error names the trouble if another run does.

@@ -207,6 +207,18 @@ std::string triples_json(const math::TripleWish& wish, const math::TriplePlans& 
   return dump(json);
 }
 
+Checked<Settings> options_from(const Info& plugin,
+                               const std::map<std::string, std::string>& texts) {
+  RawOptions raw;
+  for (const auto& [name, text] : texts) {
+    const auto& known = plugin.options;
+    const auto declared = std::find_if(known.begin(), known.end(),
+                                       [&, &n = name](const Option& o) { return o.name == n; });
+    raw[plugin.name][name].value = setting_of(text, declared == known.end() ? nullptr : &*declared);
+  }
+  return settle_options(plugin, {}, raw);
+}
+
 Checked<std::vector<Artifact>> write_programs(const Plugins& plugins, const std::string& output,
                                               const Machine& machine, const PointTable& rows,
                                               const std::map<std::string, std::string>& options) {
@@ -218,15 +230,7 @@ Checked<std::vector<Artifact>> write_programs(const Plugins& plugins, const std:
     return tl::unexpected(std::vector<Error>{Error{std::move(message)}});
   };
   if (found == all.end()) return wrong(plugins.absence("output", output));
-  RawOptions raw;
-  for (const auto& [name, text] : options) {
-    const auto& known = found->info.options;
-    const auto declared = std::find_if(known.begin(), known.end(),
-                                       [&, &n = name](const Option& o) { return o.name == n; });
-    raw[found->info.name][name].value =
-        setting_of(text, declared == known.end() ? nullptr : &*declared);
-  }
-  const auto settings = settle_options(found->info, {}, raw);
+  const auto settings = options_from(found->info, options);
   if (!settings) return tl::unexpected(settings.error());
   Campaign campaign;
   campaign.machine = machine;

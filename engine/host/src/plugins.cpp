@@ -202,4 +202,21 @@ std::string Plugins::refusals() const {
   return words;
 }
 
+std::vector<std::string> Plugins::refusal_notes() const {
+  std::vector<std::pair<std::string, std::string>> files;  // by reason
+  for (const PluginFile& file : files_) {
+    if (file.refused.empty()) continue;
+    const std::string name = file.path.filename().string();
+    const auto known = std::find_if(files.begin(), files.end(),
+                                    [&](const auto& one) { return one.first == file.refused; });
+    if (known == files.end())
+      files.emplace_back(file.refused, name);
+    else
+      known->second += ", " + name;
+  }
+  std::vector<std::string> notes;
+  for (const auto& [reason, names] : files) notes.push_back("plugin " + names + " " + reason);
+  return notes;
+}
+
 }  // namespace nonio::host

@@ -71,7 +71,7 @@ void put_value(JsonWriter& json, const Value& v, const Results::Analysed& a,
   for (const Conformity& c : conformity)
     if (c.measurement == a.measurement && c.plugin == a.plugin && c.name == v.name) {
       json.member("tolerance", printed(c.tolerance, c.quantity));
-      json.member("decision", to_text(c.decision));
+      json.member("decision", host::to_text(c.decision));
     }
   json.end_object();
 }
@@ -197,7 +197,7 @@ void put_conformity(JsonWriter& json, const std::vector<Conformity>& all) {
     json.member("name", c.name);
     json.member("tolerance", printed(c.tolerance, c.quantity));
     json.member("unit", unit_of(c.quantity).symbol);
-    json.member("decision", to_text(c.decision));
+    json.member("decision", host::to_text(c.decision));
     put_text(json, "reason", c.reason);
     json.end_object();
   }
@@ -234,6 +234,27 @@ void put_predictions(JsonWriter& json, const std::vector<Prediction>& prediction
     json.end_object();
   }
   json.end_array();
+}
+
+void put_certificate(JsonWriter& json, const std::optional<Certificate>& certificate) {
+  if (!certificate) return;
+  const Issue& issue = certificate->issue;
+  json.key("certificate");
+  json.begin_object();
+  json.member("plugin", certificate->output);
+  json.member("number", issue.number);
+  json.member("date", issue.date);
+  put_text(json, "replaces", issue.replaces);
+  put_text(json, "replaces_date", issue.replaces_date);
+  if (!issue.replaces.empty()) {
+    json.key("changes");
+    json.begin_array();
+    for (const std::string& file : issue.changes) json.value(file);
+    json.end_array();
+  }
+  json.member("readings_sha256", issue.readings_sha256);
+  json.member("templates_sha256", certificate->templates_sha256);
+  json.end_object();
 }
 
 /// What outputs predict, find and note stands once, not with each of their files.
@@ -288,6 +309,7 @@ std::string results_json(const Evaluated& e, const Context& context,
   for (const Results::Analysed& a : e.results.analyses) put_analysis(json, a, e.results.conformity);
   json.end_array();
   put_conformity(json, e.results.conformity);
+  put_certificate(json, e.certificate);
   put_files(json, e.results.outputs, files);
   put_tables(json, e.results.outputs);
   put_notes(json, e.results.notes);

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <ctime>
@@ -17,6 +18,7 @@
 #include "night_state.h"
 #include "nonio/host/files.h"
 #include "nonio/host/results_json.h"
+#include "numbering.h"
 #include "signer.h"
 #include "store.h"
 #include "summary.h"
@@ -46,6 +48,13 @@ void keep_freed_memory() {
 /// tested with it: one of them, and every campaign gets a process of its own.
 constexpr std::size_t campaigns_per_worker = 64;
 
+std::string day_of(std::time_t time) {
+  std::tm local{};
+  ::localtime_r(&time, &local);
+  std::array<char, 16> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d", &local)};
+}
+
 class Runner {
  public:
   Runner(const RunOptions& options, const RunEvents& events, const Context& context,
@@ -55,6 +64,7 @@ class Runner {
         context_(context),
         night_(night),
         signer_(signer),
+        numbers_(options.site, context, day_of(std::time(nullptr)), signer != nullptr),
         campaigns_(campaigns),
         committer_([this](const std::vector<std::size_t>& batch) {
           std::vector<std::string> ids;
@@ -150,19 +160,19 @@ class Runner {
     if (first && signer_ != nullptr) signer_->leave_to_worker();
     const CampaignState& c = campaigns_[index];
     const fs::path folder = options_.site / c.folder;
-    Evaluated evaluated =
-        evaluate(folder, c.id, context_, [&](const std::string& s) { stage.set(s); });
+    Evaluated evaluated = evaluate(
+        folder, c.id, context_, [&](const std::string& s) { stage.set(s); },
+        [&](const Evaluated& e, bool complete) { return numbers_.draw(e, folder, complete); });
     stage.set("signing");
-    const auto is_signed = sign_artifacts(evaluated, folder, context_, signer_, std::time(nullptr));
-    if (!is_signed) {
-      remove_unsigned(evaluated.results);
-      evaluated.results.errors.push_back(is_signed.error());
-      evaluated.status = "failed";
-    }
+    auto certified = sign_artifacts(evaluated, folder, context_, signer_, std::time(nullptr));
+    if (certified) certified = numbers_.issue(evaluated);
+    if (!certified) fail_certificate(evaluated, certified.error());
     if (evaluated.status == "failed" && !first) return Answer::again;
+    if (evaluated.status == "failed" && !evaluated.results.errors.empty())
+      numbers_.note_failure(c.id, evaluated.results.errors.front().message);
     stage.set("writing the results");
     const auto staged = host::stage(options_.out, evaluated, context_,
-                                    {c.folder, night_.number, c.reason, !is_signed});
+                                    {c.folder, night_.number, c.reason, evaluated.retry});
     if (!staged) {
       stage.set(staged.error().message);
       return Answer::not_stored;
@@ -170,6 +180,13 @@ class Runner {
     return evaluated.status == "failed"      ? Answer::failed
            : evaluated.status == "attention" ? Answer::attention
                                              : Answer::ok;
+  }
+
+  static void fail_certificate(Evaluated& evaluated, const Error& why) {
+    remove_unsigned(evaluated);
+    evaluated.results.errors.push_back(why);
+    evaluated.status = "failed";
+    evaluated.retry = true;
   }
 
   void wait() {
@@ -267,6 +284,7 @@ class Runner {
   /// The worker did not come back with results: the campaign is failed, and says why.
   void lost(std::size_t index, const std::string& why) {
     CampaignState& c = campaigns_[index];
+    numbers_.note_failure(c.id, why);
     Evaluated evaluated;
     evaluated.campaign.id = c.id;
     evaluated.status = "failed";
@@ -290,6 +308,7 @@ class Runner {
   const Context& context_;
   const NightState& night_;
   Signer* signer_;  ///< null: nobody signs
+  const Numbers numbers_;
   std::vector<CampaignState>& campaigns_;
   Committer committer_;
   const std::size_t campaigns_per_worker_;
@@ -348,6 +367,40 @@ void note_key(Signer& signer, std::vector<std::string>& notes) {
                     sign::text_of(who->not_after) + ": have a new one made");
 }
 
+/// A register in an output folder below the site would be lost with it.
+Expected<std::vector<RegisterEntry>> numbers_of(const RunOptions& options, const Context& context) {
+  const auto path = register_path(options.site, context.site.numbering);
+  if (!path) return fail(path.error());
+  std::error_code error;
+  const auto is_below = [](const fs::path& one, const fs::path& folder) {
+    const fs::path way = one.lexically_relative(folder);
+    return !way.empty() && *way.begin() != "..";
+  };
+  const fs::path out = fs::weakly_canonical(options.out, error);
+  if (is_below(*path, out) && is_below(out, fs::weakly_canonical(options.site, error)))
+    return fail("the register of certificates " + path->string() +
+                " would lie in the output folder; wanted it elsewhere in the site");
+  return Register::entries(options.site, context.site.numbering);
+}
+
+std::uint64_t issued_so_far(const std::vector<RegisterEntry>& numbers) {
+  std::uint64_t last = 0;
+  for (const RegisterEntry& e : numbers) last = std::max(last, e.order);
+  return last;
+}
+
+/// In the order of their numbers.
+void note_issued(Night& night, const RunOptions& options, const Context& context,
+                 std::uint64_t before) {
+  auto numbers = Register::entries(options.site, context.site.numbering);
+  if (!numbers) {
+    night.notes.push_back(numbers.error().message);
+    return;
+  }
+  for (RegisterEntry& e : *numbers)
+    if (e.order > before) night.issued.push_back(std::move(e));
+}
+
 }  // namespace
 
 void request_stop() { stop_requested = true; }
@@ -383,9 +436,7 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   Plugins plugins;
   plugins.load(options.plugin_folders);
   if (!plugins.conflicts().empty()) return refuse(plugins.conflicts().front());
-  for (const PluginFile& f : plugins.files())
-    if (!f.refused.empty())
-      night.notes.push_back("plugin " + f.path.filename().string() + " " + f.refused);
+  for (std::string& note : plugins.refusal_notes()) night.notes.push_back(std::move(note));
   for (const std::string& note : night.notes) events.note(note);
   context.plugins = &plugins;
   context.plugins_sha256 = plugins.digest();
@@ -398,11 +449,14 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
     if (!taken) return refuse(taken.error().message);
     lock.emplace(std::move(*taken));
   }
-  const auto state = begin_night(options.out, options.force, options.dry_run);
+  const auto numbers = numbers_of(options, context);
+  if (!numbers) return refuse(numbers.error().message);
+  const auto state =
+      begin_night(options.out, options.force, options.dry_run, issued_so_far(*numbers));
   if (!state) return refuse(state.error().message);
   const std::size_t notes_so_far = night.notes.size();
   auto campaigns = survey({options.site, options.out, context, state->number, state->force,
-                           night.notes, [] { return stop_requested.load(); }});
+                           *numbers, night.notes, [] { return stop_requested.load(); }});
   if (stop_requested) {
     night.end = Night::End::interrupted;
     return night;
@@ -424,6 +478,7 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
     night.end = Night::End::interrupted;
     return night;
   }
+  note_issued(night, options, context, state->issued_before);
   const auto written = write_summary(night, options.out, options.version);
   // The campaigns are safe; the night stays open, and the next run ends it.
   if (!written)

@@ -102,6 +102,19 @@ struct Lists {
   }
 };
 
+/// All numbers, as long as they fit a line.
+std::string issued_line(const std::vector<RegisterEntry>& issued) {
+  constexpr std::size_t most = 8;
+  std::string line = "issued " + std::to_string(issued.size()) +
+                     (issued.size() == 1 ? " certificate: " : " certificates: ");
+  if (issued.size() > most)
+    return line + issued.front().number + " .. " + issued.back().number + "\n";
+  for (const RegisterEntry& e : issued)
+    line += (&e == &issued.front() ? "" : ", ") + e.number + " (" + e.campaign +
+            (e.replaces.empty() ? "" : ", replaces " + e.replaces) + ")";
+  return line + "\n";
+}
+
 void write_text(Spool& out, const Night& night, Lists& lists, const std::string& version) {
   const auto n = [](std::size_t count) { return std::to_string(count); };
   out.add("Nonio " + version + ": " + n(night.campaigns.size()) +
@@ -109,6 +122,7 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
           " done, " + n(lists.unchanged.count) + " unchanged, " + n(lists.failed.count) +
           " failed; " + n(lists.attention.count) + (lists.attention.count == 1 ? " asks" : " ask") +
           " for attention\n");
+  if (!night.issued.empty()) out.add(issued_line(night.issued));
   // What somebody must act on comes first.
   const auto section = [&](const char* heading, Spool& body) {
     if (body.empty()) return;
@@ -137,6 +151,13 @@ void write_json(Spool& out, const Night& night, Lists& lists, const std::string&
     out.add(l->json);
     out.add(l->count == 0 ? "]" : "\n ]");
   }
+  Json issued = Json::array();
+  for (const RegisterEntry& e : night.issued) {
+    Json one = {{"number", e.number}, {"campaign", e.campaign}};
+    if (!e.replaces.empty()) one["replaces"] = e.replaces;
+    issued.push_back(std::move(one));
+  }
+  out.add(",\n \"issued\": " + issued.dump());
   out.add(",\n \"notes\": " +
           Json(night.notes).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n}\n");
 }

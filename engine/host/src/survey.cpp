@@ -64,7 +64,9 @@ std::string folder_id(const std::string& folder) {
 
 class Look {
  public:
-  explicit Look(const SurveyInput& input) : in_(input), shared_(shared_inputs(input.context)) {}
+  explicit Look(const SurveyInput& input) : in_(input), shared_(shared_inputs(input.context)) {
+    for (const RegisterEntry& e : input.numbers) numbers_[e.number] = &e;
+  }
 
   /// A first look, without reading the manifest in full: that is done where a full reading said the
   /// same before. False if it has to be read.
@@ -93,6 +95,9 @@ class Look {
     judge(state, record_of(state.id), manifest_digest);
   }
 
+  /// A number that was issued and that the register does not know; empty if all is well.
+  const std::string& unknown_number() const { return unknown_; }
+
  private:
   static void name_by_folder(CampaignState& state) {
     state.id = folder_id(state.folder);
@@ -102,7 +107,12 @@ class Look {
   std::optional<Record> record_of(const std::string& id) const {
     if (id.empty()) return std::nullopt;
     auto record = read_record(in_.out / id);
-    return record ? std::optional(std::move(*record)) : std::nullopt;
+    if (!record) return std::nullopt;
+    if (!record->certificate.empty() && !numbers_.contains(record->certificate)) {
+      const std::lock_guard guard(unknown_guard_);
+      unknown_ = record->certificate;
+    }
+    return std::move(*record);
   }
 
   static std::string digest_of(const Record& record, const std::string& name) {
@@ -140,6 +150,7 @@ class Look {
     for (const auto& [name, digest] : record.inputs)
       if (name.starts_with(prefix)) look_at_file(state, name.substr(prefix.size()), digest, why);
     look_at_outputs(state, record, why);
+    look_at_number(record, why);
     std::string words;
     for (const std::string& w : why) words += (words.empty() ? "" : "; ") + w;
     return words;
@@ -171,6 +182,12 @@ class Look {
     }
   }
 
+  void look_at_number(const Record& record, std::vector<std::string>& why) const {
+    const auto number = numbers_.find(record.certificate);
+    if (number == numbers_.end() || number->second->in_force()) return;
+    why.push_back("its certificate " + record.certificate + " was " + number->second->state);
+  }
+
   static bool younger(const struct stat& a, const struct stat& b) {
     return std::pair(a.st_mtim.tv_sec, a.st_mtim.tv_nsec) >
            std::pair(b.st_mtim.tv_sec, b.st_mtim.tv_nsec);
@@ -178,6 +195,9 @@ class Look {
 
   const SurveyInput& in_;
   Inputs shared_;
+  std::map<std::string, const RegisterEntry*> numbers_;
+  mutable std::mutex unknown_guard_;
+  mutable std::string unknown_;
 };
 
 /// The ids that manifests give, each read in full in a process that a parser may bring down or hold
@@ -290,6 +310,10 @@ Expected<std::vector<CampaignState>> survey(const SurveyInput& input) {
   const auto ids = read_ids(unread.size(), manifest_of, input.context.site.limits, input.stopped);
   for_all(unread.size(), input.stopped,
           [&](std::size_t i) { look.again(states[unread[i].index], ids[i], unread[i].digest); });
+  if (!look.unknown_number().empty())
+    return fail("the register of certificates does not know the number " + look.unknown_number() +
+                ", which " + input.out.string() +
+                " says was issued: restore the register, or numbers would be used twice");
   give_way(states);
   std::stable_sort(states.begin(), states.end(),
                    [](const CampaignState& a, const CampaignState& b) { return a.id < b.id; });

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "nonio/host/evaluate.h"
+#include "nonio/host/register.h"
 #include "nonio/host/run.h"
 
 namespace nonio::host {
@@ -14,8 +15,9 @@ struct SurveyInput {
   const Context& context;
   std::uint64_t night;  ///< the one that is being done
   bool force;
-  std::vector<std::string>& notes;  ///< what was passed over, for the summary
-  bool (*stopped)();                ///< asked now and then; what is returned then is not whole
+  const std::vector<RegisterEntry>& numbers;  ///< all of the site's register
+  std::vector<std::string>& notes;            ///< what was passed over, for the summary
+  bool (*stopped)();  ///< asked now and then; what is returned then is not whole
 };
 
 /// All campaigns of a site, by id, each with what is to be done with it and why. Campaigns whose

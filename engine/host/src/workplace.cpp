@@ -44,9 +44,7 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   context.templates = std::move(*templates);
   place->plugins.load(plugin_folders);
   if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
-  for (const PluginFile& f : place->plugins.files())
-    if (!f.refused.empty())
-      place->notes.push_back("plugin " + f.path.filename().string() + " " + f.refused);
+  place->notes = place->plugins.refusal_notes();
   context.plugins = &place->plugins;
   context.plugins_sha256 = place->plugins.digest();
   return place;

@@ -282,7 +282,7 @@ std::vector<double> sampled(const std::vector<double>& position, const std::vect
 
 std::vector<std::int64_t> quantised(std::span<const double> value, double unit) {
   std::vector<std::int64_t> out;
-  for (double v : value) out.push_back(std::llround(v / unit));
+  for (double v : value) out.push_back(std::llround(rounded_by_digits(v / unit)));
   return out;
 }
 

@@ -212,27 +212,68 @@ class FileReader {
 
 Expected<File> parse(std::string_view bytes) { return FileReader(bytes).read(); }
 
-Expected<std::string> content(const File& file, const Object& object, std::size_t size) {
+namespace {
+
+/// As many bytes as are asked for, neither more nor less.
+enum class Unpacked { well, badly, longer };
+
+Unpacked unpack(std::string_view packed, std::string& into) {
+  const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> inflate(
+      libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
+  std::size_t used = 0, made = 0;
+  if (!inflate) return Unpacked::badly;
+  const auto result = libdeflate_zlib_decompress_ex(inflate.get(), packed.data(), packed.size(),
+                                                    into.data(), into.size(), &used, &made);
+  if (result == LIBDEFLATE_INSUFFICIENT_SPACE) return Unpacked::longer;
+  if (result != LIBDEFLATE_SUCCESS || used != packed.size()) return Unpacked::badly;
+  into.resize(made);
+  return Unpacked::well;
+}
+
+/// Whether it is packed; an error if in a way that is not read.
+Expected<bool> is_packed(const File& file, const Object& object) {
   if (!object.has_stream) return fail("wanted a stream");
   const Value* filter = file.find(&object.value, "Filter");
-  if (filter == nullptr) {
+  if (filter == nullptr) return false;
+  if (!filter->is_name("FlateDecode") || object.value.find("DecodeParms") != nullptr)
+    return fail("is compressed in another way than FlateDecode");
+  return true;
+}
+
+/// Deflate cannot do better than 1 to 1032: a size beyond it is a trap.
+constexpr std::size_t best_ratio = 1040;
+
+}  // namespace
+
+Expected<std::string> content(const File& file, const Object& object, std::size_t size) {
+  const auto packed = is_packed(file, object);
+  if (!packed) return fail(packed.error());
+  if (!*packed) {
     if (object.stream.size() != size) return fail("has not the size that it should have");
     return std::string(object.stream);
   }
-  if (!filter->is_name("FlateDecode") || object.value.find("DecodeParms") != nullptr)
-    return fail("is compressed in another way than FlateDecode");
-  // Deflate cannot do better than 1 to 1032: a size beyond it is a trap.
-  if (size / 1040 > object.stream.size()) return fail("has not the size that it should have");
-  const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> inflate(
-      libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
+  if (size / best_ratio > object.stream.size()) return fail("has not the size that it should have");
   std::string out(size, '\0');
-  std::size_t used = 0, made = 0;
-  if (!inflate ||
-      libdeflate_zlib_decompress_ex(inflate.get(), object.stream.data(), object.stream.size(),
-                                    out.data(), out.size(), &used, &made) != LIBDEFLATE_SUCCESS ||
-      used != object.stream.size() || made != size)
+  if (unpack(object.stream, out) != Unpacked::well || out.size() != size)
     return fail("cannot be uncompressed to the size that it should have");
   return out;
+}
+
+Expected<std::string> content_up_to(const File& file, const Object& object, std::size_t most) {
+  const auto packed = is_packed(file, object);
+  if (!packed) return fail(packed.error());
+  if (!*packed) {
+    if (object.stream.size() > most) return fail("is too long");
+    return std::string(object.stream);
+  }
+  const std::size_t limit = std::min(most, object.stream.size() * best_ratio);
+  for (std::size_t size = std::min(limit, object.stream.size() * 8);;
+       size = std::min(limit, size * 4)) {
+    std::string out(size, '\0');
+    const Unpacked done = unpack(object.stream, out);
+    if (done == Unpacked::well) return out;
+    if (done == Unpacked::badly || size == limit) return fail("cannot be uncompressed");
+  }
 }
 
 }  // namespace nonio::sign::pdf

@@ -69,5 +69,7 @@ Expected<File> parse(std::string_view bytes);
 
 /// The content of a stream, uncompressed; `size` is what it must be. Only /FlateDecode or none.
 Expected<std::string> content(const File& file, const Object& object, std::size_t size);
+/// Of a stream whose size is not known; `most` bytes at the most.
+Expected<std::string> content_up_to(const File& file, const Object& object, std::size_t most);
 
 }  // namespace nonio::sign::pdf

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "axis_job.h"
+#include "nonio/controllers/axis_job.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
 
+#include "nonio/controllers/text.h"
 #include "nonio/math/axis_findings.h"
 #include "nonio/sdk/format.h"
 #include "series_jobs.h"
@@ -13,99 +13,18 @@
 namespace nonio::controllers {
 namespace {
 
-using AxisSettings = std::map<std::string, double, std::less<>>;
-
-std::optional<double> number_of(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
-}
-
-std::vector<std::string_view> split(std::string_view text) {
-  std::vector<std::string_view> parts;
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t start = text.find_first_not_of(" \t", i);
-    if (start == std::string_view::npos) break;
-    const std::size_t end = std::min(text.find_first_of(" \t", start), text.size());
-    parts.push_back(text.substr(start, end - start));
-    i = end;
-  }
-  return parts;
-}
-
-std::set<std::string> full_keys(std::initializer_list<std::string_view> keys) {
-  std::set<std::string> out;
-  for (std::string_view k : keys) {
-    if (k.back() == ':') {
-      out.emplace(k.substr(0, k.size() - 1));
-    } else {
-      out.insert(std::string(k) + "_mm");
-      out.insert(std::string(k) + "_deg");
-    }
-  }
-  return out;
-}
-
-std::string joined(const std::set<std::string>& words) {
-  std::string out;
-  for (const std::string& w : words) out += (out.empty() ? "" : ", ") + w;
-  return out;
-}
-
-std::string list_of(const std::vector<std::string>& words, std::string_view between) {
-  std::string out;
-  for (const std::string& w : words) {
-    if (!out.empty()) out += between;
-    out += w;
-  }
-  return out;
-}
-
-tl::unexpected<Error> wrong_axes(std::string message) {
-  Error error{std::move(message)};
-  error.key = "axes";
-  return fail(std::move(error));
-}
-
-// One entry of option `axes`: "X reference_mm=0 step_mm=50".
-Expected<void> take_entry(const std::string& entry, const std::set<std::string>& keys,
-                          std::map<std::string, AxisSettings>& out) {
-  const auto parts = split(entry);
-  if (parts.empty()) return wrong_axes("option axes: an empty entry");
-  AxisSettings& settings = out[std::string(parts.front())];
-  for (std::size_t i = 1; i < parts.size(); ++i) {
-    const std::size_t equals = parts[i].find('=');
-    const std::string key(parts[i].substr(0, equals));
-    const auto value =
-        equals == std::string_view::npos ? std::nullopt : number_of(parts[i].substr(equals + 1));
-    if (keys.count(key) == 0)
-      return wrong_axes("option axes, \"" + entry + "\": no setting " + key + "; there are " +
-                        joined(keys));
-    if (!value)
-      return wrong_axes("option axes, \"" + entry + "\": wanted " + key + "=NUMBER, found " +
-                        std::string(parts[i]));
-    settings[key] = *value;
-  }
-  return {};
-}
-
-Expected<std::map<std::string, AxisSettings>> settings_of_axes(const OutputInput& input,
-                                                               const std::set<std::string>& keys) {
-  std::map<std::string, AxisSettings> out;
-  for (const std::string& entry : input.options.texts("axes"))
-    if (auto taken = take_entry(entry, keys, out); !taken)
-      return tl::unexpected<Error>(taken.error());
+Expected<void> check_names(const std::map<std::string, AxisSettings>& settings,
+                           const OutputInput& input) {
   std::set<std::string> known;
   for (const Axis& a : input.campaign.machine.axes) known.insert(a.name);
   for (const Measurement& m : input.campaign.measurements)
     if (m.kind == "axis") known.insert(m.axis);
   for (const AxisJob& job : series_jobs(input)) known.insert(job.axis);
-  for (const auto& [axis, settings] : out)
+  for (const auto& [axis, of_axis] : settings)
     if (known.count(axis) == 0)
-      return wrong_axes("option axes: no axis " + axis + "; there are " + joined(known));
-  return out;
+      return wrong_axes("option axes: no axis " + axis + "; there are " +
+                        joined({known.begin(), known.end()}, ", "));
+  return {};
 }
 
 std::vector<std::string> about(const OutputInput& input, const AxisJob& job) {
@@ -246,10 +165,12 @@ std::optional<double> AxisJob::position_setting(std::string_view name) const {
 }
 
 Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
-                                         std::initializer_list<std::string_view> keys,
+                                         const std::vector<std::string_view>& keys,
                                          OutputResult& result) {
-  auto settings = settings_of_axes(input, full_keys(keys));
+  auto settings = settings_of_axes(input.options, keys);
   if (!settings) return tl::unexpected<Error>(settings.error());
+  if (auto known = check_names(*settings, input); !known)
+    return tl::unexpected<Error>(known.error());
   std::vector<AxisJob> all, jobs;
   const auto& measurements = input.campaign.measurements;
   for (std::size_t i = 0; i < std::min(measurements.size(), input.observations.size()); ++i)
@@ -316,7 +237,7 @@ bool refused(const AxisJob& job, bool directions, OutputResult& result) {
 namespace {
 
 std::string drift_warning(const AxisJob& job, OutputResult& result) {
-  const std::string ids = list_of(job.drift, ", ");
+  const std::string ids = joined(job.drift, ", ");
   result.findings.push_back({"table.unstable-axis",
                              true,
                              {},
@@ -329,7 +250,7 @@ std::string drift_warning(const AxisJob& job, OutputResult& result) {
 }
 
 std::string suspect_warning(const AxisJob& job, OutputResult& result) {
-  const std::string readings = list_of(job.suspects, "; ");
+  const std::string readings = joined(job.suspects, "; ");
   result.findings.push_back(
       {"table.suspect-reading",
        true,
@@ -424,37 +345,6 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
 
 double reference_position(const AxisJob& job, double first, double last) {
   return job.position_setting("reference").value_or(std::clamp(0.0, first, last));
-}
-
-std::string plain(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const auto u = static_cast<unsigned char>(c);
-    if ((u & 0xC0U) == 0x80U) continue;  // the rest of a UTF-8 character
-    out += u < 0x20 || u > 0x7E ? '?' : c;
-  }
-  return out;
-}
-
-std::string file_part(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const bool ok = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
-                    c == '_' || c == '-' || (c == '.' && !out.empty());
-    out += ok ? c : '_';
-  }
-  return out.empty() ? "_" : out;
-}
-
-std::string decimal(double value, int decimals) {
-  std::string text = fixed_text(value, decimals);
-  while (text.size() > 2 && text.back() == '0' && text[text.size() - 2] != '.') text.pop_back();
-  return text;
-}
-
-std::string signed_decimal(double value, int decimals) {
-  const std::string text = fixed_text(value, decimals);
-  return text.empty() || text.front() == '-' ? text : "+" + text;
 }
 
 std::string with_unit(const AxisJob& job, double si, int decimals) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cross_job.h"
+#include "nonio/controllers/cross_job.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "nonio/controllers/kit.h"
+#include "nonio/math/loaded_table.h"
 
 namespace nonio::controllers {
 
@@ -165,18 +168,25 @@ bool together(const CrossJob& set, const AxisJob& job, const Campaign& campaign)
   return !set.volume && !names_one;  // step diagonals use runs of their own occasion only
 }
 
-void predict_lines(const CrossJob& job, const Corrections& corrections, OutputResult& result) {
+Expected<void> fits(const CrossJob& job, const Settings& options) {
+  const auto most = static_cast<std::size_t>(options.integer("max_points", 1000000));
+  for (const CrossCurve& curve : job.curves)
+    if (curve.position.size() > most)
+      return fail("diagonals of " + job.measurement + ": " + std::to_string(curve.position.size()) +
+                  " points, the control takes " + std::to_string(most) + " (max_points)");
+  return {};
+}
+
+void predict_lines(const CrossJob& job, const std::vector<LoadedTable>& tables,
+                   OutputResult& result) {
   const auto after = [&](const ReadLine& line) {
+    std::map<std::string, int> direction;
+    for (const auto& [axis, sense] : line.sense) direction[axis] = sense < 0.0 ? -1 : 1;
     std::vector<double> out;
     for (std::size_t i = 0; i < line.deviation.size(); ++i) {
       double v = line.deviation[i];
-      for (const auto& [axes, correction] : corrections) {
-        const auto sense = line.sense.find(axes.second);
-        const auto input = line.at[i].find(axes.first);
-        if (sense == line.sense.end() || input == line.at[i].end()) continue;
-        const int direction = line.sense.at(axes.first) < 0.0 ? -1 : 1;
-        v += sense->second * correction(input->second, direction);
-      }
+      for (const auto& [axis, sense] : line.sense)
+        v += sense * math::added(tables, axis, line.at[i], direction);
       out.push_back(v);
     }
     return range(out);
@@ -207,6 +217,31 @@ void predict_lines(const CrossJob& job, const Corrections& corrections, OutputRe
                                  .advice = "These tables would not make the diagonal better."});
     result.predictions.push_back(std::move(p));
   }
+}
+
+Expected<void> predict_cross(const CrossJob& job, const std::vector<Artifact>& files,
+                             Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
+                             const std::vector<AxisJob>& pitch, const OutputInput& input,
+                             OutputResult& result) {
+  const Campaign campaign = with_axes_of(input, pitch);
+  auto tables = parse({files, campaign, input.options});
+  const auto unread = [&](const std::string& why) {
+    return fail("diagonals of " + job.measurement +
+                ": the table written cannot be read back: " + why);
+  };
+  if (!tables) return unread(tables.error().message);
+  for (const CrossCurve& curve : job.curves)
+    if (std::none_of(tables->begin(), tables->end(), [&](const LoadedTable& t) {
+          return t.output == curve.output &&
+                 std::find(t.input.begin(), t.input.end(), curve.input) != t.input.end();
+        }))
+      return unread(curve.output + " by " + curve.input + " is not in it");
+  if (job.volume)
+    for (const AxisJob& of : pitch)
+      if (of.loaded && together(job, of, input.campaign))
+        tables->insert(tables->end(), of.loaded->begin(), of.loaded->end());
+  predict_lines(job, *tables, result);
+  return {};
 }
 
 }  // namespace nonio::controllers

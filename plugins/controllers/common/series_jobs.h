@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "axis_job.h"
+#include "nonio/controllers/axis_job.h"
 
 namespace nonio::controllers {
 

@@ -3,12 +3,9 @@
 
 #include <algorithm>
 
-#include "axis_job.h"
-#include "consumer.h"
-#include "cross_job.h"
+#include "parse.h"
 
 namespace nonio::siemens {
-
 namespace {
 
 using controllers::CrossCurve;
@@ -18,17 +15,18 @@ using controllers::decimal;
 constexpr int digits = 6;  // of mm
 constexpr double per_si = 1e3;
 
-std::string name_of(const std::string& axis, const CrossChoices& choices) {
-  const auto it = choices.numbers.find(axis);
-  return "AX" + std::to_string(it == choices.numbers.end() ? 0 : it->second);
-}
+/// Of an axis as the control knows it: (AX1), or "AX1" in newer editions.
+struct Naming {
+  std::vector<controllers::KnownAxis> axes;
+  bool quoted;
+  std::string operator()(const std::string& axis) const {
+    const std::string ax = "AX" + std::to_string(controllers::axis_named(axes, axis).number);
+    return quoted ? "\"" + ax + "\"" : "(" + ax + ")";
+  }
+};
 
-std::string table(const CrossCurve& curve, std::int64_t number, const CrossChoices& choices) {
+std::string table(const CrossCurve& curve, std::int64_t number, const Naming& name) {
   const std::string t = std::to_string(number);
-  const auto axis = [&](const std::string& name) {
-    const std::string ax = name_of(name, choices);
-    return choices.quoted_axes ? "\"" + ax + "\"" : "(" + ax + ")";
-  };
   const auto line = [&](const char* what, const std::string& value) {
     return "$AN_CEC_" + std::string(what) + "[" + t + "]=" + value + "\n";
   };
@@ -39,83 +37,58 @@ std::string table(const CrossCurve& curve, std::int64_t number, const CrossChoic
     out += "$AN_CEC[" + t + "," + std::to_string(i) +
            "]=" + decimal((curve.value[i] - curve.value.front()) * per_si, digits) + "\n";
   const double step = (x.back() - x.front()) / static_cast<double>(x.size() - 1);
-  return out + line("INPUT_AXIS", axis(curve.input)) + line("OUTPUT_AXIS", axis(curve.output)) +
+  return out + line("INPUT_AXIS", name(curve.input)) + line("OUTPUT_AXIS", name(curve.output)) +
          line("STEP", decimal(step * per_si, digits)) +
          line("MIN", decimal(x.front() * per_si, digits)) +
          line("MAX", decimal(x.back() * per_si, digits)) + line("IS_MODULO", "0") +
          line("DIRECTION", "0") + line("MULT_BY_TABLE", "0");
 }
 
-std::string file_text(const CrossJob& job, const OutputInput& input, const CrossChoices& choices) {
+std::string file_text(const CrossJob& job, const OutputInput& input, std::int64_t number,
+                      const Naming& name) {
   std::size_t points = 0;
   for (const CrossCurve& curve : job.curves) points = std::max(points, curve.position.size());
-  std::string out = "%_N_NC_CEC_INI\nCHANDATA(1)\n";
-  for (const std::string& words :
-       {std::string("straightness and squareness from the ") + (job.volume ? "step " : "") +
-            "diagonals of " + controllers::plain(job.measurement) + ", campaign " +
-            controllers::plain(input.campaign.id),
-        std::string(
-            job.volume
-                ? "pitch itself is not in these tables"
-                : "the same points as the pitch tables; pitch itself is not in these tables"),
-        std::string("the squareness is in them: do not ") +
-            (job.volume ? "enter it elsewhere too"
-                        : "shift the zero of a gantry's second side too"),
-        std::string("entries are the error of the output axis with its own sign:"),
-        std::string("a positive entry moves the output axis towards minus"),
-        "MD18342[t] >= " + std::to_string(points) + "; enable MD32710 of " +
-            (job.volume ? "all" : "both") + " output axes and SD41300[t]"})
-    out += "; " + words + "\n";
-  std::int64_t number = choices.first_table;
-  for (const CrossCurve& curve : job.curves) out += table(curve, number++, choices);
+  std::string out =
+      "%_N_NC_CEC_INI\nCHANDATA(1)\n" +
+      controllers::comments(
+          {std::string("straightness and squareness from the ") + (job.volume ? "step " : "") +
+               "diagonals of " + controllers::plain(job.measurement) + ", campaign " +
+               controllers::plain(input.campaign.id),
+           job.volume ? "pitch itself is not in these tables"
+                      : "the same points as the pitch tables; pitch itself is not in these tables",
+           std::string("the squareness is in them: do not ") +
+               (job.volume ? "enter it elsewhere too"
+                           : "shift the zero of a gantry's second side too"),
+           "entries are the error of the output axis with its own sign:",
+           "a positive entry moves the output axis towards minus",
+           "MD18342[t] >= " + std::to_string(points) + "; enable MD32710 of " +
+               (job.volume ? "all" : "both") + " output axes and SD41300[t]"},
+          "; ");
+  for (const CrossCurve& curve : job.curves) out += table(curve, number++, name);
   return out + "M17\n";
-}
-
-Expected<void> fits(const CrossJob& job, const CrossChoices& choices) {
-  for (const CrossCurve& curve : job.curves)
-    if (curve.position.size() > choices.max_points)
-      return fail("diagonals of " + job.measurement + ": " + std::to_string(curve.position.size()) +
-                  " points, the control takes " + std::to_string(choices.max_points) +
-                  " (max_points)");
-  return {};
-}
-
-/// What the control makes of the file, and of the pitch tables beside it.
-Expected<controllers::Corrections> read_back(const CrossJob& job, const Artifact& file,
-                                             const CrossChoices& choices, const OutputInput& input,
-                                             const std::vector<controllers::AxisJob>& pitch) {
-  controllers::Corrections corrections;
-  Machine control;
-  control.cec_points = choices.max_points;
-  for (const CrossCurve& curve : job.curves) {
-    auto read = load_cross({file.bytes}, name_of(curve.input, choices),
-                           name_of(curve.output, choices), control);
-    if (!read)
-      return fail("diagonals of " + job.measurement +
-                  ": the table written cannot be read back: " + read.error().message);
-    corrections[{curve.input, curve.output}] = std::move(*read);
-  }
-  if (job.volume)
-    for (const controllers::AxisJob& of : pitch)
-      if (of.loaded && controllers::together(job, of, input.campaign))
-        corrections[{of.axis, of.axis}] = *of.loaded;
-  return corrections;
 }
 
 }  // namespace
 
-Expected<void> write_cross_tables(const OutputInput& input, const CrossChoices& choices,
+Expected<void> write_cross_tables(const OutputInput& input,
                                   const std::vector<controllers::AxisJob>& pitch,
                                   OutputResult& result) {
+  const Campaign campaign = controllers::with_axes_of(input, pitch);
+  const auto axes = controllers::known_axes({{}, campaign, input.options});
+  if (!axes) return tl::unexpected<Error>(axes.error());
+  const Naming name{*axes, input.options.flag("quoted_axes")};
+  std::int64_t first = input.options.integer("first_cec_table");
+  if (input.options.flag("directions"))
+    first += 2 * static_cast<std::int64_t>(input.campaign.machine.axes.size());
+
   const auto jobs = controllers::cross_jobs(input);
   for (const CrossJob& job : jobs) {
-    if (auto ok = fits(job, choices); !ok) return ok;
+    if (auto ok = controllers::fits(job, input.options); !ok) return ok;
     const std::string stem = "siemens-840d-" + controllers::file_part(job.axes()) +
                              (jobs.size() > 1 ? "-" + controllers::file_part(job.measurement) : "");
-    Artifact file{stem + "-CEC.ini", file_text(job, input, choices)};
-    const auto corrections = read_back(job, file, choices, input, pitch);
-    if (!corrections) return tl::unexpected<Error>(corrections.error());
-    controllers::predict_lines(job, *corrections, result);
+    Artifact file{stem + "-CEC.ini", file_text(job, input, first, name)};
+    if (auto done = controllers::predict_cross(job, {file}, parse, pitch, input, result); !done)
+      return done;
     result.artifacts.push_back(std::move(file));
   }
   const bool volume = std::any_of(jobs.begin(), jobs.end(), [](const auto& j) { return j.volume; });

@@ -56,9 +56,9 @@ Expected<pages::Look> look_of(const Templates& templates, const std::string& nam
       return fail(Error{"the key \"blocks\" lacks \"" + std::string(part) +
                             "\", which no certificate can be without; it may stand elsewhere",
                         file});
-  for (const std::string& picture : {look->logo, look->mark})
-    if (!picture.empty() && !templates.files.contains(picture))
-      return fail(Error{"the picture \"" + picture + "\" is not there", file});
+  for (const std::string& part : {look->logo, look->mark, look->profile})
+    if (!part.empty() && !templates.files.contains(part))
+      return fail(Error{"the file \"" + part + "\" is not there", file});
   return look;
 }
 
@@ -82,6 +82,9 @@ Document compose(const Source& source) {
   document.subject = c.machine.model + " " + c.machine.serial;
   document.head = pages::without_gaps(title + " " + issue.number + " · " + c.laboratory.name);
   document.foot = document.title;
+  if (const auto profile = source.in.templates.files.find(source.look.profile);
+      profile != source.in.templates.files.end())
+    document.profile = profile->second;
   document.page_of = source.words.get("title.page_of");
   for (const std::string& name : source.look.blocks)
     for (const Part& part : parts)

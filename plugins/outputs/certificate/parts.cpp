@@ -79,6 +79,10 @@ void add_title(const Source& source, Blocks& blocks) {
   const Campaign& c = source.in.campaign;
   const Laboratory& l = c.laboratory;
   Blocks by;
+  for (const std::string& name : {source.look.logo, source.look.mark})
+    if (const auto file = source.in.templates.files.find(name);
+        !name.empty() && file != source.in.templates.files.end())
+      by.push_back({Image{file->second, "templates/" + name, source.look.logo_height}, "logo"});
   paragraph(by, l.name, "laboratory.name", Look::bold);
   paragraph(by, l.address + (l.country.empty() ? "" : " · " + l.country), "laboratory.address",
             Look::muted);

@@ -6,6 +6,7 @@
 
 #include "certificate.h"
 #include "dcc.h"
+#include "nonio/reports/picture.h"
 #include "two_languages.h"
 
 namespace nonio::certificate {
@@ -100,8 +101,18 @@ Expected<OutputResult> write(const OutputInput& in) {
   return result;
 }
 
+Expected<pages::Look> with_pictures(const Templates& templates, const std::string& name) {
+  auto look = look_of(templates, name);
+  if (!look) return look;
+  for (const std::string& picture : {look->logo, look->mark})
+    if (!picture.empty())
+      if (auto sound = shared_picture(templates.files.at(picture), "templates/" + picture); !sound)
+        return fail(sound.error());
+  return look;
+}
+
 std::vector<Error> check_templates(const Templates& templates) {
-  return pages::check_templates(templates, words_file, look_of);
+  return pages::check_templates(templates, words_file, with_pictures);
 }
 
 }  // namespace

@@ -7,9 +7,7 @@
 #include <map>
 #include <numbers>
 
-#include "heidenhain-tnc/consumer.h"
 #include "machine.h"
-#include "siemens-840d/consumer.h"
 #include "workshop.h"
 
 using namespace workshop;
@@ -65,8 +63,8 @@ TEST(Cross, SiemensTablesTakeStraightnessAndSquarenessAway) {
   EXPECT_TRUE(contains(text, "$AN_CEC[1,30]=-0.072\n"));        // -C0Y Ly of X at the end of Y
   EXPECT_TRUE(contains(text, "$AN_CEC_INPUT_AXIS[0]=(AX1)\n$AN_CEC_OUTPUT_AXIS[0]=(AX2)\n"));
   EXPECT_TRUE(contains(text, "$AN_CEC_INPUT_AXIS[1]=(AX2)\n$AN_CEC_OUTPUT_AXIS[1]=(AX1)\n"));
-  const auto y = siemens::load_cross({text}, "AX1", "AX2", {});
-  const auto x = siemens::load_cross({text}, "AX2", "AX1", {});
+  const auto y = control_cross(siemens_plugin(), {{"", text}}, "X", "Y");
+  const auto x = control_cross(siemens_plugin(), {{"", text}}, "Y", "X");
   ASSERT_TRUE(x && y);
   for (std::size_t i = 0; i <= n; ++i) {
     const double at = static_cast<double>(i) / n;
@@ -98,8 +96,10 @@ TEST(Cross, HeidenhainColumnsOfTheOtherAxis) {
     bench.results.analyses.push_back(analysed(true));
     const auto result = bench.write(heidenhain_plugin(), {{"layout", std::string(layout)}});
     ASSERT_TRUE(result) << result.error().message;
-    const auto y = heidenhain::load(file(*result, "heidenhain-tnc-X.COM"), {"Y", false, 256, 0.0});
-    const auto x = heidenhain::load(file(*result, "heidenhain-tnc-Y.COM"), {"X", false, 256, 0.0});
+    const auto y =
+        control_cross(heidenhain_plugin(), {{"", file(*result, "heidenhain-tnc-X.COM")}}, "X", "Y");
+    const auto x =
+        control_cross(heidenhain_plugin(), {{"", file(*result, "heidenhain-tnc-Y.COM")}}, "Y", "X");
     ASSERT_TRUE(x && y) << layout;
     for (std::size_t i = 0; i <= n; ++i) {
       const double at = static_cast<double>(i) / n;
@@ -259,13 +259,10 @@ TEST(Cross, TablesOfStepDiagonalsStraightenTheVolume) {
     Tables tables;
     for (int i = 0; i < 3; ++i)
       for (int k = 0; k < 3; ++k) {
-        const std::string in = "AX" + std::to_string(i + 1), out = "AX" + std::to_string(k + 1);
+        const std::string in(1, "XYZ"[i]), out(1, "XYZ"[k]);
         const std::string pitch =
             file(*result, std::string("siemens-840d-") + "XYZ"[i] + "-EEC.ini");
-        siemens::Machine control;
-        control.axis = in;
-        auto table =
-            i == k ? siemens::load({pitch}, control) : siemens::load_cross({cross}, in, out, {});
+        auto table = control_cross(siemens_plugin(), {{"", i == k ? pitch : cross}}, in, out);
         ASSERT_TRUE(table) << table.error().message;
         tables[{i, k}] = *table;
       }
@@ -291,7 +288,8 @@ TEST(Cross, HeidenhainColumnsOfTheVolume) {
       for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k) {
           const std::string com = file(*result, std::string("heidenhain-tnc-") + "XYZ"[i] + ".COM");
-          const auto table = heidenhain::load(com, {std::string(1, "XYZ"[k]), false, 256, 0.0});
+          const auto table = control_cross(heidenhain_plugin(), {{"", com}},
+                                           std::string(1, "XYZ"[i]), std::string(1, "XYZ"[k]));
           ASSERT_TRUE(table) << table.error().message << com;
           tables[{i, k}] = *table;
         }
@@ -327,7 +325,7 @@ TEST(Cross, EachStateOfAVolumeHasItsOwnColumns) {
   const auto result = bench.write(heidenhain_plugin());
   ASSERT_TRUE(result) << result.error().message;
   const auto y = [&](const std::string& name) {
-    const auto table = heidenhain::load(file(*result, name), {"Y", false, 256, 0.0});
+    const auto table = control_cross(heidenhain_plugin(), {{"", file(*result, name)}}, "X", "Y");
     EXPECT_TRUE(table) << name;
     return table ? (*table)(0.4, 1) : 0.0;
   };

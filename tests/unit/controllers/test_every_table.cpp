@@ -3,11 +3,7 @@
 #include <locale>
 #include <numbers>
 
-#include "fanuc/consumer.h"
-#include "heidenhain-tnc/consumer.h"
-#include "linuxcnc/consumer.h"
 #include "nonio/sdk/format.h"
-#include "siemens-840d/consumer.h"
 #include "workshop.h"
 
 using namespace workshop;
@@ -76,6 +72,8 @@ std::string flipped(std::string text, char after) {
   }
   return out;
 }
+
+const std::string X_comp = "linuxcnc-X.comp";
 
 double E_after(const math::ErrorCurve& curve, const Expected<math::Correction>& c) {
   EXPECT_TRUE(c) << (c ? "" : c.error().message);
@@ -438,41 +436,40 @@ TEST(EveryModel, SeesAFlippedSign) {
 
   const auto s = b.write(siemens_plugin());
   const std::string eec = file(*s, "siemens-840d-X-EEC.ini");
-  EXPECT_LT(E_after(curve, nonio::siemens::load({eec}, {})), was);
+  EXPECT_LT(E_after(curve, control(siemens_plugin(), {{"", eec}})), was);
   std::string wrong;
   for (const std::string& line : lines(eec))
     wrong += (line.rfind("$AA_ENC_COMP[", 0) == 0 ? flipped(line, '=') : line) + "\n";
-  EXPECT_GT(E_after(curve, nonio::siemens::load({wrong}, {})), was);
+  EXPECT_GT(E_after(curve, control(siemens_plugin(), {{"", wrong}})), was);
 
   const auto f = b.write(fanuc_plugin(), {{"extended", true}});
-  nonio::fanuc::Machine control;
-  control.least = -128;
-  control.most = 127;
+  const Options extended{{"extended", true}};
   const std::string prm = file(*f, "fanuc-X.prm");
-  EXPECT_LT(E_after(curve, nonio::fanuc::load(prm, control)), was);
+  EXPECT_LT(E_after(curve, control(fanuc_plugin(), {{"", prm}}, extended)), was);
   wrong.clear();
   for (const std::string& line : lines(prm))
     wrong += (line.rfind("N1", 0) == 0 && line.size() > 6 && line[2] == '0' ? flipped(line, 'P')
                                                                             : line) +
              "\n";
-  EXPECT_GT(E_after(curve, nonio::fanuc::load(wrong, control)), was);
+  EXPECT_GT(E_after(curve, control(fanuc_plugin(), {{"", wrong}}, extended)), was);
 
-  const auto l = b.write(linuxcnc_plugin(), {{"type", std::int64_t{1}}});
+  const Options type_1{{"type", std::int64_t{1}}};
+  const auto l = b.write(linuxcnc_plugin(), type_1);
   const std::string comp = file(*l, "linuxcnc-X.comp");
-  EXPECT_LT(E_after(curve, nonio::linuxcnc::load(comp, {1})), was / 100);
-  EXPECT_GT(E_after(curve, nonio::linuxcnc::load(flipped(comp, ' '), {1})), was);
+  EXPECT_LT(E_after(curve, control(linuxcnc_plugin(), {{X_comp, comp}}, type_1)), was / 100);
+  EXPECT_GT(E_after(curve, control(linuxcnc_plugin(), {{X_comp, flipped(comp, ' ')}}, type_1)),
+            was);
 
   const auto h = b.write(heidenhain_plugin());
   std::string com = file(*h, "heidenhain-tnc-X.COM");
-  nonio::heidenhain::Machine tnc;
-  EXPECT_LT(E_after(curve, nonio::heidenhain::load(com, tnc)), was);
+  EXPECT_LT(E_after(curve, control(heidenhain_plugin(), {{"", com}})), was);
   wrong.clear();
   for (std::string line : lines(com)) {
     if (line.size() > 33 && (line[33] == '+' || line[33] == '-'))
       line[33] = line[33] == '+' ? '-' : '+';
     wrong += line + "\n";
   }
-  EXPECT_GT(E_after(curve, nonio::heidenhain::load(wrong, tnc)), was);
+  EXPECT_GT(E_after(curve, control(heidenhain_plugin(), {{"", wrong}})), was);
 }
 
 TEST(EveryModel, SeesSwappedDirections) {
@@ -485,11 +482,11 @@ TEST(EveryModel, SeesSwappedDirections) {
   };
   const auto s = b.write(siemens_plugin(), {{"directions", true}});
   std::string cec = file(*s, "siemens-840d-X-CEC.ini");
-  EXPECT_LT(B_after(nonio::siemens::load({cec}, {})), was / 100);
+  EXPECT_LT(B_after(control(siemens_plugin(), {{"", cec}})), was / 100);
   const std::size_t one = cec.find("DIRECTION[0]=1"), two = cec.find("DIRECTION[1]=-1");
   cec.replace(two, 15, "DIRECTION[1]=1");
   cec.replace(one, 14, "DIRECTION[0]=-1");
-  EXPECT_GT(B_after(nonio::siemens::load({cec}, {})), 1.5 * was);
+  EXPECT_GT(B_after(control(siemens_plugin(), {{"", cec}})), 1.5 * was);
 
   const auto l = b.write(linuxcnc_plugin());
   std::string swapped;
@@ -497,7 +494,7 @@ TEST(EveryModel, SeesSwappedDirections) {
     const std::size_t i = line.find(' '), j = line.find(' ', i + 1);
     swapped += line.substr(0, i) + line.substr(j) + line.substr(i, j - i) + "\n";
   }
-  EXPECT_GT(B_after(nonio::linuxcnc::load(swapped, {})), 1.5 * was);
+  EXPECT_GT(B_after(control(linuxcnc_plugin(), {{X_comp, swapped}})), 1.5 * was);
 }
 
 // MD32450 of the wrong sign doubles the lost motion.
@@ -509,10 +506,10 @@ TEST(EveryModel, SeesAWrongBacklashSign) {
   const std::string eec = file(*s, "siemens-840d-X-EEC.ini");
   const std::string md = file(*s, "siemens-840d-X-backlash.ini");
   ASSERT_TRUE(contains(md, "]=0.00")) << "lost motion is positive there";
-  const auto right = nonio::siemens::load({eec, md}, {});
+  const auto right = control(siemens_plugin(), {{"", eec}, {"", md}});
   std::string bad = md;
   bad.replace(bad.find("]=0.00"), 3, "]=-0");
-  const auto wrong = nonio::siemens::load({eec, bad}, {});
+  const auto wrong = control(siemens_plugin(), {{"", eec}, {"", bad}});
   ASSERT_TRUE(right && wrong);
   EXPECT_LT(math::after(curve, *right).B(), 0.2 * math::before(curve).B());
   EXPECT_GT(math::after(curve, *wrong).B(), 1.8 * math::before(curve).B());

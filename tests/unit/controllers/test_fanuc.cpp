@@ -2,7 +2,6 @@
 #include <charconv>
 #include <numbers>
 
-#include "fanuc/consumer.h"
 #include "workshop.h"
 
 using namespace workshop;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "linuxcnc/consumer.h"
 #include "workshop.h"
 
 using namespace workshop;
@@ -26,7 +25,7 @@ TEST(LinuxCnc, TypeZeroByHand) {
             "0.00000000 0.01000000 -0.02000000\n"
             "50.00000000 50.03000000 49.99000000\n"
             "100.00000000 100.05000000 100.00000000\n");
-  const auto c = nonio::linuxcnc::load(file(*r, "linuxcnc-X.comp"), {});
+  const auto c = control(linuxcnc_plugin(), {{"linuxcnc-X.comp", file(*r, "linuxcnc-X.comp")}});
   ASSERT_TRUE(c);
   const double seen[][3] = {{0, 1, -0.010}, {50, 1, -0.030}, {100, 1, -0.050}, {150, 1, -0.050},
                             {100, -1, 0.0}, {50, -1, 0.010}, {0, -1, 0.020},   {-50, -1, 0.020}};
@@ -48,8 +47,8 @@ TEST(LinuxCnc, EveryLineIsThreeNumbers) {
   ASSERT_TRUE(r);
   const std::string text = file(*r, "linuxcnc-X.comp");
   EXPECT_EQ(text.find_first_not_of("0123456789.- \n"), std::string::npos);
-  EXPECT_EQ(nonio::linuxcnc::lines_taken(text, {}), 3U);
-  EXPECT_EQ(nonio::linuxcnc::lines_taken("# X\n" + text, {}), 0U);
+  EXPECT_EQ(read_back(linuxcnc_plugin(), {{"linuxcnc-X.comp", text}})->front().plus.size(), 3U);
+  EXPECT_FALSE(read_back(linuxcnc_plugin(), {{"linuxcnc-X.comp", "# X\n" + text}}));
   const std::string ini = file(*r, "linuxcnc-X.ini");
   EXPECT_TRUE(contains(ini, "[JOINT_0]\nCOMP_FILE = linuxcnc-X.comp\nCOMP_FILE_TYPE = 0\n"));
   EXPECT_TRUE(contains(file(*r, "linuxcnc-X.txt"), "BACKLASH is ignored"));

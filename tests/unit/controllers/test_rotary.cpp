@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <numbers>
 
-#include "fanuc/consumer.h"
 #include "workshop.h"
 
 using namespace workshop;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "siemens-840d/consumer.h"
 #include "workshop.h"
 
 using namespace workshop;
@@ -125,11 +124,8 @@ TEST(Siemens, ReaderRefusesWhatTheControlWould) {
   const auto r = Bench(three_points()).write(siemens_plugin());
   ASSERT_TRUE(r);
   const std::string good = file(*r, "siemens-840d-X-EEC.ini");
-  const nonio::siemens::Machine control;
-  EXPECT_TRUE(nonio::siemens::load({good}, control));
-  auto small = control;
-  small.encoder_points = 2;
-  EXPECT_FALSE(nonio::siemens::load({good}, small));
+  EXPECT_TRUE(control(siemens_plugin(), {{"", good}}));
+  EXPECT_FALSE(control(siemens_plugin(), {{"", good}}, {{"max_points", std::int64_t{2}}}));
   for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
            {"$AA_ENC_COMP[0,1,AX1]=0.002\n", ""},  // a hole
            {"M17\n", ""},
@@ -138,6 +134,6 @@ TEST(Siemens, ReaderRefusesWhatTheControlWould) {
            {"CHANDATA(1)\n", ""}}) {
     std::string bad = good;
     bad.replace(bad.find(from), from.size(), to);
-    EXPECT_FALSE(nonio::siemens::load({bad}, control)) << from;
+    EXPECT_FALSE(control(siemens_plugin(), {{"", bad}})) << from;
   }
 }

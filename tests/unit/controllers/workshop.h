@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "nonio/math/compensation.h"
+#include "nonio/math/loaded_table.h"
 #include "nonio/sdk/plugin.h"
 
 /// Invented axes and the plugins as they were built.
@@ -58,6 +59,39 @@ inline Settings settings(const Output& output, const Options& given) {
     s.values[name] = value;
   }
   return s;
+}
+
+/// What the control makes of these files, on a machine with these axes.
+inline Expected<std::vector<LoadedTable>> read_back(
+    const Output& output, const std::vector<Artifact>& files, const Options& options = {},
+    const std::vector<Axis>& axes = {{.name = "X"}, {.name = "Y"}, {.name = "Z"}}) {
+  Campaign campaign;
+  campaign.machine.axes = axes;
+  return output.parse({files, campaign, settings(output, options)});
+}
+
+/// What it adds to one axis by its own position.
+inline Expected<math::Correction> control(const Output& output, const std::vector<Artifact>& files,
+                                          const Options& options = {},
+                                          const std::string& axis = "X") {
+  const auto tables = read_back(output, files, options);
+  if (!tables) return tl::unexpected<Error>(tables.error());
+  const auto correction = math::correction_of(*tables, axis);
+  if (!correction) return fail("no table of " + axis);
+  return *correction;
+}
+
+/// What it adds to `out` by the position of `in`.
+inline Expected<math::Correction> control_cross(const Output& output,
+                                                const std::vector<Artifact>& files,
+                                                const std::string& in, const std::string& out,
+                                                const Options& options = {}) {
+  const auto tables = read_back(output, files, options);
+  if (!tables) return tl::unexpected<Error>(tables.error());
+  for (const LoadedTable& t : *tables)
+    if (t.input == std::vector{in} && t.output == out)
+      return math::Correction([t](double x, int d) { return math::added(t, std::span(&x, 1), d); });
+  return fail("no table of " + out + " by " + in);
 }
 
 using Curve = std::function<double(double)>;

@@ -56,13 +56,12 @@ inline ToUnicode to_unicode(const std::string& cmap) {
 }
 
 /// The texts of a page, one a line, in the order in which they are drawn.
-inline std::string texts(const std::string& content, const ToUnicode& regular,
-                         const ToUnicode& bold) {
+inline std::string texts(const std::string& content, const std::vector<ToUnicode>& maps) {
   std::string out;
-  bool is_bold = false;
-  for (std::size_t i = 0; i + 4 < content.size(); ++i) {
-    if (content.compare(i, 3, "/F1") == 0) is_bold = false;
-    if (content.compare(i, 3, "/F2") == 0) is_bold = true;
+  std::size_t font = 0;
+  for (std::size_t i = 0; i + 2 < content.size(); ++i) {
+    if (content.compare(i, 2, "/F") == 0) font = static_cast<std::size_t>(content[i + 2] - '1');
+    if (content.compare(i, 3, "ET\n") == 0) out += '\n';
     if (content[i] != '(') continue;
     std::string bytes;
     for (++i; i < content.size() && content[i] != ')'; ++i) {
@@ -74,11 +73,10 @@ inline std::string texts(const std::string& content, const ToUnicode& regular,
     for (std::size_t k = 0; k + 1 < bytes.size(); k += 2) {
       const unsigned glyph =
           static_cast<unsigned char>(bytes[k]) << 8 | static_cast<unsigned char>(bytes[k + 1]);
-      const ToUnicode& map = is_bold ? bold : regular;
+      const ToUnicode& map = maps.at(font);
       const auto it = map.find(glyph);
       out += it == map.end() ? "\uFFFD" : it->second;
     }
-    out += '\n';
   }
   return out;
 }
@@ -92,18 +90,18 @@ struct PdfText {
   }
 };
 
-/// Of the PDFs that this project writes: two fonts, regular first; pages in order.
+/// Of the PDFs that this project writes: fonts in the order of their names; pages in order.
 inline PdfText read_pdf(const std::string& pdf) {
   std::vector<ToUnicode> maps;
   std::vector<std::string> contents;
   for (const std::string& stream : streams(pdf))
     if (stream.find("begincmap") != std::string::npos)
       maps.push_back(to_unicode(stream));
-    else if (stream.find(" Tj ET") != std::string::npos)
+    else if (stream.find("BT ") != std::string::npos)
       contents.push_back(stream);
   PdfText out;
-  if (maps.size() != 2) return out;
-  for (const std::string& content : contents) out.pages.push_back(texts(content, maps[0], maps[1]));
+  if (maps.size() < 2) return out;
+  for (const std::string& content : contents) out.pages.push_back(texts(content, maps));
   return out;
 }
 

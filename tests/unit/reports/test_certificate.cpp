@@ -2,9 +2,10 @@
 #include <algorithm>
 #include <set>
 
-#include "fixtures.h"
+#include "certificate_case.h"
 #include "nonio/reports/number.h"
 #include "pdf_reader.h"
+#include "png_file.h"
 
 namespace nonio::fixtures {
 namespace {
@@ -31,24 +32,7 @@ struct Certificate : testing::Test {
   }
   const Output& output() const { return plugins.outputs.front(); }
 
-  /// With everything that a certificate needs.
-  Case whole() {
-    Case c = simple_case();
-    c.add("X", {});
-    Campaign& m = c.campaign;
-    m.customer_address = "Via Po 1, Torino";
-    m.received = "2026-11-01";
-    m.end_date = "2026-11-04";
-    m.machine.condition = "in use";
-    m.machine.axes[0].expansion = 11.5e-6;
-    m.environment = {1e-3, 0.2, 1.5, 1e-6, 1e-6, {}};
-    m.laboratory = {"Taratura Srl", "Via Dora 2, Torino", "IT", "", "B. Verdi", "info@example.org"};
-    m.certificate.languages = {"en"};
-    m.certificate.form = "certificate";
-    m.certificate.location = "customer";
-    c.analyse(plugins);
-    return c;
-  }
+  Case whole() const { return whole_case(plugins); }
   OutputInput input(const Case& c, bool drawn = true) const {
     static const Settings none;
     return {c.campaign, c.observations,          c.results, none, templates,
@@ -227,7 +211,8 @@ TEST_F(Certificate, EveryLanguageIsWhole) {
   for (const auto& [name, table] : templates.tables)
     if (name.starts_with("words/") && name.ends_with("/certificate"))
       languages.insert(name.substr(6, 2));
-  EXPECT_TRUE(languages.contains("en") && languages.contains("it"));
+  for (const char* language : {"de", "en", "es", "it", "zh"})
+    EXPECT_TRUE(languages.contains(language)) << language;
   Case c = whole();
   issue.replaces = "2026-0003", issue.replaces_date = "2026-10-01", issue.changes = {"x.csv"};
   decide(c, "iso230-2", "A", 1e-6, Decision::does_not_conform);
@@ -306,6 +291,21 @@ TEST_F(Certificate, ATemplateMayMovePartsButNotLeaveThemOut) {
   std::erase(blocks, "statements");
   EXPECT_TRUE(has(complaint(whole()), "statements"));
   EXPECT_EQ(output().check_templates(templates).size(), 1U);
+}
+
+TEST_F(Certificate, ALogoStandsAboveTheLaboratory) {
+  auto& values = templates.tables["certificate"].values;
+  values["logo.file"] = std::string("logo.png");
+  values["logo.height_mm"] = 14.0;
+  EXPECT_TRUE(has(complaint(whole()), "logo.png"));  // not there
+  templates.files["logo.png"] = "no picture";
+  EXPECT_TRUE(has(complaint(whole()), "templates/logo.png"));
+  ASSERT_EQ(output().check_templates(templates).size(), 1U);
+  EXPECT_EQ(output().check_templates(templates)[0].file, "templates/logo.png");
+  templates.files["logo.png"] = png(2, 2, PNG_FORMAT_GRAY, "abcd");
+  const auto with = write(whole());
+  ASSERT_TRUE(with) << with.error().message;
+  EXPECT_TRUE(has(with->artifacts.front().bytes, "/Subtype /Image"));
 }
 
 TEST_F(Certificate, AWordWithAPlaceThatNobodyFillsIsAnError) {

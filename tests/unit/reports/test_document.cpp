@@ -13,7 +13,7 @@ namespace nonio::reports {
 namespace {
 
 std::shared_ptr<const Fonts> fonts() {
-  const Templates templates = fixtures::read_templates(NONIO_TEMPLATES);
+  static const Templates templates = fixtures::read_templates(NONIO_TEMPLATES);
   const std::string regular = "fonts/LiberationSans-Regular.ttf",
                     bold = "fonts/LiberationSans-Bold.ttf", wide = "fonts/DroidSansFallback.ttf";
   auto fonts = shared_fonts({templates.files.at(regular), regular},
@@ -109,8 +109,8 @@ TEST(Text, WhatCannotBePrintedNamesCharacterAndField) {
     const char *text, *says;
   };
   const Line lines[] = {{"กข", "\"ก\" (U+0E01)"}, {"a\tb", "control character U+0009"},
-                        {"a\xffz", "byte 0xFF"},     {"a\xc0\x80", "byte 0xC0"},
-                        {"e\u0323", "U+1EB9"},       {"\U0001F600", "U+1F600"}};
+                        {"a\xffz", "byte 0xFF"},  {"a\xc0\x80", "byte 0xC0"},
+                        {"e\u0323", "U+1EB9"},    {"\U0001F600", "U+1F600"}};
   for (const Line& l : lines) {
     const auto bytes = pdf(of({{Paragraph{l.text}, "campaign.customer"}}), *fonts());
     ASSERT_FALSE(bytes) << l.text;
@@ -180,6 +180,19 @@ TEST(Layout, AHeadingDoesNotStayBehindAlone) {
     const auto text = pages_of(of(std::move(blocks)));
     for (const std::string& page : text.pages)
       EXPECT_EQ(count(page, "Heading"), count(page, "advice")) << lines;
+  }
+}
+
+TEST(Layout, WhatStandsSideBySideDoesNotStayBehindAloneEither) {
+  for (int lines = 60; lines < 75; ++lines) {
+    std::vector<Block> blocks;
+    for (int i = 0; i < lines; ++i) blocks.push_back({Paragraph{"line"}});
+    const Paragraph one{"beside", Paragraph::Look::body, true};
+    blocks.push_back({Columns{{{{one}}, {{one}}}}});
+    blocks.push_back({Paragraph{"following"}});
+    const auto text = pages_of(of(std::move(blocks)));
+    for (const std::string& page : text.pages)
+      EXPECT_EQ(count(page, "beside"), 2 * count(page, "following")) << lines;
   }
 }
 
@@ -295,6 +308,41 @@ TEST(Pdf, TheSameBytesTwice) {
   EXPECT_EQ(one->find("/ID"), std::string::npos);
   document.date = "2026-13-45";  // no date: none is written
   EXPECT_TRUE(pdf(document, *f));
+}
+
+TEST(Pdf, KeptForLongItSaysColoursPropertiesAndIdentifier) {
+  Document document = of({{Heading{"Heading"}}, {Paragraph{"text"}}});
+  document.title = "Prüfbericht <7> & \"mehr\"";
+  document.author = "R&D";
+  document.date = "2026-11-03";
+  document.profile = "an ICC profile";
+  const auto one = pdf(document, *fonts()), again = pdf(document, *fonts());
+  ASSERT_TRUE(one && again);
+  EXPECT_EQ(*one, *again);
+  for (const char* says :
+       {"<rdf:li xml:lang=\"x-default\">Prüfbericht &lt;7&gt; &amp; &quot;mehr&quot;</rdf:li>",
+        "<rdf:li>R&amp;D</rdf:li>", "<xmp:CreateDate>2026-11-03T00:00:00Z</xmp:CreateDate>",
+        "<pdf:Producer>Haru", "/Subtype /XML", "/DestOutputProfile ", "/S /GTS_PDFA1"})
+    EXPECT_EQ(count(*one, says), 1U) << says;
+  EXPECT_EQ(one->find("pdfaid"), std::string::npos);
+  const auto identifier = [](const std::string& bytes) {
+    const std::size_t at = bytes.find("/ID [");
+    return at == std::string::npos ? "" : bytes.substr(at, bytes.find(']', at) - at);
+  };
+  const std::string id = identifier(*one);
+  ASSERT_GE(id.size(), 2 * 34U);
+  EXPECT_EQ(id.substr(id.find('<'), 34), id.substr(id.rfind('<'), 34));
+  document.blocks.push_back({Paragraph{"more"}});
+  EXPECT_NE(identifier(*pdf(document, *fonts())), id);
+}
+
+TEST(Pdf, ALabelIsCutBetweenCharacters) {
+  Document document = of({{Paragraph{"text"}}});
+  for (int i = 0; i < 1500; ++i) document.title += "é";
+  document.profile = "an ICC profile";
+  const auto bytes = pdf(document, *fonts());
+  ASSERT_TRUE(bytes);
+  EXPECT_EQ(count(*bytes, "é"), 999U) << "after the letter T 1999 bytes are left";
 }
 
 }  // namespace

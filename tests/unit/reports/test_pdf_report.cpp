@@ -131,7 +131,7 @@ TEST_F(PdfReport, WhatVdiHidesIsSaidOnlyWhereATestSaysSo) {
 TEST_F(PdfReport, RemarksSpeakTheLanguageOfTheReport) {
   Case c = usual();
   Results::Written table{"some-control", "1", {}};
-  table.result.notes = {{"fanuc.sign-inferred"}, {.id = "unknown", .english = "As it came."}};
+  table.result.notes = {{"fanuc.sign"}, {.id = "unknown", .english = "As it came."}};
   c.results.outputs.push_back(table);
   c.results.notes = {{"csv.empty-rows", {{"rows", 3.0, Quantity::count}}, {}, "X"}};
   const std::string en = text(c), it = text(c, "it");

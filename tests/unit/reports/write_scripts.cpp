@@ -3,6 +3,7 @@
 // write_scripts FOLDER: a page in each script, and the same pages with a part of a letter lost, for
 // tests/real/pages.
 #include <iostream>
+#include <map>
 
 #include "fixtures.h"
 #include "font_outlines.h"
@@ -51,6 +52,15 @@ void lose_part(Font& font, char32_t c, std::uint16_t empty) {
   font.bytes[at + 1] = static_cast<char>(empty & 0xFF);
 }
 
+/// Once in the smallest letters of the page.
+Document without(Document document, const std::string& letter, const std::string& other) {
+  std::string& text = std::get<Paragraph>(document.blocks[2].what).text;
+  std::string& small = std::get<Grid>(document.blocks[3].what).rows[1].value;
+  std::string& where = small.find(letter) != std::string::npos ? small : text;
+  where.replace(where.find(letter), letter.size(), other);
+  return document;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -69,10 +79,16 @@ int main(int argc, char** argv) {
     std::ofstream(folder / (name + ".pdf"), std::ios::binary) << *bytes;
     return true;
   };
-  for (const auto& [name, document] : pages())
+  std::map<std::string, Document> all;
+  for (auto& [name, document] : pages()) {
     if (!write(name, document, **fonts)) return 1;
+    all[name] = std::move(document);
+  }
   Fonts broken = **fonts;
   for (const char32_t c : U"校准证书") lose_part(broken.wide, c, broken.wide.glyph(U'\u3000'));
-  if (!write("zh-lost-parts", pages()[0].second, broken)) return 1;
-  return 0;
+  return write("zh-lost-parts", all["zh"], broken) &&
+                 write("el-lost-tonos", without(all["el"], "ύ", "υ"), **fonts) &&
+                 write("ru-lost-accent", without(all["ru"], "а\u0301", "а"), **fonts)
+             ? 0
+             : 1;
 }

@@ -149,6 +149,7 @@ Expected<Look> read_look(const Templates& templates, const std::string& name, co
   look.regular = keys.text("font.regular");
   look.bold = keys.text("font.bold");
   look.wide = keys.text_if_given("font.wide");
+  look.profile = keys.text_if_given("colour.profile");
   look.logo = keys.text_if_given("logo.file");
   look.mark = keys.text_if_given("logo.mark");
   if (!look.logo.empty() || !look.mark.empty()) look.logo_height = keys.mm("logo.height_mm", 3, 80);
@@ -163,8 +164,7 @@ Expected<std::shared_ptr<const reports::Fonts>> fonts_of(const Templates& templa
   if (!regular) return fail(regular.error());
   const auto bold = font_file(templates, look.bold);
   if (!bold) return fail(bold.error());
-  if (look.wide.empty())
-    return reports::shared_fonts({*regular, look.regular}, {*bold, look.bold});
+  if (look.wide.empty()) return reports::shared_fonts({*regular, look.regular}, {*bold, look.bold});
   const auto wide = font_file(templates, look.wide);
   if (!wide) return fail(wide.error());
   return reports::shared_fonts({*regular, look.regular}, {*bold, look.bold}, {*wide, look.wide});

@@ -161,6 +161,14 @@ struct Status {
   std::vector<std::string> lines{};
 };
 
+/// A logo or a mark: a PNG or JPEG file (picture.h).
+struct Image {
+  std::string bytes;
+  std::string name;    ///< of the file, for messages
+  double height = 40;  ///< less where it would be wider than its place
+  double align = 0;    ///< 0 left, 0.5 centre, 1 right
+};
+
 struct Spacer {
   double height = 6;
 };
@@ -177,8 +185,8 @@ struct Columns {
 };
 
 struct Block {
-  std::variant<Heading, Paragraph, Grid, Table, Plot, BarChart, Note, Status, Spacer, PageBreak,
-               Columns>
+  std::variant<Heading, Paragraph, Grid, Table, Plot, BarChart, Note, Status, Image, Spacer,
+               PageBreak, Columns>
       what;
   std::string field{};
 };
@@ -189,6 +197,9 @@ struct Document {
   std::string head;  ///< at the top of the second page and those that follow
   std::string foot;  ///< at the bottom of every page
   std::string page_of = "{page}/{pages}";
+  /// An ICC profile of sRGB: the file is to be kept for long, and says its colours, its properties
+  /// also as XMP, and an identifier.
+  std::string profile{};
   Style style;
   std::vector<Block> blocks;
 };

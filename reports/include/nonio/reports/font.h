@@ -30,6 +30,7 @@ struct Font {
   std::vector<std::uint16_t> advance;  ///< by glyph, 1/1000 of the font size
   std::array<int, 4> box{};            ///< 1/1000 of the font size, as the next three
   int ascent = 0, descent = 0, cap_height = 0;
+  int units = 1000;  ///< of its outlines, per font size
 
   std::vector<char> common;        ///< by glyph: of a character that most documents have
   Embedded with_common, with_all;  ///< empty in a font of which a document embeds what it uses

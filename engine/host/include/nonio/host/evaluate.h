@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,19 +39,42 @@ inline constexpr const char* absent = "absent";
 /// The parts of `Inputs` that all campaigns share.
 Inputs shared_inputs(const Context& context);
 
+/// A file of a certificate as it was issued, signature included.
+struct IssuedFile {
+  std::string output, name, bytes;  ///< of which output plugin
+  std::string no_time_stamp{};      ///< why it has none although one was wanted
+};
+
+/// What a campaign has been issued under its number, or is to get.
+struct Certificate {
+  std::string output;  ///< the plugin that makes it
+  Issue issue{};
+  std::string templates_sha256{};
+  bool issued = false;              ///< already: what follows is what was signed then
+  std::vector<IssuedFile> files{};  ///< those of `output` first
+  std::string results{};            ///< results.json as it is attached
+};
+
 struct Evaluated {
   Campaign campaign;
   Results results;
   Inputs inputs;       ///< of the campaign's own files, manifest first
   std::string status;  ///< ok, attention, failed
+  std::optional<Certificate> certificate{};
+  bool retry = false;  ///< it failed for a reason that does not lie in its files
 };
 
 /// Told what is about to be called, for the case that it does not come back.
 using Stage = std::function<void(const std::string&)>;
 
-/// One campaign from its folder to its artifacts; writes nothing.
+/// What was issued for what is evaluated here, whatever is missing for it today; else, if it is
+/// `complete`, a number; else a certificate without one.
+using Draw = std::function<Expected<Certificate>(const Evaluated&, bool complete)>;
+
+/// One campaign from its folder to its artifacts; writes nothing. Without `draw` there is no
+/// certificate.
 Evaluated evaluate(const std::filesystem::path& folder, const std::string& id,
-                   const Context& context, const Stage& stage);
+                   const Context& context, const Stage& stage, const Draw& draw = {});
 
 /// What is wrong with the names and options of site.toml: it would be wrong in every campaign.
 std::vector<Error> site_mistakes(const Context& context);

@@ -43,6 +43,8 @@ class Plugins final : public Registry {
   std::string absence(std::string_view kind, std::string_view name) const;
   /// Every file that was refused, with the reason; empty if none was.
   std::string refusals() const;
+  /// A note for each reason: after an update that may be all plugins for one.
+  std::vector<std::string> refusal_notes() const;
 
   void add(Reader) override;
   void add(Effect) override;

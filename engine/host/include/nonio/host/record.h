@@ -36,6 +36,7 @@ struct Record {
   std::string status;
   bool retry = false;  ///< it failed for a reason that does not lie in its content
   Inputs inputs;
+  std::string certificate;  ///< its number; empty: none
   std::vector<RecordedFile> files;
   std::vector<Error> errors;
   std::vector<KnownFinding> findings, previous;  ///< previous: of the last night before this one

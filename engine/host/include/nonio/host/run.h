@@ -9,6 +9,7 @@
 
 #include "nonio/host/evaluate.h"
 #include "nonio/host/record.h"
+#include "nonio/host/register.h"
 
 namespace nonio::host {
 
@@ -47,6 +48,7 @@ struct Night {
   std::string error;                     ///< of a refused run: usage or configuration
   std::vector<CampaignState> campaigns;  ///< ordered by id
   std::vector<std::string> notes;
+  std::vector<RegisterEntry> issued;  ///< certificates that are new
   bool any_failed() const;
 };
 

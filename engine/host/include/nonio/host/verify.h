@@ -21,14 +21,16 @@ struct VerifyOptions {
 /// Trust, revocation lists and expected signer; what is given by itself goes before the site's.
 Checked<sign::Verifier> verifier_of(const VerifyOptions& options);
 
-/// Plugins and templates, and no site: nothing of the folder that one happens to stand in has a
-/// say.
+/// Plugins and templates, with those of `site` if it is not empty. Of its site.toml nothing, and
+/// nothing of the folder that one happens to stand in.
 Expected<std::unique_ptr<Workplace>> open_to_verify(
     const std::vector<std::filesystem::path>& plugin_folders,
-    const std::vector<std::filesystem::path>& template_folders, const std::string& version);
+    std::vector<std::filesystem::path> template_folders, const std::filesystem::path& site,
+    const std::string& version);
 
 /// A certificate (PDF) or a DCC (XML): its signature first, then, where that holds, its content:
-/// every attached DCC, and the attached readings evaluated again by the plugins of `context`.
+/// every attached DCC, and the attached readings evaluated again by the plugins of `context`, up to
+/// the printed pages.
 /// Whatever the file holds, there is an answer.
 sign::Verified verify_file(const std::filesystem::path& path, const sign::Verifier& verifier,
                            const Context& context);

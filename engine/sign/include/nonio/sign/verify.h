@@ -41,6 +41,8 @@ struct Verified {
 
 /// `max_bytes` of attachments are unpacked at the most.
 Verified verify_pdf(std::string_view bytes, const Verifier& verifier);
+/// What is drawn on each page, uncompressed, as the writer of the PDF put it down.
+Expected<std::vector<std::string>> page_contents(std::string_view pdf);
 /// An XML document with one enveloped signature over all of it. `certificate` (DER): only that
 /// signer will do, and its chain is not looked at again.
 Verified verify_xml(std::string_view bytes, const Verifier& verifier,

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common.h"
+#include "nonio/host/plugins.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* to_text(ControlTable::Sign s) {
+  return s == ControlTable::Sign::error ? "error" : "correction";
+}
+const char* to_text(ControlTable::Entry e) {
+  return e == ControlTable::Entry::absolute    ? "absolute"
+         : e == ControlTable::Entry::increment ? "increment"
+                                               : "position";
+}
+const char* to_text(ControlTable::Zero z) {
+  return z == ControlTable::Zero::free        ? "free"
+         : z == ControlTable::Zero::reference ? "reference"
+                                              : "machine zero";
+}
+const char* to_text(ControlTable::Confidence c) {
+  return c == ControlTable::Confidence::documented ? "documented"
+         : c == ControlTable::Confidence::run      ? "run"
+         : c == ControlTable::Confidence::inferred ? "inferred"
+                                                   : "unsure";
+}
+
+/// Of the sign, if the declaration says it.
+const ControlTable::Fact* sign_fact(const ControlTable& t) {
+  for (const ControlTable::Fact& f : t.facts)
+    if (f.id == "sign") return &f;
+  return nullptr;
+}
+
+bool sign_unknown(const ControlTable& t) {
+  const auto* f = sign_fact(t);
+  return f != nullptr && f->confidence == ControlTable::Confidence::unsure;
+}
+
+Json control_json(const Output& o) {
+  const ControlTable& t = *o.control;
+  Json json = {{"name", o.info.name},
+               {"version", o.info.version},
+               {"summary", o.info.summary},
+               {"table", t.name},
+               {"on_request", o.info.on_request},
+               {"takes",
+                {{"rotary", t.rotary},
+                 {"bidirectional", t.bidirectional},
+                 {"straightness", t.straightness},
+                 {"squareness", t.squareness},
+                 {"volumetric", t.volumetric}}}};
+  if (t.points > 0) json["points"] = t.points;
+  json["entry"] = to_text(t.entry);
+  if (!sign_unknown(t)) json["sign"] = to_text(t.sign);
+  json["spacing"] = t.grid == ControlTable::Grid::even ? "even" : "listed";
+  json["zero"] = to_text(t.zero);
+  json["step_mm"] = printed(t.value_step.linear, Quantity::length);
+  if (t.rotary) json["step_deg"] = printed(t.value_step.rotary, Quantity::angle);
+  if (t.increment) json["increment"] = {t.increment->first, t.increment->second};
+  if (t.largest > 0.0) json["largest"] = t.largest;
+  if (!t.backlash.empty()) json["backlash"] = t.backlash;
+  json["facts"] = Json::array();
+  for (const ControlTable::Fact& f : t.facts)
+    json["facts"].push_back(
+        {{"id", f.id}, {"confidence", to_text(f.confidence)}, {"says", f.says}});
+  return json;
+}
+
+std::string padded(std::string text, std::size_t width) {
+  if (text.size() < width) text.append(width - text.size(), ' ');
+  return text + " ";
+}
+
+void print_head() {
+  for (const auto& [head, width] : {std::pair{"control", 20},
+                                    {"points", 6},
+                                    {"both ways", 9},
+                                    {"straight", 8},
+                                    {"square", 6},
+                                    {"volume", 6},
+                                    {"sign", 11},
+                                    {"entry", 9},
+                                    {"digit mm", 9}})
+    std::cout << padded(head, static_cast<std::size_t>(width));
+  std::cout << "backlash\n";
+}
+
+void print_control(const Output& o, bool facts) {
+  const ControlTable& t = *o.control;
+  const auto yes = [](bool is, std::size_t width) { return padded(is ? "yes" : "-", width); };
+  std::cout << padded(o.info.name, 20) << padded(t.points > 0 ? std::to_string(t.points) : "any", 6)
+            << yes(t.bidirectional, 9) << yes(t.straightness, 8) << yes(t.squareness, 6)
+            << yes(t.volumetric, 6) << padded(sign_unknown(t) ? "not known" : to_text(t.sign), 11)
+            << padded(to_text(t.entry), 9) << padded(short_text(t.value_step.linear * 1e3, 3), 9)
+            << (t.backlash.empty() ? "-" : t.backlash) << "\n";
+  if (!facts) return;
+  std::cout << "    " << o.info.summary << "\n    table: " << t.name
+            << "; zero: " << to_text(t.zero) << "\n";
+  for (const ControlTable::Fact& f : t.facts)
+    std::cout << "    " << padded(to_text(f.confidence), 11) << f.says << "\n";
+}
+
+int list_controls(const std::vector<std::string>& names, const Common& common) {
+  host::Plugins plugins;
+  plugins.load(common.plugin_folders());
+  std::vector<const Output*> all;
+  for (const Output& o : plugins.outputs())
+    if (o.control) all.push_back(&o);
+  std::sort(all.begin(), all.end(),
+            [](const Output* a, const Output* b) { return a->info.name < b->info.name; });
+  for (const std::string& name : names)
+    if (std::none_of(all.begin(), all.end(),
+                     [&](const Output* o) { return o->info.name == name; })) {
+      std::cerr << "nonio controllers: " << plugins.absence("output", name) << "\n";
+      return exit_usage;
+    }
+  if (!names.empty())
+    std::erase_if(all, [&](const Output* o) {
+      return std::find(names.begin(), names.end(), o->info.name) == names.end();
+    });
+  if (common.json) {
+    Json json = {{"schema", "nonio-controllers/1"}, {"controllers", Json::array()}};
+    for (const Output* o : all) json["controllers"].push_back(control_json(*o));
+    std::cout << json.dump(1) << "\n";
+    return exit_done;
+  }
+  print_head();
+  for (const Output* o : all) print_control(*o, !names.empty());
+  return exit_done;
+}
+
+}  // namespace
+
+void add_controllers_verb(CLI::App& cli, Common& common, Outcome& outcome) {
+  CLI::App* verb = cli.add_subcommand(
+      "controllers", "The controls that tables are written for, and what each can take");
+  auto names = std::make_shared<std::vector<std::string>>();
+  verb->add_option("NAME", *names, "Only these, with how sure each fact about them is");
+  add_common(*verb, common);
+  verb->footer(
+      "points: of one table. both ways: a table for each direction of travel. straight, square:\n"
+      "an axis by the position of another. volume: all errors of the machine in one file.\n"
+      "sign: whether an entry is the measured error (actual - nominal) or the correction. Where\n"
+      "nobody knows it, nothing is written before a sign probe has shown it (`nonio plan\n"
+      "sign-probe`). A control comes into a campaign by its name:\n"
+      "    [machine]\n"
+      "    control = \"fagor-8055\"\n\n"
+      "Example: nonio controllers pmac ecmc");
+  verb->callback([names, &common, &outcome] { outcome = list_controls(*names, common); });
+}
+
+}  // namespace nonio::app

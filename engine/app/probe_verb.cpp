@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "campaign_verb.h"
+#include "nonio/host/files.h"
+#include "nonio/host/table_check.h"
+#include "nonio/sdk/format.h"
+#include "tables.h"
+
+namespace nonio::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ProbeWish {
+  std::string folder, axis, out;
+  double feed = 1000.0;
+};
+
+Json probe_json(const host::SignProbe& p, const std::string& file) {
+  const Quantity q = deviation_of(p.rotary);
+  const auto name = [](const char* key, Quantity of) {
+    return key + std::string(unit_of(of).suffix);
+  };
+  const Quantity at = position_of(p.rotary);
+  Json json = {{"measurement", p.measurement},
+               {"axis", p.axis},
+               {name("start", at), printed(p.start, at)},
+               {name("from", at), printed(p.from, at)},
+               {name("to", at), printed(p.to, at)},
+               {name("without_table", q), printed(p.difference, q)},
+               {name("right_sign", q), 0.0},
+               {name("wrong_sign", q), printed(2.0 * p.difference, q)},
+               {name("scatter", q), printed(p.scatter, q)},
+               {"shows", p.shows()}};
+  if (!file.empty()) json["file"] = file;
+  return json;
+}
+
+void print_probe(const host::SignProbe& p, const std::string& file) {
+  const Quantity q = deviation_of(p.rotary), at = position_of(p.rotary);
+  std::cout << "axis " << p.axis << ", measurement " << p.measurement << "\n  move to "
+            << with_unit(p.from, at) << " coming from " << with_unit(p.start, at)
+            << ", set the instrument to zero, move to " << with_unit(p.to, at)
+            << " and read actual - nominal:\n"
+            << "    " << with_unit(p.difference, q) << "  no table is active\n"
+            << "    " << with_unit(0.0, q) << "  the table has the right sign\n"
+            << "    " << with_unit(2.0 * p.difference, q) << "  the table has the wrong sign\n";
+  if (!p.shows())
+    std::cout << "  too little to show a sign: readings scatter by " << with_unit(p.scatter, q)
+              << "\n";
+  if (!file.empty()) std::cout << "  " << file << "\n";
+}
+
+int probe(const ProbeWish& w, const Common& common) {
+  const char* const verb = "nonio plan sign-probe";
+  const auto complain = [&](const std::string& message, int exit) {
+    std::cerr << verb << ": " << message << "\n";
+    return exit;
+  };
+  if (!(w.feed > 0.0)) return complain("--feed: wanted more than 0", exit_usage);
+  Outcome exit;
+  OpenCampaign open = open_campaign(verb, w.folder, common, exit);
+  if (exit) return *exit;
+  const auto& campaign = open.campaign();
+  if (!w.axis.empty() && campaign.machine.axis(w.axis) == nullptr)
+    return complain("--axis: the campaign has no axis " + w.axis, exit_usage);
+  const bool heidenhain = campaign.machine.control.rfind("heidenhain", 0) == 0;
+  Json all = Json::array();
+  std::vector<Artifact> files;
+  bool good = true;
+  for (std::size_t i = 0; i < open.read.observations.size(); ++i) {
+    const Measurement& m = campaign.measurements[i];
+    if (m.kind != "axis" || open.read.observations[i].size() == 0 ||
+        (!w.axis.empty() && m.axis != w.axis))
+      continue;
+    const auto p = host::sign_probe(m, open.read.observations[i]);
+    if (!p) {
+      good = false;
+      complain(p.error().message, exit_failed);
+      continue;
+    }
+    std::string file;
+    if (!w.out.empty()) {
+      Artifact program = host::probe_program(*p, heidenhain, w.feed);
+      for (const Artifact& f : files)
+        if (f.name == program.name) program.name = m.id + "-" + program.name;
+      file = (std::filesystem::path(w.out) / program.name).string();
+      files.push_back(std::move(program));
+    }
+    good = good && p->shows();
+    all.push_back(probe_json(*p, file));
+    if (!common.json) print_probe(*p, file);
+  }
+  if (!files.empty())
+    if (auto done = host::publish(std::filesystem::absolute(w.out), files); !done)
+      return complain(text_of(done.error()), exit_failed);
+  if (common.json)
+    std::cout << Json{{"schema", "nonio-sign-probe/1"}, {"campaign", campaign.id}, {"probes", all}}
+                     .dump(1)
+              << "\n";
+  if (all.empty()) return complain("no measurement of an axis with readings", exit_failed);
+  return good ? exit_done : exit_failed;
+}
+
+}  // namespace
+
+void add_sign_probe(CLI::App& plan_verb, Common& common, Outcome& outcome) {
+  CLI::App* verb = plan_verb.add_subcommand(
+      "sign-probe", "Two moves that show on the machine whether a table has the right sign");
+  auto w = std::make_shared<ProbeWish>();
+  add_campaign_arguments(*verb, w->folder, common);
+  verb->add_option("--axis", w->axis, "Only this axis");
+  verb->add_option("--out", w->out, "Folder for the part programs");
+  verb->add_option("--feed", w->feed, "Feed of the programs, mm/min or deg/min (default 1000)");
+  verb->footer(
+      "The two stops are the targets between which the error changed most, both reached towards\n"
+      "plus. Load the table, reference the axis, run the program, set the instrument to zero at\n"
+      "the first stop (M0) and read it at the second. Near zero: the sign is right. Twice the\n"
+      "error: it is wrong. The error itself: no table is active.\n\n"
+      "Exit status: 0 every axis shows it; 1 an axis is too good or too short; 2 usage.\n\n"
+      "Example: nonio plan sign-probe site/2026-11-rossi --out p");
+  verb->callback([w, &common, &outcome] { outcome = probe(*w, common); });
+}
+
+}  // namespace nonio::app

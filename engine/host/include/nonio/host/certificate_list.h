@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "nonio/host/register.h"
+
+namespace nonio::host {
+
+/// `[certificate]` of a site's site.toml.
+Expected<Numbering> numbering_of(const std::filesystem::path& site);
+
+/// Takes a number back; `why` stays in the register.
+Expected<void> withdraw(const std::filesystem::path& site, const Numbering& numbering,
+                        const std::string& number, const std::string& why);
+
+/// Writes what was issued under all numbers into a folder: NUMBER.pdf, NUMBER-dcc.xml.
+Expected<void> export_certificates(const std::filesystem::path& site, const Numbering& numbering,
+                                   const std::filesystem::path& folder);
+
+}  // namespace nonio::host

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nonio/host/campaign_reader.h"
+#include "nonio/host/plugins.h"
+
+/// Tables that are in a control, or are to come into it.
+namespace nonio::host {
+
+/// "a.ini,b.ini": the files of one table.
+Expected<std::vector<Artifact>> read_table_files(const std::string& list);
+
+/// The controller plugin of this name; without one that after which the files are called, or the
+/// only one that can read them.
+Expected<const Output*> control_of(const Plugins&, const std::string& name,
+                                   const std::vector<Artifact>& files, const Campaign&,
+                                   const std::map<std::string, std::string>& options);
+
+/// What the control makes of these files.
+Expected<std::vector<LoadedTable>> tables_in(const Output&, const std::vector<Artifact>&,
+                                             const Campaign&, const Settings& options);
+
+/// Steps and slopes of what one table adds. m or rad.
+struct TableShape {
+  double largest = 0.0;  ///< size of what is added
+  double step = 0.0;     ///< from one point to the next
+  double slope = 0.0;    ///< m/m or rad/rad
+  double step_at = 0.0;  ///< position of the step, of the first input
+  std::optional<double> backlash{};
+};
+
+/// What changes for one output axis by the same inputs.
+struct TableDifference {
+  std::string output;
+  std::vector<std::string> input;
+  bool rotary = false;  ///< of the output
+  std::optional<TableShape> present{},
+      next{};                      ///< nothing where only the other one has such a table
+  double largest = 0.0, at = 0.0;  ///< size of next - present, and where
+  double range = 0.0;              ///< of next - present
+};
+std::vector<TableDifference> differences(const std::vector<LoadedTable>& present,
+                                         const std::vector<LoadedTable>& next);
+
+/// E, B and M of one measurement of an axis; NaN where one cannot be given.
+struct TableForecast {
+  std::string measurement, axis;
+  bool rotary = false;
+  double E[2]{}, B[2]{}, M[2]{};  ///< before, after
+  bool worse() const { return !(E[1] <= E[0]); }
+};
+
+/// With these tables in the control in place of none.
+std::vector<TableForecast> forecast(const ReadCampaign&, const std::vector<LoadedTable>&,
+                                    const Settings& options);
+
+/// What the plugin would write for the campaign if these tables were in force while it was
+/// measured: they are taken off the readings first, so that the new table is the whole of what is
+/// needed.
+struct RenewedTables {
+  std::vector<Artifact> files;
+  std::vector<LoadedTable> tables;
+  std::vector<TableForecast> forecast;
+  std::vector<Finding> findings;
+};
+Expected<RenewedTables> renew(const ReadCampaign&, const Output&, Settings options,
+                              const Templates&, const std::vector<LoadedTable>& present);
+
+/// Two positions of an axis, reached from below, between which its error differs most. With the
+/// table the instrument shows `left` of that, or twice the difference if the sign is wrong.
+struct SignProbe {
+  std::string measurement, axis;
+  bool rotary = false;
+  double start = 0.0, from = 0.0, to = 0.0;  ///< the first target; the two stops; m or rad
+  double difference = 0.0;                   ///< of the error, without a table
+  double scatter = 0.0;  ///< standard deviation of a reading about its mean; 0 with one run
+  bool shows() const { return difference * difference > 36.0 * scatter * scatter; }
+};
+Expected<SignProbe> sign_probe(const Measurement&, const Observations&);
+
+/// The part program of it: two stops to read the instrument at. "heidenhain" has a language of its
+/// own.
+Artifact probe_program(const SignProbe&, bool heidenhain, double feed);
+
+}  // namespace nonio::host

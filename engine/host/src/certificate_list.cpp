@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/host/certificate_list.h"
+
+#include <algorithm>
+
+#include "context.h"
+#include "nonio/host/files.h"
+
+namespace nonio::host {
+namespace fs = std::filesystem;
+
+Expected<Numbering> numbering_of(const fs::path& site) {
+  std::string digest;
+  auto read = read_site(site, digest);
+  if (!read) return fail(read.error().front());
+  return std::move(read->numbering);
+}
+
+Expected<void> withdraw(const fs::path& site, const Numbering& numbering, const std::string& number,
+                        const std::string& why) {
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
+  if (std::any_of(why.begin(), why.end(), control))
+    return fail("the reason has a control character; wanted one line of text");
+  const auto entries = Register::entries(site, numbering);
+  if (!entries) return fail(entries.error());
+  if (entries->empty()) return fail("no number " + number + " was ever drawn");
+  auto opened = Register::open(site, numbering);
+  if (!opened) return fail(opened.error());
+  return opened->withdraw(number, why);
+}
+
+namespace {
+
+/// What its own output made is named by the number alone; what was signed with it has its name too.
+std::string export_name(const std::string& number, const IssuedFile& file, const std::string& own) {
+  if (file.output == own && file.name.ends_with(".pdf")) return number + ".pdf";
+  if (file.output == own && file.name.ends_with(".xml")) return number + "-dcc.xml";
+  return number + "-" + file.output + "-" + file.name;
+}
+
+}  // namespace
+
+Expected<void> export_certificates(const fs::path& site, const Numbering& numbering,
+                                   const fs::path& folder) {
+  const auto entries = Register::entries(site, numbering);
+  if (!entries) return fail(entries.error());
+  if (entries->empty()) return {};
+  auto opened = Register::open(site, numbering);
+  if (!opened) return fail(opened.error());
+  for (const RegisterEntry& e : *entries) {
+    if (e.order == 0) continue;
+    const auto files = opened->files(e.number);
+    if (!files) return fail(files.error());
+    std::vector<Artifact> out;
+    for (const IssuedFile& f : *files)
+      out.push_back({export_name(e.number, f, files->front().output), f.bytes});
+    if (auto written = publish(folder, out); !written) return written;
+  }
+  return {};
+}
+
+}  // namespace nonio::host

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/host/table_check.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "guarded.h"
+#include "nonio/host/files.h"
+#include "nonio/host/plan.h"
+#include "nonio/math/loaded_table.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio::host {
+namespace {
+
+using Tables = std::vector<LoadedTable>;
+
+bool same_axes(const LoadedTable& a, const LoadedTable& b) {
+  return a.output == b.output && a.input == b.input;
+}
+
+/// All tables of the same axes in one: what they add together.
+double sum_at(const std::vector<const LoadedTable*>& tables, const std::vector<double>& x,
+              int dir) {
+  double sum = 0.0;
+  for (const LoadedTable* t : tables) sum += math::added(*t, x, dir);
+  return sum;
+}
+
+using Knots = std::vector<std::vector<double>>;  // of each input
+
+void merge(Knots& knots, const std::vector<const LoadedTable*>& tables) {
+  for (const LoadedTable* t : tables)
+    for (std::size_t k = 0; k < knots.size(); ++k)
+      knots[k].insert(knots[k].end(), t->position[k].begin(), t->position[k].end());
+  for (auto& k : knots) {
+    std::sort(k.begin(), k.end());
+    k.erase(std::unique(k.begin(), k.end(), [](double a, double b) { return b - a < 1e-9; }),
+            k.end());
+  }
+}
+
+/// Every point of the grid, the last input fastest.
+std::vector<std::vector<double>> points_of(const Knots& knots) {
+  std::vector<std::vector<double>> points{{}};
+  for (const auto& k : knots) {
+    std::vector<std::vector<double>> next;
+    for (const auto& p : points)
+      for (const double x : k) {
+        next.push_back(p);
+        next.back().push_back(x);
+      }
+    points = std::move(next);
+  }
+  return points;
+}
+
+TableShape shape_of(const std::vector<const LoadedTable*>& tables) {
+  TableShape s;
+  Knots knots(tables.front()->input.size());
+  merge(knots, tables);
+  for (const LoadedTable* t : tables)
+    if (t->backlash) s.backlash = t->backlash;
+  const auto points = points_of(knots);
+  for (const int dir : {1, -1})
+    for (std::size_t k = 0, stride = points.size(); k < knots.size(); ++k) {
+      stride /= knots[k].size();
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const double c = sum_at(tables, points[i], dir);
+        s.largest = std::max(s.largest, std::fabs(c));
+        if (i + stride >= points.size() || points[i + stride][k] <= points[i][k]) continue;
+        const double step = std::fabs(sum_at(tables, points[i + stride], dir) - c);
+        if (step > s.step) s.step = step, s.step_at = points[i].front();
+        s.slope = std::max(s.slope, step / (points[i + stride][k] - points[i][k]));
+      }
+    }
+  return s;
+}
+
+void compare(TableDifference& d, const std::vector<const LoadedTable*>& was,
+             const std::vector<const LoadedTable*>& will) {
+  Knots knots(d.input.size());
+  merge(knots, was);
+  merge(knots, will);
+  double low = 0.0, high = 0.0;
+  bool any = false;
+  for (const auto& p : points_of(knots))
+    for (const int dir : {1, -1}) {
+      const double v = sum_at(will, p, dir) - sum_at(was, p, dir);
+      low = any ? std::min(low, v) : v;
+      high = any ? std::max(high, v) : v;
+      any = true;
+      if (std::fabs(v) > d.largest) d.largest = std::fabs(v), d.at = p.front();
+    }
+  d.range = high - low;
+  if (!was.empty()) d.present = shape_of(was);
+  if (!will.empty()) d.next = shape_of(will);
+}
+
+/// "X number=1 backlash_mm=0.010" of option `axes`: what was in the parameter while measured.
+double present_backlash(const Settings& options, const std::string& axis, bool rotary) {
+  double value = 0.0;
+  const std::string key = rotary ? " backlash_deg=" : " backlash_mm=";
+  for (const std::string& entry : options.texts("axes"))
+    if (const std::size_t at = entry.find(key);
+        entry.rfind(axis + " ", 0) == 0 && at != std::string::npos)
+      std::from_chars(entry.data() + at + key.size(), entry.data() + entry.size(), value);
+  return value / (rotary ? deg_per_rad : 1e3);
+}
+
+TableForecast forecast_of(const Measurement& m, const math::ErrorCurve& measured,
+                          const math::ErrorCurve& raw, bool rotary, const Tables& tables,
+                          double present) {
+  TableForecast f{m.id, m.axis, rotary};
+  const auto was = math::before(measured);
+  f.E[0] = was.E(), f.B[0] = was.B(), f.M[0] = was.M();
+  const auto whole = math::correction_of(tables, m.axis, present);
+  const math::Correction c = [&](double x, int dir) {
+    return whole ? (*whole)(x, dir) - (dir > 0 ? present / 2.0 : -present / 2.0) : 0.0;
+  };
+  const auto will = math::after(raw, c);
+  f.E[1] = will.E(), f.B[1] = will.B(), f.M[1] = will.M();
+  return f;
+}
+
+/// Whether one table of these is of this axis by itself.
+bool corrects(const Tables& tables, const std::string& axis) {
+  return std::any_of(tables.begin(), tables.end(), [&](const LoadedTable& t) {
+    return t.output == axis && t.input.size() == 1 && t.input.front() == axis;
+  });
+}
+
+/// The readings as they would be without these tables; the backlash parameter stays.
+Observations without(const Observations& o, const std::string& axis, const Tables& tables) {
+  Observations raw = o;
+  if (raw.axes.empty()) return raw;
+  const auto& a = raw.axes.front();
+  for (std::size_t i = 0; i < raw.size(); ++i)
+    for (const LoadedTable& t : tables)
+      if (t.output == axis && t.input.size() == 1 && t.input.front() == axis)
+        raw.deviation[i] -= math::added(t, std::span(&a.position[i], 1), a.approach[i]);
+  return raw;
+}
+
+}  // namespace
+
+Expected<std::vector<Artifact>> read_table_files(const std::string& list) {
+  std::vector<Artifact> files;
+  for (std::size_t from = 0; from <= list.size();) {
+    const std::size_t comma = std::min(list.find(',', from), list.size());
+    const std::filesystem::path path = list.substr(from, comma - from);
+    auto bytes = read_file(path);
+    if (!bytes) return tl::unexpected<Error>(bytes.error());
+    files.push_back({path.filename().string(), std::move(*bytes)});
+    from = comma + 1;
+  }
+  return files;
+}
+
+Expected<Tables> tables_in(const Output& o, const std::vector<Artifact>& files, const Campaign& c,
+                           const Settings& options) {
+  return guarded("output " + o.info.name, [&] { return o.parse({files, c, options}); });
+}
+
+Expected<const Output*> control_of(const Plugins& plugins, const std::string& name,
+                                   const std::vector<Artifact>& files, const Campaign& campaign,
+                                   const std::map<std::string, std::string>& options) {
+  std::vector<const Output*> all, named, able;
+  std::string list;
+  for (const Output& o : plugins.outputs()) {
+    if (o.parse == nullptr) continue;
+    all.push_back(&o);
+    list += (list.empty() ? "" : ", ") + o.info.name;
+    if (o.info.name == name) return &o;
+    if (files.front().name.rfind(o.info.name + "-", 0) == 0) named.push_back(&o);
+  }
+  if (!name.empty()) return fail("no control \"" + name + "\"; there are " + list);
+  if (named.size() == 1) return named.front();
+  for (const Output* o : all) {
+    const auto settled = options_from(o->info, options);
+    if (settled && tables_in(*o, files, campaign, *settled)) able.push_back(o);
+  }
+  if (able.size() == 1) return able.front();
+  return fail(files.front().name + ": " +
+              (able.empty() ? "no control" : std::to_string(able.size()) + " controls") +
+              " could have written it; say --control, one of " + list);
+}
+
+std::vector<TableDifference> differences(const Tables& present, const Tables& next) {
+  std::vector<TableDifference> out;
+  for (const Tables* tables : {&present, &next})
+    for (const LoadedTable& t : *tables) {
+      if (std::any_of(out.begin(), out.end(), [&](const TableDifference& d) {
+            return d.output == t.output && d.input == t.input;
+          }))
+        continue;
+      TableDifference d{.output = t.output, .input = t.input, .rotary = t.rotary};
+      std::vector<const LoadedTable*> was, will;
+      for (const LoadedTable& o : present)
+        if (same_axes(o, t)) was.push_back(&o);
+      for (const LoadedTable& o : next)
+        if (same_axes(o, t)) will.push_back(&o);
+      compare(d, was, will);
+      out.push_back(std::move(d));
+    }
+  return out;
+}
+
+std::vector<TableForecast> forecast(const ReadCampaign& read, const Tables& tables,
+                                    const Settings& options) {
+  std::vector<TableForecast> out;
+  const auto& measurements = read.manifest->campaign.measurements;
+  for (std::size_t i = 0; i < read.observations.size(); ++i) {
+    const Measurement& m = measurements[i];
+    if (m.kind != "axis" || read.observations[i].size() == 0 || !corrects(tables, m.axis)) continue;
+    const auto test = math::AxisTest::arrange(read.observations[i]);
+    const auto curve = math::error_curve(test);
+    if (curve.position.size() < 2) continue;
+    out.push_back(forecast_of(m, curve, curve, test.rotary, tables,
+                              present_backlash(options, m.axis, test.rotary)));
+  }
+  return out;
+}
+
+Expected<RenewedTables> renew(const ReadCampaign& read, const Output& output, Settings options,
+                              const Templates& templates, const Tables& present) {
+  const Campaign& campaign = read.manifest->campaign;
+  std::vector<std::string> axes = options.texts("axes");
+  for (const LoadedTable& t : present)
+    if (t.backlash.value_or(0.0) != 0.0 && present_backlash(options, t.output, t.rotary) == 0.0)
+      axes.push_back(t.output + (t.rotary ? " backlash_deg=" : " backlash_mm=") +
+                     fixed_text(*t.backlash * (t.rotary ? deg_per_rad : 1e3), 9));
+  options.values["axes"] = axes;
+  std::vector<Observations> raw;
+  for (std::size_t i = 0; i < read.observations.size(); ++i)
+    raw.push_back(without(read.observations[i], campaign.measurements[i].axis, present));
+  const Results none;
+  const auto write = [&](const Campaign& c, const std::vector<Observations>& o) {
+    return guarded("output " + output.info.name, [&] {
+      return output.write({c, o, none, options, templates});
+    });
+  };
+  auto whole = write(campaign, raw);
+  if (!whole) return tl::unexpected<Error>(whole.error());
+  RenewedTables out{std::move(whole->artifacts), {}, {}, std::move(whole->findings)};
+  for (std::size_t i = 0; i < raw.size(); ++i) {  // one at a time: an axis may be there twice
+    const Measurement& m = campaign.measurements[i];
+    if (m.kind != "axis" || raw[i].size() == 0) continue;
+    Campaign one = campaign;
+    one.measurements = {m};
+    const auto files = write(one, {raw[i]});
+    if (!files) return tl::unexpected<Error>(files.error());
+    if (files->artifacts.empty()) continue;  // refused; the finding says why
+    const auto tables = tables_in(output, files->artifacts, one, options);
+    if (!tables) return tl::unexpected<Error>(tables.error());
+    const auto test = math::AxisTest::arrange(read.observations[i]);
+    out.forecast.push_back(
+        forecast_of(m, math::error_curve(test), math::error_curve(math::AxisTest::arrange(raw[i])),
+                    test.rotary, *tables, present_backlash(options, m.axis, test.rotary)));
+    out.tables.insert(out.tables.end(), tables->begin(), tables->end());
+  }
+  return out;
+}
+
+Expected<SignProbe> sign_probe(const Measurement& m, const Observations& o) {
+  const auto test = math::AxisTest::arrange(o);
+  const auto curve = math::error_curve(test);
+  const auto& e = curve.plus;
+  if (e.size() < 3)
+    return fail("measurement " + m.id +
+                ": wanted 3 targets or more that were reached moving "
+                "towards plus, found " +
+                std::to_string(e.size()));
+  SignProbe probe{m.id, m.axis, test.rotary, curve.position.front()};
+  for (std::size_t i = 1; i < e.size(); ++i)  // the first target is where the move begins
+    for (std::size_t k = i + 1; k < e.size(); ++k)
+      if (std::fabs(e[k] - e[i]) > std::fabs(probe.difference)) {
+        probe.difference = e[k] - e[i];
+        probe.from = curve.position[i];
+        probe.to = curve.position[k];
+      }
+  double sum = 0.0;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < test.targets.size(); ++i) {
+    const auto readings = test.plus(i);
+    double mean = 0.0;
+    for (const auto& r : readings) mean += r.deviation / static_cast<double>(readings.size());
+    for (const auto& r : readings) sum += (r.deviation - mean) * (r.deviation - mean);
+    n += readings.empty() ? 0 : readings.size() - 1;
+  }
+  probe.scatter = n == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(n));
+  return probe;
+}
+
+Artifact probe_program(const SignProbe& p, bool heidenhain, double feed) {
+  const double per_si = p.rotary ? deg_per_rad : 1e3;
+  const auto at = [&](double x) { return fixed_text(x * per_si, 4); };
+  const std::string F = fixed_text(feed, 0);
+  std::string name = "sign-probe-" + p.axis, text;
+  if (heidenhain) {
+    const auto signed_at = [&](double x) { return (x < 0.0 ? "" : "+") + at(x); };
+    std::size_t block = 0;
+    const auto line = [&](const std::string& words) {
+      text += std::to_string(block++) + " " + words + "\n";
+    };
+    line("BEGIN PGM SIGN_PROBE MM");
+    line("L " + p.axis + signed_at(p.start) + " R0 F" + F);
+    for (const double x : {p.from, p.to}) {
+      line("L " + p.axis + signed_at(x) + " R0 F" + F);
+      line("STOP");
+    }
+    line("END PGM SIGN_PROBE MM");
+    return {name + ".H", text};
+  }
+  text = "G90 G94\nG1 " + p.axis + at(p.start) + " F" + F + "\n";
+  for (const double x : {p.from, p.to}) text += "G1 " + p.axis + at(x) + "\nM0\n";
+  return {name + ".nc", text + "M30\n"};
+}
+
+}  // namespace nonio::host

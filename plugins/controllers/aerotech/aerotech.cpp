@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/controllers/list.h"
+
+namespace nonio {
+namespace {
+
+using Confidence = ControlTable::Confidence;
+using controllers::CrossCurve;
+using controllers::CrossJob;
+using controllers::Sheet;
+
+// .cal: corrections at equal distances from home, added up over all tables of an axis.
+ControlTable declared() {
+  ControlTable t;
+  t.name = ".cal";
+  t.sign = ControlTable::Sign::correction;
+  t.zero = ControlTable::Zero::first;
+  t.points = 10000;
+  t.straightness = t.squareness = true;
+  t.facts = {
+      {"sign", Confidence::inferred, "Inferred: the sign -e, from three generators of such files."},
+      {"form", Confidence::inferred,
+       "Inferred: units PRIMARY and METRIC/1000, and the order of the words behind :START2D; "
+       "compare with a .cal file of the machine."},
+      {"directions", Confidence::documented, "One correction for both directions."}};
+  return t;
+}
+
+Expected<std::vector<Artifact>> files(const Sheet& s) {
+  const bool below = s.grid.last() < s.grid.step / 2.0;
+  if (!below && s.grid.first < -s.grid.step / 2.0)
+    return fail("axis " + s.job.axis +
+                ": home (0) lies inside of the targets, and which way "
+                "HOMEOFFSET counts is not documented: measure from home to one side");
+  const std::string step =
+      controllers::decimal((below ? -1.0 : 1.0) * s.grid.step / s.position_unit(), 4);
+  std::string out = controllers::comments(s.words(), "; ") + ":START " +
+                    std::to_string(s.job.number) + " SAMPLEDIST=" + step +
+                    " POSUNIT=PRIMARY CORUNIT=PRIMARY\n:START HOMEOFFSET=0\n";
+  for (std::size_t i = 0; i < s.plus.size(); ++i)
+    out += s.entry(s.plus[below ? s.plus.size() - 1 - i : i]) + "\n";
+  return std::vector<Artifact>{{"aerotech-" + s.job.stem + ".cal", out + ":END\n"}};
+}
+
+/// Rows by the position of the second axis, columns by that of the first one; both corrections side
+/// by side in um.
+std::string plane(const CrossJob& job, const std::vector<controllers::KnownAxis>& axes) {
+  const CrossCurve &a = job.curves[0], &b = job.curves[1];  // b's input corrects a's input
+  const std::string row = std::to_string(axis_named(axes, b.input).number);
+  const std::string col = std::to_string(axis_named(axes, a.input).number);
+  const auto step = [](const CrossCurve& c) {
+    return controllers::decimal(
+        (c.position.back() - c.position.front()) * 1e3 / static_cast<double>(c.position.size() - 1),
+        4);
+  };
+  std::string out = "; straightness and squareness from the diagonals of " +
+                    controllers::plain(job.measurement) + "\n:START2D " + row + " " + col + " " +
+                    col + " " + row + " " + step(b) + " " + step(a) + " " +
+                    std::to_string(a.position.size()) +
+                    "\n:START2D POSUNIT=METRIC CORUNIT=METRIC/1000 OFFSETROW=0 OFFSETCOL=0\n";
+  for (const double of_b : b.value) {
+    std::string line;
+    for (const double of_a : a.value)
+      line += (line.empty() ? "" : "  ") +
+              controllers::decimal(-(of_b - b.value.front()) * 1e6, 3) + " " +
+              controllers::decimal(-(of_a - a.value.front()) * 1e6, 3);
+    out += line + "\n";
+  }
+  return out + ":END\n";
+}
+
+std::vector<double> even(double step, std::size_t n) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < n; ++i) out.push_back(step * static_cast<double>(i));
+  return out;
+}
+
+/// "SAMPLEDIST=10" among the words of a head.
+double value_in(const std::vector<std::string_view>& words, std::string_view key) {
+  for (const auto w : words)
+    if (w.rfind(key, 0) == 0) return controllers::real(w.substr(key.size())).value_or(NAN);
+  return NAN;
+}
+
+struct Parser {
+  const std::vector<controllers::KnownAxis>& axes;
+  std::vector<LoadedTable> tables{};
+
+  controllers::KnownAxis axis(std::string_view word) const {
+    const auto n = controllers::whole(word);
+    return axis_numbered(axes, n && *n > 0 ? static_cast<std::size_t>(*n) : 0);
+  }
+  Expected<void> line_table(const std::vector<std::string_view>& head, std::vector<double> v) {
+    const auto of = axis(head.size() > 1 ? head[1] : "");
+    const double step = value_in(head, "SAMPLEDIST=");
+    if (!(std::fabs(step) > 0.0) || value_in(head, "HOMEOFFSET=") != 0.0)
+      return fail("a :START without SAMPLEDIST or with a HOMEOFFSET");
+    controllers::RawTable raw{of, even(step, v.size()), std::move(v)};
+    if (step < 0.0) {
+      std::reverse(raw.position.begin(), raw.position.end());
+      std::reverse(raw.plus.begin(), raw.plus.end());
+    }
+    auto read = controllers::loaded(declared(), raw);
+    if (!read) return tl::unexpected<Error>(read.error());
+    tables.push_back(std::move(*read));
+    return {};
+  }
+  Expected<void> plane_table(const std::vector<std::string_view>& head,
+                             const std::vector<double>& v) {
+    const auto cols = controllers::whole(head.size() > 7 ? head[7] : "");
+    const auto drow = controllers::real(head.size() > 7 ? head[5] : ""),
+               dcol = controllers::real(head.size() > 7 ? head[6] : "");
+    if (!cols || *cols < 2 || !drow || !dcol || !(*drow > 0.0) || !(*dcol > 0.0) ||
+        v.size() % static_cast<std::size_t>(2 * *cols) != 0)
+      return fail("a :START2D that is not understood");
+    const std::size_t n = static_cast<std::size_t>(*cols), rows = v.size() / (2 * n);
+    for (std::size_t out = 0; out < 2; ++out) {
+      LoadedTable t{.output = axis(head[3 + out]).name,
+                    .input = {axis(head[1]).name, axis(head[2]).name},
+                    .position = {even(*drow / 1e3, rows), even(*dcol / 1e3, n)},
+                    .plus = {},
+                    .minus = {}};
+      for (std::size_t i = out; i < v.size(); i += 2) t.plus.push_back(v[i] * 1e-6);
+      if (auto ok = math::sound(t); !ok) return ok;
+      tables.push_back(std::move(t));
+    }
+    return {};
+  }
+  Expected<void> file(std::string_view bytes) {
+    std::vector<std::string_view> head;
+    std::vector<double> values;
+    for (std::string_view line : controllers::lines_of(bytes)) {
+      const auto w = controllers::words_of(line.substr(0, line.find_first_of(";'")));
+      if (w.empty()) continue;
+      if (w[0] == ":END") {
+        const bool is_plane = !head.empty() && head[0] == ":START2D";
+        if (auto done = is_plane ? plane_table(head, values) : line_table(head, values); !done)
+          return done;
+        head.clear(), values.clear();
+      } else if (w[0].front() == ':') {
+        head.insert(head.end(), w.begin(), w.end());
+      } else {
+        for (const auto word : w) values.push_back(controllers::real(word).value_or(NAN));
+      }
+    }
+    return head.empty() ? Expected<void>{} : fail("a table without :END");
+  }
+};
+
+Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
+  const auto axes = controllers::known_axes(in);
+  if (!axes) return tl::unexpected<Error>(axes.error());
+  Parser parser{*axes};
+  for (const Artifact& f : in.files)
+    if (auto done = parser.file(f.bytes); !done) return tl::unexpected<Error>(done.error());
+  if (parser.tables.empty()) return fail("no :START");
+  return parser.tables;
+}
+
+Expected<OutputResult> write(const OutputInput& in) {
+  OutputResult result;
+  const controllers::Writer writer{"aerotech",
+                                   *controllers::chosen(declared(), in.options),
+                                   {"number:", "step", "backlash"},
+                                   files,
+                                   parse};
+  const auto jobs = controllers::write_axes(in, writer, result);
+  if (!jobs) return tl::unexpected<Error>(jobs.error());
+  const Campaign campaign = controllers::with_axes_of(in, *jobs);
+  const auto axes = controllers::known_axes({{}, campaign, in.options});
+  if (!axes) return tl::unexpected<Error>(axes.error());
+  for (const CrossJob& set : controllers::cross_jobs(in)) {
+    if (set.volume || set.curves.size() != 2) continue;
+    if (std::any_of(set.curves.begin(), set.curves.end(),
+                    [](const CrossCurve& c) { return std::fabs(c.position.front()) > 1e-9; }))
+      return fail("diagonals of " + set.measurement +
+                  ": a plane begins at home (0), the curves do not");
+    const std::vector<Artifact> file{
+        {"aerotech-plane-" + controllers::file_part(set.measurement) + ".cal", plane(set, *axes)}};
+    if (auto done = controllers::predict_cross(set, file, parse, *jobs, in, result); !done)
+      return tl::unexpected<Error>(done.error());
+    result.artifacts.push_back(file.front());
+  }
+  controllers::note_facts(writer, result);
+  return result;
+}
+
+}  // namespace
+}  // namespace nonio
+
+NONIO_PLUGIN(registry) {
+  using namespace nonio;
+  registry.add(controllers::controller(
+      {"aerotech", "1.0.0",
+       "Axis calibration files (.cal, one and two dimensions) for Aerotech A3200 and Automation1.",
+       controllers::table_options(
+           declared(),
+           "number (of the axis, from 1), step_mm, backlash_mm and the same with _deg")},
+      declared(), nonio::write, parse));
+}

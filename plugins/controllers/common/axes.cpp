@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/controllers/axes.h"
+
+#include <set>
+
+#include "nonio/controllers/text.h"
+
+namespace nonio::controllers {
+namespace {
+
+std::set<std::string> full_keys(const std::vector<std::string_view>& keys) {
+  std::set<std::string> out;
+  for (const std::string_view k : keys) {
+    if (k.back() == ':') {
+      out.emplace(k.substr(0, k.size() - 1));
+    } else {
+      out.insert(std::string(k) + "_mm");
+      out.insert(std::string(k) + "_deg");
+    }
+  }
+  return out;
+}
+
+/// "X reference_mm=0 step_mm=50".
+Expected<void> take_entry(const std::string& entry, const std::set<std::string>& keys,
+                          std::map<std::string, AxisSettings>& out) {
+  const auto parts = words_of(entry);
+  if (parts.empty()) return wrong_axes("option axes: an empty entry");
+  AxisSettings& settings = out[std::string(parts.front())];
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const std::size_t equals = parts[i].find('=');
+    const std::string key(parts[i].substr(0, equals));
+    const auto value =
+        equals == std::string_view::npos ? std::nullopt : real(parts[i].substr(equals + 1));
+    if (!keys.empty() && keys.count(key) == 0)
+      return wrong_axes("option axes, \"" + entry + "\": no setting " + key + "; there are " +
+                        joined({keys.begin(), keys.end()}, ", "));
+    if (!value)
+      return wrong_axes("option axes, \"" + entry + "\": wanted " + key + "=NUMBER, found " +
+                        std::string(parts[i]));
+    settings[key] = *value;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<double> KnownAxis::setting(std::string_view key) const {
+  const auto it = settings.find(key);
+  return it == settings.end() ? std::nullopt : std::optional(it->second);
+}
+
+std::optional<double> KnownAxis::position_setting(std::string_view key) const {
+  const auto value = setting(std::string(key) + (rotary ? "_deg" : "_mm"));
+  return value ? std::optional(*value / per_si()) : std::nullopt;
+}
+
+tl::unexpected<Error> wrong_axes(std::string message) {
+  Error error{std::move(message)};
+  error.key = "axes";
+  return fail(std::move(error));
+}
+
+Expected<std::map<std::string, AxisSettings>> settings_of_axes(
+    const Settings& options, const std::vector<std::string_view>& keys) {
+  std::map<std::string, AxisSettings> out;
+  for (const std::string& entry : options.texts("axes"))
+    if (auto taken = take_entry(entry, full_keys(keys), out); !taken)
+      return tl::unexpected<Error>(taken.error());
+  return out;
+}
+
+Expected<std::vector<KnownAxis>> known_axes(const TableInput& in) {
+  auto settings = settings_of_axes(in.options);
+  if (!settings) return tl::unexpected<Error>(settings.error());
+  std::vector<KnownAxis> axes;
+  for (const Axis& a : in.campaign.machine.axes) {
+    KnownAxis axis{a.name, axes.size() + 1, a.rotary, (*settings)[a.name]};
+    if (const auto n = axis.setting("number"); n && *n >= 1.0 && *n < 1e6)
+      axis.number = static_cast<std::size_t>(*n);
+    axes.push_back(std::move(axis));
+  }
+  return axes;
+}
+
+KnownAxis axis_numbered(const std::vector<KnownAxis>& axes, std::size_t number) {
+  for (const KnownAxis& a : axes)
+    if (a.number == number) return a;
+  return {std::to_string(number), number, false, {}};
+}
+
+KnownAxis axis_of_file(const std::vector<KnownAxis>& axes, std::string_view file,
+                       std::string_view prefix) {
+  const bool ours = file.rfind(prefix, 0) == 0;
+  if (!ours) return axes.size() == 1 ? axes.front() : KnownAxis{std::string(file), 0, false, {}};
+  std::string_view stem = file.substr(prefix.size());
+  stem = stem.substr(0, stem.rfind('.'));
+  const KnownAxis* found = nullptr;  // the longest name that fits
+  for (const KnownAxis& a : axes) {
+    const std::string part = file_part(a.name);
+    const bool fits = stem == part || stem.rfind(part + "-", 0) == 0;
+    if (fits && (found == nullptr || part.size() > file_part(found->name).size())) found = &a;
+  }
+  return found != nullptr ? *found : KnownAxis{std::string(stem), 0, false, {}};
+}
+
+KnownAxis axis_named(const std::vector<KnownAxis>& axes, std::string_view name) {
+  for (const KnownAxis& a : axes)
+    if (plain(a.name) == name) return a;
+  return {std::string(name), 0, false, {}};
+}
+
+}  // namespace nonio::controllers

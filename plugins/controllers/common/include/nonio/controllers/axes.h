@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/sdk/control.h"
+
+/// The axes of the machine as a control knows them: option `axes` holds what each has of its own.
+namespace nonio::controllers {
+
+using AxisSettings = std::map<std::string, double, std::less<>>;
+
+struct KnownAxis {
+  std::string name;
+  std::size_t number = 1;  ///< setting `number`, else its place in the manifest, from 1
+  bool rotary = false;
+  AxisSettings settings;
+
+  std::optional<double> setting(std::string_view key) const;
+  /// A length or angle in SI: "first" reads first_mm or first_deg.
+  std::optional<double> position_setting(std::string_view key) const;
+  double per_si() const { return rotary ? deg_per_rad : 1e3; }
+};
+
+/// Entries "X number=1 step_mm=50" of option `axes`, by axis. `keys`: "reference" stands for
+/// reference_mm and reference_deg, a name with ':' at its end for a plain number; none: any.
+Expected<std::map<std::string, AxisSettings>> settings_of_axes(
+    const Settings& options, const std::vector<std::string_view>& keys = {});
+
+/// Error of option `axes`.
+tl::unexpected<Error> wrong_axes(std::string message);
+
+/// The axes of the manifest with their settings.
+Expected<std::vector<KnownAxis>> known_axes(const TableInput&);
+/// A linear axis of its own name if nobody knows it.
+KnownAxis axis_numbered(const std::vector<KnownAxis>&, std::size_t number);
+/// By the name of its file: "linuxcnc-X-before.comp" behind this prefix; else by what stands there,
+/// and the only axis there is where the file is called otherwise.
+KnownAxis axis_of_file(const std::vector<KnownAxis>&, std::string_view file,
+                       std::string_view prefix);
+KnownAxis axis_named(const std::vector<KnownAxis>&, std::string_view name);
+
+}  // namespace nonio::controllers

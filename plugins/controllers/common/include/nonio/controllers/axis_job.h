@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/controllers/axes.h"
+#include "nonio/math/compensation.h"
+#include "nonio/math/reversal.h"
+#include "nonio/sdk/plugin.h"
+
+/// What every writer of controller tables does alike: find the axes, refuse what no table can
+/// mend, predict what is left. Compiled into each plugin; a plugin has no part of another.
+namespace nonio::controllers {
+
+/// One measured axis of which a table is to be written. SI.
+struct AxisJob {
+  std::string axis, measurement;
+  std::string stem;        ///< of file names; with the measurement where an axis has two of them
+  std::size_t number = 1;  ///< its place among the machine's axes, from 1
+  bool rotary = false;
+  math::ErrorCurve curve;                    ///< to be compensated: as measured, or the model's
+  std::optional<math::ErrorCurve> measured;  ///< as measured, where `curve` is the model's
+  std::optional<math::ErrorCurve> turn;      ///< of a rotary axis measured over the whole turn
+  bool from_diagonals = false;  ///< positioning from step diagonals: nothing is known of reversal
+  math::Reversal reversal;
+  AxisSettings settings;              ///< of this axis: option `axes`
+  std::vector<std::string> drift;     ///< ids of the findings that ask for attention
+  std::vector<std::string> suspects;  ///< readings: "190.0 mm (3, +)"
+  std::vector<std::string> about;     ///< machine, axis, date: plain ASCII lines
+
+  /// What its files are to the control once they are loaded; nothing where it was refused.
+  std::optional<std::vector<LoadedTable>> loaded{};
+
+  const math::ErrorCurve& table_curve() const { return turn ? *turn : curve; }
+  /// What the control's backlash parameter held while the axis was measured; setting `backlash`.
+  double present_backlash() const { return position_setting("backlash").value_or(0.0); }
+  /// What goes into it now: positive for lost motion.
+  double backlash() const {
+    return curve.bidirectional() ? present_backlash() - curve.mean_reversal() : present_backlash();
+  }
+  /// Printed units per SI: mm per m, or deg per rad.
+  double per_si() const { return rotary ? deg_per_rad : 1e3; }
+  std::string_view unit() const { return rotary ? "deg" : "mm"; }
+  /// A length or angle of this axis' settings in SI: "first" reads first_mm or first_deg.
+  std::optional<double> position_setting(std::string_view name) const;
+  std::optional<double> setting(std::string_view name) const;
+};
+
+/// Something of which there may be a pitch table: axis runs, or step diagonals.
+bool has_tables(const Campaign&);
+
+/// The axis measurements with readings, in the campaign's order, and what step diagonals know of
+/// axes without them. `keys` are the settings that
+/// option `axes` takes for one axis: "reference" stands for reference_mm and reference_deg, a
+/// name with ':' at its end for a plain number. Findings and notes go to `result`.
+Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
+                                         const std::vector<std::string_view>& keys,
+                                         OutputResult& result);
+
+/// A note about this axis; its words find {axis} and {unit}.
+Remark remark(const AxisJob& job, std::string id);
+
+/// The declaration of that option, with the keys in its help.
+Option axes_option(std::string keys);
+/// step_mm and step_deg.
+std::vector<Option> step_options();
+/// The step for this axis from its settings or the options; 0: not said.
+double wished_step(const AxisJob& job, const Settings& options);
+
+/// True, with a finding, where one value cannot compensate the reversal and no direction tables
+/// are asked for.
+bool refused(const AxisJob& job, bool directions, OutputResult& result);
+
+/// Lines for a table of an axis that was not stable while it was measured, or of readings that
+/// do not belong to the others; empty otherwise.
+std::vector<std::string> warnings(const AxisJob& job, OutputResult& result);
+/// How the reversal was dealt with, for the words beside a table.
+std::string reversal_words(const AxisJob& job, bool directions);
+
+/// For a single backlash value. A finding where the axis goes too far at reversal and nobody said
+/// what the control compensates already: the value written then replaces one that it should have
+/// lowered. Another one where the reversal varies and the value leaves much of it.
+void doubt_backlash(const AxisJob& job, OutputResult& result);
+
+/// E, B and M before and after, the latter with `correction` as read back from the bytes written;
+/// it is the whole of what the control adds, the present backlash value is taken off here.
+/// A table that makes the mean deviations worse gives a finding.
+void predict(const AxisJob& job, const math::Correction& correction, OutputResult& result);
+
+/// Where the entry of the table is to be zero: the axis' setting `reference`, else 0 if the
+/// table has it, else its nearest end.
+double reference_position(const AxisJob& job, double first, double last);
+
+/// In the axis' unit with it: "12.5 mm".
+std::string with_unit(const AxisJob& job, double si, int decimals);
+/// "8.143 um" or "1.2 arcsec".
+std::string deviation_words(const AxisJob& job, double si);
+
+}  // namespace nonio::controllers

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/controllers/axes.h"
+#include "nonio/controllers/axis_job.h"
+#include "nonio/controllers/cross_job.h"
+#include "nonio/controllers/text.h"
+#include "nonio/math/loaded_table.h"
+#include "nonio/sdk/plugin.h"
+
+/// A controller plugin is a declaration (ControlTable), a format and a parser; what lies between
+/// the readings and the numbers of a table, and between a table and what it does, is here.
+namespace nonio::controllers {
+
+/// A table of one axis before it is text.
+struct Sheet {
+  const AxisJob& job;
+  const ControlTable& table;  ///< as declared, with what the options change
+  const OutputInput& input;
+  bool directions = false;       ///< there is a table for each direction
+  math::Grid grid{};             ///< where evenly spaced
+  double reference = 0.0;        ///< where an entry is 0, if one has to be; SI
+  std::vector<double> position;  ///< SI
+  /// What an entry says (+e or -e, less what it is at the reference), SI, not yet rounded; `minus`
+  /// is empty unless there are `directions`.
+  std::vector<double> plus, minus;
+  /// The same in steps of the table: rounded as absolute values, then differences of these where
+  /// the entries are increments. So their sum is never off by more than half a step.
+  std::vector<std::int64_t> plus_steps, minus_steps;
+  std::vector<std::string> warning{};
+
+  double position_unit() const { return table.position_unit.of(job.rotary); }
+  double value_unit() const { return table.value_unit.of(job.rotary); }
+  double value_step() const { return table.value_step.of(job.rotary); }
+  /// For the backlash parameter; SI.
+  double backlash() const { return directions ? job.present_backlash() : job.backlash(); }
+  /// In units of the file, with as many decimals as its steps have: the position of a point, and
+  /// an entry.
+  std::string at(std::size_t i) const;
+  std::string entry(double si) const;
+  /// Machine, axis, date, warnings, sign and reversal, for comments or a file of their own.
+  std::vector<std::string> words() const;
+};
+
+/// What a plugin is beside its Info; made for each run, with what its options change.
+struct Writer {
+  std::string name;  ///< of the plugin: files begin with it, ids of notes too
+  ControlTable table;
+  std::vector<std::string_view> keys;  ///< of option `axes`, as `axis_jobs` takes them
+  std::function<Expected<std::vector<Artifact>>(const Sheet&)> files;
+  Expected<std::vector<LoadedTable>> (*parse)(const TableInput&) = nullptr;
+
+  bool always_directions = false;  ///< its tables have two columns in any case
+  bool replaces_backlash = false;  ///< beside direction tables the backlash parameter is dead
+  bool wraps = true;               ///< a turn repeats itself; else it is closed by hand
+  bool power_of_two = false;       ///< the step of linear axes
+  int zero_of = 0;                 ///< the direction whose entry is 0 at the reference; 0: the mean
+  double fixed_step = 0.0;         ///< of a control whose points nobody chooses
+  /// The declaration for one axis, where its units are of the axis.
+  std::function<Expected<ControlTable>(const AxisJob&, ControlTable)> of_axis{};
+  /// Where the points are wanted; else at the targets.
+  std::function<std::vector<double>(const AxisJob&)> wanted{};
+  /// An option that makes a step of the table coarser, its present and its largest value.
+  struct Coarser {
+    std::string option;
+    std::int64_t now = 1, most = 1;
+    std::string or_else;  ///< another way out, in words
+  } coarser{};
+};
+
+/// The options that follow from a declaration: step, directions, max_points, sign where nobody
+/// knows it, `axes` with these keys in its help.
+std::vector<Option> table_options(const ControlTable&, std::string keys_of_axes,
+                                  std::vector<Option> more = {});
+
+/// As declared, with what the options say. An error where the sign is not known and not said.
+Expected<ControlTable> chosen(ControlTable, const Settings&);
+
+/// A sheet of each axis, its files, and what is left when the control has read them back. The jobs
+/// that were written have `loaded`.
+Expected<std::vector<AxisJob>> write_axes(const OutputInput&, const Writer&, OutputResult&);
+Expected<OutputResult> write_tables(const OutputInput&, const Writer&);
+
+/// Entries as a file has them, in its units.
+struct RawTable {
+  KnownAxis axis;
+  std::vector<double> position;
+  std::vector<double> plus, minus{};
+  std::size_t reference = 0;  ///< of increments: the point whose sum is 0
+  LoadedTable::Outside outside = LoadedTable::Outside::holds;
+  std::optional<double> backlash{};  ///< SI
+};
+
+/// What the control makes of such entries, as its plugin declares them.
+Expected<LoadedTable> loaded(const ControlTable&, const RawTable&);
+
+/// Notes of all that is not documented.
+void note_facts(const Writer&, OutputResult&);
+
+/// An output of stage `table`; `on_request`: only where the manifest names it.
+Output controller(Info, const ControlTable&, Expected<OutputResult> (*write)(const OutputInput&),
+                  Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
+                  bool on_request = true);
+
+/// The axes of the manifest, and those that are only in readings, as a parser needs them.
+Campaign with_axes_of(const OutputInput&, const std::vector<AxisJob>&);
+
+}  // namespace nonio::controllers

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Texts of tables, to be written and to be read.
+namespace nonio::controllers {
+
+/// Without the ends of lines, LF or CR LF.
+std::vector<std::string_view> lines_of(std::string_view text);
+/// What stands between these characters.
+std::vector<std::string_view> words_of(std::string_view line,
+                                       std::string_view separators = " \t\r");
+std::string_view trimmed(std::string_view text);
+/// The whole text as a finite number, with or without its sign.
+std::optional<double> real(std::string_view text);
+std::optional<std::int64_t> whole(std::string_view text);
+
+/// Printable ASCII on one line, whatever the manifest says.
+std::string plain(std::string_view text);
+/// For file names.
+std::string file_part(std::string_view text);
+/// Fixed decimals, zeros at the end left out down to one.
+std::string decimal(double value, int decimals);
+/// Fixed decimals with a sign in any case.
+std::string signed_decimal(double value, int decimals);
+/// Each line behind this mark: "; ".
+std::string comments(const std::vector<std::string>& lines, std::string_view mark);
+std::string joined(const std::vector<std::string>& words, std::string_view between);
+
+}  // namespace nonio::controllers

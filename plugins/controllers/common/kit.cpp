@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/controllers/kit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "nonio/sdk/format.h"
+
+namespace nonio::controllers {
+namespace {
+
+using Entry = ControlTable::Entry;
+constexpr double full_turn = 2.0 * std::numbers::pi;
+
+int decimals_of(double step, double unit) {
+  return std::max(0, static_cast<int>(std::ceil(-std::log10(step / unit) - 1e-9)));
+}
+
+std::string in_steps(double si, double step, double unit) {
+  const int decimals = decimals_of(step, unit);
+  return decimals == 0 ? fixed_text(si / unit, 0) : decimal(si * (1.0 / unit), decimals);
+}
+
+/// A reference position is a point of the grid where the numbers count from it.
+bool anchored(const ControlTable& t) {
+  return t.entry == Entry::increment || t.zero == ControlTable::Zero::first;
+}
+
+math::GridRule rule_of(const AxisJob& job, const OutputInput& input, const Writer& w,
+                       const ControlTable& t, double reference) {
+  math::GridRule rule;
+  rule.unit = t.position_step.of(job.rotary);
+  rule.most = t.points == 0 ? 100000 : t.points;
+  rule.step = w.fixed_step > 0.0 ? w.fixed_step : wished_step(job, input.options);
+  rule.rotary = job.rotary;
+  rule.axis = job.axis;
+  rule.turn = job.turn.has_value() && w.wraps;
+  if (!rule.turn) rule.first = job.position_setting("first");
+  rule.power_of_two = w.power_of_two && !rule.turn;
+  if (anchored(t)) {
+    rule.anchor = rule.turn ? 0.0 : reference;
+    if (t.entry == Entry::increment) rule.most = std::max<std::size_t>(rule.most, 3) - 1;
+  }
+  return rule;
+}
+
+/// Increments begin beside the reference: there is an interval on both sides of it, so that a
+/// control whose axis is homed at its end has its numbers too.
+void surround(math::Grid& grid, double reference) {
+  if (reference - grid.first < grid.step / 2.0) {
+    grid.first -= grid.step;
+    ++grid.points;
+  }
+  if (grid.last() - reference < grid.step / 2.0) ++grid.points;
+}
+
+std::vector<double> wanted(const AxisJob& job, const Writer& w) {
+  if (w.wanted) return w.wanted(job);
+  return w.wraps ? job.table_curve().position : job.curve.position;
+}
+
+/// The targets as rows; those that the digits do not tell apart are one.
+std::vector<double> listed(const AxisJob& job, const Writer& w, const ControlTable& t) {
+  const double unit = t.position_unit.of(job.rotary);
+  const int digits = decimals_of(t.position_step.of(job.rotary), unit);
+  std::vector<double> rows;
+  for (const double x : wanted(job, w))
+    if (rows.empty() || fixed_text(x / unit, digits) != fixed_text(rows.back() / unit, digits))
+      rows.push_back(x);
+  const bool open = !w.wraps && job.turn && rows.back() < rows.front() + full_turn - 1e-9;
+  if (open) rows.push_back(rows.front() + full_turn);
+  return rows;
+}
+
+Expected<void> place_points(Sheet& s, const Writer& w) {
+  const ControlTable& t = s.table;
+  if (t.grid == ControlTable::Grid::listed && wished_step(s.job, s.input.options) == 0.0) {
+    s.position = listed(s.job, w, t);
+    if (t.points == 0 || s.position.size() <= t.points) return {};
+  }
+  if (w.fixed_step > 0.0 && wished_step(s.job, s.input.options) != 0.0)
+    return fail("axis " + s.job.axis + ": this control has its points every " +
+                with_unit(s.job, w.fixed_step, 4) + ", step_mm has no say");
+  const math::GridRule rule = rule_of(s.job, s.input, w, t, s.reference);
+  const auto grid = math::choose_grid(wanted(s.job, w), rule);
+  if (!grid) return tl::unexpected<Error>(grid.error());
+  s.grid = *grid;
+  if (t.entry == Entry::increment && !rule.turn) surround(s.grid, s.reference);
+  s.position.clear();
+  for (std::size_t i = 0; i < s.grid.points; ++i) s.position.push_back(s.grid.position(i));
+  return {};
+}
+
+/// Where the curve is known over a turn that does not repeat itself, its end is its beginning.
+double value_at(const AxisJob& job, const Writer& w, const std::vector<double>& values, double x) {
+  const auto& position = (w.wraps ? job.table_curve() : job.curve).position;
+  const bool next =
+      !w.wraps && job.turn && x > position.back() && x > position.front() + full_turn - 1e-9;
+  return math::ErrorCurve::at(position, values, next ? x - full_turn : x);
+}
+
+double zero_of(const Sheet& s, const Writer& w, const math::ErrorCurve& curve) {
+  const bool free = s.table.zero == ControlTable::Zero::free;
+  if (free && !s.job.position_setting("reference")) return 0.0;
+  const auto& values = !s.directions || w.zero_of == 0 ? curve.mean
+                       : w.zero_of > 0                 ? curve.plus
+                                                       : curve.minus;
+  return math::ErrorCurve::at(curve.position, values, s.reference);
+}
+
+void fill(Sheet& s, const Writer& w) {
+  const math::ErrorCurve& curve = w.wraps ? s.job.table_curve() : s.job.curve;
+  const double zero = zero_of(s, w, curve);
+  const double sign = s.table.sign == ControlTable::Sign::error ? 1.0 : -1.0;
+  const bool dead = s.directions && w.replaces_backlash;
+  const auto entries = [&](const std::vector<double>& values, int direction) {
+    const double half = dead ? direction * s.job.present_backlash() / 2.0 : 0.0;
+    std::vector<double> out;
+    for (const double x : s.position) {
+      const double v = sign * (value_at(s.job, w, values, x) - half - zero);
+      out.push_back((s.table.entry == Entry::position ? x + v : v) + 0.0);
+    }
+    return out;
+  };
+  const auto& up = curve.plus.empty() ? curve.minus : curve.plus;
+  const auto& down = curve.minus.empty() ? curve.plus : curve.minus;
+  s.plus = entries(s.directions ? up : curve.mean, +1);
+  if (s.directions) s.minus = entries(down, -1);
+}
+
+std::vector<std::int64_t> steps_of(const std::vector<double>& values, double step, Entry entry) {
+  const auto absolute = math::quantised(values, step);
+  return entry == Entry::increment ? math::increments(absolute) : absolute;
+}
+
+struct Outside {
+  std::int64_t largest = 0;
+  std::size_t where = 0;
+};
+
+/// The largest increment that is out of range, with steps that are so many times coarser.
+Outside outside(const Sheet& s, double coarser) {
+  Outside out;
+  if (!s.table.increment) return out;
+  for (const auto* values : {&s.plus, &s.minus}) {
+    const auto all = steps_of(*values, s.value_step() * coarser, s.table.entry);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if ((all[i] < s.table.increment->first || all[i] > s.table.increment->second) &&
+          std::abs(all[i]) > std::abs(out.largest))
+        out = {all[i], i};
+  }
+  return out;
+}
+
+/// The way out, tried before it is advised.
+std::string advice(const Sheet& s, const Writer::Coarser& c) {
+  const std::string smaller = s.job.rotary ? "step_deg" : "step_mm";
+  if (c.option.empty()) return "set a smaller " + smaller;
+  for (std::int64_t k = c.now + 1; k <= c.most; ++k)
+    if (outside(s, static_cast<double>(k) / static_cast<double>(c.now)).largest == 0)
+      return "set " + c.option + " = " + std::to_string(k) + " or a smaller " + smaller + c.or_else;
+  return c.option + " = " + std::to_string(c.most) +
+         ", the largest, is not enough either: the axis must be mended or measured again" +
+         c.or_else;
+}
+
+Expected<void> check_range(const Sheet& s, const Writer& w) {
+  const ControlTable& t = s.table;
+  const auto& job = s.job;
+  if (const Outside out = outside(s, 1.0); out.largest != 0)
+    return fail("axis " + job.axis + ": the interval from " +
+                with_unit(job, s.position[out.where], 4) + " on would need an increment of " +
+                std::to_string(out.largest) + ", the control takes " +
+                std::to_string(t.increment->first) + ".." + std::to_string(t.increment->second) +
+                ": " + advice(s, w.coarser));
+  for (const auto* values : {&s.plus_steps, &s.minus_steps})
+    for (const std::int64_t v : *values)
+      if (const double size = std::fabs(static_cast<double>(v)) * s.value_step() / s.value_unit();
+          t.entry == Entry::absolute && t.largest > 0.0 && size > t.largest)
+        return fail("axis " + job.axis + ": an entry would be " + short_text(size, 6) +
+                    ", the control takes " + short_text(t.largest, 6) +
+                    ": the axis must be mended or measured again");
+  return {};
+}
+
+/// Where entries are 0. Increments count from the reference, so the nearest end of what was
+/// measured will not do for them.
+void set_reference(Sheet& s, OutputResult& result) {
+  const auto told = s.job.position_setting("reference");
+  if (anchored(s.table)) {
+    s.reference = s.job.turn ? 0.0 : told.value_or(0.0);
+    if (!told) result.notes.push_back(remark(s.job, "table.reference-at-zero"));
+  } else {
+    s.reference = told.value_or(0.0);
+  }
+}
+
+void note_zero(const Sheet& s, OutputResult& result) {
+  if (s.table.zero != ControlTable::Zero::reference || anchored(s.table)) return;
+  Remark zero =
+      remark(s.job, s.job.position_setting("reference") ? "table.zero-at" : "table.zero-taken");
+  zero.evidence = {{"reference", s.reference, position_of(s.job.rotary)}};
+  result.notes.push_back(std::move(zero));
+}
+
+Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table, const OutputInput& input,
+                         const Writer& w, bool directions, OutputResult& result) {
+  Sheet s{.job = job,
+          .table = table,
+          .input = input,
+          .directions = directions,
+          .position = {},
+          .plus = {},
+          .minus = {},
+          .plus_steps = {},
+          .minus_steps = {}};
+  set_reference(s, result);
+  if (auto placed = place_points(s, w); !placed) return tl::unexpected<Error>(placed.error());
+  if (table.zero == ControlTable::Zero::reference && !anchored(table))
+    s.reference = reference_position(job, s.position.front(), s.position.back());
+  fill(s, w);
+  s.plus_steps = steps_of(s.plus, s.value_step(), table.entry);
+  s.minus_steps = steps_of(s.minus, s.value_step(), table.entry);
+  if (auto fits = check_range(s, w); !fits) return tl::unexpected<Error>(fits.error());
+  s.warning = warnings(job, result);
+  return s;
+}
+
+/// What of the reversal is left to a parameter, or to nobody.
+void look_at_reversal(const AxisJob& job, const ControlTable& t, OutputResult& result) {
+  if (!t.backlash.empty()) return doubt_backlash(job, result);
+  Remark stays = remark(job, "table.reversal-stays");
+  stays.evidence = {{"mean", job.curve.mean_reversal(), deviation_of(job.rotary)}};
+  result.notes.push_back(std::move(stays));
+}
+
+/// True with its files, false where the table is refused.
+Expected<bool> write_axis(AxisJob& job, const OutputInput& input, const Writer& w,
+                          OutputResult& result) {
+  const bool directions =
+      w.always_directions ||
+      (w.table.bidirectional && input.options.flag("directions") && job.curve.bidirectional());
+  if (refused(job, directions, result)) return false;
+  if (job.rotary && !w.table.rotary)
+    return fail("axis " + job.axis + ": these tables are of linear axes only");
+  const auto table = w.of_axis ? w.of_axis(job, w.table) : Expected<ControlTable>(w.table);
+  if (!table) return tl::unexpected<Error>(table.error());
+  const auto sheet = sheet_of(job, *table, input, w, directions, result);
+  if (!sheet) return tl::unexpected<Error>(sheet.error());
+  auto files = w.files(*sheet);
+  if (!files) return tl::unexpected<Error>(files.error());
+  const Campaign campaign = with_axes_of(input, {job});
+  auto read = w.parse({*files, campaign, input.options});
+  std::optional<math::Correction> correction;
+  if (read) correction = math::correction_of(*read, job.axis, job.present_backlash());
+  if (!correction)
+    return fail("axis " + job.axis + ": the table written cannot be read back: " +
+                (read ? "it is of another axis" : read.error().message));
+  if (!sheet->directions && job.curve.bidirectional()) look_at_reversal(job, *table, result);
+  predict(job, *correction, result);
+  note_zero(*sheet, result);
+  job.loaded = std::move(*read);
+  for (Artifact& f : *files) result.artifacts.push_back(std::move(f));
+  return true;
+}
+
+}  // namespace
+
+std::string Sheet::at(std::size_t i) const {
+  return in_steps(position[i], table.position_step.of(job.rotary), position_unit());
+}
+
+std::string Sheet::entry(double si) const { return in_steps(si, value_step(), value_unit()); }
+
+std::vector<std::string> Sheet::words() const {
+  std::vector<std::string> lines = warning;
+  lines.insert(lines.end(), job.about.begin(), job.about.end());
+  lines.push_back(table.sign == ControlTable::Sign::error
+                      ? "sign: the measured deviation (actual - nominal) with its own sign"
+                      : "sign: the opposite of the measured deviation (actual - nominal)");
+  if (table.zero != ControlTable::Zero::free)
+    lines.push_back("zero at " + with_unit(job, reference, 4));
+  const bool stays = table.backlash.empty() && !directions && job.curve.bidirectional();
+  lines.push_back(stays ? "mean reversal B = " + deviation_words(job, job.curve.mean_reversal()) +
+                              ": it stays, the table is of the mean of both directions"
+                        : reversal_words(job, directions));
+  if (!table.backlash.empty() && job.curve.bidirectional())
+    lines.push_back(table.backlash + " = " + with_unit(job, backlash(), 6));
+  return lines;
+}
+
+std::vector<Option> table_options(const ControlTable& t, std::string keys_of_axes,
+                                  std::vector<Option> more) {
+  std::vector<Option> list = step_options();
+  if (t.bidirectional)
+    list.push_back({"directions", false, "",
+                    "A table for each direction of travel in place of mean and backlash."});
+  if (t.points > 0)
+    list.push_back({"max_points",
+                    static_cast<std::int64_t>(t.points),
+                    "",
+                    "Points of one table.",
+                    {},
+                    2.0,
+                    100000.0});
+  for (const ControlTable::Fact& f : t.facts)
+    if (f.id == "sign" && f.confidence == ControlTable::Confidence::unsure)
+      list.push_back({"sign",
+                      std::string(),
+                      "",
+                      "What an entry is, as a sign probe showed it on the machine: the measured "
+                      "error, or the correction; nothing is written before it is said.",
+                      {"", "error", "correction"}});
+  for (Option& o : more) list.push_back(std::move(o));
+  list.push_back(axes_option(std::move(keys_of_axes)));
+  return list;
+}
+
+Expected<ControlTable> chosen(ControlTable t, const Settings& options) {
+  if (options.has("max_points")) t.points = static_cast<std::size_t>(options.integer("max_points"));
+  if (!options.has("sign")) return t;
+  const std::string sign = options.text("sign");
+  if (sign.empty()) {
+    Error unknown{"the maker does not say which sign " + t.name +
+                  " has: find it out with a sign probe (nonio plan sign-probe --help), then set "
+                  "sign = \"error\" or \"correction\""};
+    unknown.key = "sign";
+    return fail(std::move(unknown));
+  }
+  t.sign = sign == "error" ? ControlTable::Sign::error : ControlTable::Sign::correction;
+  return t;
+}
+
+Campaign with_axes_of(const OutputInput& input, const std::vector<AxisJob>& jobs) {
+  Campaign campaign = input.campaign;
+  for (const AxisJob& job : jobs) {
+    auto& axes = campaign.machine.axes;
+    const auto it =
+        std::find_if(axes.begin(), axes.end(), [&](const Axis& a) { return a.name == job.axis; });
+    if (it == axes.end())
+      axes.push_back({.name = job.axis, .rotary = job.rotary});
+    else
+      it->rotary = job.rotary;
+  }
+  return campaign;
+}
+
+Expected<std::vector<AxisJob>> write_axes(const OutputInput& input, const Writer& w,
+                                          OutputResult& result) {
+  auto jobs = axis_jobs(input, w.keys, result);
+  if (!jobs) return jobs;
+  for (AxisJob& job : *jobs)
+    if (auto done = write_axis(job, input, w, result); !done)
+      return tl::unexpected<Error>(done.error());
+  return jobs;
+}
+
+Expected<OutputResult> write_tables(const OutputInput& input, const Writer& w) {
+  OutputResult result;
+  if (auto jobs = write_axes(input, w, result); !jobs) return tl::unexpected<Error>(jobs.error());
+  note_facts(w, result);
+  return result;
+}
+
+void note_facts(const Writer& w, OutputResult& result) {
+  if (result.artifacts.empty()) return;
+  for (const ControlTable::Fact& f : w.table.facts)
+    if (f.confidence == ControlTable::Confidence::inferred ||
+        f.confidence == ControlTable::Confidence::unsure)
+      result.notes.push_back({.id = w.name + "." + f.id, .english = f.says});
+}
+
+Expected<LoadedTable> loaded(const ControlTable& t, const RawTable& raw) {
+  const bool rotary = raw.axis.rotary;
+  const double position_unit = t.position_unit.of(rotary), unit = t.value_unit.of(rotary);
+  LoadedTable out{.output = raw.axis.name,
+                  .input = {raw.axis.name},
+                  .position = {{}},
+                  .plus = {},
+                  .minus = {},
+                  .outside = raw.outside,
+                  .backlash = raw.backlash,
+                  .rotary = rotary};
+  for (const double x : raw.position) out.position[0].push_back(x * position_unit);
+  const auto correction = [&](std::vector<double> entry) {
+    double sum = 0.0, zero = 0.0;
+    for (std::size_t i = 0; i < entry.size(); ++i) {
+      if (t.entry == Entry::increment) entry[i] = sum += entry[i];
+      if (t.entry == Entry::increment && i == raw.reference) zero = entry[i];
+      if (t.entry == Entry::position && i < raw.position.size()) entry[i] -= raw.position[i];
+    }
+    for (double& v : entry)
+      v = (t.sign == ControlTable::Sign::error ? zero - v : v - zero) * unit + 0.0;
+    return entry;
+  };
+  out.plus = correction(raw.plus);
+  out.minus = correction(raw.minus);
+  if (auto ok = math::sound(out); !ok) return tl::unexpected<Error>(ok.error());
+  return out;
+}
+
+Output controller(Info info, const ControlTable& table,
+                  Expected<OutputResult> (*write)(const OutputInput&),
+                  Expected<std::vector<LoadedTable>> (*parse)(const TableInput&), bool on_request) {
+  Output output;
+  output.info = std::move(info);
+  output.info.on_request = on_request;
+  output.stage = Output::Stage::table;
+  output.applies = has_tables;
+  output.write = write;
+  output.control = table;
+  output.parse = parse;
+  return output;
+}
+
+}  // namespace nonio::controllers

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/controllers/list.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace nonio::controllers {
+
+constexpr double full_turn = 2.0 * std::numbers::pi;
+
+std::vector<Artifact> list_file(const Sheet& s, std::string_view name, bool two) {
+  const std::string unit = s.position_unit() == 25.4e-3 ? "inch" : std::string(s.job.unit());
+  std::string out = comments(s.words(), "# ") + "# point position_" + unit + " entry" +
+                    (two ? " entry_minus" : "") + "\n";
+  const bool whole = s.value_step() == s.value_unit();
+  const auto entry = [&](const std::vector<double>& v, const std::vector<std::int64_t>& steps,
+                         std::size_t i) {
+    return whole ? std::to_string(steps[i]) : s.entry(v[i]);
+  };
+  for (std::size_t i = 0; i < s.plus_steps.size(); ++i) {
+    out += std::to_string(i + 1) + " " + s.at(i) + " " + entry(s.plus, s.plus_steps, i);
+    if (two) out += " " + (s.directions ? entry(s.minus, s.minus_steps, i) : "0");
+    out += "\n";
+  }
+  return {{std::string(name) + "-" + s.job.stem + ".txt", std::move(out)}};
+}
+
+Expected<std::vector<LoadedTable>> parse_files(const TableInput& in, const ControlTable& table,
+                                               std::string_view name, const Take& take) {
+  const auto axes = known_axes(in);
+  if (!axes) return tl::unexpected<Error>(axes.error());
+  std::vector<LoadedTable> tables;
+  for (const Artifact& f : in.files) {
+    RawTable raw{axis_of_file(*axes, f.name, std::string(name) + "-"), {}, {}};
+    raw.backlash = parameter_in(f.bytes, table.backlash);
+    bool any = false;
+    for (const std::string_view line : lines_of(f.bytes)) {
+      const auto taken = take(line, raw);
+      if (!taken) return tl::unexpected<Error>(taken.error());
+      any = any || *taken;
+    }
+    if (!any) continue;
+    auto read = loaded(table, raw);
+    if (!read) return tl::unexpected<Error>(read.error());
+    const auto& x = read->position.front();
+    const bool turn = read->rotary && x.front() == 0.0 && std::fabs(x.back() - full_turn) < 1e-9;
+    if (turn && read->plus.front() == read->plus.back())
+      read->outside = LoadedTable::Outside::repeats;
+    tables.push_back(std::move(*read));
+  }
+  if (tables.empty()) return fail("no table of " + std::string(name) + " in it");
+  return tables;
+}
+
+tl::unexpected<Error> no_point(std::string_view line) {
+  return fail("not a point of a table: " + std::string(line.substr(0, 80)));
+}
+
+Expected<std::vector<LoadedTable>> parse_list(const TableInput& in, const ControlTable& table,
+                                              std::string_view name, bool two) {
+  auto tables = parse_files(in, table, name, [&](auto line, RawTable& raw) -> Expected<bool> {
+    if (line.empty() || line.front() == '#') return false;
+    std::vector<double> v;
+    for (const auto word : words_of(line)) v.push_back(real(word).value_or(NAN));
+    if (v.size() != (two ? 4U : 3U) || v[0] != static_cast<double>(raw.position.size() + 1))
+      return no_point(line);
+    raw.position.push_back(v[1]);
+    raw.plus.push_back(v[2]);
+    if (two) raw.minus.push_back(v[3]);
+    return true;
+  });
+  if (!tables) return tables;
+  for (LoadedTable& t : *tables)  // a column of zeros is read as "the same as towards plus"
+    if (std::all_of(t.minus.begin(), t.minus.end(), [](double v) { return v == 0.0; }))
+      t.minus.clear();
+  return tables;
+}
+
+std::optional<double> parameter_in(std::string_view bytes, std::string_view parameter) {
+  if (parameter.empty()) return std::nullopt;
+  const std::string key = std::string(parameter) + " = ";
+  const std::size_t at = bytes.find(key);
+  if (at == std::string_view::npos) return std::nullopt;
+  const auto words = words_of(bytes.substr(at + key.size(), 60), " \n");
+  if (words.size() < 2 || (words[1] != "mm" && words[1] != "deg")) return std::nullopt;
+  const auto value = real(words[0]);
+  return value ? std::optional(*value / (words[1] == "mm" ? 1e3 : deg_per_rad)) : std::nullopt;
+}
+
+}  // namespace nonio::controllers

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/controllers/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "nonio/sdk/format.h"
+
+namespace nonio::controllers {
+namespace {
+
+template <class Number>
+std::optional<Number> number(std::string_view text) {
+  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value)
+                                                                  : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    lines.push_back(line);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+std::vector<std::string_view> words_of(std::string_view line, std::string_view separators) {
+  std::vector<std::string_view> words;
+  for (std::size_t i = 0; i < line.size();) {
+    const std::size_t start = line.find_first_not_of(separators, i);
+    if (start == std::string_view::npos) break;
+    i = std::min(line.find_first_of(separators, start), line.size());
+    words.push_back(line.substr(start, i - start));
+  }
+  return words;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t from = text.find_first_not_of(" \t\r");
+  if (from == std::string_view::npos) return {};
+  return text.substr(from, text.find_last_not_of(" \t\r") - from + 1);
+}
+
+std::optional<double> real(std::string_view text) {
+  const auto value = number<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<std::int64_t> whole(std::string_view text) { return number<std::int64_t>(text); }
+
+std::string plain(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    if ((u & 0xC0U) == 0x80U) continue;  // the rest of a UTF-8 character
+    out += u < 0x20 || u > 0x7E ? '?' : c;
+  }
+  return out;
+}
+
+std::string file_part(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const bool ok = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+                    c == '_' || c == '-' || (c == '.' && !out.empty());
+    out += ok ? c : '_';
+  }
+  return out.empty() ? "_" : out;
+}
+
+std::string decimal(double value, int decimals) {
+  std::string text = fixed_text(value, decimals);
+  while (text.size() > 2 && text.back() == '0' && text[text.size() - 2] != '.') text.pop_back();
+  return text;
+}
+
+std::string signed_decimal(double value, int decimals) {
+  const std::string text = fixed_text(value, decimals);
+  return text.empty() || text.front() == '-' ? text : "+" + text;
+}
+
+std::string comments(const std::vector<std::string>& lines, std::string_view mark) {
+  std::string out;
+  for (const std::string& line : lines) out += std::string(mark) + line + "\n";
+  return out;
+}
+
+std::string joined(const std::vector<std::string>& words, std::string_view between) {
+  std::string out;
+  for (const std::string& w : words) {
+    if (!out.empty()) out += between;
+    out += w;
+  }
+  return out;
+}
+
+}  // namespace nonio::controllers

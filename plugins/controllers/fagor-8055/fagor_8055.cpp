@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "nonio/controllers/list.h"
+
+namespace nonio {
+namespace {
+
+using Confidence = ControlTable::Confidence;
+
+// Position and error in each direction, referred to machine zero (NPOINTS P16, LSCRWCOM P15).
+ControlTable declared() {
+  ControlTable t;
+  t.name = "LSCRWCOM";
+  t.grid = ControlTable::Grid::listed;
+  t.zero = ControlTable::Zero::reference;
+  t.position_step = t.value_step = {1e-7, 1e-4 / deg_per_rad};
+  t.points = 1000;
+  t.largest = 99999.9999;
+  t.bidirectional = true;
+  t.facts = {{"sign", Confidence::unsure, "Unsure: the sign; the manual calls an entry the error."},
+             {"zero", Confidence::unsure, "Unsure: zero at the machine reference point."}};
+  return t;
+}
+
+Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
+  const auto t = controllers::chosen(declared(), in.options);
+  return t ? controllers::parse_list(in, *t, "fagor-8055", true) : tl::unexpected<Error>(t.error());
+}
+
+// A column of zeros is read as "the same as towards plus": zero itself cannot be said there.
+Expected<std::vector<Artifact>> files(const controllers::Sheet& s) {
+  if (s.directions && std::all_of(s.minus_steps.begin(), s.minus_steps.end(),
+                                  [](std::int64_t v) { return v == 0; }))
+    return fail("axis " + s.job.axis +
+                ": the error towards minus is zero everywhere, which this "
+                "table cannot say: set another reference_mm or directions = false");
+  return controllers::list_file(s, "fagor-8055", true);
+}
+
+Expected<OutputResult> write(const OutputInput& in) {
+  const auto t = controllers::chosen(declared(), in.options);
+  if (!t) return tl::unexpected<Error>(t.error());
+  return controllers::write_tables(
+      in, {"fagor-8055", *t, {"step", "first", "reference", "backlash"}, files, parse});
+}
+
+}  // namespace
+}  // namespace nonio
+
+NONIO_PLUGIN(registry) {
+  registry.add(nonio::controllers::controller(
+      {"fagor-8055", "1.0.0", "Leadscrew error tables of Fagor 8055, as a list to be typed in.",
+       nonio::controllers::table_options(nonio::declared(), "step, first, reference, backlash")},
+      nonio::declared(), nonio::write, nonio::parse));
+}

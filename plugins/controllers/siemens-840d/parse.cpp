@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "parse.h"
+
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "nonio/controllers/axes.h"
+#include "nonio/controllers/text.h"
+#include "nonio/math/loaded_table.h"
+
+namespace nonio::siemens {
+namespace {
+
+using controllers::KnownAxis;
+using controllers::real;
+using controllers::trimmed;
+
+// One line `$NAME[a,b,...]=value`.
+struct Assignment {
+  std::string name;
+  std::vector<std::string> index;
+  std::string value;
+};
+
+struct Table {
+  std::map<std::size_t, double> entry;
+  std::optional<double> min, max, step;
+  bool modulo = false;
+  double direction = 0.0;
+  std::string input, output;
+};
+
+struct Memory {
+  std::size_t points = 200;              // MD38000, MD18342
+  std::map<std::string, Table> encoder;  // "0,AX1"
+  std::map<std::string, Table> cec;      // table number
+  std::map<std::string, double> backlash;
+};
+
+// (AX1) or "AX1"
+std::string axis_word(const std::string& s) {
+  return s.size() > 2 ? s.substr(1, s.size() - 2) : std::string();
+}
+
+Expected<Assignment> assignment(std::string_view line) {
+  const std::size_t open = line.find('['), close = line.find(']'), equals = line.find('=');
+  if (line[0] != '$' || open == std::string::npos || close == std::string::npos ||
+      equals == std::string::npos || !(open < close && close < equals))
+    return fail("not an assignment: " + std::string(line));
+  Assignment a{
+      std::string(line.substr(1, open - 1)), {}, std::string(trimmed(line.substr(equals + 1)))};
+  for (const auto word : controllers::words_of(line.substr(open + 1, close - open - 1), ", \t"))
+    a.index.emplace_back(word);
+  return a;
+}
+
+Expected<void> put_parameter(Table& table, const std::string& what, const Assignment& a) {
+  if (what == "INPUT_AXIS" || what == "OUTPUT_AXIS") {
+    (what == "INPUT_AXIS" ? table.input : table.output) = axis_word(a.value);
+    return {};
+  }
+  const auto v = real(a.value);
+  if (!v) return fail("not a number: " + a.value);
+  if (what == "STEP") {
+    table.step = *v;
+  } else if (what == "MIN") {
+    table.min = *v;
+  } else if (what == "MAX") {
+    table.max = *v;
+  } else if (what == "IS_MODULO") {
+    table.modulo = *v != 0.0;
+  } else if (what == "DIRECTION") {
+    table.direction = *v;
+  } else if (what == "MULT_BY_TABLE") {
+    if (*v != 0.0) return fail("tables multiplied by others are not modelled");
+  } else {
+    return fail("unknown variable ..." + what);
+  }
+  return {};
+}
+
+Expected<void> put_entry(Table& table, const std::string& index, const Assignment& a,
+                         std::size_t most) {
+  const auto point = controllers::whole(index);
+  const auto v = real(a.value);
+  if (!point || *point < 0 || !v) return fail("not a number in " + a.name + " = " + a.value);
+  if (*point >= static_cast<std::int64_t>(most))
+    return fail("alarm 12400: element " + index + " of " + a.name + " does not exist");
+  table.entry[static_cast<std::size_t>(*point)] = *v;
+  return {};
+}
+
+Expected<void> put(Memory& memory, const Assignment& a) {
+  const std::string lec = "AA_ENC_COMP", cec = "AN_CEC";
+  if (a.name == "MA_BACKLASH" && a.index.size() == 2) {
+    const auto v = real(a.value);
+    if (!v) return fail("not a number: " + a.value);
+    memory.backlash[a.index[0] + "," + a.index[1]] = *v;
+    return {};
+  }
+  if (a.name == lec && a.index.size() == 3)
+    return put_entry(memory.encoder[a.index[0] + "," + a.index[2]], a.index[1], a, memory.points);
+  if (a.name == cec && a.index.size() == 2)
+    return put_entry(memory.cec[a.index[0]], a.index[1], a, memory.points);
+  if (a.name.rfind(lec + "_", 0) == 0 && a.index.size() == 2)
+    return put_parameter(memory.encoder[a.index[0] + "," + a.index[1]],
+                         a.name.substr(lec.size() + 1), a);
+  if (a.name.rfind(cec + "_", 0) == 0 && a.index.size() == 1)
+    return put_parameter(memory.cec[a.index[0]], a.name.substr(cec.size() + 1), a);
+  return fail("unknown variable " + a.name);
+}
+
+Expected<void> read_file(Memory& memory, std::string_view bytes) {
+  bool begun = false, ended = false;
+  for (std::string_view line : controllers::lines_of(bytes)) {
+    line = trimmed(line.substr(0, line.find(';')));
+    if (line.empty()) continue;
+    if (ended) return fail("text after M17: " + std::string(line));
+    if (line[0] == '%') continue;
+    if (line == "CHANDATA(1)") {
+      begun = true;
+    } else if (line == "M17") {
+      ended = true;
+    } else {
+      if (!begun) return fail("assignment before CHANDATA: " + std::string(line));
+      auto a = assignment(line);
+      if (!a) return tl::unexpected<Error>(a.error());
+      if (auto done = put(memory, *a); !done) return done;
+    }
+  }
+  return ended ? Expected<void>{} : fail("no M17 at the end");
+}
+
+Expected<void> whole(const Table& t) {
+  if (!t.min || !t.max || !t.step || !(*t.step > 0.0) || !(*t.max > *t.min))
+    return fail("MIN, MAX and STEP do not make a table");
+  const double points = (*t.max - *t.min) / *t.step + 1.0;
+  const auto n = static_cast<std::size_t>(std::llround(points));
+  if (std::fabs(points - static_cast<double>(n)) > 1e-3)
+    return fail("STEP does not divide MAX - MIN");
+  if (t.entry.size() != n || t.entry.rbegin()->first != n - 1)
+    return fail("the table has " + std::to_string(t.entry.size()) + " entries, its range " +
+                std::to_string(n));
+  return {};
+}
+
+// An entry is added to the actual value: a positive one drives the output axis towards minus.
+Expected<LoadedTable> loaded(const Table& t, const KnownAxis& input, const KnownAxis& output) {
+  if (auto ok = whole(t); !ok) return tl::unexpected<Error>(ok.error());
+  using Outside = LoadedTable::Outside;
+  LoadedTable out{.output = output.name,
+                  .input = {input.name},
+                  .position = {{}},
+                  .plus = {},
+                  .minus = {},
+                  .outside = t.modulo ? Outside::repeats : Outside::holds,
+                  .rotary = output.rotary};
+  std::vector<double> c;
+  for (const auto& [i, entry] : t.entry) {
+    out.position[0].push_back((*t.min + *t.step * static_cast<double>(i)) / input.per_si());
+    c.push_back(-entry / output.per_si());
+  }
+  const std::vector<double> nothing(c.size(), 0.0);
+  out.plus = t.direction < 0.0 ? nothing : c;
+  if (t.direction != 0.0) out.minus = t.direction < 0.0 ? c : nothing;
+  if (auto ok = math::sound(out); !ok) return tl::unexpected<Error>(ok.error());
+  return out;
+}
+
+// AXn is the axis of that number.
+KnownAxis axis_of(const std::vector<KnownAxis>& axes, const std::string& word) {
+  const auto number = word.rfind("AX", 0) == 0 ? controllers::whole(word.substr(2)) : std::nullopt;
+  KnownAxis axis = number && *number > 0 ? axis_numbered(axes, static_cast<std::size_t>(*number))
+                                         : axis_named(axes, word);
+  if (axis.settings.empty() && controllers::whole(axis.name)) axis.name = word;
+  return axis;
+}
+
+}  // namespace
+
+Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
+  const auto axes = controllers::known_axes(in);
+  if (!axes) return tl::unexpected<Error>(axes.error());
+  Memory memory;
+  memory.points = static_cast<std::size_t>(in.options.integer("max_points", 200));
+  for (const Artifact& f : in.files)
+    if (auto done = read_file(memory, f.bytes); !done) return tl::unexpected<Error>(done.error());
+  std::vector<LoadedTable> tables;
+  const auto add = [&](Expected<LoadedTable> t) -> Expected<void> {
+    if (!t) return tl::unexpected<Error>(t.error());
+    tables.push_back(std::move(*t));
+    return {};
+  };
+  const std::string system = std::to_string(in.options.integer("measuring_system")) + ",";
+  for (const auto& [index, table] : memory.encoder) {
+    if (index.rfind(system, 0) != 0) continue;
+    const KnownAxis axis = axis_of(*axes, index.substr(system.size()));
+    if (auto done = add(loaded(table, axis, axis)); !done)
+      return tl::unexpected<Error>(done.error());
+    if (const auto lost = memory.backlash.find(index); lost != memory.backlash.end())
+      tables.back().backlash = lost->second / axis.per_si();
+  }
+  for (const auto& [number, table] : memory.cec)
+    if (auto done = add(loaded(table, axis_of(*axes, table.input), axis_of(*axes, table.output)));
+        !done)
+      return tl::unexpected<Error>(done.error());
+  return tables;
+}
+
+}  // namespace nonio::siemens

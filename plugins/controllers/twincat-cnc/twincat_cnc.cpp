@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "nonio/controllers/list.h"
+
+namespace nonio {
+namespace {
+
+using Confidence = ControlTable::Confidence;
+using controllers::CrossCurve;
+using controllers::CrossJob;
+using controllers::Sheet;
+
+// kw.ssfk: actual - setpoint in 0.1 um or 0.0001 deg, bilateral in both directions.
+// kw.crosscomp: of a slave axis by the position of its master; its sign is not documented.
+ControlTable declared() {
+  ControlTable t;
+  t.name = "kw.ssfk, kw.crosscomp";
+  t.zero = ControlTable::Zero::reference;
+  t.position_unit = t.position_step = {1e-7, 1e-4 / deg_per_rad};
+  t.value_unit = t.value_step = t.position_unit;
+  t.points = 1500;
+  t.largest = 2147483647.0;
+  t.bidirectional = t.straightness = t.squareness = true;
+  t.backlash = "P-AXIS-00103 getriebe[0].lose";
+  t.facts = {
+      {"sign-ssfk", Confidence::documented, "delta = actual - setpoint."},
+      {"head", Confidence::inferred,
+       "Inferred: the key kopf.achs_nr (another page of the maker says kopf.log_achs_nr), and "
+       "equal ends of a modulo table."},
+      {"cross", Confidence::unsure,
+       "Cross tables (kw.crosscomp): the maker does not say which sign they have, nor surely "
+       "whose list they belong to; they are written only where option cross_sign says it."}};
+  return t;
+}
+
+std::string line(const std::string& key, const std::string& value) {
+  return key + std::string(key.size() < 30 ? 30 - key.size() : 1, ' ') + value + "\n";
+}
+
+std::string head(const std::vector<std::string>& words, std::size_t number,
+                 const std::string& name) {
+  return controllers::comments(words, "# ") + line("kopf.achs_nr", std::to_string(number)) +
+         line("kopf.log_achs_name", controllers::plain(name));
+}
+
+Expected<std::vector<Artifact>> files(const Sheet& s) {
+  const auto units = [&](double x) { return std::to_string(std::llround(x / s.position_unit())); };
+  std::string out = head(s.words(), s.job.number, s.job.axis);
+  out += line("kw.ssfk.unit", "1") + line("kw.ssfk.interval", units(s.grid.step)) +
+         line("kw.ssfk.kw_startpos", units(s.grid.first)) +
+         line("kw.ssfk.kw_nr_max", std::to_string(s.grid.points)) +
+         line("kw.ssfk.bilateral", s.directions ? "1" : "0") +
+         line("kw.ssfk.modulo", s.job.turn ? "1" : "0");
+  for (const auto& [side, steps] : {std::pair{".pos", &s.plus_steps}, {".neg", &s.minus_steps}})
+    for (std::size_t i = 0; i < steps->size(); ++i)
+      out += line("kw.ssfk.table[" + std::to_string(i) + "]" + side, std::to_string((*steps)[i]));
+  return std::vector<Artifact>{{"twincat-cnc-" + s.job.stem + ".lis", out}};
+}
+
+// The keys of a list with their numbers.
+using List = std::map<std::string, double, std::less<>>;
+
+List read_list(std::string_view bytes) {
+  List list;
+  for (std::string_view text : controllers::lines_of(bytes)) {
+    text = text.substr(0, std::min(text.find('#'), text.find("/*")));
+    const auto words = controllers::words_of(text);
+    if (const auto v = controllers::real(words.size() == 2 ? words[1] : ""))
+      list[std::string(words[0])] = *v;
+  }
+  return list;
+}
+
+std::vector<double> column(const List& list, const std::string& table, const std::string& side) {
+  std::vector<double> out;
+  for (;;) {
+    const auto it = list.find(table + "[" + std::to_string(out.size()) + "]" + side);
+    if (it == list.end()) return out;
+    out.push_back(it->second);
+  }
+}
+
+Expected<LoadedTable> screw(const List& list, const controllers::KnownAxis& axis) {
+  const auto at = [&](const char* key) {
+    const auto it = list.find(std::string("kw.ssfk.") + key);
+    return it == list.end() ? NAN : it->second;
+  };
+  controllers::RawTable raw{axis, column(list, "kw.ssfk.table", ".setpoint"),
+                            column(list, "kw.ssfk.table", ".pos")};
+  if (at("unit") != 1.0)
+    return fail("kw.ssfk.unit is not 1: encoder increments are not known here");
+  if (static_cast<double>(raw.plus.size()) != at("kw_nr_max"))
+    return fail("kw.ssfk.kw_nr_max is not the number of entries");
+  if (at("interval") > 0.0) raw.position.clear();
+  for (std::size_t i = raw.position.size(); i < raw.plus.size(); ++i)
+    raw.position.push_back(at("kw_startpos") + at("interval") * static_cast<double>(i));
+  const bool both = at("bilateral") == 1.0;
+  if (both) raw.minus = column(list, "kw.ssfk.table", ".neg"), raw.backlash = 0.0;
+  if (at("modulo") == 1.0) raw.outside = LoadedTable::Outside::repeats;
+  return controllers::loaded(declared(), raw);
+}
+
+/// `sign`: what one of its units adds to the slave.
+Expected<LoadedTable> cross(const List& list, const std::vector<controllers::KnownAxis>& axes,
+                            const controllers::KnownAxis& slave, double sign) {
+  const auto master = list.find("kw.crosscomp.master_ax_nr");
+  if (master == list.end() || !(master->second >= 1.0 && master->second < 1e6))
+    return fail("no kw.crosscomp.master_ax_nr");
+  LoadedTable t{.output = slave.name,
+                .input = {axis_numbered(axes, static_cast<std::size_t>(master->second)).name},
+                .position = {column(list, "kw.crosscomp.table", ".setpoint")},
+                .plus = column(list, "kw.crosscomp.table", ".correction"),
+                .minus = {}};
+  for (double& x : t.position[0]) x *= 1e-7;
+  for (double& v : t.plus) v *= sign * 1e-7;
+  if (auto ok = math::sound(t); !ok) return tl::unexpected<Error>(ok.error());
+  return t;
+}
+
+Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
+  const auto axes = controllers::known_axes(in);
+  if (!axes) return tl::unexpected<Error>(axes.error());
+  const std::string said = in.options.text("cross_sign");
+  std::vector<LoadedTable> tables;
+  for (const Artifact& f : in.files) {
+    const List list = read_list(f.bytes);
+    const auto number = list.find("kopf.achs_nr");
+    if (number == list.end() || !(number->second >= 1.0 && number->second < 1e6))
+      return fail("no kopf.achs_nr");
+    const auto axis = axis_numbered(*axes, static_cast<std::size_t>(number->second));
+    if (list.count("kw.ssfk.kw_nr_max") != 0) {
+      auto read = screw(list, axis);
+      if (!read) return tl::unexpected<Error>(read.error());
+      if (!read->backlash) read->backlash = controllers::parameter_in(f.bytes, declared().backlash);
+      tables.push_back(std::move(*read));
+    }
+    if (list.count("kw.crosscomp.last_index") == 0) continue;
+    if (said.empty()) return fail("the sign of kw.crosscomp is not known: set cross_sign");
+    auto read = cross(list, *axes, axis, said == "error" ? -1.0 : 1.0);
+    if (!read) return tl::unexpected<Error>(read.error());
+    tables.push_back(std::move(*read));
+  }
+  return tables;
+}
+
+std::string cross_list(const CrossCurve& c, const std::vector<controllers::KnownAxis>& axes,
+                       double sign, const std::string& about) {
+  const auto units = [](double x) { return std::to_string(std::llround(x / 1e-7)); };
+  std::string out = head({about, "compensation of " + controllers::plain(c.output) +
+                                     " by the position of " + controllers::plain(c.input)},
+                         axis_named(axes, c.output).number, c.output);
+  out += line("kw.crosscomp.unit", "1") +
+         line("kw.crosscomp.last_index", std::to_string(c.position.size() - 1)) +
+         line("kw.crosscomp.master_ax_nr", std::to_string(axis_named(axes, c.input).number)) +
+         line("kw.crosscomp.n_cycles", "0");
+  for (std::size_t i = 0; i < c.position.size(); ++i) {
+    const std::string row = "kw.crosscomp.table[" + std::to_string(i) + "]";
+    out += line(row + ".setpoint", units(c.position[i])) +
+           line(row + ".correction", units(sign * (c.value[i] - c.value.front())));
+  }
+  return out;
+}
+
+/// A slave has one master: two diagonals have that, step diagonals do not.
+Expected<void> write_cross(const OutputInput& in, const std::vector<controllers::AxisJob>& pitch,
+                           OutputResult& result) {
+  const std::string said = in.options.text("cross_sign");
+  const Campaign campaign = controllers::with_axes_of(in, pitch);
+  const auto axes = controllers::known_axes({{}, campaign, in.options});
+  if (!axes) return tl::unexpected<Error>(axes.error());
+  const auto jobs = controllers::cross_jobs(in);
+  for (const CrossJob& job : jobs) {
+    if (job.volume || said.empty()) continue;
+    if (auto ok = controllers::fits(job, in.options); !ok) return ok;
+    std::vector<Artifact> files;
+    for (const CrossCurve& c : job.curves)
+      files.push_back({"twincat-cnc-cross-" + controllers::file_part(c.output) +
+                           (jobs.size() > 1 ? "-" + controllers::file_part(job.measurement) : "") +
+                           ".lis",
+                       cross_list(c, *axes, said == "error" ? 1.0 : -1.0,
+                                  "from the diagonals of " + controllers::plain(job.measurement))});
+    if (auto done = controllers::predict_cross(job, files, parse, pitch, in, result); !done)
+      return done;
+    for (Artifact& f : files) result.artifacts.push_back(std::move(f));
+  }
+  return {};
+}
+
+Expected<OutputResult> write(const OutputInput& in) {
+  OutputResult result;
+  const controllers::Writer writer{.name = "twincat-cnc",
+                                   .table = *controllers::chosen(declared(), in.options),
+                                   .keys = {"number:", "step", "first", "reference", "backlash"},
+                                   .files = files,
+                                   .parse = parse,
+                                   .replaces_backlash = true};
+  const auto jobs = controllers::write_axes(in, writer, result);
+  if (!jobs) return tl::unexpected<Error>(jobs.error());
+  if (auto done = write_cross(in, *jobs, result); !done) return tl::unexpected<Error>(done.error());
+  controllers::note_facts(writer, result);
+  return result;
+}
+
+std::vector<Option> options() {
+  return controllers::table_options(
+      declared(),
+      "number (of the axis), step_mm, first_mm, reference_mm, backlash_mm, and the same with _deg",
+      {{"cross_sign",
+        std::string(),
+        "",
+        "What an entry of kw.crosscomp is, as a sign probe showed it: the error, or the "
+        "correction; "
+        "no cross tables before it is said.",
+        {"", "error", "correction"}}});
+}
+
+}  // namespace
+}  // namespace nonio
+
+NONIO_PLUGIN(registry) {
+  using namespace nonio;
+  registry.add(controllers::controller(
+      {"twincat-cnc", "1.0.0",
+       "Correction lists (kw.ssfk, kw.crosscomp) for Beckhoff TwinCAT CNC and the ISG kernel.",
+       nonio::options()},
+      declared(), nonio::write, parse));
+}

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <map>
+
+#include "nonio/controllers/kit.h"
+
+namespace nonio {
+namespace {
+
+using Confidence = ControlTable::Confidence;
+using controllers::AxisJob;
+using controllers::CrossCurve;
+using controllers::CrossJob;
+
+// ISG CSV: a line of names, rows of numbers, // comments, # before the next block. X Y Z in mm,
+// errors by their ISO 230-1 names in mm. Angular errors (rad) are not known from lengths and
+// diagonals: their columns are left out.
+ControlTable declared() {
+  ControlTable t;
+  t.name = "ISG CSV (vol_comp)";
+  t.grid = ControlTable::Grid::listed;
+  t.rotary = false;
+  t.straightness = t.squareness = t.volumetric = true;
+  t.facts = {
+      {"sign", Confidence::unsure,
+       "Unsure: the sign; the names are those of ISO 230, and the control has a switch negate."},
+      {"separator", Confidence::inferred, "Inferred: blanks between names and numbers."},
+      {"angles", Confidence::documented, "Angular errors are in rad; none is written."}};
+  return t;
+}
+
+/// The errors over one axis: by the axis along which they point.
+struct Block {
+  std::string axis;
+  std::vector<double> position;
+  std::map<std::string, CrossCurve> curves;
+};
+
+std::vector<Block> blocks_of(const std::vector<AxisJob>& jobs, const std::vector<CrossJob>& sets) {
+  std::map<std::string, Block> all;
+  const auto add = [&](const CrossCurve& c) {
+    Block& b = all[c.input];
+    b.axis = c.input;
+    b.curves[c.output] = c;
+    b.position.insert(b.position.end(), c.position.begin(), c.position.end());
+  };
+  for (const AxisJob& j : jobs) add({j.axis, j.axis, j.curve.position, j.curve.mean});
+  for (const CrossJob& s : sets)
+    for (const CrossCurve& c : s.curves) add(c);
+  std::vector<Block> out;
+  for (auto& [axis, b] : all) {
+    std::sort(b.position.begin(), b.position.end());
+    const auto same = [](double x, double y) { return y - x < 1e-7; };
+    b.position.erase(std::unique(b.position.begin(), b.position.end(), same), b.position.end());
+    out.push_back(std::move(b));
+  }
+  return out;
+}
+
+std::string text_of(const std::vector<Block>& blocks, double sign,
+                    const std::vector<std::string>& words) {
+  std::string out = controllers::comments(words, "// ");
+  for (const Block& b : blocks) {
+    out += (&b == &blocks.front() ? "" : "#\n") + b.axis;
+    for (const auto& [along, c] : b.curves) out += " E" + along + b.axis;
+    out += "\n";
+    for (const double x : b.position) {
+      out += controllers::decimal(x * 1e3, 4);
+      for (const auto& [along, c] : b.curves)
+        out += " " +
+               controllers::decimal(sign * 1e3 *
+                                        (math::ErrorCurve::at(c.position, c.value, x) -
+                                         math::ErrorCurve::at(c.position, c.value, b.position[0])),
+                                    6);
+      out += "\n";
+    }
+  }
+  return out;
+}
+
+Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
+  const auto t = controllers::chosen(declared(), in.options);
+  if (!t) return tl::unexpected<Error>(t.error());
+  const double sign = t->sign == ControlTable::Sign::error ? -1.0 : 1.0;
+  std::vector<LoadedTable> tables;
+  std::size_t first = 0;  // of the tables, that of this block
+  bool names = true;
+  for (const Artifact& f : in.files)
+    for (std::string_view line : controllers::lines_of(f.bytes)) {
+      line = line.substr(0, line.find("//"));
+      const auto w = controllers::words_of(line, " ,;\t");
+      if (w.empty()) continue;
+      if (w[0].front() == '#') {
+        names = true;
+      } else if (names) {
+        names = false;
+        first = tables.size();
+        for (std::size_t k = 1; k < w.size(); ++k) {
+          if (w[k].size() != 3 || w[k][0] != 'E' || w[k].substr(2) != w[0])
+            return fail("a column that is not understood: " + std::string(w[k]));
+          tables.push_back({.output = std::string(w[k].substr(1, 1)),
+                            .input = {std::string(w[0])},
+                            .position = {{}},
+                            .plus = {},
+                            .minus = {}});
+        }
+      } else {
+        if (w.size() != tables.size() - first + 1) return fail("a row of another length");
+        const auto x = controllers::real(w[0]);
+        for (std::size_t k = 1; k < w.size(); ++k) {
+          const auto v = controllers::real(w[k]);
+          if (!x || !v) return fail("not a number in: " + std::string(line));
+          tables[first + k - 1].position[0].push_back(*x / 1e3);
+          tables[first + k - 1].plus.push_back(sign * *v / 1e3);
+        }
+      }
+    }
+  for (const LoadedTable& one : tables)
+    if (auto ok = math::sound(one); !ok) return tl::unexpected<Error>(ok.error());
+  return tables.empty() ? Expected<std::vector<LoadedTable>>(fail("no block of errors")) : tables;
+}
+
+Expected<OutputResult> write(const OutputInput& in) {
+  OutputResult result;
+  const auto table = controllers::chosen(declared(), in.options);
+  if (!table) return tl::unexpected<Error>(table.error());
+  const controllers::Writer writer{"twincat-volumetric", *table, {"backlash"}, {}, parse};
+  auto jobs = controllers::axis_jobs(in, writer.keys, result);
+  if (!jobs) return tl::unexpected<Error>(jobs.error());
+  std::erase_if(*jobs, [&](const AxisJob& j) {
+    return j.axis.size() != 1 || j.axis < "X" || j.axis > "Z" ||
+           controllers::refused(j, false, result);
+  });
+  const auto twice =
+      [all = *jobs](const AxisJob& j) {  // whose positioning is it? Not told apart here
+        return std::count_if(all.begin(), all.end(),
+                             [&](const AxisJob& o) { return o.axis == j.axis; }) > 1;
+      };
+  std::erase_if(*jobs, twice);
+  const auto sets = controllers::cross_jobs(in);
+  if (sets.size() > 1)
+    return fail(
+        "one file holds one state of the machine: leave one set of diagonals in the campaign");
+  const auto blocks = blocks_of(*jobs, sets);
+  if (blocks.empty()) return result;
+  std::string axes;
+  std::vector<std::string> words{"campaign " + controllers::plain(in.campaign.id) +
+                                 ": lengths in mm, errors by their ISO 230-1 names in mm"};
+  for (const Block& b : blocks) axes += b.axis;
+  for (const AxisJob& j : *jobs)
+    for (const std::string& warning : controllers::warnings(j, result)) words.push_back(warning);
+  const double sign = table->sign == ControlTable::Sign::error ? 1.0 : -1.0;
+  result.artifacts.push_back({"twincat-volumetric-" + axes + ".csv", text_of(blocks, sign, words)});
+  const auto read = parse({result.artifacts, in.campaign, in.options});
+  if (!read) return tl::unexpected<Error>(read.error());
+  for (AxisJob& job : *jobs)
+    if (const auto c = math::correction_of(*read, job.axis, job.present_backlash()))
+      controllers::predict(job, *c, result);
+  for (const CrossJob& set : sets) controllers::predict_lines(set, *read, result);
+  controllers::note_facts(writer, result);
+  return result;
+}
+
+}  // namespace
+}  // namespace nonio
+
+NONIO_PLUGIN(registry) {
+  using namespace nonio;
+  registry.add(controllers::controller(
+      {"twincat-volumetric", "1.0.0",
+       "Volumetric compensation (TF5280, ISG CSV) for TwinCAT CNC: ISO 230 errors over X, Y and Z.",
+       controllers::table_options(declared(), "backlash_mm")},
+      declared(), nonio::write, parse));
+}

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Campaigns of known errors, the program, and what the tests of tables share."""
+import json
+import math
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+NONIO = os.environ["NONIO"]
+
+
+def axis_csv(targets, plus, minus=None, unit="mm"):
+    """Three runs without scatter; deviations in um or arcsec."""
+    of = "deviation_um" if unit == "mm" else "deviation_arcsec"
+    rows = ["run,direction,target_%s,%s" % (unit, of)]
+    for run in (1, 2, 3):
+        rows += ["%d,+,%.6f,%.9f" % (run, x, plus(x)) for x in targets]
+        if minus:
+            rows += ["%d,-,%.6f,%.9f" % (run, x, minus(x)) for x in targets[::-1]]
+    return "\n".join(rows) + "\n"
+
+
+class BenchTest(unittest.TestCase):
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory(prefix="nonio-tables-")
+        self.site = pathlib.Path(self._folder.name) / "site"
+        self.out = pathlib.Path(self._folder.name) / "out"
+        self.folder = self.site / "c"
+        self.folder.mkdir(parents=True)
+
+    def tearDown(self):
+        self._folder.cleanup()
+
+    def campaign(self, files, extra="", axes=(("X", "linear"),), control=None):
+        text = 'format = 1\n[campaign]\nid = "c"\n[machine]\n'
+        if control:
+            text += 'control = "%s"\n' % control
+        for name, kind in axes:
+            text += '[machine.axes.%s]\nkind = "%s"\n' % (name, kind)
+        for name, (kind, data, more) in files.items():
+            (self.folder / (name + ".csv")).write_text(data)
+            text += '[[measurement]]\nid = "%s"\nkind = "%s"\nfile = "%s.csv"\n%s\n' % (name, kind, name, more)
+        (self.folder / "campaign.toml").write_text(text + extra)
+
+    def one_axis(self, targets, plus, minus=None, extra="", control=None, unit="mm", axis="X"):
+        self.campaign({axis: ("axis", axis_csv(targets, plus, minus, unit), 'axis = "%s"' % axis)}, extra,
+                      ((axis, "linear" if unit == "mm" else "rotary"),), control)
+
+    def nonio(self, *args, expect=0):
+        done = subprocess.run([NONIO, *map(str, args)], capture_output=True, text=True, timeout=300)
+        if expect is not None:
+            self.assertEqual(done.returncode, expect, "%s\n%s%s" % (args, done.stderr, done.stdout))
+        return done
+
+    def json_of(self, *args, expect=0):
+        return json.loads(self.nonio(*args, "--json", expect=expect).stdout)
+
+    def run_site(self, expect=0):
+        self.nonio("run", self.site, "--out", self.out, "--quiet", expect=expect)
+        return json.loads((self.out / "c" / "results.json").read_text())
+
+    def file(self, name):
+        return (self.out / "c" / name).read_text()
+
+
+def interpolate(points, x):
+    """Linear between (position, value), the end values outside."""
+    points = sorted(points)
+    if x <= points[0][0]:
+        return points[0][1]
+    for (a, u), (b, v) in zip(points, points[1:]):
+        if x <= b:
+            return u + (x - a) / (b - a) * (v - u)
+    return points[-1][1]
+
+
+def wave(x):
+    """um over mm"""
+    return 6.0 * math.sin(x / 90.0) + 0.02 * x - 1.5
