@@ -162,7 +162,6 @@ Expected<void> check_line(const std::vector<Sample>& samples, const Wiring& w, O
       y.push_back(s.reference * w.reference_unit * w.gain);
     }
   const Straight line = straight_through(x, y);
-  const Number gain{"gain", line.slope, Quantity::ratio};
   if (!(line.slope > 0.0))
     return fail(of_option("reference_gain",
                           "the reference runs against the targets (gain " +
@@ -174,9 +173,10 @@ Expected<void> check_line(const std::vector<Sample>& samples, const Wiring& w, O
                           "found " +
                               short_text(line.slope, 6) +
                               " times as far; is reference_unit right?"));
-  obs.notes.push_back(
-      {"camonitor.line",
-       {gain, {"offset", line.offset, position_of(rotary)}, {"stated", w.gain, Quantity::ratio}}});
+  obs.notes.push_back({"camonitor.line",
+                       {{"scale", line.slope - 1.0, slope_of(rotary)},
+                        {"offset", line.offset, position_of(rotary)},
+                        {"stated", w.gain, Quantity::ratio}}});
   return {};
 }
 
