@@ -36,6 +36,7 @@ void add_compare_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_controllers_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_diff_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_explain_verb(CLI::App& cli, Common& common, Outcome& outcome);
+void add_import_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_model_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_plan_verb(CLI::App& cli, Common& common, Outcome& outcome);
 void add_plugin_verb(CLI::App& cli, Common& common, Outcome& outcome);

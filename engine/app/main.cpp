@@ -227,6 +227,7 @@ int main(int argc, char** argv) {
   add_diff_verb(cli, common, outcome);
   add_apply_verb(cli, common, outcome);
   add_explain_verb(cli, common, outcome);
+  add_import_verb(cli, common, outcome);
   add_model_verb(cli, common, outcome);
   add_plan_verb(cli, common, outcome);
   add_plugin_verb(cli, common, outcome);

@@ -19,8 +19,9 @@ namespace {
 constexpr double mm = 1e-3, um = 1e-6;
 constexpr double deg = 1.0 / deg_per_rad, arcsec = 1.0 / arcsec_per_rad;
 
-const std::vector<std::string> measurement_kinds = {
-    "axis", "straightness", "angle", "diagonal", "step-diagonal", "ball-centres", "observations"};
+const std::vector<std::string> measurement_kinds = {"axis",         "straightness",  "angle",
+                                                    "diagonal",     "step-diagonal", "ball-centres",
+                                                    "observations", "ballbar"};
 
 /// A file that is being read: its name and what was found wrong so far.
 struct Source {

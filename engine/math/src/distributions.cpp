@@ -5,6 +5,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/policies/policy.hpp>
 #include <cmath>
+#include <limits>
 
 namespace nonio::math {
 namespace {
@@ -31,6 +32,13 @@ double t_two_sided(double t, double dof) {
   const double p =
       2.0 * cdf(complement(boost::math::students_t_distribution<double, Quiet>(dof), std::fabs(t)));
   return std::isnan(p) ? 1.0 : p;
+}
+
+double coverage_factor(double dof) {
+  if (!(dof > 0.0)) return std::numeric_limits<double>::quiet_NaN();
+  constexpr double outside = 0.04550026389635842;  // 1 - erf(2/sqrt 2)
+  return quantile(
+      complement(boost::math::students_t_distribution<double, Quiet>(dof), 0.5 * outside));
 }
 
 }  // namespace nonio::math

@@ -16,6 +16,7 @@
 #include "spatial.h"
 
 namespace nonio::csv {
+using namespace reading;
 namespace {
 
 constexpr std::size_t report_every = std::size_t{4} << 20U;
@@ -67,8 +68,8 @@ class Rows {
     double extra[5] = {};  ///< time and what follows it in Role
   };
   bool parse_field(std::size_t column, Row& row);
-  bool parse(std::size_t column, Number& number);
-  bool consistent_mark(const Number& number, std::size_t column);
+  bool parse(std::size_t column, Field& number);
+  bool consistent_mark(const Field& number, std::size_t column);
   Error bad_number(std::size_t column) const;
   Error wrong_count(std::string_view line) const;
   std::vector<double>& extra_column(std::size_t k);
@@ -126,7 +127,7 @@ Error Rows::wrong_count(std::string_view line) const {
 Error Rows::bad_number(std::size_t column) const {
   const std::string_view text = fields_[column];
   std::string message = "expected a number, found " + shown(text);
-  if (!header_.comma_allowed() && parse_number(text, true).kind == Number::Kind::taken)
+  if (!header_.comma_allowed() && parse_number(text, true).kind == Field::Kind::taken)
     message += "; a decimal comma needs \";\" or a tab between the fields";
   else if (!text.empty() && text.find_first_not_of("0123456789.,' ") == text.npos)
     message += " (no thousands separators, one decimal mark)";
@@ -134,7 +135,7 @@ Error Rows::bad_number(std::size_t column) const {
 }
 
 /// 1.234 in a file with decimal commas may mean 1234; nobody can tell, so nobody guesses.
-bool Rows::consistent_mark(const Number& number, std::size_t column) {
+bool Rows::consistent_mark(const Field& number, std::size_t column) {
   const bool point = number.mark == DecimalMark::point;
   std::uint64_t& first = point ? first_point_ : first_comma_;
   const std::uint64_t other = point ? first_comma_ : first_point_;
@@ -146,9 +147,9 @@ bool Rows::consistent_mark(const Number& number, std::size_t column) {
                                "; expected the same everywhere"));
 }
 
-bool Rows::parse(std::size_t column, Number& number) {
+bool Rows::parse(std::size_t column, Field& number) {
   number = parse_number(fields_[column], header_.comma_allowed());
-  if (number.kind == Number::Kind::bad) return refuse(bad_number(column));
+  if (number.kind == Field::Kind::bad) return refuse(bad_number(column));
   if (number.mark == DecimalMark::none || !header_.comma_allowed()) return true;
   return consistent_mark(number, column);
 }
@@ -167,9 +168,9 @@ bool Rows::parse_field(std::size_t column, Row& row) {
     row.key.approach = text == "+" ? std::int8_t{1} : std::int8_t{-1};
     return true;
   }
-  Number number;
+  Field number;
   if (!parse(column, number)) return false;
-  const bool taken = number.kind == Number::Kind::taken;
+  const bool taken = number.kind == Field::Kind::taken;
   if (role == Role::reading) {
     row.taken = taken;
     row.reading = number.value;

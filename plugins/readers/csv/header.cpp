@@ -8,6 +8,7 @@
 #include "fields.h"
 
 namespace nonio::csv {
+using namespace reading;
 namespace {
 
 enum class Measures : std::uint8_t { neither, length, angle };
@@ -51,7 +52,7 @@ tl::unexpected<Error> unknown_column(std::string_view name, std::size_t number) 
   if (name.empty())
     return fail("column " + std::to_string(number) +
                 " of the header row has no name; is there a separator too many?");
-  if (parse_number(name, true).kind == Number::Kind::taken)
+  if (parse_number(name, true).kind == Field::Kind::taken)
     return fail("expected a header row with the names of the columns, found the number " +
                 shown(name));
   std::vector<std::string_view> names;

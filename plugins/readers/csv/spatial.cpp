@@ -14,6 +14,7 @@
 #include "table.h"
 
 namespace nonio::csv {
+using namespace reading;
 namespace {
 
 using Kind = ColumnSpec::Kind;

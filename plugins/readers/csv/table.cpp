@@ -10,6 +10,7 @@
 #include "lines.h"
 
 namespace nonio::csv {
+using namespace reading;
 namespace {
 
 using Kind = ColumnSpec::Kind;
@@ -93,7 +94,7 @@ class TableReader {
   Error unknown(std::string_view name) const {
     if (name.empty())
       return Error{"a column of the header row has no name; is there a separator too many?"};
-    if (parse_number(name, true).kind == Number::Kind::taken)
+    if (parse_number(name, true).kind == Field::Kind::taken)
       return Error{"expected a header row with the names of the columns, found the number " +
                    shown(name)};
     std::vector<std::string_view> names;
@@ -173,13 +174,13 @@ class TableReader {
   std::optional<Error> take_number(std::size_t i) {
     const std::string_view text = fields_[i];
     const bool comma = separator_ != ',';
-    const Number number = parse_number(text, comma);
-    if (number.kind == Number::Kind::bad)
+    const Field number = parse_number(text, comma);
+    if (number.kind == Field::Kind::bad)
       return at(i, "expected a number, found " + shown(text) +
-                       (!comma && parse_number(text, true).kind == Number::Kind::taken
+                       (!comma && parse_number(text, true).kind == Field::Kind::taken
                             ? "; a decimal comma needs \";\" or a tab between the fields"
                             : ""));
-    const bool taken = number.kind == Number::Kind::taken;
+    const bool taken = number.kind == Field::Kind::taken;
     if (!taken && own_[i]->kind == Kind::place)
       return at(i, "expected a number, found " + shown(text));
     if (comma && number.mark != DecimalMark::none)

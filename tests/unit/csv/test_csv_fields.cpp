@@ -10,9 +10,10 @@
 #include "fields.h"
 
 namespace nonio::csv {
+using namespace reading;
 namespace {
 
-using Kind = Number::Kind;
+using Kind = Field::Kind;
 
 struct NumberCase {
   std::string text;
@@ -25,7 +26,7 @@ class Numbers : public testing::TestWithParam<NumberCase> {};
 
 TEST_P(Numbers, AreReadAsTheyStand) {
   const NumberCase& c = GetParam();
-  const Number n = parse_number(c.text, c.comma_allowed);
+  const Field n = parse_number(c.text, c.comma_allowed);
   EXPECT_EQ(n.kind, c.kind) << c.text;
   if (c.kind == Kind::taken) {
     EXPECT_EQ(n.value, c.value) << c.text;
@@ -97,7 +98,7 @@ TEST(Fields, EveryNumberIsTheNearestDouble) {
     if (random() % 3 == 0) text += "e" + std::to_string(static_cast<int>(random() % 60) - 54);
     double wanted = 0.0;
     std::from_chars(text.data(), text.data() + text.size(), wanted);
-    const Number n = parse_number(text, false);
+    const Field n = parse_number(text, false);
     if (std::fabs(wanted) >= 1e19) {
       ASSERT_EQ(n.kind, Kind::not_taken) << text;
     } else {

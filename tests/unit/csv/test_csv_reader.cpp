@@ -11,6 +11,7 @@
 #include "csv.h"
 
 namespace nonio::csv {
+using namespace reading;
 namespace {
 
 using namespace std::string_literals;

@@ -9,6 +9,7 @@
 #include "csv.h"
 
 namespace nonio::csv {
+using namespace reading;
 namespace {
 
 Measurement measurement(const std::string& kind) {

@@ -7,7 +7,7 @@
 
 #include "nonio/sdk/error.h"
 
-namespace nonio::csv {
+namespace nonio::reading {
 
 inline constexpr std::size_t longest_line = 65536;
 
@@ -35,4 +35,4 @@ std::optional<Error> not_text(std::string_view line);
 /// The next line with fields on it; false at the end of the file, or with `error` set.
 bool next_content(Lines& lines, std::string_view& line, std::optional<Error>& error);
 
-}  // namespace nonio::csv
+}  // namespace nonio::reading

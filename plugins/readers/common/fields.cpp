@@ -9,7 +9,7 @@
 #include <numeric>
 #include <system_error>
 
-namespace nonio::csv {
+namespace nonio::reading {
 namespace {
 
 /// From here on a number is a mark of the instrument that no reading was taken.
@@ -100,10 +100,10 @@ double slow_value(std::string_view text, const Decimal& d) {
 
 }  // namespace
 
-Number parse_number(std::string_view text, bool comma_allowed) {
+Field parse_number(std::string_view text, bool comma_allowed) {
   Decimal d;
   if (!take_apart(text, comma_allowed, d)) {
-    const auto kind = means_not_taken(text) ? Number::Kind::not_taken : Number::Kind::bad;
+    const auto kind = means_not_taken(text) ? Field::Kind::not_taken : Field::Kind::bad;
     return {kind, DecimalMark::none, 0.0};
   }
   double value = 0.0;
@@ -118,7 +118,7 @@ Number parse_number(std::string_view text, bool comma_allowed) {
   } else {
     value = slow_value(text, d);
   }
-  const auto kind = std::fabs(value) < sentinel ? Number::Kind::taken : Number::Kind::not_taken;
+  const auto kind = std::fabs(value) < sentinel ? Field::Kind::taken : Field::Kind::not_taken;
   return {kind, d.mark, value + 0.0};  // + 0.0: no negative zero
 }
 
@@ -256,4 +256,4 @@ std::string_view nearest(std::string_view name, const std::vector<std::string_vi
   return best;
 }
 
-}  // namespace nonio::csv
+}  // namespace nonio::reading

@@ -6,7 +6,7 @@
 
 #include "fields.h"
 
-namespace nonio::csv {
+namespace nonio::reading {
 
 namespace {
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
@@ -58,4 +58,4 @@ bool next_content(Lines& lines, std::string_view& line, std::optional<Error>& er
   return false;
 }
 
-}  // namespace nonio::csv
+}  // namespace nonio::reading

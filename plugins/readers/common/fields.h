@@ -6,12 +6,13 @@
 #include <string_view>
 #include <vector>
 
-/// The lowest floor of the csv reader: text to fields, fields to numbers, text to words for a user.
-namespace nonio::csv {
+/// The lowest floor of the readers of text: text to fields, fields to numbers, text to words for a
+/// user.
+namespace nonio::reading {
 
 enum class DecimalMark : std::uint8_t { none, point, comma };
 
-struct Number {
+struct Field {
   enum class Kind : std::uint8_t {
     taken,      ///< a finite number below 1e19 in size
     not_taken,  ///< blank, nan, n/a, infinite, or 1e19 and more in size
@@ -24,7 +25,7 @@ struct Number {
 
 /// A decimal number as it stands in a file: sign, digits, one decimal mark, exponent; no thousands
 /// separator, no hexadecimal, nothing behind it. The value is the double nearest to the text.
-Number parse_number(std::string_view text, bool comma_allowed);
+Field parse_number(std::string_view text, bool comma_allowed);
 
 /// 1..4294967295, digits only; 0 if it is anything else.
 std::uint32_t parse_run(std::string_view text);
@@ -49,4 +50,4 @@ std::string shown(std::string_view text);
 /// The name of `names` nearest to `name` by edit distance; names must not be empty.
 std::string_view nearest(std::string_view name, const std::vector<std::string_view>& names);
 
-}  // namespace nonio::csv
+}  // namespace nonio::reading

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common.h"
+#include "nonio/host/files.h"
+#include "nonio/host/import.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct ImportArguments {
+  std::string folder, rule, out, reader, campaign;
+  bool partial = false, dry_run = false;
+};
+
+/// A file if it ends in .toml, else the pattern itself.
+host::Checked<host::ImportRule> rule_of(const ImportArguments& arguments) {
+  if (!arguments.rule.ends_with(".toml")) return host::import_rule_of_pattern(arguments.rule);
+  const auto text = host::read_file(arguments.rule);
+  if (!text) return tl::unexpected(std::vector<Error>{text.error()});
+  return host::parse_import_rule(*text, arguments.rule);
+}
+
+Json json_of(const std::vector<host::ImportReport::Passed>& list) {
+  Json out = Json::array();
+  for (const auto& p : list) out.push_back({{"file", p.file}, {"why", p.why}});
+  return out;
+}
+
+void print_json(const host::ImportReport& report, bool dry_run) {
+  Json campaigns = Json::array();
+  for (const host::ImportedCampaign& c : report.campaigns) {
+    Json files = Json::array();
+    for (const host::ImportedFile& f : c.files)
+      files.push_back({{"file", f.file},
+                       {"measurement", f.measurement},
+                       {"axis", f.axis},
+                       {"reader", f.reader},
+                       {"readings", f.readings},
+                       {"missing", f.missing},
+                       {"lacks", f.lacks}});
+    campaigns.push_back({{"id", c.id},
+                         {"whole", c.whole()},
+                         {"written", c.written},
+                         {"lacks", c.lacks},
+                         {"files", std::move(files)}});
+  }
+  std::cout << Json{{"schema", "nonio-import/1"},
+                    {"dry_run", dry_run},
+                    {"campaigns", std::move(campaigns)},
+                    {"duplicates", json_of(report.duplicates)},
+                    {"excluded", json_of(report.excluded)},
+                    {"unmatched", json_of(report.unmatched)}}
+                   .dump(1, ' ', false, Json::error_handler_t::replace)
+            << "\n";
+}
+
+void print(const char* title, const std::vector<host::ImportReport::Passed>& list) {
+  if (!list.empty()) std::cout << title << "\n";
+  for (const auto& p : list) std::cout << "  " << p.file << ": " << p.why << "\n";
+}
+
+void print(const host::ImportReport& report) {
+  for (const host::ImportedCampaign& c : report.campaigns) {
+    std::cout << c.id
+              << (c.written   ? ": written"
+                  : c.whole() ? ": whole"
+                              : ": not written")
+              << (c.whole() ? "" : ", something is missing") << "\n";
+    for (const std::string& lack : c.lacks) std::cout << "  wanted: " << lack << "\n";
+    for (const host::ImportedFile& f : c.files) {
+      std::cout << "  " << f.file << ": measurement " << f.measurement << ", axis "
+                << (f.axis.empty() ? "?" : f.axis) << ", reader "
+                << (f.reader.empty() ? "?" : f.reader) << ", " << f.readings << " readings, "
+                << f.missing << " not taken\n";
+      for (const std::string& lack : f.lacks) std::cout << "    wanted: " << lack << "\n";
+    }
+  }
+  print("The same as another, left out:", report.duplicates);
+  print("Excluded by the rule:", report.excluded);
+  print("Not imported:", report.unmatched);
+  if (!report.campaigns.empty())
+    std::cout << "Axes are what the names say, signs what the files say: prove both on the machine "
+                 "before a table is loaded.\n";
+}
+
+int run(const ImportArguments& arguments, const Common& common) {
+  auto rule = rule_of(arguments);
+  if (!rule) {
+    for (const Error& e : rule.error())
+      std::cerr << "nonio import: " << e.file << (e.line != 0 ? ":" + std::to_string(e.line) : "")
+                << (e.file.empty() ? "" : ": ") << e.message << "\n";
+    return exit_usage;
+  }
+  if (!arguments.reader.empty()) rule->reader = arguments.reader;
+  if (!arguments.campaign.empty()) rule->campaign = arguments.campaign;
+  host::Plugins plugins;
+  plugins.load(common.plugin_folders());
+  for (const std::string& conflict : plugins.conflicts()) {
+    std::cerr << "nonio import: " << conflict << "\n";
+    return exit_usage;
+  }
+  const auto report = host::import_folder(
+      {arguments.folder, fs::absolute(arguments.out), *rule, arguments.partial, arguments.dry_run},
+      plugins);
+  if (!report) {
+    std::cerr << "nonio import: " << report.error().message << "\n";
+    return exit_usage;
+  }
+  if (common.json)
+    print_json(*report, arguments.dry_run);
+  else if (!common.quiet)
+    print(*report);
+  bool whole = !report->campaigns.empty();
+  for (const host::ImportedCampaign& c : report->campaigns) whole = whole && c.whole();
+  if (report->campaigns.empty())
+    std::cerr << "nonio import: no file follows the pattern " << rule->pattern << "\n";
+  return whole ? exit_done : exit_failed;
+}
+
+}  // namespace
+
+void add_import_verb(CLI::App& cli, Common& common, Outcome& outcome) {
+  CLI::App* verb = cli.add_subcommand(
+      "import", "Campaigns from a folder of instrument files, by a rule for their names");
+  auto arguments = std::make_shared<ImportArguments>();
+  verb->add_option("FOLDER", arguments->folder, "Folder with the files, and folders in it")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  verb->add_option("--rule", arguments->rule,
+                   "How names are made: a pattern such as {machine}_{axis}_{date}.rtl, or a file\n"
+                   "RULE.toml with pattern, campaign, kind, reader, exclude and [manifest]")
+      ->required();
+  verb->add_option("--out", arguments->out, "Site that gets a folder for each campaign")
+      ->required();
+  verb->add_option("--reader", arguments->reader, "Reader of all files; else chosen by content");
+  verb->add_option("--campaign", arguments->campaign,
+                   "Id of the campaigns, such as {date}-{machine}");
+  verb->add_flag("--partial", arguments->partial,
+                 "Write campaigns that lack something too, with comments for what is to be filled");
+  verb->add_flag("--dry-run", arguments->dry_run, "Say what would be done; write nothing");
+  add_common(*verb, common);
+  verb->footer(
+      "Places in a pattern: {axis} (capital letters and digits), {date} (20240302 or 2024-03-02),\n"
+      "{machine}, {id} (of the measurement), any other name of small letters, {*} for what does "
+      "not\n"
+      "count. A pattern with / is for the path below FOLDER, else for the file's name. A name "
+      "that\n"
+      "can be read in two ways is not imported; neither is a second file with the same content.\n"
+      "Every file is read as a night would read it; a campaign is written when nothing is "
+      "missing.\n"
+      "Nothing that is there is touched.\n\n"
+      "Example: nonio import laser --rule '{machine}_{axis}_{date}.rtl' --out site --dry-run");
+  verb->callback([arguments, &common, &outcome] { outcome = run(*arguments, common); });
+}
+
+}  // namespace nonio::app

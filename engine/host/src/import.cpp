@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/host/import.h"
+
+#include <algorithm>
+#include <cstring>
+#include <set>
+#include <sstream>
+
+#include "guarded.h"
+#include "nonio/host/digest.h"
+#include "nonio/host/evaluate.h"
+#include "nonio/host/files.h"
+#include "toml_reader.h"
+
+namespace nonio::host {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// 20240302 as 2024-03-02.
+std::string iso_date(const std::string& date) {
+  if (date.size() != 8) return date;
+  return date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6);
+}
+
+/// The places of a name put into a text; nothing if it wants one that the name does not have.
+std::optional<std::string> filled_in(const std::string& text, const Places& places) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::size_t close = text[i] == '{' ? text.find('}', i) : std::string::npos;
+    if (close == std::string::npos) {
+      out += text[i];
+      continue;
+    }
+    const std::string name = text.substr(i + 1, close - i - 1);
+    const auto place = places.find(name);
+    if (place == places.end()) return std::nullopt;
+    out += name == "date" ? iso_date(place->second) : place->second;
+    i = close;
+  }
+  return out;
+}
+
+/// Without `campaign` in the rule: all places but those of one measurement, as in
+/// 2024-03-02-fp12; ids are of small letters.
+std::string campaign_of(const ImportRule& rule, const Places& places) {
+  std::string id;
+  if (!rule.campaign.empty()) {
+    id = filled_in(rule.campaign, places).value_or("");
+  } else {
+    if (const auto date = places.find("date"); date != places.end()) id = iso_date(date->second);
+    for (const auto& [name, value] : places)
+      if (name != "axis" && name != "id" && name != "date") id += (id.empty() ? "" : "-") + value;
+  }
+  for (char& c : id)
+    if (c >= 'A' && c <= 'Z')
+      c = static_cast<char>(c + 32);
+    else if (c == ' ')
+      c = '-';
+  return id;
+}
+
+/// The same readings in other bytes (line ends, a comment) are the same readings.
+std::string digest_of(const Observations& o) {
+  std::string bytes;
+  const auto put = [&](const auto& column) {
+    for (const auto& value : column) {
+      char raw[sizeof(value)];
+      std::memcpy(raw, &value, sizeof(value));
+      bytes.append(raw, sizeof(value));
+    }
+  };
+  put(o.deviation);
+  put(o.run);
+  for (const auto& axis : o.axes) {
+    put(axis.position);
+    put(axis.approach);
+  }
+  return bytes.empty() ? "" : sha256(bytes);
+}
+
+struct Found {
+  std::string file, bytes;
+  Places places;
+};
+
+class Importer {
+ public:
+  Importer(const ImportWish& wish, const Plugins& plugins) : wish_(wish), plugins_(plugins) {}
+
+  Expected<ImportReport> import() {
+    if (auto ok = look(); !ok) return fail(ok.error());
+    for (auto& [id, files] : campaigns_)
+      if (auto ok = make(id, files); !ok) return fail(ok.error());
+    return std::move(report_);
+  }
+
+ private:
+  /// Every file of the folder in the order of their names; links are not followed.
+  Expected<std::vector<std::string>> files() const {
+    std::error_code error;
+    const fs::path root = fs::canonical(wish_.folder, error);
+    if (error) return fail("cannot find the folder " + wish_.folder.string());
+    const fs::path out = fs::weakly_canonical(wish_.out, error);
+    if (const fs::path below = out.lexically_relative(root);
+        !below.empty() && *below.begin() != "..")
+      return fail("wanted a site outside of the folder that is imported, found " + out.string());
+    std::vector<std::string> names;
+    fs::recursive_directory_iterator it(root, error), end;
+    for (; !error && it != end; it.increment(error))
+      if (it->is_regular_file(error) && !it->is_symlink(error))
+        names.push_back(it->path().lexically_relative(root).generic_string());
+    if (error) return fail("cannot read " + root.string() + ": " + error.message());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  Expected<void> look() {
+    const auto names = files();
+    if (!names) return fail(names.error());
+    std::map<std::string, std::string> first;  // by digest
+    for (const std::string& name : *names) {
+      const auto excluded =
+          std::find_if(wish_.rule.exclude.begin(), wish_.rule.exclude.end(),
+                       [&](const std::string& part) { return name.find(part) != name.npos; });
+      if (excluded != wish_.rule.exclude.end()) {
+        report_.excluded.push_back({name, "its path holds \"" + *excluded + "\""});
+        continue;
+      }
+      const auto ways = readings_of_name(wish_.rule, name);
+      if (ways.size() != 1) {
+        report_.unmatched.push_back(
+            {name, ways.empty() ? "its name does not follow the pattern"
+                                : "its name can be read in two ways by the pattern"});
+        continue;
+      }
+      const auto path = path_inside(wish_.folder, name);
+      auto bytes = path ? read_file(*path) : fail(path.error());
+      if (!bytes) return fail(bytes.error());
+      const auto [same, fresh] = first.try_emplace(sha256(*bytes), name);
+      if (!fresh) {
+        report_.duplicates.push_back({name, "the same bytes as " + same->second});
+        continue;
+      }
+      campaigns_[campaign_of(wish_.rule, ways[0])].push_back({name, std::move(*bytes), ways[0]});
+    }
+    return {};
+  }
+
+  Expected<void> make(const std::string& id, std::vector<Found>& found) {
+    ImportedCampaign campaign;
+    campaign.id = id;
+    if (!is_campaign_id(id))
+      campaign.lacks.push_back("wanted an id of a-z 0-9 . _ -, found \"" + id +
+                               "\"; say it in the rule: campaign = \"{date}-{machine}\"");
+    std::set<std::string> names, ids;
+    for (const Found& f : found) campaign.files.push_back(file_of(f, names, ids));
+    const std::string text = manifest_of(campaign, found);
+    check(campaign, found, text);
+    std::error_code error;
+    const fs::path folder = wish_.out / id;
+    if (is_campaign_id(id) && fs::exists(fs::symlink_status(folder, error)))
+      campaign.lacks.push_back(folder.string() + " is there; it is left as it is");
+    const bool may = is_campaign_id(id) && !fs::exists(fs::symlink_status(folder, error));
+    if (may && !wish_.dry_run && (campaign.whole() || wish_.partial)) {
+      std::vector<Artifact> artifacts;
+      for (std::size_t i = 0; i < found.size(); ++i)
+        if (!campaign.files[i].name.empty())
+          artifacts.push_back({campaign.files[i].name, std::move(found[i].bytes)});
+      artifacts.push_back(
+          {manifest_name, manifest_of(campaign, found)});  // last: it shows the rest
+      if (auto ok = publish(folder, artifacts); !ok) return ok;
+      campaign.written = true;
+    }
+    report_.campaigns.push_back(std::move(campaign));
+    return {};
+  }
+
+  ImportedFile file_of(const Found& f, std::set<std::string>& names,
+                       std::set<std::string>& ids) const {
+    ImportedFile file;
+    file.file = f.file;
+    file.reader = wish_.rule.reader;
+    const std::string name = fs::path(f.file).filename().string();
+    if (!is_artifact_name(name) || name == manifest_name)
+      file.lacks.push_back("wanted a plain file name, found \"" + name + "\"");
+    else if (!names.insert(name).second)
+      file.lacks.push_back("another file of this campaign is called " + name);
+    else
+      file.name = name;
+    if (const auto axis = f.places.find("axis"); axis != f.places.end())
+      file.axis = axis->second;
+    else if (wish_.rule.kind != "observations")
+      file.lacks.push_back(
+          "axis: which axis of the machine was measured; no place {axis} says it, and it is not "
+          "guessed");
+    const auto own = f.places.find("id");
+    file.measurement = own != f.places.end() ? own->second : file.axis;
+    if (file.measurement.empty()) file.measurement = fs::path(f.file).stem().string();
+    if (!ids.insert(file.measurement).second)
+      file.lacks.push_back("id: another file is measurement \"" + file.measurement +
+                           "\" of this campaign; exclude one of them, or tell them apart by a "
+                           "place {id}");
+    return file;
+  }
+
+  /// campaign.toml; what is still to be filled stands above it and in its place as a comment.
+  std::string manifest_of(const ImportedCampaign& campaign, const std::vector<Found>& found) const {
+    toml::table root;
+    if (auto extra = parse_toml(wish_.rule.manifest, "rule"); extra) root = std::move(*extra);
+    if (!root.contains("campaign")) root.insert("campaign", toml::table{});
+    if (toml::table* own = root["campaign"].as_table()) {
+      own->insert_or_assign("id", campaign.id);
+      const Places& places = found.front().places;
+      if (const auto date = places.find("date"); date != places.end() && !own->contains("date"))
+        if (auto parsed = parse_toml("d = " + iso_date(date->second), "date"))
+          own->insert("date", *(*parsed)["d"].as_date());
+    }
+    if (!root.contains("machine")) root.insert("machine", toml::table{});
+    if (toml::table* machine = root["machine"].as_table())
+      if (const auto model = found.front().places.find("machine");
+          model != found.front().places.end() && !machine->contains("model"))
+        machine->insert("model", model->second);
+    std::ostringstream out;
+    for (const std::string& lack : campaign.lacks) out << "# to fill: " << lack << "\n";
+    out << "format = 1\n\n" << root << "\n";
+    for (const ImportedFile& f : campaign.files) {
+      out << "\n[[measurement]]\n";
+      for (const std::string& lack : f.lacks) out << "# to fill: " << one_line(lack) << "\n";
+      toml::table m{{"id", f.measurement}, {"kind", wish_.rule.kind}};
+      if (!f.axis.empty()) m.insert("axis", f.axis);
+      m.insert("file", f.name);
+      if (!wish_.rule.reader.empty()) m.insert("reader", wish_.rule.reader);
+      out << m << "\n";
+    }
+    return out.str();
+  }
+  static std::string one_line(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+    return text;
+  }
+
+  /// Reads every file as a night would.
+  void check(ImportedCampaign& campaign, const std::vector<Found>& found, const std::string& text) {
+    const auto manifest = parse_manifest(text, manifest_name);
+    const bool asked = std::any_of(campaign.files.begin(), campaign.files.end(),
+                                   [](const ImportedFile& f) { return !f.lacks.empty(); });
+    if (!manifest) {
+      if (!asked && campaign.lacks.empty())
+        for (const Error& e : manifest.error()) campaign.lacks.push_back(e.message);
+      return;
+    }
+    std::map<std::string, std::string> first;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      ImportedFile& file = campaign.files[i];
+      const auto obs =
+          read(*manifest, manifest->campaign.measurements[i], found[i].bytes, file.reader);
+      if (!obs) {
+        const Error& e = obs.error();
+        file.lacks.push_back((e.line != 0 ? "line " + std::to_string(e.line) + ": " : "") +
+                             e.message);
+        continue;
+      }
+      file.readings = obs->size();
+      file.missing = obs->missing;
+      const std::string digest = digest_of(*obs);
+      if (digest.empty()) continue;
+      if (const auto [same, fresh] = first.try_emplace(digest, file.file); !fresh)
+        file.lacks.push_back("the same readings as " + same->second + "; exclude one of them");
+    }
+  }
+
+  Expected<Observations> read(const Manifest& manifest, const Measurement& m,
+                              const std::string& bytes, std::string& name) const {
+    const Reader* reader = nullptr;
+    for (const Reader& r : plugins_.readers()) {
+      if (!name.empty() ? r.info.name == name
+                        : r.reads(m.kind) && r.recognises(std::string_view(bytes).substr(0, 4096)))
+        reader = reader == nullptr ? &r : reader;
+    }
+    if (reader == nullptr)
+      return fail(name.empty() ? "no reader knows the format of this file"
+                               : plugins_.absence("reader", name));
+    name = reader->info.name;
+    const auto options = settle_options(reader->info, site_options(), manifest.options);
+    if (!options) return fail(options.error().front());
+    return guarded("reader " + name, [&] {
+      return reader->read({bytes, manifest.campaign, m, *options, {}});
+    });
+  }
+
+  /// Of site.toml, if the site is there already.
+  RawOptions site_options() const {
+    const auto text = read_file(wish_.out / "site.toml");
+    if (!text) return {};
+    auto site = parse_site(*text, "site.toml");
+    return site ? std::move(site->options) : RawOptions{};
+  }
+
+  const ImportWish& wish_;
+  const Plugins& plugins_;
+  std::map<std::string, std::vector<Found>> campaigns_;
+  ImportReport report_;
+};
+
+}  // namespace
+
+bool ImportedCampaign::whole() const {
+  return lacks.empty() && std::all_of(files.begin(), files.end(),
+                                      [](const ImportedFile& f) { return f.lacks.empty(); });
+}
+
+Expected<ImportReport> import_folder(const ImportWish& wish, const Plugins& plugins) {
+  return Importer(wish, plugins).import();
+}
+
+}  // namespace nonio::host

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camonitor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "lines.h"
+#include "log.h"
+#include "nonio/sdk/format.h"
+#include "runs.h"
+
+namespace nonio::camonitor {
+using namespace reading;
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// What the log cannot say.
+struct Wiring {
+  std::string target, reference, test;             ///< names of PVs
+  double target_unit = 0.0, reference_unit = 0.0;  ///< SI value of 1
+  double gain = 1.0;
+};
+
+Expected<double> unit_of_option(const ReadInput& input, const char* option, bool rotary) {
+  static const std::map<std::string, double, std::less<>> linear{
+      {"mm", 1e-3}, {"um", 1e-6}, {"m", 1.0}},
+      angular{{"deg", 1.0 / deg_per_rad}, {"rad", 1.0}, {"mrad", 1e-3}};
+  const auto& units = rotary ? angular : linear;
+  const auto found = units.find(input.options.text(option));
+  if (found != units.end()) return found->second;
+  return fail(of_option(option, std::string("wanted ") +
+                                    (rotary ? "deg, rad or mrad" : "mm, um or m") +
+                                    " for this axis, found \"" + input.options.text(option) +
+                                    "\"; a log does not say its units"));
+}
+
+Expected<Wiring> wiring_of(const ReadInput& input, bool rotary) {
+  Wiring w;
+  for (const auto& [option, to] :
+       {std::pair{"target_pv", &w.target}, {"reference_pv", &w.reference}, {"test_pv", &w.test}}) {
+    *to = input.options.text(option);
+    if (!to->empty()) continue;
+    std::set<std::string> known;
+    Lines lines(input.bytes);
+    std::string_view line;
+    while (known.size() < 12 && lines.next(line))
+      if (const auto entry = entry_of(line); entry && is_utf8(entry->pv)) known.emplace(entry->pv);
+    std::string list;
+    for (const std::string& pv : known) list += (list.empty() ? "" : ", ") + shown(pv);
+    return fail(of_option(option, "wanted the name of a PV, found none; in the log: " + list));
+  }
+  if (w.target == w.reference || w.target == w.test || w.reference == w.test)
+    return fail(of_option("target_pv", "wanted three different PVs as target, reference and test"));
+  const auto target = unit_of_option(input, "target_unit", rotary),
+             reference = unit_of_option(input, "reference_unit", rotary);
+  if (!target) return fail(target.error());
+  if (!reference) return fail(reference.error());
+  w.target_unit = *target;
+  w.reference_unit = *reference;
+  w.gain = input.options.number("reference_gain", 1.0);
+  if (!(std::fabs(w.gain) > 0.0) || !std::isfinite(w.gain))
+    return fail(of_option("reference_gain", "wanted a number other than 0"));
+  return w;
+}
+
+/// 1101: forward, cycle 1, position 1; 2109: backward, cycle 1, position 9. From 3000 on they are
+/// those of other tests (limit switches, stand-still).
+struct Step {
+  int direction = 0;  ///< 1 forward, -1 backward; 0: no step of the test
+  std::uint32_t cycle = 0, position = 0;
+};
+Step step_of(std::int64_t number) {
+  if (number < 1000 || number > 2999) return {};
+  const auto rest = static_cast<std::uint32_t>(number % 1000);
+  const Step step{number < 2000 ? 1 : -1, rest / 100, rest % 100};
+  return step.cycle == 0 || step.position == 0 ? Step{} : step;
+}
+
+struct Sample {
+  Step step;
+  double target = 0.0, reference = 0.0;  ///< as logged
+  std::uint64_t line = 0;                ///< of the reference
+  std::int64_t time = 0;
+};
+
+/// What was true last when the test's number changed.
+class Sampler {
+ public:
+  Sampler(const Wiring& wiring) : wiring_(wiring) {}
+
+  Expected<std::vector<Sample>> samples(const std::vector<Entry>& entries) {
+    for (const Entry& e : entries)
+      if (auto ok = take(e); !ok) return fail(ok.error());
+    return std::move(samples_);
+  }
+
+ private:
+  Expected<void> take(const Entry& e) {
+    const bool test = e.pv == wiring_.test;
+    const auto value = numbers_.reading(e.value, e.line, test ? "a test number" : "a position");
+    if (!value) return fail(value.error());
+    if (e.pv == wiring_.target) target_ = *value;
+    if (e.pv == wiring_.reference) {
+      reference_ = *value;
+      reference_line_ = e.line;
+      reference_time_ = e.time;
+    }
+    return test ? change(e, *value) : Expected<void>{};
+  }
+
+  Expected<void> change(const Entry& e, double value) {
+    if (!(std::fabs(value) < 1e9) || value != std::floor(value))
+      return fail(at_line(e.line, "wanted a whole test number, found " + shown(e.value)));
+    const auto number = static_cast<std::int64_t>(value);
+    if (number > 9999)
+      return fail(at_line(e.line,
+                          "wanted a test number of direction, cycle (1 to 9) and position "
+                          "(01 to 99), found " +
+                              shown(e.value)));
+    const Step step = step_of(number);
+    if (step.direction == 0) return {};
+    if (reference_line_ == 0 || std::isnan(target_))
+      return fail(at_line(e.line, "wanted a target and a reference before the first test number"));
+    samples_.push_back({step, target_, reference_, reference_line_, reference_time_});
+    return {};
+  }
+
+  const Wiring& wiring_;
+  Numbers numbers_{false};
+  double target_ = nan, reference_ = nan;
+  std::uint64_t reference_line_ = 0;
+  std::int64_t reference_time_ = 0;
+  std::vector<Sample> samples_;
+};
+
+/// One target a position, whatever the cycle and the direction.
+Expected<std::map<std::uint32_t, double>> targets_of(const std::vector<Sample>& samples) {
+  std::map<std::uint32_t, double> targets;
+  for (const Sample& s : samples) {
+    const auto [known, fresh] = targets.try_emplace(s.step.position, s.target);
+    if (!fresh && known->second != s.target)
+      return fail(at_line(s.line, "position " + std::to_string(s.step.position) +
+                                      ": wanted the same target in every pass, found " +
+                                      short_text(s.target, 9) + " after " +
+                                      short_text(known->second, 9)));
+  }
+  return targets;
+}
+
+/// Reference over target: a user sees it, and the other way round is refused.
+Expected<void> check_line(const std::vector<Sample>& samples, const Wiring& w, Observations& obs,
+                          bool rotary) {
+  std::vector<double> x, y;
+  for (const Sample& s : samples)
+    if (!std::isnan(s.reference)) {
+      x.push_back(s.target * w.target_unit);
+      y.push_back(s.reference * w.reference_unit * w.gain);
+    }
+  const Straight line = straight_through(x, y);
+  if (!(line.slope > 0.0))
+    return fail(of_option("reference_gain",
+                          "the reference runs against the targets (gain " +
+                              short_text(line.slope, 6) +
+                              "); if the sensor stood the other way round, state a negative one"));
+  if (std::fabs(line.slope - 1.0) > 0.1)
+    return fail(of_option("reference_gain",
+                          "wanted a reference that goes as far as the targets, "
+                          "found " +
+                              short_text(line.slope, 6) +
+                              " times as far; is reference_unit right?"));
+  obs.notes.push_back({"camonitor.line",
+                       {{"scale", line.slope - 1.0, slope_of(rotary)},
+                        {"offset", line.offset, position_of(rotary)},
+                        {"stated", w.gain, Quantity::ratio}}});
+  return {};
+}
+
+Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
+  const auto wiring = wiring_of(input, axis.rotary);
+  if (!wiring) return fail(wiring.error());
+  const auto entries = entries_of(input.bytes, {wiring->target, wiring->reference, wiring->test});
+  if (!entries) return fail(entries.error());
+  const auto samples = Sampler(*wiring).samples(*entries);
+  if (!samples) return fail(samples.error());
+  if (samples->empty())
+    return fail("wanted test numbers (1101 ...) of PV " + wiring->test + ", found none");
+  const auto targets = targets_of(*samples);
+  if (!targets) return fail(targets.error());
+  std::vector<double> listed;
+  for (const auto& [position, target] : *targets) listed.push_back(target);
+  const int sense = sense_of(listed);
+  if (sense == 0) return fail("wanted two targets or more that only rise or only fall");
+  Runs runs(input, axis, axis.rotary);
+  if (auto ok = check_line(*samples, *wiring, runs.observations(), axis.rotary); !ok)
+    return fail(ok.error());
+  for (const Sample& s : *samples) {
+    const double target = s.target * wiring->target_unit;
+    const double deviation = wiring->gain * s.reference * wiring->reference_unit - target;
+    const double seconds = 1e-6 * static_cast<double>(s.time - samples->front().time);
+    if (auto ok = runs.add({s.step.cycle, static_cast<std::int8_t>(s.step.direction * sense),
+                            target, deviation, s.line, seconds});
+        !ok)
+      return fail(ok.error());
+  }
+  return runs.finish();
+}
+
+Expected<Observations> read(const ReadInput& input) {
+  const auto axis = axis_of(input);
+  if (!axis) return fail(axis.error());
+  auto obs = read_file(input, **axis);
+  if (!obs && obs.error().key.empty()) obs.error().file = input.measurement.file;
+  return obs;
+}
+
+/// Some first lines are all of this form.
+bool recognises(std::string_view head) {
+  Lines lines(head);
+  std::string_view line;
+  int seen = 0;
+  while (seen < 3 && lines.next(line)) {
+    if (trimmed(line).empty()) continue;
+    if (!entry_of(line)) return false;
+    ++seen;
+  }
+  return seen > 0;
+}
+
+Option text_option(const char* name, const char* help) { return {name, std::string(), "", help}; }
+
+}  // namespace
+
+Reader reader() {
+  Reader r;
+  r.info = {
+      "camonitor",
+      "1.0",
+      "Logs of EPICS' camonitor, of tests numbered by ecmc's tools (1101, 2109).",
+      {text_option("target_pv", "PV of the commanded position."),
+       text_option("reference_pv", "PV of the reference."),
+       text_option("test_pv", "PV of the test number; it changes when a position has settled."),
+       text_option("target_unit", "Unit of the target: mm, um, m; deg, rad, mrad."),
+       text_option("reference_unit", "Unit of the reference: mm, um, m; deg, rad, mrad."),
+       {"reference_gain", 1.0, "",
+        "Factor of the reference; negative where the sensor stood the other way round."}}};
+  r.recognises = recognises;
+  r.reads = [](std::string_view kind) { return kind == "axis"; };
+  r.read = read;
+  return r;
+}
+
+}  // namespace nonio::camonitor

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "fields.h"
+#include "nonio/sdk/plugin.h"
+
+/// What the readers of instrument files share: runs of one axis, each reading once.
+namespace nonio::reading {
+
+/// An error with its line; the file is that of the measurement.
+Error at_line(std::uint64_t line, std::string message);
+
+/// `text` as an error of an option: "option unit: wanted ..., found ...".
+Error of_option(std::string_view option, std::string message);
+
+/// The fields of a line with blanks between them.
+std::vector<std::string_view> by_blanks(std::string_view line);
+
+/// Numbers of one file: a decimal point everywhere, or a decimal comma everywhere.
+class Numbers {
+ public:
+  explicit Numbers(bool comma_allowed) : comma_allowed_(comma_allowed) {}
+  /// A number, NaN where none was taken; an error that says `what` was wanted.
+  Expected<double> reading(std::string_view text, std::uint64_t line, std::string_view what);
+  /// The same, but it must be there.
+  Expected<double> number(std::string_view text, std::uint64_t line, std::string_view what);
+
+ private:
+  bool comma_allowed_;
+  std::uint64_t first_point_ = 0, first_comma_ = 0;  ///< lines with that decimal mark; 0: none
+};
+
+/// A whole number from 1 to `most`; 0 if it is anything else.
+std::uint32_t whole_number(std::string_view text, std::uint32_t most);
+
+/// The axis of the measurement, which must be in the manifest.
+Expected<const Axis*> axis_of(const ReadInput& input);
+
+/// One reading of one axis, SI. A deviation of NaN: it was not taken.
+struct Reading {
+  std::uint32_t run = 0;
+  std::int8_t approach = 0;
+  double target = 0.0, deviation = 0.0;
+  std::uint64_t line = 0;
+  double time = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Collects the readings of one axis.
+class Runs {
+ public:
+  Runs(const ReadInput& input, const Axis& axis, bool angular);
+  /// An error if there is a reading of the same run, direction and target.
+  Expected<void> add(const Reading& reading);
+  Observations& observations() { return obs_; }
+  /// An error if not one reading was taken.
+  Expected<Observations> finish();
+
+ private:
+  std::map<std::tuple<std::uint32_t, std::int8_t, double>, std::uint64_t> lines_;
+  Observations obs_;
+};
+
+/// +1 or -1 if the values only rise or only fall, else 0.
+int sense_of(const std::vector<double>& values);
+
+/// y = offset + slope x by least squares; NaN where the x do not differ.
+struct Straight {
+  double offset = 0.0, slope = 0.0;
+};
+Straight straight_through(const std::vector<double>& x, const std::vector<double>& y);
+
+Number counted(std::string name, std::uint64_t n);
+
+}  // namespace nonio::reading

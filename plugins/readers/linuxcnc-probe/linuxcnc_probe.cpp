@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "linuxcnc_probe.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "lines.h"
+#include "nonio/math/distributions.h"
+#include "nonio/math/sphere.h"
+#include "nonio/sdk/format.h"
+#include "runs.h"
+
+namespace nonio::linuxcnc_probe {
+using namespace reading;
+
+namespace {
+
+constexpr std::size_t columns = 9;  // X Y Z A B C U V W
+constexpr double per_deg = 1.0 / deg_per_rad;
+
+struct Touch {
+  std::array<double, 3> at{};  ///< m
+  double angle = 0.0;          ///< deg
+  std::uint64_t line = 0;
+};
+
+/// What the log does not say.
+struct Wish {
+  double unit = 0.0;               ///< m
+  std::size_t angle_column = 0;    ///< of the rotary axis
+  std::size_t touches = 0;         ///< of one centre; 0: as long as the angle stays
+  double same_angle = 0.0;         ///< deg
+  std::optional<double> radius{};  ///< m
+  double limit = 0.0;              ///< m, largest residual
+};
+
+Expected<Wish> wish_of(const ReadInput& input, const Axis& axis) {
+  Wish wish;
+  const std::string unit = input.options.text("unit");
+  if (unit != "mm" && unit != "inch")
+    return fail(of_option("unit",
+                          "wanted mm or inch, the unit of the program that probed; found "
+                          "none. A log does not say it"));
+  wish.unit = unit == "mm" ? 1e-3 : 0.0254;
+  const std::size_t letter = std::string_view("ABC").find(axis.name.front());
+  if (letter == std::string_view::npos)
+    return fail("wanted a rotary axis named A, B or C as in the log's columns, found \"" +
+                axis.name + "\"");
+  wish.angle_column = 3 + letter;
+  wish.touches = static_cast<std::size_t>(input.options.integer("touches"));
+  wish.same_angle = input.options.number("same_angle_deg");
+  if (const double r = input.options.number("radius_mm"); r > 0.0) wish.radius = 1e-3 * r;
+  wish.limit = 1e-6 * input.options.number("limit_um");
+  return wish;
+}
+
+Expected<std::vector<Touch>> touches_of(std::string_view bytes, const Wish& wish) {
+  std::vector<Touch> touches;
+  Numbers numbers(false);
+  Lines lines(bytes);
+  std::string_view line;
+  while (lines.next(line)) {
+    if (auto error = not_text(line)) return fail(at_line(lines.number(), error->message));
+    const auto fields = by_blanks(line);
+    if (fields.empty()) continue;
+    if (fields.size() != columns)
+      return fail(at_line(lines.number(), "wanted nine numbers, X Y Z A B C U V W, found " +
+                                              std::to_string(fields.size()) +
+                                              " fields: " + shown(line)));
+    std::array<double, columns> values{};
+    for (std::size_t k = 0; k < columns; ++k) {
+      const auto value = numbers.number(fields[k], lines.number(), "a number");
+      if (!value) return fail(value.error());
+      values[k] = *value;
+    }
+    touches.push_back({{values[0] * wish.unit, values[1] * wish.unit, values[2] * wish.unit},
+                       values[wish.angle_column],
+                       lines.number()});
+  }
+  if (touches.empty()) return fail("wanted touches, found none");
+  return touches;
+}
+
+using Group = std::vector<Touch>;
+
+/// Touches of one centre: as many as stated, or as long as the axis stands still.
+Expected<std::vector<Group>> groups_of(const std::vector<Touch>& touches, const Wish& wish) {
+  std::vector<Group> groups;
+  for (const Touch& t : touches) {
+    const bool stands =
+        !groups.empty() && std::fabs(t.angle - groups.back().front().angle) <= wish.same_angle;
+    const bool full = !groups.empty() && wish.touches > 0 && groups.back().size() == wish.touches;
+    if (!groups.empty() && wish.touches > 0 && !full && !stands)
+      return fail(at_line(t.line, "wanted " + std::to_string(wish.touches) +
+                                      " touches at each angle (option touches), found " +
+                                      std::to_string(groups.back().size()) + " at " +
+                                      short_text(groups.back().front().angle, 7) + " deg"));
+    if (groups.empty() || full || !stands) groups.emplace_back();
+    groups.back().push_back(t);
+  }
+  if (wish.touches > 0 && groups.back().size() != wish.touches)
+    return fail(at_line(groups.back().back().line,
+                        "wanted " + std::to_string(wish.touches) +
+                            " touches for the last centre (option touches), found " +
+                            std::to_string(groups.back().size())));
+  return groups;
+}
+
+struct Centre {
+  const Group* group;
+  math::SphereFit fit;
+};
+
+Expected<Centre> centre_of(const Group& group, const Wish& wish) {
+  std::vector<std::array<double, 3>> points;
+  for (const Touch& t : group) points.push_back(t.at);
+  auto fit = math::fit_sphere(points, wish.radius);
+  if (!fit) {
+    Error error = fit.error();
+    error.line = group.front().line;
+    return fail(std::move(error));
+  }
+  for (std::size_t i = 0; i < group.size(); ++i)
+    if (!(std::fabs(fit->residual[i]) <= wish.limit))
+      return fail(at_line(group[i].line, "a touch lies " + fixed_text(1e6 * fit->residual[i], 1) +
+                                             " um off its sphere; wanted at most " +
+                                             fixed_text(1e6 * wish.limit, 1) +
+                                             " (option limit_um). Is one centre made of touches of "
+                                             "two (option touches)?"));
+  return Centre{&group, std::move(*fit)};
+}
+
+Observations begin(const Measurement& m) {
+  Observations obs;
+  obs.measurement = m.id;
+  obs.axes = {
+      {m.axis, true, {}, {}}, {"X", false, {}, {}}, {"Y", false, {}, {}}, {"Z", false, {}, {}}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    Observations::Line line{m.id + " " + "xyz" [k], {}};
+    line.sense[k] = 1.0;
+    obs.lines.push_back(line);
+  }
+  return obs;
+}
+
+/// The scatter of a touch is that of all centres together: the same ball and the same probe.
+void note_spheres(const std::vector<Centre>& centres, double s, int dof, Observations& obs) {
+  std::uint64_t touches = 0;
+  double largest = 0.0, radius = 0.0;
+  for (const Centre& c : centres) {
+    touches += c.group->size();
+    radius += c.fit.radius / static_cast<double>(centres.size());
+    for (const double q : c.fit.cofactor) largest = std::max(largest, q);
+  }
+  const double k = math::coverage_factor(dof);
+  obs.notes.push_back({"probe.spheres",
+                       {counted("centres", centres.size()),
+                        counted("touches", touches),
+                        {"s", s, Quantity::deviation},
+                        {"k", k, Quantity::ratio},
+                        {"U", k * s * std::sqrt(largest), Quantity::deviation},
+                        {"radius", radius, Quantity::length}}});
+}
+
+void put(const std::vector<Centre>& centres, const Wish& wish, double s, Observations& obs) {
+  std::map<std::int64_t, std::uint32_t> visits;  // how often the axis stood there before
+  for (const Centre& c : centres) {
+    const double angle = c.group->front().angle;
+    const auto place = static_cast<std::int64_t>(
+        std::clamp(std::round(angle / std::max(10.0 * wish.same_angle, 1e-9)), -9e18, 9e18));
+    const std::uint32_t run = ++visits[place];
+    for (std::size_t k = 0; k < 3; ++k) {
+      obs.axes[0].position.push_back(angle * per_deg);
+      for (std::size_t x = 0; x < 3; ++x) obs.axes[1 + x].position.push_back(c.fit.centre[x]);
+      obs.deviation.push_back(c.fit.centre[k]);
+      obs.u.push_back(s * std::sqrt(c.fit.cofactor[k]));
+      obs.run.push_back(run);
+      obs.line.push_back(static_cast<std::uint32_t>(k));
+      obs.source_line.push_back(static_cast<std::uint32_t>(c.group->front().line));
+    }
+  }
+}
+
+Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
+  const auto wish = wish_of(input, axis);
+  if (!wish) return fail(wish.error());
+  const auto touches = touches_of(input.bytes, *wish);
+  if (!touches) return fail(touches.error());
+  const auto groups = groups_of(*touches, *wish);
+  if (!groups) return fail(groups.error());
+  std::vector<Centre> centres;
+  double rss = 0.0;
+  int dof = 0;
+  for (const Group& group : *groups) {
+    auto centre = centre_of(group, *wish);
+    if (!centre) return fail(centre.error());
+    rss += centre->fit.rss;
+    dof += centre->fit.dof;
+    centres.push_back(std::move(*centre));
+  }
+  const double s = std::sqrt(rss / dof);
+  Observations obs = begin(input.measurement);
+  put(centres, *wish, s, obs);
+  if (!(s > 0.0)) obs.u.clear();  // touches without any scatter say nothing of it
+  note_spheres(centres, s, dof, obs);
+  return obs;
+}
+
+Expected<Observations> read(const ReadInput& input) {
+  const auto axis = axis_of(input);
+  if (!axis) return fail(axis.error());
+  if (!(*axis)->rotary)
+    return fail("wanted a rotary axis, found the linear axis \"" + (*axis)->name + "\"");
+  auto obs = read_file(input, **axis);
+  if (!obs && obs.error().key.empty()) obs.error().file = input.measurement.file;
+  return obs;
+}
+
+/// The first lines are nine numbers each.
+bool recognises(std::string_view head) {
+  Lines lines(head);
+  std::string_view line;
+  int seen = 0;
+  while (seen < 3 && lines.next(line)) {
+    if (lines.offset() == head.size() && seen > 0) break;  // the last line may be cut
+    const auto fields = by_blanks(line);
+    if (fields.empty()) continue;
+    if (fields.size() != columns) return false;
+    for (const std::string_view field : fields)
+      if (parse_number(field, false).kind != Field::Kind::taken) return false;
+    ++seen;
+  }
+  return seen > 0;
+}
+
+}  // namespace
+
+Reader reader() {
+  Reader r;
+  r.info = {
+      "linuxcnc-probe",
+      "1.0",
+      "Probe logs of LinuxCNC (PROBEOPEN): centres of a ball from touches.",
+      {{"unit", std::string(), "", "Unit of the program that probed.", {"", "mm", "inch"}},
+       {"touches",
+        std::int64_t{0},
+        "",
+        "Touches of one centre; 0: all while the rotary axis stands still.",
+        {},
+        0.0,
+        1e6},
+       {"same_angle_deg",
+        0.001,
+        "deg",
+        "How far the rotary axis may be off and still stand there.",
+        {},
+        0.0,
+        1.0},
+       {"radius_mm",
+        0.0,
+        "mm",
+        "Radius of ball and stylus together, if it is known; 0: fitted.",
+        {},
+        0.0,
+        1000.0},
+       {"limit_um", 100.0, "um", "A touch farther off its sphere is refused.", {}, 0.001, 1e6}}};
+  r.recognises = recognises;
+  r.reads = [](std::string_view kind) { return kind == "ball-centres"; };
+  r.read = read;
+  return r;
+}
+
+}  // namespace nonio::linuxcnc_probe

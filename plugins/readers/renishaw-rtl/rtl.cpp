@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rtl.h"
+
+#include <cmath>
+#include <limits>
+
+#include "air.h"
+#include "fields.h"
+#include "runs_of.h"
+
+namespace nonio::renishaw {
+using namespace reading;
+
+namespace {
+
+constexpr double sure = 1e-6;  ///< two real files agree to 0.1e-6
+
+double mean_material(const Environment& e, bool at_end) {
+  double sum = 0.0;
+  for (const Environment::Pair& p : e.material) sum += at_end ? p.end : p.start;
+  return sum / static_cast<double>(e.material.size());
+}
+
+/// Env factor = (half wavelength in air)(1 - alpha (T - 20)) says whether the deviations have been
+/// brought to 20 degC with alpha: +1 yes, -1 no, 0 cannot be told. NaN fails every comparison.
+int normalised(const Environment& e, bool at_end) {
+  const auto at = [&](const Environment::Pair& p) { return at_end ? p.end : p.start; };
+  const Air air{at(e.air), 1e3 * at(e.pressure), at(e.humidity)};
+  if (!(air.pressure > 3e4 && air.pressure < 1.3e5 && air.temperature > -40.0 &&
+        air.temperature < 80.0 && air.humidity >= 0.0 && air.humidity <= 100.0))
+    return 0;
+  const double plain = half_wavelength(air);
+  const double growth = 1e-6 * at(e.expansion) * (mean_material(e, at_end) - 20.0);
+  const double factor = 1e-6 * at(e.factor);
+  const bool with = std::fabs(factor / (plain * (1.0 - growth)) - 1.0) <= sure;
+  const bool without = std::fabs(factor / plain - 1.0) <= sure;
+  return with && !without ? 1 : without && !with ? -1 : 0;
+}
+
+/// At the first and the last reading: the file has no value between its start and its end.
+void put_ends(std::vector<double>& column, std::size_t n, double start, double end) {
+  if (!std::isfinite(start) || !std::isfinite(end) || n < 2) return;
+  column.assign(n, std::numeric_limits<double>::quiet_NaN());
+  column.front() = start;
+  column.back() = end;
+}
+
+void add_environment(const Environment& e, const Axis& axis, Observations& obs) {
+  const std::size_t n = obs.size();
+  put_ends(obs.air, n, e.air.start, e.air.end);
+  put_ends(obs.pressure, n, 10.0 * e.pressure.start, 10.0 * e.pressure.end);
+  put_ends(obs.humidity, n, e.humidity.start, e.humidity.end);
+  const bool sensor = !e.material.empty();
+  if (sensor) put_ends(obs.material, n, mean_material(e, false), mean_material(e, true));
+  if (e.unconnected > 0)
+    obs.notes.push_back(
+        {"renishaw.sensors",
+         {counted("connected", e.material.size()), counted("unconnected", e.unconnected)}});
+  const Number alpha{"expansion", 1e-6 * e.expansion.start, Quantity::expansion};
+  const int at_start = sensor ? normalised(e, false) : 0, at_end = sensor ? normalised(e, true) : 0;
+  if (at_start != at_end || at_start == 0)
+    obs.notes.push_back({"renishaw.normalised-unclear"});
+  else
+    obs.notes.push_back(
+        {at_start > 0 ? "renishaw.normalised" : "renishaw.not-normalised", {alpha}});
+  if (axis.expansion && std::fabs(*axis.expansion - alpha.value) > 0.05e-6)
+    obs.notes.push_back(
+        {"renishaw.other-expansion", {alpha, {"manifest", *axis.expansion, Quantity::expansion}}});
+}
+
+Expected<Observations> in_file(Expected<Observations> result, const ReadInput& input) {
+  if (!result && result.error().file.empty() && result.error().key.empty())
+    result.error().file = input.measurement.file;
+  return result;
+}
+
+Expected<Observations> read_rtl(const ReadInput& input) {
+  const auto axis = axis_of(input);
+  if (!axis) return fail(axis.error());
+  if ((*axis)->rotary)
+    return fail("wanted a linear axis for linear measurements, found the rotary axis \"" +
+                (*axis)->name + "\"");
+  const auto file = parse_run_file(input.bytes, "rtl", "Linear");
+  if (!file) return in_file(fail(file.error()), input);
+  Runs runs(input, **axis, false);
+  if (auto ok = add_runs(*file, Units{}, runs); !ok) return in_file(fail(ok.error()), input);
+  auto obs = runs.finish();
+  if (!obs) return in_file(std::move(obs), input);
+  if (auto ok = add_user_text(*file, input, *obs); !ok) return in_file(fail(ok.error()), input);
+  if (file->environment) add_environment(*file->environment, **axis, *obs);
+  return obs;
+}
+
+/// Every file of this family but rta, to refuse the others with a word for them.
+bool recognises(std::string_view head) {
+  return trimmed(head.substr(0, head.find_first_of("\r\n"))) == "HEADER::" && !is_type(head, "rta");
+}
+
+}  // namespace
+
+Reader rtl_reader() {
+  Reader reader;
+  reader.info = {
+      "renishaw-rtl",
+      "1.0",
+      "Linear measurements of Renishaw laser interferometers (.rtl).",
+      {code_page_option(),
+       {"ignore_axis", false, "",
+        "The axis that the operator typed into the file is wrong; the manifest's holds."}}};
+  reader.recognises = recognises;
+  reader.reads = [](std::string_view kind) { return kind == "axis"; };
+  reader.read = read_rtl;
+  return reader;
+}
+
+}  // namespace nonio::renishaw

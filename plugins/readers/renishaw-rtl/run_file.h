@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/sdk/error.h"
+
+namespace nonio::renishaw {
+
+/// A line of the file, without its end.
+struct FileLine {
+  std::uint64_t number = 0;
+  std::string_view text;
+};
+
+/// The record ENVIRONMENT: values at the start and at the end, NaN where there is none.
+struct Environment {
+  struct Pair {
+    double start, end;
+  };
+  Pair air, pressure, humidity;  ///< degC, kPa, %
+  std::vector<Pair> material;    ///< degC, of the sensors that are connected
+  std::size_t unconnected = 0;   ///< sensors that read -10 twice
+  Pair factor, expansion;        ///< um (effective half wavelength); ppm/K
+  std::string_view times;        ///< bytes as they stand there
+};
+
+/// A file with runs over targets, in its own units.
+struct RunFile {
+  struct Row {
+    std::uint32_t run = 0, target = 0;  ///< from 1
+    double value = 0.0;                 ///< NaN: not taken
+    std::uint64_t line = 0;
+  };
+  std::string type, owner, version;
+  std::vector<double> targets;  ///< as listed
+  std::vector<std::int64_t> flags;
+  std::vector<FileLine> user;  ///< the seven lines of USER-TEXT; its keys are translated
+  std::uint32_t run_count = 0;
+  std::vector<Row> rows;  ///< each run and target once
+  std::optional<Environment> environment;
+};
+
+/// Whether a file begins with HEADER:: and says that it is of this type ("rtl"); any case.
+bool is_type(std::string_view head, std::string_view type);
+
+/// A whole file, or what is wrong with it and where.
+Expected<RunFile> parse_run_file(std::string_view bytes, std::string_view type,
+                                 std::string_view owner);
+
+}  // namespace nonio::renishaw

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wide_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "column_map.h"
+#include "lines.h"
+#include "nonio/sdk/format.h"
+#include "runs.h"
+
+namespace nonio::wide_table {
+using namespace reading;
+using Role = Column::Role;
+using Way = Column::Way;
+
+namespace {
+
+/// The numbers of the table as they stand there; NaN where there is none.
+struct Table {
+  std::vector<std::vector<double>> rows;
+  std::vector<std::uint64_t> lines;
+  std::vector<double> targets;
+  int decimals = 0;  ///< most digits behind the decimal mark
+};
+
+int decimals_of(std::string_view number) {
+  const std::size_t mark = std::min(number.find_first_of(".,"), number.size());
+  return static_cast<int>(std::min<std::size_t>(number.size() - mark, 16)) - 1;
+}
+
+class TableReader {
+ public:
+  explicit TableReader(const Map& map) : map_(map), numbers_(map.separator != ',') {}
+
+  Expected<Table> read(std::string_view bytes) {
+    Lines lines(bytes);
+    std::string_view line;
+    while (lines.next(line)) {
+      if (lines.number() < map_.first_line) continue;
+      if (map_.last_line != 0 && lines.number() > map_.last_line) break;
+      if (content_of(line) != Content::fields) continue;
+      if (auto error = not_text(line)) return fail(at_line(lines.number(), error->message));
+      if (auto ok = row(line, lines.number()); !ok) return fail(ok.error());
+    }
+    if (table_.rows.size() < 2)
+      return fail("wanted two targets or more from line " + std::to_string(map_.first_line) +
+                  " on, found " + std::to_string(table_.rows.size()));
+    return std::move(table_);
+  }
+
+ private:
+  std::vector<std::string_view> fields_of(std::string_view line, bool& sound) const {
+    sound = true;
+    if (map_.separator == ' ') return by_blanks(line);
+    if (map_.separator == '|') {
+      line = trimmed(line);
+      if (line.starts_with('|')) line.remove_prefix(1);
+      if (line.ends_with('|')) line.remove_suffix(1);
+    }
+    std::vector<std::string_view> fields;
+    sound = split(line, map_.separator, fields);
+    return fields;
+  }
+
+  Expected<void> row(std::string_view line, std::uint64_t number) {
+    bool sound = false;
+    const auto fields = fields_of(line, sound);
+    if (!sound || fields.size() != map_.columns.size())
+      return fail(at_line(number, "wanted " + std::to_string(map_.columns.size()) +
+                                      " fields as in option columns, found " +
+                                      std::to_string(fields.size()) + ": " + shown(line) +
+                                      "; rows begin and end at first_line and last_line"));
+    std::vector<double> values;
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      const Role role = map_.columns[k].role;
+      if (role == Role::ignore) {
+        values.push_back(0.0);
+        continue;
+      }
+      const bool target = role == Role::target;
+      const std::string what =
+          (target ? "a target in column " : "a number in column ") + std::to_string(k + 1);
+      const auto value = target ? numbers_.number(fields[k], number, what)
+                                : numbers_.reading(fields[k], number, what);
+      if (!value) return fail(value.error());
+      if (target) table_.targets.push_back(*value);
+      if (!target) table_.decimals = std::max(table_.decimals, decimals_of(fields[k]));
+      values.push_back(*value);
+    }
+    table_.rows.push_back(std::move(values));
+    table_.lines.push_back(number);
+    return {};
+  }
+
+  const Map& map_;
+  Numbers numbers_;
+  Table table_;
+};
+
+std::int8_t direction(Way way, int listed) {
+  const int sign = way == Way::plus      ? 1
+                   : way == Way::minus   ? -1
+                   : way == Way::forward ? listed
+                                         : -listed;
+  return static_cast<std::int8_t>(sign);
+}
+
+/// Column of that role that goes that way; npos if there is none.
+std::size_t column(const Map& map, Role role, int way, int listed) {
+  for (std::size_t k = 0; k < map.columns.size(); ++k)
+    if (const Column& c = map.columns[k];
+        c.role == role && (way == 0 || direction(c.way, listed) == way))
+      return k;
+  return std::string::npos;
+}
+
+/// A column of averages beside the runs, taken for one more run, would make every scatter smaller.
+Expected<void> no_average(const Map& map, const Table& table, int listed) {
+  if (table.rows.size() < 3) return {};
+  for (std::size_t k = 0; k < map.columns.size(); ++k) {
+    if (map.columns[k].role != Role::reading) continue;
+    double largest = 0.0, size = 0.0;
+    std::size_t others = 0;
+    for (const auto& row : table.rows) {
+      double sum = 0.0;
+      others = 0;
+      for (std::size_t j = 0; j < row.size(); ++j) {
+        const bool same_way =
+            map.columns[j].role == Role::reading && j != k &&
+            direction(map.columns[j].way, listed) == direction(map.columns[k].way, listed);
+        if (!same_way) continue;
+        sum += row[j];
+        ++others;
+        size = std::max(size, std::fabs(row[j] - row[k]));
+      }
+      largest = std::max(largest, std::fabs(sum / static_cast<double>(others) - row[k]));
+      if (std::isnan(sum) || std::isnan(row[k])) size = 0.0;  // cannot be told
+    }
+    if (others >= 2 && size > 0.0 && largest <= 0.01 * size)
+      return fail(of_option("columns", "column " + std::to_string(k + 1) +
+                                           " is the mean of the other runs that go this way at "
+                                           "every target; \"ignore\" it"));
+  }
+  return {};
+}
+
+/// A print shows its own signs: the mean of both ways, and Dead Zone = reverse - forward.
+Expected<void> check_print(const Map& map, const Table& table, int listed) {
+  const std::size_t forward = column(map, Role::mean, listed, listed),
+                    reverse = column(map, Role::mean, -listed, listed);
+  if (forward == std::string::npos || reverse == std::string::npos) return {};
+  const std::size_t both = column(map, Role::both, 0, listed),
+                    dead = column(map, Role::dead_zone, 0, listed);
+  const double rounding = 1.6 * std::pow(10.0, -table.decimals);  // of three numbers, half each
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto& row = table.rows[i];
+    const double f = row[forward], r = row[reverse];
+    if (both != std::string::npos && std::fabs(row[both] - 0.5 * (f + r)) > rounding)
+      return fail(
+          at_line(table.lines[i], "wanted \"mean\" to be that of forward and reverse, found " +
+                                      short_text(row[both], 6) + " of " + short_text(f, 6) +
+                                      " and " + short_text(r, 6) + "; is the column map right?"));
+    if (dead != std::string::npos && std::fabs(row[dead] - (r - f)) > rounding)
+      return fail(at_line(table.lines[i],
+                          "wanted \"dead zone\" to be reverse - forward (the opposite sign of the "
+                          "reversal of ISO 230-2), found " +
+                              short_text(row[dead], 6) + " of " + short_text(r, 6) + " - " +
+                              short_text(f, 6) + "; are the two columns swapped?"));
+  }
+  return {};
+}
+
+void note_means(const Map& map, const Table& table, bool rotary, Observations& obs) {
+  double largest = 0.0;
+  for (const auto& row : table.rows)
+    for (std::size_t k = 0; k < row.size(); ++k)
+      if (map.columns[k].role == Role::two_sigma && row[k] > largest) largest = row[k];
+  obs.notes.push_back(
+      {"wide.means", {{"largest", 0.5 * largest * map.value_unit, deviation_of(rotary)}}});
+}
+
+Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
+  const auto map = map_of(input.options, axis.rotary);
+  if (!map) return fail(map.error());
+  const auto table = TableReader(*map).read(input.bytes);
+  if (!table) return fail(table.error());
+  const int listed = sense_of(table->targets);
+  if (listed == 0)
+    return fail(at_line(table->lines.front(), "wanted targets that only rise or only fall"));
+  if (auto ok = map->means() ? check_print(*map, *table, listed) : no_average(*map, *table, listed);
+      !ok)
+    return fail(ok.error());
+  Runs runs(input, axis, axis.rotary);
+  for (std::size_t i = 0; i < table->rows.size(); ++i)
+    for (std::size_t k = 0; k < map->columns.size(); ++k) {
+      const Column& c = map->columns[k];
+      if (c.role != Role::reading && c.role != Role::mean) continue;
+      const double value = table->rows[i][k], target = table->targets[i] * map->target_unit;
+      const double deviation =
+          map->positions ? value * map->value_unit - target : map->sign * value * map->value_unit;
+      if (auto ok = runs.add(
+              {std::max(c.run, 1U), direction(c.way, listed), target, deviation, table->lines[i]});
+          !ok)
+        return fail(ok.error());
+    }
+  auto obs = runs.finish();
+  if (obs && map->means()) note_means(*map, *table, axis.rotary, *obs);
+  return obs;
+}
+
+Expected<Observations> read(const ReadInput& input) {
+  const auto axis = axis_of(input);
+  if (!axis) return fail(axis.error());
+  auto obs = read_file(input, **axis);
+  if (!obs && obs.error().key.empty()) obs.error().file = input.measurement.file;
+  return obs;
+}
+
+}  // namespace
+
+Reader reader() {
+  Reader r;
+  r.info = {
+      "wide-table",
+      "1.0",
+      "Tables with a row for each target and a column for each run and direction, as the user maps "
+      "them; only where the measurement names this reader.",
+      {{"columns", std::vector<std::string>{}, "",
+        "What each column is, in order: target, ignore, \"1 +\", \"1 -\", \"1 forward\", \"mean "
+        "+\", \"2s +\", mean, \"dead zone\"."},
+       {"values",
+        std::string(),
+        "",
+        "What the values are.",
+        {"", "actual - target", "target - actual", "positions"}},
+       {"target_unit", std::string(), "", "mm, um, m, inch; deg, rad, mrad, arcsec."},
+       {"value_unit", std::string(), "", "um, mm, nm, m, inch; arcsec, deg, urad, mrad, rad."},
+       {"separator",
+        std::string(),
+        "",
+        "What stands between the columns.",
+        {"", ",", ";", "tab", "blank", "|"}},
+       {"first_line", std::int64_t{1}, "", "Line of the first row.", {}, 1.0, 4e9},
+       {"last_line",
+        std::int64_t{0},
+        "",
+        "Line of the last row; 0: the end of the file.",
+        {},
+        0.0,
+        4e9}}};
+  // Nobody could tell it from any other table.
+  r.recognises = [](std::string_view) { return false; };
+  r.reads = [](std::string_view kind) { return kind == "axis"; };
+  r.read = read;
+  return r;
+}
+
+}  // namespace nonio::wide_table
