@@ -139,12 +139,14 @@ class CampaignReader {
       any = true;
       if (r.recognises(bytes.substr(0, 4096))) return &r;
     }
+    const std::string refused = context_.plugins->refusals();
     if (any)
       return fail(
           Error{"no reader knows the format of this file; wanted a CSV with a header row, or "
-                "the format of an installed reader (`nonio plugins`)",
+                "the format of an installed reader (`nonio plugins`)" +
+                    (refused.empty() ? "" : "; of the plugins " + refused),
                 m.file});
-    if (const std::string refused = context_.plugins->refusals(); !refused.empty())
+    if (!refused.empty())
       return fail(at("measurement." + m.id + ".kind", "no reader takes measurements of kind \"" +
                                                           m.kind + "\", and of the plugins " +
                                                           refused));
