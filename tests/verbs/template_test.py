@@ -45,7 +45,7 @@ class TemplateCheck(unittest.TestCase):
         self.assertIn("words/it/certificate.toml: the places in braces of \"amendment.replaces\"", self.complaint())
 
     def test_a_letter_that_the_fonts_lack(self):
-        self.change("words/zh/results.toml", "公差", "公差\U0001f600")
+        self.change("words/zh/results.toml", 'tolerance = "', 'tolerance = "\U0001f600')
         self.assertIn("words/zh/results.toml: results.tolerance", self.complaint())
 
     def test_a_missing_key(self):
