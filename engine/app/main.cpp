@@ -66,7 +66,8 @@ void print_summary(const host::Night& night, const fs::path& out, bool json) {
               << "\n";
   else
     std::cout << done << " done, " << unchanged << " unchanged, " << failed << " failed; "
-              << attention << (attention == 1 ? " asks" : " ask") << " for attention: " << (out / "summary.txt").string() << "\n";
+              << attention << (attention == 1 ? " asks" : " ask")
+              << " for attention: " << (out / "summary.txt").string() << "\n";
 }
 
 int run(host::RunOptions options, const Common& common) {

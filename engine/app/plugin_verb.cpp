@@ -66,6 +66,11 @@ class CheckReport {
     else
       std::cout << passed << " passed, " << failed << " failed, " << crashed << " crashed, "
                 << counts_[3] << " skipped; seed " << options_.request.seed << "\n";
+    if (passed + failed + crashed + counts_[3] == 0) {
+      std::cerr << "nonio plugin check: no plugin here has the check " << options_.request.only
+                << "\n";
+      return exit_usage;
+    }
     return failed + crashed == 0 ? exit_done : exit_failed;
   }
 

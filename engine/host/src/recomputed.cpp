@@ -55,7 +55,8 @@ class Comparison {
 /// The parts of an analysis that are numbers.
 Json values_of(const Json& analysis) {
   Json out = Json::object();
-  for (const char* key : {"values", "points", "point_units", "point_U", "rows", "row_units", "series"})
+  for (const char* key :
+       {"values", "points", "point_units", "point_U", "rows", "row_units", "series"})
     if (analysis.contains(key)) out[key] = analysis[key];
   return out;
 }

@@ -11,7 +11,6 @@
 #include "csv.h"
 
 namespace nonio::csv {
-using namespace reading;
 namespace {
 
 using namespace std::string_literals;

@@ -9,7 +9,6 @@
 #include "csv.h"
 
 namespace nonio::csv {
-using namespace reading;
 namespace {
 
 Measurement measurement(const std::string& kind) {

@@ -104,7 +104,8 @@ bool said(const std::set<std::string>& quotes, const std::string& id) {
   if (quotes.count(id)) return true;
   for (std::size_t k = 1; k < id.size(); ++k) {
     const char before = id[k - 1], behind = id[k];
-    const bool seam = before == '.' || before == '-' || behind == '.' || behind == '-' || behind == '_';
+    const bool seam =
+        before == '.' || before == '-' || behind == '.' || behind == '-' || behind == '_';
     if (seam && quotes.count(id.substr(k)) && said(quotes, id.substr(0, k))) return true;
   }
   const std::size_t x = id.find(" x ");
