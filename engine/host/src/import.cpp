@@ -222,7 +222,7 @@ class Importer {
           model != found.front().places.end() && !machine->contains("model"))
         machine->insert("model", model->second);
     std::ostringstream out;
-    for (const std::string& lack : campaign.lacks) out << "# to fill: " << lack << "\n";
+    for (const std::string& lack : campaign.lacks) out << "# to fill: " << one_line(lack) << "\n";
     out << "format = 1\n\n" << root << "\n";
     for (const ImportedFile& f : campaign.files) {
       out << "\n[[measurement]]\n";
