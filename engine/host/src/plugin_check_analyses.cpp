@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Laws of analyses: what changes in the readings changes the results so, and no other way.
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <numeric>
 
 #include "nonio/sdk/format.h"
@@ -192,7 +193,8 @@ Verdict analysis_again(const Analysis& a, const Bench& bench) {
     const Said two = said_of(a, s);
     if (std::string why = same_names(one, two); !why.empty()) return why;
     for (std::size_t i = 0; i < one.values.size(); ++i)
-      if (std::memcmp(&one.values[i].value, &two.values[i].value, sizeof(double)) != 0)
+      if (std::bit_cast<std::uint64_t>(one.values[i].value) !=
+          std::bit_cast<std::uint64_t>(two.values[i].value))
         return one.values[i].name + " is another one the second time";
     return one.texts == two.texts ? "" : "findings or notes are others the second time";
   });
