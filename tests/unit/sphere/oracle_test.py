@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Spheres from touches by a method of its own: damped Newton on the sum of squares with derivatives by
-differences, in exact-enough floats; the cofactor from the curvature of the sum of squares there."""
+"""Spheres from touches by a method of its own: damped Newton on the sum of squares with its full second
+derivatives, solved by elimination; the cofactor as the inverse of J'J, formed and inverted here."""
 import math
 import random
 import subprocess
