@@ -288,12 +288,14 @@ Verdict reader_inch(const Reader& r, const Bench& bench) {
       const auto one = read(r, mm, f.bytes), two = read(r, inch, f.bytes);
       if (!one || !two || one->size() != two->size() || one->axes.empty())
         return "it fails in inch";
-      for (std::size_t i = 0; i < one->size(); ++i) {
-        const double a = one->axes[0].position[i], b = two->axes[0].position[i];
-        if (std::fabs(25.4 * a - b) > 1e-9 * std::fabs(b))
-          return "a target of " + short_text(a * 1e3, 6) + " mm is one of " +
-                 short_text(b * 1e3, 6) + " mm in inch: wanted 25.4 times";
-      }
+      for (std::size_t axis = 0; axis < one->axes.size(); ++axis)
+        for (std::size_t i = 0; i < one->size(); ++i) {
+          const double a = one->axes[axis].position[i], b = two->axes[axis].position[i];
+          const double times = one->axes[axis].rotary ? 1.0 : 25.4;  // an angle stays what it is
+          if (std::fabs(times * a - b) > 1e-9 * std::fabs(b))
+            return "a target of " + short_text(a * 1e3, 6) + " mm or mrad is one of " +
+                   short_text(b * 1e3, 6) + " in inch: wanted " + short_text(times, 3) + " times";
+        }
       return {};
     });
   }

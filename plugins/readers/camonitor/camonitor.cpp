@@ -117,7 +117,7 @@ class Sampler {
     if (!(std::fabs(value) < 1e9) || value != std::floor(value))
       return fail(at_line(e.line, "wanted a whole test number, found " + shown(e.value)));
     const auto number = static_cast<std::int64_t>(value);
-    if (number > 9999)
+    if (number > 9999 || number <= -1000)
       return fail(at_line(e.line,
                           "wanted a test number of direction, cycle (1 to 9) and position "
                           "(01 to 99), found " +
@@ -150,6 +150,19 @@ Expected<std::map<std::uint32_t, double>> targets_of(const std::vector<Sample>& 
                                       short_text(known->second, 9)));
   }
   return targets;
+}
+
+/// A pass that was begun has every position.
+Expected<void> whole(const std::vector<Sample>& samples, std::size_t positions) {
+  std::map<std::pair<int, std::uint32_t>, std::size_t> passes;
+  for (const Sample& s : samples) ++passes[{s.step.direction, s.step.cycle}];
+  for (const auto& [pass, count] : passes)
+    if (count != positions)
+      return fail("wanted " + std::to_string(positions) + " positions " +
+                  (pass.first > 0 ? "forward" : "backward") + " in cycle " +
+                  std::to_string(pass.second) + ", found " + std::to_string(count) +
+                  "; was the log cut?");
+  return {};
 }
 
 /// Reference over target: a user sees it, and the other way round is refused.
@@ -191,6 +204,7 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
     return fail("wanted test numbers (1101 ...) of PV " + wiring->test + ", found none");
   const auto targets = targets_of(*samples);
   if (!targets) return fail(targets.error());
+  if (auto ok = whole(*samples, targets->size()); !ok) return fail(ok.error());
   std::vector<double> listed;
   for (const auto& [position, target] : *targets) listed.push_back(target);
   const int sense = sense_of(listed);

@@ -60,6 +60,11 @@ class Parser {
             at_line(lines.number(), "wanted NAME=VALUE or a comment, found " + shown(line)));
       if (auto ok = take(*a, lines.number()); !ok) return fail(ok.error());
     }
+    // The tools end every line; a number that was cut would still be a number.
+    if (!bytes.ends_with('\n'))
+      return fail(at_line(lines.number(),
+                          "wanted an end of the last line, found none; was the "
+                          "file cut?"));
     return std::move(out_);
   }
 
