@@ -95,9 +95,11 @@ class Parser {
       return true;
     }
     if (word == "again") {  // the same file, options and machine
+      const bool lacks_file = lacks_file_;
       finish();
       begin();
-      return !now_.bytes.empty();
+      lacks_file_ = lacks_file;
+      return lacks_file || !now_.bytes.empty();
     }
     return open_ && take_key(word, rest);
   }
