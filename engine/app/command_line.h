@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+/// The command line as data: one table of verbs and their arguments. From it come parsing, help,
+/// the nearest word for a mistyped one, the man page and the completion of shells.
+namespace nonio::app {
+
+inline constexpr int exit_done = 0, exit_failed = 1, exit_usage = 2, exit_interrupted = 130;
+
+/// Where the value of an argument goes; a bool is a flag, a list may be given several times.
+using Target = std::variant<bool*, std::string*, std::vector<std::string>*, std::int64_t*,
+                            std::uint64_t*, double*>;
+
+struct Argument {
+  /// What a value has to be before the verb is run; completion offers files accordingly.
+  enum class Takes { anything, folder, file, path };
+
+  std::string name;  ///< "--out", or in capital letters, "SITE": a place without a name
+  Target target;
+  std::string help;  ///< lines of up to 80 characters
+  bool required = false;
+  Takes takes = Takes::anything;
+  bool exists = false;                               ///< the folder, file or path must be there
+  std::vector<std::string> choices{};                ///< empty: any
+  std::optional<std::pair<double, double>> range{};  ///< of a number, both ends included
+  std::string bare{};          ///< the value of `--name` without one; empty: it needs one
+  bool shows_default = false;  ///< help says which value it has if it is not given
+};
+
+struct Verb {
+  std::string name, summary;
+  std::vector<Argument> arguments{};
+  std::string footer{};  ///< what the help says below the arguments, with an example
+  std::function<int()> run{};
+  std::vector<Verb> verbs{};  ///< instead of `run`: `nonio plan triples`
+};
+
+struct Program {
+  std::string name, version, summary, footer;
+  std::vector<Verb> verbs;
+};
+
+/// Fills the targets and runs the verb. Help goes to stdout, what is wrong to stderr with the
+/// nearest word that would be right. The exit status: that of the verb, 0 for help, 2 for a
+/// mistake.
+int run(const Program& program, int argc, const char* const* argv);
+
+/// The help of one verb, `words` = {"plan", "triples"}, or of the program; nothing if there is
+/// none.
+std::optional<std::string> help_of(const Program& program, const std::vector<std::string>& words);
+
+/// A page for man(1).
+void write_man_page(const Program& program, std::ostream& out);
+/// Completion for "bash" or "zsh".
+void write_completion(const Program& program, const std::string& shell, std::ostream& out);
+
+}  // namespace nonio::app

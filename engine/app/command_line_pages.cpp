@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is written from the table of verbs for others to read: man(1), bash and zsh.
+#include <algorithm>
+#include <ostream>
+
+#include "command_line.h"
+
+namespace nonio::app {
+
+namespace {
+
+bool is_positional(const Argument& a) { return !a.name.starts_with('-'); }
+bool is_flag(const Argument& a) { return std::holds_alternative<bool*>(a.target); }
+
+/// Every verb that can be run or has verbs below it, with the words that lead to it.
+template <class Visit>
+void each(const std::vector<Verb>& verbs, const std::string& path, const Visit& visit) {
+  for (const Verb& v : verbs) {
+    visit(path + " " + v.name, v);
+    each(v.verbs, path + " " + v.name, visit);
+  }
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::string replaced(std::string text, char what, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+    text.replace(at, 1, by);
+  return text;
+}
+
+std::string roff(const std::string& text) {
+  std::string out = replaced(replaced(text, '\\', "\\e"), '-', "\\-");
+  std::string lines;
+  bool begins = true;
+  for (const char c : out) {
+    if (begins && (c == '.' || c == '\'')) lines += "\\&";
+    lines += c;
+    begins = c == '\n';
+  }
+  return lines;
+}
+
+void write_roff_block(std::ostream& out, const std::string& text) {
+  if (!text.empty()) out << ".PP\n.nf\n" << roff(text) << "\n.fi\n";
+}
+
+std::string synopsis(const std::string& path, const Verb& v) {
+  std::string line = path;
+  for (const Argument& a : v.arguments)
+    if (is_positional(a))
+      line += " " + std::string(a.required ? "" : "[") + a.name +
+              (std::holds_alternative<std::vector<std::string>*>(a.target) ? "..." : "") +
+              (a.required ? "" : "]");
+    else if (a.required)
+      line += " " + a.name + " ...";
+  if (!v.verbs.empty()) {
+    line += " ";
+    for (const Verb& inner : v.verbs) line += (&inner == &v.verbs.front() ? "" : "|") + inner.name;
+  }
+  return line;
+}
+
+std::string in_single_quotes(const std::string& text) {
+  return "'" + replaced(text, '\'', "'\\''") + "'";
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
+  return out;
+}
+
+/// What bash offers where a value of the argument stands.
+std::string bash_values(const Argument& a) {
+  if (!a.choices.empty()) return "-W " + in_single_quotes(listed(a.choices));
+  switch (a.takes) {
+    case Argument::Takes::folder:
+      return "-d";
+    case Argument::Takes::file:
+    case Argument::Takes::path:
+      return "-f";
+    case Argument::Takes::anything:
+      break;
+  }
+  return "-W ''";
+}
+
+void write_bash(const Program& program, std::ostream& out) {
+  const std::string& name = program.name;
+  out << "# bash completion for " << name << "; made by `" << name << " completion bash`\n_" << name
+      << "() {\n"
+         "  local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD - 1]} path="
+      << name
+      << " i\n"
+         "  for ((i = 1; i < COMP_CWORD; i++)); do\n"
+         "    case \"$path ${COMP_WORDS[i]}\" in\n";
+  each(program.verbs, name,
+       [&](const std::string& path, const Verb&) { out << "      \"" << path << "\") ;;\n"; });
+  out << "      *) continue ;;\n    esac\n    path=\"$path ${COMP_WORDS[i]}\"\n  done\n"
+         "  local offer=\"-W ''\"\n"
+         "  case \"$path $prev\" in\n";
+  each(program.verbs, name, [&](const std::string& path, const Verb& v) {
+    for (const Argument& a : v.arguments)
+      if (!is_positional(a) && !is_flag(a) && a.bare.empty())
+        out << "    \"" << path << " " << a.name << "\") offer="
+            << "\"" << bash_values(a) << "\" ;;\n";
+  });
+  out << "    *)\n      case \"$path\" in\n";
+  const auto write_words = [&](const std::string& path, const Verb& v) {
+    std::vector<std::string> words, values;
+    for (const Verb& inner : v.verbs) words.push_back(inner.name);
+    for (const Argument& a : v.arguments)
+      if (is_positional(a))
+        values.push_back(bash_values(a));
+      else
+        words.push_back(a.name);
+    words.emplace_back("--help");
+    out << "        \"" << path << "\") offer=\"-W '" << listed(words) << "'\"";
+    if (!values.empty()) out << "; [[ $cur == -* ]] || offer=\"" << values.front() << "\"";
+    out << " ;;\n";
+  };
+  write_words(name, {name, {}, {}, {}, {}, program.verbs});
+  each(program.verbs, name, write_words);
+  out << "      esac ;;\n  esac\n"
+         "  case \"$offer\" in\n"
+         "    -d | -f) compopt -o filenames; mapfile -t COMPREPLY < <(compgen $offer -- \"$cur\") "
+         ";;\n"
+         "    *) mapfile -t COMPREPLY < <(eval \"compgen $offer\" -- '\"$cur\"') ;;\n"
+         "  esac\n}\ncomplete -F _"
+      << name << " " << name << "\n";
+}
+
+std::string zsh_text(const std::string& text) {
+  std::string out = replaced(one_line(text), '\\', "\\\\");
+  for (const char c : {'[', ']', ':'}) out = replaced(out, c, std::string("\\") + c);
+  return replaced(out, '\'', "'\\''");
+}
+
+std::string zsh_values(const Argument& a) {
+  if (!a.choices.empty()) return "(" + listed(a.choices) + ")";
+  switch (a.takes) {
+    case Argument::Takes::folder:
+      return "_files -/";
+    case Argument::Takes::file:
+    case Argument::Takes::path:
+      return "_files";
+    case Argument::Takes::anything:
+      break;
+  }
+  return " ";
+}
+
+void write_zsh_arguments(const Verb& v, const std::string& indent, std::ostream& out) {
+  out << indent << "_arguments -s '--help[help of this verb]'";
+  for (const Argument& a : v.arguments) {
+    const bool many = std::holds_alternative<std::vector<std::string>*>(a.target);
+    out << " \\\n" << indent << "  '";
+    if (is_positional(a)) {
+      out << (many ? "*" : "") << ":" << zsh_text(a.name) << ":" << zsh_values(a) << "'";
+      continue;
+    }
+    out << (many ? "*" : "") << a.name << (is_flag(a) || !a.bare.empty() ? "" : "=") << "["
+        << zsh_text(a.help) << "]";
+    if (!is_flag(a) && a.bare.empty()) out << ":value:" << zsh_values(a);
+    out << "'";
+  }
+  out << "\n";
+}
+
+void write_zsh_verbs(const std::vector<Verb>& verbs, const std::string& indent, std::ostream& out) {
+  out << indent << "local -a verbs=(\n";
+  for (const Verb& v : verbs)
+    out << indent << "  '" << zsh_text(v.name) << ":" << zsh_text(v.summary) << "'\n";
+  out << indent << ")\n" << indent << "_describe verb verbs\n";
+}
+
+void write_zsh_function(const std::string& function, const std::vector<Verb>& verbs,
+                        std::ostream& out) {
+  for (const Verb& v : verbs)
+    if (!v.verbs.empty()) write_zsh_function(function + "_" + v.name, v.verbs, out);
+  out << function << "() {\n  if (( CURRENT == 2 )); then\n";
+  write_zsh_verbs(verbs, "    ", out);
+  out << "    return\n  fi\n  local verb=$words[2]\n  shift words\n  (( CURRENT-- ))\n  case $verb "
+         "in\n";
+  for (const Verb& v : verbs) {
+    out << "    " << v.name << ")\n";
+    if (v.verbs.empty())
+      write_zsh_arguments(v, "      ", out);
+    else
+      out << "      " << function << "_" << v.name << "\n";
+    out << "      ;;\n";
+  }
+  out << "  esac\n}\n";
+}
+
+}  // namespace
+
+void write_man_page(const Program& program, std::ostream& out) {
+  std::string title = program.name;
+  std::transform(title.begin(), title.end(), title.begin(),
+                 [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; });
+  out << ".\\\" SPDX-License-Identifier: Apache-2.0\n.TH " << title << " 1 \"\" \"" << program.name
+      << " " << program.version << "\" \"User commands\"\n.SH NAME\n"
+      << program.name << " \\- evaluate machine-tool calibrations in batch\n.SH SYNOPSIS\n";
+  for (const Verb& v : program.verbs) out << ".br\n.B " << roff(synopsis(program.name, v)) << "\n";
+  out << ".SH DESCRIPTION\n" << roff(one_line(program.summary)) << "\n.SH VERBS\n";
+  each(program.verbs, program.name, [&](const std::string& path, const Verb& v) {
+    out << ".SS " << roff(synopsis(path, v)) << "\n" << roff(v.summary) << ".\n";
+    for (const Argument& a : v.arguments) {
+      out << ".TP\n.B " << roff(a.name) << "\n" << roff(one_line(a.help));
+      if (!a.choices.empty()) out << "; one of " << roff(listed(a.choices));
+      out << "\n";
+    }
+    write_roff_block(out, v.footer);
+  });
+  out << ".SH EXIT STATUS\n" << roff(one_line(program.footer)) << "\n";
+}
+
+void write_completion(const Program& program, const std::string& shell, std::ostream& out) {
+  if (shell == "bash") return write_bash(program, out);
+  out << "#compdef " << program.name << "\n# zsh completion; made by `" << program.name
+      << " completion zsh`\n";
+  write_zsh_function("_" + program.name, program.verbs, out);
+  out << "_" << program.name << " \"$@\"\n";
+}
+
+}  // namespace nonio::app
