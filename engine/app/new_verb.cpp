@@ -373,9 +373,11 @@ Verb new_verb(Common& common) {
       .name = "new",
       .summary = "A site or a campaign that runs at once, with an example to be replaced",
       .arguments = joined(
-          {required({"WHAT", &wish->what,
-                     "site or campaign; may be left out: a campaign inside of a site or beside\n"
-                     "campaigns, else a site"}),
+          {required(offering(
+               {"site", "campaign"},
+               {"WHAT", &wish->what,
+                "site or campaign; may be left out: a campaign inside of a site or beside\n"
+                "campaigns, else a site"})),
            takes(Takes::folder, {"FOLDER", &wish->folder, "The folder; new, or empty"}),
            {"--id", &wish->id, "Id of the campaign (default: from the folder's name)"},
            {"--customer", &wish->customer, "Customer"},

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "colour.h"
 #include "nonio/host/files.h"
 #include "nonio/host/record.h"
 #include "results_folder.h"
@@ -54,19 +55,19 @@ Expected<fs::path> document_of(const fs::path& results) {
   return results / host::results_name;
 }
 
-/// The first campaign that asks for attention or has failed; with none, the
-/// summary.
+/// The first campaign that asks for attention or has failed; with none, the summary.
 Expected<fs::path> document_of_night(const fs::path& out, const Common& common) {
   const auto summary = json_file(out / "summary.json");
   if (!summary) return fail(summary.error());
-  std::vector<std::string> ids;
+  std::string first;
   for (const char* list : {"attention", "failed"})
-    for (const Json& c : summary->value(list, Json::array()))
-      if (c.is_object()) ids.push_back(c.value("id", ""));
-  if (ids.empty()) return out / "summary.txt";
-  if (!common.quiet)
-    for (const std::string& id : ids) std::cerr << "attention  " << (out / id).string() << "\n";
-  return document_of(out / ids.front());
+    for (const Json& c : summary->value(list, Json::array())) {
+      const std::string id = c.is_object() ? c.value("id", "") : "";
+      if (id.empty()) continue;
+      if (!common.quiet) std::cerr << status_word(list, STDERR_FILENO) << " " << id << "\n";
+      if (first.empty()) first = id;
+    }
+  return first.empty() ? out / "summary.txt" : document_of(out / first);
 }
 
 Expected<fs::path> document(const OpenWish& wish, const Common& common) {

@@ -92,11 +92,6 @@ Finding finding_of(const Json& json) {
   return f;
 }
 
-Colour colour_of(const std::string& status) {
-  if (status == "failed" || status == "does not conform") return Colour::red;
-  return status == "ok" || status == "conforms" ? Colour::green : Colour::yellow;
-}
-
 /// Columns of characters, not bytes.
 std::size_t columns_of(const std::string& text) {
   return static_cast<std::size_t>(
@@ -162,7 +157,7 @@ class Page {
     const Json& c = results.at("campaign");
     const std::string status = results.at("status");
     out_ << paint(c.at("id").get<std::string>(), Colour::bold) << "  "
-         << paint(status, colour_of(status)) << "\n";
+         << paint(status, status_colour(status)) << "\n";
     for (const char* name : {"customer", "site", "date", "operator"})
       entry(name, c.value(name, ""));
     for (const char* name : {"machine", "instrument"}) {
@@ -232,7 +227,7 @@ class Page {
       else
         out_ << to_width(unit, 10)
              << to_width(short_text(v.at("tolerance").get<double>(), 4), 9, true) << "  "
-             << paint(decision, colour_of(decision)) << "\n";
+             << paint(decision, status_colour(decision)) << "\n";
     }
   }
 
