@@ -33,20 +33,14 @@ CLI::Option* bind(CLI::App& app, const Argument& a) {
       a.target);
 }
 
-std::string in_commas(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
 CLI::Validator member_of(const std::vector<std::string>& choices) {
   return {[choices](const std::string& found) {
             if (std::find(choices.begin(), choices.end(), found) != choices.end())
               return std::string();
-            return "wanted one of " + in_commas(choices) + "; found \"" + found + "\"" +
+            return "wanted one of " + host::listed(choices) + "; found \"" + found + "\"" +
                    host::suggestion(found, choices);
           },
-          "{" + in_commas(choices) + "}"};
+          "{" + host::listed(choices) + "}"};
 }
 
 void check(CLI::Option& option, const Argument& a) {
@@ -104,7 +98,7 @@ Found find(const Verb& top, const std::vector<std::string>& words) {
       const auto names = names_of(verbs);
       const std::string nearest = host::suggestion(word, names);
       found.wrong = found.path + ": there is no verb \"" + word + "\"" +
-                    (nearest.empty() ? "; there are " + in_commas(names) : nearest);
+                    (nearest.empty() ? "; there are " + host::listed(names) : nearest);
       break;
     }
     found.verb = next;
@@ -145,7 +139,7 @@ std::string complaint_about(const Found& found, const std::vector<std::string>& 
   if (const std::string wrong = unknown_option(*found.verb, own, rest); !wrong.empty())
     return found.path + ": " + wrong;
   if (!at_top && rest.empty() && !found.verb->verbs.empty())
-    return found.path + ": wanted a verb: " + in_commas(names_of(found.verb->verbs));
+    return found.path + ": wanted a verb: " + host::listed(names_of(found.verb->verbs));
   return {};
 }
 

@@ -37,12 +37,14 @@ struct NewFiles {
   std::vector<Artifact> files;
 };
 
-/// The question and its default in brackets on stderr; the answer, or the default for an empty
-/// line. An error if there is no answer any more (^D).
+/// Asks on stderr, with the default in brackets, for what is still empty. An empty line takes the
+/// default; an error if there is no answer any more (^D).
 class Questions {
  public:
   explicit Questions(bool asks) : asks_(asks) {}
   bool asks() const { return asks_; }
+  /// Of a verb that ends with an error.
+  int status() const { return ended_ ? exit_interrupted : exit_usage; }
 
   Expected<void> text(const char* question, std::string& to, const std::string& otherwise) {
     if (!to.empty()) return {};
@@ -52,6 +54,7 @@ class Questions {
               << std::flush;
     std::string line;
     if (!std::getline(std::cin, line)) {
+      ended_ = true;
       std::cerr << "\n";
       return fail("no answer; nothing was written");
     }
@@ -60,7 +63,7 @@ class Questions {
   }
 
  private:
-  bool asks_;
+  bool asks_, ended_ = false;
 };
 
 std::string today() {
@@ -88,6 +91,7 @@ std::optional<fs::path> site_above(const fs::path& folder) {
 /// The folder of the site's campaign that has the id; empty if none has.
 fs::path holder_of(const std::string& id, const fs::path& site) {
   std::error_code error;
+  if (!fs::exists(site / host::site_name, error)) return {};  // it may be anybody's home
   fs::recursive_directory_iterator it(site, fs::directory_options::skip_permission_denied, error);
   for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
     if (it->path().filename().string().starts_with('.')) it.disable_recursion_pending();
@@ -158,9 +162,57 @@ Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
   return {};
 }
 
-/// Asked for what the command line does not say.
+/// From the folder's name, if the command line does not say it.
+Expected<std::string> id_of(const NewWish& wish, const fs::path& folder, Questions& ask) {
+  std::string id = wish.id, near = valid_id(folder.filename().string());
+  if (!host::is_campaign_id(near)) near = "campaign-" + near;
+  if (auto done = ask.text("Id of the campaign (a-z 0-9 . _ -)", id, near); !done)
+    return fail(done.error());
+  if (!host::is_campaign_id(id)) {
+    const std::string nearest = valid_id(id);
+    return fail(
+        "id: wanted a-z 0-9 . _ - and no more than 100, not starting with a point; found \"" + id +
+        "\"" + (host::is_campaign_id(nearest) ? " (nearest: \"" + nearest + "\")" : ""));
+  }
+  if (const auto site = site_above(folder))
+    if (const fs::path other = holder_of(id, *site); !other.empty())
+      return fail("id: " + other.string() + " has the id \"" + id + "\"; wanted another (--id)");
+  return id;
+}
+
+/// Axes with their files; one without a file gets an example.
+Expected<std::vector<NewAxis>> axes_with_files(const NewWish& wish, Questions& ask) {
+  std::vector<std::string> texts = wish.axes, files = wish.files;
+  const bool asks = texts.empty() && files.empty();
+  if (asks) {
+    std::string typed;
+    if (auto done = ask.text("Axes with their travel in mm, or deg for A B C", typed, "X=0:500");
+        !done)
+      return fail(done.error());
+    texts = split(typed);
+  }
+  auto axes = axes_of(texts);
+  if (!axes) return fail(axes.error());
+  if (asks && ask.asks())
+    for (const NewAxis& a : *axes) {
+      std::string path;
+      const std::string question = "File of axis " + a.axis.name + " (empty: example readings)";
+      if (auto done = ask.text(question.c_str(), path, ""); !done) return fail(done.error());
+      if (!path.empty()) files.push_back(a.axis.name + "=" + path);
+    }
+  for (const std::string& file : files)
+    if (auto done = take_file(file, *axes); !done) return fail(done.error());
+  std::set<std::string> names;
+  for (NewAxis& a : *axes) {
+    if (a.file.empty()) a.file = "EXAMPLE-" + lower(a.axis.name) + ".csv";
+    if (!names.insert(a.file).second) return fail("--file: two files are called " + a.file);
+  }
+  return axes;
+}
+
+/// What the command line says, and the answers to the rest.
 Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Questions& ask) {
-  NewCampaign c{.id = wish.id,
+  NewCampaign c{.id = {},
                 .customer = wish.customer,
                 .operator_name = wish.operator_name,
                 .date = wish.date,
@@ -169,61 +221,23 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
                 .control = wish.control,
                 .instrument = wish.instrument,
                 .axes = {}};
-  const std::string name = folder.filename().string();
-  std::string near = valid_id(name);
-  if (!host::is_campaign_id(near)) near = "campaign-" + near;
-  if (auto done = ask.text("Id of the campaign (a-z 0-9 . _ -)", c.id, near); !done)
-    return fail(done.error());
-  if (!host::is_campaign_id(c.id)) {
-    const std::string nearest = valid_id(c.id);
-    return fail(
-        "id: wanted a-z 0-9 . _ - and no more than 100, not starting with a point; found \"" +
-        c.id + "\"" + (host::is_campaign_id(nearest) ? " (nearest: \"" + nearest + "\")" : ""));
-  }
-  if (const auto site = site_above(folder))
-    if (const fs::path other = holder_of(c.id, *site); !other.empty())
-      return fail("id: " + other.string() + " has the id \"" + c.id + "\"; wanted another (--id)");
-  std::vector<std::string> axes = wish.axes, files = wish.files;
-  const bool asks_axes = axes.empty() && files.empty();
-  std::string typed;
-  for (const auto& [question, to, otherwise] :
-       {std::tuple{"Customer", &c.customer, std::string()},
-        {"Operator", &c.operator_name, std::string()},
-        {"Day of the measurement", &c.date, today()},
-        {"Machine, model", &c.machine, std::string()},
-        {"Machine, serial number", &c.serial, std::string()},
-        {"Instrument, model", &c.instrument, std::string()}})
+  auto id = id_of(wish, folder, ask);
+  if (!id) return fail(id.error());
+  c.id = std::move(*id);
+  for (const auto& [option, question, to, otherwise] :
+       {std::tuple{"--customer", "Customer", &c.customer, std::string()},
+        {"--operator", "Operator", &c.operator_name, std::string()},
+        {"--date", "Day of the measurement", &c.date, today()},
+        {"--machine", "Machine, model", &c.machine, std::string()},
+        {"--serial", "Machine, serial number", &c.serial, std::string()},
+        {"--instrument", "Instrument, model", &c.instrument, std::string()}}) {
     if (auto done = ask.text(question, *to, otherwise); !done) return fail(done.error());
-  if (asks_axes) {
-    if (auto done = ask.text("Axes with their travel in mm, or deg for A B C", typed, "X=0:500");
-        !done)
-      return fail(done.error());
-    axes = split(typed);
+    if (auto done = one_line(option, *to); !done) return fail(done.error());
   }
-  auto settled_axes = axes_of(axes);
-  if (!settled_axes) return fail(settled_axes.error());
-  c.axes = std::move(*settled_axes);
-  if (asks_axes && ask.asks())
-    for (const NewAxis& a : c.axes) {
-      std::string path;
-      const std::string question = "File of axis " + a.axis.name + " (empty: example readings)";
-      if (auto done = ask.text(question.c_str(), path, ""); !done) return fail(done.error());
-      if (!path.empty()) files.push_back(a.axis.name + "=" + path);
-    }
-  for (const std::string& file : files)
-    if (auto done = take_file(file, c.axes); !done) return fail(done.error());
-  std::set<std::string> names;
-  for (NewAxis& a : c.axes) {
-    if (a.file.empty()) a.file = "EXAMPLE-" + lower(a.axis.name) + ".csv";
-    if (!names.insert(a.file).second) return fail("--file: two files are called " + a.file);
-  }
-  for (const auto& [option, text] : {std::pair{"--customer", &c.customer},
-                                     {"--operator", &c.operator_name},
-                                     {"--machine", &c.machine},
-                                     {"--serial", &c.serial},
-                                     {"--control", &c.control},
-                                     {"--instrument", &c.instrument}})
-    if (auto done = one_line(option, *text); !done) return fail(done.error());
+  if (auto done = one_line("--control", c.control); !done) return fail(done.error());
+  auto axes = axes_with_files(wish, ask);
+  if (!axes) return fail(axes.error());
+  c.axes = std::move(*axes);
   return c;
 }
 
@@ -254,9 +268,9 @@ class Trial {
   fs::path folder_;
 };
 
-/// What is wrong with the files, read as a night would read them, with the options of the site.
-std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::optional<fs::path>& site,
-                            const Common& common) {
+/// What is wrong with the files, evaluated as a night would do it, with the site's own settings.
+std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::string& id,
+                            const std::optional<fs::path>& site, const Common& common) {
   const Trial trial;
   if (trial.folder().empty()) return {Error{"cannot make a folder for a trial"}};
   const fs::path folder = trial.folder() / "campaign";
@@ -268,7 +282,7 @@ std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::optio
   auto place = host::open_workplace(folder, common.plugin_folders(), common.template_folders(),
                                     NONIO_VERSION);
   if (!place) return {place.error()};
-  return host::read_campaign(folder, (*place)->context, [](const std::string&) {}).errors;
+  return host::evaluate(folder, id, (*place)->context, [](const std::string&) {}).results.errors;
 }
 
 /// Whether something is in the way. An empty folder is not.
@@ -314,7 +328,7 @@ Expected<NewFiles> campaign_files(const NewWish& wish, const fs::path& folder,
   if (!campaign) return fail(campaign.error());
   example = campaign->example();
   NewFiles out{folder, files_of(*campaign)};
-  if (const auto wrong = mistakes(out.files, site, common); !wrong.empty())
+  if (const auto wrong = mistakes(out.files, campaign->id, site, common); !wrong.empty())
     return fail(text_of(wrong.front()) + "; nothing was written");
   return out;
 }
@@ -326,7 +340,7 @@ int new_site(const NewWish& wish, const fs::path& folder, const Common& common) 
                                      {"Laboratory, address", &site.address},
                                      {"Country (two letters)", &site.country}}) {
     if (auto done = ask.text(question, *to, ""); !done)
-      return complain(new_name, done.error().message, exit_interrupted);
+      return complain(new_name, done.error().message, ask.status());
     if (auto done = one_line(question, *to); !done) return complain(new_name, done.error().message);
   }
   std::vector<NewFiles> all{{folder, {{host::site_name, site_text(site)}}}};
@@ -344,7 +358,7 @@ int new_campaign(const NewWish& wish, const fs::path& folder, const Common& comm
   Questions ask(!wish.defaults && ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1);
   bool example = false;
   const auto campaign = campaign_files(wish, folder, site_above(folder), ask, example, common);
-  if (!campaign) return complain(new_name, campaign.error().message);
+  if (!campaign) return complain(new_name, campaign.error().message, ask.status());
   return write_new({*campaign}, wish, "campaign", example, common);
 }
 
@@ -361,7 +375,11 @@ int make_new(NewWish wish, const Common& common) {
   if (!folder.has_filename()) folder = folder.parent_path();
   if (const std::string why = in_the_way(folder); !why.empty()) return complain(new_name, why);
   if (wish.what.empty()) wish.what = site_above(folder) ? "campaign" : "site";
-  return wish.what == "site" ? new_site(wish, folder, common) : new_campaign(wish, folder, common);
+  if (wish.what == "site") return new_site(wish, folder, common);
+  if (wish.empty || !(wish.laboratory + wish.address + wish.country).empty())
+    return complain(
+        new_name, "--empty, --laboratory, --address and --country are for a site, not a campaign");
+  return new_campaign(wish, folder, common);
 }
 
 }  // namespace
