@@ -87,7 +87,9 @@ struct Verb {
 };
 
 struct Program {
-  std::string name, version, summary, footer;
+  std::string name, version;
+  std::string purpose;  ///< a few words, behind the name in man(1)
+  std::string summary, footer;
   std::vector<Verb> verbs;
 };
 

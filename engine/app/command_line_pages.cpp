@@ -216,7 +216,7 @@ void write_man_page(const Program& program, std::ostream& out) {
   out << ".\\\" SPDX-License-Identifier: Apache-2.0\n.TH " << in_capitals(program.name)
       << " 1 \"\" \"" << program.name << " " << program.version
       << "\" \"User commands\"\n.SH NAME\n"
-      << program.name << " \\- evaluate machine-tool calibrations in batch\n.SH SYNOPSIS\n";
+      << program.name << " \\- " << roff(program.purpose) << "\n.SH SYNOPSIS\n";
   for (const Verb& v : program.verbs)
     out << ".B " << roff(synopsis(program.name + " " + v.name, v)) << "\n.br\n";
   out << ".SH DESCRIPTION\n" << roff(one_line(program.summary)) << "\n";

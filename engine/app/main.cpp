@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
   Program program{
       .name = "nonio",
       .version = NONIO_VERSION,
+      .purpose = "evaluate machine-tool calibrations in batch",
       .summary =
           "Nonio evaluates machine-tool calibration campaigns: by the standards, with findings,\n"
           "reports and the tables that go into the machine's controller.",
