@@ -9,9 +9,6 @@ namespace nonio::app {
 
 namespace {
 
-bool is_positional(const Argument& a) { return !a.name.starts_with('-'); }
-bool is_flag(const Argument& a) { return std::holds_alternative<bool*>(a.target); }
-
 /// Every verb that can be run or has verbs below it, with the words that lead to it.
 template <class Visit>
 void each(const std::vector<Verb>& verbs, const std::string& path, const Visit& visit) {
@@ -44,6 +41,12 @@ std::string roff(const std::string& text) {
   return lines;
 }
 
+std::string in_capitals(std::string text) {
+  for (char& c : text)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 32);
+  return text;
+}
+
 void write_roff_block(std::ostream& out, const std::string& text) {
   if (!text.empty()) out << ".PP\n.nf\n" << roff(text) << "\n.fi\n";
 }
@@ -51,9 +54,8 @@ void write_roff_block(std::ostream& out, const std::string& text) {
 std::string synopsis(const std::string& path, const Verb& v) {
   std::string line = path;
   for (const Argument& a : v.arguments)
-    if (is_positional(a))
-      line += " " + std::string(a.required ? "" : "[") + a.name +
-              (std::holds_alternative<std::vector<std::string>*>(a.target) ? "..." : "") +
+    if (a.is_positional())
+      line += " " + std::string(a.required ? "" : "[") + a.name + (a.is_list() ? "..." : "") +
               (a.required ? "" : "]");
     else if (a.required)
       line += " " + a.name + " ...";
@@ -68,7 +70,7 @@ std::string in_single_quotes(const std::string& text) {
   return "'" + replaced(text, '\'', "'\\''") + "'";
 }
 
-std::string listed(const std::vector<std::string>& words) {
+std::string in_words(const std::vector<std::string>& words) {
   std::string out;
   for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
   return out;
@@ -76,7 +78,8 @@ std::string listed(const std::vector<std::string>& words) {
 
 /// What bash offers where a value of the argument stands.
 std::string bash_values(const Argument& a) {
-  if (!a.choices.empty()) return "-W " + in_single_quotes(listed(a.choices));
+  const auto& words = a.choices.empty() ? a.offers : a.choices;
+  if (!words.empty()) return "-W " + in_single_quotes(in_words(words));
   switch (a.takes) {
     case Argument::Takes::folder:
       return "-d";
@@ -101,25 +104,30 @@ void write_bash(const Program& program, std::ostream& out) {
   each(program.verbs, name,
        [&](const std::string& path, const Verb&) { out << "      \"" << path << "\") ;;\n"; });
   out << "      *) continue ;;\n    esac\n    path=\"$path ${COMP_WORDS[i]}\"\n  done\n"
-         "  local offer=\"-W ''\"\n"
-         "  case \"$path $prev\" in\n";
+         "  local offer=\"-W ''\" equals=\n"
+         "  [[ $cur == '=' ]] && cur= equals='='\n"
+         "  [[ $prev == '=' ]] && prev=${COMP_WORDS[COMP_CWORD - 2]} equals='='\n"
+         "  case \"$path $prev$equals\" in\n";
   each(program.verbs, name, [&](const std::string& path, const Verb& v) {
-    for (const Argument& a : v.arguments)
-      if (!is_positional(a) && !is_flag(a) && a.bare.empty())
-        out << "    \"" << path << " " << a.name << "\") offer="
-            << "\"" << bash_values(a) << "\" ;;\n";
+    for (const Argument& a : v.arguments) {
+      if (a.is_positional() || a.is_flag()) continue;
+      const std::string option = path + " " + a.name;
+      out << "    ";
+      if (a.needs_value()) out << "\"" << option << "\" | ";
+      out << "\"" << option << "=\") offer=\"" << bash_values(a) << "\" ;;\n";
+    }
   });
   out << "    *)\n      case \"$path\" in\n";
   const auto write_words = [&](const std::string& path, const Verb& v) {
     std::vector<std::string> words, values;
     for (const Verb& inner : v.verbs) words.push_back(inner.name);
     for (const Argument& a : v.arguments)
-      if (is_positional(a))
+      if (a.is_positional())
         values.push_back(bash_values(a));
       else
         words.push_back(a.name);
     words.emplace_back("--help");
-    out << "        \"" << path << "\") offer=\"-W '" << listed(words) << "'\"";
+    out << "        \"" << path << "\") offer=\"-W '" << in_words(words) << "'\"";
     if (!values.empty()) out << "; [[ $cur == -* ]] || offer=\"" << values.front() << "\"";
     out << " ;;\n";
   };
@@ -127,7 +135,8 @@ void write_bash(const Program& program, std::ostream& out) {
   each(program.verbs, name, write_words);
   out << "      esac ;;\n  esac\n"
          "  case \"$offer\" in\n"
-         "    -d | -f) compopt -o filenames; mapfile -t COMPREPLY < <(compgen $offer -- \"$cur\") "
+         "    -d | -f) compopt -o filenames 2> /dev/null;  mapfile -t COMPREPLY < <(compgen $offer "
+         "-- \"$cur\") "
          ";;\n"
          "    *) mapfile -t COMPREPLY < <(eval \"compgen $offer\" -- '\"$cur\"') ;;\n"
          "  esac\n}\ncomplete -F _"
@@ -141,7 +150,8 @@ std::string zsh_text(const std::string& text) {
 }
 
 std::string zsh_values(const Argument& a) {
-  if (!a.choices.empty()) return "(" + listed(a.choices) + ")";
+  const auto& words = a.choices.empty() ? a.offers : a.choices;
+  if (!words.empty()) return "(" + in_words(words) + ")";
   switch (a.takes) {
     case Argument::Takes::folder:
       return "_files -/";
@@ -157,15 +167,18 @@ std::string zsh_values(const Argument& a) {
 void write_zsh_arguments(const Verb& v, const std::string& indent, std::ostream& out) {
   out << indent << "_arguments -s '--help[help of this verb]'";
   for (const Argument& a : v.arguments) {
-    const bool many = std::holds_alternative<std::vector<std::string>*>(a.target);
+    const bool many = a.is_list();
     out << " \\\n" << indent << "  '";
-    if (is_positional(a)) {
+    if (a.is_positional()) {
       out << (many ? "*" : "") << ":" << zsh_text(a.name) << ":" << zsh_values(a) << "'";
       continue;
     }
-    out << (many ? "*" : "") << a.name << (is_flag(a) || !a.bare.empty() ? "" : "=") << "["
-        << zsh_text(a.help) << "]";
-    if (!is_flag(a) && a.bare.empty()) out << ":value:" << zsh_values(a);
+    out << (many ? "*" : "") << a.name
+        << (a.is_flag()       ? ""
+            : a.needs_value() ? "="
+                              : "=-")
+        << "[" << zsh_text(a.help) << "]";
+    if (!a.is_flag()) out << (a.needs_value() ? ":" : "::") << "value:" << zsh_values(a);
     out << "'";
   }
   out << "\n";
@@ -200,19 +213,21 @@ void write_zsh_function(const std::string& function, const std::vector<Verb>& ve
 }  // namespace
 
 void write_man_page(const Program& program, std::ostream& out) {
-  std::string title = program.name;
-  std::transform(title.begin(), title.end(), title.begin(),
-                 [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; });
-  out << ".\\\" SPDX-License-Identifier: Apache-2.0\n.TH " << title << " 1 \"\" \"" << program.name
-      << " " << program.version << "\" \"User commands\"\n.SH NAME\n"
-      << program.name << " \\- evaluate machine-tool calibrations in batch\n.SH SYNOPSIS\n";
-  for (const Verb& v : program.verbs) out << ".br\n.B " << roff(synopsis(program.name, v)) << "\n";
-  out << ".SH DESCRIPTION\n" << roff(one_line(program.summary)) << "\n.SH VERBS\n";
+  out << ".\\\" SPDX-License-Identifier: Apache-2.0\n.TH " << in_capitals(program.name)
+      << " 1 \"\" \"" << program.name << " " << program.version
+      << "\" \"User commands\"\n.SH NAME\n"
+      << program.name << " \\- " << roff(program.purpose) << "\n.SH SYNOPSIS\n";
+  for (const Verb& v : program.verbs)
+    out << ".B " << roff(synopsis(program.name + " " + v.name, v)) << "\n.br\n";
+  out << ".SH DESCRIPTION\n" << roff(one_line(program.summary)) << "\n";
+  std::string group;
   each(program.verbs, program.name, [&](const std::string& path, const Verb& v) {
-    out << ".SS " << roff(synopsis(path, v)) << "\n" << roff(v.summary) << ".\n";
+    if (!v.group.empty() && v.group != group) out << ".SH " << in_capitals(group = v.group) << "\n";
+    out << ".SS " << roff(synopsis(path, v)) << "\n"
+        << roff(v.summary) << (v.summary.ends_with('?') ? "" : ".") << "\n";
     for (const Argument& a : v.arguments) {
       out << ".TP\n.B " << roff(a.name) << "\n" << roff(one_line(a.help));
-      if (!a.choices.empty()) out << "; one of " << roff(listed(a.choices));
+      if (!a.choices.empty()) out << "; one of " << roff(in_words(a.choices));
       out << "\n";
     }
     write_roff_block(out, v.footer);
