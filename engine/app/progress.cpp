@@ -9,6 +9,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "colour.h"
+#include "common.h"
+
 namespace nonio::app {
 
 namespace {
@@ -31,11 +34,18 @@ std::size_t terminal_width() {
   return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80;
 }
 
+/// Ten characters wide, in its colour.
+std::string status_word(const std::string& status) {
+  std::string word = status;
+  word.resize(std::max<std::size_t>(word.size(), 9), ' ');
+  const Colour colour = status == "failed"      ? Colour::red
+                        : status == "attention" ? Colour::yellow
+                                                : Colour::green;
+  return coloured(word, colour, STDERR_FILENO) + " ";
+}
+
 std::string message_of(const host::CampaignState& c) {
-  if (c.errors.empty()) return c.reason;
-  const Error& e = c.errors.front();
-  return e.file + (e.line != 0 ? ":" + std::to_string(e.line) : "") +
-         (e.column.empty() ? "" : " (" + e.column + ")") + (e.file.empty() ? "" : ": ") + e.message;
+  return c.errors.empty() ? c.reason : text_of(c.errors.front());
 }
 
 }  // namespace
@@ -81,10 +91,7 @@ void Progress::finished(const host::CampaignState& c) {
   }
   if (bar_ ? failed : failed || !quiet_) {
     clear();
-    std::cerr << (failed                    ? "failed    "
-                  : c.status == "attention" ? "attention "
-                                            : "ok        ")
-              << c.id << (failed ? ": " + message_of(c) : "") << "\n";
+    std::cerr << status_word(c.status) << c.id << (failed ? ": " + message_of(c) : "") << "\n";
   }
   if (bar_) draw();
 }
@@ -118,7 +125,7 @@ void Progress::clear() {
 void Progress::still_failed(const host::Night& night) {
   for (const host::CampaignState& c : night.campaigns)
     if (c.status == "failed" && c.action == host::CampaignState::Action::unchanged)
-      std::cerr << "failed    " << c.id << " (unchanged): " << message_of(c) << "\n";
+      std::cerr << status_word(c.status) << c.id << " (unchanged): " << message_of(c) << "\n";
 }
 
 void Progress::end() {
