@@ -8,7 +8,8 @@
 
 namespace nonio::host {
 
-namespace {
+/// Apart from the rest: `text`, `date` and the like are words that others use too.
+namespace declared {
 
 using enum Key::Holds;
 using Words = std::string_view;
@@ -750,6 +751,10 @@ constexpr Key specification_toml = {.name = "specification",
                                     .help = "Specification of a simulated campaign.",
                                     .keys = specification_keys};
 
+}  // namespace declared
+
+namespace {
+
 /// Letters of a class as in a pattern: "a-z0-9_-".
 bool has_letter(std::string_view letters, char c) {
   for (std::size_t i = 0; i < letters.size(); ++i) {
@@ -762,9 +767,9 @@ bool has_letter(std::string_view letters, char c) {
 
 }  // namespace
 
-const Key& campaign_file() { return campaign_toml; }
-const Key& site_file() { return site_toml; }
-const Key& specification_file() { return specification_toml; }
+const Key& campaign_file() { return declared::campaign_toml; }
+const Key& site_file() { return declared::site_toml; }
+const Key& specification_file() { return declared::specification_toml; }
 
 bool obeys(std::string_view text, const TextRule& rule) {
   if (text.empty()) return true;
@@ -790,7 +795,7 @@ const Key* find_key(std::span<const Key> keys, std::string_view name) {
 }
 
 bool rotary_by_name(std::string_view axis) {
-  const Key& axes = *find_key(machine_keys, "axes");
+  const Key& axes = *find_key(declared::machine_keys, "axes");
   return !axis.empty() && axes.initials.find(axis.front()) != std::string_view::npos;
 }
 

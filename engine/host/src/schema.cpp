@@ -37,11 +37,11 @@ std::string quoted_pattern(std::string_view text) {
   return out;
 }
 
-const std::string one_line = "\\x00-\\x1f\\x7f";
+const std::string control_letters = "\\x00-\\x1f\\x7f";
 
 std::string pattern_of(const TextRule& rule) {
   const std::string letters = rule.letters.empty()
-                                  ? "[^" + in_class(rule.not_letters) + one_line + "]"
+                                  ? "[^" + in_class(rule.not_letters) + control_letters + "]"
                                   : "[" + std::string(rule.letters) + "]";
   const std::string count = rule.longest == 0 ? "*"
                                               : "{" + std::to_string(rule.shortest) + "," +
@@ -261,8 +261,7 @@ class SchemaWriter {
     if (key.distinct) json_.member("uniqueItems", true);
     json_.key("items");
     if (key.holds == Holds::wholes) return put_typed("integer", key);
-    if (key.holds == Holds::numbers || key.holds == Holds::span)
-      return put_typed("number", key);
+    if (key.holds == Holds::numbers || key.holds == Holds::span) return put_typed("number", key);
     json_.begin_object();
     if (key.holds == Holds::tables)
       put_table(key, {});
