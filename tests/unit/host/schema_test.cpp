@@ -66,7 +66,7 @@ TEST(Schema, HoldsTheOptionsOfPlugins) {
   const Json& options = s["properties"]["options"];
   EXPECT_EQ(options["additionalProperties"], false);
   const Json& both = options["properties"]["both"];
-  EXPECT_EQ(both["description"], "An analysis. A reader.");
+  EXPECT_EQ(both["description"], "A reader. An analysis.");
   EXPECT_EQ(both["additionalProperties"], false);
   const Json& o = both["properties"];
   EXPECT_EQ(o.size(), 7U);
