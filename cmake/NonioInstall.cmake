@@ -10,15 +10,10 @@ endforeach()
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/nonio)
 install(EXPORT nonio NAMESPACE nonio:: DESTINATION ${package})
-# The build folder has the package at the same place: with its bin on the PATH, find_package(nonio) finds it there too.
-export(EXPORT nonio NAMESPACE nonio:: FILE ${CMAKE_BINARY_DIR}/${package}/nonio.cmake)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/nonio-config.cmake.in
-  ${CMAKE_BINARY_DIR}/${package}/nonio-config.cmake INSTALL_DESTINATION ${package})
-write_basic_package_version_file(${CMAKE_BINARY_DIR}/${package}/nonio-config-version.cmake
+  ${CMAKE_CURRENT_BINARY_DIR}/nonio-config.cmake INSTALL_DESTINATION ${package})
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/nonio-config-version.cmake
   COMPATIBILITY SameMinorVersion)
-foreach(file NonioPlugin.cmake NonioCase.cmake)
-  configure_file(${CMAKE_CURRENT_LIST_DIR}/${file} ${CMAKE_BINARY_DIR}/${package}/${file} COPYONLY)
-endforeach()
-foreach(file nonio-config.cmake nonio-config-version.cmake NonioPlugin.cmake NonioCase.cmake)
-  install(FILES ${CMAKE_BINARY_DIR}/${package}/${file} DESTINATION ${package})
-endforeach()
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/nonio-config.cmake
+  ${CMAKE_CURRENT_BINARY_DIR}/nonio-config-version.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/NonioPlugin.cmake ${CMAKE_CURRENT_LIST_DIR}/NonioCase.cmake DESTINATION ${package})
