@@ -45,8 +45,12 @@ class Terminal:
         if prefix:
             self.environment["PREFIX"] = str(prefix)
         for name in ("CXX", "CMAKE_CXX_COMPILER_LAUNCHER"):
-            if name in os.environ:
+            if os.environ.get(name):
                 self.environment[name] = os.environ[name]
+        if os.environ.get("CMAKE_CXX_COMPILER_LAUNCHER", "").endswith("ccache"):
+            # Its cache is not that of HOME, and the name of the new folder does not count.
+            cache = subprocess.run(["ccache", "--get-config", "cache_dir"], check=True, capture_output=True, text=True)
+            self.environment |= {"CCACHE_DIR": cache.stdout.strip(), "CCACHE_BASEDIR": str(folder.parent), "CCACHE_NOHASHDIR": "1"}
 
     def run(self, command):
         """(status, output and errors)."""
