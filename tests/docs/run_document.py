@@ -131,7 +131,9 @@ def run(path, options):
     text = file.read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory(prefix="nonio-docs-") as name:
         prefix, folder = None, pathlib.Path(name) / "here"
-        shutil.copytree(PROJECT / "samples", folder / "samples")
+        folder.mkdir()
+        if re.search(r"^ *```(console|sh)$", text, re.MULTILINE):
+            shutil.copytree(PROJECT / "samples", folder / "samples")
         programs = pathlib.Path(os.environ["NONIO"]).resolve().parent
         if options.install:
             prefix = pathlib.Path(name) / "prefix"
