@@ -12,7 +12,7 @@ WANTED_NOTE = "wanted <!-- not run: REASON -->, <!-- file: PATH --> or <!-- here
 COMMAND = re.compile(
     r"^\s*(?:\$ .*"
     r"|(?:sudo\s+)?(?:[A-Z_]+=\S*\s+)*"
-    r"(?:nonio|cmake|ctest|ninja|git|python3|apt|apt-get|dpkg|cd|cp|cat|mkdir|export|systemctl|crontab|docker|openssl|loginctl"
+    r"(?:nonio|cmake|ctest|ninja|git|python3|apt|apt-get|dpkg|cd|cp|cat|mkdir|export|systemctl|journalctl|crontab|docker|podman|openssl|loginctl"
     r"|nonio_\w+|bench_\w+|/usr/\S+|(?:\.{1,2}|\.ci|build|scripts|bench|tests|samples|debian)/\S+)(?:\s+[^=\s].*)?"
     r"|(?=[^#]*\*)(?:[\d*/,-]+\s+){5}\S.*"
     r"|@(?:reboot|hourly|daily|weekly|monthly)\s.*)$")
