@@ -189,12 +189,12 @@ std::array<PictureWords, 9> picture_words(const ModelFit& fit, const Wording& wo
   std::array<PictureWords, 9> out;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const std::string key = "picture." + names[i] + ".";
-    const auto picture = static_cast<Picture>(i);
-    const bool along = picture == Picture::position || picture == Picture::reversal ||
-                       picture == Picture::left_out;
-    const bool own_y = picture == Picture::reversal || picture == Picture::left_out;
-    const char* unit = picture == Picture::time ? time : nullptr;
-    const Quantity q = picture == Picture::predicted ? up : across;
+    const auto picture = static_cast<ResidualPlot>(i);
+    const bool along = picture == ResidualPlot::position || picture == ResidualPlot::reversal ||
+                       picture == ResidualPlot::left_out;
+    const bool own_y = picture == ResidualPlot::reversal || picture == ResidualPlot::left_out;
+    const char* unit = picture == ResidualPlot::time ? time : nullptr;
+    const Quantity q = picture == ResidualPlot::predicted ? up : across;
     PictureWords& w = out[i];
     w.title = words.get(key + "title");
     w.says = words.get((names[i] == "mesh" ? "picture.angle." : key) + "says");
@@ -202,21 +202,21 @@ std::array<PictureWords, 9> picture_words(const ModelFit& fit, const Wording& wo
         along ? (in_space(fit) ? "picture.position.x_lines" : "picture.position.x") : key + "x",
         {{"axis", fit.axis}, {"unit", unit != nullptr ? unit : unit_text(q)}});
     w.y = words.get(own_y ? key + "y" : "picture.residual", {{"unit", unit_text(up)}});
-    w.degrees = fit.rotary && (along || turn) && (along || picture == Picture::phase);
-    if (along || picture == Picture::phase) w.x_per_si = unit_of(across).per_si;
-    if (picture == Picture::predicted) w.x_per_si = unit_of(up).per_si;
+    w.degrees = fit.rotary && (along || turn) && (along || picture == ResidualPlot::phase);
+    if (along || picture == ResidualPlot::phase) w.x_per_si = unit_of(across).per_si;
+    if (picture == ResidualPlot::predicted) w.x_per_si = unit_of(up).per_si;
   }
-  const auto none = [&](Picture picture, bool there, const char* key) {
+  const auto none = [&](ResidualPlot picture, bool there, const char* key) {
     if (!there) out[static_cast<std::size_t>(picture)].none = words.get(key);
   };
-  out[static_cast<std::size_t>(Picture::time)].x_per_si = 1.0 / seconds;
-  out[static_cast<std::size_t>(Picture::time)].time_unit = time;
-  out[static_cast<std::size_t>(Picture::phase)].none = no_phase(fit, words);
-  none(Picture::reversal, both_directions(fit), "picture.reversal.none");
-  none(Picture::time, any_finite(fit.time), "picture.time.none");
-  none(Picture::run, !fit.run.empty(), "picture.run.none");
-  none(Picture::temperature, any_finite(fit.temperature), "picture.temperature.none");
-  none(Picture::left_out, any_finite(fit.cv_residual), "picture.left-out.none");
+  out[static_cast<std::size_t>(ResidualPlot::time)].x_per_si = 1.0 / seconds;
+  out[static_cast<std::size_t>(ResidualPlot::time)].time_unit = time;
+  out[static_cast<std::size_t>(ResidualPlot::phase)].none = no_phase(fit, words);
+  none(ResidualPlot::reversal, both_directions(fit), "picture.reversal.none");
+  none(ResidualPlot::time, any_finite(fit.time), "picture.time.none");
+  none(ResidualPlot::run, !fit.run.empty(), "picture.run.none");
+  none(ResidualPlot::temperature, any_finite(fit.temperature), "picture.temperature.none");
+  none(ResidualPlot::left_out, any_finite(fit.cv_residual), "picture.left-out.none");
   if (fit.size() == 0)
     for (PictureWords& w : out) w.none = words.get("picture.no_readings");
   return out;

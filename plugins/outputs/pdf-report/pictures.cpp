@@ -47,35 +47,35 @@ class Pictures {
     range_ = {(low - edge) * per_si_, (high + edge) * per_si_};
   }
 
-  Plot draw(Picture picture, const PictureWords& said) const {
+  Plot draw(ResidualPlot picture, const PictureWords& said) const {
     Plot plot = frame(said);
     if (!said.none.empty()) return plot;
     switch (picture) {
-      case Picture::position:
+      case ResidualPlot::position:
         position(plot);
         break;
-      case Picture::reversal:
+      case ResidualPlot::reversal:
         reversal(plot);
         break;
-      case Picture::time:
+      case ResidualPlot::time:
         time(plot, said.x_per_si);
         break;
-      case Picture::run:
+      case ResidualPlot::run:
         run(plot);
         break;
-      case Picture::phase:
+      case ResidualPlot::phase:
         residuals(plot, phase_of(fit_, period_of(fit_)), said.x_per_si);
         break;
-      case Picture::temperature:
+      case ResidualPlot::temperature:
         residuals(plot, fit_.temperature, said.x_per_si);
         break;
-      case Picture::predicted:
+      case ResidualPlot::predicted:
         predicted(plot);
         break;
-      case Picture::normal:
+      case ResidualPlot::normal:
         normal(plot);
         break;
-      case Picture::left_out:
+      case ResidualPlot::left_out:
         scatter(plot, scaled(fit_.target, said.x_per_si), scaled(fit_.cv_residual, per_si_));
         break;
     }
@@ -274,7 +274,7 @@ void add_pictures(const Source& source, const ModelFit& fit, Blocks& blocks) {
   for (std::size_t i = 0; i < said.size(); i += per_row) {
     Columns row;
     for (std::size_t k = i; k < i + per_row; ++k) {
-      Plot plot = pictures.draw(static_cast<Picture>(k), said[k]);
+      Plot plot = pictures.draw(static_cast<ResidualPlot>(k), said[k]);
       plot.height = height;
       row.parts.push_back(
           {{std::move(plot), field}, {Paragraph{said[k].says, Paragraph::Look::muted}, field}});

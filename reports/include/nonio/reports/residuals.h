@@ -12,7 +12,7 @@
 namespace nonio::reports {
 
 /// The pictures in the order that never changes.
-enum class Picture {
+enum class ResidualPlot {
   position,
   reversal,
   time,
