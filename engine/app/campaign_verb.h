@@ -19,16 +19,13 @@ struct OpenCampaign {
   const Campaign& campaign() const { return read.manifest->campaign; }
 };
 
-/// "campaign.toml:12: ..."
-std::string text_of(const Error& error);
-
-/// Reads the campaign and tells on stderr what is wrong. `exit` is set if the verb cannot go on:
-/// 2 for the configuration, 1 for measurements of which none can be read. Errors of single
-/// measurements stay in `read.errors` and leave the others.
-OpenCampaign open_campaign(const char* verb, const std::string& folder, const Common& common,
-                           Outcome& exit);
+/// Reads the campaign and tells on stderr what is wrong. The error is the exit status if the verb
+/// cannot go on: 2 for the configuration, 1 for measurements of which none can be read. Errors of
+/// single measurements stay in `read.errors` and leave the others.
+tl::expected<OpenCampaign, int> open_campaign(const char* verb, const std::string& folder,
+                                              const Common& common);
 
 /// "CAMPAIGN", --templates and the common options.
-void add_campaign_arguments(CLI::App& verb, std::string& folder, Common& common);
+std::vector<Argument> campaign_arguments(std::string& folder, Common& common);
 
 }  // namespace nonio::app

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common.h"
 #include "nonio/host/certificate_list.h"
+#include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
@@ -14,7 +13,7 @@ using host::RegisterEntry;
 
 namespace {
 
-struct Wanted {
+struct CertificateWish {
   std::string site, out, withdraw, why;
 };
 
@@ -41,7 +40,7 @@ int refuse(const Error& error) {
   return exit_usage;
 }
 
-int certificates(const Wanted& wanted, const Common& common) {
+int certificates(const CertificateWish& wanted, const Common& common) {
   if (wanted.withdraw.empty() != wanted.why.empty())
     return refuse(Error{"--withdraw NUMBER and --why TEXT go together"});
   const auto numbering = host::numbering_of(wanted.site);
@@ -70,32 +69,35 @@ int certificates(const Wanted& wanted, const Common& common) {
 
 }  // namespace
 
-void add_certificates_verb(CLI::App& cli, Common& common, Outcome& outcome) {
-  auto wanted = std::make_shared<Wanted>();
-  CLI::App* verb = cli.add_subcommand(
-      "certificates", "The site's register of certificates: numbers, what became of them, files");
-  verb->add_option("SITE", wanted->site, "Site whose register it is")
-      ->required()
-      ->check(CLI::ExistingDirectory);
-  verb->add_option("--out", wanted->out,
-                   "Write the files of all issued numbers into this folder, as they were issued:\n"
-                   "NUMBER.pdf and NUMBER-dcc.xml");
-  verb->add_option("--withdraw", wanted->withdraw,
-                   "This number is not in force any more; the next run issues the campaign's\n"
-                   "certificate anew, under a new number that names this one");
-  verb->add_option("--why", wanted->why, "Why it is withdrawn: stays in the register");
-  add_common(*verb, common);
-  verb->footer(
-      "A line for each number that was ever drawn: number, state, campaign, date, reason.\n"
-      "  issued     in force\n"
-      "  amended    replaced by another number, because the data changed\n"
-      "  withdrawn  taken back, with the reason\n"
-      "  drawn      not issued, with the reason; the next run uses it for the same campaign\n"
-      "Nothing is ever deleted, and the same data are never issued twice: if a certificate is\n"
-      "lost, --out gives it back. Keep the register (certificates.sqlite in the site) with your\n"
-      "backups: without it numbers would be used twice, and a run refuses.\n\n"
-      "Example: nonio certificates site --withdraw 2026-0012 --why \"wrong serial number\"");
-  verb->callback([wanted, &common, &outcome] { outcome = certificates(*wanted, common); });
+Verb certificates_verb(Common& common) {
+  auto wanted = std::make_shared<CertificateWish>();
+  using Takes = Argument::Takes;
+  return {
+      .name = "certificates",
+      .summary = "The site's register of certificates: numbers, what became of them, files",
+      .arguments = joined(
+          {required(existing(Takes::folder, {"SITE", &wanted->site, "Site whose register it is"})),
+           takes(Takes::folder,
+                 {"--out", &wanted->out,
+                  "Write the files of all issued numbers into this folder, as they were issued:\n"
+                  "NUMBER.pdf and NUMBER-dcc.xml"}),
+           {"--withdraw", &wanted->withdraw,
+            "This number is not in force any more; the next run issues the campaign's\n"
+            "certificate anew, under a new number that names this one"},
+           {"--why", &wanted->why, "Why it is withdrawn: stays in the register"}},
+          common_arguments(common)),
+      .footer =
+          "A line for each number that was ever drawn: number, state, campaign, date, reason.\n"
+          "  issued     in force\n"
+          "  amended    replaced by another number, because the data changed\n"
+          "  withdrawn  taken back, with the reason\n"
+          "  drawn      not issued, with the reason; the next run uses it for the same campaign\n"
+          "Nothing is ever deleted, and the same data are never issued twice: if a certificate is\n"
+          "lost, --out gives it back. Keep the register (certificates.sqlite in the site) with "
+          "your\n"
+          "backups: without it numbers would be used twice, and a run refuses.\n\n"
+          "Example: nonio certificates site --withdraw 2026-0012 --why \"wrong serial number\"",
+      .run = [wanted, &common] { return certificates(*wanted, common); }};
 }
 
 }  // namespace nonio::app

@@ -1,26 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "command_line.h"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <sstream>
 
+#include "colour.h"
 #include "nonio/host/nearest.h"
 
 namespace nonio::app {
 
 namespace {
 
-bool is_positional(const Argument& a) { return !a.name.starts_with('-'); }
-
 CLI::Option* bind(CLI::App& app, const Argument& a) {
   if (auto* const* flag = std::get_if<bool*>(&a.target))
     return app.add_flag(a.name, **flag, a.help);
   if (auto* const* list = std::get_if<std::vector<std::string>*>(&a.target)) {
     CLI::Option* option = app.add_option(a.name, **list, a.help);
-    // One value each time, so that what follows it is never taken for a second one.
-    if (!is_positional(a)) option->take_all()->expected(1)->allow_extra_args(false);
+    // One value each time, so that what follows it is never taken for a second
+    // one.
+    if (!a.is_positional()) option->take_all()->expected(1)->allow_extra_args(false);
     return option;
   }
   if (!a.bare.empty())  // CLI11 knows such a value only for flags
@@ -45,7 +48,9 @@ void bind(CLI::App& app, const Verb& verb, std::function<int()>& chosen) {
   for (const Argument& a : verb.arguments) check(*bind(app, a), a);
   app.footer(verb.footer);
   for (const Verb& inner : verb.verbs)
-    bind(*app.add_subcommand(inner.name, inner.summary), inner, chosen);
+    bind(*app.add_subcommand(inner.name, inner.summary)
+              ->group(inner.group.empty() ? "Verbs" : inner.group),
+         inner, chosen);
   if (verb.verbs.empty())
     app.callback([&chosen, &verb] { chosen = verb.run; });
   else
@@ -64,50 +69,72 @@ const Verb* find(const std::vector<Verb>& verbs, const std::string& name) {
   return it == verbs.end() ? nullptr : &*it;
 }
 
-std::string listed(const std::vector<std::string>& names) {
+std::string in_commas(const std::vector<std::string>& names) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   return list;
 }
 
-/// The verb that the words lead to, as far as they are verbs, and what comes before it: "nonio
-/// plan".
+/// The verb that the words lead to, as far as they are verbs.
 struct Found {
-  const Verb* verb = nullptr;  ///< none: the program itself
-  std::string path;
-  std::string wrong;  ///< the complaint about a word where a verb is wanted; empty if there is none
+  const Verb* verb = nullptr;
+  std::string path;       ///< "nonio plan"
+  std::size_t words = 0;  ///< of the path, without the program
+  std::string wrong{};    ///< what is wrong with the word where a verb is wanted;
+                          ///< empty: nothing
 };
 
-Found find(const Program& program, const std::vector<std::string>& words) {
-  Found found{nullptr, program.name, {}};
-  const std::vector<Verb>* verbs = &program.verbs;
+Found find(const Verb& top, const std::vector<std::string>& words) {
+  Found found{&top, top.name};
   for (const std::string& word : words) {
-    if (verbs->empty() || word.starts_with('-')) break;
-    const Verb* next = find(*verbs, word);
+    const std::vector<Verb>& verbs = found.verb->verbs;
+    if (verbs.empty() || word.starts_with('-')) break;
+    const Verb* next = find(verbs, word);
     if (next == nullptr) {
-      const auto names = names_of(*verbs);
-      found.wrong = found.path + ": wanted a verb, found \"" + word + "\"" +
-                    host::suggestion(word, names) + "; the verbs are " + listed(names);
+      const auto names = names_of(verbs);
+      found.wrong = found.path + ": there is no verb \"" + word + "\"" +
+                    host::suggestion(word, names) + "; there are " + in_commas(names);
       break;
     }
     found.verb = next;
     found.path += " " + word;
-    verbs = &next->verbs;
+    ++found.words;
   }
   return found;
 }
 
-/// Behind CLI11's complaint about `argument`: the option that may have been meant.
-std::string meant(const Verb* verb, const std::vector<std::string>& words) {
-  if (verb == nullptr) return {};
-  std::vector<std::string> names{"--help"};
-  for (const Argument& a : verb->arguments)
-    if (!is_positional(a)) names.push_back(a.name);
-  for (const std::string& word : words) {
-    const std::string name = word.substr(0, word.find('='));
-    if (name.starts_with("--") && std::find(names.begin(), names.end(), name) == names.end())
-      return host::suggestion(name, names);
+bool is_option(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && word.find_first_of("0123456789.") != 1;
+}
+
+/// What is wrong with the first option that the verb does not have, with the
+/// nearest one that it has; empty if it has them all.
+std::string unknown_option(const Verb& verb, std::vector<std::string> own,
+                           const std::vector<std::string>& words) {
+  for (const Argument& a : verb.arguments)
+    if (!a.is_positional()) own.push_back(a.name);
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
+    if (!is_option(words[i])) continue;
+    const std::string name = words[i].substr(0, words[i].find('='));
+    if (std::find(own.begin(), own.end(), name) == own.end())
+      return "there is no option " + name + host::suggestion(name, own);
+    for (const Argument& a : verb.arguments)
+      if (a.name == name && name == words[i] && a.needs_value()) ++i;
   }
+  return {};
+}
+
+/// What CLI11 does not say as well; empty: nothing.
+std::string complaint_about(const Found& found, const std::vector<std::string>& words) {
+  if (!found.wrong.empty()) return found.wrong;
+  const bool at_top = found.words == 0;
+  std::vector<std::string> own{"--help", "-h"};
+  if (at_top) own.emplace_back("--version");
+  const std::vector<std::string> rest(words.begin() + found.words, words.end());
+  if (const std::string wrong = unknown_option(*found.verb, own, rest); !wrong.empty())
+    return found.path + ": " + wrong;
+  if (!at_top && rest.empty() && !found.verb->verbs.empty())
+    return found.path + ": wanted a verb: " + in_commas(names_of(found.verb->verbs));
   return {};
 }
 
@@ -121,51 +148,94 @@ std::unique_ptr<CLI::App> cli_of(const Program& program, const Verb& top,
 }
 
 Verb top_of(const Program& program) {
-  return {program.name, program.summary, {}, program.footer, {}, program.verbs};
+  return {.name = program.name,
+          .summary = program.summary,
+          .footer = program.footer,
+          .verbs = program.verbs};
+}
+
+/// With headings in bold.
+void print_help(const std::string& text, std::ostream& out) {
+  const bool is_out = &out == &std::cout;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const bool heading = line.ends_with(':') && line.size() < 30 && line[0] != ' ';
+    out << (heading ? coloured(line, Colour::bold, is_out ? STDOUT_FILENO : STDERR_FILENO) : line)
+        << "\n";
+  }
+}
+
+/// The program with no words, as far as it has been bound.
+struct Bound {
+  explicit Bound(const Program& program)
+      : top(top_of(program)), cli(cli_of(program, top, chosen)) {}
+  Bound(const Bound&) = delete;
+  Bound& operator=(const Bound&) = delete;
+
+  std::function<int()> chosen{};
+  Verb top;
+  std::unique_ptr<CLI::App> cli;
+};
+
+/// `words` lead to a verb.
+std::string help_text(const Program& program, const std::vector<std::string>& words) {
+  Bound bound(program);
+  std::vector<std::string> reversed{"--help"};
+  reversed.insert(reversed.end(), words.rbegin(), words.rend());
+  try {
+    bound.cli->parse(reversed);
+  } catch (const CLI::ParseError&) {  // that of --help
+  }
+  return bound.cli->help();
 }
 
 }  // namespace
 
-std::optional<std::string> help_of(const Program& program, const std::vector<std::string>& words) {
-  if (!find(program, words).wrong.empty()) return std::nullopt;
-  std::function<int()> chosen;
+std::vector<Argument> joined(std::vector<Argument> first, const std::vector<Argument>& second,
+                             const std::vector<Argument>& third,
+                             const std::vector<Argument>& fourth) {
+  for (const auto* more : {&second, &third, &fourth})
+    first.insert(first.end(), more->begin(), more->end());
+  return first;
+}
+
+int show_help(const Program& program, const std::vector<std::string>& words) {
   const Verb top = top_of(program);
-  const auto cli = cli_of(program, top, chosen);
-  std::vector<std::string> reversed{"--help"};
-  reversed.insert(reversed.end(), words.rbegin(), words.rend());
-  try {
-    cli->parse(reversed);
-  } catch (const CLI::CallForHelp&) {
-    return cli->help();
-  } catch (const CLI::ParseError&) {
+  const Found found = find(top, words);
+  if (found.wrong.empty() && found.words == words.size()) {
+    print_help(help_text(program, words), std::cout);
+    return exit_done;
   }
-  return std::nullopt;
+  std::cerr << (found.wrong.empty() ? found.path + ": there is no verb below it" : found.wrong)
+            << "\n";
+  return exit_usage;
 }
 
 int run(const Program& program, int argc, const char* const* argv) {
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
-  const Found found = find(program, words);
-  if (!found.wrong.empty()) {
-    std::cerr << found.wrong << "\n`" << program.name << " help` says what each does.\n";
-    return exit_usage;
-  }
   if (words.empty()) {
-    std::cerr << *help_of(program, {});
+    print_help(help_text(program, {}), std::cerr);
     return exit_usage;
   }
-  std::function<int()> chosen;
-  const Verb top = top_of(program);
-  const auto cli = cli_of(program, top, chosen);
+  Bound bound(program);
+  const Found found = find(bound.top, words);
+  if (const std::string wrong = complaint_about(found, words); !wrong.empty()) {
+    std::cerr << wrong << "\n`" << found.path << " --help` says more.\n";
+    return exit_usage;
+  }
   try {
-    cli->parse(argc, argv);
+    bound.cli->parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    print_help(bound.cli->help(), std::cout);
+    return exit_done;
   } catch (const CLI::Success& e) {
-    return cli->exit(e);
+    return bound.cli->exit(e);
   } catch (const CLI::ParseError& e) {
-    std::cerr << found.path << ": " << e.what() << meant(found.verb, words) << "\n`" << found.path
+    std::cerr << found.path << ": " << e.what() << "\n`" << found.path
               << " --help` says what it takes.\n";
     return exit_usage;
   }
-  return chosen();
+  return bound.chosen();
 }
 
 }  // namespace nonio::app

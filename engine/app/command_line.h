@@ -10,18 +10,21 @@
 #include <variant>
 #include <vector>
 
-/// The command line as data: one table of verbs and their arguments. From it come parsing, help,
-/// the nearest word for a mistyped one, the man page and the completion of shells.
+/// The command line as data: one table of verbs and their arguments. From it
+/// come parsing, help, the nearest word for a mistyped one, the man page and
+/// the completion of shells.
 namespace nonio::app {
 
 inline constexpr int exit_done = 0, exit_failed = 1, exit_usage = 2, exit_interrupted = 130;
 
-/// Where the value of an argument goes; a bool is a flag, a list may be given several times.
+/// Where the value of an argument goes; a bool is a flag, a list may be given
+/// several times.
 using Target = std::variant<bool*, std::string*, std::vector<std::string>*, std::int64_t*,
                             std::uint64_t*, double*>;
 
 struct Argument {
-  /// What a value has to be before the verb is run; completion offers files accordingly.
+  /// What a value has to be before the verb is run; completion offers files
+  /// accordingly.
   enum class Takes { anything, folder, file, path };
 
   std::string name;  ///< "--out", or in capital letters, "SITE": a place without a name
@@ -34,7 +37,40 @@ struct Argument {
   std::optional<std::pair<double, double>> range{};  ///< of a number, both ends included
   std::string bare{};          ///< the value of `--name` without one; empty: it needs one
   bool shows_default = false;  ///< help says which value it has if it is not given
+
+  bool is_positional() const { return !name.starts_with('-'); }
+  bool is_flag() const { return std::holds_alternative<bool*>(target); }
+  bool is_list() const { return std::holds_alternative<std::vector<std::string>*>(target); }
+  bool needs_value() const { return !is_positional() && !is_flag() && bare.empty(); }
 };
+
+inline Argument required(Argument a) {
+  a.required = true;
+  return a;
+}
+/// A value that names what must be there.
+inline Argument existing(Argument::Takes kind, Argument a) {
+  a.takes = kind;
+  a.exists = true;
+  return a;
+}
+/// A value that names a file or folder, there or not; or several with ','
+/// between them.
+inline Argument takes(Argument::Takes kind, Argument a) {
+  a.takes = kind;
+  return a;
+}
+inline Argument one_of(std::vector<std::string> choices, Argument a) {
+  a.choices = std::move(choices);
+  return a;
+}
+inline Argument within(double least, double most, Argument a) {
+  a.range = {least, most};
+  return a;
+}
+std::vector<Argument> joined(std::vector<Argument> first, const std::vector<Argument>& second,
+                             const std::vector<Argument>& third = {},
+                             const std::vector<Argument>& fourth = {});
 
 struct Verb {
   std::string name, summary;
@@ -42,6 +78,7 @@ struct Verb {
   std::string footer{};  ///< what the help says below the arguments, with an example
   std::function<int()> run{};
   std::vector<Verb> verbs{};  ///< instead of `run`: `nonio plan triples`
+  std::string group{};        ///< heading of the help under which it stands
 };
 
 struct Program {
@@ -49,14 +86,14 @@ struct Program {
   std::vector<Verb> verbs;
 };
 
-/// Fills the targets and runs the verb. Help goes to stdout, what is wrong to stderr with the
-/// nearest word that would be right. The exit status: that of the verb, 0 for help, 2 for a
-/// mistake.
+/// Fills the targets and runs the verb. Help goes to stdout, what is wrong to
+/// stderr with the nearest word that would be right. The exit status: that of
+/// the verb, 0 for help, 2 for a mistake.
 int run(const Program& program, int argc, const char* const* argv);
 
-/// The help of one verb, `words` = {"plan", "triples"}, or of the program; nothing if there is
-/// none.
-std::optional<std::string> help_of(const Program& program, const std::vector<std::string>& words);
+/// Prints the help of one verb, `words` = {"plan", "triples"}, or of the
+/// program. The exit status: 2 if there is no such verb.
+int show_help(const Program& program, const std::vector<std::string>& words);
 
 /// A page for man(1).
 void write_man_page(const Program& program, std::ostream& out);

@@ -9,9 +9,6 @@ namespace nonio::app {
 
 namespace {
 
-bool is_positional(const Argument& a) { return !a.name.starts_with('-'); }
-bool is_flag(const Argument& a) { return std::holds_alternative<bool*>(a.target); }
-
 /// Every verb that can be run or has verbs below it, with the words that lead to it.
 template <class Visit>
 void each(const std::vector<Verb>& verbs, const std::string& path, const Visit& visit) {
@@ -51,9 +48,8 @@ void write_roff_block(std::ostream& out, const std::string& text) {
 std::string synopsis(const std::string& path, const Verb& v) {
   std::string line = path;
   for (const Argument& a : v.arguments)
-    if (is_positional(a))
-      line += " " + std::string(a.required ? "" : "[") + a.name +
-              (std::holds_alternative<std::vector<std::string>*>(a.target) ? "..." : "") +
+    if (a.is_positional())
+      line += " " + std::string(a.required ? "" : "[") + a.name + (a.is_list() ? "..." : "") +
               (a.required ? "" : "]");
     else if (a.required)
       line += " " + a.name + " ...";
@@ -68,7 +64,7 @@ std::string in_single_quotes(const std::string& text) {
   return "'" + replaced(text, '\'', "'\\''") + "'";
 }
 
-std::string listed(const std::vector<std::string>& words) {
+std::string in_words(const std::vector<std::string>& words) {
   std::string out;
   for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
   return out;
@@ -76,7 +72,7 @@ std::string listed(const std::vector<std::string>& words) {
 
 /// What bash offers where a value of the argument stands.
 std::string bash_values(const Argument& a) {
-  if (!a.choices.empty()) return "-W " + in_single_quotes(listed(a.choices));
+  if (!a.choices.empty()) return "-W " + in_single_quotes(in_words(a.choices));
   switch (a.takes) {
     case Argument::Takes::folder:
       return "-d";
@@ -105,7 +101,7 @@ void write_bash(const Program& program, std::ostream& out) {
          "  case \"$path $prev\" in\n";
   each(program.verbs, name, [&](const std::string& path, const Verb& v) {
     for (const Argument& a : v.arguments)
-      if (!is_positional(a) && !is_flag(a) && a.bare.empty())
+      if (a.needs_value())
         out << "    \"" << path << " " << a.name << "\") offer="
             << "\"" << bash_values(a) << "\" ;;\n";
   });
@@ -114,12 +110,12 @@ void write_bash(const Program& program, std::ostream& out) {
     std::vector<std::string> words, values;
     for (const Verb& inner : v.verbs) words.push_back(inner.name);
     for (const Argument& a : v.arguments)
-      if (is_positional(a))
+      if (a.is_positional())
         values.push_back(bash_values(a));
       else
         words.push_back(a.name);
     words.emplace_back("--help");
-    out << "        \"" << path << "\") offer=\"-W '" << listed(words) << "'\"";
+    out << "        \"" << path << "\") offer=\"-W '" << in_words(words) << "'\"";
     if (!values.empty()) out << "; [[ $cur == -* ]] || offer=\"" << values.front() << "\"";
     out << " ;;\n";
   };
@@ -141,7 +137,7 @@ std::string zsh_text(const std::string& text) {
 }
 
 std::string zsh_values(const Argument& a) {
-  if (!a.choices.empty()) return "(" + listed(a.choices) + ")";
+  if (!a.choices.empty()) return "(" + in_words(a.choices) + ")";
   switch (a.takes) {
     case Argument::Takes::folder:
       return "_files -/";
@@ -157,15 +153,15 @@ std::string zsh_values(const Argument& a) {
 void write_zsh_arguments(const Verb& v, const std::string& indent, std::ostream& out) {
   out << indent << "_arguments -s '--help[help of this verb]'";
   for (const Argument& a : v.arguments) {
-    const bool many = std::holds_alternative<std::vector<std::string>*>(a.target);
+    const bool many = a.is_list();
     out << " \\\n" << indent << "  '";
-    if (is_positional(a)) {
+    if (a.is_positional()) {
       out << (many ? "*" : "") << ":" << zsh_text(a.name) << ":" << zsh_values(a) << "'";
       continue;
     }
-    out << (many ? "*" : "") << a.name << (is_flag(a) || !a.bare.empty() ? "" : "=") << "["
-        << zsh_text(a.help) << "]";
-    if (!is_flag(a) && a.bare.empty()) out << ":value:" << zsh_values(a);
+    out << (many ? "*" : "") << a.name << (!a.needs_value() ? "" : "=") << "[" << zsh_text(a.help)
+        << "]";
+    if (a.needs_value()) out << ":value:" << zsh_values(a);
     out << "'";
   }
   out << "\n";
@@ -212,7 +208,7 @@ void write_man_page(const Program& program, std::ostream& out) {
     out << ".SS " << roff(synopsis(path, v)) << "\n" << roff(v.summary) << ".\n";
     for (const Argument& a : v.arguments) {
       out << ".TP\n.B " << roff(a.name) << "\n" << roff(one_line(a.help));
-      if (!a.choices.empty()) out << "; one of " << roff(listed(a.choices));
+      if (!a.choices.empty()) out << "; one of " << roff(in_words(a.choices));
       out << "\n";
     }
     write_roff_block(out, v.footer);

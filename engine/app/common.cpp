@@ -2,6 +2,8 @@
 #include "common.h"
 
 #include <cstdlib>
+#include <iostream>
+#include <sstream>
 
 namespace nonio::app {
 namespace fs = std::filesystem;
@@ -19,9 +21,10 @@ fs::path program_folder() {
 std::vector<fs::path> Common::plugin_folders() const {
   std::vector<fs::path> folders;
   for (const std::string& p : plugin_paths) folders.push_back(fs::absolute(p));
-  if (const char* path = std::getenv("NONIO_PLUGIN_PATH"))
-    for (const std::string& p : CLI::detail::split(path, ':'))
-      if (!p.empty()) folders.push_back(fs::absolute(p));
+  const char* const path = std::getenv("NONIO_PLUGIN_PATH");
+  std::istringstream more(path == nullptr ? "" : path);
+  for (std::string p; std::getline(more, p, ':');)
+    if (!p.empty()) folders.push_back(fs::absolute(p));
   folders.push_back(own_plugins());
   return folders;
 }
@@ -37,27 +40,47 @@ std::vector<fs::path> Common::template_folders() const {
   return folders;
 }
 
-void add_common(CLI::App& verb, Common& common) {
-  verb.add_option(
-          "--plugin-path", common.plugin_paths,
-          "A folder with more plugins; may be given several times. NONIO_PLUGIN_PATH holds\n"
-          "such folders too, with ':' between them.")
-      ->check(CLI::ExistingDirectory)
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
-  verb.add_flag("--json", common.json, "Machine-readable output on stdout");
-  verb.add_flag("--quiet", common.quiet, "No progress; only what went wrong");
+std::vector<Argument> common_arguments(Common& common) {
+  using Takes = Argument::Takes;
+  return {
+      existing(Takes::folder,
+               {"--plugin-path", &common.plugin_paths,
+                "A folder with more plugins; may be given several times. NONIO_PLUGIN_PATH holds\n"
+                "such folders too, with ':' between them."}),
+      {"--json", &common.json, "Machine-readable output on stdout"},
+      {"--quiet", &common.quiet, "No progress; only what went wrong"}};
 }
 
-void add_templates(CLI::App& verb, Common& common) {
-  verb.add_option(
-          "--templates", common.template_paths,
-          "A folder laid over the installed templates; SITE/templates is, without being named")
-      ->check(CLI::ExistingDirectory)
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+Argument templates_argument(Common& common) {
+  return existing(
+      Argument::Takes::folder,
+      {"--templates", &common.template_paths,
+       "A folder laid over the installed templates; SITE/templates is, without being named"});
+}
+
+Argument settings_argument(std::vector<std::string>& settings, std::string help) {
+  return {"--set", &settings, std::move(help)};
+}
+
+Expected<std::map<std::string, std::string>> settings_of(const std::vector<std::string>& given) {
+  std::map<std::string, std::string> out;
+  for (const std::string& one : given) {
+    const std::size_t equals = one.find('=');
+    if (equals == std::string::npos || equals == 0)
+      return fail("--set: wanted NAME=VALUE, found \"" + one + "\"");
+    out[one.substr(0, equals)] = one.substr(equals + 1);
+  }
+  return out;
+}
+
+std::string text_of(const Error& e) {
+  return e.file + (e.line != 0 ? ":" + std::to_string(e.line) : "") +
+         (e.column.empty() ? "" : " (" + e.column + ")") + (e.file.empty() ? "" : ": ") + e.message;
+}
+
+int complain(const std::string& verb, const std::string& message, int status) {
+  std::cerr << verb << ": " << message << "\n";
+  return status;
 }
 
 }  // namespace nonio::app

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
-#include <optional>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "command_line.h"
+#include "nonio/sdk/error.h"
+
 /// What the verbs share.
 namespace nonio::app {
-
-inline constexpr int exit_done = 0, exit_failed = 1, exit_usage = 2, exit_interrupted = 130;
 
 struct Common {
   std::vector<std::string> plugin_paths, template_paths;
@@ -23,26 +23,17 @@ struct Common {
 };
 
 /// --plugin-path, --json, --quiet.
-void add_common(CLI::App& verb, Common& common);
+std::vector<Argument> common_arguments(Common& common);
 /// --templates.
-void add_templates(CLI::App& verb, Common& common);
+Argument templates_argument(Common& common);
+/// --set NAME=VALUE; `help` says of what.
+Argument settings_argument(std::vector<std::string>& settings, std::string help);
+/// {"NAME", "VALUE"} of each --set.
+Expected<std::map<std::string, std::string>> settings_of(const std::vector<std::string>& given);
 
-/// Exit status of the verb that was given, once it has run.
-using Outcome = std::optional<int>;
-
-void add_apply_verb(CLI::App& cli, Common& common, Outcome& outcome);
-void add_certificates_verb(CLI::App& cli, Common& common, Outcome& outcome);
-void add_compare_verb(CLI::App& cli, Common& common, Outcome& outcome);
-void add_controllers_verb(CLI::App& cli, Common& common, Outcome& outcome);
-void add_diff_verb(CLI::App& cli, Common& common, Outcome& outcome);
-void add_explain_verb(CLI::App& cli, Common& common, Outcome& outcome);
-void add_import_verb(CLI::App& cli, Common& common, Outcome& outcome);
-void add_model_verb(CLI::App& cli, Common& common, Outcome& outcome);
-void add_plan_verb(CLI::App& cli, Common& common, Outcome& outcome);
-void add_plugin_verb(CLI::App& cli, Common& common, Outcome& outcome);
-/// Below `plan`.
-void add_sign_probe(CLI::App& plan_verb, Common& common, Outcome& outcome);
-void add_template_verb(CLI::App& cli, Common& common, Outcome& outcome);
-void add_verify_verb(CLI::App& cli, Common& common, Outcome& outcome);
+/// "campaign.toml:12 (target_mm): ..."
+std::string text_of(const Error& error);
+/// "nonio compare: ..." on stderr; returns the exit status.
+int complain(const std::string& verb, const std::string& message, int status = exit_usage);
 
 }  // namespace nonio::app

@@ -4,9 +4,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common.h"
 #include "nonio/host/plugins.h"
 #include "nonio/sdk/format.h"
+#include "verbs.h"
 
 namespace nonio::app {
 
@@ -76,7 +76,7 @@ Json control_json(const Output& o) {
   return json;
 }
 
-std::string padded(std::string text, std::size_t width) {
+std::string cell(std::string text, std::size_t width) {
   if (text.size() < width) text.append(width - text.size(), ' ');
   return text + " ";
 }
@@ -91,23 +91,23 @@ void print_head() {
                                     {"sign", 11},
                                     {"entry", 9},
                                     {"digit mm", 9}})
-    std::cout << padded(head, static_cast<std::size_t>(width));
+    std::cout << cell(head, static_cast<std::size_t>(width));
   std::cout << "backlash\n";
 }
 
 void print_control(const Output& o, bool facts) {
   const ControlTable& t = *o.control;
-  const auto yes = [](bool is, std::size_t width) { return padded(is ? "yes" : "-", width); };
-  std::cout << padded(o.info.name, 20) << padded(t.points > 0 ? std::to_string(t.points) : "any", 6)
+  const auto yes = [](bool is, std::size_t width) { return cell(is ? "yes" : "-", width); };
+  std::cout << cell(o.info.name, 20) << cell(t.points > 0 ? std::to_string(t.points) : "any", 6)
             << yes(t.bidirectional, 9) << yes(t.straightness, 8) << yes(t.squareness, 6)
-            << yes(t.volumetric, 6) << padded(sign_unknown(t) ? "not known" : to_text(t.sign), 11)
-            << padded(to_text(t.entry), 9) << padded(short_text(t.value_step.linear * 1e3, 3), 9)
+            << yes(t.volumetric, 6) << cell(sign_unknown(t) ? "not known" : to_text(t.sign), 11)
+            << cell(to_text(t.entry), 9) << cell(short_text(t.value_step.linear * 1e3, 3), 9)
             << (t.backlash.empty() ? "-" : t.backlash) << "\n";
   if (!facts) return;
   std::cout << "    " << o.info.summary << "\n    table: " << t.name
             << "; zero: " << to_text(t.zero) << "\n";
   for (const ControlTable::Fact& f : t.facts)
-    std::cout << "    " << padded(to_text(f.confidence), 11) << f.says << "\n";
+    std::cout << "    " << cell(to_text(f.confidence), 11) << f.says << "\n";
 }
 
 int list_controls(const std::vector<std::string>& names, const Common& common) {
@@ -121,8 +121,7 @@ int list_controls(const std::vector<std::string>& names, const Common& common) {
   for (const std::string& name : names)
     if (std::none_of(all.begin(), all.end(),
                      [&](const Output* o) { return o->info.name == name; })) {
-      std::cerr << "nonio controllers: " << plugins.absence("output", name) << "\n";
-      return exit_usage;
+      return complain("nonio controllers", plugins.absence("output", name));
     }
   if (!names.empty())
     std::erase_if(all, [&](const Output* o) {
@@ -141,22 +140,25 @@ int list_controls(const std::vector<std::string>& names, const Common& common) {
 
 }  // namespace
 
-void add_controllers_verb(CLI::App& cli, Common& common, Outcome& outcome) {
-  CLI::App* verb = cli.add_subcommand(
-      "controllers", "The controls that tables are written for, and what each can take");
+Verb controllers_verb(Common& common) {
   auto names = std::make_shared<std::vector<std::string>>();
-  verb->add_option("NAME", *names, "Only these, with how sure each fact about them is");
-  add_common(*verb, common);
-  verb->footer(
-      "points: of one table. both ways: a table for each direction of travel. straight, square:\n"
-      "an axis by the position of another. volume: all errors of the machine in one file.\n"
-      "sign: whether an entry is the measured error (actual - nominal) or the correction. Where\n"
-      "nobody knows it, nothing is written before a sign probe has shown it (`nonio plan\n"
-      "sign-probe`). A control comes into a campaign by its name:\n"
-      "    [machine]\n"
-      "    control = \"fagor-8055\"\n\n"
-      "Example: nonio controllers pmac ecmc");
-  verb->callback([names, &common, &outcome] { outcome = list_controls(*names, common); });
+  return {.name = "controllers",
+          .summary = "The controls that tables are written for, and what each can take",
+          .arguments =
+              joined({{"NAME", names.get(), "Only these, with how sure each fact about them is"}},
+                     common_arguments(common)),
+          .footer =
+              "points: of one table. both ways: a table for each direction of travel. straight, "
+              "square:\n"
+              "an axis by the position of another. volume: all errors of the machine in one file.\n"
+              "sign: whether an entry is the measured error (actual - nominal) or the correction. "
+              "Where\n"
+              "nobody knows it, nothing is written before a sign probe has shown it (`nonio plan\n"
+              "sign-probe`). A control comes into a campaign by its name:\n"
+              "    [machine]\n"
+              "    control = \"fagor-8055\"\n\n"
+              "Example: nonio controllers pmac ecmc",
+          .run = [names, &common] { return list_controls(*names, common); }};
 }
 
 }  // namespace nonio::app

@@ -3,6 +3,7 @@
 
 #include "campaign_verb.h"
 #include "tables.h"
+#include "verbs.h"
 
 namespace nonio::app {
 
@@ -22,9 +23,9 @@ class Explain {
       : options_(options), common_(common) {}
 
   int run() {
-    Outcome exit;
-    open_ = open_campaign("nonio explain", options_.folder, common_, exit);
-    if (exit) return *exit;
+    auto opened = open_campaign("nonio explain", options_.folder, common_);
+    if (!opened) return opened.error();
+    open_ = std::move(*opened);
     words_.emplace(open_.place->context.templates, "en");
     if (const int status = explain(); status != exit_done && all_.empty()) return status;
     while (options_.automatic && missing() != nullptr) {
@@ -41,7 +42,7 @@ class Explain {
   }
 
  private:
-  static void tell(const std::string& text) { std::cerr << "nonio explain: " << text << "\n"; }
+  static void tell(const std::string& text) { complain("nonio explain", text); }
 
   int explain() {
     all_.clear();
@@ -115,22 +116,28 @@ class Explain {
 
 }  // namespace
 
-void add_explain_verb(CLI::App& cli, Common& common, Outcome& outcome) {
-  CLI::App* verb = cli.add_subcommand(
-      "explain", "Which effect is missing from the model: candidates, ranked, and a verdict");
+Verb explain_verb(Common& common) {
   auto options = std::make_shared<ExplainOptions>();
-  add_campaign_arguments(*verb, options->folder, common);
-  verb->add_flag("--auto", options->automatic,
-                 "While an effect is missing, add it to campaign.toml; show each step");
-  verb->add_option("--seed", options->seed, "Of the shuffles behind the false-alarm rate")
-      ->capture_default_str();
-  verb->footer(
-      "Every effect of the catalogue (`nonio plugins`) that is not in the model is tried on top\n"
-      "of it. Verdicts: missing (an effect belongs into the model), nothing (the model is good\n"
-      "down to the noise), unknown (something is left that no effect explains; it says where),\n"
-      "unrepeatable (the readings contradict each other: look at the machine first).\n\n"
-      "Example: nonio explain samples/site/02-constant-reversal");
-  verb->callback([options, &common, &outcome] { outcome = Explain(*options, common).run(); });
+  return {
+      .name = "explain",
+      .summary = "Which effect is missing from the model: candidates, ranked, and a verdict",
+      .arguments = joined(campaign_arguments(options->folder, common),
+                          {{"--auto", &options->automatic,
+                            "While an effect is missing, add it to campaign.toml; show each step"},
+                           {.name = "--seed",
+                            .target = &options->seed,
+                            .help = "Of the shuffles behind the false-alarm rate",
+                            .shows_default = true}}),
+      .footer =
+          "Every effect of the catalogue (`nonio plugins`) that is not in the model is tried on "
+          "top\n"
+          "of it. Verdicts: missing (an effect belongs into the model), nothing (the model is "
+          "good\n"
+          "down to the noise), unknown (something is left that no effect explains; it says "
+          "where),\n"
+          "unrepeatable (the readings contradict each other: look at the machine first).\n\n"
+          "Example: nonio explain samples/site/02-constant-reversal",
+      .run = [options, &common] { return Explain(*options, common).run(); }};
 }
 
 }  // namespace nonio::app

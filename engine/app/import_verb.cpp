@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common.h"
 #include "nonio/host/files.h"
 #include "nonio/host/import.h"
+#include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
@@ -91,74 +90,71 @@ void print(const host::ImportReport& report) {
                  "before a table is loaded.\n";
 }
 
-int run(const ImportArguments& arguments, const Common& common) {
+int import_files(const ImportArguments& arguments, const Common& common) {
+  const char* const verb = "nonio import";
   auto rule = rule_of(arguments);
   if (!rule) {
-    for (const Error& e : rule.error())
-      std::cerr << "nonio import: " << e.file << (e.line != 0 ? ":" + std::to_string(e.line) : "")
-                << (e.file.empty() ? "" : ": ") << e.message << "\n";
+    for (const Error& e : rule.error()) complain(verb, text_of(e));
     return exit_usage;
   }
   if (!arguments.reader.empty()) rule->reader = arguments.reader;
   if (!arguments.campaign.empty()) rule->campaign = arguments.campaign;
   host::Plugins plugins;
   plugins.load(common.plugin_folders());
-  for (const std::string& conflict : plugins.conflicts()) {
-    std::cerr << "nonio import: " << conflict << "\n";
-    return exit_usage;
-  }
+  for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
   const auto report = host::import_folder(
       {arguments.folder, fs::absolute(arguments.out), *rule, arguments.partial, arguments.dry_run},
       plugins);
-  if (!report) {
-    std::cerr << "nonio import: " << report.error().message << "\n";
-    return exit_usage;
-  }
+  if (!report) return complain(verb, report.error().message);
   if (common.json)
     print_json(*report, arguments.dry_run);
   else if (!common.quiet)
     print(*report);
   bool whole = !report->campaigns.empty();
   for (const host::ImportedCampaign& c : report->campaigns) whole = whole && c.whole();
-  if (report->campaigns.empty())
-    std::cerr << "nonio import: no file follows the pattern " << rule->pattern << "\n";
+  if (report->campaigns.empty()) complain(verb, "no file follows the pattern " + rule->pattern);
   return whole ? exit_done : exit_failed;
 }
 
 }  // namespace
 
-void add_import_verb(CLI::App& cli, Common& common, Outcome& outcome) {
-  CLI::App* verb = cli.add_subcommand(
-      "import", "Campaigns from a folder of instrument files, by a rule for their names");
+Verb import_verb(Common& common) {
   auto arguments = std::make_shared<ImportArguments>();
-  verb->add_option("FOLDER", arguments->folder, "Folder with the files, and folders in it")
-      ->required()
-      ->check(CLI::ExistingDirectory);
-  verb->add_option("--rule", arguments->rule,
-                   "How names are made: a pattern such as {machine}_{axis}_{date}.rtl, or a file\n"
-                   "RULE.toml with pattern, campaign, kind, reader, exclude and [manifest]")
-      ->required();
-  verb->add_option("--out", arguments->out, "Site that gets a folder for each campaign")
-      ->required();
-  verb->add_option("--reader", arguments->reader, "Reader of all files; else chosen by content");
-  verb->add_option("--campaign", arguments->campaign,
-                   "Id of the campaigns, such as {date}-{machine}");
-  verb->add_flag("--partial", arguments->partial,
-                 "Write campaigns that lack something too, with comments for what is to be filled");
-  verb->add_flag("--dry-run", arguments->dry_run, "Say what would be done; write nothing");
-  add_common(*verb, common);
-  verb->footer(
-      "Places in a pattern: {axis} (capital letters and digits), {date} (20240302 or 2024-03-02),\n"
-      "{machine}, {id} (of the measurement), any other name of small letters, {*} for what does "
-      "not\n"
-      "count. A pattern with / is for the path below FOLDER, else for the file's name. A name "
-      "that\n"
-      "can be read in two ways is not imported; neither is a second file with the same content.\n"
-      "Every file is read as a night would read it; a campaign is written when nothing is "
-      "missing.\n"
-      "Nothing that is there is touched.\n\n"
-      "Example: nonio import laser --rule '{machine}_{axis}_{date}.rtl' --out site --dry-run");
-  verb->callback([arguments, &common, &outcome] { outcome = run(*arguments, common); });
+  using Takes = Argument::Takes;
+  return {
+      .name = "import",
+      .summary = "Campaigns from a folder of instrument files, by a rule for their names",
+      .arguments = joined(
+          {required(existing(Takes::folder, {"FOLDER", &arguments->folder,
+                                             "Folder with the files, and folders in it"})),
+           required(
+               takes(Takes::file,
+                     {"--rule", &arguments->rule,
+                      "How names are made: a pattern such as {machine}_{axis}_{date}.rtl, or a "
+                      "file\n"
+                      "RULE.toml with pattern, campaign, kind, reader, exclude and [manifest]"})),
+           required(takes(Takes::folder,
+                          {"--out", &arguments->out, "Site that gets a folder for each campaign"})),
+           {"--reader", &arguments->reader, "Reader of all files; else chosen by content"},
+           {"--campaign", &arguments->campaign, "Id of the campaigns, such as {date}-{machine}"},
+           {"--partial", &arguments->partial,
+            "Write campaigns that lack something too, with comments for what is to be filled"},
+           {"--dry-run", &arguments->dry_run, "Say what would be done; write nothing"}},
+          common_arguments(common)),
+      .footer =
+          "Places in a pattern: {axis} (capital letters and digits), {date} (20240302 or "
+          "2024-03-02),\n"
+          "{machine}, {id} (of the measurement), any other name of small letters, {*} for what "
+          "does not\n"
+          "count. A pattern with / is for the path below FOLDER, else for the file's name. A name "
+          "that\n"
+          "can be read in two ways is not imported; neither is a second file with the same "
+          "content.\n"
+          "Every file is read as a night would read it; a campaign is written when nothing is "
+          "missing.\n"
+          "Nothing that is there is touched.\n\n"
+          "Example: nonio import laser --rule '{machine}_{axis}_{date}.rtl' --out site --dry-run",
+      .run = [arguments, &common] { return import_files(*arguments, common); }};
 }
 
 }  // namespace nonio::app

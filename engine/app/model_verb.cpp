@@ -5,6 +5,7 @@
 #include "campaign_verb.h"
 #include "nonio/host/nearest.h"
 #include "tables.h"
+#include "verbs.h"
 
 namespace nonio::app {
 
@@ -14,22 +15,16 @@ struct ModelOptions {
   std::string folder, effect;
 };
 
-void tell(const std::string& text) { std::cerr << "nonio model: " << text << "\n"; }
+const char* const model_name = "nonio model";
 
-int show(const ModelOptions& options, const Common& common) {
-  Outcome exit;
-  OpenCampaign open = open_campaign("nonio model show", options.folder, common, exit);
-  if (exit) return *exit;
+int show_model(const ModelOptions& options, const Common& common) {
+  auto opened = open_campaign("nonio model show", options.folder, common);
+  if (!opened) return opened.error();
+  OpenCampaign& open = *opened;
   auto parts = host::part_models(open.read, open.campaign().model);
-  if (!parts) {
-    tell(text_of(parts.error()));
-    return exit_usage;
-  }
+  if (!parts) return complain(model_name, text_of(parts.error()));
   const auto history = host::read_history(open.folder);
-  if (!history) {
-    tell(text_of(history.error()));
-    return exit_failed;
-  }
+  if (!history) return complain(model_name, text_of(history.error()), exit_failed);
   const host::ModelWords words(open.place->context.templates, "en");
   std::vector<host::Compared> all;
   std::vector<Error> errors = open.read.errors;
@@ -38,7 +33,7 @@ int show(const ModelOptions& options, const Common& common) {
     if (comparison) {
       all.push_back({std::move(part), std::move(*comparison)});
     } else {
-      tell(text_of(comparison.error()));
+      complain(model_name, text_of(comparison.error()));
       errors.push_back(comparison.error());
     }
   }
@@ -65,19 +60,13 @@ std::string refusal(const OpenCampaign& open, const std::string& effect, bool ad
 }
 
 int change(const ModelOptions& options, const Common& common, bool add) {
-  Outcome exit;
-  OpenCampaign open =
-      open_campaign(add ? "nonio model add" : "nonio model drop", options.folder, common, exit);
-  if (exit) return *exit;
-  if (const std::string why = refusal(open, options.effect, add); !why.empty()) {
-    tell(why + "; nothing was changed");
-    return exit_usage;
-  }
+  auto opened = open_campaign(add ? "nonio model add" : "nonio model drop", options.folder, common);
+  if (!opened) return opened.error();
+  OpenCampaign& open = *opened;
+  if (const std::string why = refusal(open, options.effect, add); !why.empty())
+    return complain(model_name, why + "; nothing was changed");
   const auto changed = host::change_model(open.folder, open.read, options.effect, add);
-  if (!changed) {
-    tell(text_of(changed.error()));
-    return exit_failed;
-  }
+  if (!changed) return complain(model_name, text_of(changed.error()), exit_failed);
   const host::ModelWords words(open.place->context.templates, "en");
   if (common.json)
     std::cout << host::change_json(*changed, open.campaign(), words);
@@ -86,29 +75,33 @@ int change(const ModelOptions& options, const Common& common, bool add) {
   return open.read.errors.empty() ? exit_done : exit_failed;
 }
 
+Verb change_verb(const std::shared_ptr<ModelOptions>& options, Common& common, bool add) {
+  const std::string name = add ? "add" : "drop";
+  return {.name = name,
+          .summary = add ? "Puts an effect into the model; what is left before and after"
+                         : "Takes an effect out of the model: the reverse of add",
+          .arguments = joined(campaign_arguments(options->folder, common),
+                              {required({"EFFECT", &options->effect,
+                                         "kind:axis, such as backlash:X (`nonio plugins`)"})}),
+          .footer =
+              "campaign.toml keeps its comments and every other byte; the change is noted in\n"
+              "model-history.jsonl beside it.\n\nExample: nonio model " +
+              name + " samples/site/02-constant-reversal backlash:X",
+          .run = [options, &common, add] { return change(*options, common, add); }};
+}
+
 }  // namespace
 
-void add_model_verb(CLI::App& cli, Common& common, Outcome& outcome) {
-  CLI::App* verb =
-      cli.add_subcommand("model", "Shows or changes the model of a campaign, in its campaign.toml");
-  verb->require_subcommand(1);
+Verb model_verb(Common& common) {
   auto options = std::make_shared<ModelOptions>();
-  CLI::App* shows = verb->add_subcommand("show", "The effects with their values, and the history");
-  add_campaign_arguments(*shows, options->folder, common);
-  shows->callback([options, &common, &outcome] { outcome = show(*options, common); });
-  for (const bool add : {true, false}) {
-    CLI::App* one = verb->add_subcommand(
-        add ? "add" : "drop", add ? "Puts an effect into the model; what is left before and after"
-                                  : "Takes an effect out of the model: the reverse of add");
-    add_campaign_arguments(*one, options->folder, common);
-    one->add_option("EFFECT", options->effect, "kind:axis, such as backlash:X (`nonio plugins`)")
-        ->required();
-    one->footer(
-        "campaign.toml keeps its comments and every other byte; the change is noted in\n"
-        "model-history.jsonl beside it.\n\nExample: nonio model " +
-        std::string(add ? "add" : "drop") + " samples/site/02-constant-reversal backlash:X");
-    one->callback([options, &common, &outcome, add] { outcome = change(*options, common, add); });
-  }
+  return {.name = "model",
+          .summary = "Shows or changes the model of a campaign, in its campaign.toml",
+          .verbs = {{.name = "show",
+                     .summary = "The effects with their values, and the history",
+                     .arguments = campaign_arguments(options->folder, common),
+                     .run = [options, &common] { return show_model(*options, common); }},
+                    change_verb(options, common, true),
+                    change_verb(options, common, false)}};
 }
 
 }  // namespace nonio::app

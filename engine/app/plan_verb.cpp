@@ -12,6 +12,7 @@
 #include "nonio/host/plan.h"
 #include "nonio/sdk/format.h"
 #include "tables.h"
+#include "verbs.h"
 
 namespace nonio::app {
 namespace fs = std::filesystem;
@@ -37,7 +38,7 @@ struct Plan {
   Programs programs;
 };
 
-struct Program {
+struct ProgramWish {
   std::vector<std::string> axes;
   std::string n, step_x, step_y, machine;
   Programs programs;
@@ -50,11 +51,6 @@ Expected<double> length_of(const std::string& option, const std::string& text) {
   if (error == std::errc() && stop == end) return value / 1e3;
   return fail(option + ": wanted a number in mm, with a point for decimals; found \"" + text +
               "\"");
-}
-
-int complain(const char* verb, const std::string& message) {
-  std::cerr << verb << ": " << message << "\n";
-  return exit_usage;
 }
 
 Expected<void> settle(Plan& plan) {
@@ -122,24 +118,13 @@ void print_plans(const Plan& plan, const math::TriplePlans& found) {
                "one reading\nof the diagonals.\n";
 }
 
-Expected<std::map<std::string, std::string>> settings_of(const Programs& p) {
-  std::map<std::string, std::string> out;
-  for (const std::string& one : p.settings) {
-    const std::size_t equals = one.find('=');
-    if (equals == std::string::npos || equals == 0)
-      return fail("--set: wanted NAME=VALUE, found \"" + one + "\"");
-    out[one.substr(0, equals)] = one.substr(equals + 1);
-  }
-  return out;
-}
-
 int write_programs(const char* verb, const Common& common, const Programs& p,
                    const Machine& machine, const PointTable& rows,
                    std::map<std::string, std::string> settings,
                    std::vector<std::string>* written = nullptr) {
   if (p.control.empty() || p.out.empty())
     return complain(verb, "part programs want a control (--control) and a folder");
-  const auto given = settings_of(p);
+  const auto given = settings_of(p.settings);
   if (!given) return complain(verb, given.error().message);
   for (const auto& [name, value] : *given) settings[name] = value;
   host::Plugins plugins;
@@ -150,10 +135,8 @@ int write_programs(const char* verb, const Common& common, const Programs& p,
     for (const Error& e : files.error()) complain(verb, e.message);
     return exit_usage;
   }
-  if (auto done = host::publish(fs::absolute(p.out), *files); !done) {
-    complain(verb, done.error().message);
-    return exit_failed;
-  }
+  if (auto done = host::publish(fs::absolute(p.out), *files); !done)
+    return complain(verb, done.error().message, exit_failed);
   for (const Artifact& a : *files) {
     const std::string path = (fs::path(p.out) / a.name).string();
     if (written != nullptr) written->push_back(path);
@@ -172,8 +155,7 @@ int plan_triples(Plan plan, const Common& common) {
   else if (!found->plans.empty())
     print_plans(plan, *found);
   if (found->plans.empty()) {
-    std::cerr << verb << ": " << host::why_nothing(*found) << "\n";
-    return exit_failed;
+    return complain(verb, host::why_nothing(*found), exit_failed);
   }
   if (plan.programs.out.empty() && plan.programs.control.empty()) return exit_done;
   if (plan.choose < 1 || plan.choose > static_cast<std::int64_t>(found->plans.size()))
@@ -211,7 +193,7 @@ Expected<Axis> axis_of(const std::string& text) {
 }
 
 /// The row that the diagonals follow; none where no steps are given.
-Expected<PointTable> grid_of(const Program& p) {
+Expected<PointTable> grid_of(const ProgramWish& p) {
   PointTable rows;
   if (p.n.empty() && p.step_x.empty() && p.step_y.empty()) return rows;
   std::int64_t n = 0;
@@ -231,7 +213,7 @@ Expected<PointTable> grid_of(const Program& p) {
   return rows;
 }
 
-int plan_program(const Program& p, const Common& common) {
+int plan_program(const ProgramWish& p, const Common& common) {
   const char* const verb = "nonio plan program";
   Machine machine;
   machine.model = p.machine;
@@ -252,99 +234,95 @@ int plan_program(const Program& p, const Common& common) {
   return exit;
 }
 
-void add_program_options(CLI::App& verb, Programs& p) {
-  verb.add_option("--control", p.control,
-                  "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name");
-  verb.add_option("--set", p.settings,
-                  "NAME=VALUE: an option of that writer (`nonio plugins` lists them), such as\n"
-                  "dwell_s=3, runs=2, programs=axes,diagonals; may be given several times")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+std::vector<Argument> program_arguments(Programs& p) {
+  return {{"--control", &p.control,
+           "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name"},
+          settings_argument(
+              p.settings,
+              "NAME=VALUE: an option of that writer (`nonio plugins` lists them), such as\n"
+              "dwell_s=3, runs=2, programs=axes,diagonals; may be given several times")};
 }
 
-void add_triples(CLI::App& plan_verb, Common& common, Outcome& outcome) {
-  CLI::App* verb = plan_verb.add_subcommand(
-      "triples", "Stops for X, Y and both diagonals of their rectangle, with equal whole steps");
+Verb triples_verb(Common& common) {
   auto plan = std::make_shared<Plan>();
-  verb->add_option("--x", plan->mm.x, "Travel of X, mm")->required();
-  verb->add_option("--y", plan->mm.y, "Travel of Y, mm")->required();
-  verb->add_option("--over-travel", plan->mm.over_travel,
-                   "Kept free at each end of both axes, mm (default 0)");
-  verb->add_option("--resolution", plan->mm.resolution,
-                   "Steps are whole multiples of it, mm (default 1)");
-  verb->add_option("--max-step", plan->mm.max_step,
-                   "Largest step of either axis, mm (default any)");
-  verb->add_option("--max-points", plan->wish.max_points,
-                   "Entries of the control's compensation table (default 1500)");
-  for (const auto& [name, to] :
-       {std::pair{"--pitch-x", &plan->mm.pitch_x}, {"--pitch-y", &plan->mm.pitch_y}})
-    verb->add_option(name, *to,
-                     "Pitch of screw, rack or scale, mm: no step is a whole multiple of it;\n"
-                     "may be given several times")
-        ->take_all()
-        ->expected(1)
-        ->allow_extra_args(false);
-  verb->add_flag("--density", plan->wish.density,
-                 "Only stops that ISO 230-2 accepts: five a metre on axes of up to 2 m,\n"
-                 "no more than 250 mm apart on longer ones");
-  verb->add_flag("--even{require}", plan->even,
-                 "An even number of steps, for a third diagonal to half of Y;\n"
-                 "--even=prefer takes it where it costs at most 1 % of coverage")
-      ->check(CLI::IsMember({"any", "prefer", "require"}));
-  verb->add_option("--hypotenuse", plan->wish.hypotenuse,
-                   "Largest c of the triples a-b-c (default 5000)");
-  verb->add_option("--count", plan->count, "Plans to show (default 5)");
-  verb->add_option("--program", plan->programs.out,
-                   "Folder for the part programs of one plan: X, Y and both diagonals");
-  verb->add_option("--choose", plan->choose, "Which plan --program writes (default 1)");
-  add_program_options(*verb, plan->programs);
-  add_common(*verb, common);
-  verb->footer(
-      "A diagonal whose steps are whole needs a right triangle with whole sides: 3-4-5,\n"
-      "5-12-13, ... Step = q (a, b, c) x resolution; n steps cover n q a of X and n q b of Y.\n"
-      "The same n stops serve the pitch of X and Y, both straightnesses and the diagonals.\n"
-      "First comes the plan that covers the worse axis furthest; the others say why they are\n"
-      "there and what they give up.\n\n"
-      "Exit status: 0 plans were found; 1 nothing fits, and which limit to ease; 2 usage.\n\n"
-      "Example: nonio plan triples --x 12000 --y 9000 --max-step 500 --max-points 31");
-  verb->callback([plan, &common, &outcome] { outcome = plan_triples(*plan, common); });
+  const std::string pitch =
+      "Pitch of screw, rack or scale, mm: no step is a whole multiple of it;\n"
+      "may be given several times";
+  Argument even = one_of({"any", "prefer", "require"},
+                         {"--even", &plan->even,
+                          "An even number of steps, for a third diagonal to half of Y;\n"
+                          "--even=prefer takes it where it costs at most 1 % of coverage"});
+  even.bare = "require";
+  return {
+      .name = "triples",
+      .summary = "Stops for X, Y and both diagonals of their rectangle, with equal whole steps",
+      .arguments = joined(
+          {required({"--x", &plan->mm.x, "Travel of X, mm"}),
+           required({"--y", &plan->mm.y, "Travel of Y, mm"}),
+           {"--over-travel", &plan->mm.over_travel,
+            "Kept free at each end of both axes, mm (default 0)"},
+           {"--resolution", &plan->mm.resolution,
+            "Steps are whole multiples of it, mm (default 1)"},
+           {"--max-step", &plan->mm.max_step, "Largest step of either axis, mm (default any)"},
+           {"--max-points", &plan->wish.max_points,
+            "Entries of the control's compensation table (default 1500)"},
+           {"--pitch-x", &plan->mm.pitch_x, pitch},
+           {"--pitch-y", &plan->mm.pitch_y, pitch},
+           {"--density", &plan->wish.density,
+            "Only stops that ISO 230-2 accepts: five a metre on axes of up to 2 m,\n"
+            "no more than 250 mm apart on longer ones"},
+           even,
+           {"--hypotenuse", &plan->wish.hypotenuse,
+            "Largest c of the triples a-b-c (default 5000)"},
+           {"--count", &plan->count, "Plans to show (default 5)"},
+           takes(Argument::Takes::folder,
+                 {"--program", &plan->programs.out,
+                  "Folder for the part programs of one plan: X, Y and both diagonals"}),
+           {"--choose", &plan->choose, "Which plan --program writes (default 1)"}},
+          program_arguments(plan->programs), common_arguments(common)),
+      .footer =
+          "A diagonal whose steps are whole needs a right triangle with whole sides: 3-4-5,\n"
+          "5-12-13, ... Step = q (a, b, c) x resolution; n steps cover n q a of X and n q b of Y.\n"
+          "The same n stops serve the pitch of X and Y, both straightnesses and the diagonals.\n"
+          "First comes the plan that covers the worse axis furthest; the others say why they are\n"
+          "there and what they give up.\n\n"
+          "Exit status: 0 plans were found; 1 nothing fits, and which limit to ease; 2 usage.\n\n"
+          "Example: nonio plan triples --x 12000 --y 9000 --max-step 500 --max-points 31",
+      .run = [plan, &common] { return plan_triples(*plan, common); }};
 }
 
-void add_program(CLI::App& plan_verb, Common& common, Outcome& outcome) {
-  CLI::App* verb = plan_verb.add_subcommand(
-      "program", "Part programs of axis runs, diagonals and step diagonals, without a campaign");
-  auto program = std::make_shared<Program>();
-  verb->add_option("--axis", program->axes,
-                   "NAME=FROM:TO, travel in mm, of A, B, C in deg; may be given several times")
-      ->required()
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
-  verb->add_option("--n", program->n, "Steps of the diagonals (from `nonio plan triples`)");
-  verb->add_option("--step-x", program->step_x, "Step of X on the diagonals, mm");
-  verb->add_option("--step-y", program->step_y, "Step of Y on the diagonals, mm");
-  verb->add_option("--machine", program->machine, "Name of the machine, for the comments");
-  verb->add_option("--out", program->programs.out, "Folder for the programs")->required();
-  add_program_options(*verb, program->programs);
-  add_common(*verb, common);
-  verb->footer(
-      "Axis runs have random offsets of the targets, as ISO 230-2 asks; the same seed\n"
-      "(--set seed=7) gives the same targets. With --n, --step-x and --step-y the diagonals are\n"
-      "written too, and X and Y have the same stops as they.\n\n"
-      "Example: nonio plan program --axis X=0:800 --axis Y=0:600 --axis Z=0:600 \\\n"
-      "           --control siemens --set programs=axes,step-diagonals --set steps=40 --out p");
-  verb->callback([program, &common, &outcome] { outcome = plan_program(*program, common); });
+Verb program_verb(Common& common) {
+  auto program = std::make_shared<ProgramWish>();
+  return {
+      .name = "program",
+      .summary = "Part programs of axis runs, diagonals and step diagonals, without a campaign",
+      .arguments =
+          joined({required({"--axis", &program->axes,
+                            "NAME=FROM:TO, travel in mm, of A, B, C in deg; may be given several "
+                            "times"}),
+                  {"--n", &program->n, "Steps of the diagonals (from `nonio plan triples`)"},
+                  {"--step-x", &program->step_x, "Step of X on the diagonals, mm"},
+                  {"--step-y", &program->step_y, "Step of Y on the diagonals, mm"},
+                  {"--machine", &program->machine, "Name of the machine, for the comments"},
+                  required(takes(Argument::Takes::folder,
+                                 {"--out", &program->programs.out, "Folder for the programs"}))},
+                 program_arguments(program->programs), common_arguments(common)),
+      .footer =
+          "Axis runs have random offsets of the targets, as ISO 230-2 asks; the same seed\n"
+          "(--set seed=7) gives the same targets. With --n, --step-x and --step-y the diagonals "
+          "are\n"
+          "written too, and X and Y have the same stops as they.\n\n"
+          "Example: nonio plan program --axis X=0:800 --axis Y=0:600 --axis Z=0:600 \\\n"
+          "           --control siemens --set programs=axes,step-diagonals --set steps=40 --out p",
+      .run = [program, &common] { return plan_program(*program, common); }};
 }
 
 }  // namespace
 
-void add_plan_verb(CLI::App& cli, Common& common, Outcome& outcome) {
-  CLI::App* verb = cli.add_subcommand("plan", "What to measure: stops, and the part programs");
-  verb->require_subcommand(1);
-  add_triples(*verb, common, outcome);
-  add_program(*verb, common, outcome);
-  add_sign_probe(*verb, common, outcome);
+Verb plan_verb(Common& common) {
+  return {.name = "plan",
+          .summary = "What to measure: stops, and the part programs",
+          .verbs = {triples_verb(common), program_verb(common), sign_probe_verb(common)}};
 }
 
 }  // namespace nonio::app

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common.h"
 #include "nonio/host/plugin_check.h"
 #include "nonio/host/plugin_new.h"
+#include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
@@ -67,9 +66,8 @@ class CheckReport {
       std::cout << passed << " passed, " << failed << " failed, " << crashed << " crashed, "
                 << counts_[3] << " skipped; seed " << options_.request.seed << "\n";
     if (passed + failed + crashed + counts_[3] == 0) {
-      std::cerr << "nonio plugin check: no plugin here has the check " << options_.request.only
-                << "\n";
-      return exit_usage;
+      return complain("nonio plugin check",
+                      "no plugin here has the check " + options_.request.only);
     }
     return failed + crashed == 0 ? exit_done : exit_failed;
   }
@@ -92,7 +90,7 @@ class CheckReport {
   Json checks_ = Json::array();
 };
 
-int check(CheckOptions& options, const Common& common) {
+int check_plugin(CheckOptions& options, const Common& common) {
   host::PluginCheckRequest& request = options.request;
   request.subject = options.subject;
   request.own_plugins = Common::own_plugins();
@@ -101,23 +99,18 @@ int check(CheckOptions& options, const Common& common) {
   request.cases.assign(options.cases.begin(), options.cases.end());
   CheckReport report(options, common);
   const auto done = host::check_plugins(request, std::ref(report));
-  if (done) return report.end();
-  std::cerr << "nonio plugin check: " << done.error().message << "\n";
-  return exit_usage;
+  return done ? report.end() : complain("nonio plugin check", done.error().message);
 }
 
-struct NewOptions {
+struct SkeletonOptions {
   std::string kind, name, out;
 };
 
-int make(const NewOptions& options, const Common& common) {
+int make_plugin(const SkeletonOptions& options, const Common& common) {
   const fs::path folder = options.out.empty() ? options.name : options.out;
   const fs::path skeletons = common.template_folders().front().parent_path() / "plugin";
   const auto files = host::new_plugin(skeletons, options.kind, options.name, fs::absolute(folder));
-  if (!files) {
-    std::cerr << "nonio plugin new: " << files.error().message << "\n";
-    return exit_usage;
-  }
+  if (!files) return complain("nonio plugin new", files.error().message);
   if (common.json)
     std::cout << Json{{"folder", fs::absolute(folder).string()}, {"files", *files}}.dump(1) << "\n";
   else if (!common.quiet)
@@ -139,47 +132,50 @@ std::string all_checks() {
          "Example: nonio plugin check build";
 }
 
-void add_new(CLI::App& verb, Common& common, Outcome& outcome) {
-  auto options = std::make_shared<NewOptions>();
-  CLI::App* one = verb.add_subcommand(
-      "new", "Writes a folder that builds, is tested, and does something useful at once");
-  one->add_option("KIND", options->kind, "reader, analysis, effect, output or controller")
-      ->required();
-  one->add_option("NAME", options->name, "Small letters, digits and '-'")->required();
-  one->add_option("--out", options->out, "The folder; it must not exist (default: NAME)");
-  add_common(*one, common);
-  one->footer("Example: nonio plugin new controller my-control");
-  one->callback([options, &common, &outcome] { outcome = make(*options, common); });
+Verb new_plugin_verb(Common& common) {
+  auto options = std::make_shared<SkeletonOptions>();
+  return {.name = "new",
+          .summary = "Writes a folder that builds, is tested, and does something useful at once",
+          .arguments = joined(
+              {required({"KIND", &options->kind, "reader, analysis, effect, output or controller"}),
+               required({"NAME", &options->name, "Small letters, digits and '-'"}),
+               takes(Argument::Takes::folder,
+                     {"--out", &options->out, "The folder; it must not exist (default: NAME)"})},
+              common_arguments(common)),
+          .footer = "Example: nonio plugin new controller my-control",
+          .run = [options, &common] { return make_plugin(*options, common); }};
+}
+
+Verb check_plugin_verb(Common& common) {
+  auto options = std::make_shared<CheckOptions>();
+  using Takes = Argument::Takes;
+  return {.name = "check",
+          .summary = "Holds plugins against the laws of their kind, each in a process with limits",
+          .arguments = joined(
+              {required(existing(
+                   Takes::path,
+                   {"FILE|FOLDER", &options->subject,
+                    "A plugin; or a folder: every .so below it, and cases/*/campaign.toml as "
+                    "samples"})),
+               {"--seed", &options->request.seed, "Of the samples that are made (default: 1)"},
+               {"--only", &options->request.only, "One check of those below"},
+               existing(Takes::folder, {"--cases", &options->cases,
+                                        "A folder with campaigns below it: more samples"}),
+               within(1.0, 3600.0,
+                      {"--seconds", &options->request.seconds,
+                       "Processor time that one check may take (default: 20)"}),
+               templates_argument(common)},
+              common_arguments(common)),
+          .footer = all_checks(),
+          .run = [options, &common] { return check_plugin(*options, common); }};
 }
 
 }  // namespace
 
-void add_plugin_verb(CLI::App& cli, Common& common, Outcome& outcome) {
-  CLI::App* verb =
-      cli.add_subcommand("plugin", "A plugin of your own: begin it, hold it against the laws");
-  verb->require_subcommand(1);
-  add_new(*verb, common, outcome);
-  auto options = std::make_shared<CheckOptions>();
-  CLI::App* one = verb->add_subcommand(
-      "check", "Holds plugins against the laws of their kind, each in a process with limits");
-  one->add_option("FILE|FOLDER", options->subject,
-                  "A plugin; or a folder: every .so below it, and cases/*/campaign.toml as samples")
-      ->required()
-      ->check(CLI::ExistingPath);
-  one->add_option("--seed", options->request.seed, "Of the samples that are made (default: 1)");
-  one->add_option("--only", options->request.only, "One check of those below");
-  one->add_option("--cases", options->cases, "A folder with campaigns below it: more samples")
-      ->check(CLI::ExistingDirectory)
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
-  one->add_option("--seconds", options->request.seconds,
-                  "Processor time that one check may take (default: 20)")
-      ->check(CLI::Range(1.0, 3600.0));
-  add_templates(*one, common);
-  add_common(*one, common);
-  one->footer(all_checks());
-  one->callback([options, &common, &outcome] { outcome = check(*options, common); });
+Verb plugin_verb(Common& common) {
+  return {.name = "plugin",
+          .summary = "A plugin of your own: begin it, hold it against the laws",
+          .verbs = {new_plugin_verb(common), check_plugin_verb(common)}};
 }
 
 }  // namespace nonio::app

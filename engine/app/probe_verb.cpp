@@ -8,6 +8,7 @@
 #include "nonio/host/table_check.h"
 #include "nonio/sdk/format.h"
 #include "tables.h"
+#include "verbs.h"
 
 namespace nonio::app {
 
@@ -57,17 +58,13 @@ void print_probe(const host::SignProbe& p, const std::string& file) {
 
 int probe(const ProbeWish& w, const Common& common) {
   const char* const verb = "nonio plan sign-probe";
-  const auto complain = [&](const std::string& message, int exit) {
-    std::cerr << verb << ": " << message << "\n";
-    return exit;
-  };
-  if (!(w.feed > 0.0)) return complain("--feed: wanted more than 0", exit_usage);
-  Outcome exit;
-  OpenCampaign open = open_campaign(verb, w.folder, common, exit);
-  if (exit) return *exit;
+  if (!(w.feed > 0.0)) return complain(verb, "--feed: wanted more than 0");
+  const auto opened = open_campaign(verb, w.folder, common);
+  if (!opened) return opened.error();
+  const OpenCampaign& open = *opened;
   const auto& campaign = open.campaign();
   if (!w.axis.empty() && campaign.machine.axis(w.axis) == nullptr)
-    return complain("--axis: the campaign has no axis " + w.axis, exit_usage);
+    return complain(verb, "--axis: the campaign has no axis " + w.axis);
   const bool heidenhain = campaign.machine.control.rfind("heidenhain", 0) == 0;
   Json all = Json::array();
   std::vector<Artifact> files;
@@ -80,7 +77,7 @@ int probe(const ProbeWish& w, const Common& common) {
     const auto p = host::sign_probe(m, open.read.observations[i]);
     if (!p) {
       good = false;
-      complain(p.error().message, exit_failed);
+      complain(verb, p.error().message);
       continue;
     }
     std::string file;
@@ -97,33 +94,37 @@ int probe(const ProbeWish& w, const Common& common) {
   }
   if (!files.empty())
     if (auto done = host::publish(std::filesystem::absolute(w.out), files); !done)
-      return complain(text_of(done.error()), exit_failed);
+      return complain(verb, text_of(done.error()), exit_failed);
   if (common.json)
     std::cout << Json{{"schema", "nonio-sign-probe/1"}, {"campaign", campaign.id}, {"probes", all}}
                      .dump(1)
               << "\n";
-  if (all.empty()) return complain("no measurement of an axis with readings", exit_failed);
+  if (all.empty()) return complain(verb, "no measurement of an axis with readings", exit_failed);
   return good ? exit_done : exit_failed;
 }
 
 }  // namespace
 
-void add_sign_probe(CLI::App& plan_verb, Common& common, Outcome& outcome) {
-  CLI::App* verb = plan_verb.add_subcommand(
-      "sign-probe", "Two moves that show on the machine whether a table has the right sign");
+Verb sign_probe_verb(Common& common) {
   auto w = std::make_shared<ProbeWish>();
-  add_campaign_arguments(*verb, w->folder, common);
-  verb->add_option("--axis", w->axis, "Only this axis");
-  verb->add_option("--out", w->out, "Folder for the part programs");
-  verb->add_option("--feed", w->feed, "Feed of the programs, mm/min or deg/min (default 1000)");
-  verb->footer(
-      "The two stops are the targets between which the error changed most, both reached towards\n"
-      "plus. Load the table, reference the axis, run the program, set the instrument to zero at\n"
-      "the first stop (M0) and read it at the second. Near zero: the sign is right. Twice the\n"
-      "error: it is wrong. The error itself: no table is active.\n\n"
-      "Exit status: 0 every axis shows it; 1 an axis is too good or too short; 2 usage.\n\n"
-      "Example: nonio plan sign-probe site/2026-11-rossi --out p");
-  verb->callback([w, &common, &outcome] { outcome = probe(*w, common); });
+  return {
+      .name = "sign-probe",
+      .summary = "Two moves that show on the machine whether a table has the right sign",
+      .arguments = joined(
+          campaign_arguments(w->folder, common),
+          {{"--axis", &w->axis, "Only this axis"},
+           takes(Argument::Takes::folder, {"--out", &w->out, "Folder for the part programs"}),
+           {"--feed", &w->feed, "Feed of the programs, mm/min or deg/min (default 1000)"}}),
+      .footer =
+          "The two stops are the targets between which the error changed most, both reached "
+          "towards\n"
+          "plus. Load the table, reference the axis, run the program, set the instrument to zero "
+          "at\n"
+          "the first stop (M0) and read it at the second. Near zero: the sign is right. Twice the\n"
+          "error: it is wrong. The error itself: no table is active.\n\n"
+          "Exit status: 0 every axis shows it; 1 an axis is too good or too short; 2 usage.\n\n"
+          "Example: nonio plan sign-probe site/2026-11-rossi --out p",
+      .run = [w, &common] { return probe(*w, common); }};
 }
 
 }  // namespace nonio::app

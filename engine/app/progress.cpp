@@ -9,6 +9,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common.h"
+
 namespace nonio::app {
 
 namespace {
@@ -32,10 +34,7 @@ std::size_t terminal_width() {
 }
 
 std::string message_of(const host::CampaignState& c) {
-  if (c.errors.empty()) return c.reason;
-  const Error& e = c.errors.front();
-  return e.file + (e.line != 0 ? ":" + std::to_string(e.line) : "") +
-         (e.column.empty() ? "" : " (" + e.column + ")") + (e.file.empty() ? "" : ": ") + e.message;
+  return c.errors.empty() ? c.reason : text_of(c.errors.front());
 }
 
 }  // namespace

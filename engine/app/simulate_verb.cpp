@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate_verb.h"
-
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -9,21 +6,19 @@
 #include "nonio/host/files.h"
 #include "nonio/host/plugins.h"
 #include "nonio/host/simulate.h"
-
-namespace fs = std::filesystem;
+#include "verbs.h"
 
 namespace nonio::app {
+namespace fs = std::filesystem;
+
 namespace {
 
-constexpr int done = 0, failed = 1, usage = 2;
-
-int complain(const std::string& message, int status) {
-  std::cerr << "nonio simulate: " << message << "\n";
-  return status;
-}
+struct SimulateWish {
+  std::string specification, out, truth;
+};
 
 /// Why the folder must not be written to; empty if it may.
-std::string refusal(const fs::path& out, const fs::path& truth) {
+std::string not_to_be_written(const fs::path& out, const fs::path& truth) {
   const fs::path below = truth.lexically_relative(out);
   if (!below.empty() && *below.begin() != "..")
     return "the truth would lie in the campaign's folder: " + truth.string();
@@ -35,58 +30,67 @@ std::string refusal(const fs::path& out, const fs::path& truth) {
   return out.string() + " holds a campaign that was not simulated; it is left as it is";
 }
 
-}  // namespace
-
-CLI::App* SimulateVerb::add_to(CLI::App& cli) {
-  CLI::App* verb = cli.add_subcommand(
-      "simulate", "Makes a campaign from a machine with known effects, and keeps the truth apart");
-  verb->add_option("SPEC", specification_,
-                   "A campaign.toml with [simulation], [[cycle]] and [[effect]] (docs/simulate.md)")
-      ->required()
-      ->check(CLI::ExistingFile);
-  verb->add_option("--out", out_, "Folder for campaign.toml and the readings")->required();
-  verb->add_option("--truth", truth_,
-                   "File for what was put in (default: OUT.truth.json, beside the folder)");
-  verb->footer(
-      "The specification is a manifest with three things more:\n"
-      "  [simulation]           seed = 7             the same seed gives the same bytes\n"
-      "  [[cycle]]              measurement = \"X\"    targets, runs, noise of one measurement\n"
-      "  [[effect]]             name = \"backlash:X\"  b_um = -6.0\n"
-      "Effects are those of `nonio plugins`, and formulas under [[model.formula]] or, to stay\n"
-      "hidden, [[simulation.formula]]; each parameter has its unit in its name.\n\n"
-      "Example: nonio simulate samples/simulate/worn-screw.toml --out site/worn-screw");
-  return verb;
-}
-
-int SimulateVerb::run(const std::vector<fs::path>& plugin_folders, bool json, bool quiet) const {
-  if (out_.empty()) return complain("--out is empty; wanted a folder", usage);
-  fs::path out = fs::absolute(out_).lexically_normal();
+int simulate(const SimulateWish& w, const Common& common) {
+  const char* const verb = "nonio simulate";
+  if (w.out.empty()) return complain(verb, "--out is empty; wanted a folder");
+  fs::path out = fs::absolute(w.out).lexically_normal();
   if (!out.has_filename()) out = out.parent_path();
-  const fs::path truth = truth_.empty() ? fs::path(out.string() + ".truth.json")
-                                        : fs::absolute(truth_).lexically_normal();
-  if (const std::string why = refusal(out, truth); !why.empty()) return complain(why, usage);
-  const auto text = host::read_file(specification_);
-  if (!text) return complain(text.error().message, usage);
+  const fs::path truth = w.truth.empty() ? fs::path(out.string() + ".truth.json")
+                                         : fs::absolute(w.truth).lexically_normal();
+  if (const std::string why = not_to_be_written(out, truth); !why.empty())
+    return complain(verb, why);
+  const auto text = host::read_file(w.specification);
+  if (!text) return complain(verb, text.error().message);
   host::Plugins plugins;
-  plugins.load(plugin_folders);
-  for (const std::string& conflict : plugins.conflicts()) return complain(conflict, usage);
-  const auto made = host::simulate(*text, specification_, plugins.effects());
+  plugins.load(common.plugin_folders());
+  for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
+  const auto made = host::simulate(*text, w.specification, plugins.effects());
   if (!made) {
     for (const Error& e : made.error())
-      complain(e.file + (e.line != 0 ? ", line " + std::to_string(e.line) : "") + ": " + e.message,
-               usage);
-    return usage;
+      complain(verb,
+               e.file + (e.line != 0 ? ", line " + std::to_string(e.line) : "") + ": " + e.message);
+    return exit_usage;
   }
   auto written = host::publish(truth.parent_path(), {{truth.filename().string(), made->truth}});
   if (written) written = host::publish(out, made->campaign);
-  if (!written) return complain(written.error().message, failed);
-  if (json)
+  if (!written) return complain(verb, written.error().message, exit_failed);
+  if (common.json)
     std::cout
         << nlohmann::ordered_json{{"campaign", out.string()}, {"truth", truth.string()}}.dump()
         << "\n";
-  else if (!quiet)
+  else if (!common.quiet)
     std::cout << out.string() << "\nwhat is in it: " << truth.string() << "\n";
-  return done;
+  return exit_done;
+}
+
+}  // namespace
+
+Verb simulate_verb(Common& common) {
+  auto wish = std::make_shared<SimulateWish>();
+  using Takes = Argument::Takes;
+  return {
+      .name = "simulate",
+      .summary = "Makes a campaign from a machine with known effects, and keeps the truth apart",
+      .arguments = joined(
+          {required(existing(Takes::file, {"SPEC", &wish->specification,
+                                           "A campaign.toml with [simulation], [[cycle]] and "
+                                           "[[effect]] (docs/simulate.md)"})),
+           required(takes(Takes::folder,
+                          {"--out", &wish->out, "Folder for campaign.toml and the readings"})),
+           takes(Takes::file,
+                 {"--truth", &wish->truth,
+                  "File for what was put in (default: OUT.truth.json, beside the folder)"})},
+          common_arguments(common)),
+      .footer =
+          "The specification is a manifest with three things more:\n"
+          "  [simulation]           seed = 7             the same seed gives the same bytes\n"
+          "  [[cycle]]              measurement = \"X\"    targets, runs, noise of one "
+          "measurement\n"
+          "  [[effect]]             name = \"backlash:X\"  b_um = -6.0\n"
+          "Effects are those of `nonio plugins`, and formulas under [[model.formula]] or, to stay\n"
+          "hidden, [[simulation.formula]]; each parameter has its unit in its name.\n\n"
+          "Example: nonio simulate samples/simulate/worn-screw.toml --out site/worn-screw",
+      .run = [wish, &common] { return simulate(*wish, common); }};
 }
 
 }  // namespace nonio::app

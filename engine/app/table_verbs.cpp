@@ -13,6 +13,7 @@
 #include "nonio/host/table_check.h"
 #include "nonio/sdk/format.h"
 #include "tables.h"
+#include "verbs.h"
 
 namespace nonio::app {
 
@@ -26,22 +27,6 @@ struct TableWish {
   std::vector<std::string> settings, axes;
   bool was_on = false;
 };
-
-int complain(const char* verb, const std::string& message, int exit = exit_usage) {
-  std::cerr << verb << ": " << message << "\n";
-  return exit;
-}
-
-Expected<Texts> settings_of(const std::vector<std::string>& given) {
-  Texts out;
-  for (const std::string& one : given) {
-    const std::size_t equals = one.find('=');
-    if (equals == std::string::npos || equals == 0)
-      return fail("--set: wanted NAME=VALUE, found \"" + one + "\"");
-    out[one.substr(0, equals)] = one.substr(equals + 1);
-  }
-  return out;
-}
 
 /// Numbers with the unit in their name: "largest_um".
 void put(Json& json, const std::string& name, double si, Quantity q) {
@@ -212,9 +197,9 @@ int apply(const TableWish& w, const Common& common) {
   if (!settings) return complain(verb, settings.error().message);
   if (!w.out.empty() && !w.was_on)
     return complain(verb, "--out writes the renewed table: it needs --was-on");
-  Outcome exit;
-  OpenCampaign open = open_campaign(verb, w.folder, common, exit);
-  if (exit) return *exit;
+  const auto opened = open_campaign(verb, w.folder, common);
+  if (!opened) return opened.error();
+  const OpenCampaign& open = *opened;
   const host::Manifest& manifest = *open.read.manifest;
   const auto options = [&](const Info& info) {
     auto settled = host::settle_options(info, open.place->context.site.options, manifest.options);
@@ -250,67 +235,77 @@ int apply(const TableWish& w, const Common& common) {
   return tell(a, table->control->info.name, open, common);
 }
 
-void add_table_options(CLI::App& verb, TableWish& w) {
-  verb.add_option("--control", w.control,
-                  "The control that the files are of (`nonio controllers`); else as the files are\n"
-                  "called, or the only one that can read them");
-  verb.add_option("--set", w.settings,
-                  "NAME=VALUE: an option of that control, such as type=1 or\n"
-                  "\"axes=X number=1,Y number=2\"; may be given several times")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+std::vector<Argument> table_arguments(TableWish& w) {
+  return {{"--control", &w.control,
+           "The control that the files are of (`nonio controllers`); else as the files are\n"
+           "called, or the only one that can read them"},
+          settings_argument(w.settings,
+                            "NAME=VALUE: an option of that control, such as type=1 or\n"
+                            "\"axes=X number=1,Y number=2\"; may be given several times")};
 }
 
 }  // namespace
 
-void add_diff_verb(CLI::App& cli, Common& common, Outcome& outcome) {
-  CLI::App* verb = cli.add_subcommand("diff", "Two tables of one control against each other");
+Verb diff_verb(Common& common) {
   auto w = std::make_shared<TableWish>();
-  verb->add_option("PRESENT", w->table, "The table that is in the control: FILE, or FILE,FILE,...")
-      ->required();
-  verb->add_option("NEW", w->other, "The table that is to come into it")->required();
-  add_table_options(*verb, *w);
-  verb->add_option("--axis", w->axes,
-                   "Name of an axis, in the order of their numbers; A, B, C are in deg;\n"
-                   "may be given several times")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
-  add_common(*verb, common);
-  verb->footer(
-      "Both are read as the control reads them: what they add to the position, whatever sign or\n"
-      "increments their files have. For each axis: where they differ most, and of each table the\n"
-      "largest entry, the largest step from one point to the next and the largest slope. A step\n"
-      "or slope that is much larger than in the present table deserves a look before loading.\n\n"
-      "Exit status: 0 compared; 2 a file cannot be read.\n\n"
-      "Example: nonio diff backup/linuxcnc-X.comp out/c/linuxcnc-X.comp --axis X");
-  verb->callback([w, &common, &outcome] { outcome = diff(*w, common); });
+  using Takes = Argument::Takes;
+  return {
+      .name = "diff",
+      .summary = "Two tables of one control against each other",
+      .arguments = joined(
+          {required(takes(
+               Takes::file,
+               {"PRESENT", &w->table, "The table that is in the control: FILE, or FILE,FILE,..."})),
+           required(takes(Takes::file, {"NEW", &w->other, "The table that is to come into it"}))},
+          table_arguments(*w),
+          {{"--axis", &w->axes,
+            "Name of an axis, in the order of their numbers; A, B, C are in deg;\n"
+            "may be given several times"}},
+          common_arguments(common)),
+      .footer =
+          "Both are read as the control reads them: what they add to the position, whatever sign "
+          "or\n"
+          "increments their files have. For each axis: where they differ most, and of each table "
+          "the\n"
+          "largest entry, the largest step from one point to the next and the largest slope. A "
+          "step\n"
+          "or slope that is much larger than in the present table deserves a look before "
+          "loading.\n\n"
+          "Exit status: 0 compared; 2 a file cannot be read.\n\n"
+          "Example: nonio diff backup/linuxcnc-X.comp out/c/linuxcnc-X.comp --axis X",
+      .run = [w, &common] { return diff(*w, common); }};
 }
 
-void add_apply_verb(CLI::App& cli, Common& common, Outcome& outcome) {
-  CLI::App* verb =
-      cli.add_subcommand("apply", "What a table does to the error that a campaign has measured");
+Verb apply_verb(Common& common) {
   auto w = std::make_shared<TableWish>();
-  verb->add_option("TABLE", w->table, "The table: FILE, or FILE,FILE,... with its backlash")
-      ->required();
-  add_campaign_arguments(*verb, w->folder, common);
-  add_table_options(*verb, *w);
-  verb->add_flag(
-      "--was-on", w->was_on,
-      "TABLE was in force while the campaign was measured: it is taken off the readings,\n"
-      "and the new table is the whole of what is needed");
-  verb->add_option("--out", w->out, "With --was-on: the folder for the files of the new table");
-  verb->footer(
-      "Without --was-on: E, B and M as measured, and after this table is loaded into a control\n"
-      "that had none (the backlash parameter of the axis: option axes, backlash_mm).\n"
-      "With --was-on: the difference from this table to the new one, and E, B and M after the new\n"
-      "one is loaded in its place. Tables of one axis by another are not taken off.\n\n"
-      "Exit status: 0 no axis becomes worse; 1 one does, or nothing could be predicted; 2 usage\n"
-      "or configuration.\n\n"
-      "Example: nonio apply backup/siemens-840d-X-EEC.ini,backup/siemens-840d-X-backlash.ini \\\n"
-      "           site/2026-11-rossi --was-on --out new");
-  verb->callback([w, &common, &outcome] { outcome = apply(*w, common); });
+  using Takes = Argument::Takes;
+  return {
+      .name = "apply",
+      .summary = "What a table does to the error that a campaign has measured",
+      .arguments = joined(
+          {required(takes(Takes::file, {"TABLE", &w->table,
+                                        "The table: FILE, or FILE,FILE,... with its backlash"}))},
+          campaign_arguments(w->folder, common), table_arguments(*w),
+          {{"--was-on", &w->was_on,
+            "TABLE was in force while the campaign was measured: it is taken off the "
+            "readings,\n"
+            "and the new table is the whole of what is needed"},
+           takes(Takes::folder,
+                 {"--out", &w->out, "With --was-on: the folder for the files of the new table"})}),
+      .footer =
+          "Without --was-on: E, B and M as measured, and after this table is loaded into a "
+          "control\n"
+          "that had none (the backlash parameter of the axis: option axes, backlash_mm).\n"
+          "With --was-on: the difference from this table to the new one, and E, B and M after the "
+          "new\n"
+          "one is loaded in its place. Tables of one axis by another are not taken off.\n\n"
+          "Exit status: 0 no axis becomes worse; 1 one does, or nothing could be predicted; 2 "
+          "usage\n"
+          "or configuration.\n\n"
+          "Example: nonio apply backup/siemens-840d-X-EEC.ini,backup/siemens-840d-X-backlash.ini "
+          "\\\n"
+          "           site/2026-11-rossi --was-on --out new",
+      .run = [w, &common] { return apply(*w, common); }};
 }
 
 }  // namespace nonio::app

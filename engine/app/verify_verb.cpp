@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common.h"
 #include "nonio/host/verify.h"
+#include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
 
 namespace {
 
-struct Wanted {
+struct VerifyWish {
   std::vector<std::string> files;
   std::string site, trust, revoked, signer;
 };
@@ -48,20 +47,16 @@ void print(const std::string& file, const sign::Verified& v, bool quiet) {
   std::cout << file << ": " << (v.holds() ? "HOLDS" : "DOES NOT HOLD") << "\n";
 }
 
-int verify(const Wanted& wanted, const Common& common) {
+int verify(const VerifyWish& wanted, const Common& common) {
   const auto verifier =
       host::verifier_of({wanted.site, wanted.trust, wanted.revoked, wanted.signer});
   if (!verifier) {
-    for (const Error& e : verifier.error())
-      std::cerr << "nonio verify: " << (e.file.empty() ? "" : e.file + ": ") << e.message << "\n";
+    for (const Error& e : verifier.error()) complain("nonio verify", text_of(e));
     return exit_usage;
   }
   const auto place = host::open_to_verify(common.plugin_folders(), common.template_folders(),
                                           wanted.site, NONIO_VERSION);
-  if (!place) {
-    std::cerr << "nonio verify: " << place.error().message << "\n";
-    return exit_usage;
-  }
+  if (!place) return complain("nonio verify", place.error().message);
   bool all = true;
   for (const std::string& file : wanted.files) {
     const sign::Verified v = host::verify_file(file, *verifier, (*place)->context);
@@ -76,28 +71,34 @@ int verify(const Wanted& wanted, const Common& common) {
 
 }  // namespace
 
-void add_verify_verb(CLI::App& cli, Common& common, Outcome& outcome) {
-  auto wanted = std::make_shared<Wanted>();
-  CLI::App* verb = cli.add_subcommand(
-      "verify",
-      "Whether signed certificates are what their signer signed, and their numbers right");
-  verb->add_option("FILE", wanted->files, "Certificates (PDF) and DCC (XML)")->required();
-  verb->add_option("--site", wanted->site,
-                   "Site whose site.toml, [signing], says whom to trust and expect")
-      ->check(CLI::ExistingDirectory);
-  verb->add_option(
-      "--trust", wanted->trust,
-      "PEM file with the roots that certificates must lead to (nobody else is trusted)");
-  verb->add_option("--revoked", wanted->revoked, "PEM file with revocation lists");
-  verb->add_option("--signer", wanted->signer,
-                   "Who should have signed: subject of the certificate, or its SHA-256");
-  add_templates(*verb, common);
-  add_common(*verb, common);
-  verb->footer(
-      "One line for each check; exit status 0 only if all hold. Without --trust and --signer (or\n"
-      "--site) a signature proves nothing, and the answer is no. Needs no network.\n\n"
-      "Example: nonio verify --site site out/c1/certificate.pdf");
-  verb->callback([wanted, &common, &outcome] { outcome = verify(*wanted, common); });
+Verb verify_verb(Common& common) {
+  auto wanted = std::make_shared<VerifyWish>();
+  using Takes = Argument::Takes;
+  return {
+      .name = "verify",
+      .summary =
+          "Whether signed certificates are what their signer signed, and their numbers right",
+      .arguments = joined(
+          {required(
+               takes(Takes::file, {"FILE", &wanted->files, "Certificates (PDF) and DCC (XML)"})),
+           existing(Takes::folder,
+                    {"--site", &wanted->site,
+                     "Site whose site.toml, [signing], says whom to trust and expect"}),
+           takes(Takes::file,
+                 {"--trust", &wanted->trust,
+                  "PEM file with the roots that certificates must lead to (nobody else is "
+                  "trusted)"}),
+           takes(Takes::file, {"--revoked", &wanted->revoked, "PEM file with revocation lists"}),
+           {"--signer", &wanted->signer,
+            "Who should have signed: subject of the certificate, or its SHA-256"},
+           templates_argument(common)},
+          common_arguments(common)),
+      .footer =
+          "One line for each check; exit status 0 only if all hold. Without --trust and --signer "
+          "(or\n"
+          "--site) a signature proves nothing, and the answer is no. Needs no network.\n\n"
+          "Example: nonio verify --site site out/c1/certificate.pdf",
+      .run = [wanted, &common] { return verify(*wanted, common); }};
 }
 
 }  // namespace nonio::app

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "nonio/host/plugins.h"
+#include "verbs.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json option_json(const Option& o) {
+  Json json = {{"name", o.name}};
+  std::visit([&](const auto& v) { json["default"] = v; }, o.otherwise);
+  if (!o.unit.empty()) json["unit"] = o.unit;
+  if (!o.choices.empty()) json["choices"] = o.choices;
+  json["help"] = o.help;
+  return json;
+}
+
+struct Listed {
+  const char* kind;
+  const Info* info;
+};
+
+std::vector<Listed> all_of(const host::Plugins& plugins) {
+  std::vector<Listed> all;
+  for (const auto& p : plugins.readers()) all.push_back({"reader", &p.info});
+  for (const auto& p : plugins.effects()) all.push_back({"effect", &p.info});
+  for (const auto& p : plugins.analyses()) all.push_back({"analysis", &p.info});
+  for (const auto& p : plugins.outputs()) all.push_back({"output", &p.info});
+  return all;
+}
+
+void print_plugins_json(const host::Plugins& plugins) {
+  Json files = Json::array(), all = Json::array();
+  for (const host::PluginFile& f : plugins.files()) {
+    Json file = {{"path", f.path.string()}, {"plugins", f.brought}};
+    if (!f.refused.empty()) file["refused"] = f.refused;
+    files.push_back(std::move(file));
+  }
+  for (const Listed& p : all_of(plugins)) {
+    Json options = Json::array();
+    for (const Option& o : p.info->options) options.push_back(option_json(o));
+    all.push_back({{"kind", p.kind},
+                   {"name", p.info->name},
+                   {"version", p.info->version},
+                   {"summary", p.info->summary},
+                   {"on_request", p.info->on_request},
+                   {"options", std::move(options)}});
+  }
+  std::cout << Json{{"abi", NONIO_ABI_TAG},
+                    {"files", std::move(files)},
+                    {"plugins", std::move(all)}}
+                   .dump(1)
+            << "\n";
+}
+
+void print_plugins(const host::Plugins& plugins, bool with_options) {
+  for (const Listed& p : all_of(plugins)) {
+    std::cout << p.kind << " " << p.info->name << " " << p.info->version
+              << (p.info->on_request ? " (on request)" : "") << "\n    " << p.info->summary << "\n";
+    if (with_options)
+      for (const Option& o : p.info->options)
+        std::cout << "    [options." << p.info->name << "] " << o.name << " = "
+                  << option_json(o)["default"].dump() << (o.unit.empty() ? "" : " " + o.unit)
+                  << "\n        " << o.help << "\n";
+  }
+  std::cout << "\nfiles (ABI " << NONIO_ABI_TAG << ")\n";
+  for (const host::PluginFile& f : plugins.files())
+    std::cout << "  " << f.path.string() << (f.refused.empty() ? "" : "\n    refused: " + f.refused)
+              << "\n";
+}
+
+int list_plugins(const Common& common) {
+  host::Plugins plugins;
+  plugins.load(common.plugin_folders());
+  if (common.json)
+    print_plugins_json(plugins);
+  else
+    print_plugins(plugins, !common.quiet);
+  for (const std::string& conflict : plugins.conflicts()) complain("nonio plugins", conflict);
+  if (!plugins.conflicts().empty()) return exit_usage;
+  const auto refused = [](const host::PluginFile& f) { return !f.refused.empty(); };
+  return std::any_of(plugins.files().begin(), plugins.files().end(), refused) ? exit_failed
+                                                                              : exit_done;
+}
+
+}  // namespace
+
+Verb plugins_verb(Common& common) {
+  return {.name = "plugins",
+          .summary = "What is loaded, with its options, and what was refused",
+          .arguments = common_arguments(common),
+          .run = [&common] { return list_plugins(common); }};
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// help, version, completion: what the program says of itself.
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "verbs.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct HelpWish {
+  std::vector<std::string> words;
+  bool man = false;
+};
+
+int help(const HelpWish& wish, const Program& program) {
+  if (wish.man) {
+    write_man_page(program, std::cout);
+    return exit_done;
+  }
+  return show_help(program, wish.words);
+}
+
+std::vector<std::string> texts_of(const std::vector<fs::path>& folders) {
+  std::vector<std::string> texts;
+  for (const fs::path& folder : folders) texts.push_back(folder.string());
+  return texts;
+}
+
+int version(const Common& common) {
+  const auto plugins = texts_of(common.plugin_folders()),
+             templates = texts_of(common.template_folders());
+  if (common.json) {
+    std::cout << Json{{"schema", "nonio-version/1"},
+                      {"version", NONIO_VERSION},
+                      {"abi", NONIO_ABI_TAG},
+                      {"plugins", plugins},
+                      {"templates", templates}}
+                     .dump(1)
+              << "\n";
+    return exit_done;
+  }
+  std::cout << "nonio " NONIO_VERSION "\nABI        " NONIO_ABI_TAG "\n";
+  for (const auto& [name, folders] :
+       {std::pair{"plugins    ", &plugins}, {"templates  ", &templates}})
+    for (const std::string& folder : *folders) std::cout << name << folder << "\n";
+  return exit_done;
+}
+
+}  // namespace
+
+Verb help_verb(const Program& program) {
+  auto wish = std::make_shared<HelpWish>();
+  return {.name = "help",
+          .summary = "The help of a verb, or of the program; --man for man(1)",
+          .arguments = {{"VERB", &wish->words, "A verb, and the one below it: plan triples"},
+                        {"--man", &wish->man, "The manual page of all verbs, as man(1) reads it"}},
+          .footer =
+              "Examples: nonio help plan triples\n"
+              "          nonio help --man | man -l -",
+          .run = [wish, &program] { return help(*wish, program); }};
+}
+
+Verb version_verb(Common& common) {
+  return {.name = "version",
+          .summary = "Version, ABI tag, where plugins and templates are looked for",
+          .arguments = joined({templates_argument(common)}, common_arguments(common)),
+          .run = [&common] { return version(common); }};
+}
+
+Verb completion_verb(const Program& program) {
+  auto shell = std::make_shared<std::string>();
+  return {.name = "completion",
+          .summary = "What a shell needs to complete verbs, options and files",
+          .arguments = {required(one_of({"bash", "zsh"}, {"SHELL", shell.get(), "bash or zsh"}))},
+          .footer =
+              "Examples: nonio completion bash > "
+              "~/.local/share/bash-completion/completions/nonio\n"
+              "          nonio completion zsh > ~/.zfunc/_nonio",
+          .run = [shell, &program] {
+            write_completion(program, *shell, std::cout);
+            return exit_done;
+          }};
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common.h"
+
+/// The verbs of the program. `common` is filled before one of them is run.
+namespace nonio::app {
+
+Verb apply_verb(Common& common);
+Verb certificates_verb(Common& common);
+Verb compare_verb(Common& common);
+Verb controllers_verb(Common& common);
+Verb diff_verb(Common& common);
+Verb explain_verb(Common& common);
+Verb import_verb(Common& common);
+Verb model_verb(Common& common);
+Verb plan_verb(Common& common);
+Verb plugin_verb(Common& common);
+Verb plugins_verb(Common& common);
+Verb run_verb(Common& common);
+Verb simulate_verb(Common& common);
+Verb template_verb(Common& common);
+Verb verify_verb(Common& common);
+Verb version_verb(Common& common);
+/// What they print is made from the whole table; the program outlives the verb.
+Verb help_verb(const Program& program);
+Verb completion_verb(const Program& program);
+/// Below `plan`.
+Verb sign_probe_verb(Common& common);
+
+}  // namespace nonio::app
