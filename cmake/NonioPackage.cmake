@@ -5,6 +5,14 @@ set(NONIO_PACKAGE_CONTACT "Nonio maintainers <nonio@localhost>" CACHE STRING
     "Maintainer of the packages: name <address> of who builds and hands them on")
 set(parts ${CMAKE_CURRENT_LIST_DIR}/package)
 
+# Without them CPack would make a package that depends on nothing.
+find_program(SHLIBDEPS dpkg-shlibdeps)
+find_program(FILE_PROGRAM file)
+if(NOT SHLIBDEPS OR NOT FILE_PROGRAM)
+  message(STATUS "No target package: it needs dpkg-shlibdeps and file (Debian packages dpkg-dev and file)")
+  return()
+endif()
+
 # Version and revision are those of the changelog's first line.
 file(STRINGS ${parts}/changelog newest LIMIT_COUNT 1)
 if(NOT newest MATCHES "^nonio \\((.+)-([^-]+)\\) " OR NOT CMAKE_MATCH_1 STREQUAL PROJECT_VERSION)
