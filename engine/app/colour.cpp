@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <string_view>
 
@@ -36,6 +37,17 @@ const char* code_of(Colour colour) {
 std::string coloured(const std::string& text, Colour colour, int descriptor) {
   if (!shows_colours(descriptor)) return text;
   return std::string("\033[") + code_of(colour) + "m" + text + "\033[0m";
+}
+
+Colour status_colour(const std::string& status) {
+  if (status == "failed" || status == "does not conform") return Colour::red;
+  return status == "ok" || status == "conforms" ? Colour::green : Colour::yellow;
+}
+
+std::string status_word(const std::string& status, int descriptor) {
+  std::string word = status;
+  word.resize(std::max<std::size_t>(word.size(), 9), ' ');
+  return coloured(word, status_colour(status), descriptor);
 }
 
 }  // namespace nonio::app

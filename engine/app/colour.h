@@ -12,4 +12,9 @@ enum class Colour { red, yellow, green, bold };
 /// not set; else as it is. Never for JSON or files.
 std::string coloured(const std::string& text, Colour colour, int descriptor);
 
+/// Of a campaign's status or a decision.
+Colour status_colour(const std::string& status);
+/// ok, attention or failed as a column of a list, in its colour.
+std::string status_word(const std::string& status, int descriptor);
+
 }  // namespace nonio::app

@@ -33,13 +33,23 @@ CLI::Option* bind(CLI::App& app, const Argument& a) {
       a.target);
 }
 
+CLI::Validator member_of(const std::vector<std::string>& choices) {
+  return {[choices](const std::string& found) {
+            if (std::find(choices.begin(), choices.end(), found) != choices.end())
+              return std::string();
+            return "wanted one of " + host::listed(choices) + "; found \"" + found + "\"" +
+                   host::suggestion(found, choices);
+          },
+          "{" + host::listed(choices) + "}"};
+}
+
 void check(CLI::Option& option, const Argument& a) {
   if (a.required) option.required();
   if (a.exists)
     option.check(a.takes == Argument::Takes::folder ? CLI::Validator(CLI::ExistingDirectory)
                  : a.takes == Argument::Takes::file ? CLI::Validator(CLI::ExistingFile)
                                                     : CLI::Validator(CLI::ExistingPath));
-  if (!a.choices.empty()) option.check(CLI::IsMember(a.choices));
+  if (!a.choices.empty()) option.check(member_of(a.choices));
   if (a.range) option.check(CLI::Range(a.range->first, a.range->second));
   if (a.shows_default) option.capture_default_str();
 }
@@ -69,12 +79,6 @@ const Verb* find(const std::vector<Verb>& verbs, const std::string& name) {
   return it == verbs.end() ? nullptr : &*it;
 }
 
-std::string in_commas(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
 /// The verb that the words lead to, as far as they are verbs.
 struct Found {
   const Verb* verb = nullptr;
@@ -92,8 +96,9 @@ Found find(const Verb& top, const std::vector<std::string>& words) {
     const Verb* next = find(verbs, word);
     if (next == nullptr) {
       const auto names = names_of(verbs);
+      const std::string nearest = host::suggestion(word, names);
       found.wrong = found.path + ": there is no verb \"" + word + "\"" +
-                    host::suggestion(word, names) + "; there are " + in_commas(names);
+                    (nearest.empty() ? "; there are " + host::listed(names) : nearest);
       break;
     }
     found.verb = next;
@@ -134,7 +139,7 @@ std::string complaint_about(const Found& found, const std::vector<std::string>& 
   if (const std::string wrong = unknown_option(*found.verb, own, rest); !wrong.empty())
     return found.path + ": " + wrong;
   if (!at_top && rest.empty() && !found.verb->verbs.empty())
-    return found.path + ": wanted a verb: " + in_commas(names_of(found.verb->verbs));
+    return found.path + ": wanted a verb: " + host::listed(names_of(found.verb->verbs));
   return {};
 }
 
@@ -142,6 +147,7 @@ std::unique_ptr<CLI::App> cli_of(const Program& program, const Verb& top,
                                  std::function<int()>& chosen) {
   auto cli = std::make_unique<CLI::App>(program.summary);
   cli->name(program.name);
+  cli->get_formatter()->label("SUBCOMMAND", "VERB");
   cli->set_version_flag("--version", program.name + " " + program.version);
   bind(*cli, top, chosen);
   return cli;

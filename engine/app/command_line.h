@@ -32,8 +32,9 @@ struct Argument {
   std::string help;  ///< lines of up to 80 characters
   bool required = false;
   Takes takes = Takes::anything;
-  bool exists = false;                               ///< the folder, file or path must be there
-  std::vector<std::string> choices{};                ///< empty: any
+  bool exists = false;                 ///< the folder, file or path must be there
+  std::vector<std::string> choices{};  ///< empty: any
+  std::vector<std::string> offers{};   ///< what completion offers where there are no choices
   std::optional<std::pair<double, double>> range{};  ///< of a number, both ends included
   std::string bare{};          ///< the value of `--name` without one; empty: it needs one
   bool shows_default = false;  ///< help says which value it has if it is not given
@@ -64,6 +65,10 @@ inline Argument one_of(std::vector<std::string> choices, Argument a) {
   a.choices = std::move(choices);
   return a;
 }
+inline Argument offering(std::vector<std::string> words, Argument a) {
+  a.offers = std::move(words);
+  return a;
+}
 inline Argument within(double least, double most, Argument a) {
   a.range = {least, most};
   return a;
@@ -82,7 +87,9 @@ struct Verb {
 };
 
 struct Program {
-  std::string name, version, summary, footer;
+  std::string name, version;
+  std::string purpose;  ///< a few words, behind the name in man(1)
+  std::string summary, footer;
   std::vector<Verb> verbs;
 };
 

@@ -41,6 +41,12 @@ std::string roff(const std::string& text) {
   return lines;
 }
 
+std::string in_capitals(std::string text) {
+  for (char& c : text)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 32);
+  return text;
+}
+
 void write_roff_block(std::ostream& out, const std::string& text) {
   if (!text.empty()) out << ".PP\n.nf\n" << roff(text) << "\n.fi\n";
 }
@@ -72,7 +78,8 @@ std::string in_words(const std::vector<std::string>& words) {
 
 /// What bash offers where a value of the argument stands.
 std::string bash_values(const Argument& a) {
-  if (!a.choices.empty()) return "-W " + in_single_quotes(in_words(a.choices));
+  const auto& words = a.choices.empty() ? a.offers : a.choices;
+  if (!words.empty()) return "-W " + in_single_quotes(in_words(words));
   switch (a.takes) {
     case Argument::Takes::folder:
       return "-d";
@@ -97,13 +104,18 @@ void write_bash(const Program& program, std::ostream& out) {
   each(program.verbs, name,
        [&](const std::string& path, const Verb&) { out << "      \"" << path << "\") ;;\n"; });
   out << "      *) continue ;;\n    esac\n    path=\"$path ${COMP_WORDS[i]}\"\n  done\n"
-         "  local offer=\"-W ''\"\n"
-         "  case \"$path $prev\" in\n";
+         "  local offer=\"-W ''\" equals=\n"
+         "  [[ $cur == '=' ]] && cur= equals='='\n"
+         "  [[ $prev == '=' ]] && prev=${COMP_WORDS[COMP_CWORD - 2]} equals='='\n"
+         "  case \"$path $prev$equals\" in\n";
   each(program.verbs, name, [&](const std::string& path, const Verb& v) {
-    for (const Argument& a : v.arguments)
-      if (a.needs_value())
-        out << "    \"" << path << " " << a.name << "\") offer="
-            << "\"" << bash_values(a) << "\" ;;\n";
+    for (const Argument& a : v.arguments) {
+      if (a.is_positional() || a.is_flag()) continue;
+      const std::string option = path + " " + a.name;
+      out << "    ";
+      if (a.needs_value()) out << "\"" << option << "\" | ";
+      out << "\"" << option << "=\") offer=\"" << bash_values(a) << "\" ;;\n";
+    }
   });
   out << "    *)\n      case \"$path\" in\n";
   const auto write_words = [&](const std::string& path, const Verb& v) {
@@ -123,7 +135,8 @@ void write_bash(const Program& program, std::ostream& out) {
   each(program.verbs, name, write_words);
   out << "      esac ;;\n  esac\n"
          "  case \"$offer\" in\n"
-         "    -d | -f) compopt -o filenames; mapfile -t COMPREPLY < <(compgen $offer -- \"$cur\") "
+         "    -d | -f) compopt -o filenames 2> /dev/null;  mapfile -t COMPREPLY < <(compgen $offer "
+         "-- \"$cur\") "
          ";;\n"
          "    *) mapfile -t COMPREPLY < <(eval \"compgen $offer\" -- '\"$cur\"') ;;\n"
          "  esac\n}\ncomplete -F _"
@@ -137,7 +150,8 @@ std::string zsh_text(const std::string& text) {
 }
 
 std::string zsh_values(const Argument& a) {
-  if (!a.choices.empty()) return "(" + in_words(a.choices) + ")";
+  const auto& words = a.choices.empty() ? a.offers : a.choices;
+  if (!words.empty()) return "(" + in_words(words) + ")";
   switch (a.takes) {
     case Argument::Takes::folder:
       return "_files -/";
@@ -159,9 +173,12 @@ void write_zsh_arguments(const Verb& v, const std::string& indent, std::ostream&
       out << (many ? "*" : "") << ":" << zsh_text(a.name) << ":" << zsh_values(a) << "'";
       continue;
     }
-    out << (many ? "*" : "") << a.name << (!a.needs_value() ? "" : "=") << "[" << zsh_text(a.help)
-        << "]";
-    if (a.needs_value()) out << ":value:" << zsh_values(a);
+    out << (many ? "*" : "") << a.name
+        << (a.is_flag()       ? ""
+            : a.needs_value() ? "="
+                              : "=-")
+        << "[" << zsh_text(a.help) << "]";
+    if (!a.is_flag()) out << (a.needs_value() ? ":" : "::") << "value:" << zsh_values(a);
     out << "'";
   }
   out << "\n";
@@ -196,16 +213,18 @@ void write_zsh_function(const std::string& function, const std::vector<Verb>& ve
 }  // namespace
 
 void write_man_page(const Program& program, std::ostream& out) {
-  std::string title = program.name;
-  std::transform(title.begin(), title.end(), title.begin(),
-                 [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; });
-  out << ".\\\" SPDX-License-Identifier: Apache-2.0\n.TH " << title << " 1 \"\" \"" << program.name
-      << " " << program.version << "\" \"User commands\"\n.SH NAME\n"
-      << program.name << " \\- evaluate machine-tool calibrations in batch\n.SH SYNOPSIS\n";
-  for (const Verb& v : program.verbs) out << ".br\n.B " << roff(synopsis(program.name, v)) << "\n";
-  out << ".SH DESCRIPTION\n" << roff(one_line(program.summary)) << "\n.SH VERBS\n";
+  out << ".\\\" SPDX-License-Identifier: Apache-2.0\n.TH " << in_capitals(program.name)
+      << " 1 \"\" \"" << program.name << " " << program.version
+      << "\" \"User commands\"\n.SH NAME\n"
+      << program.name << " \\- " << roff(program.purpose) << "\n.SH SYNOPSIS\n";
+  for (const Verb& v : program.verbs)
+    out << ".B " << roff(synopsis(program.name + " " + v.name, v)) << "\n.br\n";
+  out << ".SH DESCRIPTION\n" << roff(one_line(program.summary)) << "\n";
+  std::string group;
   each(program.verbs, program.name, [&](const std::string& path, const Verb& v) {
-    out << ".SS " << roff(synopsis(path, v)) << "\n" << roff(v.summary) << ".\n";
+    if (!v.group.empty() && v.group != group) out << ".SH " << in_capitals(group = v.group) << "\n";
+    out << ".SS " << roff(synopsis(path, v)) << "\n"
+        << roff(v.summary) << (v.summary.ends_with('?') ? "" : ".") << "\n";
     for (const Argument& a : v.arguments) {
       out << ".TP\n.B " << roff(a.name) << "\n" << roff(one_line(a.help));
       if (!a.choices.empty()) out << "; one of " << roff(in_words(a.choices));

@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
   Program program{
       .name = "nonio",
       .version = NONIO_VERSION,
+      .purpose = "evaluate machine-tool calibrations in batch",
       .summary =
           "Nonio evaluates machine-tool calibration campaigns: by the standards, with findings,\n"
           "reports and the tables that go into the machine's controller.",
@@ -23,7 +24,8 @@ int main(int argc, char** argv) {
     }
   };
   add("Every night", {run_verb(common)});
-  add("Campaigns", {import_verb(common)});
+  add("Campaigns", {new_verb(common), import_verb(common), show_verb(common), open_verb(common),
+                    schema_verb(common)});
   add("Certificates", {certificates_verb(common), verify_verb(common), template_verb(common)});
   add("The error model",
       {compare_verb(common), explain_verb(common), model_verb(common), simulate_verb(common)});

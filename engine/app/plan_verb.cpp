@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "axis_argument.h"
 #include "campaign_verb.h"
 #include "nonio/host/files.h"
 #include "nonio/host/plan.h"
@@ -19,7 +20,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Lengths are taken as texts: a decimal comma deserves a better word than "could not convert".
 struct Lengths {
   std::string x, y, over_travel = "0", resolution = "1", max_step = "0";
   std::vector<std::string> pitch_x, pitch_y;
@@ -43,15 +43,6 @@ struct ProgramWish {
   std::string n, step_x, step_y, machine;
   Programs programs;
 };
-
-Expected<double> length_of(const std::string& option, const std::string& text) {
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error == std::errc() && stop == end) return value / 1e3;
-  return fail(option + ": wanted a number in mm, with a point for decimals; found \"" + text +
-              "\"");
-}
 
 Expected<void> settle(Plan& plan) {
   math::TripleWish& w = plan.wish;
@@ -167,29 +158,6 @@ int plan_triples(Plan plan, const Common& common) {
   return write_programs(
       verb, common, plan.programs, machine, math::triple_table(found->plans),
       {{"plan", std::to_string(plan.choose)}, {"over_travel_mm", plan.mm.over_travel}});
-}
-
-/// "X=0:12000"; A, B and C turn and are in degrees (ISO 841).
-Expected<Axis> axis_of(const std::string& text) {
-  const std::size_t equals = text.find('='), colon = text.find(':');
-  const std::string name = text.substr(0, std::min(equals, text.size()));
-  const auto wrong = [&] {
-    return fail(
-        "--axis: wanted NAME=FROM:TO in mm or deg, FROM below TO, such as X=0:12000; found \"" +
-        text + "\"");
-  };
-  if (equals == std::string::npos || colon == std::string::npos || colon < equals || name.empty() ||
-      name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789") != std::string::npos)
-    return wrong();
-  const auto from = length_of("--axis", text.substr(equals + 1, colon - equals - 1));
-  const auto to = length_of("--axis", text.substr(colon + 1));
-  // Written so that NaN is wrong.
-  if (!from || !to || !(*from < *to) || !std::isfinite(*from) || !std::isfinite(*to))
-    return wrong();
-  Axis axis{.name = name, .rotary = name[0] == 'A' || name[0] == 'B' || name[0] == 'C'};
-  const double per_mm = axis.rotary ? 1e3 / deg_per_rad : 1.0;
-  axis.travel = {*from * per_mm, *to * per_mm};
-  return axis;
 }
 
 /// The row that the diagonals follow; none where no steps are given.

@@ -137,7 +137,9 @@ Verb new_plugin_verb(Common& common) {
   return {.name = "new",
           .summary = "Writes a folder that builds, is tested, and does something useful at once",
           .arguments = joined(
-              {required({"KIND", &options->kind, "reader, analysis, effect, output or controller"}),
+              {required(offering(
+                   {"reader", "analysis", "effect", "output", "controller"},
+                   {"KIND", &options->kind, "reader, analysis, effect, output or controller"})),
                required({"NAME", &options->name, "Small letters, digits and '-'"}),
                takes(Argument::Takes::folder,
                      {"--out", &options->out, "The folder; it must not exist (default: NAME)"})},

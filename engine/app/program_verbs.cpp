@@ -25,6 +25,12 @@ int help(const HelpWish& wish, const Program& program) {
   return show_help(program, wish.words);
 }
 
+std::vector<std::string> names_of(const Program& program) {
+  std::vector<std::string> names;
+  for (const Verb& verb : program.verbs) names.push_back(verb.name);
+  return names;
+}
+
 std::vector<std::string> texts_of(const std::vector<fs::path>& folders) {
   std::vector<std::string> texts;
   for (const fs::path& folder : folders) texts.push_back(folder.string());
@@ -57,7 +63,8 @@ Verb help_verb(const Program& program) {
   auto wish = std::make_shared<HelpWish>();
   return {.name = "help",
           .summary = "The help of a verb, or of the program; --man for man(1)",
-          .arguments = {{"VERB", &wish->words, "A verb, and the one below it: plan triples"},
+          .arguments = {offering(names_of(program), {"VERB", &wish->words,
+                                                     "A verb, and the one below it: plan triples"}),
                         {"--man", &wish->man, "The manual page of all verbs, as man(1) reads it"}},
           .footer =
               "Examples: nonio help plan triples\n"

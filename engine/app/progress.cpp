@@ -9,6 +9,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "colour.h"
 #include "common.h"
 
 namespace nonio::app {
@@ -80,10 +81,8 @@ void Progress::finished(const host::CampaignState& c) {
   }
   if (bar_ ? failed : failed || !quiet_) {
     clear();
-    std::cerr << (failed                    ? "failed    "
-                  : c.status == "attention" ? "attention "
-                                            : "ok        ")
-              << c.id << (failed ? ": " + message_of(c) : "") << "\n";
+    std::cerr << status_word(c.status, STDERR_FILENO) << " " << c.id
+              << (failed ? ": " + message_of(c) : "") << "\n";
   }
   if (bar_) draw();
 }
@@ -117,7 +116,8 @@ void Progress::clear() {
 void Progress::still_failed(const host::Night& night) {
   for (const host::CampaignState& c : night.campaigns)
     if (c.status == "failed" && c.action == host::CampaignState::Action::unchanged)
-      std::cerr << "failed    " << c.id << " (unchanged): " << message_of(c) << "\n";
+      std::cerr << status_word(c.status, STDERR_FILENO) << " " << c.id
+                << " (unchanged): " << message_of(c) << "\n";
 }
 
 void Progress::end() {

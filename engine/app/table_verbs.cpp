@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "axis_argument.h"
 #include "campaign_verb.h"
 #include "nonio/host/files.h"
 #include "nonio/host/plan.h"
@@ -121,12 +122,10 @@ Expected<Loaded> load(const host::Plugins& plugins, const std::string& files,
   return Loaded{*found, std::move(*tables)};
 }
 
-/// The axes of the machine in the order of their numbers; A, B and C turn (ISO 841).
+/// The axes of the machine in the order of their numbers.
 Campaign machine_of(const std::vector<std::string>& axes) {
   Campaign campaign;
-  for (const std::string& name : axes)
-    campaign.machine.axes.push_back(
-        {.name = name, .rotary = name[0] == 'A' || name[0] == 'B' || name[0] == 'C'});
+  for (const std::string& name : axes) campaign.machine.axes.push_back(axis_named(name));
   return campaign;
 }
 

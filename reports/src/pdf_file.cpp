@@ -43,17 +43,17 @@ struct Source {
   std::size_t at = 0;
 };
 
-struct Document {
+struct HaruDocument {
   Failure failure;
   std::deque<Source> sources;  ///< what they show outlives the document
   std::string bytes;           ///< as saved
   HPDF_Doc doc;
-  Document() : doc(HPDF_New(record, &failure)) {}
-  ~Document() {
+  HaruDocument() : doc(HPDF_New(record, &failure)) {}
+  ~HaruDocument() {
     if (doc != nullptr) HPDF_Free(doc);
   }
-  Document(const Document&) = delete;
-  Document& operator=(const Document&) = delete;
+  HaruDocument(const HaruDocument&) = delete;
+  HaruDocument& operator=(const HaruDocument&) = delete;
 };
 
 HPDF_STATUS read_source(HPDF_Stream stream, HPDF_BYTE* to, HPDF_UINT* size) {
@@ -96,7 +96,7 @@ HPDF_STATUS write_widths(HPDF_Dict dict, HPDF_Stream stream) {
 }
 
 /// `bytes`, compressed or not, outlive the document.
-void fill(Document& pdf, HPDF_Dict dict, const std::string& bytes, bool compressed = true) {
+void fill(HaruDocument& pdf, HPDF_Dict dict, const std::string& bytes, bool compressed = true) {
   Source& source = pdf.sources.emplace_back(Source{bytes});
   HPDF_Stream stream = HPDF_CallbackReader_New(pdf.doc->mmgr, read_source, seek_source, nullptr,
                                                size_of_source, &source);
@@ -107,7 +107,7 @@ void fill(Document& pdf, HPDF_Dict dict, const std::string& bytes, bool compress
   dict->write_fn = compressed ? write_filter : nullptr;
 }
 
-HPDF_Dict new_stream(Document& pdf, const std::string& bytes, bool compressed = true) {
+HPDF_Dict new_stream(HaruDocument& pdf, const std::string& bytes, bool compressed = true) {
   HPDF_Dict dict = HPDF_DictStream_New(pdf.doc->mmgr, pdf.doc->xref);
   if (dict != nullptr) fill(pdf, dict, bytes, compressed);
   return dict;
@@ -120,7 +120,7 @@ HPDF_Dict new_object(HPDF_Doc doc, const char* type) {
   return dict;
 }
 
-HPDF_Dict add_descriptor(Document& pdf, const Font& font, const Embedded& embedded, bool bold) {
+HPDF_Dict add_descriptor(HaruDocument& pdf, const Font& font, const Embedded& embedded, bool bold) {
   HPDF_Doc doc = pdf.doc;
   HPDF_Dict file = new_stream(pdf, embedded.file_deflated);
   HPDF_Dict descriptor = new_object(doc, "FontDescriptor");
@@ -141,7 +141,7 @@ HPDF_Dict add_descriptor(Document& pdf, const Font& font, const Embedded& embedd
 }
 
 /// `embedded` outlives the document.
-HPDF_Dict add_font(Document& pdf, const Font& font, const Embedded& embedded, bool bold) {
+HPDF_Dict add_font(HaruDocument& pdf, const Font& font, const Embedded& embedded, bool bold) {
   HPDF_Doc doc = pdf.doc;
   HPDF_Dict descriptor = add_descriptor(pdf, font, embedded, bold);
   HPDF_Dict to_unicode = new_stream(pdf, embedded.to_unicode_deflated);
@@ -170,7 +170,7 @@ HPDF_Dict add_font(Document& pdf, const Font& font, const Embedded& embedded, bo
   return type0;
 }
 
-HPDF_Dict add_samples(Document& pdf, const Picture& picture, const std::string& compressed,
+HPDF_Dict add_samples(HaruDocument& pdf, const Picture& picture, const std::string& compressed,
                       bool grey) {
   HPDF_Dict samples = new_stream(pdf, compressed);
   if (samples == nullptr) return nullptr;
@@ -184,7 +184,7 @@ HPDF_Dict add_samples(Document& pdf, const Picture& picture, const std::string& 
 }
 
 /// `picture` outlives the document.
-HPDF_Dict add_picture(Document& pdf, const Picture& picture) {
+HPDF_Dict add_picture(HaruDocument& pdf, const Picture& picture) {
   HPDF_Dict colours = add_samples(pdf, picture, picture.colours, picture.grey);
   if (colours == nullptr) return nullptr;
   if (picture.jpeg) colours->write_fn = write_jpeg_filter;
@@ -194,7 +194,7 @@ HPDF_Dict add_picture(Document& pdf, const Picture& picture) {
 }
 
 /// One dictionary that all pages share.
-HPDF_Dict add_resources(Document& pdf, const Fonts& fonts, const PdfFile& file,
+HPDF_Dict add_resources(HaruDocument& pdf, const Fonts& fonts, const PdfFile& file,
                         const Embedded& wide) {
   HPDF_Doc doc = pdf.doc;
   HPDF_Dict resources = new_object(doc, nullptr);
@@ -305,7 +305,7 @@ Kept kept_of(HPDF_Doc doc, const PdfFile& file, const std::vector<std::string>& 
   return kept;
 }
 
-void add_kept(Document& pdf, const Kept& kept) {
+void add_kept(HaruDocument& pdf, const Kept& kept) {
   HPDF_Doc doc = pdf.doc;
   HPDF_Dict profile = new_stream(pdf, kept.profile), metadata = new_stream(pdf, kept.xmp, false);
   HPDF_Dict intent = new_object(doc, "OutputIntent");
@@ -332,7 +332,7 @@ void add_kept(Document& pdf, const Kept& kept) {
   }
 }
 
-void add_page(Document& pdf, const PdfFile& file, const std::string& compressed,
+void add_page(HaruDocument& pdf, const PdfFile& file, const std::string& compressed,
               HPDF_Dict resources) {
   HPDF_Page page = HPDF_AddPage(pdf.doc);
   if (page == nullptr) return;
@@ -358,7 +358,7 @@ Expected<std::string> write_pdf(PdfFile file, const Fonts& fonts) {
     return fail(
         Error{"a TrueType font was expected, but no part of it can be taken out", fonts.wide.name});
   Kept kept;  // outlives the document, as all that it is written from
-  Document pdf;
+  HaruDocument pdf;
   if (pdf.doc == nullptr) return fail("the PDF could not be begun: out of memory");
   pdf.doc->pdf_version = HPDF_VER_17;
   add_properties(pdf.doc, file);

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "formula_expression.h"
+#include "formula_units.h"
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/format.h"
 
@@ -13,32 +14,7 @@ namespace nonio::host {
 
 namespace {
 
-struct Meaning {
-  Quantity quantity;
-  const char* words;
-};
-
-constexpr std::array<Meaning, 16> meanings{
-    {{Quantity::deviation, "deviation"},
-     {Quantity::length, "position or period"},
-     {Quantity::deviation_per_length, "slope"},
-     {Quantity::deviation_per_time, "drift"},
-     {Quantity::growth, "growth in time"},
-     {Quantity::expansion, "expansion"},
-     {Quantity::angular_deviation, "deviation of an angle"},
-     {Quantity::angle, "angle"},
-     {Quantity::deviation_per_angle, "slope of an angle"},
-     {Quantity::angle_per_time, "drift of an angle"},
-     {Quantity::angular_growth, "growth of an angle in time"},
-     {Quantity::angular_expansion, "expansion of an angle"},
-     {Quantity::small_angle, "small angle"},
-     {Quantity::time, "time"},
-     {Quantity::temperature_difference, "temperature difference"},
-     {Quantity::number, "none: a number"}}};
-
-std::string symbol_of(Quantity q) {
-  return unit_of(q).symbol.empty() ? "1" : std::string(unit_of(q).symbol);
-}
+std::string symbol_of(Quantity q) { return std::string(FormulaUnit{q, {}}.symbol()); }
 
 /// One printed unit, in SI.
 double amount(const Formula::Parameter& p) { return 1.0 / unit_of(p.quantity).per_si; }
@@ -259,15 +235,16 @@ Expected<Effect::Columns> columns(const Formula& formula, const Observations& o,
 }  // namespace
 
 std::optional<Quantity> quantity_of(std::string_view unit) {
-  for (const Meaning& m : meanings)
-    if (symbol_of(m.quantity) == unit) return m.quantity;
+  for (const FormulaUnit& u : formula_units)
+    if (u.symbol() == unit) return u.quantity;
   return std::nullopt;
 }
 
 std::string known_units() {
   std::string text;
-  for (const Meaning& m : meanings)
-    text += (text.empty() ? "" : ", ") + symbol_of(m.quantity) + " (" + m.words + ")";
+  for (const FormulaUnit& u : formula_units)
+    text +=
+        (text.empty() ? "" : ", ") + std::string(u.symbol()) + " (" + std::string(u.words) + ")";
   return text;
 }
 

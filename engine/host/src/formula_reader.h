@@ -8,7 +8,6 @@ namespace nonio::host {
 
 /// [[formula]] of [model], or of a simulation: read and tried, so that what is wrong with them is
 /// said with the rest.
-std::vector<Formula> read_formulas(TableReader& table, const Machine& machine,
-                                   const std::string& file, std::vector<Error>& errors);
+std::vector<Formula> read_formulas(TableReader& table, const Machine& machine);
 
 }  // namespace nonio::host

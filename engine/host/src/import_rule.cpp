@@ -109,6 +109,24 @@ class Matcher {
   std::uint64_t steps_ = 0;
 };
 
+constexpr Key rule_keys[] = {
+    {.name = "pattern",
+     .holds = Key::Holds::text,
+     .help = "How the names of the files are made.",
+     .required = true},
+    {.name = "campaign", .holds = Key::Holds::text, .help = "How the campaigns' ids are made."},
+    {.name = "kind", .holds = Key::Holds::text, .help = "Kind of the measurements."},
+    {.name = "reader", .holds = Key::Holds::text, .help = "Reader of the files."},
+    {.name = "exclude",
+     .holds = Key::Holds::texts,
+     .help = "Files whose path holds one of these are passed over."},
+    {.name = "manifest",
+     .holds = Key::Holds::anything,
+     .help = "What goes into every campaign.toml."},
+};
+constexpr Key rule_file = {
+    .name = "rule", .holds = Key::Holds::table, .help = "Rule of an import.", .keys = rule_keys};
+
 Expected<void> check(const ImportRule& rule) {
   if (rule.pattern.empty()) return fail("pattern: is missing: how the names of the files are made");
   const auto tokens = tokens_of(rule.pattern);
@@ -129,14 +147,14 @@ Checked<ImportRule> parse_import_rule(std::string_view text, const std::string& 
   const auto root = parse_toml(text, file);
   if (!root) return tl::unexpected(std::vector<Error>{root.error()});
   std::vector<Error> errors;
-  TableReader reader(*root, "", file, errors);
+  TableReader reader(*root, rule_file, file, errors);
   ImportRule rule;
-  rule.pattern = reader.text("pattern", true);
+  rule.pattern = reader.text("pattern");
   rule.campaign = reader.text("campaign");
   if (const std::string kind = reader.text("kind"); !kind.empty()) rule.kind = kind;
   rule.reader = reader.text("reader");
   rule.exclude = reader.texts("exclude").value_or(std::vector<std::string>{});
-  if (const toml::table* manifest = reader.table("manifest")) {
+  if (const toml::table* manifest = reader.anything("manifest")) {
     for (const char* own : {"format", "measurement"})
       if (manifest->contains(own))
         reader.error("manifest", std::string("wanted no \"") + own + "\", which the import writes");

@@ -33,12 +33,6 @@ std::string kind_of(const std::string& effect) { return effect.substr(0, effect.
 
 }  // namespace
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
-  return out;
-}
-
 std::string where_largest(const model::Place& place, const std::string& language) {
   if (!place.at || !std::isfinite(*place.at)) return {};
   const std::string number =

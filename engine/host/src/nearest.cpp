@@ -39,4 +39,10 @@ std::string suggestion(std::string_view found, const std::vector<std::string>& c
   return best == nullptr ? "" : " (nearest: \"" + *best + "\")";
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
 }  // namespace nonio::host

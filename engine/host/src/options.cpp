@@ -27,12 +27,16 @@ const char* kind_of(const Setting& setting) {
   }
 }
 
-/// The setting as the declared kind; a whole number will do where a number is wanted.
+/// The setting as the declared kind; a whole number will do where a number is wanted, and an empty
+/// list for any.
 std::optional<Setting> as_declared(const Setting& found, const Setting& declared) {
   if (found.index() == declared.index()) return found;
   if (const auto* i = std::get_if<std::int64_t>(&found);
       i != nullptr && std::holds_alternative<double>(declared))
     return Setting(static_cast<double>(*i));
+  if (const auto* list = std::get_if<std::vector<std::string>>(&found);
+      list != nullptr && list->empty() && std::holds_alternative<std::vector<double>>(declared))
+    return Setting(std::vector<double>{});
   return std::nullopt;
 }
 

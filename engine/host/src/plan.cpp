@@ -7,6 +7,7 @@
 
 #include "guarded.h"
 #include "json_values.h"
+#include "nonio/host/nearest.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::host {
@@ -229,7 +230,14 @@ Checked<std::vector<Artifact>> write_programs(const Plugins& plugins, const std:
   const auto wrong = [](std::string message) {
     return tl::unexpected(std::vector<Error>{Error{std::move(message)}});
   };
-  if (found == all.end()) return wrong(plugins.absence("output", output));
+  if (found == all.end()) {
+    std::vector<std::string> names;
+    for (const Output& o : all)
+      if (o.info.name.starts_with("program-")) names.push_back(o.info.name.substr(8));
+    const std::string short_name = output.starts_with("program-") ? output.substr(8) : output;
+    return wrong("nothing writes part programs for the control \"" + output + "\"" +
+                 suggestion(short_name, names) + "; there are " + listed(names));
+  }
   const auto settings = options_from(found->info, options);
   if (!settings) return tl::unexpected(settings.error());
   Campaign campaign;

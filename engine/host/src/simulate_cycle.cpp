@@ -10,31 +10,24 @@
 namespace nonio::host {
 namespace {
 
-std::optional<double> number(TableReader& reader, const char* key, double least, double scale) {
-  const auto value = reader.number(key);
-  if (!value) return {};
-  if (*value >= least) return *value * scale;
-  reader.error(key, "wanted a number from " + std::to_string(static_cast<int>(least)));
-  return {};
-}
-
 /// One [[cycle]].
 class CycleReader {
  public:
-  CycleReader(const toml::table& table, const std::string& file, std::vector<Error>& errors)
-      : reader_(table, "cycle", file, errors), file_(file), errors_(errors) {
-    c_.line = table.source().begin.line;
+  CycleReader(const TableReader& reader, std::vector<Error>& errors)
+      : reader_(reader), errors_(errors) {
+    c_.line = reader.line();
   }
 
   CycleSpec read(const Campaign& campaign) {
     if (!find_measurement(campaign)) return c_;
     unit_ = c_.axis.rotary ? 1.0 / deg_per_rad : 1e-3;
+    reader_.settle(cycle_axis, c_.axis.rotary ? "rotary" : "linear");
     read_targets();
     read_order();
     read_times();
-    c_.noise = c_.axis.rotary
-                   ? number(reader_, "noise_arcsec", 0.0, 1.0 / arcsec_per_rad).value_or(0.0)
-                   : number(reader_, "noise_um", 0.0, 1e-6).value_or(0.0);
+    c_.noise = (c_.axis.rotary ? reader_.number("noise_arcsec", 1.0 / arcsec_per_rad)
+                               : reader_.number("noise_um", 1e-6))
+                   .value_or(0.0);
     read_misreadings();
     read_temperature();
     reader_.finish();
@@ -43,7 +36,7 @@ class CycleReader {
 
  private:
   bool find_measurement(const Campaign& campaign) {
-    const std::string id = reader_.text("measurement", true);
+    const std::string id = reader_.text("measurement");
     std::vector<std::string> ids;
     for (const Measurement& m : campaign.measurements) {
       ids.push_back(m.id);
@@ -68,13 +61,13 @@ class CycleReader {
     const std::string suffix = c_.axis.rotary ? "_deg" : "_mm";
     const std::string list = "targets" + suffix, from = "from" + suffix, to = "to" + suffix,
                       step = "step" + suffix;
-    const auto given = reader_.numbers(list.c_str());
-    const auto first = reader_.number(from.c_str()), last = reader_.number(to.c_str()),
-               distance = reader_.number(step.c_str());
-    const double share = number(reader_, "random_offset_pct", 0.0, 0.01).value_or(0.0);
+    const auto given = reader_.numbers(list);
+    const auto first = reader_.number(from), last = reader_.number(to),
+               distance = reader_.number(step);
+    const double share = reader_.number("random_offset_pct", 0.01).value_or(0.0);
     if (share > 0.45) reader_.error("random_offset_pct", "wanted at most 45, targets keep order");
     if (given) {
-      if (first || last || distance) reader_.error(list.c_str(), "stands beside a range");
+      if (first || last || distance) reader_.error(list, "stands beside a range");
       c_.targets = *given;
     } else if (first && last && distance && *distance > 0.0 && *last > *first &&
                (*last - *first) / *distance < 1e5) {
@@ -102,77 +95,68 @@ class CycleReader {
   }
 
   void read_temperature() {
-    const toml::table* table = reader_.table("temperature");
-    if (table == nullptr) return;
-    TableReader t(*table, "cycle.temperature", file_, errors_);
+    auto t = reader_.table("temperature");
+    if (!t) return;
     CycleSpec::Course course;
-    course.start = t.number("start_c").value_or(course.start);
-    course.drift = t.number("drift_K_per_h", 1.0 / 3600.0).value_or(0.0);
-    course.swing = t.number("swing_K").value_or(0.0);
-    course.period = t.number("period_s").value_or(course.period);
-    if (!(course.period > 0.0)) t.error("period_s", "wanted a number above 0");
-    t.finish();
+    course.start = t->number("start_c").value_or(course.start);
+    course.drift = t->number("drift_K_per_h", 1.0 / 3600.0).value_or(0.0);
+    course.swing = t->number("swing_K").value_or(0.0);
+    course.period = t->number("period_s").value_or(course.period);
+    t->finish();
     c_.temperature = course;
   }
 
   void read_misreadings() {
-    const toml::table* table = reader_.table("misreadings");
-    if (table == nullptr) return;
-    TableReader m(*table, "cycle.misreadings", file_, errors_);
-    c_.misread = number(m, "fraction", 0.0, 1.0).value_or(0.0);
-    if (c_.misread > 1.0) m.error("fraction", "wanted 0 to 1");
-    if (const auto size = m.numbers("size")) {
+    auto m = reader_.table("misreadings");
+    if (!m) return;
+    c_.misread = m->number("fraction").value_or(0.0);
+    if (c_.misread > 1.0) m->error("fraction", "wanted 0 to 1");
+    if (const auto size = m->numbers("size")) {
       if (size->size() == 2 && (*size)[0] >= 0.0 && (*size)[0] <= (*size)[1])
         c_.misread_size = {(*size)[0], (*size)[1]};
       else
-        m.error("size", "wanted two numbers, times the noise, the smaller one first");
+        m->error("size", "wanted two numbers, times the noise, the smaller one first");
     }
-    m.finish();
+    m->finish();
   }
 
   void read_order() {
-    c_.pendulum = reader_.choice("order", {"pendulum", "unidirectional"}) != "unidirectional";
-    const std::string direction = reader_.choice("direction", {"+", "-"});
+    c_.pendulum = reader_.text("order") != "unidirectional";
+    const std::string direction = reader_.text("direction");
     if (!direction.empty() && c_.pendulum)
       reader_.error("direction", "stands only beside order = \"unidirectional\"");
     c_.direction = direction == "-" ? -1.0 : 1.0;
-    if (const auto runs = reader_.whole("runs")) {
-      if (*runs < 1 || *runs > 100000) reader_.error("runs", "wanted 1 to 100000");
-      c_.runs = static_cast<std::uint32_t>(*runs);
-    }
+    if (const auto runs = reader_.whole("runs")) c_.runs = static_cast<std::uint32_t>(*runs);
   }
 
   void read_times() {
     const char* feed = c_.axis.rotary ? "feed_deg_per_min" : "feed_mm_per_min";
     c_.feed = reader_.number(feed, unit_ / 60.0).value_or(c_.axis.rotary ? 0.1 : 0.05);
-    if (!(c_.feed > 0.0)) reader_.error(feed, "wanted a number above 0");
-    c_.dwell = number(reader_, "dwell_s", 0.0, 1.0).value_or(c_.dwell);
-    c_.pause = number(reader_, "pause_s", 0.0, 1.0).value_or(c_.pause);
+    c_.dwell = reader_.number("dwell_s").value_or(c_.dwell);
+    c_.pause = reader_.number("pause_s").value_or(c_.pause);
     c_.timed = reader_.flag("times").value_or(true);
   }
 
   void complain(std::string message) {
-    errors_.push_back(Error{std::move(message), file_, c_.line});
+    errors_.push_back(Error{std::move(message), reader_.file(), c_.line});
   }
 
   CycleSpec c_;
   double unit_ = 1e-3;  ///< of the targets
   TableReader reader_;
-  const std::string& file_;
   std::vector<Error>& errors_;
 };
 
 }  // namespace
 
 std::vector<CycleSpec> read_cycles(TableReader& top, const Campaign& campaign,
-                                   const std::string& file, std::vector<Error>& errors) {
+                                   std::vector<Error>& errors) {
   const auto complain = [&](std::uint64_t line, std::string message) {
-    errors.push_back(Error{std::move(message), file, line});
+    errors.push_back(Error{std::move(message), top.file(), line});
   };
   std::vector<CycleSpec> found, cycles;
-  if (const toml::array* list = top.tables("cycle"))
-    for (const toml::node& node : *list)
-      found.push_back(CycleReader(*node.as_table(), file, errors).read(campaign));
+  for (const TableReader& reader : top.tables("cycle"))
+    found.push_back(CycleReader(reader, errors).read(campaign));
   for (const Measurement& m : campaign.measurements) {
     const auto is_its = [&](const CycleSpec& c) { return c.measurement.id == m.id; };
     const auto of_it = std::find_if(found.begin(), found.end(), is_its);

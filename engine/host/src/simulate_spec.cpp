@@ -54,6 +54,25 @@ std::string manifest_of(std::string_view text, const toml::table& root) {
   return out;
 }
 
+/// The declaration of an [[effect]]: its name, and a number for each parameter.
+class ParameterKeys {
+ public:
+  ParameterKeys(const Effect& effect, bool rotary) {
+    for (const Effect::Parameter& p : effect.linear) names_.push_back(key_of(p, rotary));
+    for (const Effect::Shape& s : effect.shapes) names_.push_back(key_of(s.parameter, rotary));
+    keys_.push_back({.name = "name", .holds = Key::Holds::text, .help = {}});
+    for (const std::string& name : names_)
+      keys_.push_back({.name = name, .holds = Key::Holds::number, .help = {}});
+    table_.keys = keys_;
+  }
+  const Key& table() const { return table_; }
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<Key> keys_;
+  Key table_{.name = "effect", .holds = Key::Holds::table, .help = {}};
+};
+
 /// The [[effect]]s.
 class EffectReader {
  public:
@@ -61,9 +80,7 @@ class EffectReader {
       : s_(s), file_(file), errors_(errors) {}
 
   void read(TableReader& top) {
-    const toml::array* list = top.tables("effect");
-    if (list == nullptr) return;
-    for (const toml::node& node : *list) read_effect(*node.as_table());
+    for (TableReader& reader : top.tables("effect")) read_effect(reader);
     for (const EffectSpec& e : s_.effects) {
       const bool measured =
           std::any_of(s_.cycles.begin(), s_.cycles.end(),
@@ -101,18 +118,19 @@ class EffectReader {
     return axis.name.empty() ? nullptr : found;
   }
 
-  void read_effect(const toml::table& table) {
-    TableReader reader(table, "effect", file_, errors_);
+  void read_effect(TableReader& named) {
     EffectSpec e;
-    e.line = table.source().begin.line;
-    e.name = reader.text("name", true);
+    e.line = named.line();
+    e.name = named.text("name");
     if (e.name.empty()) return;
-    const Effect* found = find_effect(reader, e.name, e.axis);
+    const Effect* found = find_effect(named, e.name, e.axis);
     if (found == nullptr) return;
     e.effect = *found;
+    const ParameterKeys keys(e.effect, e.axis.rotary);
+    TableReader reader = named.declared(keys.table());
+    reader.text("name");
     const auto value = [&](const Effect::Parameter& parameter) {
-      const std::string key = key_of(parameter, e.axis.rotary);
-      const auto written = reader.number(key.c_str());
+      const auto written = reader.number(key_of(parameter, e.axis.rotary));
       if (!written) return written;
       return std::optional(*written / unit_of(quantity_on(parameter, e.axis.rotary)).per_si);
     };
@@ -134,19 +152,14 @@ class EffectReader {
 };
 
 /// The seed, and formulas that campaign.toml shall not tell.
-std::vector<Formula> read_simulation(TableReader& top, Specification& s, const std::string& file,
-                                     std::vector<Error>& errors) {
-  const toml::table* table = top.table("simulation");
-  if (table == nullptr) {
-    top.error("simulation", "is missing: [simulation] with a seed");
-    return {};
-  }
-  TableReader reader(*table, "simulation", file, errors);
-  const auto seed = reader.whole("seed");
-  if (!seed) reader.error("seed", "wanted a whole number: the same seed gives the same readings");
+std::vector<Formula> read_simulation(TableReader& top, Specification& s) {
+  auto reader = top.table("simulation");
+  if (!reader) return {};
+  const auto seed = reader->whole("seed");
+  if (!seed) reader->error("seed", "wanted a whole number: the same seed gives the same readings");
   s.seed = static_cast<std::uint64_t>(seed.value_or(1));
-  std::vector<Formula> hidden = read_formulas(reader, s.campaign.machine, file, errors);
-  reader.finish();
+  std::vector<Formula> hidden = read_formulas(*reader, s.campaign.machine);
+  reader->finish();
   return hidden;
 }
 
@@ -176,12 +189,12 @@ Checked<Specification> read_specification(std::string_view text, const std::stri
   if (!manifest) return tl::unexpected(manifest.error());
   s.campaign = std::move(manifest->campaign);
   std::vector<Error> errors;
-  TableReader top(*root, "", file, errors);
-  const std::vector<Formula> hidden = read_simulation(top, s, file, errors);
+  TableReader top(*root, specification_file(), file, errors);
+  const std::vector<Formula> hidden = read_simulation(top, s);
   s.catalogue = effects;
   add_formulas(s.campaign.formulas, s, file, errors);
   add_formulas(hidden, s, file, errors);
-  s.cycles = read_cycles(top, s.campaign, file, errors);
+  s.cycles = read_cycles(top, s.campaign, errors);
   EffectReader(s, file, errors).read(top);
   if (!errors.empty()) return tl::unexpected(std::move(errors));
   return s;

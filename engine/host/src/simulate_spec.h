@@ -60,7 +60,7 @@ Checked<Specification> read_specification(std::string_view text, const std::stri
 
 /// The [[cycle]]s, one for each measurement, in their order.
 std::vector<CycleSpec> read_cycles(TableReader& top, const Campaign& campaign,
-                                   const std::string& file, std::vector<Error>& errors);
+                                   std::vector<Error>& errors);
 
 /// Quantity of a parameter on this kind of axis, and its key: "b_um", "a_um_per_m".
 Quantity quantity_on(const Effect::Parameter& parameter, bool rotary);

@@ -7,6 +7,7 @@
 
 #include "guarded.h"
 #include "nonio/host/files.h"
+#include "nonio/host/nearest.h"
 #include "nonio/host/plan.h"
 #include "nonio/math/loaded_table.h"
 #include "nonio/sdk/format.h"
@@ -167,15 +168,17 @@ Expected<const Output*> control_of(const Plugins& plugins, const std::string& na
                                    const std::vector<Artifact>& files, const Campaign& campaign,
                                    const std::map<std::string, std::string>& options) {
   std::vector<const Output*> all, named, able;
-  std::string list;
+  std::vector<std::string> names;
   for (const Output& o : plugins.outputs()) {
     if (o.parse == nullptr) continue;
     all.push_back(&o);
-    list += (list.empty() ? "" : ", ") + o.info.name;
+    names.push_back(o.info.name);
     if (o.info.name == name) return &o;
     if (files.front().name.rfind(o.info.name + "-", 0) == 0) named.push_back(&o);
   }
-  if (!name.empty()) return fail("no control \"" + name + "\"; there are " + list);
+  if (!name.empty())
+    return fail("no control \"" + name + "\"" + suggestion(name, names) + "; there are " +
+                listed(names));
   if (named.size() == 1) return named.front();
   for (const Output* o : all) {
     const auto settled = options_from(o->info, options);
@@ -184,7 +187,7 @@ Expected<const Output*> control_of(const Plugins& plugins, const std::string& na
   if (able.size() == 1) return able.front();
   return fail(files.front().name + ": " +
               (able.empty() ? "no control" : std::to_string(able.size()) + " controls") +
-              " could have written it; say --control, one of " + list);
+              " could have written it; say --control, one of " + listed(names));
 }
 
 std::vector<TableDifference> differences(const Tables& present, const Tables& next) {

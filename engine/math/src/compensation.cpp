@@ -7,12 +7,12 @@
 #include <numbers>
 #include <numeric>
 
+#include "constants.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::math {
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double mean_of(std::span<const AxisTest::Reading> readings) {
@@ -211,13 +211,13 @@ std::optional<ErrorCurve> closed_turn(const ErrorCurve& curve) {
   double largest_gap = 0.0;
   for (std::size_t i = 1; i < n; ++i)
     largest_gap = std::max(largest_gap, curve.position[i] - curve.position[i - 1]);
-  if (!(span <= turn + same) || turn - span > 1.5 * largest_gap) return std::nullopt;
+  if (!(span <= full_turn + same) || full_turn - span > 1.5 * largest_gap) return std::nullopt;
 
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < n; ++i) {
-    double x = std::fmod(curve.position[i], turn);
-    if (x < -same) x += turn;
-    if (x > turn - same || x < same) x = 0.0;
+    double x = std::fmod(curve.position[i], full_turn);
+    if (x < -same) x += full_turn;
+    if (x > full_turn - same || x < same) x = 0.0;
     order.emplace_back(x, i);
   }
   std::sort(order.begin(), order.end());
@@ -233,11 +233,11 @@ std::optional<ErrorCurve> closed_turn(const ErrorCurve& curve) {
       y.push_back(sum / static_cast<double>(k - start));
     }
     if (x.front() != 0.0) {
-      const double t = (turn - x.back()) / (turn - x.back() + x.front());
+      const double t = (full_turn - x.back()) / (full_turn - x.back() + x.front());
       y.insert(y.begin(), y.back() + t * (y.front() - y.back()));
       x.insert(x.begin(), 0.0);
     }
-    x.push_back(turn);
+    x.push_back(full_turn);
     y.push_back(y.front());
     position = x;
     return y;
@@ -255,7 +255,7 @@ Expected<Grid> choose_grid(const std::vector<double>& position, const GridRule& 
     return fail("axis " + rule.axis + ": a table needs at least 2 targets, found " +
                 std::to_string(position.size()));
   if (rule.most < 2) return fail("axis " + rule.axis + ": a table needs at least 2 points");
-  Plan plan{rule, 0, whole(position.back(), rule.unit), 0, whole(turn, rule.unit)};
+  Plan plan{rule, 0, whole(position.back(), rule.unit), 0, whole(full_turn, rule.unit)};
   plan.from = whole(rule.first.value_or(position.front()), rule.unit);
   plan.origin = rule.anchor ? whole(*rule.anchor, rule.unit) : plan.from;
   if (plan.to <= plan.from)

@@ -4,10 +4,11 @@
 // reading less positioning, so rows share sources, and their covariance is N diag(sigma^2) N'.
 #include "nonio/math/diagonals.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <string>
+
+#include "dense.h"
 
 namespace nonio::math {
 

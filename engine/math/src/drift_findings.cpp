@@ -14,6 +14,7 @@
 #include <cmath>
 #include <vector>
 
+#include "constants.h"
 #include "finding_builder.h"
 #include "nonio/math/axis_findings.h"
 #include "nonio/math/distributions.h"
@@ -22,8 +23,6 @@
 
 namespace nonio::math {
 namespace {
-
-constexpr double level = 0.01;
 
 struct Runs {  // by run; of passes: one entry each
   std::vector<double> number, y;
@@ -98,9 +97,9 @@ Trend trend_of(const Runs& runs) {
   trend.per_run = of_runs.slope;
   trend.total = of_runs.slope * (runs.number.back() - runs.number.front());
   trend.p = t_two_sided(of_runs.t, of_runs.dof);
-  trend.found = trend.p < level;
+  trend.found = trend.p < significance;
   const double p_passes = t_two_sided(of_passes.t, of_passes.dof);
-  if (!trend.found && runs.y.size() >= 5 && monotone(runs.y) && p_passes < level) {
+  if (!trend.found && runs.y.size() >= 5 && monotone(runs.y) && p_passes < significance) {
     trend.found = true;
     trend.p = p_passes;
   }
@@ -120,7 +119,6 @@ void drift_findings(const AxisTest& test, std::vector<Finding>& findings) {
   if (test.targets.size() < 2 || test.most_approaches() < 3) return;
   const bool slopes = test.targets.size() >= 4;
   const PassModel model = fit_passes(test, slopes);
-  constexpr double rounding = 1e-10;  // m or rad
   const double scatter = std::max(scatter_of_reading(model), rounding);
   const Trend shift = trend_of(by_run(model, false));
   const Trend turn = slopes ? trend_of(by_run(model, true)) : Trend{};

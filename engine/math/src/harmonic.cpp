@@ -1,33 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harmonic.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "constants.h"
+#include "dense.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/statistics.h"
 
 namespace nonio::math {
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi;
-
 bool covers_the_turn(std::span<const double> angle) {
   std::vector<double> a;
-  for (const double x : angle) a.push_back(x - turn * std::floor(x / turn));
+  for (const double x : angle) a.push_back(x - full_turn * std::floor(x / full_turn));
   std::sort(a.begin(), a.end());
   constexpr double same = 1e-9;  // rad; 0 and 360 deg are one place
   std::size_t different = 0;
   double gap = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const double next = i + 1 < a.size() ? a[i + 1] : a[0] + turn;
+    const double next = i + 1 < a.size() ? a[i + 1] : a[0] + full_turn;
     gap = std::max(gap, next - a[i]);
     if (next - a[i] > same) ++different;
   }
-  return different >= 5 && gap <= turn / 3.0 + same;
+  return different >= 5 && gap <= full_turn / 3.0 + same;
 }
 
 }  // namespace

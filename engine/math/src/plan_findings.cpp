@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "constants.h"
 #include "finding_builder.h"
 #include "nonio/math/axis_findings.h"
 
@@ -18,19 +19,18 @@ namespace nonio::math {
 namespace {
 
 constexpr double long_axis = 2.0;  // m
-constexpr double turn = 2.0 * std::numbers::pi;
-constexpr double close = 1e-6;  // m or rad, where nominal positions are compared
+constexpr double close = 1e-6;     // m or rad, where nominal positions are compared
 
 bool is_long(const AxisTest& test) {
-  return test.length() > (test.rotary ? turn : long_axis) + close;
+  return test.length() > (test.rotary ? full_turn : long_axis) + close;
 }
 
 std::size_t wanted_targets(const AxisTest& test) {
   const double L = test.length();
   const auto whole = [](double x) { return static_cast<std::size_t>(std::ceil(x - 1e-9)); };
   if (test.rotary) {
-    if (L > turn + close) return whole(8.0 * L / turn);
-    const double quarter = turn / 4.0;
+    if (L > full_turn + close) return whole(8.0 * L / full_turn);
+    const double quarter = full_turn / 4.0;
     return L <= quarter + close ? 3 : L <= 2.0 * quarter + close ? 5 : 8;
   }
   if (L > long_axis + close) return whole(L / 0.25);
@@ -48,7 +48,7 @@ bool even(const AxisTest& test) {
 
 double period_of(const AxisTest& test, const Axis* axis) {
   if (axis == nullptr) return 0.0;
-  if (test.rotary) return axis->teeth.value_or(0) > 0 ? turn / *axis->teeth : 0.0;
+  if (test.rotary) return axis->teeth.value_or(0) > 0 ? full_turn / *axis->teeth : 0.0;
   return axis->screw_pitch.value_or(0.0);
 }
 
@@ -63,15 +63,15 @@ bool multiples(const AxisTest& test, double period) {
 
 bool has_angle(const AxisTest& test, double angle) {
   return std::any_of(test.targets.begin(), test.targets.end(), [&](double target) {
-    return std::fabs(std::remainder(target - angle, turn)) < 2e-4;  // 0.01 deg
+    return std::fabs(std::remainder(target - angle, full_turn)) < 2e-4;  // 0.01 deg
   });
 }
 
 void cardinal_angles(const AxisTest& test, std::vector<Finding>& findings) {
-  if (!test.rotary || test.length() < 0.75 * turn - close) return;
+  if (!test.rotary || test.length() < 0.75 * full_turn - close) return;
   std::string missing;
   for (int quarter = 0; quarter < 4; ++quarter)
-    if (!has_angle(test, turn / 4.0 * quarter))
+    if (!has_angle(test, full_turn / 4.0 * quarter))
       missing += (missing.empty() ? "" : ", ") + std::to_string(90 * quarter);
   if (!missing.empty())
     findings.push_back(

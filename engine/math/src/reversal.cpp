@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 
+#include "constants.h"
 #include "harmonic.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/statistics.h"
@@ -23,7 +24,6 @@
 namespace nonio::math {
 namespace {
 
-constexpr double level = 0.01;
 // Runs are pooled with single readings if this level does not tell them apart; a pair of runs tells
 // nearly nothing by itself (one degree of freedom) and is given the benefit of the doubt.
 constexpr double pooling_level = 0.5, pooling_level_of_pair = 0.05;
@@ -91,8 +91,8 @@ Reversal::Kind decide(const Reversal& r, bool scatter_known) {
   using Kind = Reversal::Kind;
   if (r.largest < negligible) return scatter_known ? Kind::none : Kind::unknown;
   const bool one_value_helps = r.largest_left <= tolerated_share * r.largest;
-  const bool exists = r.p_mean < level && r.mean != 0.0;
-  const bool varies = scatter_known && r.p_varies < level;
+  const bool exists = r.p_mean < significance && r.mean != 0.0;
+  const bool varies = scatter_known && r.p_varies < significance;
   const Kind constant = r.mean < 0.0 ? Kind::lost_motion : Kind::over_compensated;
   if (!scatter_known) return exists && one_value_helps ? constant : Kind::unknown;
   if (exists && (!varies || one_value_helps)) return constant;
@@ -112,11 +112,11 @@ void fit_turn(const AxisTest& test, const std::vector<double>& plus,
   if (!opposed.known || !concordant.known) return;
   r.opposed_amplitude = opposed.amplitude;
   r.p_opposed = opposed.p;
-  r.opposed = opposed.p < level && opposed.share >= most && opposed.amplitude > negligible;
+  r.opposed = opposed.p < significance && opposed.share >= most && opposed.amplitude > negligible;
   r.concordant_amplitude = concordant.amplitude;
   r.p_concordant = concordant.p;
   r.concordant =
-      concordant.p < level && concordant.share >= most && concordant.amplitude > negligible;
+      concordant.p < significance && concordant.share >= most && concordant.amplitude > negligible;
 }
 
 }  // namespace

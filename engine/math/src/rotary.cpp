@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/math/rotary.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
+
+#include "constants.h"
+#include "dense.h"
 
 namespace nonio::math {
 namespace {
@@ -17,13 +19,12 @@ using Eigen::Vector3d;
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double largest = 1e6;       // m; beyond it a micrometre has no digits
 constexpr double thinnest = 1e-6;     // second to first singular value: still a plane
 constexpr double same_angle = 1e-6;   // rad
 constexpr double worst_follow = 0.1;  // rms of encoder against circle, rad
 
-double wrapped(double angle) { return std::remainder(angle, turn); }
+double wrapped(double angle) { return std::remainder(angle, full_turn); }
 
 std::optional<RotaryRefusal> bad_input(std::span<const BallCentre> centres) {
   std::vector<double> angles;
@@ -32,12 +33,12 @@ std::optional<RotaryRefusal> bad_input(std::span<const BallCentre> centres) {
     if (!(size <= largest) || !std::isfinite(c.angle) || std::isnan(c.at[0] + c.at[1] + c.at[2]))
       return RotaryRefusal::not_finite;
     if (!(c.weight > 0.0) || !std::isfinite(c.weight)) return RotaryRefusal::weight;
-    angles.push_back(c.angle - turn * std::floor(c.angle / turn));
+    angles.push_back(c.angle - full_turn * std::floor(c.angle / full_turn));
   }
   std::sort(angles.begin(), angles.end());
   for (std::size_t i = 0; i + 1 < angles.size(); ++i)
     if (angles[i + 1] - angles[i] < same_angle) return RotaryRefusal::repeated_angles;
-  if (angles.size() > 1 && angles.front() + turn - angles.back() < same_angle)
+  if (angles.size() > 1 && angles.front() + full_turn - angles.back() < same_angle)
     return RotaryRefusal::repeated_angles;
   if (centres.size() < 3) return RotaryRefusal::too_few;
   return {};
@@ -68,9 +69,11 @@ std::optional<Plane> plane_of(std::span<const BallCentre> centres) {
   plane.origin = first + mean;
   const Points weighted = plane.weight.cwiseSqrt().asDiagonal() * points;
   // R of the QR decomposition has the singular values and right vectors of the whole.
-  const Matrix3d small =
-      Eigen::HouseholderQR<Points>(weighted).matrixQR().topRows<3>().triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Matrix3d> svd(small, Eigen::ComputeFullV);
+  const Matrix3d small = Eigen::HouseholderQR<Eigen::MatrixXd>(weighted)
+                             .matrixQR()
+                             .topRows(3)
+                             .triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(small, Eigen::ComputeFullV);
   const auto& size = svd.singularValues();
   if (!(size[1] > thinnest * size[0]) || !(size[0] > 1e-12 * (1.0 + plane.origin.norm())))
     return {};
@@ -95,7 +98,7 @@ std::optional<Circle> kasa(const Plane& p) {
   a << 2.0 * p.flat.col(0), 2.0 * p.flat.col(1), Eigen::VectorXd::Ones(p.flat.rows());
   const Eigen::VectorXd b = p.flat.col(0).cwiseAbs2() + p.flat.col(1).cwiseAbs2();
   const Eigen::VectorXd root = p.weight.cwiseSqrt();
-  const Eigen::ColPivHouseholderQR<Points> qr(root.asDiagonal() * a);
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() * a);
   if (qr.rank() < 3) return {};
   const Vector3d x = qr.solve(root.cwiseProduct(b));
   Circle c;
@@ -106,7 +109,7 @@ std::optional<Circle> kasa(const Plane& p) {
 }
 
 double largest_singular(const Matrix2d& m) {
-  return Eigen::JacobiSVD<Matrix2d>(m).singularValues()[0];
+  return Eigen::JacobiSVD<Eigen::MatrixXd>(m).singularValues()[0];
 }
 
 std::optional<Circle> geometric(const Plane& p) {
@@ -237,9 +240,9 @@ void put_residuals(RotaryFit& fit, std::span<const BallCentre> centres, const Pl
   fit.dof = use_angles ? 3 * n - 7 : 2 * n - 6;
   fit.s = fit.dof > 0 ? std::sqrt(sum / fit.dof) : 0.0;
   fit.around = around;
-  for (double& a : around) a -= turn * std::floor(a / turn);
+  for (double& a : around) a -= full_turn * std::floor(a / full_turn);
   std::sort(around.begin(), around.end());
-  fit.gap = around.front() + turn - around.back();
+  fit.gap = around.front() + full_turn - around.back();
   for (std::size_t i = 0; i + 1 < around.size(); ++i)
     fit.gap = std::max(fit.gap, around[i + 1] - around[i]);
 }

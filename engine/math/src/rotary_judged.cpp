@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What follows from a fitted rotary axis: waves in its residuals, and its place against another.
-#include <Eigen/Dense>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "dense.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/rotary.h"
 

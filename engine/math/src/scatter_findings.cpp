@@ -19,6 +19,7 @@
 #include <limits>
 #include <vector>
 
+#include "constants.h"
 #include "finding_builder.h"
 #include "nonio/math/axis_findings.h"
 #include "nonio/math/distributions.h"
@@ -28,9 +29,6 @@
 
 namespace nonio::math {
 namespace {
-
-constexpr double level = 0.01;
-constexpr double rounding = 1e-10;  // m or rad: less is no machine's scatter
 
 struct SideScatter {
   double variance = 0.0;  // of readings about the means of their targets
@@ -60,7 +58,7 @@ SideScatter scatter_of(const PassModel& m, std::size_t d) {
 struct Asymmetry {
   SideScatter side[2];
   double ratio = 1.0, p = 1.0;
-  bool clear() const { return p < level && ratio >= 1.5; }
+  bool clear() const { return p < significance && ratio >= 1.5; }
 };
 
 Asymmetry asymmetry_of(const PassModel& m) {
@@ -213,7 +211,7 @@ Worst worst_of(const Curve& c) {
 void worst_target_finding(const AxisTest& test, std::vector<Finding>& findings) {
   const Curve curve = mean_curve(test);
   const Worst worst = worst_of(curve);
-  if (!(worst.p < level) || std::fabs(worst.height) < 10.0 * rounding) return;
+  if (!(worst.p < significance) || std::fabs(worst.height) < 10.0 * rounding) return;
   const PassModel m = fit_passes(test, false);
   double variance = 0.0;  // of the mean of a target, as the readings show it
   for (const auto& side : m.side)
@@ -242,7 +240,7 @@ void suspect_findings(const AxisTest& test, std::vector<Finding>& findings) {
   while (left_out.size() < most && test.most_approaches() >= 3) {
     const PassModel m = fit_passes(test, slopes, left_out);
     const Suspect s = most_suspect(test, m, slopes);
-    if (!(s.p < level)) break;
+    if (!(s.p < significance)) break;
     const auto& reading = test.readings()[s.reading];
     findings.push_back(FindingBuilder("reading.suspect", true, test.rotary)
                            .count("run", reading.run)

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/math/sphere.h"
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <string>
+
+#include "dense.h"
 
 namespace nonio::math {
 

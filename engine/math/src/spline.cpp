@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/math/spline.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
+
+#include "dense.h"
 
 namespace nonio::math {
 

@@ -6,10 +6,10 @@
 #include <limits>
 #include <vector>
 
+#include "constants.h"
+
 namespace nonio::math {
-namespace {
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-}
+namespace {}
 
 // The second pass takes away what rounding left of the first: sum(x - m)/n is 0 only in exact sums.
 double mean(std::span<const double> x) {

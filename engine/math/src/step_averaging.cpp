@@ -119,7 +119,7 @@ double check_gain(const StepDiagonals& d) {
 }
 
 /// Sums for the line through each axis' check sums, all with one slope.
-struct Line {
+struct LineThrough {
   std::array<double, 3> mean{}, centre{}, count{};
   double slope = 0.0, sxx = 0.0, rest = 0.0, total = 0.0;
 };
@@ -131,8 +131,8 @@ void each_sum(const std::array<std::vector<double>, 3>& sums, const Take& take) 
       if (std::isfinite(sums[axis][i])) take(axis, static_cast<double>(i), sums[axis][i]);
 }
 
-Line line_through(const std::array<std::vector<double>, 3>& sums) {
-  Line l;
+LineThrough line_through(const std::array<std::vector<double>, 3>& sums) {
+  LineThrough l;
   each_sum(sums, [&](std::size_t a, double i, double y) {
     l.count[a] += 1.0;
     l.total += 1.0;
@@ -184,7 +184,7 @@ std::optional<Estimated> close_lengths(const StepDiagonals& d,
 }
 
 StepChecks check_step_diagonals(const StepDiagonals& d) {
-  const Line l = line_through(check_sums(d));
+  const LineThrough l = line_through(check_sums(d));
   StepChecks c;
   c.count = static_cast<std::size_t>(l.total);
   const double dof = l.total - 4.0;

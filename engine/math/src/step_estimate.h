@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Dense>
-
+#include "dense.h"
 #include "nonio/math/step_diagonals.h"
 
 /// What both methods of step_diagonals.h share.

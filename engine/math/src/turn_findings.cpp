@@ -12,6 +12,7 @@
 #include <numbers>
 #include <vector>
 
+#include "constants.h"
 #include "finding_builder.h"
 #include "nonio/math/axis_findings.h"
 #include "nonio/math/distributions.h"
@@ -20,10 +21,7 @@
 namespace nonio::math {
 namespace {
 
-constexpr double level = 0.01;
-constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double same_place = 1e-6;  // rad, of nominal positions
-constexpr double rounding = 1e-10;   // rad
 
 struct Pair {
   std::size_t earlier, later;
@@ -32,8 +30,9 @@ struct Pair {
 std::vector<Pair> pairs_a_turn_apart(const AxisTest& test) {
   std::vector<Pair> pairs;
   for (std::size_t i = 0, j = 0; i < test.targets.size(); ++i) {
-    while (j < test.targets.size() && test.targets[j] < test.targets[i] + turn - same_place) ++j;
-    if (j < test.targets.size() && test.targets[j] <= test.targets[i] + turn + same_place)
+    while (j < test.targets.size() && test.targets[j] < test.targets[i] + full_turn - same_place)
+      ++j;
+    if (j < test.targets.size() && test.targets[j] <= test.targets[i] + full_turn + same_place)
       pairs.push_back({i, j});
   }
   return pairs;
@@ -81,7 +80,7 @@ void turn_findings(const AxisTest& test, std::vector<Finding>& findings) {
   const double gap = sum / directions;
   const double u = std::sqrt(squares / dof * weight) / directions;
   const double p = t_two_sided(gap / u, dof);
-  if (!(std::fabs(gap) > rounding) || !(p < level)) return;
+  if (!(std::fabs(gap) > rounding) || !(p < significance)) return;
   findings.push_back(FindingBuilder("rotary.not-closed", matters(test, std::fabs(gap)), true)
                          .position("from", test.targets[pairs.front().earlier])
                          .position("to", test.targets[pairs.front().later])

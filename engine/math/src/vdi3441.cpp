@@ -20,12 +20,11 @@
 #include <cmath>
 #include <limits>
 
+#include "constants.h"
 #include "nonio/math/statistics.h"
 
 namespace nonio::math {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 // Mean range of n normal values in units of their standard deviation, the integral of
 // 1 - Phi^n - (1 - Phi)^n (L. H. C. Tippett 1925, Biometrika 17, p. 364); tests/unit/math computes

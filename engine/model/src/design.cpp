@@ -58,7 +58,7 @@ Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vect
     take_out_zeros(o, root, own);
     const double size = own.norm();
     for (int twice = 0; twice < 2; ++twice) own -= before * (before.transpose() * own);
-    const Eigen::BDCSVD<MatrixXd> svd(own, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const Eigen::JacobiSVD<MatrixXd> svd(own, Eigen::ComputeThinU | Eigen::ComputeThinV);
     Index rank = 0;
     while (rank < own.cols() && svd.singularValues()(rank) > curve_threshold * size) ++rank;
     if (terms[t].effect->curve && rank > 0 && rank < own.cols()) {

@@ -18,7 +18,7 @@ const xmlNode* child(const xmlNode* node, std::string_view name) {
   return nullptr;
 }
 
-std::string text_of(const xmlNode* node) {
+std::string content_of(const xmlNode* node) {
   if (node == nullptr) return {};
   xmlChar* content = xmlNodeGetContent(node);
   std::string out = content == nullptr ? "" : reinterpret_cast<const char*>(content);
@@ -26,7 +26,9 @@ std::string text_of(const xmlNode* node) {
   return out;
 }
 
-std::string title_of(const xmlNode* node) { return text_of(child(child(node, "name"), "content")); }
+std::string title_of(const xmlNode* node) {
+  return content_of(child(child(node, "name"), "content"));
+}
 
 Expected<double> number(const std::string& text) {
   double value = 0.0;
@@ -89,17 +91,17 @@ class Reader {
   Expected<void> read_value(const xmlNode* quantity) {
     const xmlNode* real = child(quantity, "real");
     DccValue v{analysis_, title_of(quantity), {}, 0.0, {}};
-    const auto value = number(text_of(child(real, "value")));
+    const auto value = number(content_of(child(real, "value")));
     if (!value) return in(v.name, value.error());
-    auto symbol = unit(text_of(child(real, "unit")));
+    auto symbol = unit(content_of(child(real, "unit")));
     if (!symbol) return in(v.name, symbol.error());
     v.value = *value;
     v.unit = std::move(*symbol);
     const xmlNode* expanded = child(child(real, "measurementUncertaintyUnivariate"), "expandedMU");
     if (expanded != nullptr) {
-      const auto U = number(text_of(child(expanded, "valueExpandedMU")));
+      const auto U = number(content_of(child(expanded, "valueExpandedMU")));
       if (!U) return in(v.name, U.error());
-      if (text_of(child(expanded, "coverageFactor")) != "2") return in(v.name, {"wanted k = 2"});
+      if (content_of(child(expanded, "coverageFactor")) != "2") return in(v.name, {"wanted k = 2"});
       v.U = *U;
     }
     values_.push_back(std::move(v));
@@ -111,8 +113,8 @@ class Reader {
     for (const xmlNode* q = list->children; q != nullptr; q = q->next) {
       if (q->type != XML_ELEMENT_NODE || name_of(q) != "quantity") continue;
       const xmlNode* values = child(q, "realListXMLList");
-      const std::size_t n = words_in(text_of(child(values, "valueXMLList")));
-      if (const auto symbol = unit(text_of(child(values, "unitXMLList"))); !symbol)
+      const std::size_t n = words_in(content_of(child(values, "valueXMLList")));
+      if (const auto symbol = unit(content_of(child(values, "unitXMLList"))); !symbol)
         return in(title_of(q), symbol.error());
       if (n == 0 || (length != 0 && n != length))
         return in(title_of(q), {"a list of " + std::to_string(n) + " values beside one of " +

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "nonio/sdk/format.h"
 
@@ -11,7 +10,6 @@ namespace nonio::controllers {
 namespace {
 
 using Entry = ControlTable::Entry;
-constexpr double full_turn = 2.0 * std::numbers::pi;
 
 int decimals_of(double step, double unit) {
   return std::max(0, static_cast<int>(std::ceil(-std::log10(step / unit) - 1e-9)));

@@ -3,11 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace nonio::controllers {
-
-constexpr double full_turn = 2.0 * std::numbers::pi;
 
 std::vector<Artifact> list_file(const Sheet& s, std::string_view name, bool two) {
   const std::string unit = s.position_unit() == 25.4e-3 ? "inch" : std::string(s.job.unit());

@@ -13,12 +13,12 @@
 namespace nonio::fanuc {
 namespace {
 
-using Parameters = std::map<std::int64_t, std::int64_t>;
+using ParameterValues = std::map<std::int64_t, std::int64_t>;
 
 struct Memory {
-  std::map<std::int64_t, Parameters> parameter;  // by axis
-  std::map<std::int64_t, std::int64_t> pitch;    // by point number
-  std::int64_t least = -7, most = 7;             // what one number holds
+  std::map<std::int64_t, ParameterValues> parameter;  // by axis
+  std::map<std::int64_t, std::int64_t> pitch;         // by point number
+  std::int64_t least = -7, most = 7;                  // what one number holds
 };
 
 // N<number>[A<axis>]P<value>, one block a line.
@@ -69,7 +69,8 @@ Expected<void> punched(Memory& memory, std::string_view text) {
 
 // Absolute compensation in pulses at the ends of the intervals, zero at the reference position.
 // Number n holds the change over the interval that ends n - reference intervals from there.
-Expected<std::vector<double>> staircase(const Memory& m, const Parameters& p, std::int64_t offset) {
+Expected<std::vector<double>> staircase(const Memory& m, const ParameterValues& p,
+                                        std::int64_t offset) {
   std::vector<double> value{0.0};
   double sum = 0.0, at_reference = 0.0;
   for (std::int64_t n = p.at(3621); n <= p.at(3622); ++n) {
@@ -94,7 +95,7 @@ struct Units {
   bool returns_towards_plus;
 };
 
-Expected<LoadedTable> table(const Memory& m, const Parameters& p,
+Expected<LoadedTable> table(const Memory& m, const ParameterValues& p,
                             const controllers::KnownAxis& axis, const Units& unit) {
   for (const std::int64_t n : {3620, 3621, 3622, 3623, 3624})
     if (p.count(n) == 0) return fail("no parameter " + std::to_string(n));

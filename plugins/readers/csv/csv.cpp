@@ -21,10 +21,6 @@ namespace {
 
 constexpr std::size_t report_every = std::size_t{4} << 20U;
 
-nonio::Number count(const char* name, std::uint64_t n) {
-  return {name, static_cast<double>(n), Quantity::count};
-}
-
 /// How many rows the file may hold, from lines counted in windows spread over it. Only a hint:
 /// reserving too much costs address space and no memory, too little one more copy.
 std::size_t estimated_rows(std::string_view bytes, std::size_t columns) {

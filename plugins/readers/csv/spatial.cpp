@@ -23,10 +23,6 @@ using Sense = std::array<double, 3>;
 constexpr double per_mm = 1e-3, per_um = 1e-6, per_deg = 1.0 / deg_per_rad;
 constexpr std::string_view coordinates = "XYZ";
 
-nonio::Number count(const char* name, std::uint64_t n) {
-  return {name, static_cast<double>(n), Quantity::count};
-}
-
 /// Columns of time and air that every kind may have.
 std::vector<ColumnSpec> with_common(std::vector<ColumnSpec> columns) {
   for (const char* name : {"time_s", "material_c", "air_c", "pressure_hpa", "humidity_pct"})

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "nonio/sdk/plugin.h"
@@ -19,6 +20,11 @@ struct Span {
   std::vector<Side> sides;  ///< of the axes that move, in the order X, Y, Z
   double length = 0.0;      ///< m
 };
+
+/// The number of a finding that counts something.
+inline nonio::Number count(const char* name, std::uint64_t n) {
+  return {name, static_cast<double>(n), Quantity::count};
+}
 
 /// From the manifest's `from` and `to`; an error if they do not span a line of linear axes.
 Expected<Span> span_of(const Campaign& campaign, const Measurement& measurement);

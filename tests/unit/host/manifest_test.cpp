@@ -228,6 +228,11 @@ TEST(Options, DefaultsSiteCampaignInThisOrder) {
   const auto word =
       settle_options(info, {}, {{"p", {{"word", RawOption{std::string("c"), "f", 1}}}}});
   ASSERT_FALSE(word);
+  info.options.push_back({"list", std::vector<double>{1.0}, "", ""});
+  const auto list =
+      settle_options(info, {}, {{"p", {{"list", RawOption{std::vector<std::string>{}, "f", 1}}}}});
+  ASSERT_TRUE(list) << list.error()[0].message;  // [] has no kind of its own
+  EXPECT_TRUE(list->numbers("list").empty());
   const auto unknown = settle_options(info, {}, {{"p", {{"wort", RawOption{1.0, "f", 1}}}}});
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error()[0].message, "unknown option options.p.wort (nearest: \"word\")");

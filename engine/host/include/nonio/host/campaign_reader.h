@@ -28,6 +28,10 @@ ReadCampaign read_campaign(const std::filesystem::path& folder, const Context& c
 /// Takes away the rows whose flag is 0.
 void keep_rows(Observations& observations, const std::vector<char>& kept);
 
+/// All template folders laid over each other, the later ones winning, and one digest of them.
+Expected<Templates> read_templates(const std::vector<std::filesystem::path>& folders,
+                                   std::string& digest);
+
 /// What a verb about one campaign works with.
 struct Workplace {
   Plugins plugins;

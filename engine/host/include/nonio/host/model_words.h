@@ -4,6 +4,7 @@
 #include <string>
 
 #include "nonio/host/campaign_model.h"
+#include "nonio/host/nearest.h"
 #include "nonio/sdk/settings.h"
 
 /// Sentences about a model, from templates/words/<language>/model.toml.
@@ -50,8 +51,5 @@ std::string on_line(const model::Place& place);
 
 /// "12.5 mm", "run 3": where a place is largest; "" if it is not at one place.
 std::string where_largest(const model::Place& place, const std::string& language);
-
-/// "a, b and c" in no language: "a, b, c".
-std::string listed(const std::vector<std::string>& names);
 
 }  // namespace nonio::host

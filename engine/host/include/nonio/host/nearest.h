@@ -11,4 +11,7 @@ namespace nonio::host {
 /// near enough to be what was meant.
 std::string suggestion(std::string_view found, const std::vector<std::string>& candidates);
 
+/// "a, b and c" in no language: "a, b, c".
+std::string listed(const std::vector<std::string>& names);
+
 }  // namespace nonio::host

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,8 @@
 /// A controller plugin is a declaration (ControlTable), a format and a parser; what lies between
 /// the readings and the numbers of a table, and between a table and what it does, is here.
 namespace nonio::controllers {
+
+inline constexpr double full_turn = 2.0 * std::numbers::pi;  // rad
 
 /// A table of one axis before it is text.
 struct Sheet {

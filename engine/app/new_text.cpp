@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "new_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "nonio/sdk/format.h"
+
+namespace nonio::app {
+
+namespace {
+
+constexpr const char* example_mark = "EXAMPLE, NOT MEASURED";
+
+/// A TOML basic string.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+/// `key = "text"`, or as a comment if there is no text, with `example` in its place.
+std::string text_line(const std::string& key, const std::string& text, const std::string& example,
+                      const std::string& comment = {}) {
+  std::string line =
+      (text.empty() ? "# " : "") + key + " = " + quoted(text.empty() ? example : text);
+  if (!comment.empty()) {
+    line.resize(std::max<std::size_t>(line.size() + 1, 44), ' ');
+    line += "# " + comment;
+  }
+  return line + "\n";
+}
+
+/// The field's text, marked where readings are examples.
+std::string marked(const std::string& text, bool example) {
+  if (!example) return text;
+  return text.empty() ? example_mark : text + " (" + example_mark + ")";
+}
+
+std::string axis_text(const NewAxis& a) {
+  const Axis& axis = a.axis;
+  const Quantity at = position_of(axis.rotary);
+  std::string text = "\n[machine.axes." + axis.name + "]\nkind = \"" +
+                     (axis.rotary ? "rotary" : "linear") + "\"\n";
+  const auto number = [&](double si) {
+    std::string n;
+    append_shortest(n, printed(si, at));
+    return n;
+  };
+  const std::string unit(unit_of(at).symbol);
+  text += axis.travel
+              ? "travel = [" + number(axis.travel->first) + ", " + number(axis.travel->second) + "]"
+              : "# travel = [0, " + std::string(axis.rotary ? "360" : "1000") + "]";
+  text += "  # " + unit + "; targets outside of it get a finding\n";
+  if (axis.rotary)
+    return text +
+           "# teeth = 180  # periods of the drive or scale in a revolution\n"
+           "# tolerance_arcsec = { A = 10.0, B = 6.0 }  # limits; each gets a decision (needs U, "
+           "[instrument])\n";
+  return text +
+         "# screw_pitch_mm = 10.0  # period of the drive or scale\n"
+         "# expansion_um_per_m_K = 11.5  # coefficient of expansion of the scale\n"
+         "# tolerance_um = { A = 15.0, B = 6.0 }  # limits; each gets a decision (needs U, "
+         "[instrument])\n";
+}
+
+std::string instrument_text(const NewCampaign& c) {
+  std::string text =
+      "\n# What measured. With its uncertainty every value gets one, and tolerances get "
+      "decisions.\n";
+  const bool given = !c.instrument.empty();
+  text += given ? "[instrument]\n" : "# [instrument]\n";
+  text += text_line("model", c.instrument, "Laser interferometer");
+  text +=
+      "# maker = \"...\"\n# serial = \"...\"\n"
+      "# calibrated = 2026-01-12\n# certificate = \"...\"  # of its calibration\n"
+      "# U_fixed_um = 0.1  # expanded uncertainty, k = 2: fixed part\n"
+      "# U_per_m_um = 0.5  # and for each metre\n"
+      "# U_arcsec = 0.5  # of an angle\n"
+      "\n# The surroundings: the other parts of the uncertainty.\n"
+      "# [environment]\n"
+      "# misalignment_mm = 1.0  # largest distance of beam and axis over the travel\n"
+      "# temperature_range_K = 0.2  # range of the reading of the machine's temperature\n"
+      "# temperature_difference_K = 1.5  # largest distance from 20 degC\n"
+      "# expansion_range_um_per_m_K = 1.0  # range of the coefficient of expansion\n"
+      "# drift_um = 1.0  # range of the drift test, axis at rest\n";
+  return text;
+}
+
+/// Even, and the same on every machine: 53 bits of a splitmix64.
+class Noise {
+ public:
+  explicit Noise(std::uint64_t seed) : state_(seed) {}
+  /// -1 .. 1, most often near 0.
+  double operator()() { return (even() + even() + even()) * 2.0 / 3.0 - 1.0; }
+
+ private:
+  double even() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
+  }
+  std::uint64_t state_;
+};
+
+}  // namespace
+
+bool NewCampaign::example() const {
+  return std::any_of(axes.begin(), axes.end(), [](const NewAxis& a) { return a.example(); });
+}
+
+std::string site_text(const NewSite& site) {
+  std::string text =
+      "# What holds for every campaign of this site. A campaign is a folder below with a\n"
+      "# campaign.toml. All keys: docs/manifest.md.\n"
+      "\n# Stands in reports and certificates.\n[laboratory]\n";
+  text += text_line("name", site.laboratory, "Sample Calibration Laboratory");
+  text += text_line("address", site.address, "Via dell'Esempio 1, 10100 Torino");
+  text += text_line("country", site.country, "IT", "two letters, ISO 3166");
+  text += text_line("contact", "", "+39 011 000000", "telephone, e-mail");
+  text += text_line("accreditation", "", "LAT 000", "number of the accreditation");
+  text += text_line("authoriser", "", "B. Sample", "who authorises certificates");
+  return text +
+         "\n# Which analyses and outputs a night makes, if the campaign does not say. Without "
+         "this\n"
+         "# section: all that apply. `nonio plugins` lists them.\n"
+         "# [run]\n"
+         "# analyses = [\"iso230-2\", \"vdi-dgq-3441\"]\n"
+         "# outputs = [\"pdf-report\", \"csv\"]\n"
+         "\n# Options of one plugin, for all campaigns. `nonio plugins` lists them with their "
+         "defaults.\n"
+         "# [options.pdf-report]\n"
+         "# language = \"it\"\n"
+         "\n# What one campaign may take; it fails beyond. These are the defaults.\n"
+         "[limits]\nseconds = 600\nmemory_MB = 4096\n"
+         "\n# What certificates say and how they are numbered: docs/howto-certificate.md\n"
+         "# [certificate]\n"
+         "# languages = [\"it\", \"en\"]\n"
+         "# numbering = \"{year}-{number:4}\"\n"
+         "\n# The key that signs certificates: docs/howto-sign.md\n"
+         "# [signing]\n"
+         "# pkcs12 = \"key.p12\"\n"
+         "# password_file = \"/etc/nonio/password\"\n";
+}
+
+std::string campaign_text(const NewCampaign& c) {
+  const bool example = c.example();
+  std::string text;
+  if (example)
+    text +=
+        "# EXAMPLE READINGS: nobody measured them. Put your own into the CSV files named below,\n"
+        "# and then take the words \"EXAMPLE, NOT MEASURED\" out of customer and model.\n";
+  text += "# One campaign. All keys: docs/manifest.md.\nformat = 1\n\n[campaign]\n";
+  text += text_line("id", c.id, "", "unique in the site: a-z 0-9 . _ -");
+  text += text_line("customer", marked(c.customer, example), "Officine Esempio S.r.l.");
+  text += text_line("site", "", "Torino", "where the machine stands");
+  text += text_line("operator", c.operator_name, "A. Sample");
+  text += "date = " + c.date + "\n\n[machine]\n";
+  text += text_line("maker", "", "Sample Machines");
+  text += text_line("model", marked(c.machine, example), "VM 12");
+  text += text_line("serial", c.serial, "S-0001");
+  text += text_line("control", c.control, "siemens-840d",
+                    "tables for this one only: `nonio controllers`");
+  text += text_line("structure", "", "gantry", "gantry, single-column, bridge, other");
+  for (const NewAxis& a : c.axes) text += axis_text(a);
+  text += instrument_text(c);
+  for (const NewAxis& a : c.axes) {
+    text += "\n[[measurement]]\nid = " + quoted(a.axis.name) +
+            "\nkind = \"axis\"\naxis = " + quoted(a.axis.name) + "\nfile = " + quoted(a.file);
+    text += a.example() ? "  # EXAMPLE readings\n" : "\n";
+  }
+  return text +
+         "# exclude = [57]  # lines of the file whose readings do not count\n"
+         "\n# The error model, for `nonio compare` and `nonio explain`.\n"
+         "# [model]\n"
+         "# effects = [\"scale:" +
+         c.axes.front().axis.name + "\", \"backlash:" + c.axes.front().axis.name +
+         "\"]\n"
+         "\n# Analyses and outputs of this campaign, if others than those of the site.\n"
+         "# [run]\n"
+         "# analyses = [\"iso230-2\"]\n"
+         "# outputs = [\"pdf-report\", \"certificate\"]\n"
+         "\n# Options of one plugin, for this campaign.\n"
+         "# [options.iso230-2]\n"
+         "# edition = 2014\n";
+}
+
+std::string example_readings(const Axis& axis) {
+  constexpr int targets = 11, runs = 5;
+  const Quantity at = position_of(axis.rotary);
+  const auto [from, to] =
+      axis.travel.value_or(axis.rotary ? std::pair(0.0, 360.0 / deg_per_rad) : std::pair(0.0, 0.5));
+  const std::string position(unit_of(at).suffix),
+      deviation(unit_of(deviation_of(axis.rotary)).suffix);
+  std::string text = "# EXAMPLE readings of axis " + axis.name +
+                     ": nobody measured them. Put your own here.\n"
+                     "# run from 1; direction + or - in which the axis moved to the target;\n"
+                     "# deviation = actual - target. Blank or nan: not taken.\n"
+                     "run,direction,target" +
+                     position + ",deviation" + deviation + "\n";
+  Noise noise(7);
+  double target[targets];
+  const double step = (to - from) / (targets + 1);
+  for (int i = 0; i < targets; ++i) target[i] = from + step * (i + 1 + 0.2 * noise());
+  for (int run = 1; run <= runs; ++run)
+    for (const int direction : {1, -1})
+      for (int i = 0; i < targets; ++i) {
+        const int k = direction > 0 ? i : targets - 1 - i;
+        const double share = (target[k] - from) / (to - from);
+        // In um, or in arcsec: a slope, a wave, a constant reversal and noise.
+        const double value = 4.0 * share + std::sin(5.0 * share) - direction * 0.75 + 0.5 * noise();
+        text += std::to_string(run) + (direction > 0 ? ",+," : ",-,") +
+                fixed_text(printed(target[k], at), 3) + "," + fixed_text(value, 3) + "\n";
+      }
+  return text;
+}
+
+std::string valid_id(const std::string& name) {
+  std::string id;
+  for (const char c : name) {
+    const bool capital = c >= 'A' && c <= 'Z';
+    const char small = capital ? static_cast<char>(c + 32) : c;
+    const bool may = (small >= 'a' && small <= 'z') || (small >= '0' && small <= '9') ||
+                     small == '.' || small == '_' || small == '-';
+    if (may && !(id.empty() && small == '.'))
+      id += small;
+    else if (!id.empty() && id.back() != '-')
+      id += '-';
+  }
+  id.resize(std::min<std::size_t>(id.size(), 100));
+  while (!id.empty() && id.back() == '-') id.pop_back();
+  return id.empty() ? "campaign" : id;
+}
+
+}  // namespace nonio::app

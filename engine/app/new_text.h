@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "nonio/sdk/campaign.h"
+
+/// The files that `nonio new` writes, as texts.
+namespace nonio::app {
+
+struct NewAxis {
+  Axis axis;
+  std::string file;   ///< in the campaign's folder
+  std::string bytes;  ///< of the file; empty: example readings
+  bool example() const { return bytes.empty(); }
+};
+
+struct NewCampaign {
+  std::string id, customer, operator_name, date, machine, serial, control, instrument;
+  std::vector<NewAxis> axes;
+  bool example() const;
+};
+
+struct NewSite {
+  std::string laboratory, address, country;
+};
+
+std::string site_text(const NewSite& site);
+std::string campaign_text(const NewCampaign& campaign);
+
+/// CSV of readings that nobody took, and that say so: 5 runs, both directions, over the travel.
+std::string example_readings(const Axis& axis);
+
+/// The nearest id that a campaign may have: "Rossi FP12" gives "rossi-fp12".
+std::string valid_id(const std::string& name);
+
+}  // namespace nonio::app

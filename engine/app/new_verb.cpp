@@ -1,0 +1,430 @@
+// SPDX-License-Identifier: Apache-2.0
+// `nonio new`: a site or a campaign that runs at once.
+#include <unistd.h>
+
+#include <algorithm>
+#include <ctime>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "axis_argument.h"
+#include "new_text.h"
+#include "nonio/host/campaign_reader.h"
+#include "nonio/host/files.h"
+#include "nonio/host/nearest.h"
+#include "verbs.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+namespace {
+
+const char* const new_name = "nonio new";
+
+struct NewWish {
+  std::string what, folder, id, customer, operator_name, date, machine, serial, control, instrument,
+      laboratory, address, country;
+  std::vector<std::string> axes, files;
+  bool empty = false, defaults = false;
+};
+
+/// What was written, folder by folder.
+struct NewFiles {
+  fs::path folder;
+  std::vector<Artifact> files;
+};
+
+/// Asks on stderr, with the default in brackets, for what is still empty. An empty line takes the
+/// default; an error if there is no answer any more (^D).
+class Questions {
+ public:
+  explicit Questions(bool asks) : asks_(asks) {}
+  bool asks() const { return asks_; }
+  /// Of a verb that ends with an error.
+  int status() const { return ended_ ? exit_interrupted : exit_usage; }
+
+  Expected<void> text(const char* question, std::string& to, const std::string& otherwise) {
+    if (!to.empty()) return {};
+    to = otherwise;
+    if (!asks_) return {};
+    std::cerr << question << (otherwise.empty() ? "" : " [" + otherwise + "]") << ": "
+              << std::flush;
+    std::string line;
+    if (!std::getline(std::cin, line)) {
+      ended_ = true;
+      std::cerr << "\n";
+      return fail("no answer; nothing was written");
+    }
+    if (!line.empty()) to = line;
+    return {};
+  }
+
+ private:
+  bool asks_, ended_ = false;
+};
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char text[11];
+  std::strftime(text, sizeof text, "%Y-%m-%d", &local);
+  return text;
+}
+
+/// The nearest folder at or above this one that holds a site.toml, or a campaign beside the new
+/// one.
+std::optional<fs::path> site_above(const fs::path& folder) {
+  std::error_code error;
+  for (fs::path up = folder.parent_path(); !up.empty(); up = up.parent_path()) {
+    if (fs::exists(up / host::site_name, error)) return up;
+    if (up == up.parent_path()) break;
+  }
+  for (const auto& entry : fs::directory_iterator(folder.parent_path(), error))
+    if (fs::exists(entry.path() / host::manifest_name, error)) return folder.parent_path();
+  return std::nullopt;
+}
+
+/// The folder of the site's campaign that has the id; empty if none has.
+fs::path holder_of(const std::string& id, const fs::path& site) {
+  std::error_code error;
+  if (!fs::exists(site / host::site_name, error)) return {};  // it may be anybody's home
+  fs::recursive_directory_iterator it(site, fs::directory_options::skip_permission_denied, error);
+  for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
+    if (it->path().filename().string().starts_with('.')) it.disable_recursion_pending();
+    if (it->path().filename() != host::manifest_name) continue;
+    if (const auto text = host::read_file(it->path()); text && host::salvage_id(*text) == id)
+      return it->path().parent_path();
+  }
+  return {};
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> words;
+  std::string word;
+  for (const char c : text + " ")
+    if (c != ' ' && c != '\t')
+      word += c;
+    else if (!word.empty())
+      words.push_back(std::exchange(word, {}));
+  return words;
+}
+
+Expected<void> one_line(const char* option, const std::string& text) {
+  for (const char c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      return fail(std::string(option) + ": wanted a text of one line");
+  return {};
+}
+
+Expected<std::vector<NewAxis>> axes_of(const std::vector<std::string>& texts) {
+  std::vector<NewAxis> axes;
+  for (const std::string& text : texts) {
+    const auto axis = axis_of(text);
+    if (!axis) return fail(axis.error());
+    for (const NewAxis& other : axes)
+      if (other.axis.name == axis->name) return fail("--axis: " + axis->name + " is there twice");
+    axes.push_back({.axis = *axis, .file = {}, .bytes = {}});
+  }
+  return axes;
+}
+
+std::string lower(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
+  return text;
+}
+
+/// "X=path.csv": the axis, which may be new, gets the file.
+Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
+    return fail("--file: wanted AXIS=PATH such as X=x.csv, found \"" + text + "\"");
+  const std::string name = text.substr(0, equals);
+  const fs::path path = text.substr(equals + 1);
+  if (!is_axis_name(name))
+    return fail("--file: wanted an axis of capital letters and digits, found \"" + name + "\"");
+  auto it =
+      std::find_if(axes.begin(), axes.end(), [&](const NewAxis& a) { return a.axis.name == name; });
+  if (it == axes.end())
+    it = axes.insert(axes.end(), {.axis = axis_named(name), .file = {}, .bytes = {}});
+  if (!it->file.empty()) return fail("--file: axis " + name + " has two files");
+  auto bytes = host::read_file(path);
+  if (!bytes) return fail(bytes.error());
+  if (bytes->empty()) return fail("--file: " + path.string() + " is empty");
+  it->file = path.filename().string();
+  if (!host::is_artifact_name(it->file) || it->file == host::manifest_name)
+    return fail("--file: wanted a plain file name, found \"" + it->file + "\"");
+  it->bytes = std::move(*bytes);
+  return {};
+}
+
+/// From the folder's name, if the command line does not say it.
+Expected<std::string> id_of(const NewWish& wish, const fs::path& folder, Questions& ask) {
+  std::string id = wish.id, near = valid_id(folder.filename().string());
+  if (!host::is_campaign_id(near)) near = "campaign-" + near;
+  if (auto done = ask.text("Id of the campaign (a-z 0-9 . _ -)", id, near); !done)
+    return fail(done.error());
+  if (!host::is_campaign_id(id)) {
+    const std::string nearest = valid_id(id);
+    return fail(
+        "id: wanted a-z 0-9 . _ - and no more than 100, not starting with a point; found \"" + id +
+        "\"" + (host::is_campaign_id(nearest) ? " (nearest: \"" + nearest + "\")" : ""));
+  }
+  if (const auto site = site_above(folder))
+    if (const fs::path other = holder_of(id, *site); !other.empty())
+      return fail("id: " + other.string() + " has the id \"" + id + "\"; wanted another (--id)");
+  return id;
+}
+
+/// Axes with their files; one without a file gets an example.
+Expected<std::vector<NewAxis>> axes_with_files(const NewWish& wish, Questions& ask) {
+  std::vector<std::string> texts = wish.axes, files = wish.files;
+  const bool asks = texts.empty() && files.empty();
+  if (asks) {
+    std::string typed;
+    if (auto done = ask.text("Axes with their travel in mm, or deg for A B C", typed, "X=0:500");
+        !done)
+      return fail(done.error());
+    texts = split(typed);
+  }
+  auto axes = axes_of(texts);
+  if (!axes) return fail(axes.error());
+  if (asks && ask.asks())
+    for (const NewAxis& a : *axes) {
+      std::string path;
+      const std::string question = "File of axis " + a.axis.name + " (empty: example readings)";
+      if (auto done = ask.text(question.c_str(), path, ""); !done) return fail(done.error());
+      if (!path.empty()) files.push_back(a.axis.name + "=" + path);
+    }
+  for (const std::string& file : files)
+    if (auto done = take_file(file, *axes); !done) return fail(done.error());
+  std::set<std::string> names;
+  for (NewAxis& a : *axes) {
+    if (a.file.empty()) a.file = "EXAMPLE-" + lower(a.axis.name) + ".csv";
+    if (!names.insert(a.file).second) return fail("--file: two files are called " + a.file);
+  }
+  return axes;
+}
+
+/// What the command line says, and the answers to the rest.
+Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Questions& ask) {
+  NewCampaign c{.id = {},
+                .customer = wish.customer,
+                .operator_name = wish.operator_name,
+                .date = wish.date,
+                .machine = wish.machine,
+                .serial = wish.serial,
+                .control = wish.control,
+                .instrument = wish.instrument,
+                .axes = {}};
+  auto id = id_of(wish, folder, ask);
+  if (!id) return fail(id.error());
+  c.id = std::move(*id);
+  for (const auto& [option, question, to, otherwise] :
+       {std::tuple{"--customer", "Customer", &c.customer, std::string()},
+        {"--operator", "Operator", &c.operator_name, std::string()},
+        {"--date", "Day of the measurement", &c.date, today()},
+        {"--machine", "Machine, model", &c.machine, std::string()},
+        {"--serial", "Machine, serial number", &c.serial, std::string()},
+        {"--instrument", "Instrument, model", &c.instrument, std::string()}}) {
+    if (auto done = ask.text(question, *to, otherwise); !done) return fail(done.error());
+    if (auto done = one_line(option, *to); !done) return fail(done.error());
+  }
+  if (auto done = one_line("--control", c.control); !done) return fail(done.error());
+  auto axes = axes_with_files(wish, ask);
+  if (!axes) return fail(axes.error());
+  c.axes = std::move(*axes);
+  return c;
+}
+
+std::vector<Artifact> files_of(const NewCampaign& c) {
+  std::vector<Artifact> files;
+  for (const NewAxis& a : c.axes)
+    files.push_back({a.file, a.example() ? example_readings(a.axis) : a.bytes});
+  files.push_back({host::manifest_name, campaign_text(c)});  // last: it shows the rest
+  return files;
+}
+
+/// A folder that is gone at the end.
+class Trial {
+ public:
+  Trial() {
+    std::string name = (fs::temp_directory_path() / "nonio-new-XXXXXX").string();
+    if (::mkdtemp(name.data()) != nullptr) folder_ = name;
+  }
+  Trial(const Trial&) = delete;
+  Trial& operator=(const Trial&) = delete;
+  ~Trial() {
+    std::error_code error;
+    if (!folder_.empty()) fs::remove_all(folder_, error);
+  }
+  const fs::path& folder() const { return folder_; }
+
+ private:
+  fs::path folder_;
+};
+
+/// What is wrong with the files, evaluated as a night would do it, with the site's own settings.
+std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::string& id,
+                            const std::optional<fs::path>& site, const Common& common) {
+  const Trial trial;
+  if (trial.folder().empty()) return {Error{"cannot make a folder for a trial"}};
+  const fs::path folder = trial.folder() / "campaign";
+  if (site)
+    if (const auto text = host::read_file(*site / host::site_name))
+      if (auto done = host::publish(trial.folder(), {{host::site_name, *text}}); !done)
+        return {done.error()};
+  if (auto done = host::publish(folder, files); !done) return {done.error()};
+  auto place = host::open_workplace(folder, common.plugin_folders(), common.template_folders(),
+                                    NONIO_VERSION);
+  if (!place) return {place.error()};
+  return host::evaluate(folder, id, (*place)->context, [](const std::string&) {}).results.errors;
+}
+
+/// Whether something is in the way. An empty folder is not.
+std::string in_the_way(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(folder, error))) return {};
+  if (fs::is_directory(folder, error) && fs::is_empty(folder, error) && !error) return {};
+  return folder.string() + " exists: nothing is written over it";
+}
+
+int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::string& what,
+              bool example, const Common& common) {
+  std::vector<std::string> written;
+  for (const NewFiles& one : all) {
+    if (auto done = host::publish(one.folder, one.files); !done)
+      return complain(new_name, text_of(done.error()), exit_failed);
+    for (const Artifact& file : one.files) written.push_back((one.folder / file.name).string());
+  }
+  if (common.json) {
+    std::cout << Json{{"schema", "nonio-new/1"},
+                      {"kind", what},
+                      {"folder", all.front().folder.string()},
+                      {"example", example},
+                      {"files", written}}
+                     .dump(1, ' ', false, Json::error_handler_t::replace)
+              << "\n";
+    return exit_done;
+  }
+  if (common.quiet) return exit_done;
+  for (const std::string& file : written) std::cout << file << "\n";
+  if (example)
+    std::cout << "The readings are an EXAMPLE: nobody measured them. Put your own into the CSV.\n";
+  std::cout << "Next:  nonio " << (what == "site" ? "run " : "show ") << wish.folder
+            << (what == "site" ? " --out out\n" : "\n");
+  return exit_done;
+}
+
+/// The folders and files of a campaign, after a trial.
+Expected<NewFiles> campaign_files(const NewWish& wish, const fs::path& folder,
+                                  const std::optional<fs::path>& site, Questions& ask,
+                                  bool& example, const Common& common) {
+  const auto campaign = settled(wish, folder, ask);
+  if (!campaign) return fail(campaign.error());
+  example = campaign->example();
+  NewFiles out{folder, files_of(*campaign)};
+  if (const auto wrong = mistakes(out.files, campaign->id, site, common); !wrong.empty())
+    return fail(text_of(wrong.front()) + "; nothing was written");
+  return out;
+}
+
+int new_site(const NewWish& wish, const fs::path& folder, const Common& common) {
+  NewSite site{wish.laboratory, wish.address, wish.country};
+  Questions ask(!wish.defaults && ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1);
+  for (const auto& [question, to] : {std::pair{"Laboratory, name", &site.laboratory},
+                                     {"Laboratory, address", &site.address},
+                                     {"Country (two letters)", &site.country}}) {
+    if (auto done = ask.text(question, *to, ""); !done)
+      return complain(new_name, done.error().message, ask.status());
+    if (auto done = one_line(question, *to); !done) return complain(new_name, done.error().message);
+  }
+  std::vector<NewFiles> all{{folder, {{host::site_name, site_text(site)}}}};
+  if (wish.empty) return write_new(all, wish, "site", false, common);
+  Questions silent(false);
+  bool example = false;
+  const auto campaign =
+      campaign_files(wish, folder / "first-campaign", {}, silent, example, common);
+  if (!campaign) return complain(new_name, campaign.error().message);
+  all.push_back(*campaign);
+  return write_new(all, wish, "site", example, common);
+}
+
+int new_campaign(const NewWish& wish, const fs::path& folder, const Common& common) {
+  Questions ask(!wish.defaults && ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1);
+  bool example = false;
+  const auto campaign = campaign_files(wish, folder, site_above(folder), ask, example, common);
+  if (!campaign) return complain(new_name, campaign.error().message, ask.status());
+  return write_new({*campaign}, wish, "campaign", example, common);
+}
+
+int make_new(NewWish wish, const Common& common) {
+  const std::vector<std::string> kinds{"site", "campaign"};
+  const bool named = std::find(kinds.begin(), kinds.end(), wish.what) != kinds.end();
+  if (wish.folder.empty() && named)
+    return complain(new_name, "wanted a folder after \"" + wish.what + "\"");
+  if (!wish.folder.empty() && !named)
+    return complain(new_name, "wanted site or campaign, found \"" + wish.what + "\"" +
+                                  host::suggestion(wish.what, kinds));
+  if (wish.folder.empty()) wish.folder = std::exchange(wish.what, {});
+  fs::path folder = fs::absolute(wish.folder).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  if (const std::string why = in_the_way(folder); !why.empty()) return complain(new_name, why);
+  if (wish.what.empty()) wish.what = site_above(folder) ? "campaign" : "site";
+  if (wish.what == "site") return new_site(wish, folder, common);
+  if (wish.empty || !(wish.laboratory + wish.address + wish.country).empty())
+    return complain(
+        new_name, "--empty, --laboratory, --address and --country are for a site, not a campaign");
+  return new_campaign(wish, folder, common);
+}
+
+}  // namespace
+
+Verb new_verb(Common& common) {
+  auto wish = std::make_shared<NewWish>();
+  using Takes = Argument::Takes;
+  return {
+      .name = "new",
+      .summary = "A site or a campaign that runs at once, with an example to be replaced",
+      .arguments = joined(
+          {required(offering(
+               {"site", "campaign"},
+               {"WHAT", &wish->what,
+                "site or campaign; may be left out: a campaign inside of a site or beside\n"
+                "campaigns, else a site"})),
+           takes(Takes::folder, {"FOLDER", &wish->folder, "The folder; new, or empty"}),
+           {"--id", &wish->id, "Id of the campaign (default: from the folder's name)"},
+           {"--customer", &wish->customer, "Customer"},
+           {"--operator", &wish->operator_name, "Who measured"},
+           {"--date", &wish->date, "Day of the measurement, such as 2026-11-03 (default: today)"},
+           {"--machine", &wish->machine, "Model of the machine"},
+           {"--serial", &wish->serial, "Its serial number"},
+           {"--control", &wish->control, "Its control (`nonio controllers`)"},
+           {"--instrument", &wish->instrument, "Model of the instrument"},
+           {"--axis", &wish->axes,
+            "NAME=FROM:TO, travel in mm, of A, B, C in deg; may be given several times\n"
+            "(default: X=0:500)"},
+           takes(Takes::file, {"--file", &wish->files,
+                               "AXIS=PATH: readings of that axis, copied; may be given several "
+                               "times.\nAn axis without a file gets example readings"}),
+           {"--laboratory", &wish->laboratory, "Of a site: name of the laboratory"},
+           {"--address", &wish->address, "Of a site: its address"},
+           {"--country", &wish->country, "Of a site: two letters"},
+           {"--empty", &wish->empty, "A site without a first campaign"},
+           {"--defaults", &wish->defaults, "Ask nothing, also on a terminal"}},
+          common_arguments(common)),
+      .footer =
+          "On a terminal what the options do not say is asked for, with the default in brackets;\n"
+          "an empty line takes it, and ^D or ^C ends without writing anything.\n"
+          "Example readings are marked: EXAMPLE, NOT MEASURED stands with the customer and the\n"
+          "machine, in every report. Nothing that exists is written over.\n\n"
+          "Examples: nonio new site lab\n"
+          "          nonio new campaign site/2026-11-rossi --axis X=0:800 --file X=laser/x.csv",
+      .run = [wish, &common] { return make_new(*wish, common); }};
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// `nonio open`: the report of a campaign, or the summary of a night, on the
+// desktop.
+#include <fcntl.h>
+#include <spawn.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "colour.h"
+#include "nonio/host/files.h"
+#include "nonio/host/record.h"
+#include "results_folder.h"
+#include "verbs.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct OpenWish {
+  std::string folder, out = "out";
+};
+
+Expected<Json> json_file(const fs::path& path) {
+  const auto text = host::read_file(path);
+  if (!text) return fail(text.error());
+  Json json = Json::parse(*text, nullptr, false);
+  if (json.is_discarded() || !json.is_object())
+    return fail(path.string() + " is not a JSON object");
+  return json;
+}
+
+/// The report in the language that was asked for; else a page; else the results
+/// themselves.
+Expected<fs::path> document_of(const fs::path& results) {
+  const auto json = json_file(results / host::results_name);
+  if (!json) return fail(json.error());
+  std::vector<std::string> files;
+  for (const Json& o : json->value("outputs", Json::array()))
+    if (o.is_object() && o.value("plugin", "") == "pdf-report")
+      return results / o.value("file", "");
+    else if (o.is_object())
+      files.push_back(o.value("file", ""));
+  for (const char* ending : {".pdf", ".html"})
+    for (const std::string& file : files)
+      if (file.ends_with(ending)) return results / file;
+  return results / host::results_name;
+}
+
+/// The first campaign that asks for attention or has failed; with none, the summary.
+Expected<fs::path> document_of_night(const fs::path& out, const Common& common) {
+  const auto summary = json_file(out / "summary.json");
+  if (!summary) return fail(summary.error());
+  std::string first;
+  for (const char* list : {"attention", "failed"})
+    for (const Json& c : summary->value(list, Json::array())) {
+      const std::string id = c.is_object() ? c.value("id", "") : "";
+      if (id.empty()) continue;
+      if (!common.quiet) std::cerr << status_word(list, STDERR_FILENO) << " " << id << "\n";
+      if (first.empty()) first = id;
+    }
+  return first.empty() ? out / "summary.txt" : document_of(out / first);
+}
+
+Expected<fs::path> document(const OpenWish& wish, const Common& common) {
+  const fs::path folder = !wish.folder.empty()                ? fs::path(wish.folder)
+                          : what_holds(".") != Holds::nothing ? fs::path(".")
+                                                              : fs::path(wish.out);
+  switch (what_holds(folder)) {
+    case Holds::results:
+      return document_of(folder);
+    case Holds::night:
+      return document_of_night(folder, common);
+    case Holds::campaign: {
+      const fs::path results = fs::path(wish.out) / id_of_campaign(folder);
+      if (what_holds(results) == Holds::results) return document_of(results);
+      return fail("there are no results of " + folder.string() + " in " + wish.out +
+                  "; wanted --out OUT, the folder that `nonio run` wrote them to");
+    }
+    case Holds::nothing:
+      break;
+  }
+  return fail(holds_nothing(folder));
+}
+
+/// Why no window can be opened here; empty if one can.
+std::string no_desktop() {
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr)
+    return "there is no desktop here (neither DISPLAY nor WAYLAND_DISPLAY is "
+           "set)";
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (::access((fs::path(folder) / "xdg-open").c_str(), X_OK) == 0) return {};
+  return "xdg-open is not installed (Debian: xdg-utils)";
+}
+
+/// In a session of its own, so that it outlives this program and its terminal.
+bool open_in_background(const std::string& path) {
+  posix_spawn_file_actions_t files;
+  posix_spawnattr_t attributes;
+  posix_spawn_file_actions_init(&files);
+  posix_spawnattr_init(&attributes);
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&files, descriptor, "/dev/null", O_RDWR, 0);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
+  std::string program = "xdg-open", argument = path;
+  const std::array<char*, 3> arguments{program.data(), argument.data(), nullptr};
+  pid_t process = 0;
+  const int error =
+      posix_spawnp(&process, "xdg-open", &files, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&files);
+  return error == 0;
+}
+
+int open(const OpenWish& wish, const Common& common) {
+  const char* const verb = "nonio open";
+  const auto found = document(wish, common);
+  if (!found) return complain(verb, text_of(found.error()));
+  std::error_code error;
+  const fs::path path = fs::absolute(*found).lexically_normal();
+  if (!fs::is_regular_file(path, error))
+    return complain(verb, "there is no " + path.string() + "; `nonio run` makes it anew",
+                    exit_failed);
+  std::string why_not = no_desktop();
+  if (why_not.empty() && !open_in_background(path.string())) why_not = "xdg-open cannot be started";
+  if (common.json)
+    std::cout << Json{{"schema", "nonio-open/1"},
+                      {"file", path.string()},
+                      {"opened", why_not.empty()}}
+                     .dump(1, ' ', false, Json::error_handler_t::replace)
+              << "\n";
+  else
+    std::cout << path.string() << "\n";
+  if (!why_not.empty() && !common.quiet) complain(verb, "not opened: " + why_not);
+  return exit_done;
+}
+
+}  // namespace
+
+Verb open_verb(Common& common) {
+  auto wish = std::make_shared<OpenWish>();
+  using Takes = Argument::Takes;
+  return {.name = "open",
+          .summary = "Opens a report on the desktop, and prints where it is",
+          .arguments =
+              joined({existing(Takes::folder, {"OUT|OUT/ID|CAMPAIGN", &wish->folder,
+                                               "Results of a night, of one campaign, or a campaign "
+                                               "(default: this folder "
+                                               "if it\nis one of these, else the one of --out)"}),
+                      takes(Takes::folder, {.name = "--out",
+                                            .target = &wish->out,
+                                            .help = "Where the results of CAMPAIGN are",
+                                            .shows_default = true})},
+                     common_arguments(common)),
+          .footer =
+              "Of a night: the first campaign that asks for attention, or "
+              "else summary.txt. Of a "
+              "campaign:\nits report, or else a page for the browser, or "
+              "else results.json.\n\n"
+              "Example: nonio open out/09-tolerances",
+          .run = [wish, &common] { return open(*wish, common); }};
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "common.h"
+
+namespace nonio::app {
+
+/// What a folder that a user names holds, by the files in it.
+enum class Holds { campaign, results, night, nothing };
+Holds what_holds(const std::filesystem::path& folder);
+
+/// "results.json, summary.json or campaign.toml" was wanted in a folder: the complaint.
+std::string holds_nothing(const std::filesystem::path& folder);
+
+/// The id of a campaign as a night would call it, also where the manifest is broken elsewhere.
+std::string id_of_campaign(const std::filesystem::path& folder);
+
+}  // namespace nonio::app

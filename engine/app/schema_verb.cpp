@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "nonio/host/files.h"
+#include "nonio/host/plugins.h"
+#include "nonio/host/schema.h"
+#include "verbs.h"
+
+namespace nonio::app {
+namespace fs = std::filesystem;
+
+namespace {
+
+using Schema = std::string (*)(const host::Plugins&);
+
+int write_schema(const std::string& verb, Schema schema, const std::string& out,
+                 const Common& common) {
+  host::Plugins plugins;
+  plugins.load(common.plugin_folders());
+  if (!plugins.conflicts().empty()) return complain(verb, plugins.conflicts().front());
+  for (const std::string& note : plugins.refusal_notes())
+    std::cerr << verb << ": its names and options are not in the schema: " << note << "\n";
+  const std::string text = schema(plugins);
+  if (out.empty()) {
+    std::cout << text;
+    return exit_done;
+  }
+  const fs::path path = fs::absolute(out);
+  if (!path.has_filename() || fs::is_directory(path))
+    return complain(verb, out + " is a folder; wanted a file");
+  const auto written = host::publish(path.parent_path(), {{path.filename().string(), text}});
+  return written ? exit_done : complain(verb, text_of(written.error()), exit_failed);
+}
+
+Verb schema_of(const std::string& file, Schema schema, Common& common) {
+  auto out = std::make_shared<std::string>();
+  const std::string verb = "nonio schema " + file;
+  return {.name = file,
+          .summary = "Of " + file + ".toml",
+          .arguments =
+              joined({takes(Argument::Takes::file,
+                            {"--out", out.get(), "File for the schema; without it, on stdout"})},
+                     common_arguments(common)),
+          .footer = "An editor finds it by the first line of " + file +
+                    ".toml, with the path from there:\n\n    #:schema ../" + file +
+                    ".schema.json\n\nExample: nonio schema " + file + " --out site/" + file +
+                    ".schema.json",
+          .run = [=, &common] { return write_schema(verb, schema, *out, common); }};
+}
+
+}  // namespace
+
+Verb schema_verb(Common& common) {
+  return {
+      .name = "schema",
+      .summary = "JSON schemas, with which editors complete and check campaign.toml and site.toml",
+      .verbs = {schema_of("campaign", host::campaign_schema, common),
+                schema_of("site", host::site_schema, common)}};
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+// `nonio show`: results.json for a person at a terminal, read from a night's
+// folder or made now.
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "colour.h"
+#include "nonio/host/campaign_reader.h"
+#include "nonio/host/digest.h"
+#include "nonio/host/files.h"
+#include "nonio/host/results_json.h"
+#include "nonio/sdk/format.h"
+#include "results_folder.h"
+#include "verbs.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct ShowWish {
+  std::string folder;
+};
+
+/// results.json and the words to say it in.
+struct Shown {
+  std::string text;
+  Templates templates;
+};
+
+/// What the night would write, without a number drawn for a certificate;
+/// nothing is written.
+Expected<Shown> evaluated_now(const fs::path& folder, const Common& common) {
+  auto place = host::open_workplace(folder, common.plugin_folders(), common.template_folders(),
+                                    NONIO_VERSION);
+  if (!place) return fail(place.error());
+  if (!common.quiet)
+    for (const std::string& note : (*place)->notes) complain("nonio show", note);
+  const host::Context& context = (*place)->context;
+  const host::Evaluated evaluated =
+      host::evaluate(folder, id_of_campaign(folder), context, [](const std::string&) {});
+  std::vector<host::RecordedFile> files;
+  for (const Results::Written& w : evaluated.results.outputs)
+    for (const Artifact& a : w.result.artifacts)
+      files.push_back({a.name, a.bytes.size(), host::sha256(a.bytes)});
+  return Shown{host::results_json(evaluated, context, files), context.templates};
+}
+
+Expected<Shown> of_night(const fs::path& folder, const Common& common) {
+  auto text = host::read_file(folder / host::results_name);
+  if (!text) return fail(text.error());
+  std::string digest;
+  auto templates = host::read_templates(common.template_folders(), digest);
+  if (!templates) return fail(templates.error());
+  return Shown{std::move(*text), std::move(*templates)};
+}
+
+/// The number of a finding's evidence by its name with the unit: mean_um.
+Number number_of(const std::string& key, const Json& value) {
+  Number n{key, value.get<double>(),
+           value.is_number_integer() ? Quantity::count
+           : key == "p"              ? Quantity::probability
+                                     : Quantity::number};
+  std::size_t longest = 0;
+  for (int i = 0; i <= static_cast<int>(Quantity::angular_expansion); ++i) {
+    const Unit unit = unit_of(static_cast<Quantity>(i));
+    if (unit.suffix.size() <= longest || !key.ends_with(unit.suffix)) continue;
+    longest = unit.suffix.size();
+    n.quantity = static_cast<Quantity>(i);
+  }
+  n.name.resize(key.size() - longest);
+  n.value /= unit_of(n.quantity).per_si;
+  return n;
+}
+
+Finding finding_of(const Json& json) {
+  Finding f{.id = json.at("id"), .attention = json.at("severity") == "attention"};
+  for (const auto& [key, value] : json.at("evidence").items())
+    if (value.is_string())
+      f.texts.emplace_back(key, value.get<std::string>());
+    else
+      f.evidence.push_back(number_of(key, value));
+  f.advice = json.value("advice", "");
+  f.measurement = json.value("measurement", "");
+  return f;
+}
+
+/// Columns of characters, not bytes.
+std::size_t columns_of(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+std::string to_width(std::string text, std::size_t width, bool left = false) {
+  const std::size_t has = columns_of(text);
+  const std::string space(has < width ? width - has : 0, ' ');
+  return left ? space + text : text + space;
+}
+
+class Page {
+ public:
+  Page(const Shown& shown, std::ostream& out) : templates_(shown.templates), out_(out) {
+    winsize size{};
+    const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col != 0;
+    width_ = known ? std::clamp<std::size_t>(size.ws_col, 80, 120) : 80;
+  }
+
+  void print(const Json& results) {
+    head(results);
+    for (const Json& e : results.at("errors")) error(e);
+    std::vector<std::string> seen;
+    for (const Json& a : results.at("analyses")) analysis(a, seen);
+    if (results.contains("conformity")) without_value(results.at("conformity"));
+    if (results.contains("tables"))
+      for (const Json& t : results.at("tables")) table(t);
+    notes(results, "");
+    outputs(results);
+  }
+
+ private:
+  static std::string paint(const std::string& text, Colour colour) {
+    return coloured(text, colour, STDOUT_FILENO);
+  }
+  void heading(const std::string& text) { out_ << "\n" << paint(text, Colour::bold) << "\n"; }
+
+  void wrapped(const std::string& indent, const std::string& text) {
+    std::string line = indent;
+    std::size_t used = indent.size();
+    for (std::size_t i = 0; i < text.size();) {
+      const std::size_t end = std::min(text.find(' ', i), text.size());
+      const std::string word = text.substr(i, end - i);
+      if (used > indent.size() && used + 1 + columns_of(word) > width_) {
+        out_ << line << "\n";
+        line = indent;
+        used = indent.size();
+      }
+      if (used > indent.size()) line += ' ';
+      used += columns_of(word) + (used > indent.size() ? 1 : 0);
+      line += word;
+      i = end + 1;
+    }
+    out_ << line << "\n";
+  }
+
+  void entry(const std::string& name, const std::string& text) {
+    if (!text.empty()) out_ << "  " << to_width(name, 12) << text << "\n";
+  }
+
+  void head(const Json& results) {
+    const Json& c = results.at("campaign");
+    const std::string status = results.at("status");
+    out_ << paint(c.at("id").get<std::string>(), Colour::bold) << "  "
+         << paint(status, status_colour(status)) << "\n";
+    for (const char* name : {"customer", "site", "date", "operator"})
+      entry(name, c.value(name, ""));
+    for (const char* name : {"machine", "instrument"}) {
+      std::string text;
+      if (c.contains(name))
+        for (const char* part : {"maker", "model", "serial"})
+          if (const std::string word = c.at(name).value(part, ""); !word.empty())
+            text += (text.empty() ? "" : " ") + word;
+      entry(name, text);
+    }
+    if (!results.contains("certificate")) return;
+    const Json& issued = results.at("certificate");
+    const std::string replaced = issued.value("replaces", "");
+    entry("certificate", issued.value("number", "") + " of " + issued.value("date", "") +
+                             (replaced.empty() ? "" : ", replaces " + replaced));
+  }
+
+  void error(const Json& e) {
+    Error error{e.value("message", ""), e.value("file", ""), e.value("line", std::uint64_t{0})};
+    error.column = e.value("column", "");
+    out_ << "\n" << paint("error", Colour::red) << "\n";
+    wrapped("  ", text_of(error));
+  }
+
+  void analysis(const Json& a, std::vector<std::string>& seen) {
+    const std::string measurement = a.value("measurement", "");
+    if (!measurement.empty() && std::find(seen.begin(), seen.end(), measurement) == seen.end()) {
+      heading("measurement " + measurement);
+      seen.push_back(measurement);
+    }
+    const std::string name = a.at("plugin").get<std::string>() + " " + a.value("version", "");
+    measurement.empty() ? heading(name) : void(out_ << "  " << name << "\n");
+    values(a.at("values"));
+    if (a.contains("series"))
+      for (const auto& [series_name, s] : a.at("series").items()) series(series_name, s);
+    if (a.contains("rows")) out_ << "    " << a.at("rows").size() << " rows, in results.json\n";
+    for (const Json& f : a.at("findings")) finding(f);
+    notes(a, "  ");
+  }
+
+  /// To the second significant digit of U, or to three decimals without one.
+  static std::string number(const Json& of, const char* key) {
+    if (!of.contains(key)) return {};
+    const double value = of.at(key), U = of.value("U", 0.0);
+    if (of.at(key).is_number_integer()) return std::to_string(of.at(key).get<std::int64_t>());
+    if (!(U > 0.0)) return fixed_text(value, 3);
+    return fixed_text(value, std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, 9));
+  }
+
+  void values(const Json& all) {
+    if (all.empty()) return;
+    bool limits = false;
+    std::size_t name_width = 8;
+    for (const auto& [name, v] : all.items()) {
+      limits = limits || v.contains("decision");
+      name_width = std::max(name_width, columns_of(name) + 1);
+    }
+    out_ << "    " << to_width("", name_width) << to_width("value", 12, true)
+         << to_width("U", 10, true) << "  " << to_width("unit", 10)
+         << (limits ? to_width("tolerance", 9, true) + "  decision" : "") << "\n";
+    for (const auto& [name, v] : all.items()) {
+      out_ << "    " << to_width(name, name_width) << to_width(number(v, "value"), 12, true)
+           << to_width(number(v, "U"), 10, true) << "  ";
+      const std::string unit = v.value("unit", ""), decision = v.value("decision", "");
+      if (decision.empty())
+        out_ << unit << "\n";
+      else
+        out_ << to_width(unit, 10)
+             << to_width(short_text(v.at("tolerance").get<double>(), 4), 9, true) << "  "
+             << paint(decision, status_colour(decision)) << "\n";
+    }
+  }
+
+  void series(const std::string& name, const Json& s) {
+    double least = INFINITY, most = -INFINITY;
+    for (const Json& v : s.at("value"))
+      if (v.is_number()) {
+        least = std::min(least, v.get<double>());
+        most = std::max(most, v.get<double>());
+      }
+    if (!(least <= most)) return;
+    out_ << "    " << to_width(name, 8) << "a curve over " << s.value("over", "") << ", "
+         << fixed_text(least, 3) << " to " << fixed_text(most, 3) << " " << s.value("unit", "")
+         << ", in results.json\n";
+  }
+
+  void finding(const Json& json) {
+    const Finding f = finding_of(json);
+    const std::string of = f.measurement.empty() ? "" : f.measurement + ": ";
+    out_ << "    " << (f.attention ? paint("attention", Colour::yellow) : std::string("info     "))
+         << "  " << of << finding_text(templates_, "en", f, "title") << "\n";
+    if (const std::string says = finding_text(templates_, "en", f, "says"); !says.empty())
+      wrapped("               ", says);
+    if (const std::string advice = finding_text(templates_, "en", f, "advice"); !advice.empty())
+      wrapped("               ", "Advice: " + advice);
+  }
+
+  void notes(const Json& of, const std::string& indent) {
+    if (!of.contains("notes")) return;
+    if (indent.empty()) heading("notes");
+    for (const Json& note : of.at("notes")) wrapped(indent + "  ", note.get<std::string>());
+  }
+
+  /// Tolerances that stand with no value above.
+  void without_value(const Json& all) {
+    for (const Json& c : all) {
+      if (c.value("decision", "") != "cannot be decided") continue;
+      const std::string reason = c.value("reason", ""),
+                        why = words(templates_, "en", "results." + reason);
+      out_ << "  axis " << c.value("axis", "") << ", " << c.value("name", "") << ": "
+           << paint("cannot be decided", Colour::yellow) << ": " << (why.empty() ? reason : why)
+           << "\n";
+    }
+  }
+
+  void table(const Json& t) {
+    heading(t.at("plugin").get<std::string>() + " " + t.value("version", ""));
+    if (t.contains("predictions"))
+      for (const Json& p : t.at("predictions"))
+        out_ << "    " << p.value("measurement", "") << ", " << p.value("name", "") << ": "
+             << fixed_text(p.at("before").get<double>(), 3) << " before, "
+             << fixed_text(p.at("predicted").get<double>(), 3) << " " << p.value("unit", "")
+             << " predicted\n";
+    if (t.contains("findings"))
+      for (const Json& f : t.at("findings")) finding(f);
+    notes(t, "  ");
+  }
+
+  void outputs(const Json& results) {
+    if (results.at("outputs").empty()) return;
+    heading("files");
+    for (const Json& o : results.at("outputs"))
+      out_ << "  " << to_width(o.at("file"), 34) << " " << o.value("plugin", "") << "\n";
+  }
+
+  const Templates& templates_;
+  std::ostream& out_;
+  std::size_t width_ = 80;
+};
+
+int show(const ShowWish& wish, const Common& common) {
+  const char* const verb = "nonio show";
+  const fs::path folder = wish.folder;
+  const Holds holds = what_holds(folder);
+  if (holds == Holds::night)
+    return complain(verb, folder.string() + " holds the results of a night; wanted " +
+                              (folder / "ID").string() + " (summary.txt lists them)");
+  if (holds == Holds::nothing) return complain(verb, holds_nothing(folder));
+  const auto shown =
+      holds == Holds::campaign ? evaluated_now(folder, common) : of_night(folder, common);
+  if (!shown) return complain(verb, text_of(shown.error()));
+  try {
+    const Json results = Json::parse(shown->text);
+    if (common.json)
+      std::cout << shown->text;
+    else
+      Page(*shown, std::cout).print(results);
+    return results.at("status") == "failed" ? exit_failed : exit_done;
+  } catch (const Json::exception& e) {
+    return complain(verb, (folder / host::results_name).string() +
+                              ": wanted results of a campaign (nonio-results/1): " + e.what());
+  }
+}
+
+}  // namespace
+
+Verb show_verb(Common& common) {
+  auto wish = std::make_shared<ShowWish>();
+  return {.name = "show",
+          .summary =
+              "Values, decisions and findings of one campaign, here in the "
+              "terminal",
+          .arguments =
+              joined({required(existing(Argument::Takes::folder,
+                                        {"CAMPAIGN|OUT/ID", &wish->folder,
+                                         "A campaign, to be evaluated now (nothing is written); or "
+                                         "what a night left of one"})),
+                      templates_argument(common)},
+                     common_arguments(common)),
+          .footer =
+              "--json: the text of results.json.\n\n"
+              "Exit status: 0 shown; 1 shown, and the campaign failed; 2 usage or "
+              "configuration.\n\n"
+              "Examples: nonio show samples/site/09-tolerances\n"
+              "          nonio show out/09-tolerances",
+          .run = [wish, &common] { return show(*wish, common); }};
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace nonio::host {
+
+class Plugins;
+
+/// JSON schema (draft-07) of campaign.toml and of site.toml, for editors: from the same
+/// declarations that the files are checked with, and what the loaded plugins are called and take as
+/// options. It cannot say everything: what stands in several keys at once (a measurement's axis
+/// among those of the machine), that a date has no quotes, and that 3.0 is no whole number.
+std::string campaign_schema(const Plugins& plugins);
+std::string site_schema(const Plugins& plugins);
+
+}  // namespace nonio::host

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "nonio/sdk/units.h"
+
+namespace nonio::host {
+
+/// A unit that a formula's parameter may have.
+struct FormulaUnit {
+  Quantity quantity;
+  std::string_view words;
+
+  constexpr std::string_view symbol() const {
+    const std::string_view symbol = unit_of(quantity).symbol;
+    return symbol.empty() ? "1" : symbol;
+  }
+};
+
+inline constexpr std::array<FormulaUnit, 16> formula_units{
+    {{Quantity::deviation, "deviation"},
+     {Quantity::length, "position or period"},
+     {Quantity::deviation_per_length, "slope"},
+     {Quantity::deviation_per_time, "drift"},
+     {Quantity::growth, "growth in time"},
+     {Quantity::expansion, "expansion"},
+     {Quantity::angular_deviation, "deviation of an angle"},
+     {Quantity::angle, "angle"},
+     {Quantity::deviation_per_angle, "slope of an angle"},
+     {Quantity::angle_per_time, "drift of an angle"},
+     {Quantity::angular_growth, "growth of an angle in time"},
+     {Quantity::angular_expansion, "expansion of an angle"},
+     {Quantity::small_angle, "small angle"},
+     {Quantity::time, "time"},
+     {Quantity::temperature_difference, "temperature difference"},
+     {Quantity::number, "none: a number"}}};
+
+}  // namespace nonio::host

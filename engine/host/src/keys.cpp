@@ -1,0 +1,802 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "keys.h"
+
+#include <algorithm>
+#include <array>
+
+#include "formula_units.h"
+
+namespace nonio::host {
+
+/// Apart from the rest: `text`, `date` and the like are words that others use too.
+namespace declared {
+
+using enum Key::Holds;
+using Words = std::string_view;
+
+constexpr Words not_negative = "wanted a number that is not negative";
+constexpr Words above_0 = "wanted a number above 0";
+constexpr Words two_numbers = "wanted two numbers, the smaller one first";
+
+constexpr Choice structures[] = {{"gantry"}, {"single-column"}, {"bridge"}, {"other"}};
+constexpr Choice axis_kinds[] = {{"linear"}, {"rotary"}};
+constexpr Words linear[] = {"linear"}, rotary[] = {"rotary"};
+constexpr When if_linear{"kind", linear}, if_rotary{"kind", rotary};
+
+constexpr Key axis_keys[] = {
+    {.name = "kind",
+     .holds = text,
+     .help = "Whether the axis moves along a line or turns; without it by its name: A, B and C "
+             "turn (ISO 841).",
+     .choices = axis_kinds},
+    {.name = "travel",
+     .holds = span,
+     .help = "Ends of the travel; targets outside get a finding.",
+     .unit = "mm or deg",
+     .wanted = two_numbers},
+    {.name = "teeth",
+     .holds = whole,
+     .help = "Periods of the drive or scale in a revolution.",
+     .only = if_rotary,
+     .wanted = above_0,
+     .least = 1},
+    {.name = "screw_pitch_mm",
+     .holds = number,
+     .help = "Period of the drive or scale.",
+     .unit = "mm",
+     .only = if_linear,
+     .wanted = "wanted a pitch above 0",
+     .least = 0.0,
+     .above = true},
+    {.name = "expansion_um_per_m_K",
+     .holds = number,
+     .help = "Coefficient of thermal expansion of the scale or of the machine.",
+     .unit = "um/(m K)",
+     .only = if_linear},
+    {.name = "tolerance_um",
+     .holds = number_table,
+     .help = "Upper limits of results by their names, { A = 15.0, \"R+\" = 6.0 }.",
+     .unit = "um",
+     .only = if_linear,
+     .wanted = "wanted a tolerance above 0",
+     .least = 0.0,
+     .above = true},
+    {.name = "tolerance_arcsec",
+     .holds = number_table,
+     .help = "Upper limits of results by their names, { A = 8.0, \"R+\" = 3.0 }.",
+     .unit = "arcsec",
+     .only = if_rotary,
+     .wanted = "wanted a tolerance above 0",
+     .least = 0.0,
+     .above = true},
+};
+
+constexpr Key machine_keys[] = {
+    {.name = "maker", .holds = text, .help = "Maker of the machine."},
+    {.name = "model", .holds = text, .help = "Model of the machine."},
+    {.name = "serial", .holds = text, .help = "Serial number of the machine."},
+    {.name = "description",
+     .holds = text,
+     .help = "What the machine is, for the certificate: \"gantry milling machine\"."},
+    {.name = "condition",
+     .holds = text,
+     .help = "State of the machine, for the certificate, where it matters."},
+    {.name = "control",
+     .holds = text,
+     .help = "Output plugin that writes the tables of the machine's control; without it tables "
+             "for all controls are written.",
+     .named = Named::control},
+    {.name = "structure",
+     .holds = text,
+     .help = "How the machine is built; on it depends what the angles of its carriages do.",
+     .choices = structures},
+    {.name = "axes",
+     .holds = named_tables,
+     .help = "The axes of the machine by their names, [machine.axes.X], in the order in which the "
+             "control counts them.",
+     .keys = axis_keys,
+     .initials = "ABC",
+     .by_name = "kind",
+     .named_so = "rotary"},
+};
+
+constexpr Key campaign_keys[] = {
+    {.name = "id",
+     .holds = text,
+     .help = "Name of the campaign, unique in the site: a-z 0-9 . _ -, at most 100.",
+     .required = true,
+     .wanted = "wanted a-z 0-9 . _ - and no more than 100, not starting with a point; found "
+               "\"{}\"",
+     .text = campaign_id_rule},
+    {.name = "customer", .holds = text, .help = "Name of the customer."},
+    {.name = "site", .holds = text, .help = "Where the machine stands."},
+    {.name = "operator", .holds = text, .help = "Who measured."},
+    {.name = "customer_address",
+     .holds = text,
+     .help = "Address or contact of the customer, for the certificate."},
+    {.name = "date", .holds = date, .help = "Day of the measurements, or the first of them."},
+    {.name = "end_date",
+     .holds = date,
+     .help = "Last day of the measurements, if there were several."},
+    {.name = "received", .holds = date, .help = "Day on which the item came, for the certificate."},
+};
+
+constexpr Key instrument_keys[] = {
+    {.name = "maker", .holds = text, .help = "Maker of the measuring instrument."},
+    {.name = "model", .holds = text, .help = "Model of the measuring instrument."},
+    {.name = "serial", .holds = text, .help = "Serial number of the measuring instrument."},
+    {.name = "calibrated",
+     .holds = date,
+     .help = "Day on which the measuring instrument was calibrated."},
+    {.name = "certificate",
+     .holds = text,
+     .help = "Number of the calibration certificate of the measuring instrument."},
+    {.name = "U_fixed_um",
+     .holds = number,
+     .help = "Expanded uncertainty (k = 2) of the instrument: the part that does not depend on "
+             "the length.",
+     .unit = "um",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "U_per_m_um",
+     .holds = number,
+     .help = "Expanded uncertainty (k = 2) of the instrument: the part for each metre of length.",
+     .unit = "um",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "U_arcsec",
+     .holds = number,
+     .help = "Expanded uncertainty (k = 2) of the instrument for angles.",
+     .unit = "arcsec",
+     .wanted = not_negative,
+     .least = 0.0},
+};
+
+constexpr Key environment_keys[] = {
+    {.name = "misalignment_mm",
+     .holds = number,
+     .help = "Largest distance of beam and axis over the travel.",
+     .unit = "mm",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "temperature_range_K",
+     .holds = number,
+     .help = "Range in which the reading of the machine's temperature lies.",
+     .unit = "K",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "temperature_difference_K",
+     .holds = number,
+     .help = "Largest distance of the machine's temperature from 20 degC.",
+     .unit = "K",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "expansion_range_um_per_m_K",
+     .holds = number,
+     .help = "Range in which the coefficient of thermal expansion lies.",
+     .unit = "um/(m K)",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "drift_um",
+     .holds = number,
+     .help = "Range of the drift test, axis at rest.",
+     .unit = "um",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "drift_arcsec",
+     .holds = number,
+     .help = "Range of the drift test of a rotary axis, at rest.",
+     .unit = "arcsec",
+     .wanted = not_negative,
+     .least = 0.0},
+};
+
+constexpr Choice measurement_kinds[] = {{"axis"},         {"straightness"},  {"angle"},
+                                        {"diagonal"},     {"step-diagonal"}, {"ball-centres"},
+                                        {"observations"}, {"ballbar"}};
+constexpr Choice adjustments[] = {{"before"}, {"after"}};
+constexpr Choice linear_axes[] = {{"X"}, {"Y"}, {"Z"}};
+constexpr Words of_one_axis[] = {"axis", "straightness", "angle", "ball-centres"};
+constexpr Words straightness[] = {"straightness"}, angle[] = {"angle"};
+constexpr Words diagonals[] = {"diagonal", "step-diagonal"};
+constexpr Words an_end = "the axis positions of that end, { X = 0, Y = 0 }";
+
+constexpr Key measurement_keys[] = {
+    {.name = "id",
+     .holds = text,
+     .help = "Name of the measurement, unique in the campaign; what follows its first space is "
+             "the state of the machine.",
+     .required = true,
+     .wanted = "wanted up to 60 characters without / and \\, not starting with a point",
+     .text = {.not_letters = "/\\\n\t", .not_first = ". ", .longest = 60}},
+    {.name = "kind",
+     .holds = text,
+     .help = "What was measured; the kind says which columns the file has.",
+     .required = true,
+     .choices = measurement_kinds},
+    {.name = "file",
+     .holds = text,
+     .help = "File of the readings, below the campaign's folder.",
+     .required = true},
+    {.name = "reader",
+     .holds = text,
+     .help = "Reader plugin for the file; without it one is chosen by the file's content.",
+     .named = Named::reader},
+    {.name = "axis",
+     .holds = text,
+     .help = "The axis that moves, or the rotary axis whose balls were measured.",
+     .needed = {"kind", of_one_axis},
+     .missing = "which axis of the machine was measured"},
+    {.name = "lateral",
+     .holds = text,
+     .help = "The axis in whose direction a straightness is sensed.",
+     .needed = {"kind", straightness},
+     .missing = "the axis in whose direction the deviation was measured"},
+    {.name = "adjustment",
+     .holds = text,
+     .help = "Which of two tests was made before and which after the machine was adjusted, for "
+             "the certificate.",
+     .choices = adjustments},
+    {.name = "about",
+     .holds = text,
+     .help = "The direction about which the axis turns while it moves (yaw of X: Z), right-handed "
+             "positive.",
+     .required = true,
+     .only = {"kind", angle},
+     .choices = linear_axes},
+    {.name = "exclude",
+     .holds = wholes,
+     .help = "Lines of the file whose readings do not count for any analysis; each is noted in "
+             "the results.",
+     .wanted = "wanted line numbers of the file, whole and from 1",
+     .least = 1.0,
+     .most = 4e9},
+    {.name = "from",
+     .holds = number_table,
+     .help = "Axis positions at the begin of a diagonal, { X = 0, Y = 0 }.",
+     .unit = "mm",
+     .needed = {"kind", diagonals},
+     .missing = an_end},
+    {.name = "to",
+     .holds = number_table,
+     .help = "Axis positions at the end of a diagonal, { X = 12000, Y = 9000 }.",
+     .unit = "mm",
+     .needed = {"kind", diagonals},
+     .missing = an_end},
+    {.name = "at",
+     .holds = number_table,
+     .help = "Where the axes that stood still were, { Y = 500 }: on which line this axis was "
+             "measured.",
+     .unit = "mm"},
+};
+
+constexpr auto unit_choices = [] {
+  std::array<Choice, formula_units.size()> choices{};
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    choices[i] = {formula_units[i].symbol(), formula_units[i].words};
+  return choices;
+}();
+
+constexpr Key parameter_keys[] = {
+    {.name = "name",
+     .holds = text,
+     .help = "Name of the parameter in the expression.",
+     .required = true},
+    {.name = "unit",
+     .holds = text,
+     .help = "Unit of the parameter.",
+     .required = true,
+     .missing = "wanted one of {}",
+     .choices = unit_choices},
+    {.name = "start",
+     .holds = number,
+     .help = "Value in the parameter's unit with which the search begins; it stands beside "
+             "range."},
+    {.name = "range",
+     .holds = span,
+     .help = "Where to search, two values in the parameter's unit; without start and range the "
+             "parameter must enter linearly and is fitted.",
+     .wanted = two_numbers},
+};
+
+constexpr Key formula_keys[] = {
+    {.name = "name",
+     .holds = text,
+     .help = "Name of the effect, up to 40 of a-z 0-9 -; [model] effects has it as name:axis.",
+     .required = true,
+     .wanted = "wanted up to 40 of a-z 0-9 -; found \"{}\"",
+     .text = {.letters = "a-z0-9-", .longest = 40}},
+    {.name = "axis",
+     .holds = text,
+     .help = "The axis whose deviation the formula is.",
+     .required = true},
+    {.name = "expression",
+     .holds = text,
+     .help = "The deviation as a formula, \"a*sin(2*_pi*p/P)\".",
+     .required = true},
+    {.name = "parameters",
+     .holds = tables,
+     .help = "The parameters of the expression, 12 at most.",
+     .required = true,
+     .missing = "[{ name = \"a\", unit = \"um\" }], one at least",
+     .wanted = "wanted 12 parameters at most, found {}",
+     .longest_list = 12,
+     .keys = parameter_keys},
+};
+
+constexpr Choice compensated[] = {{"readings"}, {"model"}};
+
+constexpr Key model_keys[] = {
+    {.name = "effects",
+     .holds = texts,
+     .help = "Effects of the machine's error model, \"kind:axis\"; `nonio model add` and `drop` "
+             "edit the list.",
+     .named = Named::effect},
+    {.name = "compensate",
+     .holds = text,
+     .help = "What tables take: the means of the readings, or what the model's compensable "
+             "effects say, so that drift and noise stay out.",
+     .otherwise = "readings",
+     .choices = compensated},
+    {.name = "formula",
+     .holds = tables,
+     .help = "An effect of your own, as a formula.",
+     .keys = formula_keys},
+};
+
+constexpr Key run_keys[] = {
+    {.name = "analyses",
+     .holds = texts,
+     .help = "Analyses that are made; without it all that apply, but those on request only.",
+     .named = Named::analysis},
+    {.name = "outputs",
+     .holds = texts,
+     .help = "Outputs that are written; without it all that apply, but those on request only.",
+     .named = Named::output},
+};
+
+constexpr Choice locations[] = {
+    {"laboratory"}, {"customer"}, {"laboratoryBranch"}, {"customerBranch"}, {"other"}};
+constexpr Choice decision_rules[] = {{"iso14253-1"}};
+
+constexpr TextRule language = {.letters = "a-z", .shortest = 2, .longest = 2};
+constexpr Key languages_key = {.name = "languages",
+                               .holds = texts,
+                               .help =
+                                   "One or two languages of the certificate: de, en, es, it, "
+                                   "zh. Without it en.",
+                               .wanted = "wanted one or two languages, [\"it\", \"en\"]",
+                               .text = language,
+                               .longest_list = 2,
+                               .distinct = true};
+constexpr Key template_key = {
+    .name = "template",
+    .holds = text,
+    .help = "Template of the certificate: a file in templates/, without .toml.",
+    .otherwise = "certificate",
+    .wanted = "wanted the name of a file in templates/, without .toml",
+    .text = {.letters = "a-z0-9_-"}};
+constexpr Key location_key = {.name = "location",
+                              .holds = text,
+                              .help = "Where the calibration was made.",
+                              .otherwise = "customer",
+                              .choices = locations};
+constexpr Key procedure_key = {.name = "procedure",
+                               .holds = text,
+                               .help = "The laboratory's own procedure, beside the standards."};
+constexpr Key title_key = {
+    .name = "title",
+    .holds = translations,
+    .help =
+        "Title of the certificate: a text, or texts by language, { it = \"...\", en = "
+        "\"...\" }.",
+    .wanted = "wanted a text, or texts by language, { it = \"...\", en = \"...\" }",
+    .text = language};
+constexpr Key decision_rule_key = {.name = "decision_rule",
+                                   .holds = text,
+                                   .help = "The rule by which results conform to a tolerance.",
+                                   .otherwise = "iso14253-1",
+                                   .choices = decision_rules};
+
+constexpr Key certificate_of_campaign[] = {
+    languages_key,
+    template_key,
+    location_key,
+    procedure_key,
+    title_key,
+    decision_rule_key,
+    {.name = "deviations",
+     .holds = text,
+     .help = "Additions to the method, deviations from it, exclusions."},
+    {.name = "conditions",
+     .holds = text,
+     .help = "Conditions that influence the results; wanted where no readings have temperatures."},
+    {.name = "opinions",
+     .holds = text,
+     .help = "Opinions and interpretations; the certificate marks them as such."},
+    {.name = "amendment", .holds = text, .help = "Why an earlier certificate is replaced."},
+    {.name = "customer_data",
+     .holds = texts,
+     .help = "Keys of this file whose values the customer stated, [\"machine.serial\"]; the "
+             "certificate marks them."},
+};
+
+constexpr Key certificate_of_site[] = {
+    languages_key,
+    template_key,
+    location_key,
+    procedure_key,
+    title_key,
+    decision_rule_key,
+    {.name = "numbering",
+     .holds = text,
+     .help = "How certificates are numbered; with {year} the sequence begins anew with each year.",
+     .otherwise = "{year}-{number:4}"},
+    {.name = "register",
+     .holds = text,
+     .help = "File inside the site that keeps all numbers and what was issued under them; it "
+             "belongs into the backup.",
+     .otherwise = "certificates.sqlite"},
+};
+
+constexpr Key format_key = {.name = "format",
+                            .holds = whole,
+                            .help = "Version of this format.",
+                            .wanted =
+                                "wanted 1, found {}: this file is for another version of "
+                                "nonio",
+                            .least = 1,
+                            .most = 1};
+constexpr Key required_format() {
+  Key key = format_key;
+  key.required = true;
+  key.missing = "wanted format = 1 as the first line";
+  return key;
+}
+constexpr Key run_key = {.name = "run",
+                         .holds = table,
+                         .help = "Which analyses are made and which outputs written.",
+                         .keys = run_keys};
+constexpr Key options_key = {.name = "options",
+                             .holds = options,
+                             .help =
+                                 "Options of plugins, [options.iso230-2]; `nonio plugins` "
+                                 "lists them."};
+
+constexpr Key campaign_file_keys[] = {
+    required_format(),
+    {.name = "campaign",
+     .holds = table,
+     .help = "Who had what measured, where and when.",
+     .required = true,
+     .missing = "[campaign] with at least an id",
+     .keys = campaign_keys},
+    {.name = "machine",
+     .holds = table,
+     .help = "The machine that was measured.",
+     .keys = machine_keys},
+    {.name = "instrument",
+     .holds = table,
+     .help = "The measuring instrument.",
+     .keys = instrument_keys},
+    {.name = "environment",
+     .holds = table,
+     .help = "What the uncertainty budget needs beside the instrument: full ranges of what "
+             "disturbs the measurement (ISO/TR 230-9).",
+     .keys = environment_keys},
+    {.name = "certificate",
+     .holds = table,
+     .help = "What this campaign's certificate says.",
+     .keys = certificate_of_campaign},
+    run_key,
+    {.name = "measurement",
+     .holds = tables,
+     .help = "A file of readings. One at least; none where [run] names analyses and outputs: a "
+             "campaign that only plans.",
+     .keys = measurement_keys},
+    {.name = "model",
+     .holds = table,
+     .help = "The error model of the machine as it stands.",
+     .keys = model_keys},
+    options_key,
+};
+
+constexpr Key laboratory_keys[] = {
+    {.name = "name", .holds = text, .help = "Name of the laboratory."},
+    {.name = "address", .holds = text, .help = "Address of the laboratory."},
+    {.name = "country", .holds = text, .help = "Country of the laboratory, two letters: \"IT\"."},
+    {.name = "accreditation",
+     .holds = text,
+     .help = "Number of the accreditation; only for a laboratory that has one."},
+    {.name = "authoriser", .holds = text, .help = "Who authorises certificates."},
+    {.name = "contact", .holds = text, .help = "How to reach the laboratory."},
+};
+
+constexpr Key limits_keys[] = {
+    {.name = "seconds",
+     .holds = number,
+     .help = "Time that one campaign may take.",
+     .unit = "s",
+     .otherwise = "600",
+     .wanted = "wanted a number above 0 and at most 1000000",
+     .least = 0.0,
+     .most = 1e6,
+     .above = true},
+    {.name = "memory_MB",
+     .holds = number,
+     .help = "Memory that one campaign may take.",
+     .unit = "MB",
+     .otherwise = "4096",
+     .wanted = "wanted 64 or more, and at most 1000000000",
+     .least = 64.0,
+     .most = 1e9},
+};
+
+constexpr Choice fail_or_sign[] = {{"fail"}, {"sign"}};
+
+constexpr Key signing_keys[] = {
+    {.name = "pkcs12",
+     .holds = text,
+     .help = "The key as a file, relative to the site; or else pkcs11."},
+    {.name = "pkcs11",
+     .holds = text,
+     .help = "The key on a token, \"pkcs11:token=lab;object=calib\"; or else pkcs12."},
+    {.name = "module", .holds = text, .help = "PKCS#11 library of the token."},
+    {.name = "certificates",
+     .holds = text,
+     .help = "PEM file with what lies between the certificate and the root."},
+    {.name = "password_file",
+     .holds = text,
+     .help = "File that holds the password; or else password_env or password_credential."},
+    {.name = "password_env",
+     .holds = text,
+     .help = "Variable of the environment that holds the password."},
+    {.name = "password_credential",
+     .holds = text,
+     .help = "Credential of systemd that holds the password."},
+    {.name = "trust",
+     .holds = text,
+     .help = "PEM file with roots, for time stamps and for `nonio verify`."},
+    {.name = "revocation",
+     .holds = text,
+     .help = "PEM file with revocation lists, for `nonio verify`."},
+    {.name = "signer",
+     .holds = text,
+     .help = "Whom `nonio verify` expects: subject, or SHA-256 of the certificate."},
+    {.name = "time_stamp",
+     .holds = text,
+     .help = "Address of a time-stamp server, http://...",
+     .wanted = "wanted http://..., found \"{}\" (a time stamp is signed; it needs no https)",
+     .text = {.begins = "http://"}},
+    {.name = "time_stamp_missing",
+     .holds = text,
+     .help = "What happens if the time-stamp server does not answer: the campaign fails, or the "
+             "certificate is signed without time stamp and the summary says so.",
+     .otherwise = "fail",
+     .choices = fail_or_sign},
+    {.name = "time_stamp_seconds",
+     .holds = whole,
+     .help = "How long to wait for the time-stamp server.",
+     .unit = "s",
+     .otherwise = "10",
+     .wanted = "wanted 1 to 300",
+     .least = 1,
+     .most = 300},
+};
+
+constexpr Key site_file_keys[] = {
+    format_key,
+    {.name = "laboratory",
+     .holds = table,
+     .help = "The laboratory that measures.",
+     .keys = laboratory_keys},
+    {.name = "limits",
+     .holds = table,
+     .help = "What one campaign may take of the computer.",
+     .keys = limits_keys},
+    run_key,
+    options_key,
+    {.name = "signing",
+     .holds = table,
+     .help = "The key that signs certificates, and time stamps.",
+     .keys = signing_keys},
+    {.name = "certificate",
+     .holds = table,
+     .help = "What certificates say and how they are numbered.",
+     .keys = certificate_of_site},
+    {.name = "database", .holds = anything, .help = "Without effect in this version."},
+};
+
+constexpr Words from_0 = "wanted a number from 0";
+constexpr When linear_cycle{cycle_axis, linear}, rotary_cycle{cycle_axis, rotary};
+
+constexpr Key misreading_keys[] = {
+    {.name = "fraction",
+     .holds = number,
+     .help = "Share of the readings that are misread.",
+     .wanted = from_0,
+     .least = 0.0},
+    {.name = "size", .holds = numbers, .help = "Range of a misreading, times the noise."},
+};
+
+constexpr Key temperature_keys[] = {
+    {.name = "start_c", .holds = number, .help = "At the begin.", .unit = "degC"},
+    {.name = "drift_K_per_h", .holds = number, .help = "Drift.", .unit = "K/h"},
+    {.name = "swing_K", .holds = number, .help = "Amplitude of the swing.", .unit = "K"},
+    {.name = "period_s",
+     .holds = number,
+     .help = "Period of the swing.",
+     .unit = "s",
+     .wanted = above_0,
+     .least = 0.0,
+     .above = true},
+};
+
+constexpr Choice orders[] = {{"pendulum"}, {"unidirectional"}};
+constexpr Choice directions[] = {{"+"}, {"-"}};
+
+/// A key of a linear axis' cycle, and that of a rotary one.
+constexpr Key of_axis(Key key, std::string_view unit) {
+  key.unit = unit;
+  key.only = unit.starts_with("mm") || unit == "um" ? linear_cycle : rotary_cycle;
+  return key;
+}
+constexpr Key feed(std::string_view name) {
+  return {.name = name,
+          .holds = number,
+          .help = "Feed to the next target.",
+          .wanted = above_0,
+          .least = 0.0,
+          .above = true};
+}
+constexpr Key noise(std::string_view name) {
+  return {.name = name,
+          .holds = number,
+          .help = "Standard deviation of a reading.",
+          .wanted = from_0,
+          .least = 0.0};
+}
+
+constexpr Key cycle_keys[] = {
+    {.name = "measurement",
+     .holds = text,
+     .help = "Id of the measurement that is taken so.",
+     .required = true},
+    of_axis({.name = "targets_mm", .holds = numbers, .help = "Targets, ascending."}, "mm"),
+    of_axis({.name = "targets_deg", .holds = numbers, .help = "Targets, ascending."}, "deg"),
+    of_axis({.name = "from_mm", .holds = number, .help = "First target."}, "mm"),
+    of_axis({.name = "from_deg", .holds = number, .help = "First target."}, "deg"),
+    of_axis({.name = "to_mm", .holds = number, .help = "End of the targets."}, "mm"),
+    of_axis({.name = "to_deg", .holds = number, .help = "End of the targets."}, "deg"),
+    of_axis({.name = "step_mm", .holds = number, .help = "Distance of targets."}, "mm"),
+    of_axis({.name = "step_deg", .holds = number, .help = "Distance of targets."}, "deg"),
+    {.name = "random_offset_pct",
+     .holds = number,
+     .help = "Part of the step by which a target is shifted at most.",
+     .unit = "%",
+     .wanted = from_0,
+     .least = 0.0},
+    {.name = "order",
+     .holds = text,
+     .help = "Each run upwards and then downwards, or all in one direction.",
+     .choices = orders},
+    {.name = "direction",
+     .holds = text,
+     .help = "Direction of unidirectional runs.",
+     .choices = directions},
+    {.name = "runs",
+     .holds = whole,
+     .help = "Number of runs.",
+     .wanted = "wanted 1 to 100000",
+     .least = 1,
+     .most = 100000},
+    of_axis(feed("feed_mm_per_min"), "mm/min"),
+    of_axis(feed("feed_deg_per_min"), "deg/min"),
+    {.name = "dwell_s",
+     .holds = number,
+     .help = "Rest at a target.",
+     .unit = "s",
+     .wanted = from_0,
+     .least = 0.0},
+    {.name = "pause_s",
+     .holds = number,
+     .help = "Pause before each further run.",
+     .unit = "s",
+     .wanted = from_0,
+     .least = 0.0},
+    {.name = "times", .holds = flag, .help = "Whether the file has times."},
+    of_axis(noise("noise_um"), "um"),
+    of_axis(noise("noise_arcsec"), "arcsec"),
+    {.name = "misreadings", .holds = table, .help = "Misreadings.", .keys = misreading_keys},
+    {.name = "temperature",
+     .holds = table,
+     .help = "Course of the temperature.",
+     .keys = temperature_keys},
+};
+
+constexpr Key simulation_keys[] = {
+    {.name = "seed", .holds = whole, .help = "The same seed gives the same readings."},
+    {.name = "formula",
+     .holds = tables,
+     .help = "A hidden effect, as a formula.",
+     .keys = formula_keys},
+};
+
+/// The others are parameters of the effect that it names.
+constexpr Key effect_keys[] = {
+    {.name = "name", .holds = text, .help = "The effect, \"kind:axis\".", .required = true},
+};
+
+constexpr Key specification_keys[] = {
+    {.name = "simulation",
+     .holds = table,
+     .help = "Seed and hidden formulas.",
+     .required = true,
+     .missing = "[simulation] with a seed",
+     .keys = simulation_keys},
+    {.name = "cycle", .holds = tables, .help = "How a measurement is taken.", .keys = cycle_keys},
+    {.name = "effect", .holds = tables, .help = "A known effect.", .keys = effect_keys},
+};
+
+constexpr Key campaign_toml = {.name = "campaign.toml",
+                               .holds = table,
+                               .help = "Manifest of a campaign of machine-tool calibration.",
+                               .keys = campaign_file_keys};
+constexpr Key site_toml = {.name = "site.toml",
+                           .holds = table,
+                           .help = "What holds for all campaigns of a site.",
+                           .keys = site_file_keys};
+constexpr Key specification_toml = {.name = "specification",
+                                    .holds = table,
+                                    .help = "Specification of a simulated campaign.",
+                                    .keys = specification_keys};
+
+}  // namespace declared
+
+namespace {
+
+/// Letters of a class as in a pattern: "a-z0-9_-".
+bool has_letter(std::string_view letters, char c) {
+  for (std::size_t i = 0; i < letters.size(); ++i) {
+    const bool range = i + 2 < letters.size() && letters[i + 1] == '-';
+    if (range ? c >= letters[i] && c <= letters[i + 2] : c == letters[i]) return true;
+    if (range) i += 2;
+  }
+  return false;
+}
+
+}  // namespace
+
+const Key& campaign_file() { return declared::campaign_toml; }
+const Key& site_file() { return declared::site_toml; }
+const Key& specification_file() { return declared::specification_toml; }
+
+bool obeys(std::string_view text, const TextRule& rule) {
+  if (text.empty()) return true;
+  const bool letters = std::all_of(text.begin(), text.end(), [&](char c) {
+    return rule.letters.empty() || has_letter(rule.letters, c);
+  });
+  return letters && text.find_first_of(rule.not_letters) == std::string_view::npos &&
+         rule.not_first.find(text.front()) == std::string_view::npos &&
+         text.size() >= rule.shortest && (rule.longest == 0 || text.size() <= rule.longest) &&
+         std::find(rule.except.begin(), rule.except.end(), text) == rule.except.end() &&
+         text.starts_with(rule.begins);
+}
+
+bool in_range(double value, const Key& key) {
+  if (key.least && (key.above ? !(value > *key.least) : !(value >= *key.least))) return false;
+  return !key.most || value <= *key.most;
+}
+
+const Key* find_key(std::span<const Key> keys, std::string_view name) {
+  const auto found =
+      std::find_if(keys.begin(), keys.end(), [&](const Key& key) { return key.name == name; });
+  return found == keys.end() ? nullptr : &*found;
+}
+
+bool rotary_by_name(std::string_view axis) {
+  const Key& axes = *find_key(declared::machine_keys, "axes");
+  return !axis.empty() && axes.initials.find(axis.front()) != std::string_view::npos;
+}
+
+}  // namespace nonio::host

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Dense>
+
+/// Eigen with its dense solvers compiled once, in src/dense.cpp: each costs a source that compiles
+/// it itself 7 to 17 s. Use them for MatrixXd, even where a size is known. Not installed.
+namespace Eigen {
+
+extern template class ColPivHouseholderQR<MatrixXd>;
+extern template class HouseholderQR<MatrixXd>;
+extern template class HouseholderQR<Ref<MatrixXd>>;
+extern template class JacobiSVD<MatrixXd>;
+extern template class LDLT<MatrixXd>;
+extern template class LLT<MatrixXd>;
+extern template class SelfAdjointEigenSolver<MatrixXd>;
+
+}  // namespace Eigen

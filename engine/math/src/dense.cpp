@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dense.h"
+
+namespace Eigen {
+
+template class ColPivHouseholderQR<MatrixXd>;
+template class HouseholderQR<MatrixXd>;
+template class HouseholderQR<Ref<MatrixXd>>;
+template class JacobiSVD<MatrixXd>;
+template class LDLT<MatrixXd>;
+template class LLT<MatrixXd>;
+template class SelfAdjointEigenSolver<MatrixXd>;
+
+}  // namespace Eigen

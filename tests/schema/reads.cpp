@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether the host takes manifests, many at a time: schema_reads campaign|site, the paths on stdin;
+// a line for each, "ok" or the first error.
+#include <iostream>
+#include <string>
+
+#include "nonio/host/files.h"
+#include "nonio/host/manifest.h"
+
+namespace {
+
+template <class File>
+std::string verdict(const nonio::host::Checked<File>& read) {
+  if (read) return "ok";
+  const nonio::Error& first = read.error().front();
+  return std::to_string(first.line) + ": " + first.message;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string file = argc == 2 ? argv[1] : "";
+  if (file != "campaign" && file != "site") return 2;
+  for (std::string path; std::getline(std::cin, path);) {
+    const auto text = nonio::host::read_file(path);
+    if (!text) return 1;
+    std::cout << (file == "campaign" ? verdict(nonio::host::parse_manifest(*text, "campaign.toml"))
+                                     : verdict(nonio::host::parse_site(*text, "site.toml")))
+              << "\n";
+  }
+}

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A campaign.toml and a site.toml with every key there is."""
+import datetime
+
+DAY = datetime.date(2026, 11, 3)
+
+
+def campaign():
+    return {
+        "format": 1,
+        "campaign": {"id": "2026-11-03-a", "customer": "C", "site": "S", "operator": "O", "customer_address": "A",
+                     "date": DAY, "end_date": DAY, "received": DAY},
+        "machine": {
+            "maker": "M", "model": "M", "serial": "1", "description": "D", "condition": "C", "control": "fanuc",
+            "structure": "gantry",
+            "axes": {"X": {"kind": "linear", "travel": [0.0, 500.0], "screw_pitch_mm": 10.0,
+                           "expansion_um_per_m_K": 11.5, "tolerance_um": {"A": 15.0, "R+": 6}},
+                     "C": {"kind": "rotary", "travel": [0, 360], "teeth": 120, "tolerance_arcsec": {"A": 8.0}},
+                     "Y": {"screw_pitch_mm": 10.0}, "B": {"teeth": 90},
+                     "U": {"kind": "rotary", "teeth": 60}, "A1": {"kind": "linear", "tolerance_um": {"A": 1}}}},
+        "instrument": {"maker": "M", "model": "M", "serial": "1", "calibrated": DAY, "certificate": "C",
+                       "U_fixed_um": 0.2, "U_per_m_um": 0, "U_arcsec": 0.1},
+        "environment": {"misalignment_mm": 0.5, "temperature_range_K": 0.2, "temperature_difference_K": 1,
+                        "expansion_range_um_per_m_K": 1.0, "drift_um": 0.6, "drift_arcsec": 0.1},
+        "certificate": {"languages": ["it", "en"], "template": "certificate", "location": "customer",
+                        "procedure": "P", "title": {"it": "T", "en": "T"}, "decision_rule": "iso14253-1",
+                        "deviations": "D", "conditions": "C", "opinions": "O", "amendment": "A",
+                        "customer_data": ["machine.serial"]},
+        "run": {"analyses": ["iso230-2", "model-fit"], "outputs": ["json"]},
+        "measurement": [
+            {"id": "X 1", "kind": "axis", "file": "x.csv", "reader": "csv", "axis": "X", "adjustment": "before",
+             "exclude": [3, 4], "at": {"Y": 300}},
+            {"id": "S", "kind": "straightness", "file": "s.csv", "axis": "X", "lateral": "Y"},
+            {"id": "W", "kind": "angle", "file": "w.csv", "axis": "X", "about": "Z"},
+            {"id": "D", "kind": "diagonal", "file": "d.csv", "from": {"X": 0, "Y": 0}, "to": {"X": 1.5, "Y": 1}},
+            {"id": "E", "kind": "step-diagonal", "file": "e.csv", "from": {"X": 0}, "to": {"X": 1.5}},
+            {"id": "C", "kind": "ball-centres", "file": "c.csv", "axis": "C"},
+            {"id": "O", "kind": "observations", "file": "o.csv"},
+            {"id": "B", "kind": "ballbar", "file": "b.b5r"}],
+        "model": {"effects": ["backlash:X", "sag:X"], "compensate": "model",
+                  "formula": [{"name": "sag", "axis": "X", "expression": "a*cos(2*_pi*p/P)",
+                               "parameters": [{"name": "a", "unit": "um"},
+                                              {"name": "P", "unit": "mm", "start": 800, "range": [500, 1500.5]}]}]},
+        "options": {"iso230-2": {"edition": 2006}},
+    }
+
+
+def site():
+    return {
+        "format": 1,
+        "laboratory": {"name": "L", "address": "A", "country": "IT", "accreditation": "N", "authoriser": "B",
+                       "contact": "C"},
+        "limits": {"seconds": 60, "memory_MB": 2000.5},
+        "run": {"analyses": ["iso230-2"], "outputs": ["json"]},
+        "options": {"iso230-2": {"edition": 2006}},
+        "signing": {"pkcs12": "k.p12", "pkcs11": "", "module": "", "certificates": "c.pem", "password_file": "p",
+                    "password_env": "", "password_credential": "", "trust": "t.pem", "revocation": "r.pem",
+                    "signer": "CN=A", "time_stamp": "http://tsa.example/", "time_stamp_missing": "sign",
+                    "time_stamp_seconds": 20},
+        "certificate": {"languages": ["en"], "template": "certificate", "location": "laboratory", "procedure": "P",
+                        "title": "T", "decision_rule": "iso14253-1", "numbering": "{year}-{number:4}",
+                        "register": "r.sqlite"},
+        "database": {"key": 1},
+    }
