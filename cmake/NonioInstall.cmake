@@ -1,19 +1,46 @@
 # SPDX-License-Identifier: Apache-2.0
-# The installed package: program, libraries, plugins, templates, and headers for plugins elsewhere.
+# What is installed: program, libraries, plugins, templates, man page; component `dev`: headers for plugins elsewhere.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS nonio_sdk nonio_math EXPORT nonio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS nonio_model nonio_sign nonio_host nonio_reports LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+# In a folder of their own: no program but nonio and its plugins is to link with them, and they keep no ABI between versions.
+install(TARGETS nonio_sdk nonio_math EXPORT nonio LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_COMPONENT dev)
+install(TARGETS nonio_model nonio_sign nonio_host nonio_reports LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_SKIP)
 foreach(part sdk math)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/${part}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/${part}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 endforeach()
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/nonio)
-install(EXPORT nonio NAMESPACE nonio:: DESTINATION ${package})
+install(EXPORT nonio NAMESPACE nonio:: DESTINATION ${package} COMPONENT dev)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/nonio-config.cmake.in
   ${CMAKE_CURRENT_BINARY_DIR}/nonio-config.cmake INSTALL_DESTINATION ${package})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/nonio-config-version.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/nonio-config.cmake
   ${CMAKE_CURRENT_BINARY_DIR}/nonio-config-version.cmake
-  ${CMAKE_CURRENT_LIST_DIR}/NonioPlugin.cmake ${CMAKE_CURRENT_LIST_DIR}/NonioCase.cmake DESTINATION ${package})
+  ${CMAKE_CURRENT_LIST_DIR}/NonioPlugin.cmake ${CMAKE_CURRENT_LIST_DIR}/NonioCase.cmake DESTINATION ${package} COMPONENT dev)
+
+# What the program says of itself.
+find_program(GZIP gzip REQUIRED)
+set(man ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_MANDIR}/man1/nonio.1)
+set(bash ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/bash-completion/completions/nonio)
+set(zsh ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/zsh/_nonio)
+foreach(file man bash zsh)
+  get_filename_component(folder ${${file}} DIRECTORY)
+  file(MAKE_DIRECTORY ${folder})
+endforeach()
+add_custom_command(OUTPUT ${man}.gz ${bash} ${zsh}
+  COMMAND nonio help --man > ${man}
+  COMMAND ${GZIP} -9nkf ${man}
+  COMMAND nonio completion bash > ${bash}
+  COMMAND nonio completion zsh > ${zsh}
+  DEPENDS nonio VERBATIM COMMENT "Man page and completion")
+add_custom_target(nonio_pages_of_help ALL DEPENDS ${man}.gz ${bash} ${zsh})
+install(FILES ${man}.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${bash} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+# zsh of Debian looks into vendor-completions below /usr/share, and into site-functions below /usr/local/share.
+install(CODE "
+  set(folder site-functions)
+  if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr\")
+    set(folder vendor-completions)
+  endif()
+  file(INSTALL \"${zsh}\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/zsh/\${folder}\")")

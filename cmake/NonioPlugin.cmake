@@ -10,7 +10,7 @@ function(nonio_add_plugin name)
     target_link_libraries(${name} PRIVATE nonio_sdk nonio_math nonio_warnings)
     set_target_properties(${name} PROPERTIES
       LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${NONIO_PLUGIN_SUBDIR}
-      INSTALL_RPATH "$ORIGIN/../..")
+      INSTALL_RPATH "$ORIGIN/..")
     install(TARGETS ${name} LIBRARY DESTINATION ${NONIO_PLUGIN_SUBDIR})
   else()
     target_link_libraries(${name} PRIVATE nonio::sdk nonio::math nonio::controllers)

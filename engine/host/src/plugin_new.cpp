@@ -42,6 +42,9 @@ std::vector<std::string> kinds_in(const fs::path& skeletons) {
 Expected<std::vector<std::string>> new_plugin(const fs::path& skeletons, const std::string& kind,
                                               const std::string& name, const fs::path& folder) {
   const auto kinds = kinds_in(skeletons);
+  if (kinds.empty())
+    return fail("what a plugin begins with is not in " + skeletons.string() +
+                "; it belongs to the headers: on Debian, the package libnonio-dev");
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
     std::string list;
     for (const std::string& k : kinds) list += (list.empty() ? "" : ", ") + k;

@@ -156,7 +156,7 @@ std::string data_of(const Source& source, const Kept& kept) {
   out.text("axis", fit.axis);
   out.text("unit", unit_text(up));
   out.text("position_unit", unit_text(along));
-  out.text("time_unit", source.pictures[static_cast<std::size_t>(Picture::time)].time_unit);
+  out.text("time_unit", source.pictures[static_cast<std::size_t>(ResidualPlot::time)].time_unit);
   out.number("period", period_of(fit) * across);
   out.number("floor", fit.floor ? *fit.floor * per_si : std::nan(""));
   out.raw("words", words_of(source));
@@ -168,7 +168,7 @@ std::string data_of(const Source& source, const Kept& kept) {
   out.raw("direction", column(known(fit.direction, fit.size()), rows));
   out.raw("target", column(fit.target, rows, across));
   out.raw("time", column(fit.time, rows,
-                         source.pictures[static_cast<std::size_t>(Picture::time)].x_per_si, first));
+                         source.pictures[static_cast<std::size_t>(ResidualPlot::time)].x_per_si, first));
   out.raw("temperature", column(fit.temperature, rows));
   out.raw("deviation", column(fit.deviation, rows, per_si));
   out.raw("residual", column(fit.residual, rows, per_si));
