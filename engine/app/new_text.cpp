@@ -212,8 +212,8 @@ std::string example_readings(const Axis& axis) {
       for (int i = 0; i < targets; ++i) {
         const int k = direction > 0 ? i : targets - 1 - i;
         const double share = (target[k] - from) / (to - from);
-        // In um, or in arcsec: a slope, a wave, a constant reversal and noise.
-        const double value = 4.0 * share + std::sin(5.0 * share) - direction * 0.75 + 0.5 * noise();
+        // In um, or in arcsec: nothing that would ask for attention.
+        const double value = 4.0 * share + std::sin(5.0 * share) + 0.5 * noise();
         text += std::to_string(run) + (direction > 0 ? ",+," : ",-,") +
                 fixed_text(printed(target[k], at), 3) + "," + fixed_text(value, 3) + "\n";
       }

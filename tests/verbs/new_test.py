@@ -100,6 +100,7 @@ class New(VerbTest):
     def test_refused_without_a_trace(self):
         bad = self.here("bad.csv")
         bad.write_text(readings().replace("111,", "1l1,", 1))
+        (self.site / "site.toml").write_text("")
         (self.folder / "campaign.toml").write_text('format = 1\n[campaign]\nid = "taken"\n')
         new = self.site / "new"
         for words, said in ((["--id", "Bad Id"], 'nearest: "bad-id"'), (["--id", "taken"], "wanted another"),
@@ -134,8 +135,8 @@ class Asked(VerbTest):
             until(b": ")
             seen = len(shown)
             os.write(terminal, answer.encode() + b"\n")
-            until(b"\n")
-            seen = len(shown)
+            until(b"\n")  # its echo; the next question may stand behind it already
+            seen = shown.index(b"\n", seen) + 1
         if end is not None:
             until(b": ")
             os.write(terminal, end)
