@@ -255,6 +255,7 @@ class Page {
   void finding(const Json& json, const std::string& measurement) {
     const Finding f = finding_of(json);
     const bool again = !told_.insert(measurement + "\n" + json.dump()).second;
+    if (again && !f.attention) return;
     const std::string of = f.measurement.empty() ? "" : f.measurement + ": ";
     out_ << "    " << (f.attention ? paint("attention", Colour::yellow) : std::string("info     "))
          << "  " << of << finding_text(templates_, "en", f, "title")

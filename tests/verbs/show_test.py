@@ -45,7 +45,7 @@ class Nights(VerbTest):
         self.out = self.site.parent / "out"
         text = manifest(effects=None, extra=INSTRUMENT)
         self.campaign(text.replace('kind = "linear"', 'kind = "linear"\nexpansion_um_per_m_K = 11.5\n'
-                                   'tolerance_um = { A = 0.001, B = 100.0, "Ps_max" = 5.0 }', 1),
+                                   'tolerance_um = { A = 0.001, B = 100.0, F = 5.0 }', 1),
                       x=readings(backlash=-6.0, drift=9.0))
 
     def night(self, *words, expect=0):
@@ -75,7 +75,7 @@ class Show(Nights):
         self.assertRegex(shown, r"^c  attention\n")
         self.assertRegex(shown, r"(?m)^ +A +[\d.]+ +[\d.]+ +um +0\.001 +does not conform$")
         self.assertRegex(shown, r"(?m)^ +B +[\d.]+ +[\d.]+ +um +100 +conforms$")
-        self.assertIn("axis X, Ps_max: its uncertainty is not known", shown)
+        self.assertIn("axis X, F: there is no value", shown)
         found = [f for a in results["analyses"] for f in a["findings"]]
         self.assertTrue(any(f["id"].startswith("drift.") for f in found))
         as_one = " ".join(shown.split())
