@@ -49,7 +49,7 @@ void append_hex(std::string& out, std::uint32_t value) {
 
 /// By the number that a glyph has in a document: its number in the font, or none.
 using Numbers = std::vector<int>;
-constexpr int none = -1;
+constexpr int no_glyph = -1;
 
 /// Glyphs back to characters. The minus sign is given back as "-", so that numbers copied out of a
 /// report are numbers.
@@ -62,7 +62,8 @@ std::string to_unicode(const Font& font, const Numbers& numbers) {
   if (minus < font.glyphs.size() && font.glyphs[minus] != 0) character[font.glyphs[minus]] = u'-';
   std::vector<std::string> lines;
   for (std::size_t n = 1; n < numbers.size(); ++n) {
-    const std::uint32_t c = numbers[n] == none ? 0U : character[static_cast<unsigned>(numbers[n])];
+    const std::uint32_t c =
+        numbers[n] == no_glyph ? 0U : character[static_cast<unsigned>(numbers[n])];
     if (c == 0) continue;
     std::string line = "<";
     append_hex(line, static_cast<std::uint32_t>(n));
@@ -90,13 +91,13 @@ std::string to_unicode(const Font& font, const Numbers& numbers) {
 std::string widths_array(const std::vector<std::uint16_t>& advance, const Numbers& numbers) {
   std::string out = "[";
   for (std::size_t n = 0; n < numbers.size(); ++n) {
-    if (numbers[n] == none) continue;
-    if (n == 0 || numbers[n - 1] == none) {
+    if (numbers[n] == no_glyph) continue;
+    if (n == 0 || numbers[n - 1] == no_glyph) {
       append_int(out, static_cast<long long>(n));
       out += " [";
     }
     append_int(out, advance[static_cast<unsigned>(numbers[n])]);
-    out += n + 1 < numbers.size() && numbers[n + 1] != none ? ' ' : ']';
+    out += n + 1 < numbers.size() && numbers[n + 1] != no_glyph ? ' ' : ']';
   }
   return out + "]";
 }
@@ -134,7 +135,7 @@ void compress(Font& font) {
   Numbers all, common;
   for (std::size_t g = 0; g < font.common.size(); ++g) {
     all.push_back(static_cast<int>(g));
-    common.push_back(font.common[g] != 0 ? static_cast<int>(g) : none);
+    common.push_back(font.common[g] != 0 ? static_cast<int>(g) : no_glyph);
   }
   font.with_all = embedded(font, font.bytes, all, level);
   const std::string subset = font_subset(font.bytes, font.common);

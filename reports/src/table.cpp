@@ -177,8 +177,8 @@ class TableSetter {
       if (r % 2 == 1) canvas.filled(0, -height, width_, height, style.shade);
       double x = 0;
       for (std::size_t c = 0; c < cells.size(); ++c) {
-        const Level level = table_.rows[r][c].level;
-        canvas.fill_colour(level == Level::info ? style.text : colour_of(style, level));
+        const Level status = table_.rows[r][c].level;
+        canvas.fill_colour(status == Level::info ? style.text : colour_of(style, status));
         for (std::size_t i = first; i < std::min(first + each, cells[c].lines.size()); ++i)
           cells[c].draw(canvas, i, x + pad, -above - leading * static_cast<double>(i - first),
                         widths_[c] - 2 * pad, table_.columns[c].number ? 1.0 : 0.0);

@@ -19,18 +19,18 @@ struct Name {
   Dimension dimension;
 };
 
-constexpr Dimension none{0, 0, 0}, length{1, 0, 0}, duration{0, 1, 0}, temperature{0, 0, 1};
+constexpr Dimension none{0, 0, 0}, distance{1, 0, 0}, duration{0, 1, 0}, temperature{0, 0, 1};
 
 /// In the order of Expression::Variable; on a rotary axis p and theta are angles.
-constexpr std::array<Name, Expression::variables> readings{{{"p", 0.0, length},
-                                                            {"theta", 0.0, length},
+constexpr std::array<Name, Expression::variables> readings{{{"p", 0.0, distance},
+                                                            {"theta", 0.0, distance},
                                                             {"d", 0.0, none},
                                                             {"t", 0.0, duration},
                                                             {"K", 0.0, temperature},
                                                             {"run", 0.0, none}}};
-constexpr std::array<Name, 9> units{{{"m", 1.0, length},
-                                     {"mm", 1e-3, length},
-                                     {"um", 1e-6, length},
+constexpr std::array<Name, 9> units{{{"m", 1.0, distance},
+                                     {"mm", 1e-3, distance},
+                                     {"um", 1e-6, distance},
                                      {"s", 1.0, duration},
                                      {"h", 3600.0, duration},
                                      {"kelvin", 1.0, temperature},
@@ -88,7 +88,7 @@ Dimension dimension_of(Quantity quantity) {
   switch (quantity) {
     case Quantity::length:
     case Quantity::deviation:
-      return length;
+      return distance;
     case Quantity::time:
       return duration;
     case Quantity::temperature:
@@ -131,7 +131,7 @@ Expected<Expression> Expression::parse(const Formula& formula, const Axis& axis)
     own.dimensions.push_back(dimension);
   };
   for (const Name& v : readings)
-    add(v.name, v.si, axis.rotary && v.dimension == length ? none : v.dimension);
+    add(v.name, v.si, axis.rotary && v.dimension == distance ? none : v.dimension);
   for (const Name& u : units) add(u.name, u.si, u.dimension);
   for (const Formula::Parameter& p : formula.parameters) {
     if (std::find(names.begin(), names.end(), p.name) != names.end())

@@ -9,10 +9,10 @@ namespace Eigen {
 
 extern template class ColPivHouseholderQR<MatrixXd>;
 extern template class HouseholderQR<MatrixXd>;
-extern template class HouseholderQR<Ref<MatrixXd>>;
 extern template class JacobiSVD<MatrixXd>;
 extern template class LDLT<MatrixXd>;
 extern template class LLT<MatrixXd>;
+extern template class PartialPivLU<MatrixXd>;
 extern template class SelfAdjointEigenSolver<MatrixXd>;
 
 }  // namespace Eigen

@@ -5,10 +5,10 @@ namespace Eigen {
 
 template class ColPivHouseholderQR<MatrixXd>;
 template class HouseholderQR<MatrixXd>;
-template class HouseholderQR<Ref<MatrixXd>>;
 template class JacobiSVD<MatrixXd>;
 template class LDLT<MatrixXd>;
 template class LLT<MatrixXd>;
+template class PartialPivLU<MatrixXd>;
 template class SelfAdjointEigenSolver<MatrixXd>;
 
 }  // namespace Eigen

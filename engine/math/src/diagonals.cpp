@@ -18,9 +18,9 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Row = Eigen::RowVectorXd;
 
-constexpr std::size_t most_steps = 1000;
+constexpr std::size_t most_stops = 1000;
 constexpr double rank_threshold = 1e-10;  ///< of the largest column; columns are lengths
-constexpr double limit = 4.0;             ///< closure, in standard uncertainties
+constexpr double closure_limit = 4.0;     ///< closure, in standard uncertainties
 
 Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
@@ -69,8 +69,8 @@ Expected<void> check_positioning(const DiagonalReadings& r, const GridLine& line
 
 Expected<void> check(const DiagonalReadings& r) {
   if (!(r.Lx > 0.0 && r.Ly > 0.0)) return fail("wanted lengths above 0");
-  if (r.n < 3 || r.n > most_steps)
-    return fail("wanted 3 to " + std::to_string(most_steps) + " steps, found " +
+  if (r.n < 3 || r.n > most_stops)
+    return fail("wanted 3 to " + std::to_string(most_stops) + " steps, found " +
                 std::to_string(r.n));
   if (r.D1.mean.size() != r.n + 1 || r.D2.mean.size() != r.n + 1)
     return fail("wanted " + std::to_string(r.n + 1) + " stops on each diagonal");
@@ -357,7 +357,7 @@ Closure closure_of(const System& system, std::size_t n, double factor) {
   const auto variance = [&](const Row& h) { return factor * factor * h.dot(h * C); };
   Closure c;
   c.S_n = S(n) * system.y();
-  c.S_n_limit = limit * std::sqrt(variance(S(n)));
+  c.S_n_limit = closure_limit * std::sqrt(variance(S(n)));
   double sum = 0.0, expected = 0.0, points = 0.0;
   for (std::size_t i = 1; i < n; ++i) {
     if (2 * i == n) continue;  // an odd curve is 0 there
@@ -368,7 +368,7 @@ Closure closure_of(const System& system, std::size_t n, double factor) {
     points += 1.0;
   }
   c.S_odd = std::sqrt(sum / points);
-  c.S_odd_limit = limit * std::sqrt(expected / points);
+  c.S_odd_limit = closure_limit * std::sqrt(expected / points);
   return c;
 }
 

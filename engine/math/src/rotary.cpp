@@ -184,18 +184,18 @@ std::optional<Sense> sense_of(std::span<const BallCentre> centres, const Plane& 
 /// (u, v)_i = (a, b) + R(phi_i)(c, d) with the encoder's angles.
 Circle with_angles(std::span<const BallCentre> centres, const Plane& p, double sign) {
   using Matrix4d = Eigen::Matrix4d;
-  using Row = Eigen::Matrix<double, 2, 4>;
+  using TwoRows = Eigen::Matrix<double, 2, 4>;
   Matrix4d normal = Matrix4d::Zero();
   Eigen::Vector4d right = Eigen::Vector4d::Zero();
   const auto row = [&](std::size_t i) {
     const double cosine = std::cos(centres[i].angle), sine = sign * std::sin(centres[i].angle);
-    Row g;
+    TwoRows g;
     g << 1.0, 0.0, cosine, -sine, 0.0, 1.0, sine, cosine;
     return g;
   };
   for (std::size_t i = 0; i < centres.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    const Row g = row(i);
+    const TwoRows g = row(i);
     normal += p.weight[k] * g.transpose() * g;
     right += p.weight[k] * g.transpose() * p.flat.row(k).head<2>().transpose();
   }
@@ -210,7 +210,7 @@ Circle with_angles(std::span<const BallCentre> centres, const Plane& p, double s
   // Displacement by a unit of shear: half of (u, -v) and of (v, u) about the centre.
   Eigen::Matrix<double, 4, 2> spread = Eigen::Matrix<double, 4, 2>::Zero();
   for (std::size_t i = 0; i < centres.size(); ++i) {
-    const Row g = row(i);
+    const TwoRows g = row(i);
     const Vector2d d = g.rightCols<2>() * arm;
     Matrix2d moved;
     moved << d[0], d[1], -d[1], d[0];

@@ -50,10 +50,10 @@ Expected<XmlKeyPtr> key_of(EVP_PKEY* pkey) {
   return key;
 }
 
-xmlNode* add_template(xmlDoc* document, bool rsa) {
+xmlNode* add_template(xmlDoc* document, bool with_rsa) {
   xmlNode* signature = xmlSecTmplSignatureCreate(
       document, xmlSecTransformExclC14NId,
-      rsa ? xmlSecTransformRsaSha256Id : xmlSecTransformEcdsaSha256Id, nullptr);
+      with_rsa ? xmlSecTransformRsaSha256Id : xmlSecTransformEcdsaSha256Id, nullptr);
   if (signature == nullptr) return nullptr;
   xmlAddChild(xmlDocGetRootElement(document), signature);
   xmlNode* reference = xmlSecTmplSignatureAddReference(signature, xmlSecTransformSha256Id, nullptr,

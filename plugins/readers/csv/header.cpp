@@ -20,7 +20,7 @@ struct Known {
   bool position = false;
 };
 
-constexpr std::array<Known, 13> known = {{
+constexpr std::array<Known, 13> known_columns = {{
     {"run", Role::run},
     {"direction", Role::direction},
     {"target_mm", Role::target, Measures::length},
@@ -37,8 +37,9 @@ constexpr std::array<Known, 13> known = {{
 }};
 
 const Known* find(std::string_view name) {
-  const auto it = std::find_if(known.begin(), known.end(), [&](auto& k) { return k.name == name; });
-  return it == known.end() ? nullptr : &*it;
+  const auto it = std::find_if(known_columns.begin(), known_columns.end(),
+                               [&](auto& k) { return k.name == name; });
+  return it == known_columns.end() ? nullptr : &*it;
 }
 
 tl::unexpected<Error> fail_at(std::string_view column, std::string message) {
@@ -56,7 +57,7 @@ tl::unexpected<Error> unknown_column(std::string_view name, std::size_t number) 
     return fail("expected a header row with the names of the columns, found the number " +
                 shown(name));
   std::vector<std::string_view> names;
-  for (const Known& k : known) names.push_back(k.name);
+  for (const Known& k : known_columns) names.push_back(k.name);
   return fail_at(name, "unknown column " + shown(name) + "; did you mean \"" +
                            std::string(nearest(name, names)) + "\"?");
 }
