@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "nonio/sdk/format.h"
 
@@ -212,8 +213,11 @@ std::string example_readings(const Axis& axis) {
       for (int i = 0; i < targets; ++i) {
         const int k = direction > 0 ? i : targets - 1 - i;
         const double share = (target[k] - from) / (to - from);
-        // In um, or in arcsec: a slope, a wave, a constant reversal and noise.
-        const double value = 4.0 * share + std::sin(5.0 * share) - direction * 0.75 + 0.5 * noise();
+        // In um; or in arcsec, the same after a turn: nothing that would ask for attention.
+        const double turn = 2.0 * std::numbers::pi * share;
+        const double value =
+            (axis.rotary ? 2.0 * std::sin(2.0 * turn) : 4.0 * share + std::sin(turn)) +
+            0.5 * noise();
         text += std::to_string(run) + (direction > 0 ? ",+," : ",-,") +
                 fixed_text(printed(target[k], at), 3) + "," + fixed_text(value, 3) + "\n";
       }

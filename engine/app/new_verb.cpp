@@ -113,6 +113,12 @@ std::vector<std::string> split(const std::string& text) {
   return words;
 }
 
+bool is_date(const std::string& text) {
+  const std::string_view form = "0000-00-00";
+  return std::equal(text.begin(), text.end(), form.begin(), form.end(),
+                    [](char c, char f) { return f == '0' ? c >= '0' && c <= '9' : c == f; });
+}
+
 Expected<void> one_line(const char* option, const std::string& text) {
   for (const char c : text)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
@@ -235,6 +241,8 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
     if (auto done = one_line(option, *to); !done) return fail(done.error());
   }
   if (auto done = one_line("--control", c.control); !done) return fail(done.error());
+  if (!is_date(c.date))
+    return fail("--date: wanted a day such as 2026-11-03, found \"" + c.date + "\"");
   auto axes = axes_with_files(wish, ask);
   if (!axes) return fail(axes.error());
   c.axes = std::move(*axes);

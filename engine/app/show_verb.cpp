@@ -9,6 +9,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "colour.h"
 #include "nonio/host/campaign_reader.h"
@@ -117,7 +118,7 @@ class Page {
     for (const Json& e : results.at("errors")) error(e);
     std::vector<std::string> seen;
     for (const Json& a : results.at("analyses")) analysis(a, seen);
-    if (results.contains("conformity")) without_value(results.at("conformity"));
+    if (results.contains("conformity")) undecided(results.at("conformity"));
     if (results.contains("tables"))
       for (const Json& t : results.at("tables")) table(t);
     notes(results, "");
@@ -194,7 +195,7 @@ class Page {
     if (a.contains("series"))
       for (const auto& [series_name, s] : a.at("series").items()) series(series_name, s);
     if (a.contains("rows")) out_ << "    " << a.at("rows").size() << " rows, in results.json\n";
-    for (const Json& f : a.at("findings")) finding(f);
+    for (const Json& f : a.at("findings")) finding(f, measurement);
     notes(a, "  ");
   }
 
@@ -207,6 +208,12 @@ class Page {
     return fixed_text(value, std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, 9));
   }
 
+  static std::string shortest(double value) {
+    std::string text;
+    append_shortest(text, value);
+    return text;
+  }
+
   void values(const Json& all) {
     if (all.empty()) return;
     bool limits = false;
@@ -216,8 +223,9 @@ class Page {
       name_width = std::max(name_width, columns_of(name) + 1);
     }
     out_ << "    " << to_width("", name_width) << to_width("value", 12, true)
-         << to_width("U", 10, true) << "  " << to_width("unit", 10)
-         << (limits ? to_width("tolerance", 9, true) + "  decision" : "") << "\n";
+         << to_width("U", 10, true) << "  "
+         << (limits ? to_width("unit", 10) + to_width("tolerance", 9, true) + "  decision" : "unit")
+         << "\n";
     for (const auto& [name, v] : all.items()) {
       out_ << "    " << to_width(name, name_width) << to_width(number(v, "value"), 12, true)
            << to_width(number(v, "U"), 10, true) << "  ";
@@ -225,9 +233,8 @@ class Page {
       if (decision.empty())
         out_ << unit << "\n";
       else
-        out_ << to_width(unit, 10)
-             << to_width(short_text(v.at("tolerance").get<double>(), 4), 9, true) << "  "
-             << paint(decision, status_colour(decision)) << "\n";
+        out_ << to_width(unit, 10) << to_width(shortest(v.at("tolerance").get<double>()), 9, true)
+             << "  " << paint(decision, status_colour(decision)) << "\n";
     }
   }
 
@@ -244,11 +251,16 @@ class Page {
          << ", in results.json\n";
   }
 
-  void finding(const Json& json) {
+  /// Two analyses of one measurement may find the same.
+  void finding(const Json& json, const std::string& measurement) {
     const Finding f = finding_of(json);
+    const bool again = !told_.insert(measurement + "\n" + json.dump()).second;
+    if (again && !f.attention) return;
     const std::string of = f.measurement.empty() ? "" : f.measurement + ": ";
     out_ << "    " << (f.attention ? paint("attention", Colour::yellow) : std::string("info     "))
-         << "  " << of << finding_text(templates_, "en", f, "title") << "\n";
+         << "  " << of << finding_text(templates_, "en", f, "title")
+         << (again ? ": as above\n" : "\n");
+    if (again) return;
     if (const std::string says = finding_text(templates_, "en", f, "says"); !says.empty())
       wrapped("               ", says);
     if (const std::string advice = finding_text(templates_, "en", f, "advice"); !advice.empty())
@@ -261,15 +273,15 @@ class Page {
     for (const Json& note : of.at("notes")) wrapped(indent + "  ", note.get<std::string>());
   }
 
-  /// Tolerances that stand with no value above.
-  void without_value(const Json& all) {
+  void undecided(const Json& all) {
+    bool any = false;
     for (const Json& c : all) {
       if (c.value("decision", "") != "cannot be decided") continue;
+      if (!std::exchange(any, true)) heading("tolerances that cannot be decided");
       const std::string reason = c.value("reason", ""),
                         why = words(templates_, "en", "results." + reason);
       out_ << "  axis " << c.value("axis", "") << ", " << c.value("name", "") << ": "
-           << paint("cannot be decided", Colour::yellow) << ": " << (why.empty() ? reason : why)
-           << "\n";
+           << (why.empty() ? reason : why) << "\n";
     }
   }
 
@@ -282,7 +294,7 @@ class Page {
              << fixed_text(p.at("predicted").get<double>(), 3) << " " << p.value("unit", "")
              << " predicted\n";
     if (t.contains("findings"))
-      for (const Json& f : t.at("findings")) finding(f);
+      for (const Json& f : t.at("findings")) finding(f, "");
     notes(t, "  ");
   }
 
@@ -296,6 +308,7 @@ class Page {
   const Templates& templates_;
   std::ostream& out_;
   std::size_t width_ = 80;
+  std::set<std::string> told_{};
 };
 
 int show(const ShowWish& wish, const Common& common) {

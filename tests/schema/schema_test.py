@@ -18,8 +18,8 @@ import whole
 
 NONIO, READS = os.environ["NONIO"], os.environ["NONIO_SCHEMA_READS"]
 PROJECT = pathlib.Path(__file__).resolve().parents[2]
-WRONG = [7, -7, 0, 2.5, 1e12, True, "some text", "X", "2025-01-02", "", "a\tb", datetime.date(2025, 1, 2), datetime.time(12, 0), [], [1, 2],
-         ["a"], {}, {"a": 1}, {"X": 1}, [{"a": 1}], [[1]], [1, "a"]]
+WRONG = [7, -7, 0, 2.5, 1e12, True, "some text", "X", "2025-01-02", "", "a\tb", datetime.date(2025, 1, 2),
+         datetime.time(12, 0), [], [1, 2], ["a"], {}, {"a": 1}, {"X": 1}, [{"a": 1}], [[1]], [1, "a"]]
 # In JSON, and for taplo, these are texts: the schema cannot tell them from a text that is wanted.
 DAYS = [f"= {toml.written(value)}" for value in WRONG if isinstance(value, (datetime.date, datetime.time))]
 # Where the schema accepts what the program refuses: (place, why).

@@ -13,7 +13,7 @@ from verbs import NONIO, VerbTest, readings
 
 class New(VerbTest):
     def run_site(self, site):
-        out = site.parent / "out"
+        out = self.here("out")
         self.nonio("run", site, "--out", out, "--quiet")
         summary = json.loads((out / "summary.json").read_text())
         return {c["id"]: c["status"] for c in summary["done"]}, out
@@ -52,7 +52,7 @@ class New(VerbTest):
         self.assertEqual(results["errors"], [])
 
     def test_an_example_says_so_everywhere(self):
-        folder = self.here("rossi")
+        folder = self.here("made", "rossi")
         self.nonio("new", "campaign", folder, "--customer", "Rossi", "--machine", "FP 12")
         done, out = self.run_site(folder.parent)
         results = json.loads((out / "rossi" / "results.json").read_text())
@@ -65,8 +65,8 @@ class New(VerbTest):
 
     def test_readings_of_ones_own(self):
         source = self.here("laser.csv")
-        source.write_text(readings())
-        folder = self.here("own")
+        source.write_text(readings(scale=30.0))
+        folder = self.here("made", "own")
         self.nonio("new", "campaign", folder, "--axis", "X=0:400", "--file", f"X={source}", "--customer", "Rossi",
                    "--instrument", "Laser")
         self.assertEqual((folder / "laser.csv").read_bytes(), source.read_bytes())
@@ -74,7 +74,7 @@ class New(VerbTest):
         self.assertEqual(self.run_site(folder.parent)[0]["own"], "ok")
 
     def test_several_axes_and_a_rotary_one(self):
-        folder = self.here("many")
+        folder = self.here("made", "many")
         self.nonio("new", "campaign", folder, "--axis", "X=0:800", "--axis", "Y=-300:300", "--axis", "C=0:360")
         done, out = self.run_site(folder.parent)
         self.assertEqual(done["many"], "ok")
@@ -100,6 +100,7 @@ class New(VerbTest):
     def test_refused_without_a_trace(self):
         bad = self.here("bad.csv")
         bad.write_text(readings().replace("111,", "1l1,", 1))
+        (self.site / "site.toml").write_text("")
         (self.folder / "campaign.toml").write_text('format = 1\n[campaign]\nid = "taken"\n')
         new = self.site / "new"
         for words, said in ((["--id", "Bad Id"], 'nearest: "bad-id"'), (["--id", "taken"], "wanted another"),
@@ -134,8 +135,8 @@ class Asked(VerbTest):
             until(b": ")
             seen = len(shown)
             os.write(terminal, answer.encode() + b"\n")
-            until(b"\n")
-            seen = len(shown)
+            until(b"\n")  # its echo; the next question may stand behind it already
+            seen = shown.index(b"\n", seen) + 1
         if end is not None:
             until(b": ")
             os.write(terminal, end)

@@ -243,6 +243,7 @@ class CampaignRun {
 
   /// results.json speaks English; documents look the words up in their own language.
   void fill_advice() {
+    word(out_.results.notes);
     for (Results::Analysed& a : out_.results.analyses)
       for (Finding& f : a.evaluation.findings)
         f.advice = finding_text(context_.templates, "en", f, "advice");
