@@ -5,7 +5,7 @@ import re
 
 COMMANDS = ("console", "sh")
 DATA = ("cmake", "cpp", "csv", "json", "text", "toml")
-FENCE = re.compile(r"^( *)```(\S*)$")
+FENCE = re.compile(r"^( *)(?:```|~~~)(\S*)$")
 # Who reads the page does not see these.
 NOTE = re.compile(r"^ *<!-- (?:(not run): (\S.*)|(file): (\S+)|(here): (\S+) is (\S+)) -->$")
 WANTED_NOTE = "wanted <!-- not run: REASON -->, <!-- file: PATH --> or <!-- here: PATH is SOURCE -->"
@@ -55,21 +55,28 @@ def parts_of(text):
         elif note and note[5]:
             parts.append(Note(number, note[6], note[7]))
         elif note:
+            if pending:
+                faults.append(misplaced(pending))
             pending = (note[1] or note[3], note[2] or note[4], number)
         elif line.lstrip().startswith("<!--"):
             faults.append((number, f"{line.strip()}: {WANTED_NOTE}"))
         elif line.strip():
             if pending:
-                faults.append((pending[2], f'"{pending[0]}: {pending[1]}" must stand just before a block'))
+                faults.append(misplaced(pending))
                 pending = None
-            if line.startswith("    ") and (not before.strip() or before.startswith("#") or FENCE.match(before)):
+            if line.startswith(("    ", "\t")) and (not before.strip() or before.startswith("#") or FENCE.match(before)):
                 faults.append((number, "indented block: put it between ```sh, ```console or ```text and ```"))
         before = line
     if block is not None:
         faults.append((block.line, "the block has no end"))
     if pending:
-        faults.append((pending[2], f'"{pending[0]}: {pending[1]}" must stand just before a block'))
+        faults.append(misplaced(pending))
     return parts, faults
+
+
+def misplaced(pending):
+    kind, note, line = pending
+    return line, f'"{kind}: {note}" must stand just before a block'
 
 
 def block_faults(block):

@@ -37,13 +37,11 @@ FIGURE = re.compile(r"(?<![\w.])\d+\.\d+|\b\d+(?= %)")
 class Terminal:
     """Runs commands; variables that are exported and the folder stay as the last command left them."""
 
-    def __init__(self, folder, programs, prefix):
+    def __init__(self, folder, programs):
         self.folder = folder
         self.state = folder.parent / "state"
         self.environment = {"PATH": f"{programs}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C",
                             "TMPDIR": str(folder.parent), "CMAKE_GENERATOR": "Ninja"}
-        if prefix:
-            self.environment["PREFIX"] = str(prefix)
         for name in ("CXX", "CMAKE_CXX_COMPILER_LAUNCHER"):
             if os.environ.get(name):
                 self.environment[name] = os.environ[name]
@@ -130,7 +128,7 @@ def run(path, options):
     file = PROJECT / path
     text = file.read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory(prefix="nonio-docs-") as name:
-        prefix, folder = None, pathlib.Path(name) / "here"
+        folder = pathlib.Path(name) / "here"
         folder.mkdir()
         if re.search(r"^ *```(console|sh)$", text, re.MULTILINE):
             shutil.copytree(PROJECT / "samples", folder / "samples")
@@ -139,7 +137,7 @@ def run(path, options):
             prefix = pathlib.Path(name) / "prefix"
             subprocess.run(["cmake", "--install", options.install, "--prefix", prefix], check=True, stdout=subprocess.DEVNULL)
             programs = prefix / "bin"
-        done = Run(path, text, Terminal(folder, programs, prefix))
+        done = Run(path, text, Terminal(folder, programs))
         done.all()
         if options.keep:
             shutil.copytree(folder, options.keep)

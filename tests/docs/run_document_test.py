@@ -14,7 +14,7 @@ def fails(*lines):
     with tempfile.TemporaryDirectory(prefix="nonio-runner-") as name, contextlib.redirect_stdout(io.StringIO()):
         folder = pathlib.Path(name) / "here"
         folder.mkdir()
-        done = run_document.Run("it.md", "\n".join(lines) + "\n", run_document.Terminal(folder, folder, None))
+        done = run_document.Run("it.md", "\n".join(lines) + "\n", run_document.Terminal(folder, folder))
         done.all()
         changed = ["changed"] if done.lines != list(lines) else []
         return "\n".join(done.failures + changed)
@@ -51,6 +51,7 @@ class RunDocument(unittest.TestCase):
     def test_what_is_not_run_says_so_just_before(self):
         self.assertEqual(fails("<!-- not run: no time -->", "```sh", "false", "```"), "")
         self.assertIn("it.md:1", fails("<!-- not run: no time -->", "text", "```sh", "true", "```"))
+        self.assertIn("it.md:1", fails("<!-- not run: no time -->", "<!-- file: a -->", "```toml", "a = 1", "```"))
         for wrong in ("<!-- not-run: no time -->", "<!-- not run -->", "<!-- here: a -->", "<!--"):
             self.assertIn("wanted <!--", fails(wrong, "```sh", "true", "```"), wrong)
         self.assertIn("there is no command", fails("<!-- not run: no time -->", "```toml", "a = 1", "```"))
@@ -60,8 +61,9 @@ class RunDocument(unittest.TestCase):
                         "A=1 python3 x.py", "export A=1", "build/dev/bin/nonio x", "./build-and-run"):
             self.assertIn("looks like a command", fails("```text", "other", command, "```"), command)
             self.assertIn("indented block", fails("text", "", "    " + command), command)
+            self.assertIn("indented block", fails("text", "", "\t" + command), command)
             self.assertIn('block of ""', fails("```", command, "```"), command)
-            self.assertIn('block of "bash"', fails("```bash", command, "```"), command)
+            self.assertIn('block of "bash"', fails("~~~bash", command, "~~~"), command)
         self.assertIn("there is no command", fails("```sh", "# only a comment", "```"))
         self.assertIn("there is no command", fails("```console", "nonio run", "```"))
         self.assertIn("no end", fails("```sh", "true"))

@@ -93,7 +93,7 @@ class Space(NightTest):
         refused("one-x", "diagonals.yaw-needed", "X1")
         text = (self.site / "one-id" / "campaign.toml").read_text("utf-8")
         second = [i + 1 for i, row in enumerate(text.split("\n")) if row.startswith("[[measurement]]")][6]
-        self.expect_error("one-id", "campaign.toml", second, "D1 00", "twice")
+        self.expect_error("one-id", "campaign.toml", second + 1, "D1 00", "twice")  # its id
         self.expect_error("arcsec", d1, 2, "wrong unit", "deviation_um")
         self.expect_error("beyond", d1, 33, "15500.000")
 

@@ -160,7 +160,7 @@ std::string Plugins::digest() const {
 
 bool Plugins::accept(std::string_view kind, const Info& info) {
   const std::string name = std::string(kind) + " " + info.name;
-  const fs::path& path = files_.back().path;
+  const fs::path path = files_.empty() ? fs::path() : files_.back().path;  // none: added by hand
   for (const auto& [known, where] : names_)
     if (known == name) {
       conflicts_.push_back("two plugins are the " + name + ": " + where.string() + " and " +
@@ -168,7 +168,7 @@ bool Plugins::accept(std::string_view kind, const Info& info) {
       return false;
     }
   names_.emplace_back(name, path);
-  files_.back().brought.push_back(name + " " + info.version);
+  if (!files_.empty()) files_.back().brought.push_back(name + " " + info.version);
   return true;
 }
 

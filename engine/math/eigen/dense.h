@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 
 /// Eigen with its dense solvers compiled once, in src/dense.cpp: each costs a source that compiles
-/// it itself 7 to 17 s. Use them for MatrixXd, even where a size is known. Not installed.
+/// it itself 7 to 17 s.. Not installed.
 namespace Eigen {
 
 extern template class ColPivHouseholderQR<MatrixXd>;

@@ -69,11 +69,9 @@ std::optional<Plane> plane_of(std::span<const BallCentre> centres) {
   plane.origin = first + mean;
   const Points weighted = plane.weight.cwiseSqrt().asDiagonal() * points;
   // R of the QR decomposition has the singular values and right vectors of the whole.
-  const Matrix3d small = Eigen::HouseholderQR<Eigen::MatrixXd>(weighted)
-                             .matrixQR()
-                             .topRows(3)
-                             .triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(small, Eigen::ComputeFullV);
+  const Matrix3d small =
+      Eigen::HouseholderQR<Points>(weighted).matrixQR().topRows<3>().triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Matrix3d> svd(small, Eigen::ComputeFullV);
   const auto& size = svd.singularValues();
   if (!(size[1] > thinnest * size[0]) || !(size[0] > 1e-12 * (1.0 + plane.origin.norm())))
     return {};
@@ -98,7 +96,7 @@ std::optional<Circle> kasa(const Plane& p) {
   a << 2.0 * p.flat.col(0), 2.0 * p.flat.col(1), Eigen::VectorXd::Ones(p.flat.rows());
   const Eigen::VectorXd b = p.flat.col(0).cwiseAbs2() + p.flat.col(1).cwiseAbs2();
   const Eigen::VectorXd root = p.weight.cwiseSqrt();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() * a);
+  const Eigen::ColPivHouseholderQR<Points> qr(root.asDiagonal() * a);
   if (qr.rank() < 3) return {};
   const Vector3d x = qr.solve(root.cwiseProduct(b));
   Circle c;
@@ -109,7 +107,7 @@ std::optional<Circle> kasa(const Plane& p) {
 }
 
 double largest_singular(const Matrix2d& m) {
-  return Eigen::JacobiSVD<Eigen::MatrixXd>(m).singularValues()[0];
+  return Eigen::JacobiSVD<Matrix2d>(m).singularValues()[0];
 }
 
 std::optional<Circle> geometric(const Plane& p) {

@@ -167,8 +167,9 @@ std::string data_of(const Source& source, const Kept& kept) {
   out.raw("run", column(known(fit.run, fit.size()), rows));
   out.raw("direction", column(known(fit.direction, fit.size()), rows));
   out.raw("target", column(fit.target, rows, across));
-  out.raw("time", column(fit.time, rows,
-                         source.pictures[static_cast<std::size_t>(ResidualPlot::time)].x_per_si, first));
+  out.raw("time",
+          column(fit.time, rows,
+                 source.pictures[static_cast<std::size_t>(ResidualPlot::time)].x_per_si, first));
   out.raw("temperature", column(fit.temperature, rows));
   out.raw("deviation", column(fit.deviation, rows, per_si));
   out.raw("residual", column(fit.residual, rows, per_si));
