@@ -3,6 +3,7 @@
 # Packs what the build tree has, and uses the packages as their users would, in a fresh Debian 12: the image of the
 # Containerfile, a night, a plugin of one's own, purge. Status 77: it cannot be done here, for the reason that it says.
 set -euo pipefail
+exec < /dev/null
 cpack=$1 build=$2 source=$3
 here=$(dirname "$0")
 store=$build/package-test  # what is slow to get stays here: a fresh Debian, and the archives of other packages
@@ -139,12 +140,13 @@ fi
 
 # Purge leaves what a user made, and nothing else.
 quietly systemctl --root="$root" enable nonio.timer
-quietly in_root "$root" sh -ec 'apt-get purge -y libnonio-dev nonio; apt-get autoremove -y --purge'
+cp "$root/var/lib/dpkg/info/nonio.postrm" "$root/tmp/postrm"
+quietly in_root "$root" apt-get purge -y libnonio-dev nonio
 [ -s "$root/srv/nonio/out/summary.txt" ] || fail "purge took the results"
 grep -q 'both stay' "$work/said.log" || fail "purge does not say that the user stays"
 grep -q '^nonio:' "$root/etc/passwd" || fail "purge took the user whose results stay"
 rm -r "$root/srv/nonio"
-quietly in_root "$root" sh -ec 'apt-get install -y --no-install-recommends /tmp/nonio_*.deb; apt-get purge -y nonio; apt-get autoremove -y --purge'
+quietly in_root "$root" sh -ec 'sh /tmp/postrm purge; apt-get autoremove -y --purge'
 rm "$root/etc/dpkg/dpkg.cfg.d/test" "$root/etc/apt/apt.conf.d/test"
 files "$root" > "$work/files-after"
 diff "$work/files-before" "$work/files-after" || fail "purge left that (>) or took that (<)"
