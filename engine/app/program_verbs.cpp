@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "nonio/sdk/plugin.h"
 #include "verbs.h"
 
 namespace nonio::app {

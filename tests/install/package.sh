@@ -15,6 +15,7 @@ fail() { echo "package.sh: $1"; exit 1; }
 step() { printf '%5d s  %s\n' "$SECONDS" "$1"; }
 quietly() { "$@" > "$work/said.log" 2>&1 || { local s=$?; cat "$work/said.log"; fail "status $s of $*"; }; }
 
+[ -n "${NONIO_TEST_PACKAGES:-}" ] || skip "it takes minutes and makes a whole Debian; NONIO_TEST_PACKAGES=1 asks for it"
 [ "$(id -u)" = 0 ] || skip "it makes a root file system, which needs root"
 for program in buildah mmdebstrap lintian man; do
   [ -n "$(type -P $program)" ] || skip "$program is missing (scripts/install-dependencies --tests)"
