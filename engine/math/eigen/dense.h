@@ -16,3 +16,10 @@ extern template class PartialPivLU<MatrixXd>;
 extern template class SelfAdjointEigenSolver<MatrixXd>;
 
 }  // namespace Eigen
+
+namespace nonio::math {
+
+/// A count or position as Eigen wants it.
+inline Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+}  // namespace nonio::math

@@ -120,4 +120,11 @@ std::size_t AxisTest::most_approaches() const {
   return most;
 }
 
+std::vector<double> deviations(std::span<const AxisTest::Reading> readings) {
+  std::vector<double> x;
+  x.reserve(readings.size());
+  for (const auto& r : readings) x.push_back(r.deviation);
+  return x;
+}
+
 }  // namespace nonio::math

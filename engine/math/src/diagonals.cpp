@@ -22,8 +22,6 @@ constexpr std::size_t most_stops = 1000;
 constexpr double rank_threshold = 1e-10;  ///< of the largest column; columns are lengths
 constexpr double closure_limit = 4.0;     ///< closure, in standard uncertainties
 
-Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
-
 Expected<void> check_curve(const MeanCurve& curve, std::size_t length, const std::string& what) {
   if (curve.mean.size() != length)
     return fail(what + ": wanted " + std::to_string(length) + " means, found " +

@@ -45,13 +45,6 @@ class Extent {
   double high_ = -std::numeric_limits<double>::infinity();
 };
 
-std::vector<double> deviations(std::span<const AxisTest::Reading> readings) {
-  std::vector<double> x;
-  x.reserve(readings.size());
-  for (const auto& r : readings) x.push_back(r.deviation);
-  return x;
-}
-
 Iso230Point evaluate_target(const AxisTest& test, std::size_t i, double k) {
   const std::vector<double> plus = deviations(test.plus(i)), minus = deviations(test.minus(i));
   Iso230Point p{};

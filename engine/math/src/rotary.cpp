@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr double largest = 1e6;       // m; beyond it a micrometre has no digits
+constexpr double largest_size = 1e6;  // m; beyond it a micrometre has no digits
 constexpr double thinnest = 1e-6;     // second to first singular value: still a plane
 constexpr double same_angle = 1e-6;   // rad
 constexpr double worst_follow = 0.1;  // rms of encoder against circle, rad
@@ -30,7 +30,8 @@ std::optional<RotaryRefusal> bad_input(std::span<const BallCentre> centres) {
   std::vector<double> angles;
   for (const BallCentre& c : centres) {
     const double size = std::max({std::fabs(c.at[0]), std::fabs(c.at[1]), std::fabs(c.at[2])});
-    if (!(size <= largest) || !std::isfinite(c.angle) || std::isnan(c.at[0] + c.at[1] + c.at[2]))
+    if (!(size <= largest_size) || !std::isfinite(c.angle) ||
+        std::isnan(c.at[0] + c.at[1] + c.at[2]))
       return RotaryRefusal::not_finite;
     if (!(c.weight > 0.0) || !std::isfinite(c.weight)) return RotaryRefusal::weight;
     angles.push_back(c.angle - full_turn * std::floor(c.angle / full_turn));
@@ -137,7 +138,7 @@ std::optional<Circle> geometric(const Plane& p) {
     const Vector3d delta = lu.solve(right);
     c->centre += delta.head<2>();
     c->radius += delta[2];
-    if (!(c->radius > 0.0) || !(c->radius < largest)) return {};
+    if (!(c->radius > 0.0) || !(c->radius < largest_size)) return {};
     if (!(delta.cwiseAbs().maxCoeff() > 1e-11 * c->radius)) {
       const Matrix3d inverse = lu.inverse();
       c->cofactor = inverse.topLeftCorner<2, 2>();

@@ -15,9 +15,9 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Index = Eigen::Index;
 
-constexpr double negligible = 1e-10;  // an eigenvalue beside the largest: not determined
-constexpr double unmoved = 1e-6;      // a part of a unit vector
-constexpr int corrections = 2;        // of second order
+constexpr double undetermined = 1e-10;  // an eigenvalue beside the largest: not determined
+constexpr double unmoved = 1e-6;        // a part of a unit vector
+constexpr int corrections = 2;          // of second order
 
 /// Unit vectors across u.
 std::array<Vector3d, 2> across(const Vector3d& u) {
@@ -142,7 +142,7 @@ Factor factor(const Design& design) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(design.A.transpose() * design.A);
   const VectorXd& values = eigen.eigenvalues();
   const Index size = values.size();
-  const double least = negligible * values[size - 1];
+  const double least = undetermined * values[size - 1];
   Index open = 0;
   while (open < size && values[open] <= least) ++open;
   const auto V = eigen.eigenvectors().rightCols(size - open);

@@ -9,8 +9,6 @@ namespace {
 
 using Index = Eigen::Index;
 
-Index at(std::size_t i) { return static_cast<Index>(i); }
-
 /// Takes the line away from n + 1 values of which the first is 0, as a matrix on the other n.
 Eigen::MatrixXd without_line(std::size_t n, const Eigen::RowVectorXd& slope, bool centred) {
   const Index m = at(n) + 1;

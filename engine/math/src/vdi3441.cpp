@@ -40,12 +40,6 @@ double deviation_of_side(const std::vector<double>& x, StandardDeviation how) {
   return (*high - *low) / d_n[x.size()];
 }
 
-std::vector<double> deviations(std::span<const AxisTest::Reading> readings) {
-  std::vector<double> x;
-  for (const auto& r : readings) x.push_back(r.deviation);
-  return x;
-}
-
 double largest(const std::vector<double>& x) {
   double out = x.empty() ? none : x.front();
   for (const double v : x) out = std::isnan(v) || std::isnan(out) ? none : std::max(out, v);

@@ -54,4 +54,7 @@ class AxisTest {
   bool has_plus_ = false, has_minus_ = false;
 };
 
+/// Deviations of the readings, m or rad, in their order.
+std::vector<double> deviations(std::span<const AxisTest::Reading>);
+
 }  // namespace nonio::math
