@@ -14,7 +14,8 @@ using host::RegisterEntry;
 namespace {
 
 struct CertificateWish {
-  std::string site, out, withdraw, why;
+  std::string site, out, withdraw, why, by;
+  bool audit = false;
 };
 
 Json to_json(const RegisterEntry& e) {
@@ -40,13 +41,39 @@ int refuse(const Error& error) {
   return exit_usage;
 }
 
+int audit(const CertificateWish& wanted, const host::Numbering& numbering, const Common& common) {
+  const auto found = host::audit(wanted.site, numbering);
+  if (!found) return refuse(found.error());
+  const host::Audit& a = *found;
+  if (common.json) {
+    std::cout
+        << Json{{"schema", "nonio-audit/1"}, {"sound", a.wrong.empty()},       {"register", a.id},
+                {"entries", a.entries},      {"certificates", a.certificates}, {"files", a.files},
+                {"last_at", a.last_at},      {"last_sha256", a.last_sha256},   {"wrong", a.wrong}}
+               .dump(1, ' ', false, Json::error_handler_t::replace)
+        << "\n";
+  } else {
+    for (const std::string& what : a.wrong) std::cout << "WRONG: " << what << "\n";
+    std::cout << "register " << a.id << ": " << a.entries << " entries, " << a.certificates
+              << " certificates, " << a.files << " files\n"
+              << "last entry " << a.last_at << ", SHA-256 " << a.last_sha256 << "\n"
+              << (a.wrong.empty()
+                      ? "nothing was changed, nothing was taken out before the last entry"
+                      : "this is not the register as it was written")
+              << "\n";
+  }
+  return a.wrong.empty() ? exit_done : exit_failed;
+}
+
 int certificates(const CertificateWish& wanted, const Common& common) {
   if (wanted.withdraw.empty() != wanted.why.empty())
     return refuse(Error{"--withdraw NUMBER and --why TEXT go together"});
   const auto numbering = host::numbering_of(wanted.site);
   if (!numbering) return refuse(numbering.error());
+  if (wanted.audit) return audit(wanted, *numbering, common);
   if (!wanted.withdraw.empty()) {
-    const auto done = host::withdraw(wanted.site, *numbering, wanted.withdraw, wanted.why);
+    const auto done =
+        host::withdraw(wanted.site, *numbering, wanted.withdraw, wanted.why, wanted.by);
     if (!done) return refuse(done.error());
   }
   const auto entries = host::Register::entries(wanted.site, *numbering);
@@ -82,9 +109,13 @@ Verb certificates_verb(Common& common) {
                   "Write the files of all issued numbers into this folder, as they were issued:\n"
                   "NUMBER.pdf and NUMBER-dcc.xml"}),
            {"--withdraw", &wanted->withdraw,
-            "This number is not in force any more; the next run issues the campaign's\n"
-            "certificate anew, under a new number that names this one"},
-           {"--why", &wanted->why, "Why it is withdrawn: stays in the register"}},
+            "This number is not in force any more; the next run makes a draft of the campaign's\n"
+            "certificate, which gets a new number and names this one and the reason"},
+           {"--why", &wanted->why, "Why it is withdrawn: stays in the register"},
+           {"--by", &wanted->by, "Who withdraws it: stays in the register"},
+           {"--audit", &wanted->audit,
+            "Prove that nothing was changed in the register and nothing taken out: the chain of\n"
+            "digests, every file, and what signed certificates say of it. Status 1 if not"}},
           common_arguments(common)),
       .footer =
           "A line for each number that was ever drawn: number, state, campaign, date, reason.\n"
@@ -93,7 +124,10 @@ Verb certificates_verb(Common& common) {
           "  withdrawn  taken back, with the reason\n"
           "  drawn      not issued, with the reason; the next run uses it for the same campaign\n"
           "Nothing is ever deleted, and the same data are never issued twice: if a certificate is\n"
-          "lost, --out gives it back. Keep the register (certificates.sqlite in the site) with "
+          "lost, --out gives it back. What is cut off at the end of a register shows only in what "
+          "is\n"
+          "outside of it: note the last entry that --audit prints. Keep the register "
+          "(certificates.sqlite in the site) with "
           "your\n"
           "backups: without it numbers would be used twice, and a run refuses.\n\n"
           "Example: nonio certificates site --withdraw 2026-0012 --why \"wrong serial number\"",

@@ -59,7 +59,7 @@ int verify(const VerifyWish& wanted, const Common& common) {
   if (!place) return complain("nonio verify", place.error().message);
   bool all = true;
   for (const std::string& file : wanted.files) {
-    const sign::Verified v = host::verify_file(file, *verifier, (*place)->context);
+    const sign::Verified v = host::verify_file(file, *verifier, (*place)->context, wanted.site);
     all = all && v.holds();
     if (common.json)
       std::cout << to_json(file, v).dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
@@ -83,7 +83,8 @@ Verb verify_verb(Common& common) {
                takes(Takes::file, {"FILE", &wanted->files, "Certificates (PDF) and DCC (XML)"})),
            existing(Takes::folder,
                     {"--site", &wanted->site,
-                     "Site whose site.toml, [signing], says whom to trust and expect"}),
+                     "Site whose site.toml, [signing], says whom to trust and expect, and whose\n"
+                     "register says which numbers are in force"}),
            takes(Takes::file,
                  {"--trust", &wanted->trust,
                   "PEM file with the roots that certificates must lead to (nobody else is "

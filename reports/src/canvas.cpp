@@ -207,6 +207,15 @@ void Canvas::text_upwards(double x, double y, bool bold, double size,
   show(bold, size, glyphs);
 }
 
+void Canvas::text_along(double x, double y, double cosine, double sine, bool bold, double size,
+                        std::span<const Glyph> glyphs) {
+  if (glyphs.empty()) return;
+  ops += "BT ";
+  for (const double v : {cosine, sine, -sine, cosine, x, y}) number(v);
+  ops += "Tm ";
+  show(bold, size, glyphs);
+}
+
 void Canvas::picture(long which, double x, double y, double w, double h) {
   ops += "q ";
   number(w);

@@ -45,6 +45,9 @@ class Canvas {
   void text(double x, double y, bool bold, double size, std::span<const Glyph>);
   /// The same upwards, for the titles of vertical axes.
   void text_upwards(double x, double y, bool bold, double size, std::span<const Glyph>);
+  /// The same along a direction of length 1.
+  void text_along(double x, double y, double cosine, double sine, bool bold, double size,
+                  std::span<const Glyph>);
   void picture(long number, double x, double y, double w, double h);
   void place(double x, double y, const std::string& operators);
 

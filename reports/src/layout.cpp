@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 
 #include "pdf_file.h"
 #include "pieces.h"
@@ -98,6 +99,29 @@ Expected<void> add_heads_and_feet(std::vector<Canvas>& pages, const Document& do
   return {};
 }
 
+/// From corner to corner, so that no part of a page can be taken for a finished one.
+Expected<void> add_mark(std::vector<Canvas>& pages, const Document& document, const Fonts& fonts) {
+  if (document.mark.empty()) return {};
+  const Style& style = document.style;
+  const auto glyphs = shape(document.mark, fonts, true, "mark");
+  if (!glyphs) return fail(glyphs.error());
+  const double diagonal = std::hypot(style.page_width, style.page_height);
+  const double cosine = style.page_width / diagonal, sine = style.page_height / diagonal;
+  const double size = std::min(110.0, 0.8 * diagonal / std::max(width_of(*glyphs), 0.1));
+  const double length = width_of(*glyphs) * size, half = 0.35 * size;  // half a capital letter
+  for (Canvas& page : pages) {
+    Canvas canvas;
+    canvas.see_through(true);
+    canvas.fill_colour(style.failed);
+    canvas.text_along((style.page_width - length * cosine) / 2 + half * sine,
+                      (style.page_height - length * sine) / 2 - half * cosine, cosine, sine, true,
+                      size, *glyphs);
+    canvas.see_through(false);
+    page.place(0, 0, canvas.ops);
+  }
+  return {};
+}
+
 }  // namespace
 
 double page_room(const Style& style) {
@@ -137,6 +161,7 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
   pages.add(waiting);
   std::vector<Canvas> drawn = pages.take();
   if (auto ok = add_heads_and_feet(drawn, document, context); !ok) return fail(ok.error());
+  if (auto ok = add_mark(drawn, document, fonts); !ok) return fail(ok.error());
   PdfFile file{document.title,   document.author,      document.subject,         document.language,
                document.date,    style.page_width,     style.page_height,        style.see_through,
                used.common_only, std::move(used.wide), std::move(used.pictures), {}};

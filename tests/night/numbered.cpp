@@ -44,9 +44,15 @@ Expected<OutputResult> write(const OutputInput& in) {
   if (asked_to("crash")) std::raise(SIGSEGV);
   if (asked_to("fail")) return fail("an error on purpose");
   const Issue& i = *in.issue;
-  std::string text = "number " + i.number + " of " + i.date + " replaces " + i.replaces + " of " +
-                     i.replaces_date + " changes";
-  for (const std::string& file : i.changes) text += " " + file;
+  std::string text = i.is_draft() ? "DRAFT" : "number " + i.number + " of " + i.date;
+  text += " replaces " + i.replaces + " of " + i.replaces_date + " by " + i.released_by +
+          " author " + i.author + " why " + i.why + " changes";
+  for (const FileChange& file : i.changes) {
+    text += " " + file.file;
+    for (const Change& c : file.changes)
+      text += " [" + c.key + std::to_string(c.line) + ": " + c.before.value_or("-") + " > " +
+              c.after.value_or("-") + "]";
+  }
   text += " readings " + i.readings_sha256;
   for (const auto& a : in.results.analyses)
     if (!a.evaluation.values.empty())

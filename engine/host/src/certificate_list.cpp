@@ -17,8 +17,12 @@ Expected<Numbering> numbering_of(const fs::path& site) {
 }
 
 Expected<void> withdraw(const fs::path& site, const Numbering& numbering, const std::string& number,
-                        const std::string& why) {
+                        const std::string& why, const std::string& by) {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
+  if (std::any_of(by.begin(), by.end(), control))
+    return fail("the name has a control character; wanted one line of text");
+  if (std::all_of(why.begin(), why.end(), [](char c) { return c == ' '; }))
+    return fail("the reason is empty; wanted why it is withdrawn");
   if (std::any_of(why.begin(), why.end(), control))
     return fail("the reason has a control character; wanted one line of text");
   const auto entries = Register::entries(site, numbering);
@@ -26,7 +30,17 @@ Expected<void> withdraw(const fs::path& site, const Numbering& numbering, const 
   if (entries->empty()) return fail("no number " + number + " was ever drawn");
   auto opened = Register::open(site, numbering);
   if (!opened) return fail(opened.error());
-  return opened->withdraw(number, why);
+  return opened->withdraw(number, why, by);
+}
+
+Expected<Audit> audit(const fs::path& site, const Numbering& numbering) {
+  const auto path = register_path(site, numbering);
+  if (!path) return fail(path.error());
+  if (std::error_code error; !fs::exists(*path, error))
+    return fail("there is no register " + path->string() + ": nothing was issued or drafted yet");
+  auto opened = Register::open(site, numbering);
+  if (!opened) return fail(opened.error());
+  return opened->audit();
 }
 
 namespace {

@@ -30,6 +30,20 @@ Numbering read_numbering(TableReader& reader) {
   Numbering n;
   if (const std::string pattern = reader.text("numbering"); !pattern.empty()) n.pattern = pattern;
   if (const std::string file = reader.text("register"); !file.empty()) n.register_file = file;
+  n.patience = reader.number("register_seconds").value_or(n.patience);
+  n.automatic = reader.text("release") == "automatic";
+  n.two_persons = reader.flag("two_persons").value_or(false);
+  for (TableReader& rule : reader.tables("may_stand")) {
+    n.may_stand.push_back({rule.text("finding"), rule.text("reason")});
+    rule.finish();
+  }
+  if (n.automatic && !reader.raw().contains("may_stand"))
+    reader.error(
+        "release",
+        "\"automatic\" needs the list of the findings that may stand, [[certificate.may_stand]] "
+        "with finding and reason; may_stand = [] if none may");
+  if (n.automatic && n.two_persons)
+    reader.error("two_persons", "true and release = \"automatic\" contradict each other");
   if (const auto sound = number_text(n.pattern, "2026", 1); !sound)
     reader.error("numbering", sound.error().message);
   return n;

@@ -137,11 +137,11 @@ class Desk {
           !is_file ? "application/toml"
           : csv    ? "text/csv"
                    : "application/octet-stream",
-          "Source",
+          source_relation,
           is_file ? "readings" : "the campaign: what was measured, and how it is evaluated");
     }
     if (!context_.site.settings.empty())
-      add(settings_name, context_.site.settings, "application/toml", "Source",
+      add(settings_name, context_.site.settings, "application/toml", source_relation,
           "what of the laboratory's settings has a say in the results");
     return {};
   }
@@ -186,6 +186,26 @@ void remove_unsigned(Evaluated& evaluated) {
   if (draft) certificate.reset();
 }
 
+namespace {
+
+/// Of a draft its pages stay, under a name that says so: what is signed comes with the number.
+void keep_draft(Evaluated& evaluated) {
+  for (Results::Written& w : evaluated.results.outputs) {
+    auto& artifacts = w.result.artifacts;
+    const bool own = w.plugin == evaluated.certificate->output;
+    std::erase_if(artifacts, [&](const Artifact& a) { return own ? !is_pdf(a) : a.sign; });
+    if (own)
+      for (Artifact& a : artifacts) a = {draft_name(a.name), std::move(a.bytes)};
+  }
+}
+
+}  // namespace
+
+std::string draft_name(const std::string& pdf) {
+  const fs::path name = pdf;
+  return name.stem().string() + "-draft" + name.extension().string();
+}
+
 void note_finding(Evaluated& evaluated, const std::string& output, Finding finding,
                   const Templates& templates) {
   finding.advice = finding_text(templates, "en", finding, "advice");
@@ -211,6 +231,10 @@ Expected<void> sign_artifacts(Evaluated& evaluated, const fs::path& folder, cons
     return {};
   }
   if (evaluated.certificate && evaluated.certificate->issued) return {};
+  if (evaluated.certificate && evaluated.certificate->draft) {
+    keep_draft(evaluated);
+    return {};
+  }
   if (signer == nullptr) return fail(no_key);
   return Desk(evaluated, folder, context, *signer, now).run();
 }

@@ -11,6 +11,8 @@ namespace nonio::host {
 
 /// How the attachments of a certificate are called.
 inline constexpr const char* settings_name = "site-settings.toml";
+/// Of those from which a certificate was made.
+inline constexpr const char* source_relation = "Source";
 
 /// Why nothing can be signed where `signer` is null.
 inline constexpr const char* no_key =
@@ -19,11 +21,15 @@ inline constexpr const char* no_key =
 /// Signs the artifacts that outputs want signed: XML documents first, then PDFs, into which go the
 /// manifest, the readings, what of site.toml has a say in them, results.json and the signed XML
 /// documents. What is to be issued under a number is then in `Evaluated::certificate`, and is taken
-/// from the register in the end; what is issued already is not signed again. Of a failed campaign
-/// nothing is signed: these artifacts are taken away. `signer` is null where site.toml has no
+/// from the register in the end; what is issued already is not signed again. Of a draft only its
+/// pages are kept, unsigned; what else would be signed waits with it. Of a failed campaign nothing
+/// is signed: these artifacts are taken away. `signer` is null where site.toml has no
 /// [signing].
 Expected<void> sign_artifacts(Evaluated& evaluated, const std::filesystem::path& folder,
                               const Context& context, const Signer* signer, sign::Time now);
+
+/// "certificate.pdf" -> "certificate-draft.pdf".
+std::string draft_name(const std::string& pdf);
 
 /// Takes away what is to be signed and is not, and all of a certificate that is not issued.
 void remove_unsigned(Evaluated& evaluated);

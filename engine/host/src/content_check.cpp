@@ -11,6 +11,7 @@
 #include "certificates.h"
 #include "child.h"
 #include "guarded.h"
+#include "issue_json.h"
 #include "json_values.h"
 #include "nonio/host/files.h"
 #include "nonio/host/record.h"
@@ -79,21 +80,9 @@ std::optional<Stated> stated_in(std::string_view results) {
   if (!json.is_object() || !json.contains("certificate") || !json["certificate"].is_object())
     return std::nullopt;
   const Json& c = json["certificate"];
-  const auto text = [](const Json& object, const char* key) {
-    return object.contains(key) && object[key].is_string() ? object[key].get<std::string>() : "";
-  };
-  Stated stated;
-  stated.nonio = text(json, "nonio");
-  stated.certificate.output = text(c, "plugin");
-  stated.certificate.templates_sha256 = text(c, "templates_sha256");
-  Issue& issue = stated.certificate.issue;
-  issue.number = text(c, "number");
-  issue.date = text(c, "date");
-  issue.replaces = text(c, "replaces");
-  issue.replaces_date = text(c, "replaces_date");
-  if (c.contains("changes") && c["changes"].is_array())
-    for (const Json& file : c["changes"])
-      if (file.is_string()) issue.changes.push_back(file.get<std::string>());
+  Stated stated{certificate_of(c), {}};
+  if (json.contains("nonio") && json["nonio"].is_string())
+    stated.nonio = json["nonio"].get<std::string>();
   return stated;
 }
 
@@ -155,7 +144,7 @@ Expected<Content> recompute(const sign::Verified& v, std::string_view pdf, const
   Content content{{"content.values", State::fails, {}},
                   {"content.printed", State::not_checked, why_not_drawn(stated, context), false}};
   const bool draws = content.printed.says.empty();
-  const auto draw = [&](const Evaluated& e, bool) -> Expected<Certificate> {
+  const auto draw = [&](const Evaluated& e, std::vector<std::string>&) -> Expected<Certificate> {
     Certificate certificate = stated->certificate;
     const auto readings = readings_digest(e.inputs, folder);
     if (!readings) return fail(readings.error());

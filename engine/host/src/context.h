@@ -11,4 +11,7 @@ namespace nonio::host {
 /// site.toml of a site, if there is one; every error with its line.
 Checked<SiteFile> read_site(const std::filesystem::path& site, std::string& digest);
 
+/// The nearest folder at or above the campaign that holds a site.toml; else the campaign's own.
+std::filesystem::path site_of(const std::filesystem::path& campaign);
+
 }  // namespace nonio::host

@@ -9,17 +9,24 @@ namespace nonio::host {
 
 void Database::Close::operator()(sqlite3* file) const { ::sqlite3_close_v2(file); }
 
-Expected<Database> Database::open(const std::filesystem::path& path, bool create) {
+namespace {
+constexpr const char* locked_words = "another process keeps it locked";
+}  // namespace
+
+bool is_locked(const Error& error) { return error.message.ends_with(locked_words); }
+
+Expected<Database> Database::open(const std::filesystem::path& path, Use use, double patience) {
   sqlite3* file = nullptr;
-  const int flags = SQLITE_OPEN_READWRITE | (create ? SQLITE_OPEN_CREATE : 0);
+  const int flags = use == Use::read     ? SQLITE_OPEN_READONLY
+                    : use == Use::create ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE
+                                         : SQLITE_OPEN_READWRITE;
   const int opened = ::sqlite3_open_v2(path.c_str(), &file, flags, nullptr);
   Database database(file, path);
   if (file == nullptr) return fail("no memory for " + path.string());
   if (opened != SQLITE_OK) {
     database.note_error();
   } else {
-    constexpr int minute = 60000;
-    ::sqlite3_busy_timeout(file, minute);
+    ::sqlite3_busy_timeout(file, static_cast<int>(1000.0 * patience));
     ::sqlite3_extended_result_codes(file, 1);
     // EXTRA is FULL, and the folder is flushed too before a commit returns: the journal does not
     // come back after a power failure and undo it.
@@ -31,7 +38,10 @@ Expected<Database> Database::open(const std::filesystem::path& path, bool create
 }
 
 void Database::note_error() {
-  if (error_.empty()) error_ = path_.string() + ": " + ::sqlite3_errmsg(file_.get());
+  if (!error_.empty()) return;
+  constexpr int primary = 0xFF;
+  const bool busy = (::sqlite3_extended_errcode(file_.get()) & primary) == SQLITE_BUSY;
+  error_ = path_.string() + ": " + (busy ? locked_words : ::sqlite3_errmsg(file_.get()));
 }
 
 Expected<void> Database::take_error() {

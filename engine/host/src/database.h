@@ -26,8 +26,12 @@ class Database {
   using Value = std::variant<std::int64_t, std::string_view, Blob>;
   using Row = std::vector<std::string>;
 
-  /// Made if it is not there and `create` is set. Whoever finds it locked waits up to a minute.
-  static Expected<Database> open(const std::filesystem::path& path, bool create);
+  enum class Use { read, write, create };
+  static constexpr double usual_patience = 60.0;
+  /// Made if it is not there with Use::create. Whoever finds it locked waits up to `patience`
+  /// seconds; the error is then one of which `is_locked` is true.
+  static Expected<Database> open(const std::filesystem::path& path, Use use,
+                                 double patience = usual_patience);
 
   /// The rows of one statement whose `?` are these values. NULL comes as "".
   std::vector<Row> rows(const char* sql, std::initializer_list<Value> values = {});
@@ -65,5 +69,8 @@ class Database {
   std::filesystem::path path_;
   std::string error_;
 };
+
+/// Whether it was another process that kept the file to itself: the same may succeed later.
+bool is_locked(const Error& error);
 
 }  // namespace nonio::host

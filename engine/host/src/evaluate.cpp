@@ -315,17 +315,17 @@ class CampaignRun {
     const Info& info = numbered->output.info;
     const std::string who = "output " + info.name;
     stage_(who);
-    const auto missing = guarded(who, [&]() -> Expected<std::vector<std::string>> {
+    auto missing = guarded(who, [&]() -> Expected<std::vector<std::string>> {
       return numbered->output.lacks(input(*numbered));
     });
     if (!missing) return report(missing.error());
     if (draw_) {
-      auto drawn = draw_(out_, missing->empty());
+      auto drawn = draw_(out_, *missing);
       if (!drawn) {
         out_.retry = true;
         return report(std::move(drawn.error()));
       }
-      if (!drawn->issue.number.empty()) {
+      if (drawn->draft || !drawn->issue.number.empty()) {
         out_.certificate = std::move(*drawn);
         out_.certificate->output = info.name;
       }

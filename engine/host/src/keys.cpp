@@ -421,6 +421,23 @@ constexpr Key certificate_of_campaign[] = {
              "certificate marks them."},
 };
 
+constexpr Choice releases[] = {{"by-hand", "a person, with nonio release"},
+                               {"automatic", "the night, by the rules of may_stand"}};
+
+constexpr Key standing_keys[] = {
+    {.name = "finding",
+     .holds = text,
+     .help = "Id of a finding, \"plan.few-runs\"; with \".*\" at its end all of a kind.",
+     .required = true,
+     .missing = "wanted the id of a finding",
+     .text = {.letters = "a-zA-Z0-9.*+_-"}},
+    {.name = "reason",
+     .holds = text,
+     .help = "Why a certificate may be issued although it is there; kept in the register.",
+     .required = true,
+     .missing = "wanted why a certificate may be issued although the finding is there"},
+};
+
 constexpr Key certificate_of_site[] = {
     languages_key,
     template_key,
@@ -437,6 +454,31 @@ constexpr Key certificate_of_site[] = {
      .help = "File inside the site that keeps all numbers and what was issued under them; it "
              "belongs into the backup.",
      .otherwise = "certificates.sqlite"},
+    {.name = "register_seconds",
+     .holds = number,
+     .help = "How long a night waits, with the campaigns that need a number, for a register that "
+             "another process keeps locked; what waits in vain is done again in the next night.",
+     .unit = "s",
+     .otherwise = "60",
+     .wanted = "wanted a number from 0 to 86400",
+     .least = 0.0,
+     .most = 86400.0},
+    {.name = "release",
+     .holds = text,
+     .help = "Who releases a certificate: a person, or the night itself where no finding asks for "
+             "attention but those of may_stand.",
+     .otherwise = "by-hand",
+     .choices = releases},
+    {.name = "may_stand",
+     .holds = tables,
+     .help = "Findings that ask for attention and do not hold up an automatic release, each with "
+             "the reason; [] for none.",
+     .keys = standing_keys},
+    {.name = "two_persons",
+     .holds = flag,
+     .help = "A certificate is approved by its author and released by an authoriser who is another "
+             "person.",
+     .otherwise = "false"},
 };
 
 constexpr Key format_key = {.name = "format",

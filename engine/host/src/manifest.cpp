@@ -312,8 +312,13 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   }
   site.run = read_run(top);
   site.options = read_options(top, errors);
-  site.settings = settings_of(*root, {"run", "options", "laboratory", "certificate"});
   site.evaluation = settings_of(*root, {"run", "options"});
+  toml::table printed = *root;
+  // How it comes to a release is the laboratory's own business, and nothing that is printed.
+  if (toml::table* certificate = printed["certificate"].as_table())
+    for (const char* key : {"release", "may_stand", "two_persons", "register", "register_seconds"})
+      certificate->erase(key);
+  site.settings = settings_of(printed, {"run", "options", "laboratory", "certificate"});
   if (auto reader = top.table("signing")) site.signing = read_signing(*reader);
   if (auto reader = top.table("certificate")) {
     site.certificate = read_certificate(*reader);

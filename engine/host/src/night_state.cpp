@@ -25,14 +25,14 @@ Expected<void> write_state(const fs::path& out, const NightState& night, bool ru
                {"night", night.number},
                {"state", running ? "running" : "complete"},
                {"force", night.force}};
-  if (running) json["issued_before"] = night.issued_before;
+  if (night.issued_before) json["issued_before"] = *night.issued_before;
   return publish(out / state_folder, {{state_name, dump(json)}});
 }
 
 }  // namespace
 
 Expected<NightState> begin_night(const fs::path& out, bool force, bool dry_run,
-                                 std::uint64_t issued_so_far) {
+                                 std::optional<std::uint64_t> issued_so_far) {
   NightState night;
   night.force = force;
   night.issued_before = issued_so_far;
@@ -46,7 +46,8 @@ Expected<NightState> begin_night(const fs::path& out, bool force, bool dry_run,
     night.number = json["night"].get<std::uint64_t>() + (night.resumed ? 0 : 1);
     // A forced run that was interrupted is finished as what it was.
     if (night.resumed) night.force = force || json.value("force", false);
-    if (night.resumed) night.issued_before = json.value("issued_before", issued_so_far);
+    if (json.contains("issued_before") && json["issued_before"].is_number_unsigned())
+      night.issued_before = json["issued_before"].get<std::uint64_t>();
   }
   if (dry_run) return night;
   if (auto written = write_state(out, night, true); !written) return fail(written.error());

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 #include "nonio/sdk/error.h"
 
@@ -14,11 +15,14 @@ struct NightState {
   std::uint64_t number = 1;
   bool force = false;
   bool resumed = false;
-  std::uint64_t issued_before = 0;  ///< certificates in the register when it began
+  /// Certificates in the register when the night before ended, or when the first one began; none
+  /// if the register could not be read.
+  std::optional<std::uint64_t> issued_before{};
 };
 
 Expected<NightState> begin_night(const std::filesystem::path& out, bool force, bool dry_run,
-                                 std::uint64_t issued_so_far);
+                                 std::optional<std::uint64_t> issued_so_far);
+/// `night.issued_before` is then what the next one begins with.
 Expected<void> end_night(const std::filesystem::path& out, const NightState& night);
 
 /// Held while a run uses an output folder; an error names the trouble if another run does.

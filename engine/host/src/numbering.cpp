@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "amendment.h"
 #include "certificates.h"
+#include "journal.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
-#include "nonio/host/register.h"
 #include "nonio/host/results_json.h"
+#include "nonio/sign/verify.h"
 #include "recomputed.h"
+#include "store.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -22,6 +25,66 @@ Inputs data_of(const Evaluated& evaluated, const Context& context) {
   Inputs data = evaluated.inputs;
   data.emplace_back(site_name, sha256(context.site.evaluation));
   return data;
+}
+
+/// A worker does not wait long for others: its campaign is done again when the register is free.
+double short_wait(const Numbering& numbering) {
+  constexpr double seconds = 5.0;
+  return std::min(seconds, numbering.patience);
+}
+
+using Files = std::vector<std::pair<std::string, std::string>>;  // name, bytes
+
+const std::string* find_file(const Files& files, const std::string& name) {
+  for (const auto& [known, bytes] : files)
+    if (known == name) return &bytes;
+  return nullptr;
+}
+
+/// From what a certificate was made: manifest, readings, settings of the site.
+Files attached_files(const std::vector<IssuedFile>& issued) {
+  Files files;
+  for (const IssuedFile& f : issued) {
+    if (!f.bytes.starts_with("%PDF-")) continue;
+    for (sign::Attachment& a : sign::verify_pdf(f.bytes, {}).attachments)
+      if (a.relation == source_relation)
+        files.emplace_back(a.name == settings_name ? site_name : std::move(a.name),
+                           std::move(a.bytes));
+    break;
+  }
+  return files;
+}
+
+Expected<Files> current_files(const Evaluated& evaluated, const Context& context,
+                              const fs::path& folder) {
+  Files files;
+  const std::string prefix = input_name("");
+  for (const auto& [input, digest] : evaluated.inputs) {
+    const std::string name = input.starts_with(prefix) ? input.substr(prefix.size()) : input;
+    const auto path = path_inside(folder, name);
+    if (!path) return fail(path.error());
+    auto bytes = read_file(*path);
+    if (!bytes) return fail(bytes.error());
+    files.emplace_back(name, std::move(*bytes));
+  }
+  if (!context.site.settings.empty()) files.emplace_back(site_name, context.site.settings);
+  return files;
+}
+
+/// In the order of `now`; then what is gone.
+std::vector<FileChange> changes_of(const Files& then, const Files& now) {
+  std::vector<FileChange> all;
+  for (const auto& [name, bytes] : now) {
+    const std::string* before = find_file(then, name);
+    if (before != nullptr && *before == bytes) continue;
+    FileChange change = change_of(name, before, &bytes);
+    // Comments, or nothing but the reason for the amendment.
+    if (before != nullptr && name.ends_with(".toml") && change.changes.empty()) continue;
+    all.push_back(std::move(change));
+  }
+  for (const auto& [name, bytes] : then)
+    if (find_file(now, name) == nullptr) all.push_back(change_of(name, &bytes, nullptr));
+  return all;
 }
 
 /// The register's files in place of what has been made now.
@@ -54,46 +117,218 @@ Expected<std::string> readings_digest(const Inputs& inputs, const fs::path& fold
   return sha256(all);
 }
 
+const StandingRule* rule_for(const Numbering& numbering, const KnownFinding& finding) {
+  for (const StandingRule& rule : numbering.may_stand) {
+    const bool all_of_a_kind = rule.finding.ends_with(".*");
+    if (all_of_a_kind ? finding.id.starts_with(rule.finding.substr(0, rule.finding.size() - 1))
+                      : finding.id == rule.finding)
+      return &rule;
+  }
+  return nullptr;
+}
+
 bool Numbers::has_register() const {
-  const auto path = register_path(site_, context_.site.numbering);
+  const auto path = register_path(where_.site, context_.site.numbering);
   std::error_code error;
   return path && fs::exists(*path, error);
 }
 
+Expected<Register> Numbers::open() const {
+  return Register::open(where_.site, context_.site.numbering, short_wait(context_.site.numbering));
+}
+
+namespace {
+
+/// Whether an open finding asks for somebody to look at it whom the rules cannot stand for.
+bool any_unruled(const std::vector<KnownFinding>& findings, const Numbering& numbering) {
+  return std::any_of(findings.begin(), findings.end(), [&](const KnownFinding& f) {
+    return f.attention && rule_for(numbering, f) == nullptr;
+  });
+}
+
+/// Everything that the pages of a draft depend on.
+Inputs made_from(const Evaluated& evaluated, const Context& context) {
+  Inputs all = data_of(evaluated, context);
+  for (const auto& [name, digest] : shared_inputs(context))
+    if (name != site_name) all.emplace_back(name, digest);
+  return all;
+}
+
+}  // namespace
+
+/// By the rules, or because a person releases it.
+bool Numbers::may_issue(const Evaluated& evaluated) const {
+  if (releasing_ != nullptr) return true;
+  const Numbering& numbering = context_.site.numbering;
+  return numbering.automatic &&
+         !any_unruled(known_findings(evaluated.results, context_.templates), numbering);
+}
+
+bool Numbers::held_up(const Evaluated& evaluated) const {
+  const auto& certificate = evaluated.certificate;
+  return certificate && !certificate->issued && !certificate->draft && !may_issue(evaluated);
+}
+
+/// What a person releases is what he has seen.
+Expected<void> Numbers::check_release(const Inputs& now) const {
+  if (releasing_ == nullptr) return {};
+  std::string other;
+  for (const auto& one : now)
+    if (std::find(releasing_->draft.made_from.begin(), releasing_->draft.made_from.end(), one) ==
+        releasing_->draft.made_from.end())
+      other += (other.empty() ? "" : ", ") + one.first;
+  if (other.empty() && now.size() == releasing_->draft.made_from.size()) return {};
+  return fail("not the draft any more that is to be released; changed since: " +
+              (other.empty() ? "files that are gone" : other) +
+              ". Run the night again, and look at the new draft");
+}
+
+Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
+                              const Evaluated& evaluated, const fs::path& folder, Issue& issue,
+                              std::vector<std::string>& missing) const {
+  const auto old_files = opened.files(before.number);
+  if (!old_files) return fail(old_files.error());
+  const auto then = attached_files(*old_files);
+  const auto now = current_files(evaluated, context_, folder);
+  if (!now) return fail(now.error());
+  issue.replaces = before.number;
+  issue.replaces_date = before.date;
+  issue.changes = changes_of(then, *now);
+  const std::string& stated = evaluated.campaign.certificate.amendment;
+  const std::string* manifest = find_file(then, manifest_name);
+  const bool is_old =
+      !stated.empty() && manifest != nullptr && flat_toml(*manifest)[amendment_key] == stated;
+  issue.why = before.state == "withdrawn" ? before.reason : "";
+  if (!stated.empty() && !is_old && stated != issue.why)
+    issue.why += (issue.why.empty() ? "" : "; ") + stated;
+  if (issue.why.empty())
+    missing.push_back(std::string(amendment_key) + " (why " + before.number + " is replaced" +
+                      (is_old ? "; what it says was there for " + before.number + " already" : "") +
+                      ")");
+  return {};
+}
+
 Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& folder,
-                                    bool complete) const {
-  if (!complete && !has_register()) return Certificate{};
-  auto opened = Register::open(site_, context_.site.numbering);
+                                    std::vector<std::string>& missing, bool as_draft) const {
+  if (!missing.empty() && !has_register()) return Certificate{};
+  auto opened = open();
   if (!opened) return fail(opened.error());
   const std::string& campaign = evaluated.campaign.id;
   const Inputs data = data_of(evaluated, context_);
   auto found = opened->find(campaign, data);
   if (!found) return fail(found.error());
   if (*found) return std::move(**found);
-  if (!complete) return Certificate{};
-  if (!can_sign_) return fail(no_key);
+  if (auto same = check_release(made_from(evaluated, context_)); !same) return fail(same.error());
+  const auto before = opened->last_number(campaign);
+  if (!before) return fail(before.error());
+  Certificate certificate;
+  Issue& issue = certificate.issue;
+  if (*before)
+    if (auto done = amend(*opened, **before, evaluated, folder, issue, missing); !done)
+      return fail(done.error());
+  if (!missing.empty()) return Certificate{};
+  if (!where_.can_sign) return fail(no_key);
   const auto readings = readings_digest(evaluated.inputs, folder);
   if (!readings) return fail(readings.error());
-  auto drawn = opened->draw(campaign, data, today_);
+  issue.readings_sha256 = *readings;
+  certificate.templates_sha256 = context_.templates_sha256;
+  certificate.draft = as_draft || !may_issue(evaluated);
+  if (certificate.draft) return certificate;
+  auto drawn = opened->draw(campaign, data, where_.today);
   if (!drawn || drawn->issued) return drawn;
-  drawn->issue.readings_sha256 = *readings;
-  drawn->templates_sha256 = context_.templates_sha256;
-  return drawn;
+  if (drawn->issue.replaces != issue.replaces)
+    return fail("another run has issued " + drawn->issue.replaces + " meanwhile");
+  issue.number = drawn->issue.number;
+  issue.date = drawn->issue.date;
+  issue.register_id = drawn->issue.register_id;
+  issue.register_entry = drawn->issue.register_entry;
+  issue.register_sha256 = drawn->issue.register_sha256;
+  if (releasing_ != nullptr) {
+    issue.released_by = releasing_->by.by;
+    if (releasing_->draft.author) issue.author = releasing_->draft.author->by;
+  }
+  return certificate;
 }
 
-Expected<void> Numbers::issue(Evaluated& evaluated) const {
+namespace {
+
+Json approval_json(const Approval& approval) {
+  return {{"by", approval.by},
+          {"role", approval.role},
+          {"at", approval.at.empty() ? utc_now() : approval.at},
+          {"reasons", approval.reasons}};
+}
+
+}  // namespace
+
+std::string Numbers::released_json(const std::vector<KnownFinding>& findings) const {
+  Json json = Json::object();
+  Json open = Json::object(), rules = Json::object();
+  for (const KnownFinding& f : findings) {
+    open[finding_key(f)] = f.attention ? "attention" : "info";
+    const StandingRule* rule = rule_for(context_.site.numbering, f);
+    if (f.attention && rule != nullptr) rules[finding_key(f)] = rule->reason;
+  }
+  json["findings"] = std::move(open);
+  if (releasing_ == nullptr) {
+    json["rules"] = std::move(rules);
+  } else {
+    if (releasing_->draft.author) json["author"] = approval_json(*releasing_->draft.author);
+    json["released"] = approval_json(releasing_->by);
+  }
+  return json.dump();
+}
+
+Expected<void> Numbers::enter_draft(const Evaluated& evaluated, const std::string& folder) const {
+  const Certificate& certificate = *evaluated.certificate;
+  WaitingDraft draft;
+  draft.campaign = evaluated.campaign.id;
+  draft.folder = folder;
+  draft.out = where_.out.string();
+  draft.replaces = certificate.issue.replaces;
+  draft.made_from = made_from(evaluated, context_);
+  draft.findings = known_findings(evaluated.results, context_.templates);
+  for (const Results::Written& w : evaluated.results.outputs)
+    if (w.plugin == certificate.output && !w.result.artifacts.empty()) {
+      draft.file = w.result.artifacts.front().name;
+      draft.sha256 = sha256(w.result.artifacts.front().bytes);
+    }
+  if (draft.file.empty())
+    return fail("output " + certificate.output + " makes no PDF that could be released");
+  auto opened = open();
+  if (!opened) return fail(opened.error());
+  return opened->enter_draft(draft);
+}
+
+Expected<void> Numbers::issue_new(Evaluated& evaluated) const {
+  const auto findings = known_findings(evaluated.results, context_.templates);
+  if (releasing_ != nullptr) {
+    const auto& seen = releasing_->draft.findings;
+    for (const KnownFinding& f : findings)
+      if (f.attention &&
+          std::none_of(seen.begin(), seen.end(), [&](const KnownFinding& k) { return k.same(f); }))
+        return fail("the finding " + finding_key(f) +
+                    " was not there when the draft was made: run the night again");
+  }
+  evaluated.certificate->released = released_json(findings);
+  auto opened = open();
+  if (!opened) return fail(opened.error());
+  auto issued =
+      opened->issue(*evaluated.certificate, evaluated.campaign.id, data_of(evaluated, context_));
+  if (!issued) return fail(issued.error());
+  evaluated.certificate = std::move(*issued);
+  take_issued(evaluated);
+  return {};
+}
+
+Expected<void> Numbers::issue(Evaluated& evaluated, const std::string& folder) const {
   if (!evaluated.certificate || evaluated.status == "failed") return {};
+  if (evaluated.certificate->draft) return enter_draft(evaluated, folder);
   if (evaluated.certificate->issued) {
     take_issued(evaluated);
     note_differences(evaluated);
-  } else {
-    auto opened = Register::open(site_, context_.site.numbering);
-    if (!opened) return fail(opened.error());
-    auto issued =
-        opened->issue(*evaluated.certificate, evaluated.campaign.id, data_of(evaluated, context_));
-    if (!issued) return fail(issued.error());
-    evaluated.certificate = std::move(*issued);
-    take_issued(evaluated);
+  } else if (auto done = issue_new(evaluated); !done) {
+    return done;
   }
   for (const IssuedFile& file : evaluated.certificate->files)
     note_time_stamp(evaluated, file, context_.templates);
@@ -117,7 +352,7 @@ void Numbers::note_differences(Evaluated& evaluated) const {
 
 void Numbers::note_failure(const std::string& campaign, const std::string& why) const {
   if (!has_register()) return;
-  auto opened = Register::open(site_, context_.site.numbering);
+  auto opened = open();
   if (!opened) return;
   [[maybe_unused]] const auto noted = opened->note_failure(campaign, why);
 }

@@ -5,38 +5,64 @@
 #include <string>
 
 #include "nonio/host/evaluate.h"
+#include "nonio/host/register.h"
 
 namespace nonio::host {
 
 /// SHA-256 of the files of readings, one behind the other, as they were evaluated.
 Expected<std::string> readings_digest(const Inputs& inputs, const std::filesystem::path& folder);
 
-/// What a night does with the site's register. Every call opens it by itself: no process inherits
-/// it from another.
+/// Whether a rule of the site lets this finding stand.
+const StandingRule* rule_for(const Numbering& numbering, const KnownFinding& finding);
+
+/// A draft, and the one who releases it.
+struct Releasing {
+  WaitingDraft draft;
+  Approval by;
+};
+
+/// What a night, or the release of one campaign, does with the site's register. Every call opens it
+/// by itself: no process inherits it from another.
 class Numbers {
  public:
-  /// `today`: the day of the night, YYYY-MM-DD. `can_sign`: there is a key, or nothing is drawn.
-  Numbers(std::filesystem::path site, const Context& context, std::string today, bool can_sign)
-      : site_(std::move(site)), context_(context), today_(std::move(today)), can_sign_(can_sign) {}
+  struct Where {
+    std::filesystem::path site, out;
+    std::string today;  ///< YYYY-MM-DD
+    bool can_sign;      ///< there is a key, or there are neither drafts nor numbers
+  };
+  /// `releasing` is null in a night.
+  Numbers(Where where, const Context& context, const Releasing* releasing)
+      : where_(std::move(where)), context_(context), releasing_(releasing) {}
 
-  /// See `Draw`.
+  /// See `Draw`. `as_draft`: no number, whatever the rules say.
   Expected<Certificate> draw(const Evaluated& evaluated, const std::filesystem::path& folder,
-                             bool complete) const;
+                             std::vector<std::string>& missing, bool as_draft) const;
+  /// Whether a finding that no rule lets stand came after a number was drawn by the rules.
+  bool held_up(const Evaluated& evaluated) const;
   /// After signing: enters what is issued into the register, and gives the campaign what the
-  /// register holds. Of what was issued before it is said if its numbers are others now.
-  Expected<void> issue(Evaluated& evaluated) const;
+  /// register holds. Of what was issued before it is said if its numbers are others now. A draft is
+  /// entered as one that waits for `folder`'s release (relative to the site).
+  Expected<void> issue(Evaluated& evaluated, const std::string& folder) const;
   /// A number that was drawn for a campaign keeps the reason why it is not issued. Silent: there is
   /// nobody left to tell.
   void note_failure(const std::string& campaign, const std::string& why) const;
 
  private:
+  Expected<Register> open() const;
   bool has_register() const;
+  bool may_issue(const Evaluated& evaluated) const;
+  Expected<void> amend(Register& opened, const RegisterEntry& before, const Evaluated& evaluated,
+                       const std::filesystem::path& folder, Issue& issue,
+                       std::vector<std::string>& missing) const;
+  Expected<void> check_release(const Inputs& now) const;
+  Expected<void> enter_draft(const Evaluated& evaluated, const std::string& folder) const;
+  Expected<void> issue_new(Evaluated& evaluated) const;
+  std::string released_json(const std::vector<KnownFinding>& findings) const;
   void note_differences(Evaluated& evaluated) const;
 
-  const std::filesystem::path site_;
+  const Where where_;
   const Context& context_;
-  const std::string today_;
-  const bool can_sign_;
+  const Releasing* const releasing_;
 };
 
 }  // namespace nonio::host

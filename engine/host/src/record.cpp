@@ -66,6 +66,7 @@ Record record_of(dom::object json) {
   for (const auto [name, digest] : dom::object(json["inputs"]))
     r.inputs.emplace_back(name, text(digest));
   if (dom::element e; json["certificate"].get(e) == simdjson::SUCCESS) r.certificate = text(e);
+  if (bool draft = false; json["draft"].get(draft) == simdjson::SUCCESS) r.draft = draft;
   for (const auto [name, size_and_digest] : dom::object(json["files"]))
     r.files.push_back({std::string(name), size_and_digest.at(0), text(size_and_digest.at(1))});
   for (const dom::object e : dom::array(json["errors"])) r.errors.push_back(error_of(e));
@@ -90,6 +91,7 @@ std::string to_json(const Record& r) {
   for (const auto& [name, digest] : r.inputs) json.member(name, digest);
   json.end_object();
   if (!r.certificate.empty()) json.member("certificate", r.certificate);
+  if (r.draft) json.member("draft", true);
   put_files(json, r.files);
   json.key("errors");
   json.begin_array();

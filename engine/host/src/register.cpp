@@ -5,110 +5,23 @@
 #include <cstdlib>
 #include <utility>
 
-#include "database.h"
+#include "journal.h"
+#include "nonio/host/digest.h"
 #include "nonio/host/files.h"
+#include "number_pattern.h"
+#include "register_tables.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* schema = R"(
-CREATE TABLE counters(
-  sequence TEXT PRIMARY KEY,  -- the pattern with its year: each has its own numbers
-  last INTEGER NOT NULL
-) WITHOUT ROWID;
-CREATE TABLE certificates(
-  id INTEGER PRIMARY KEY,
-  number TEXT NOT NULL UNIQUE,
-  campaign TEXT NOT NULL,
-  state TEXT NOT NULL CHECK(state IN ('drawn', 'issued', 'withdrawn')),
-  date TEXT NOT NULL,  -- of issue; while drawn: of the day on which it was drawn
-  issued INTEGER UNIQUE,  -- order of issue
-  replaces INTEGER REFERENCES certificates(id),
-  reason TEXT NOT NULL,  -- why it was withdrawn, or is not issued yet
-  output TEXT, templates TEXT, readings TEXT,
-  results BLOB
-);
-CREATE INDEX of_campaign ON certificates(campaign);
-CREATE UNIQUE INDEX one_draft ON certificates(campaign) WHERE state = 'drawn';
-CREATE TABLE inputs(
-  certificate INTEGER NOT NULL REFERENCES certificates(id),
-  place INTEGER NOT NULL,
-  name TEXT NOT NULL,
-  sha256 TEXT NOT NULL,
-  PRIMARY KEY(certificate, place)
-) WITHOUT ROWID;
-CREATE TABLE files(
-  certificate INTEGER NOT NULL REFERENCES certificates(id),
-  place INTEGER NOT NULL,
-  output TEXT NOT NULL,
-  name TEXT NOT NULL,
-  no_time_stamp TEXT NOT NULL,
-  bytes BLOB NOT NULL,
-  PRIMARY KEY(certificate, place)
-);
-)";
-constexpr std::int64_t application = 0x4e6f6e69;  // marks the file as one of these
-
-std::int64_t integer(const std::string& text) { return std::strtoll(text.c_str(), nullptr, 10); }
-
-/// Of a register that was made just now, or by this version.
-Expected<void> make_tables(Database& database) {
-  const auto is_marked = [&] {
-    return integer(database.first("PRAGMA application_id")) == application;
-  };
-  const auto is_made = [&] { return is_marked() && database.first("PRAGMA user_version") == "1"; };
-  const bool made = is_made();
-  if (auto well = database.take_error(); !well || made) return well;
-  Database::Transaction transaction(database);
-  if (is_made()) return transaction.end();  // somebody else was faster
-  if (database.first("SELECT count(*) FROM sqlite_schema") != "0" && !database.failed())
-    return fail(is_marked() ? "was written by a newer version of Nonio"
-                            : "is no register of certificates");
-  database.script(schema);
-  database.script("PRAGMA user_version = 1; PRAGMA application_id = " +
-                  std::to_string(application));
-  return transaction.end();
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-  return text;
-}
-
-/// The place for the number in a pattern: "{number:4}".
-struct Place {
-  std::size_t begin = std::string::npos, size = 0, digits = 1;
-};
-
-Place place_of(const std::string& pattern) {
-  constexpr std::string_view plain = "{number}", open = "{number:";
-  Place place{pattern.find(plain), plain.size()};
-  if (place.begin != std::string::npos) return place;
-  const std::size_t at = pattern.find(open);
-  const std::size_t digit = at + open.size();
-  if (at == std::string::npos || digit + 1 >= pattern.size() || pattern[digit] < '1' ||
-      pattern[digit] > '9' || pattern[digit + 1] != '}')
-    return place;
-  return {at, open.size() + 2, static_cast<std::size_t>(pattern[digit] - '0')};
-}
-
-/// One counter each, however many digits it prints.
-std::string sequence_of(const std::string& pattern, const std::string& year) {
-  const Place place = place_of(pattern);
-  std::string sequence = pattern;
-  if (place.begin != std::string::npos) sequence.replace(place.begin, place.size, "{number}");
-  return replaced(sequence, "{year}", year);
-}
-
 /// What is other in `now` than it was, in the order of `now`; then what is gone.
-std::vector<std::string> differences(const Inputs& before, const Inputs& now) {
-  std::vector<std::string> names;
+std::vector<FileChange> differences(const Inputs& before, const Inputs& now) {
+  std::vector<FileChange> names;
   const auto add = [&](const std::string& input) {
     const std::string prefix = input_name("");
-    names.push_back(input.starts_with(prefix) ? input.substr(prefix.size()) : input);
+    names.push_back({input.starts_with(prefix) ? input.substr(prefix.size()) : input});
   };
   const auto lacks = [](const Inputs& all, const Inputs::value_type& one, bool by_name) {
     return std::none_of(all.begin(), all.end(), [&](const auto& other) {
@@ -124,34 +37,6 @@ std::vector<std::string> differences(const Inputs& before, const Inputs& now) {
 
 }  // namespace
 
-Expected<std::string> number_text(const std::string& pattern, const std::string& year,
-                                  std::uint64_t number) {
-  constexpr std::size_t longest = 60;
-  const auto refuse = [&](const std::string& what) {
-    return fail("the pattern \"" + pattern + "\" " + what);
-  };
-  const Place place = place_of(pattern);
-  if (place.begin == std::string::npos)
-    return refuse(
-        "has no place for the number; wanted {number} or {number:4} once, and {year} if the "
-        "numbers are to begin anew with each year");
-  std::string digits = std::to_string(number);
-  digits.insert(0, place.digits > digits.size() ? place.digits - digits.size() : 0, '0');
-  std::string text = pattern;
-  text.replace(place.begin, place.size, digits);
-  text = replaced(text, "{year}", year);
-  if (text.find_first_of("{}") != std::string::npos)
-    return refuse("has another place than {year} and one {number}");
-  const bool plain =
-      std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
-  if (!plain || !is_artifact_name(text) || text.front() == ' ' || text.back() == ' ' ||
-      text.size() > longest)
-    return refuse("gives \"" + text +
-                  "\"; wanted at most 60 letters, digits and signs of ASCII without / and \\, no "
-                  "dot at the beginning, no blank at the ends: files are named by it");
-  return text;
-}
-
 Expected<fs::path> register_path(const fs::path& site, const Numbering& numbering) {
   auto path = path_inside(site, numbering.register_file);
   if (!path)
@@ -166,12 +51,13 @@ Register::Register(Register&&) noexcept = default;
 Register& Register::operator=(Register&&) noexcept = default;
 Register::~Register() = default;
 
-Expected<Register> Register::open(const fs::path& site, const Numbering& numbering) {
+Expected<Register> Register::open(const fs::path& site, const Numbering& numbering,
+                                  double patience) {
   const auto path = register_path(site, numbering);
   if (!path) return fail(path.error());
   std::error_code error;
   fs::create_directories(path->parent_path(), error);
-  auto database = Database::open(*path, true);
+  auto database = Database::open(*path, Database::Use::create, patience);
   if (!database) return fail("the register of certificates: " + database.error().message);
   auto place = std::make_unique<Database>(std::move(*database));
   if (auto made = make_tables(*place); !made)
@@ -179,16 +65,60 @@ Expected<Register> Register::open(const fs::path& site, const Numbering& numberi
   return Register(std::move(place), numbering.pattern);
 }
 
-Expected<std::vector<RegisterEntry>> Register::entries(const fs::path& site,
-                                                       const Numbering& numbering) {
-  std::vector<RegisterEntry> entries;
+Expected<Register> Register::open_to_read(const fs::path& site, const Numbering& numbering) {
   const auto path = register_path(site, numbering);
   if (!path) return fail(path.error());
-  if (std::error_code error; !fs::exists(*path, error)) return entries;
-  auto opened = open(site, numbering);
+  auto database = Database::open(*path, Database::Use::read);
+  if (!database) return fail("the register of certificates: " + database.error().message);
+  return Register(std::make_unique<Database>(std::move(*database)), numbering.pattern);
+}
+
+std::string Register::id() {
+  return is_of_this_version(*database_) ? database_->first("SELECT id FROM site") : "";
+}
+
+std::string Register::number_of(const std::string& file_sha256) {
+  if (!is_of_this_version(*database_)) return {};
+  return database_->first(
+      "SELECT number FROM journal WHERE what = 'issued' AND instr(says, '\"sha256\":\"' || ?) > 0",
+      {file_sha256});
+}
+
+namespace {
+
+/// None if there is no register: looking makes none.
+Expected<std::optional<Register>> open_if_there(const fs::path& site, const Numbering& numbering,
+                                                double patience) {
+  const auto path = register_path(site, numbering);
+  if (!path) return fail(path.error());
+  if (std::error_code error; !fs::exists(*path, error)) return std::nullopt;
+  auto opened = Register::open(site, numbering, patience);
   if (!opened) return fail(opened.error());
-  Database& database = *opened->database_;
-  for (Database::Row& row : database.rows(R"(
+  return std::move(*opened);
+}
+
+}  // namespace
+
+Expected<std::vector<RegisterEntry>> Register::entries(const fs::path& site,
+                                                       const Numbering& numbering,
+                                                       double patience) {
+  auto opened = open_if_there(site, numbering, patience);
+  if (!opened) return fail(opened.error());
+  if (!*opened) return std::vector<RegisterEntry>{};
+  return (*opened)->all();
+}
+
+Expected<std::vector<WaitingDraft>> Register::drafts(const fs::path& site,
+                                                     const Numbering& numbering, double patience) {
+  auto opened = open_if_there(site, numbering, patience);
+  if (!opened) return fail(opened.error());
+  if (!*opened) return std::vector<WaitingDraft>{};
+  return (*opened)->all_drafts();
+}
+
+Expected<std::vector<RegisterEntry>> Register::all() {
+  std::vector<RegisterEntry> entries;
+  for (Database::Row& row : database_->rows(R"(
       SELECT c.number, c.campaign, c.date, old.number, c.reason, c.issued,
         CASE WHEN c.state = 'issued' AND new.id IS NOT NULL THEN 'amended' ELSE c.state END,
         new.number
@@ -198,7 +128,7 @@ Expected<std::vector<RegisterEntry>> Register::entries(const fs::path& site,
     entries.push_back({std::move(row[0]), std::move(row[1]), std::move(row[6]), std::move(row[2]),
                        std::move(row[3]), std::move(row[7]), std::move(row[4]),
                        static_cast<std::uint64_t>(integer(row[5]))});
-  if (auto well = database.take_error(); !well) return fail(well.error());
+  if (auto well = database_->take_error(); !well) return fail(well.error());
   return entries;
 }
 
@@ -210,17 +140,48 @@ Inputs Register::inputs_of(std::int64_t id) {
   return inputs;
 }
 
-std::vector<IssuedFile> Register::files_of(std::int64_t id) {
+namespace {
+
+/// What the journal says was issued under a number.
+Expected<Json> issued_as_noted(Database& database, const std::string& number) {
+  const auto entry = Journal(database).last_of("issued", number);
+  if (auto well = database.take_error(); !well) return fail(well.error());
+  Json says = entry ? Json::parse(entry->says, nullptr, false) : Json();
+  if (!says.is_object()) return fail("the register's journal does not say what " + number + " is");
+  return says;
+}
+
+Expected<void> check_digests(const Json& says, const std::string& number,
+                             const std::vector<IssuedFile>& files) {
+  const Json& noted = says.contains("files") ? says["files"] : Json::array();
+  for (std::size_t i = 0; i < std::max(noted.size(), files.size()); ++i)
+    if (i >= noted.size() || i >= files.size() ||
+        noted[i].value("sha256", "") != sha256(files[i].bytes))
+      return fail("the register's copy of " +
+                  (i < files.size() ? files[i].name : noted[i].value("name", "a file")) + " of " +
+                  number + " is not what was issued: restore the register from a backup");
+  return {};
+}
+
+}  // namespace
+
+Expected<std::vector<IssuedFile>> Register::files_of(std::int64_t id) {
   std::vector<IssuedFile> files;
   for (Database::Row& row :
        database_->rows("SELECT output, name, bytes, no_time_stamp FROM files WHERE certificate = ? "
                        "ORDER BY place",
                        {id}))
     files.push_back({std::move(row[0]), std::move(row[1]), std::move(row[2]), std::move(row[3])});
+  if (!is_of_this_version(*database_)) return files;  // read as an older one has left it
+  const std::string number = database_->first("SELECT number FROM certificates WHERE id = ?", {id});
+  if (files.empty() && number.empty()) return files;
+  const auto says = issued_as_noted(*database_, number);
+  if (!says) return fail(says.error());
+  if (auto same = check_digests(*says, number, files); !same) return fail(same.error());
   return files;
 }
 
-Certificate Register::load(std::int64_t id) {
+Expected<Certificate> Register::load(std::int64_t id) {
   Certificate certificate;
   auto rows = database_->rows(
       "SELECT c.number, c.date, c.readings, c.output, c.templates, c.results, old.id, old.number, "
@@ -230,14 +191,19 @@ Certificate Register::load(std::int64_t id) {
   if (rows.empty()) return certificate;
   Database::Row& row = rows.front();
   Issue& issue = certificate.issue;
-  issue = {std::move(row[0]), std::move(row[1]), std::move(row[7]), std::move(row[8]), {},
-           std::move(row[2])};
+  issue.number = std::move(row[0]);
+  issue.date = std::move(row[1]);
+  issue.replaces = std::move(row[7]);
+  issue.replaces_date = std::move(row[8]);
+  issue.readings_sha256 = std::move(row[2]);
   if (!issue.replaces.empty())
     issue.changes = differences(inputs_of(integer(row[6])), inputs_of(id));
   certificate.output = std::move(row[3]);
   certificate.templates_sha256 = std::move(row[4]);
   certificate.results = std::move(row[5]);
-  certificate.files = files_of(id);
+  auto files = files_of(id);
+  if (!files) return fail(files.error());
+  certificate.files = std::move(*files);
   certificate.issued = true;
   return certificate;
 }
@@ -246,17 +212,34 @@ namespace {
 
 /// The entry that a campaign was issued last.
 constexpr const char* last_of_campaign =
-    "SELECT id, state, number, date FROM certificates WHERE campaign = ? AND issued IS NOT NULL "
-    "ORDER BY issued DESC LIMIT 1";
+    "SELECT id, state, number, date, reason FROM certificates WHERE campaign = ? AND issued IS NOT "
+    "NULL ORDER BY issued DESC LIMIT 1";
 
 }  // namespace
 
-std::optional<Certificate> Register::last(const std::string& campaign, const Inputs& data) {
+Expected<std::optional<RegisterEntry>> Register::last_number(const std::string& campaign) {
+  auto rows = database_->rows(last_of_campaign, {campaign});
+  if (auto well = database_->take_error(); !well) return fail(well.error());
+  if (rows.empty()) return std::nullopt;
+  Database::Row& row = rows.front();
+  RegisterEntry entry;
+  entry.campaign = campaign;
+  entry.state = std::move(row[1]);
+  entry.number = std::move(row[2]);
+  entry.date = std::move(row[3]);
+  entry.reason = std::move(row[4]);
+  return entry;
+}
+
+Expected<std::optional<Certificate>> Register::last(const std::string& campaign,
+                                                    const Inputs& data) {
   const auto rows = database_->rows(last_of_campaign, {campaign});
   if (rows.empty() || rows.front()[1] != "issued") return std::nullopt;
   const std::int64_t id = integer(rows.front()[0]);
   if (inputs_of(id) != data) return std::nullopt;
-  return load(id);
+  auto loaded = load(id);
+  if (!loaded) return fail(loaded.error());
+  return std::move(*loaded);
 }
 
 Expected<std::optional<Certificate>> Register::find(const std::string& campaign,
@@ -285,10 +268,19 @@ Expected<Certificate> Register::draw(const std::string& campaign, const Inputs& 
                                      const std::string& today) {
   Database& db = *database_;
   Database::Transaction transaction(db);
-  if (auto issued = last(campaign, data)) {
+  auto issued = last(campaign, data);
+  if (!issued) return fail(issued.error());
+  if (*issued) {
     if (auto ended = transaction.end(); !ended) return fail(ended.error());
-    return std::move(*issued);
+    return std::move(**issued);
   }
+  const auto later =
+      db.rows("SELECT number, date FROM certificates WHERE issued IS NOT NULL AND date > ? LIMIT 1",
+              {today});
+  if (!later.empty())
+    return fail("today is " + today + ", and " + later.front()[0] + " was issued on " +
+                later.front()[1] +
+                ": the clock was set back, and no number is drawn until it is right");
   Certificate drawn;
   const std::string unfinished = "the run of " + today + " ended before it was issued";
   drawn.issue.date = today;
@@ -296,6 +288,7 @@ Expected<Certificate> Register::draw(const std::string& campaign, const Inputs& 
       "UPDATE certificates SET date = ?, reason = ? WHERE campaign = ? AND "
       "state = 'drawn' RETURNING number",
       {today, unfinished, campaign});
+  Journal journal(db);
   if (drawn.issue.number.empty()) {
     auto number = next_number(today.substr(0, 4));
     if (!number) return fail(number.error());
@@ -304,7 +297,13 @@ Expected<Certificate> Register::draw(const std::string& campaign, const Inputs& 
         "INSERT INTO certificates(number, campaign, state, date, reason) "
         "VALUES(?, ?, 'drawn', ?, ?)",
         {drawn.issue.number, campaign, today, unfinished});
+    journal.add("drawn", drawn.issue.number, {{"campaign", campaign}});
   }
+  if (const auto entry = journal.last_of("drawn", drawn.issue.number)) {
+    drawn.issue.register_entry = std::to_string(entry->place);
+    drawn.issue.register_sha256 = entry->sha256;
+  }
+  drawn.issue.register_id = id();
   if (const auto old = db.rows(last_of_campaign, {campaign}); !old.empty()) {
     drawn.issue.replaces = old.front()[2];
     drawn.issue.replaces_date = old.front()[3];
@@ -326,7 +325,8 @@ Expected<Certificate> Register::issue(const Certificate& certificate, const std:
                             : "the register does not know the number " + issue.number);
   const std::int64_t id = integer(found.front()[0]);
   if (found.front()[1] == "issued" && inputs_of(id) == data) {
-    Certificate first = load(id);
+    auto first = load(id);
+    if (!first) return first;
     if (auto ended = transaction.end(); !ended) return fail(ended.error());
     return first;
   }
@@ -345,6 +345,11 @@ Expected<Certificate> Register::issue(const Certificate& certificate, const std:
   for (const IssuedFile& f : certificate.files)
     db.rows("INSERT INTO files VALUES(?, ?, ?, ?, ?, ?)",
             {id, place++, f.output, f.name, f.no_time_stamp, Database::Blob{f.bytes}});
+  Json says = issued_json(db, id);
+  Json released = Json::parse(certificate.released, nullptr, false);
+  if (released.is_object()) says["released"] = std::move(released);
+  Journal(db).add("issued", issue.number, says);
+  db.rows("DELETE FROM drafts WHERE campaign = ?", {campaign});
   if (auto ended = transaction.end(); !ended) return fail(ended.error());
   Certificate done = certificate;
   done.issued = true;
@@ -358,7 +363,8 @@ Expected<void> Register::note_failure(const std::string& campaign, const std::st
   return transaction.end();
 }
 
-Expected<void> Register::withdraw(const std::string& number, const std::string& why) {
+Expected<void> Register::withdraw(const std::string& number, const std::string& why,
+                                  const std::string& by) {
   Database& db = *database_;
   Database::Transaction transaction(db);
   const auto found = db.rows(
@@ -374,12 +380,16 @@ Expected<void> Register::withdraw(const std::string& number, const std::string& 
     return fail(number + " was replaced by " + entry[2] + ": that is the one to withdraw");
   db.rows("UPDATE certificates SET state = 'withdrawn', reason = ? WHERE id = ?",
           {why, integer(entry[0])});
+  Json says = {{"reason", why}};
+  if (!by.empty()) says["by"] = by;
+  Journal(db).add("withdrawn", number, says);
   return transaction.end();
 }
 
 Expected<std::vector<IssuedFile>> Register::files(const std::string& number) {
-  auto files =
-      files_of(integer(database_->first("SELECT id FROM certificates WHERE number = ?", {number})));
+  const auto id =
+      integer(database_->first("SELECT id FROM certificates WHERE number = ?", {number}));
+  auto files = files_of(id);
   if (auto well = database_->take_error(); !well) return fail(well.error());
   return files;
 }

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <utility>
 
+#include "issue_json.h"
 #include "json_writer.h"
 #include "nonio/sdk/format.h"
 
@@ -236,27 +237,6 @@ void put_predictions(JsonWriter& json, const std::vector<Prediction>& prediction
   json.end_array();
 }
 
-void put_certificate(JsonWriter& json, const std::optional<Certificate>& certificate) {
-  if (!certificate) return;
-  const Issue& issue = certificate->issue;
-  json.key("certificate");
-  json.begin_object();
-  json.member("plugin", certificate->output);
-  json.member("number", issue.number);
-  json.member("date", issue.date);
-  put_text(json, "replaces", issue.replaces);
-  put_text(json, "replaces_date", issue.replaces_date);
-  if (!issue.replaces.empty()) {
-    json.key("changes");
-    json.begin_array();
-    for (const std::string& file : issue.changes) json.value(file);
-    json.end_array();
-  }
-  json.member("readings_sha256", issue.readings_sha256);
-  json.member("templates_sha256", certificate->templates_sha256);
-  json.end_object();
-}
-
 /// What outputs predict, find and note stands once, not with each of their files.
 void put_tables(JsonWriter& json, const std::vector<Results::Written>& outputs) {
   const auto silent = [](const Results::Written& w) {
@@ -309,7 +289,7 @@ std::string results_json(const Evaluated& e, const Context& context,
   for (const Results::Analysed& a : e.results.analyses) put_analysis(json, a, e.results.conformity);
   json.end_array();
   put_conformity(json, e.results.conformity);
-  put_certificate(json, e.certificate);
+  if (e.certificate) put_certificate(json, *e.certificate);
   put_files(json, e.results.outputs, files);
   put_tables(json, e.results.outputs);
   put_notes(json, e.results.notes);

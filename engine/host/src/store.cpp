@@ -55,6 +55,7 @@ Expected<void> stage(const fs::path& out, const Evaluated& e, const Context& con
   record.inputs = shared_inputs(context);
   record.inputs.insert(record.inputs.end(), e.inputs.begin(), e.inputs.end());
   if (e.certificate) record.certificate = e.certificate->issue.number;
+  record.draft = e.certificate && e.certificate->draft;
   record.errors = e.results.errors;
   record.findings = known_findings(e.results, context.templates);
 

@@ -115,6 +115,16 @@ std::string issued_line(const std::vector<RegisterEntry>& issued) {
   return line + "\n";
 }
 
+std::string waiting_line(const std::vector<WaitingDraft>& drafts) {
+  constexpr std::size_t most = 8;
+  std::string line = std::to_string(drafts.size()) +
+                     (drafts.size() == 1 ? " draft waits" : " drafts wait") +
+                     " for a release (nonio release): ";
+  for (std::size_t i = 0; i < std::min(most, drafts.size()); ++i)
+    line += (i == 0 ? "" : ", ") + drafts[i].campaign;
+  return line + (drafts.size() > most ? ", ..." : "") + "\n";
+}
+
 void write_text(Spool& out, const Night& night, Lists& lists, const std::string& version) {
   const auto n = [](std::size_t count) { return std::to_string(count); };
   out.add("Nonio " + version + ": " + n(night.campaigns.size()) +
@@ -123,6 +133,7 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
           " failed; " + n(lists.attention.count) + (lists.attention.count == 1 ? " asks" : " ask") +
           " for attention\n");
   if (!night.issued.empty()) out.add(issued_line(night.issued));
+  if (!night.waiting.empty()) out.add(waiting_line(night.waiting));
   // What somebody must act on comes first.
   const auto section = [&](const char* heading, Spool& body) {
     if (body.empty()) return;
@@ -158,6 +169,13 @@ void write_json(Spool& out, const Night& night, Lists& lists, const std::string&
     issued.push_back(std::move(one));
   }
   out.add(",\n \"issued\": " + issued.dump());
+  Json waiting = Json::array();
+  for (const WaitingDraft& d : night.waiting) {
+    Json one = {{"campaign", d.campaign}, {"file", d.campaign + "/" + d.file}};
+    if (!d.replaces.empty()) one["replaces"] = d.replaces;
+    waiting.push_back(std::move(one));
+  }
+  out.add(",\n \"drafts\": " + waiting.dump());
   out.add(",\n \"notes\": " +
           Json(night.notes).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n}\n");
 }

@@ -65,7 +65,8 @@ std::string folder_id(const std::string& folder) {
 class Look {
  public:
   explicit Look(const SurveyInput& input) : in_(input), shared_(shared_inputs(input.context)) {
-    for (const RegisterEntry& e : input.numbers) numbers_[e.number] = &e;
+    if (input.numbers)
+      for (const RegisterEntry& e : *input.numbers) numbers_[e.number] = &e;
   }
 
   /// A first look, without reading the manifest in full: that is done where a full reading said the
@@ -108,7 +109,7 @@ class Look {
     if (id.empty()) return std::nullopt;
     auto record = read_record(in_.out / id);
     if (!record) return std::nullopt;
-    if (!record->certificate.empty() && !numbers_.contains(record->certificate)) {
+    if (in_.numbers && !record->certificate.empty() && !numbers_.contains(record->certificate)) {
       const std::lock_guard guard(unknown_guard_);
       unknown_ = record->certificate;
     }
@@ -150,7 +151,7 @@ class Look {
     for (const auto& [name, digest] : record.inputs)
       if (name.starts_with(prefix)) look_at_file(state, name.substr(prefix.size()), digest, why);
     look_at_outputs(state, record, why);
-    look_at_number(record, why);
+    look_at_number(state, record, why);
     std::string words;
     for (const std::string& w : why) words += (words.empty() ? "" : "; ") + w;
     return words;
@@ -182,7 +183,10 @@ class Look {
     }
   }
 
-  void look_at_number(const Record& record, std::vector<std::string>& why) const {
+  void look_at_number(const CampaignState& state, const Record& record,
+                      std::vector<std::string>& why) const {
+    if (in_.numbers && record.draft && !in_.drafts.contains(state.id))
+      why.push_back("its draft was released, or the register does not know it");
     const auto number = numbers_.find(record.certificate);
     if (number == numbers_.end() || number->second->in_force()) return;
     why.push_back("its certificate " + record.certificate + " was " + number->second->state);
@@ -284,7 +288,24 @@ void fail_collisions(std::vector<CampaignState>& states) {
   }
 }
 
+Error unknown_number(const std::string& number, const fs::path& out) {
+  return Error{"the register of certificates does not know the number " + number + ", which " +
+               out.string() +
+               " says was issued: restore the register, or numbers would be used twice"};
+}
+
 }  // namespace
+
+Expected<void> check_numbers(const fs::path& out, const std::vector<CampaignState>& campaigns,
+                             const std::vector<RegisterEntry>& numbers) {
+  std::set<std::string> known;
+  for (const RegisterEntry& e : numbers) known.insert(e.number);
+  for (const CampaignState& c : campaigns)
+    if (const auto record = read_record(out / c.id);
+        record && !record->certificate.empty() && !known.contains(record->certificate))
+      return fail(unknown_number(record->certificate, out));
+  return {};
+}
 
 Expected<std::vector<CampaignState>> survey(const SurveyInput& input) {
   auto folders = find_campaigns(input.site, input.out, input.notes);
@@ -310,10 +331,7 @@ Expected<std::vector<CampaignState>> survey(const SurveyInput& input) {
   const auto ids = read_ids(unread.size(), manifest_of, input.context.site.limits, input.stopped);
   for_all(unread.size(), input.stopped,
           [&](std::size_t i) { look.again(states[unread[i].index], ids[i], unread[i].digest); });
-  if (!look.unknown_number().empty())
-    return fail("the register of certificates does not know the number " + look.unknown_number() +
-                ", which " + input.out.string() +
-                " says was issued: restore the register, or numbers would be used twice");
+  if (!look.unknown_number().empty()) return fail(unknown_number(look.unknown_number(), input.out));
   give_way(states);
   std::stable_sort(states.begin(), states.end(),
                    [](const CampaignState& a, const CampaignState& b) { return a.id < b.id; });

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <set>
 #include <vector>
 
 #include "nonio/host/evaluate.h"
@@ -15,13 +17,22 @@ struct SurveyInput {
   const Context& context;
   std::uint64_t night;  ///< the one that is being done
   bool force;
-  const std::vector<RegisterEntry>& numbers;  ///< all of the site's register
-  std::vector<std::string>& notes;            ///< what was passed over, for the summary
-  bool (*stopped)();  ///< asked now and then; what is returned then is not whole
+  /// All of the site's register, and the campaigns whose drafts wait there; none while another
+  /// process keeps it locked: then nobody is asked.
+  std::optional<std::vector<RegisterEntry>> numbers;
+  std::set<std::string> drafts;
+  std::vector<std::string>& notes;  ///< what was passed over, for the summary
+  bool (*stopped)();                ///< asked now and then; what is returned then is not whole
 };
 
 /// All campaigns of a site, by id, each with what is to be done with it and why. Campaigns whose
 /// ids collide come out failed, with an error that names all their folders.
 Expected<std::vector<CampaignState>> survey(const SurveyInput& input);
+
+/// An error if the output folder has a number that the register does not know: numbers would be
+/// used twice. For a night whose survey could not ask.
+Expected<void> check_numbers(const std::filesystem::path& out,
+                             const std::vector<CampaignState>& campaigns,
+                             const std::vector<RegisterEntry>& numbers);
 
 }  // namespace nonio::host

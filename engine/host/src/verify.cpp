@@ -9,6 +9,7 @@
 #include "nonio/host/files.h"
 #include "nonio/host/record.h"
 #include "recomputed.h"
+#include "register_check.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -82,13 +83,14 @@ Expected<std::unique_ptr<Workplace>> open_to_verify(const std::vector<fs::path>&
 }
 
 sign::Verified verify_file(const fs::path& path, const sign::Verifier& verifier,
-                           const Context& context) {
+                           const Context& context, const fs::path& site) {
   const auto bytes = read_file(path);
   if (!bytes) return refused(bytes.error().message);
   if (bytes->starts_with("<?xml")) {
     sign::Verified v = sign::verify_xml(*bytes, verifier);
-    if (v.holds())
-      v.checks.push_back(check_dcc({path.filename().string(), *bytes, {}, {}, {}}, nullptr));
+    if (!v.holds()) return v;
+    v.checks.push_back(check_dcc({path.filename().string(), *bytes, {}, {}, {}}, nullptr));
+    if (auto state = check_register(v, *bytes, site)) v.checks.push_back(std::move(*state));
     return v;
   }
   sign::Verified v = sign::verify_pdf(*bytes, verifier);
@@ -100,6 +102,7 @@ sign::Verified verify_file(const fs::path& path, const sign::Verifier& verifier,
       v.checks.push_back({check, State::not_checked, "the signature does not hold"});
     return v;
   }
+  if (auto state = check_register(v, *bytes, site)) v.checks.push_back(std::move(*state));
   check_documents(v, verifier);
   for (sign::Check& c : check_content(v, *bytes, context)) v.checks.push_back(std::move(c));
   return v;

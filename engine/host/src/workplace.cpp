@@ -5,9 +5,6 @@
 namespace nonio::host {
 namespace fs = std::filesystem;
 
-namespace {
-
-/// The nearest folder at or above the campaign that holds a site.toml; else the campaign's own.
 fs::path site_of(const fs::path& campaign) {
   std::error_code error;
   const fs::path start = fs::canonical(campaign, error);
@@ -17,8 +14,6 @@ fs::path site_of(const fs::path& campaign) {
   }
   return campaign;
 }
-
-}  // namespace
 
 Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
                                                     const std::vector<fs::path>& plugin_folders,

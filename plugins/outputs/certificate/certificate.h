@@ -31,6 +31,9 @@ bool is_printed(const Results::Analysed&);
 /// The title in the document's language: the laboratory's, or that of the words.
 std::string title_of(const Source&);
 
+/// The number, or the word for what has none yet.
+std::string number_of(const Source&);
+
 /// Everything that is missing, as keys with their file.
 std::vector<std::string> lacks(const OutputInput&);
 

@@ -69,28 +69,34 @@ std::string title_of(const Source& source) {
   return source.words.get("title.default");
 }
 
+std::string number_of(const Source& source) {
+  const Issue& issue = *source.in.issue;
+  return issue.is_draft() ? source.words.get("draft.number") : issue.number;
+}
+
 Document compose(const Source& source) {
   const Campaign& c = source.in.campaign;
   const Issue& issue = *source.in.issue;
-  const std::string title = title_of(source);
+  const std::string title = title_of(source), number = number_of(source);
   Document document;
   document.style = source.look.style;
   document.language = source.language();
   document.date = issue.date;
-  document.title = title + " " + issue.number;
+  document.title = title + " " + number;
   document.author = c.laboratory.name;
   document.subject = c.machine.model + " " + c.machine.serial;
-  document.head = pages::without_gaps(title + " " + issue.number + " · " + c.laboratory.name);
+  document.head = pages::without_gaps(title + " " + number + " · " + c.laboratory.name);
   document.foot = document.title;
   if (const auto profile = source.in.templates.files.find(source.look.profile);
       profile != source.in.templates.files.end())
     document.profile = profile->second;
   document.page_of = source.words.get("title.page_of");
+  if (issue.is_draft()) document.mark = source.words.get("draft.mark");
   for (const std::string& name : source.look.blocks)
     for (const Part& part : parts)
       if (name == part.name) part.add(source, document.blocks);
   document.blocks.push_back(
-      {Paragraph{source.words.get("title.end", {{"number", issue.number}}), Paragraph::Look::small},
+      {Paragraph{source.words.get("title.end", {{"number", number}}), Paragraph::Look::small},
        "end"});
   return document;
 }

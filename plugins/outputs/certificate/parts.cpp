@@ -92,27 +92,55 @@ void add_title(const Source& source, Blocks& blocks) {
               "laboratory.accreditation", Look::muted);
   Blocks title = {
       {Heading{title_of(source), 0}, "certificate.title"},
-      {Paragraph{source.words.get("title.number", {{"number", source.in.issue->number}}),
+      {Paragraph{source.in.issue->is_draft()
+                     ? number_of(source)
+                     : source.words.get("title.number", {{"number", number_of(source)}}),
                  Look::bold},
        "title.number"},
-      {Paragraph{source.words.get("title.issued", {{"date", source.in.issue->date}}), Look::body},
+      {Paragraph{source.in.issue->is_draft()
+                     ? source.words.get("draft.says")
+                     : source.words.get("title.issued", {{"date", source.in.issue->date}}),
+                 Look::body},
        "title.issued"}};
   blocks.push_back({Columns{{std::move(title), std::move(by)}, {0.6, 0.4}}, "title"});
   blocks.push_back({Spacer{6}});
 }
 
+namespace {
+
+/// A row for each place: what stood there, and what stands there now.
+void add_changes(const Source& source, const FileChange& file, Grid& into) {
+  const Wording& w = source.words;
+  const std::string field = "amendment.changes";
+  const auto shown = [&](const std::optional<std::string>& value) {
+    return value ? (value->empty() ? "\"\"" : *value) : w.get("amendment.absent");
+  };
+  if (file.changes.empty()) into.rows.push_back({file.file, w.get("amendment.whole"), field});
+  for (const Change& c : file.changes) {
+    const std::string place =
+        c.key.empty() ? w.get("amendment.line", {{"line", std::to_string(c.line)}}) : c.key;
+    into.rows.push_back(
+        {file.file + ", " + place, shown(c.before) + " → " + shown(c.after), field});
+  }
+  if (file.more != 0)
+    into.rows.push_back(
+        {file.file, w.get("amendment.more", {{"count", std::to_string(file.more)}}), field});
+}
+
+}  // namespace
+
 void add_amendment(const Source& source, Blocks& blocks) {
   const Issue& issue = *source.in.issue;
   if (issue.replaces.empty()) return;
-  std::string changes;
-  for (const std::string& name : issue.changes) changes += (changes.empty() ? "" : ", ") + name;
   std::string text = source.words.get("amendment.replaces",
                                       {{"number", issue.replaces}, {"date", issue.replaces_date}});
-  if (!changes.empty()) text += " " + source.words.get("amendment.changes", {{"changes", changes}});
-  if (const std::string& why = source.in.campaign.certificate.amendment; !why.empty())
-    text += " " + source.words.get("amendment.why", {{"why", why}});
+  if (!issue.why.empty()) text += " " + source.words.get("amendment.why", {{"why", issue.why}});
+  if (issue.changes.empty()) text += " " + source.words.get("amendment.nothing");
   blocks.push_back({Note{Level::attention, source.words.get("amendment.title"), text, ""},
                     "certificate.amendment"});
+  Grid changes{source.words.get("amendment.changed"), {}};
+  for (const FileChange& file : issue.changes) add_changes(source, file, changes);
+  if (!changes.rows.empty()) blocks.push_back({std::move(changes), "amendment.changes"});
 }
 
 void add_parties(const Source& source, Blocks& blocks) {
@@ -251,14 +279,30 @@ void add_statements(const Source& source, Blocks& blocks) {
     paragraph(blocks, "* " + w.get("statements.customer_data"), "statements.customer_data");
 }
 
+namespace {
+
+/// The person; or who answers for the laboratory's rules where these have released it.
+std::string released_by(const Source& source) {
+  const Issue& issue = *source.in.issue;
+  const std::string& responsible = source.in.campaign.laboratory.authoriser;
+  if (issue.is_draft()) return source.words.get("draft.nobody");
+  if (!issue.released_by.empty()) return issue.released_by;
+  return source.words.get("authority.rules", {{"name", responsible}});
+}
+
+}  // namespace
+
 void add_authority(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
-  Grid grid{
-      w.get("authority.title"),
-      {{w.get("authority.by"), source.in.campaign.laboratory.authoriser, "laboratory.authoriser"},
-       {w.get("authority.signed"), w.get("authority.electronic"), "authority.electronic"},
-       {w.get("authority.verify"), w.get("authority.how"), "authority.how"},
-       {w.get("authority.readings"), source.in.issue->readings_sha256, "readings"}}};
+  const bool draft = source.in.issue->is_draft();
+  Grid grid{w.get("authority.title"),
+            {{w.get("authority.by"), released_by(source), "laboratory.authoriser"},
+             {w.get("authority.author"), source.in.issue->author, "authority.author"},
+             {w.get("authority.signed"), w.get(draft ? "draft.says" : "authority.electronic"),
+              "authority.electronic"},
+             {w.get("authority.verify"), draft ? "" : w.get("authority.how"), "authority.how"},
+             {w.get("authority.readings"), source.in.issue->readings_sha256, "readings"},
+             {w.get("authority.register"), source.in.issue->register_id, "register"}}};
   blocks.push_back({std::move(grid), "authority"});
 }
 

@@ -97,7 +97,8 @@ Expected<OutputResult> write(const OutputInput& in) {
   if (!bytes) return fail(bytes.error());
   OutputResult result;
   result.artifacts.push_back({"certificate.pdf", std::move(*bytes), true});
-  result.artifacts.push_back({"certificate.xml", dcc_of(in, *look, **fonts), true});
+  if (!in.issue->is_draft())
+    result.artifacts.push_back({"certificate.xml", dcc_of(in, *look, **fonts), true});
   return result;
 }
 

@@ -26,7 +26,23 @@ class Certificate(SigningTest):
 
     def issue(self, *args):
         self.run_nonio(*args, expect=0)
+        run(NONIO, "release", self.site / "adjusted", "--by", "B. Sample",
+            *(part for finding in self.findings() for part in ("--reason", f"{finding}=as found")))
         return self.pdf
+
+    def findings(self):
+        draft, = json.loads(run(NONIO, "release", self.site, "--list", "--json").stdout)["drafts"]
+        return sorted({f["id"] for f in draft["findings"] if f["severity"] == "attention"})
+
+    @needs("pdftotext")
+    def test_every_page_of_a_draft_says_so(self):
+        self.run_nonio(expect=0)
+        self.assertFalse(self.pdf.exists())
+        pages = run("pdftotext", self.out / "adjusted" / "certificate-draft.pdf", "-").stdout.split("\f")[:-1]
+        self.assertGreater(len(pages), 1)
+        for page in pages:
+            self.assertIn("BOZZA / DRAFT", page)
+            self.assertNotIn("S-0001", page)
 
     def test_it_holds(self):
         answers = {}

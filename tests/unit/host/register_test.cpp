@@ -55,6 +55,11 @@ class RegisterTest : public testing::Test {
     EXPECT_TRUE(done) << done.error().message;
     return done ? *done : Certificate{};
   }
+  static std::vector<std::string> files_of(const Issue& issue) {
+    std::vector<std::string> names;
+    for (const FileChange& change : issue.changes) names.push_back(change.file);
+    return names;
+  }
   std::vector<RegisterEntry> entries() const {
     auto all = Register::entries(site_, numbering_);
     EXPECT_TRUE(all) << all.error().message;
@@ -124,16 +129,16 @@ TEST_F(RegisterTest, OtherDataAreAnAmendmentThatNamesWhatItReplaces) {
   EXPECT_EQ(second.issue.number, "2026-0002");
   EXPECT_EQ(second.issue.replaces, "2026-0001");
   EXPECT_EQ(second.issue.replaces_date, day);
-  EXPECT_EQ(second.issue.changes, std::vector<std::string>{"x.csv"});
+  EXPECT_EQ(files_of(second.issue), std::vector<std::string>{"x.csv"});
   EXPECT_EQ(entry("2026-0001").state, "amended");
   EXPECT_EQ(entry("2026-0001").replaced_by, "2026-0002");
-  EXPECT_EQ(drawn(r, "c1", other_readings).issue.changes, second.issue.changes);
+  EXPECT_EQ(files_of(drawn(r, "c1", other_readings).issue), files_of(second.issue));
   // The data of the first again: what was replaced does not come back.
   const Inputs more = {{"campaign.toml", "aa"}, {"file y.csv", "bb"}, {"site.toml", "c2"}};
-  issued(r, "c1", first_data);
-  const Certificate fourth = issued(r, "c1", more);
+  issued(r, "c1", first_data, "2026-11-30");
+  const Certificate fourth = issued(r, "c1", more, "2026-11-30");
   EXPECT_EQ(fourth.issue.replaces, "2026-0003");
-  EXPECT_EQ(fourth.issue.changes, (std::vector<std::string>{"y.csv", "site.toml", "x.csv"}));
+  EXPECT_EQ(files_of(fourth.issue), (std::vector<std::string>{"y.csv", "site.toml", "x.csv"}));
 }
 
 TEST_F(RegisterTest, WhatIsWithdrawnIsIssuedAnew) {
@@ -212,12 +217,12 @@ TEST_F(RegisterTest, OnlyAFileInsideTheSiteThatIsARegister) {
   Register r = open();
   drawn(r, "c1", first_data);
   EXPECT_TRUE(fs::exists(site_ / "folder/numbers.sqlite"));
-  auto foreign = Database::open(site_ / "foreign.sqlite", true);
+  auto foreign = Database::open(site_ / "foreign.sqlite", Database::Use::create);
   foreign->script("CREATE TABLE t(x)");
   numbering_.register_file = "foreign.sqlite";
   EXPECT_FALSE(Register::open(site_, numbering_));
-  auto newer = Database::open(site_ / "folder/numbers.sqlite", false);
-  newer->script("PRAGMA user_version = 2");
+  auto newer = Database::open(site_ / "folder/numbers.sqlite", Database::Use::write);
+  newer->script("PRAGMA user_version = 3");
   numbering_.register_file = "folder/numbers.sqlite";
   EXPECT_FALSE(Register::open(site_, numbering_));
 }
@@ -292,7 +297,7 @@ TEST_F(RegisterTest, ATransactionThatWasCutShortDidNotHappen) {
   }
   const pid_t child = ::fork();
   if (child == 0) {
-    auto file = Database::open(site_ / numbering_.register_file, false);
+    auto file = Database::open(site_ / numbering_.register_file, Database::Use::write);
     file->rows("PRAGMA cache_size = 1");  // so that it is written before the end
     Database::Transaction transaction(*file);
     for (int i = 0; i < 200; ++i)

@@ -214,7 +214,7 @@ TEST_F(Certificate, EveryLanguageIsWhole) {
   for (const char* language : {"de", "en", "es", "it", "zh"})
     EXPECT_TRUE(languages.contains(language)) << language;
   Case c = whole();
-  issue.replaces = "2026-0003", issue.replaces_date = "2026-10-01", issue.changes = {"x.csv"};
+  issue.replaces = "2026-0003", issue.replaces_date = "2026-10-01", issue.changes = {{"x.csv"}};
   decide(c, "iso230-2", "A", 1e-6, Decision::does_not_conform);
   decide(c, "iso230-2", "B", 50e-6, Decision::conforms);
   for (const std::string& language : languages) {
@@ -231,11 +231,49 @@ TEST_F(Certificate, EveryLanguageIsWhole) {
 TEST_F(Certificate, AnAmendmentNamesWhatItReplacesAndWhy) {
   Case c = whole();
   issue.replaces = "2026-0003", issue.replaces_date = "2026-10-01";
-  issue.changes = {"x.csv", "campaign.toml"};
-  c.campaign.certificate.amendment = "wrong file";
-  EXPECT_TRUE(says(text(c),
-                   "This document replaces 2026-0003 of 2026-10-01, which is no longer valid. "
-                   "Changed: x.csv, campaign.toml. Reason: wrong file"));
+  issue.changes = {{"x.csv", {{"", 7, "1,+,50,4.1", "1,+,50,4.3"}, {"", 9, "2,-,0,1", {}}}, 12},
+                   {"campaign.toml", {{"machine.serial", 0, "S-1", "S-2"}}},
+                   {"y.bin"}};
+  issue.why = "wrong file";
+  const std::string page = text(c);
+  for (const char* what :
+       {"This document replaces 2026-0003 of 2026-10-01, which is no longer valid. "
+        "Reason: wrong file",
+        "x.csv, line 7", "1,+,50,4.1 → 1,+,50,4.3", "2,-,0,1 → (nothing)", "and 12 more places",
+        "campaign.toml, machine.serial", "S-1 → S-2", "y.bin"})
+    EXPECT_TRUE(says(page, what)) << what << "\n" << page;
+  issue.changes.clear();
+  EXPECT_TRUE(says(text(c), "Its data are unchanged."));
+}
+
+TEST_F(Certificate, ADraftSaysSoOnEveryPageAndIsNotSigned) {
+  Case c = whole();
+  const std::map<std::string, std::string> marks = {
+      {"de", "ENTWURF"}, {"en", "DRAFT"}, {"es", "BORRADOR"}, {"it", "BOZZA"}, {"zh", "草稿"}};
+  issue.number = issue.date = "";
+  for (const auto& [language, mark] : marks) {
+    c.campaign.certificate.languages = {language};
+    const auto result = write(c);
+    ASSERT_TRUE(result) << language << ": " << result.error().message;
+    ASSERT_EQ(result->artifacts.size(), 1U) << "no DCC of a draft";
+    const PdfText pdf = read_pdf(result->artifacts.front().bytes);
+    ASSERT_GT(pdf.pages.size(), 1U);
+    for (const auto& page : pdf.pages) EXPECT_TRUE(says(page, mark)) << language << "\n" << page;
+    EXPECT_FALSE(says(pdf.all(), "PAdES")) << language;
+  }
+}
+
+TEST_F(Certificate, WhoReleasedItStandsOnIt) {
+  Case c = whole();
+  EXPECT_TRUE(says(text(c), "B. Verdi (by the rules of the laboratory for automatic release)"));
+  issue.released_by = "C. Neri";
+  issue.author = "D. Viola";
+  issue.register_id = "11111111-2222-4333-8444-555555555555";
+  const std::string page = text(c);
+  EXPECT_TRUE(says(page, "C. Neri"));
+  EXPECT_FALSE(says(page, "B. Verdi")) << "who did not release it";
+  EXPECT_TRUE(says(page, "D. Viola"));
+  EXPECT_TRUE(says(page, issue.register_id));
 }
 
 TEST_F(Certificate, ATitleOrMarkOfAccreditationNeedsOne) {

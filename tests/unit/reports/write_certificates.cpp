@@ -14,8 +14,9 @@ int main(int argc, char** argv) {
     if (!plugins.load(std::string(NONIO_PLUGINS) + "/" + name + ".so")) return 1;
   const Templates templates = read_templates(NONIO_TEMPLATES);
   const Settings none;
-  const Issue issue{"2026-0012",  "2026-11-21", "2026-0003",
-                    "2026-10-01", {"x.csv"},    std::string(64, 'a')};
+  Issue issue{"2026-0012",  "2026-11-21", "2026-0003",
+              "2026-10-01", {{"x.csv"}},  std::string(64, 'a')};
+  issue.why = "R";
   Case c = whole_case(plugins);
   decide(c, "iso230-2", "A", 1e-6, Decision::does_not_conform);
   decide(c, "iso230-2", "B", 50e-6, Decision::conforms);

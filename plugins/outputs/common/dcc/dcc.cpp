@@ -71,7 +71,7 @@ class Writer {
     xml_.element("dcc:beginPerformanceDate", c.date);
     xml_.element("dcc:endPerformanceDate", c.end_date.empty() ? c.date : c.end_date);
     xml_.element("dcc:performanceLocation", about_.location);
-    if (in_.issue != nullptr) {
+    if (in_.issue != nullptr && !in_.issue->is_draft()) {
       xml_.element("dcc:issueDate", in_.issue->date);
       if (!in_.issue->replaces.empty()) {
         xml_.open("dcc:reportAmendedSubstituted");
@@ -112,7 +112,8 @@ class Writer {
     xml_.open("dcc:respPersons");
     xml_.open("dcc:respPerson");
     xml_.open("dcc:person");
-    text("dcc:name", c.laboratory.authoriser);
+    const bool by_a_person = in_.issue != nullptr && !in_.issue->released_by.empty();
+    text("dcc:name", by_a_person ? in_.issue->released_by : c.laboratory.authoriser);
     xml_.close();
     xml_.element("dcc:mainSigner", "true");
     xml_.close();

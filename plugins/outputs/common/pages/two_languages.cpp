@@ -86,6 +86,7 @@ Blocks joined(Blocks first, const Blocks& second) {
 Document side_by_side(Document first, const Document& second) {
   join(first.title, second.title);
   join(first.page_of, second.page_of);
+  join(first.mark, second.mark);
   first.blocks = joined(std::move(first.blocks), second.blocks);
   return first;
 }

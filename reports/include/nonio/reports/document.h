@@ -197,6 +197,7 @@ struct Document {
   std::string head;  ///< at the top of the second page and those that follow
   std::string foot;  ///< at the bottom of every page
   std::string page_of = "{page}/{pages}";
+  std::string mark{};  ///< across every page, above everything: DRAFT
   /// An ICC profile of sRGB: the file is to be kept for long, and says its colours, its properties
   /// also as XMP, and an identifier.
   std::string profile{};

@@ -11,9 +11,13 @@ namespace nonio::host {
 /// `[certificate]` of a site's site.toml.
 Expected<Numbering> numbering_of(const std::filesystem::path& site);
 
-/// Takes a number back; `why` stays in the register.
+/// Takes a number back; `why` stays in the register, and `by` (may be empty).
 Expected<void> withdraw(const std::filesystem::path& site, const Numbering& numbering,
-                        const std::string& number, const std::string& why);
+                        const std::string& number, const std::string& why,
+                        const std::string& by = {});
+
+/// Whether the register is what it was written as; an error if that cannot be asked.
+Expected<Audit> audit(const std::filesystem::path& site, const Numbering& numbering);
 
 /// Writes what was issued under all numbers into a folder: NUMBER.pdf, NUMBER-dcc.xml.
 Expected<void> export_certificates(const std::filesystem::path& site, const Numbering& numbering,

@@ -51,8 +51,10 @@ struct Certificate {
   Issue issue{};
   std::string templates_sha256{};
   bool issued = false;              ///< already: what follows is what was signed then
+  bool draft = false;               ///< without number: waits until a person releases it
   std::vector<IssuedFile> files{};  ///< those of `output` first
   std::string results{};            ///< results.json as it is attached
+  std::string released{};           ///< JSON: by whom, and why findings may stand
 };
 
 struct Evaluated {
@@ -67,9 +69,10 @@ struct Evaluated {
 /// Told what is about to be called, for the case that it does not come back.
 using Stage = std::function<void(const std::string&)>;
 
-/// What was issued for what is evaluated here, whatever is missing for it today; else, if it is
-/// `complete`, a number; else a certificate without one.
-using Draw = std::function<Expected<Certificate>(const Evaluated&, bool complete)>;
+/// What was issued for what is evaluated here, whatever is `missing` for it today; else, if nothing
+/// is, a draft or a number; else neither. Adds to `missing` what only the register knows.
+using Draw =
+    std::function<Expected<Certificate>(const Evaluated&, std::vector<std::string>& missing)>;
 
 /// One campaign from its folder to its artifacts; writes nothing. Without `draw` there is no
 /// certificate.

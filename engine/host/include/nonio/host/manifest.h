@@ -53,10 +53,20 @@ struct Signing {
   int time_stamp_seconds = 10;
 };
 
-/// `[certificate]` of site.toml: what its certificates say, and how they are numbered.
+/// Of `[certificate]`: a finding that does not hold up an automatic release.
+struct StandingRule {
+  std::string finding;  ///< its id, or "kind.*": all whose id begins with "kind."
+  std::string reason;
+};
+
+/// `[certificate]` of site.toml: how its certificates are released and numbered.
 struct Numbering {
   std::string pattern = "{year}-{number:4}";          ///< the sequence begins anew with each year
   std::string register_file = "certificates.sqlite";  ///< relative to the site
+  double patience = 60.0;  ///< s, with a register that another process keeps locked
+  bool automatic = false;  ///< a night may release what no finding holds up
+  std::vector<StandingRule> may_stand{};
+  bool two_persons = false;  ///< author and authoriser must not be the same
 };
 
 struct SiteFile {

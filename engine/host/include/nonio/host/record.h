@@ -37,6 +37,7 @@ struct Record {
   bool retry = false;  ///< it failed for a reason that does not lie in its content
   Inputs inputs;
   std::string certificate;  ///< its number; empty: none
+  bool draft = false;       ///< of a certificate that waits for its release
   std::vector<RecordedFile> files;
   std::vector<Error> errors;
   std::vector<KnownFinding> findings, previous;  ///< previous: of the last night before this one

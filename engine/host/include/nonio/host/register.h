@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "nonio/host/evaluate.h"
+#include "nonio/host/record.h"
 
 namespace nonio::host {
 
@@ -25,42 +27,102 @@ struct RegisterEntry {
   bool in_force() const { return state == "issued"; }
 };
 
+/// A person's word on a draft.
+struct Approval {
+  std::string by, role;                        ///< role: author, authoriser
+  std::string at{};                            ///< UTC
+  std::map<std::string, std::string> reasons;  ///< why a finding may stand, by `finding_key`
+};
+
+/// What a night has made for a campaign and nobody has released yet.
+struct WaitingDraft {
+  std::string campaign, folder;  ///< the folder relative to the site
+  std::string out;               ///< the output folder of the night
+  std::string file, sha256;      ///< the PDF in OUT/campaign
+  std::string replaces;          ///< the number that it would replace; may be empty
+  Inputs made_from;              ///< its data, and plugins, templates, version
+  std::vector<KnownFinding> findings;
+  std::optional<Approval> author{};  ///< who has approved it, where two persons are wanted
+};
+
+/// "X: reversal.not-constant": how a finding is called where a reason for it is given.
+std::string finding_key(const KnownFinding& finding);
+
+/// Whether nothing was changed in a register or taken out of it.
+struct Audit {
+  std::string id;             ///< identity of the register
+  std::uint64_t entries = 0;  ///< of its journal
+  std::uint64_t certificates = 0, files = 0;
+  std::string last_at, last_sha256;  ///< of the last entry: worth keeping elsewhere
+  std::vector<std::string> wrong;    ///< empty: all is as it was written
+};
+
 /// The site's register of numbers and of everything that was issued under them, an SQLite file.
 /// Entries are never deleted. Several processes may use it at once; each opens it itself, and none
 /// carries it across a fork. What a call has changed is on disk when it returns.
 class Register {
  public:
-  static Expected<Register> open(const std::filesystem::path& site, const Numbering& numbering);
+  /// Made if it is not there. Whoever finds it locked waits up to `patience` seconds.
+  static Expected<Register> open(const std::filesystem::path& site, const Numbering& numbering,
+                                 double patience = 60.0);
+  /// Nothing is written, not even where an older version has made it.
+  static Expected<Register> open_to_read(const std::filesystem::path& site,
+                                         const Numbering& numbering);
   /// All numbers in the order in which they were drawn; none if there is no register yet.
   static Expected<std::vector<RegisterEntry>> entries(const std::filesystem::path& site,
-                                                      const Numbering& numbering);
+                                                      const Numbering& numbering,
+                                                      double patience = 60.0);
+  static Expected<std::vector<WaitingDraft>> drafts(const std::filesystem::path& site,
+                                                    const Numbering& numbering,
+                                                    double patience = 60.0);
   Register(Register&&) noexcept;
   Register& operator=(Register&&) noexcept;
   ~Register();
 
+  Expected<std::vector<RegisterEntry>> all();
+  /// No two registers have the same; a copy has that of the one it was copied from.
+  std::string id();
+  /// Under which number a file with this SHA-256 was issued; empty: none.
+  std::string number_of(const std::string& file_sha256);
+  /// The number that a campaign was issued last, in force or not.
+  Expected<std::optional<RegisterEntry>> last_number(const std::string& campaign);
   /// What a campaign was issued last, if that is in force and was made from these data.
   Expected<std::optional<Certificate>> find(const std::string& campaign, const Inputs& data);
   /// As `find`, or else a number: one that was drawn for the campaign and never issued, or the next
-  /// one. `today` is YYYY-MM-DD.
+  /// one. `today` is YYYY-MM-DD; an error if something was issued on a later day.
   Expected<Certificate> draw(const std::string& campaign, const Inputs& data,
                              const std::string& today);
   /// Issues what was drawn and signed. Gives what holds from now on: if somebody else was faster
-  /// with the same data, what he has issued.
+  /// with the same data, what he has issued. The campaign's draft is gone with it.
   Expected<Certificate> issue(const Certificate& certificate, const std::string& campaign,
                               const Inputs& data);
   /// Why the number that was drawn for a campaign is not issued; nothing if there is none.
   Expected<void> note_failure(const std::string& campaign, const std::string& why);
-  /// From now on it is not in force: the next night issues the campaign's certificate anew.
-  Expected<void> withdraw(const std::string& number, const std::string& why);
+  /// From now on it is not in force: the next night makes a draft for the campaign anew. `by` may
+  /// be empty.
+  Expected<void> withdraw(const std::string& number, const std::string& why,
+                          const std::string& by = {});
+  /// As they were issued; an error if the register's copy is not what was issued.
   Expected<std::vector<IssuedFile>> files(const std::string& number);
+
+  Expected<std::vector<WaitingDraft>> all_drafts();
+  /// In place of an earlier one of the campaign. What its author said stays if it is the same.
+  Expected<void> enter_draft(const WaitingDraft& draft);
+  Expected<void> drop_draft(const std::string& campaign);
+  Expected<std::optional<WaitingDraft>> draft(const std::string& campaign);
+  /// The author's word.
+  Expected<void> approve(const std::string& campaign, const Approval& approval);
+
+  Expected<Audit> audit();
 
  private:
   Register(std::unique_ptr<Database> database, std::string pattern);
   Expected<std::string> next_number(const std::string& year);
-  std::optional<Certificate> last(const std::string& campaign, const Inputs& data);
-  Certificate load(std::int64_t id);
+  Expected<std::optional<Certificate>> last(const std::string& campaign, const Inputs& data);
+  Expected<Certificate> load(std::int64_t id);
   Inputs inputs_of(std::int64_t id);
-  std::vector<IssuedFile> files_of(std::int64_t id);
+  /// An error if they are not what the journal says was issued.
+  Expected<std::vector<IssuedFile>> files_of(std::int64_t id);
 
   std::unique_ptr<Database> database_;
   std::string pattern_;

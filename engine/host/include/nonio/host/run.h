@@ -48,7 +48,8 @@ struct Night {
   std::string error;                     ///< of a refused run: usage or configuration
   std::vector<CampaignState> campaigns;  ///< ordered by id
   std::vector<std::string> notes;
-  std::vector<RegisterEntry> issued;  ///< certificates that are new
+  std::vector<RegisterEntry> issued;  ///< certificates that are new since the night before
+  std::vector<WaitingDraft> waiting;  ///< for their release
   bool any_failed() const;
 };
 

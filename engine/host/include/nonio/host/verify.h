@@ -30,9 +30,9 @@ Expected<std::unique_ptr<Workplace>> open_to_verify(
 
 /// A certificate (PDF) or a DCC (XML): its signature first, then, where that holds, its content:
 /// every attached DCC, and the attached readings evaluated again by the plugins of `context`, up to
-/// the printed pages.
+/// the printed pages. The register of `site` (may be empty) is asked whether a number is in force.
 /// Whatever the file holds, there is an answer.
 sign::Verified verify_file(const std::filesystem::path& path, const sign::Verifier& verifier,
-                           const Context& context);
+                           const Context& context, const std::filesystem::path& site);
 
 }  // namespace nonio::host

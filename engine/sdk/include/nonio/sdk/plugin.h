@@ -156,8 +156,9 @@ struct Output {
   /// (fonts). It must not change what `write` gives.
   void (*prepare)(const Templates&) = nullptr;
   /// Of what is issued under a number, once and for good: everything that is missing for it, as
-  /// keys to fill. The host draws a number when nothing is, and then calls `write`; the same data
-  /// are never issued anew.
+  /// keys to fill. When nothing is, `write` is called for a draft (Issue::is_draft): every page of
+  /// its PDF has to say that it is one. When a person has released it, the host draws a number and
+  /// calls `write` again; the same data are never issued anew.
   std::vector<std::string> (*lacks)(const OutputInput&) = nullptr;
   /// Optional: what is wrong with the templates and words that this output uses.
   std::vector<Error> (*check_templates)(const Templates&) = nullptr;
@@ -178,7 +179,7 @@ class Registry {
   ~Registry() = default;
 };
 
-inline constexpr int sdk_version = 5;
+inline constexpr int sdk_version = 6;
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
@@ -202,7 +203,7 @@ inline constexpr int sdk_version = 5;
 #endif
 
 /// Everything that must agree before a plugin may be called.
-#define NONIO_ABI_TAG "nonio-sdk 5; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
+#define NONIO_ABI_TAG "nonio-sdk 6; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
 
 /// The one exported symbol, `nonio_plugin`. Plain: the host reads the tag before it calls anything.
 struct PluginEntry {

@@ -108,12 +108,35 @@ struct OutputResult {
   std::vector<Remark> notes;  ///< what is only inferred about a format, for example
 };
 
-/// The number under which something is issued, drawn by the host; dates as YYYY-MM-DD.
+/// One place of a file that is other than it was: a key of a TOML file or a line of readings. What
+/// was not there before, or is not there any more, is absent.
+struct Change {
+  std::string key;         ///< "machine.axes.X.tolerance_um.B"; empty: a line
+  std::uint64_t line = 0;  ///< 1-based, in the file as it is now; of what is gone: as it was
+  std::optional<std::string> before{}, after{};
+};
+
+/// A file that is other than it was. Without `changes`: all of it.
+struct FileChange {
+  std::string file;
+  std::vector<Change> changes{};
+  std::uint64_t more = 0;  ///< so many places beside these
+};
+
+/// The number under which something is issued, drawn by the host; dates as YYYY-MM-DD. Before a
+/// person has released it there is no number: a draft, and every page of it must say so.
 struct Issue {
   std::string number, date;
   std::string replaces, replaces_date;  ///< the one that this amends; empty: none
-  std::vector<std::string> changes;     ///< files that are other than in the one that it replaces
+  std::vector<FileChange> changes;      ///< what is other than in the one that it replaces
   std::string readings_sha256;          ///< of the files of readings, one behind the other
+  std::string why{};                    ///< the other one is replaced
+  std::string released_by{};  ///< the person; empty: the laboratory's rules for automatic release
+  std::string author{};       ///< who has approved it before, where that is another person
+  /// Of the register: its identity, no two have the same; the entry under which the number was
+  /// drawn, and the digest of the register up to there.
+  std::string register_id{}, register_entry{}, register_sha256{};
+  bool is_draft() const { return number.empty(); }
 };
 
 /// ISO 14253-1 with an upper limit.

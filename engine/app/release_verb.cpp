@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "nonio/host/release.h"
+#include "progress.h"
+#include "verbs.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+using host::Released;
+using host::WaitingDraft;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* verb = "nonio release";
+
+struct ReleaseVerbWish {
+  std::string folder, by, role, out;
+  std::vector<std::string> reasons;
+  bool list = false;
+};
+
+std::string reason_of(const WaitingDraft& draft, const host::KnownFinding& finding) {
+  if (!draft.author) return {};
+  const auto given = draft.author->reasons.find(host::finding_key(finding));
+  return given == draft.author->reasons.end() ? "" : given->second;
+}
+
+Json draft_json(const WaitingDraft& draft) {
+  Json json = {{"campaign", draft.campaign},
+               {"folder", draft.folder},
+               {"file", (fs::path(draft.out) / draft.campaign / draft.file).string()}};
+  if (!draft.replaces.empty()) json["replaces"] = draft.replaces;
+  if (const std::string why = host::why_stale(draft); !why.empty()) json["stale"] = why;
+  if (draft.author) json["author"] = {{"name", draft.author->by}, {"at", draft.author->at}};
+  Json findings = Json::array();
+  for (const host::KnownFinding& f : draft.findings) {
+    Json one = {{"id", f.id},
+                {"measurement", f.measurement},
+                {"severity", f.attention ? "attention" : "info"},
+                {"title", f.title}};
+    if (const std::string reason = reason_of(draft, f); !reason.empty()) one["reason"] = reason;
+    findings.push_back(std::move(one));
+  }
+  json["findings"] = std::move(findings);
+  return json;
+}
+
+void print(std::ostream& out, const WaitingDraft& draft) {
+  out << draft.campaign << "  " << (fs::path(draft.out) / draft.campaign / draft.file).string();
+  if (!draft.replaces.empty()) out << "  replaces " << draft.replaces;
+  if (draft.author) out << "  approved by " << draft.author->by << " " << draft.author->at;
+  out << "\n";
+  if (const std::string why = host::why_stale(draft); !why.empty())
+    out << "  stale: " << why << "\n";
+  for (const host::KnownFinding& f : draft.findings) {
+    out << "  " << (f.attention ? "attention  " : "info       ") << host::finding_key(f) << "  "
+        << f.title;
+    if (const std::string reason = reason_of(draft, f); !reason.empty())
+      out << "  (" << reason << ")";
+    out << "\n";
+  }
+}
+
+std::string dumped(const Json& json) {
+  return json.dump(1, ' ', false, Json::error_handler_t::replace);
+}
+
+int list_drafts(const ReleaseVerbWish& wish, const Common& common) {
+  const auto drafts = host::waiting_drafts(wish.folder);
+  if (!drafts) return complain(verb, text_of(drafts.error()));
+  if (common.json) {
+    Json all = Json::array();
+    for (const WaitingDraft& d : *drafts) all.push_back(draft_json(d));
+    std::cout << dumped({{"schema", "nonio-drafts/1"}, {"drafts", std::move(all)}}) << "\n";
+    return exit_done;
+  }
+  for (const WaitingDraft& d : *drafts) print(std::cout, d);
+  if (drafts->empty() && !common.quiet) std::cout << "nothing waits for a release\n";
+  return exit_done;
+}
+
+Json released_json(const Released& done) {
+  constexpr const char* states[] = {"refused", "lacking", "approved", "failed", "issued"};
+  Json json = {{"schema", "nonio-release/1"}, {"state", states[static_cast<int>(done.state)]}};
+  if (done.draft) json["draft"] = draft_json(*done.draft);
+  if (!done.without_reason.empty()) json["without_reason"] = done.without_reason;
+  if (!done.why.empty()) json["why"] = done.why;
+  if (done.state == Released::State::issued) {
+    json["number"] = done.entry.number;
+    json["date"] = done.entry.date;
+    json["files"] = Json::array();
+    for (const fs::path& f : done.files) json["files"].push_back(f.string());
+  }
+  return json;
+}
+
+int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common) {
+  using State = Released::State;
+  if (common.json) std::cout << dumped(released_json(done)) << "\n";
+  for (const std::string& note : done.notes)
+    if (!common.quiet) std::cerr << verb << ": " << note << "\n";
+  switch (done.state) {
+    case State::refused:
+      return complain(verb, done.why);
+    case State::lacking:
+      if (!common.json) print(std::cerr, *done.draft);
+      for (const std::string& key : done.without_reason)
+        complain(verb, key +
+                           " asks for attention and no reason is given why it may stand; wanted "
+                           "--reason \"" +
+                           key + "=TEXT\"");
+      return exit_failed;
+    case State::approved:
+      if (!common.json)
+        std::cout << done.draft->campaign << " approved by " << wish.by
+                  << "; an authoriser releases it with nonio release " << wish.folder
+                  << " --by NAME --as authoriser\n";
+      return exit_done;
+    case State::failed:
+      return complain(verb, done.why + " (nothing was issued; the draft still waits)", exit_failed);
+    case State::issued:
+      break;
+  }
+  if (!common.json) {
+    std::cout << done.entry.number << " issued for " << done.draft->campaign << ", released by "
+              << wish.by << "\n";
+    for (const fs::path& f : done.files) std::cout << "  " << f.string() << "\n";
+  }
+  if (!done.why.empty())
+    complain(verb, done.why + " (it is issued; the next night gives its files)", exit_failed);
+  return done.why.empty() ? exit_done : exit_failed;
+}
+
+int release(const ReleaseVerbWish& wish, const Common& common) {
+  if (wish.list) return list_drafts(wish, common);
+  if (wish.by.empty()) return complain(verb, "--by NAME is missing: who releases it? Or --list");
+  host::ReleaseWish wanted{wish.folder, wish.by, wish.role, {}, wish.out};
+  for (const std::string& given : wish.reasons) {
+    const std::size_t equals = given.find('=');
+    if (equals == std::string::npos || equals == 0)
+      return complain(verb, "--reason wants FINDING=TEXT, found \"" + given + "\"");
+    wanted.reasons[given.substr(0, equals)] = given.substr(equals + 1);
+  }
+  host::RunOptions base;
+  base.jobs = 1;
+  base.plugin_folders = common.plugin_folders();
+  base.own_plugins = Common::own_plugins();
+  base.template_folders = common.template_folders();
+  base.version = NONIO_VERSION;
+  Progress progress(true, false);
+  return tell(host::release(wanted, base, progress.events()), wish, common);
+}
+
+}  // namespace
+
+Verb release_verb(Common& common) {
+  auto wanted = std::make_shared<ReleaseVerbWish>();
+  using Takes = Argument::Takes;
+  return {
+      .name = "release",
+      .summary = "Issues the certificate that a night has left as a draft",
+      .arguments = joined(
+          {required(existing(Takes::folder, {"CAMPAIGN", &wanted->folder,
+                                             "Folder of the campaign; with --list also a site"})),
+           {"--by", &wanted->by, "Who releases it: this name stands on the certificate"},
+           one_of({"author", "authoriser"},
+                  {"--as", &wanted->role,
+                   "author: approves it, and an authoriser releases it. Without --as the author\n"
+                   "where the site wants two persons, else the authoriser"}),
+           {"--reason", &wanted->reasons,
+            "FINDING=TEXT: why the certificate may be issued although this finding asks for\n"
+            "attention. FINDING as --list has it, or its id for all measurements"},
+           {"--list", &wanted->list, "Say what waits, with its findings; release nothing"},
+           takes(Takes::folder, {"--out", &wanted->out,
+                                 "Output folder of the night, if it is not any more where it was"}),
+           templates_argument(common)},
+          common_arguments(common)),
+      .footer =
+          "A night makes a draft: OUT/CAMPAIGN/certificate-draft.pdf, marked on every page, "
+          "without\n"
+          "number and signature. Read it, look at the findings, and release it: a number is "
+          "drawn,\n"
+          "the certificate is signed and entered into the site's register, with your name, the "
+          "time\n"
+          "and the reasons. Nothing but the draft itself is released: if data, plugins or "
+          "templates\n"
+          "have changed since, run the night again. Exit status 1 if a reason is missing.\n\n"
+          "Example: nonio release site/c1 --by \"B. Sample\" --reason \"X: drift=agreed with the "
+          "customer\"",
+      .run = [wanted, &common] { return release(*wanted, common); }};
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runner.h"
+
+#include <Poco/Environment.h>
+#include <malloc.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <ctime>
+
+#include "certificates.h"
+#include "committer.h"
+#include "database.h"
+#include "nonio/host/files.h"
+#include "store.h"
+#include "worker.h"
+
+namespace nonio::host {
+namespace fs = std::filesystem;
+
+namespace {
+
+using Action = CampaignState::Action;
+
+std::atomic<bool> stop_requested = false;  // set by a signal
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+/// Memory that a worker gives back to the system is only faulted in again for the next campaign.
+void keep_freed_memory() {
+  constexpr int megabyte = 1 << 20;
+  ::mallopt(M_MMAP_THRESHOLD, 32 * megabyte);
+  ::mallopt(M_TRIM_THRESHOLD, 64 * megabyte);
+  ::mallopt(M_TOP_PAD, megabyte);
+}
+
+/// A worker is replaced after so many campaigns: starting one is then cheap, and what plugins may
+/// leave behind in it does not grow old. Plugins from elsewhere than beside the program were not
+/// tested with it: one of them, and every campaign gets a process of its own.
+constexpr std::size_t campaigns_per_worker = 64;
+
+constexpr const char* register_locked =
+    "the register of certificates: another process keeps it locked since the begin of the night";
+
+std::string day_of(std::time_t time) {
+  std::tm local{};
+  ::localtime_r(&time, &local);
+  std::array<char, 16> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d", &local)};
+}
+
+class Runner {
+ public:
+  Runner(const RunOptions& options, const RunEvents& events, const Context& context,
+         const NightState& night, const ReleaseDesk& desk, std::vector<CampaignState>& campaigns)
+      : options_(options),
+        events_(events),
+        context_(context),
+        night_(night),
+        signer_(desk.signer),
+        numbers_({options.site, options.out, day_of(std::time(nullptr)), signer_ != nullptr},
+                 context, desk.releasing),
+        releasing_(desk.releasing != nullptr),
+        recheck_(desk.recheck),
+        campaigns_(campaigns),
+        committer_([this](const std::vector<std::size_t>& batch) {
+          std::vector<std::string> ids;
+          for (const std::size_t c : batch) ids.push_back(campaigns_[c].id);
+          return commit(options_.out, ids, night_.number);
+        }),
+        campaigns_per_worker_(context.plugins->all_from(options.own_plugins) ? campaigns_per_worker
+                                                                             : 1) {}
+
+  /// False if it was interrupted.
+  bool run() {
+    keep_freed_memory();
+    prepare_outputs();
+    const std::size_t jobs =
+        options_.jobs != 0 ? options_.jobs : Poco::Environment::processorCount();
+    while (!stop_requested) {
+      while (workers_.size() < jobs && !stop_requested) {
+        const auto campaign = next();
+        if (!campaign) break;
+        start(*campaign);
+      }
+      if (!workers_.empty() || !committer_.pending().empty())
+        wait();
+      else if (waiting_.empty())
+        return true;
+      else
+        wait_for_register();
+    }
+    stop();
+    return false;
+  }
+
+ private:
+  /// In a child first: what does not come back there is not called here.
+  void prepare_outputs() const {
+    for (const Output& output : context_.plugins->outputs()) {
+      if (output.prepare == nullptr) continue;
+      const pid_t child = ::fork();
+      if (child == 0) {
+        settle_child();
+        limit_memory(context_.site.limits.memory_MB);
+        output.prepare(context_.templates);
+        ::_exit(0);
+      }
+      const ChildEnd end = child < 0 ? ChildEnd{false, "no process"} : wait_for_child(child, 30.0);
+      if (end.well)
+        output.prepare(context_.templates);
+      else
+        events_.note("output " + output.info.name + " could not prepare: " + end.words);
+    }
+  }
+
+  /// The next campaign to do; those that get a second trial first.
+  std::optional<std::size_t> next() {
+    if (!again_.empty()) {
+      const std::size_t campaign = again_.back();
+      again_.pop_back();
+      return campaign;
+    }
+    while (next_ < campaigns_.size() && campaigns_[next_].action != Action::todo) ++next_;
+    return next_ < campaigns_.size() ? std::optional(next_++) : std::nullopt;
+  }
+
+  void start(std::size_t campaign) {
+    auto worker = Worker::start(
+        [this](std::size_t c, bool first, SharedWords& stage) { return work(c, first, stage); },
+        context_.site.limits.memory_MB);
+    if (!worker) return lost(campaign, worker.error().message);
+    workers_.push_back(std::move(*worker));
+    give(workers_.back(), campaign);
+  }
+
+  void give(Worker& worker, std::size_t campaign) const {
+    worker.give(campaign, std::chrono::duration_cast<Worker::Clock::duration>(
+                              std::chrono::duration<double>(context_.site.limits.seconds)));
+  }
+
+  /// What is evaluated is stored, what is not is given up. A disk that does not answer does not
+  /// hold up the one who wants to stop.
+  void stop() {
+    for (Worker& w : workers_) {
+      w.end();
+      remove_leftovers(options_.out / campaigns_[w.campaign()].id);
+    }
+    workers_.clear();
+    const auto deadline = Worker::Clock::now() + std::chrono::seconds(10);
+    while (!committer_.pending().empty() && Worker::Clock::now() < deadline) {
+      wait_for_answer(workers_, committer_.channel());
+      take_stored();
+    }
+    for (const std::size_t c : committer_.pending())
+      remove_leftovers(options_.out / campaigns_[c].id);
+  }
+
+  /// What needs the register that another process keeps to itself is done when all else is, or by
+  /// the next night.
+  void wait_for_register() {
+    using Clock = Worker::Clock;
+    const Numbering& numbering = context_.site.numbering;
+    if (!give_up_)
+      give_up_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                    std::chrono::duration<double>(numbering.patience));
+    last_trial_ = Clock::now() >= *give_up_;
+    constexpr double now_and_then = 0.5;  // s
+    auto numbers = Register::entries(options_.site, numbering, now_and_then);
+    events_.tick();
+    if (!numbers && is_locked(numbers.error()) && !last_trial_) return;
+    if (recheck_ && numbers) {
+      if (const auto sound = recheck_(*numbers); !sound) unsound_ = sound.error().message;
+      recheck_ = nullptr;
+    }
+    again_ = std::exchange(waiting_, {});
+  }
+
+  /// Evaluated and, where it is to be, signed and entered. `locked`: not yet, since the register
+  /// is.
+  Evaluated certified(const CampaignState& c, SharedWords& stage, bool& locked) const {
+    const fs::path folder = options_.site / c.folder;
+    const auto try_it = [&](bool as_draft) {
+      return evaluate(
+          folder, c.id, context_, [&](const std::string& s) { stage.set(s); },
+          [&](const Evaluated& e, std::vector<std::string>& missing) {
+            if (!unsound_.empty()) return Expected<Certificate>(fail(unsound_));
+            locked = locked || recheck_ != nullptr;
+            if (recheck_) return Expected<Certificate>(fail(register_locked));
+            auto drawn = numbers_.draw(e, folder, missing, as_draft);
+            locked = locked || (!drawn && is_locked(drawn.error()));
+            return drawn;
+          });
+    };
+    Evaluated evaluated = try_it(false);
+    if (numbers_.held_up(evaluated)) evaluated = try_it(true);
+    stage.set("signing");
+    auto done = sign_artifacts(evaluated, folder, context_, signer_, std::time(nullptr));
+    if (done) done = numbers_.issue(evaluated, c.folder);
+    locked = locked || (!done && is_locked(done.error()));
+    if (!done) fail_certificate(evaluated, done.error());
+    return evaluated;
+  }
+
+  /// In the worker's process.
+  Answer work(std::size_t index, bool first, SharedWords& stage) const {
+    if (first && signer_ != nullptr) signer_->leave_to_worker();
+    const CampaignState& c = campaigns_[index];
+    bool locked = false;
+    const Evaluated evaluated = certified(c, stage, locked);
+    if (locked && !last_trial_) return Answer::waits;
+    if (evaluated.status == "failed" && !first) return Answer::again;
+    if (evaluated.status == "failed" && !locked && !evaluated.results.errors.empty())
+      numbers_.note_failure(c.id, evaluated.results.errors.front().message);
+    if (releasing_ && !(evaluated.certificate && evaluated.certificate->issued)) {
+      stage.set(evaluated.results.errors.empty() ? "data are missing: run the night again"
+                                                 : evaluated.results.errors.front().message);
+      return Answer::not_stored;
+    }
+    stage.set("writing the results");
+    const auto staged = host::stage(options_.out, evaluated, context_,
+                                    {c.folder, night_.number, c.reason, evaluated.retry});
+    if (!staged) {
+      stage.set(staged.error().message);
+      return Answer::not_stored;
+    }
+    return evaluated.status == "failed"      ? Answer::failed
+           : evaluated.status == "attention" ? Answer::attention
+                                             : Answer::ok;
+  }
+
+  static void fail_certificate(Evaluated& evaluated, const Error& why) {
+    remove_unsigned(evaluated);
+    evaluated.results.errors.push_back(why);
+    evaluated.status = "failed";
+    evaluated.retry = true;
+  }
+
+  void wait() {
+    if (signer_ != nullptr) signer_->revive();
+    wait_for_answer(workers_, committer_.channel());
+    take_stored();
+    for (std::size_t i = workers_.size(); i-- > 0;) {
+      Worker& worker = workers_[i];
+      bool goes_on = false;
+      if (const auto answer = worker.answer())
+        goes_on = take(worker, *answer);
+      else if (worker.overdue())
+        not_done(worker, "no end within the limit of " +
+                             short_number(context_.site.limits.seconds) +
+                             " s ([limits] seconds in site.toml)");
+      else
+        continue;
+      if (const auto campaign = goes_on ? next() : std::nullopt)
+        give(worker, *campaign);
+      else
+        workers_.erase(workers_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    events_.tick();
+  }
+
+  /// Whether the worker may do another campaign. It may not after one that failed, and it makes
+  /// room for a second trial, which is the first campaign of a new worker.
+  bool take(Worker& worker, Answer answer) {
+    switch (answer) {
+      case Answer::ok:
+      case Answer::attention:
+      case Answer::failed:
+        campaigns_[worker.campaign()].status = to_text(answer);
+        if (const auto given = committer_.give(worker.campaign()); !given)
+          lost(worker.campaign(), given.error().message);
+        return answer != Answer::failed && worker.given() < campaigns_per_worker_ &&
+               !worker.grown() && again_.empty();
+      case Answer::again:
+        again_.push_back(worker.campaign());
+        return false;
+      case Answer::waits:
+        waiting_.push_back(worker.campaign());
+        return worker.given() < campaigns_per_worker_ && !worker.grown() && again_.empty();
+      case Answer::not_stored:
+        not_done(worker, worker.stage());
+        return false;
+      case Answer::none:
+        break;
+    }
+    const std::string stage = worker.stage();
+    const ChildEnd end = worker.end();
+    not_done(worker, stage + ": " + (end.well ? "ended the process" : end.words));
+    return false;
+  }
+
+  /// Nobody pays for his predecessors: only what fails in a new process has failed.
+  void not_done(Worker& worker, const std::string& why) {
+    worker.end();
+    if (worker.given() > 1)
+      again_.push_back(worker.campaign());
+    else
+      lost(worker.campaign(), why);
+  }
+
+  void take_stored() {
+    for (Committer::Done& done : committer_.done()) {
+      const CampaignState& c = campaigns_[done.campaign];
+      if (done.again) {
+        const auto stored = commit(options_.out, {c.id}, night_.number).front();
+        done.error = stored ? "" : stored.error().message;
+      }
+      if (!done.error.empty())
+        lost(done.campaign, done.error);
+      else if (c.status == "failed")
+        take_failed(done.campaign);
+      else
+        finish(done.campaign, c.status, {});
+    }
+  }
+
+  void take_failed(std::size_t index) {
+    const auto record = read_record(options_.out / campaigns_[index].id);
+    if (!record) return lost(index, "its record cannot be read: " + record.error().message);
+    finish(index, record->status, record->errors);
+  }
+
+  static const char* to_text(Answer answer) {
+    return answer == Answer::ok ? "ok" : answer == Answer::attention ? "attention" : "failed";
+  }
+
+  static std::string short_number(double x) {
+    std::string s = std::to_string(x);
+    s.erase(s.find_last_not_of('0') + 1);
+    if (s.ends_with('.')) s.pop_back();
+    return s;
+  }
+
+  /// The worker did not come back with results: the campaign is failed, and says why.
+  void lost(std::size_t index, const std::string& why) {
+    CampaignState& c = campaigns_[index];
+    numbers_.note_failure(c.id, why);
+    if (releasing_) return finish(index, "failed", {Error{why}});  // the draft stays
+    Evaluated evaluated;
+    evaluated.campaign.id = c.id;
+    evaluated.status = "failed";
+    evaluated.results.errors = {Error{why}};
+    const auto stored =
+        store(options_.out, evaluated, context_, {c.folder, night_.number, c.reason, true});
+    if (!stored) remove_leftovers(options_.out / c.id);
+    finish(index, "failed", std::move(evaluated.results.errors));
+  }
+
+  void finish(std::size_t index, std::string status, std::vector<Error> errors) {
+    CampaignState& c = campaigns_[index];
+    c.action = Action::done;
+    c.status = std::move(status);
+    c.errors = std::move(errors);
+    events_.finished(c);
+  }
+
+  const RunOptions& options_;
+  const RunEvents& events_;
+  const Context& context_;
+  const NightState& night_;
+  Signer* signer_;  ///< null: nobody signs
+  const Numbers numbers_;
+  const bool releasing_;  ///< what is not issued leaves everything as it was
+  NumbersCheck recheck_;
+  std::string unsound_;  ///< why no number is drawn
+  std::vector<CampaignState>& campaigns_;
+  Committer committer_;
+  const std::size_t campaigns_per_worker_;
+  std::size_t next_ = 0;
+  std::vector<std::size_t> again_;    ///< get a second trial
+  std::vector<std::size_t> waiting_;  ///< need the register, which is locked
+  std::optional<Worker::Clock::time_point> give_up_;
+  bool last_trial_ = false;
+  std::vector<Worker> workers_;
+};
+
+}  // namespace
+
+void request_stop() { stop_requested = true; }
+
+bool is_stop_requested() { return stop_requested; }
+
+bool do_campaigns(const RunOptions& options, const RunEvents& events, const Context& context,
+                  const NightState& night, const ReleaseDesk& desk,
+                  std::vector<CampaignState>& campaigns) {
+  return Runner(options, events, context, night, desk, campaigns).run();
+}
+
+}  // namespace nonio::host

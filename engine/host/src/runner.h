@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "night_state.h"
+#include "nonio/host/run.h"
+#include "numbering.h"
+#include "signer.h"
+
+namespace nonio::host {
+
+/// Asked with all numbers of the register once it could be read; an error: no number is drawn.
+using NumbersCheck = std::function<Expected<void>(const std::vector<RegisterEntry>&)>;
+
+/// What certificates need.
+struct ReleaseDesk {
+  Signer* signer = nullptr;              ///< null: nobody signs
+  const Releasing* releasing = nullptr;  ///< null: it is a night
+  NumbersCheck recheck{};                ///< empty: the register was read before
+};
+
+/// Does every campaign that is to do, in workers of its own. False if it was interrupted.
+bool do_campaigns(const RunOptions& options, const RunEvents& events, const Context& context,
+                  const NightState& night, const ReleaseDesk& desk,
+                  std::vector<CampaignState>& campaigns);
+
+bool is_stop_requested();
+
+}  // namespace nonio::host

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nonio/host/run.h"
+#include "signer.h"
+
+namespace nonio::host {
+
+/// What a night, or a release, works with: site, key, templates, plugins. Stays where it is.
+struct SetUp {
+  Context context;
+  std::optional<Signer> signer;
+  Plugins plugins;
+  std::vector<std::string> notes;  ///< for the morning's reader
+  std::string no_key;              ///< why nothing can be signed; empty: it can
+};
+
+/// An error says all that is wrong with the site. The process that holds the key is made before any
+/// plugin is loaded.
+Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options);
+
+}  // namespace nonio::host
