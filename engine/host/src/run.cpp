@@ -357,7 +357,7 @@ void store_collisions(const RunOptions& options, const Context& context, const N
 }
 
 /// What the morning's reader should know of the key.
-void note_key(Signer& signer, std::vector<std::string>& notes) {
+void note_key(Signer& signer, bool is_stamped, std::vector<std::string>& notes) {
   constexpr sign::Time month = sign::Time{30} * 86400;
   const auto who = signer.start();
   if (!who)
@@ -365,6 +365,11 @@ void note_key(Signer& signer, std::vector<std::string>& notes) {
   else if (who->not_after - std::time(nullptr) < month)
     notes.push_back("the signing certificate of " + who->subject + " runs out on " +
                     sign::text_of(who->not_after) + ": have a new one made");
+  if (who && !is_stamped)
+    notes.push_back(
+        "no time-stamp server is named (time_stamp in [signing] of site.toml): what is "
+        "signed holds until the certificate of " +
+        who->subject + " runs out on " + sign::text_of(who->not_after) + ", and no longer");
 }
 
 /// A register in an output folder below the site would be lost with it.
@@ -425,11 +430,13 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   night.notes = context.site.notes;
   std::optional<Signer> signer;  // before any plugin is in the memory
   if (context.site.signing && !options.dry_run)
-    note_key(signer.emplace(*context.site.signing, options.site), night.notes);
+    note_key(signer.emplace(*context.site.signing, options.site),
+             !context.site.signing->time_stamp.empty(), night.notes);
   std::vector<fs::path> template_folders = options.template_folders;
   if (fs::is_directory(options.site / "templates", error))
     template_folders.push_back(options.site / "templates");
-  auto templates = read_templates(template_folders, context.templates_sha256);
+  auto templates =
+      read_templates(template_folders, context.templates_sha256, &context.templates_json);
   if (!templates) return refuse(all_of({templates.error()}));
   context.templates = std::move(*templates);
 
