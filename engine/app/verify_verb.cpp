@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nonio/host/verify.h"
+#include "printable.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -33,18 +34,18 @@ Json to_json(const std::string& file, const sign::Verified& v) {
   Json checks = Json::array();
   for (const sign::Check& c : v.checks)
     checks.push_back({{"id", c.id}, {"state", to_text(c.state)}, {"says", c.says}});
-  return {{"schema", "nonio-verify/1"},
-          {"file", file},
-          {"holds", v.holds()},
-          {"signer", v.subject},
-          {"checks", std::move(checks)}};
+  return {{"schema", "nonio-verify/1"},     {"file", file},        {"holds", v.holds()},
+          {"verdict", host::verdict_of(v)}, {"signer", v.subject}, {"checks", std::move(checks)}};
 }
 
+/// The verdict first: nothing that a file says comes before it, and nothing can look like it.
 void print(const std::string& file, const sign::Verified& v, bool quiet) {
-  if (!quiet)
-    for (const sign::Check& c : v.checks)
-      std::cout << file << ": " << c.id << " " << to_text(c.state) << ": " << c.says << "\n";
-  std::cout << file << ": " << (v.holds() ? "HOLDS" : "DOES NOT HOLD") << "\n";
+  const std::string name = printable(file);
+  std::cout << name << ": " << host::verdict_of(v) << "\n";
+  if (quiet) return;
+  for (const sign::Check& c : v.checks)
+    std::cout << name << ": " << c.id << " " << to_text(c.state) << ": " << printable(c.says)
+              << "\n";
 }
 
 int verify(const VerifyWish& wanted, const Common& common) {
@@ -62,7 +63,7 @@ int verify(const VerifyWish& wanted, const Common& common) {
     const sign::Verified v = host::verify_file(file, *verifier, (*place)->context, wanted.site);
     all = all && v.holds();
     if (common.json)
-      std::cout << to_json(file, v).dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
+      std::cout << to_json(file, v).dump(-1, ' ', true, Json::error_handler_t::replace) << "\n";
     else
       print(file, v, common.quiet);
   }
@@ -95,7 +96,8 @@ Verb verify_verb(Common& common) {
            templates_argument(common)},
           common_arguments(common)),
       .footer =
-          "One line for each check; exit status 0 only if all hold. Without --trust and --signer "
+          "The verdict, then one line for each check; exit status 0 only if all hold. Without "
+          "--trust and --signer "
           "(or\n"
           "--site) a signature proves nothing, and the answer is no. Needs no network.\n\n"
           "Example: nonio verify --site site out/c1/certificate.pdf",

@@ -122,8 +122,11 @@ class Certificates(SigningTest):
         self.assertEqual(len(self.ids("done")), 3)
         self.assertEqual(self.issued_files(), before)
         self.assertEqual(set(self.states().values()), {"issued"})
+        # Its own words travel in the file: it is drawn with them, and the verdict says so.
         answers = self.assert_holds(self.pdf("c1"))
-        self.assertEqual(self.state(answers[0], "content.printed"), "not checked")
+        self.assertEqual(self.state(answers[0], "content.printed"), "holds")
+        self.assertEqual(self.state(answers[0], "content.templates"), "not checked")
+        self.assertEqual(answers[0]["verdict"], "holds, with other words than are installed")
 
     def test_other_readings_are_an_amendment(self):
         self.signed_campaign("c1")

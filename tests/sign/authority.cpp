@@ -110,20 +110,37 @@ std::string pem(const Holder& holder) {
   return written([&](BIO* out) { PEM_write_bio_X509(out, holder.certificate.get()); });
 }
 
-std::string revocation_list(const Holder& issuer, const Holder* revoked, sign::Time when) {
+std::string revocation_list(const Holder& issuer, const Holder* revoked, const ListWish& wish) {
   X509_CRL* list = X509_CRL_new();
   X509_CRL_set_version(list, X509_CRL_VERSION_2);
   X509_CRL_set_issuer_name(list, X509_get_subject_name(issuer.certificate.get()));
-  ASN1_TIME* time = ASN1_TIME_set(nullptr, now);
+  ASN1_TIME* time = ASN1_TIME_set(nullptr, wish.made);
   X509_CRL_set1_lastUpdate(list, time);
-  ASN1_TIME_set(time, now + 30 * day);
-  X509_CRL_set1_nextUpdate(list, time);
+  ASN1_TIME_set(time, wish.next);
+  if (wish.next != 0) X509_CRL_set1_nextUpdate(list, time);
   if (revoked != nullptr) {
     X509_REVOKED* entry = X509_REVOKED_new();
     X509_REVOKED_set_serialNumber(entry, X509_get_serialNumber(revoked->certificate.get()));
-    ASN1_TIME_set(time, when);
+    ASN1_TIME_set(time, wish.when);
     X509_REVOKED_set_revocationDate(entry, time);
+    if (wish.reason >= 0) {
+      ASN1_ENUMERATED* reason = ASN1_ENUMERATED_new();
+      ASN1_ENUMERATED_set(reason, wish.reason);
+      X509_REVOKED_add1_ext_i2d(entry, NID_crl_reason, reason, 0, 0);
+      ASN1_ENUMERATED_free(reason);
+    }
+    if (wish.invalid != 0) {
+      ASN1_GENERALIZEDTIME* invalid = ASN1_GENERALIZEDTIME_set(nullptr, wish.invalid);
+      X509_REVOKED_add1_ext_i2d(entry, NID_invalidity_date, invalid, 0, 0);
+      ASN1_GENERALIZEDTIME_free(invalid);
+    }
     X509_CRL_add0_revoked(list, entry);
+  }
+  if (wish.is_delta) {
+    ASN1_INTEGER* base = ASN1_INTEGER_new();
+    ASN1_INTEGER_set(base, 1);
+    X509_CRL_add1_ext_i2d(list, NID_delta_crl, base, 1, 0);
+    ASN1_INTEGER_free(base);
   }
   X509_CRL_sign(list, issuer.key.get(), EVP_sha256());
   std::string text = written([&](BIO* out) { PEM_write_bio_X509_CRL(out, list); });

@@ -40,7 +40,19 @@ Holder renamed(const Holder& holder, const Wish& wish, const Holder& issuer);
 
 std::string pem(const Holder& holder);
 /// A revocation list of the issuer that names this certificate (or nobody).
-std::string revocation_list(const Holder& issuer, const Holder* revoked, sign::Time when);
+struct ListWish {
+  sign::Time when = 0;  ///< revoked
+  int reason = -1;      ///< of RFC 5280, 5.3.1; negative: none is stated
+  sign::Time invalid = 0;
+  sign::Time made = now, next = now + 30 * day;  ///< next 0: not stated
+  bool is_delta = false;
+};
+std::string revocation_list(const Holder& issuer, const Holder* revoked, const ListWish& wish);
+inline std::string revocation_list(const Holder& issuer, const Holder* revoked, sign::Time when) {
+  ListWish wish;
+  wish.when = when;
+  return revocation_list(issuer, revoked, wish);
+}
 
 /// A folder that goes away with the object.
 class Folder {

@@ -32,7 +32,7 @@ std::string signed_by(const Holder& holder, const sign::TimeStamping& stamping =
                       std::size_t room = sign::usual_room) {
   auto reserved = sign::reserve(small_pdf(), files, now, room);
   EXPECT_TRUE(reserved) << reserved.error().message;
-  auto done = open(holder, root()).sign(*reserved, stamping);
+  auto done = open(holder, root()).sign(*reserved, now, stamping);
   EXPECT_TRUE(done) << done.error().message;
   return done ? done->bytes : "";
 }
@@ -95,7 +95,7 @@ TEST(Sign, TheSignerMayBeGivenAsFingerprint) {
   const Holder ada = issue({}, &root());
   auto reserved = sign::reserve(small_pdf(), {}, now);
   const auto key = open(ada, root());
-  const std::string bytes = key.sign(*reserved)->bytes;
+  const std::string bytes = key.sign(*reserved, now)->bytes;
   EXPECT_TRUE(sign::verify_pdf(bytes, trusting(key.identity().sha256)).holds());
   EXPECT_FALSE(sign::verify_pdf(bytes, trusting(std::string(64, '0'))).holds());
 }
@@ -145,11 +145,11 @@ TEST(Sign, AWrongPasswordIsSaidAndNotShown) {
 
 TEST(Sign, SignsOnlyWhatIsReservedAndOnlyOnce) {
   const auto key = open(issue({}, &root()), root());
-  EXPECT_FALSE(key.sign(small_pdf()));
-  EXPECT_FALSE(key.sign("hello"));
-  const auto once = key.sign(*sign::reserve(small_pdf(), {}, now));
+  EXPECT_FALSE(key.sign(small_pdf(), now));
+  EXPECT_FALSE(key.sign("hello", now));
+  const auto once = key.sign(*sign::reserve(small_pdf(), {}, now), now);
   ASSERT_TRUE(once);
-  const auto twice = key.sign(once->bytes);
+  const auto twice = key.sign(once->bytes, now);
   ASSERT_FALSE(twice);
   EXPECT_NE(twice.error().message.find("signed already"), std::string::npos);
   EXPECT_FALSE(sign::reserve(once->bytes, {}, now));
@@ -159,7 +159,7 @@ TEST(Sign, ASignatureThatDoesNotFitIsAnError) {
   const auto key = open(issue({}, &root()), root());
   const TimeServer server(issue(time_server_wish(), &root()));
   const auto done =
-      key.sign(*sign::reserve(small_pdf(), {}, now, 1000), server.stamping(pem(root())));
+      key.sign(*sign::reserve(small_pdf(), {}, now, 1000), now, server.stamping(pem(root())));
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().message.find("does not fit"), std::string::npos) << done.error().message;
 }
@@ -191,9 +191,9 @@ TEST(TimeStamp, NoAnswerFailsOrIsSaidAsConfigured) {
        {Mood::silent, Mood::refuses, Mood::other_imprint, Mood::other_nonce, Mood::nonsense}) {
     const TimeServer server(issue(time_server_wish(), &root()), now, mood);
     auto stamping = server.stamping(pem(root()));
-    EXPECT_FALSE(key.sign(reserved, stamping)) << static_cast<int>(mood);
+    EXPECT_FALSE(key.sign(reserved, now, stamping)) << static_cast<int>(mood);
     stamping.required = false;
-    const auto without = key.sign(reserved, stamping);
+    const auto without = key.sign(reserved, now, stamping);
     ASSERT_TRUE(without) << without.error().message;
     EXPECT_FALSE(without->no_time_stamp.empty());
     EXPECT_TRUE(sign::verify_pdf(without->bytes, trusting()).holds());
@@ -207,7 +207,7 @@ TEST(TimeStamp, OnlyOfAServerThatIsTrustedAndMay) {
   not_for_time.extended = "emailProtection";
   const Holder stranger = authority("Stranger");
   const TimeServer one(issue(time_server_wish(), &stranger));
-  EXPECT_FALSE(key.sign(reserved, one.stamping(pem(root()))));
+  EXPECT_FALSE(key.sign(reserved, now, one.stamping(pem(root()))));
 }
 
 TEST(Revocation, CountsFromItsDateOn) {
@@ -228,6 +228,108 @@ TEST(Revocation, CountsFromItsDateOn) {
   EXPECT_FALSE(sign::verify_pdf(bytes, verifier).holds());
 }
 
+TEST(Revocation, OnlyByAListThatIsOfUseNow) {
+  const Holder ada = issue({}, &root());
+  const std::string bytes = signed_by(ada);
+  const auto state = [&](const ListWish& wish, const Holder* revoked = nullptr) {
+    auto verifier = trusting();
+    verifier.revocation = revocation_list(root(), revoked, wish);
+    return state_of(sign::verify_pdf(bytes, verifier), "certificate.revocation");
+  };
+  EXPECT_EQ(state({}), Check::State::holds);
+  ListWish stale;
+  stale.made = now - 40 * day;
+  stale.next = now - day;
+  EXPECT_EQ(state(stale), Check::State::fails);
+  ListWish endless;
+  endless.next = 0;
+  EXPECT_EQ(state(endless), Check::State::fails);
+  ListWish early;
+  early.made = now + day;
+  EXPECT_EQ(state(early), Check::State::fails);
+  ListWish delta;
+  delta.is_delta = true;
+  EXPECT_EQ(state(delta), Check::State::fails);
+  // The key was lost before anybody noticed.
+  ListWish lost;
+  lost.when = now + day;
+  EXPECT_EQ(state(lost, &ada), Check::State::holds);
+  lost.invalid = now - day;
+  EXPECT_EQ(state(lost, &ada), Check::State::fails);
+}
+
+TEST(Revocation, TheNewestOfSeveralListsCounts) {
+  const Holder ada = issue({}, &root());
+  const std::string bytes = signed_by(ada);
+  ListWish older;
+  older.made = now - 20 * day;
+  older.next = now + day;
+  ListWish newer;
+  newer.when = now - day;
+  const std::string old_list = revocation_list(root(), nullptr, older),
+                    new_list = revocation_list(root(), &ada, newer);
+  for (const std::string& lists : {old_list + new_list, new_list + old_list}) {
+    auto verifier = trusting();
+    verifier.revocation = lists;
+    EXPECT_EQ(state_of(sign::verify_pdf(bytes, verifier), "certificate.revocation"),
+              Check::State::fails);
+  }
+}
+
+/// RFC 3161, 4: after which reasons the stamps that a server gave before stay good.
+TEST(Revocation, OfATimeServer) {
+  const Holder time = issue(time_server_wish(), &root());
+  const TimeServer server(time, now - 5 * day);
+  const std::string bytes = signed_by(issue({}, &root()), server.stamping(pem(root())));
+  const std::string dcc =
+      open(issue({}, &root()), root())
+          .sign("<?xml version=\"1.0\"?><r></r>", now, server.stamping(pem(root())))
+          ->bytes;
+  const auto holds = [&](sign::Time when, int reason) {
+    auto verifier = trusting();
+    ListWish wish;
+    wish.when = when;
+    wish.reason = reason;
+    verifier.revocation = revocation_list(root(), &time, wish);
+    const bool pdf = sign::verify_pdf(bytes, verifier).holds();
+    EXPECT_EQ(sign::verify_xml(dcc, verifier).holds(), pdf) << reason;
+    return pdf;
+  };
+  EXPECT_FALSE(holds(now - 3 * day, -1));
+  EXPECT_FALSE(holds(now - 3 * day, 1)) << "its key was compromised";
+  EXPECT_FALSE(holds(now - 3 * day, 2)) << "its authority was compromised";
+  for (const int reason : {0, 3, 4, 5}) {
+    EXPECT_TRUE(holds(now - 3 * day, reason)) << reason;
+    EXPECT_FALSE(holds(now - 8 * day, reason)) << reason;
+  }
+}
+
+TEST(TimeStamp, NotYetToCome) {
+  const TimeServer server(issue(time_server_wish(), &root()), now + 7200);
+  const auto key = open(issue({}, &root()), root());
+  const std::string reserved = *sign::reserve(small_pdf(), {}, now);
+  EXPECT_FALSE(key.sign(reserved, now, server.stamping(pem(root())))) << "signed with it";
+  const auto later = key.sign(reserved, now + 7200, server.stamping(pem(root())));
+  ASSERT_TRUE(later) << later.error().message;
+  auto verifier = trusting();
+  EXPECT_EQ(state_of(sign::verify_pdf(later->bytes, verifier), "signature.time"),
+            Check::State::fails);
+  verifier.now = now + 7200 - 30;  // clocks differ a little
+  EXPECT_TRUE(sign::verify_pdf(later->bytes, verifier).holds());
+}
+
+/// What a stranger sends is not read: the first line that says no is that of the signature, and
+/// nothing is looked at behind it.
+TEST(Verify, ReadsNothingThatNobodyTrustedSigned) {
+  const std::string good = signed_by(issue({}, &root()));
+  auto verifier = trusting("CN=Somebody Else");
+  const auto verified = sign::verify_pdf(good, verifier);
+  EXPECT_FALSE(verified.holds());
+  EXPECT_TRUE(verified.attachments.empty());
+  EXPECT_EQ(state_of(verified, "file.structure"), Check::State::not_checked);
+  EXPECT_EQ(state_of(verified, "attachments"), Check::State::not_checked);
+}
+
 constexpr const char* document =
     "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<r xmlns=\"urn:x\"><v "
     "u=\"\\micro\\metre\">4.5</v></r>\n";
@@ -235,7 +337,7 @@ constexpr const char* document =
 TEST_P(EachKey, SignsXmlThatVerifies) {
   Wish wish;
   wish.key = GetParam();
-  const auto done = open(issue(wish, &root()), root()).sign(document);
+  const auto done = open(issue(wish, &root()), root()).sign(document, now);
   ASSERT_TRUE(done) << done.error().message;
   auto verified = sign::verify_xml(done->bytes, trusting());
   EXPECT_TRUE(verified.holds()) << all_of(verified);
@@ -245,9 +347,52 @@ TEST_P(EachKey, SignsXmlThatVerifies) {
   EXPECT_EQ(state_of(verified, "xml.content"), Check::State::fails);
 }
 
+TEST(Xml, WithATimeStampOutlivesItsCertificate) {
+  const TimeServer server(issue(time_server_wish(), &root()), now - 5 * day);
+  const auto key = open(issue({}, &root()), root());
+  const auto done = key.sign(document, now, server.stamping(pem(root())));
+  ASSERT_TRUE(done) << done.error().message;
+  auto verifier = trusting();
+  auto verified = sign::verify_xml(done->bytes, verifier);
+  EXPECT_TRUE(verified.holds()) << all_of(verified);
+  EXPECT_EQ(state_of(verified, "xml.time"), Check::State::holds);
+  EXPECT_EQ(verified.at, now - 5 * day);
+  verifier.now = now + 2000 * day;
+  EXPECT_TRUE(sign::verify_xml(done->bytes, verifier).holds());
+  EXPECT_FALSE(sign::verify_xml(key.sign(document, now)->bytes, verifier).holds());
+  // The stamp of another document.
+  const auto other = key.sign(std::string(document), now, server.stamping(pem(root())));
+  const auto stamp = [](const std::string& xml) {
+    const auto from = xml.find("<xades:EncapsulatedTimeStamp>"), to = xml.find("</xades:Enc");
+    return std::pair(from, to - from);
+  };
+  std::string moved = done->bytes;
+  const auto [from, size] = stamp(moved);
+  const auto [other_from, other_size] = stamp(other->bytes);
+  moved.replace(from, size, other->bytes.substr(other_from, other_size));
+  ASSERT_NE(moved, done->bytes);
+  EXPECT_EQ(state_of(sign::verify_xml(moved, trusting()), "xml.time"), Check::State::fails);
+}
+
+TEST(Xml, IsWrittenInItsCanonicalForm) {
+  const auto key = open(issue({}, &root()), root());
+  const std::string tidy =
+      key.sign("<?xml version=\"1.0\"?><r><a></a>\n<b x=\"1\" y=\"2\"></b></r>", now)->bytes;
+  const std::string loose =
+      key.sign("<?xml version='1.0'?>\n<r ><a/>\n<b y='2'  x='1'/></r>\n", now)->bytes;
+  const auto content = [](const std::string& xml) { return xml.substr(0, xml.find("<Signature")); };
+  EXPECT_EQ(content(tidy), content(loose));
+  EXPECT_TRUE(sign::verify_xml(loose, trusting()).holds());
+  EXPECT_TRUE(sign::same_document(loose, "<?xml version=\"1.0\"?><r><a/>\n<b x='1' y='2'/></r>"));
+  EXPECT_FALSE(sign::same_document(loose, "<?xml version=\"1.0\"?><r><a/>\n<b x='1' y='3'/></r>"));
+  for (const char* with : {"<r><!-- x --></r>", "<r><?x y?></r>", "<r><![CDATA[x]]></r>",
+                           "<!-- x --><r></r>", "<!DOCTYPE r><r></r>"})
+    EXPECT_FALSE(key.sign(std::string("<?xml version=\"1.0\"?>") + with, now)) << with;
+}
+
 TEST(Xml, OnlyOfTheWholeDocumentAndWithoutTricks) {
   const auto key = open(issue({}, &root()), root());
-  const std::string good = key.sign(document)->bytes;
+  const std::string good = key.sign(document, now)->bytes;
   const auto fails = [&](std::string bytes) {
     return !sign::verify_xml(bytes, trusting()).holds();
   };
@@ -265,7 +410,7 @@ TEST(Xml, OnlyOfTheWholeDocumentAndWithoutTricks) {
   EXPECT_TRUE(
       fails("<?xml version=\"1.0\"?><evil>" + good.substr(good.find('\n') + 1) + "</evil>"));
   EXPECT_TRUE(fails(good.substr(0, good.size() / 2)));
-  EXPECT_FALSE(key.sign(good)) << "signed twice";
+  EXPECT_FALSE(key.sign(good, now)) << "signed twice";
   EXPECT_FALSE(sign::verify_xml(good, trusting(), "other certificate").holds());
 }
 

@@ -37,7 +37,7 @@ struct Scene {
     const auto reserved =
         sign::reserve(small_pdf(), {{"x.csv", "1,2\n", "text/csv", "Source", "readings"}}, now,
                       stamping.url.empty() ? 1500 : 4500);
-    const auto done = key.sign(*reserved, stamping);
+    const auto done = key.sign(*reserved, now, stamping);
     EXPECT_TRUE(done) << done.error().message;
     return done ? done->bytes : "";
   }
@@ -103,9 +103,9 @@ TEST(Tamper, EveryValueOfEveryByteOfTheSignature) {
 
 TEST(Tamper, WhatIsAppended) {
   const Scene& s = scene();
-  EXPECT_EQ(s.fails(s.plain + "% a comment\n"), "file.structure");
-  EXPECT_EQ(s.fails(s.plain + "\n"), "file.structure");
-  EXPECT_EQ(s.fails(s.plain + s.plain), "file.structure");
+  EXPECT_EQ(s.fails(s.plain + "% a comment\n"), "signature.range");
+  EXPECT_EQ(s.fails(s.plain + "\n"), "signature.range");
+  EXPECT_EQ(s.fails(s.plain + s.plain), "signature.range");
   const std::size_t table = s.plain.rfind("startxref\n") + 10;
   const std::string old = s.plain.substr(table, s.plain.find('\n', table) - table);
   std::string update = s.plain + "5 0 obj\n<<\n/Length 2\n>>\nstream\nBT\nendstream\nendobj\n";
@@ -115,13 +115,13 @@ TEST(Tamper, WhatIsAppended) {
   update += "xref\n5 1\n" + std::string(offset) +
             " 00000 n\r\ntrailer\n<<\n/Root 1 0 R\n/Size 10\n/Prev " + old + "\n>>\nstartxref\n" +
             std::to_string(at) + "\n%%EOF\n";
-  EXPECT_EQ(s.fails(update), "file.structure");
+  EXPECT_EQ(s.fails(update), "signature.range");
   // And the signed range made longer.
   const std::size_t range = update.find("/ByteRange [0 ") + 36;
   std::snprintf(offset, sizeof offset, "%010zu",
                 std::stoul(update.substr(range, 10)) + update.size() - s.plain.size());
   update.replace(range, 10, offset);
-  EXPECT_EQ(s.fails(update), "file.structure");
+  EXPECT_EQ(s.fails(update), "signature.content");
 }
 
 TEST(Tamper, WhatIsPutIntoThePadding) {
@@ -136,13 +136,13 @@ TEST(Tamper, WhatIsPutIntoThePadding) {
   // Fewer zeros, with the offsets mended by hand, are still inside what is signed.
   bytes = s.plain;
   bytes.erase(end - 2, 2);
-  EXPECT_EQ(s.fails(bytes), "file.structure");
+  EXPECT_EQ(s.fails(bytes), "signature.range");
 }
 
 TEST(Tamper, TheFieldIsHidden) {
   const Scene& s = scene();
-  EXPECT_EQ(s.fails(with(s.plain, "/AcroForm", "/AcroFarm")), "signature.one");
-  EXPECT_EQ(s.fails(with(s.plain, "/ETSI.CAdES", "/ETSI.CAdeS")), "signature.one");
+  EXPECT_EQ(s.fails(with(s.plain, "/AcroForm", "/AcroFarm")), "signature.content");
+  EXPECT_EQ(s.fails(with(s.plain, "/ETSI.CAdES", "/ETSI.CAdeS")), "signature.content");
 }
 
 TEST(Tamper, TheCertificateIsAnother) {

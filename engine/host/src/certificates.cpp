@@ -31,9 +31,9 @@ struct Draft {
 
 class Desk {
  public:
-  Desk(Evaluated& evaluated, const fs::path& folder, const Context& context, const Signer& signer,
+  Desk(Evaluated& evaluated, const fs::path& folder, const Context& context, const SignWith& how,
        sign::Time now)
-      : e_(evaluated), folder_(folder), context_(context), signer_(signer), now_(now) {}
+      : e_(evaluated), folder_(folder), context_(context), how_(how), now_(now) {}
 
   Expected<void> run() {
     auto done = sign_all();
@@ -85,7 +85,7 @@ class Desk {
   std::vector<Results::Written>& outputs() { return e_.results.outputs; }
 
   Expected<void> sign(Artifact& a, std::size_t output) {
-    auto done = signer_.sign(a.bytes);
+    auto done = how_.sign(a);
     if (!done) return fail(a.name + " could not be signed: " + done.error().message);
     a.bytes = std::move(done->bytes);
     signed_.push_back({outputs()[output].plugin, a.name, a.bytes, std::move(done->no_time_stamp)});
@@ -143,6 +143,9 @@ class Desk {
     if (!context_.site.settings.empty())
       add(settings_name, context_.site.settings, "application/toml", source_relation,
           "what of the laboratory's settings has a say in the results");
+    if (!context_.templates_json.empty())
+      add(templates_name, context_.templates_json, "application/json", "Source",
+          "words and layout of the documents");
     return {};
   }
 
@@ -152,8 +155,10 @@ class Desk {
     for (const auto& w : outputs())
       for (const Artifact& a : w.result.artifacts)
         files.push_back({a.name, a.bytes.size(), sha256(a.bytes)});
-    add(results_name, results_json(e_, context_, files), "application/json", "Data",
-        "the results as numbers");
+    auto text = Expected<std::string>(results_json(e_, context_, files));
+    if (how_.results) text = how_.results(std::move(*text));
+    if (!text) return fail(text.error());
+    add(results_name, std::move(*text), "application/json", "Data", "the results as numbers");
     return {};
   }
 
@@ -167,7 +172,7 @@ class Desk {
   Evaluated& e_;
   const fs::path& folder_;
   const Context& context_;
-  const Signer& signer_;
+  const SignWith& how_;
   const sign::Time now_;
   std::vector<Draft> drafts_;
   std::vector<sign::Attachment> attachments_;
@@ -225,6 +230,19 @@ void note_time_stamp(Evaluated& evaluated, const IssuedFile& file, const Templat
 
 Expected<void> sign_artifacts(Evaluated& evaluated, const fs::path& folder, const Context& context,
                               const Signer* signer, sign::Time now) {
+  const auto sign = [&](const Artifact& a) -> Expected<sign::Signed> {
+    if (signer == nullptr) return fail(no_key);
+    return signer->sign(a.bytes);
+  };
+  const auto& certificate = evaluated.certificate;
+  const bool is_wanted =
+      certificate ? !certificate->issued && !certificate->draft : is_asked(evaluated.results);
+  if (is_wanted && signer == nullptr && evaluated.status != "failed") return fail(no_key);
+  return sign_artifacts(evaluated, folder, context, SignWith{sign}, now);
+}
+
+Expected<void> sign_artifacts(Evaluated& evaluated, const fs::path& folder, const Context& context,
+                              const SignWith& how, sign::Time now) {
   if (!evaluated.certificate && !is_asked(evaluated.results)) return {};
   if (evaluated.status == "failed") {
     remove_unsigned(evaluated);
@@ -235,8 +253,7 @@ Expected<void> sign_artifacts(Evaluated& evaluated, const fs::path& folder, cons
     keep_draft(evaluated);
     return {};
   }
-  if (signer == nullptr) return fail(no_key);
-  return Desk(evaluated, folder, context, *signer, now).run();
+  return Desk(evaluated, folder, context, how, now).run();
 }
 
 }  // namespace nonio::host

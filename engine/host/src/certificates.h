@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "nonio/host/evaluate.h"
 #include "nonio/sign/sign.h"
@@ -13,6 +14,7 @@ namespace nonio::host {
 inline constexpr const char* settings_name = "site-settings.toml";
 /// Of those from which a certificate was made.
 inline constexpr const char* source_relation = "Source";
+inline constexpr const char* templates_name = "templates.json";
 
 /// Why nothing can be signed where `signer` is null.
 inline constexpr const char* no_key =
@@ -30,6 +32,16 @@ Expected<void> sign_artifacts(Evaluated& evaluated, const std::filesystem::path&
 
 /// "certificate.pdf" -> "certificate-draft.pdf".
 std::string draft_name(const std::string& pdf);
+
+/// Who signs what `sign_artifacts` has put together: the process with the key; or, when a
+/// certificate is verified, somebody who holds it against what is there.
+struct SignWith {
+  std::function<Expected<sign::Signed>(const Artifact&)> sign;
+  /// What is attached as results.json, from what was made of it now; none: that.
+  std::function<Expected<std::string>(std::string made)> results{};
+};
+Expected<void> sign_artifacts(Evaluated& evaluated, const std::filesystem::path& folder,
+                              const Context& context, const SignWith& how, sign::Time now);
 
 /// Takes away what is to be signed and is not, and all of a certificate that is not issued.
 void remove_unsigned(Evaluated& evaluated);

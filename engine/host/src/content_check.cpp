@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <optional>
@@ -13,6 +14,8 @@
 #include "guarded.h"
 #include "issue_json.h"
 #include "json_values.h"
+#include "nonio/host/campaign_reader.h"
+#include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 #include "nonio/host/record.h"
 #include "nonio/host/results_json.h"
@@ -68,119 +71,231 @@ Expected<void> unpack(const sign::Verified& v, const fs::path& folder) {
   return {};
 }
 
-/// What an attached results.json says of the number that was issued, and by which version.
+/// What an attached results.json says of the number that was issued, if one was, and by which
+/// version.
 struct Stated {
-  Certificate certificate;
+  std::optional<Certificate> certificate;
   std::string nonio;
 };
 
-/// None if there is no number.
-std::optional<Stated> stated_in(std::string_view results) {
+Stated stated_in(std::string_view results) {
   const Json json = Json::parse(results, nullptr, false);
-  if (!json.is_object() || !json.contains("certificate") || !json["certificate"].is_object())
-    return std::nullopt;
-  const Json& c = json["certificate"];
-  Stated stated{certificate_of(c), {}};
+  Stated stated;
+  if (!json.is_object()) return stated;
   if (json.contains("nonio") && json["nonio"].is_string())
     stated.nonio = json["nonio"].get<std::string>();
+  if (json.contains("certificate") && json["certificate"].is_object())
+    stated.certificate = certificate_of(json["certificate"]);
   return stated;
 }
 
-/// Why the pages cannot be drawn as they were; empty if they can.
-std::string why_not_drawn(const std::optional<Stated>& stated, const Context& context) {
-  if (!stated) return "has no number: only certificates are drawn again";
-  if (stated->nonio != context.version)
-    return "was issued by version " + stated->nonio + ", this is " + context.version;
-  if (stated->certificate.templates_sha256 != context.templates_sha256)
-    return "was issued with other templates than are given here (--site, --templates)";
-  return {};
+sign::Check not_checked(const char* id, std::string why) {
+  return {id, State::not_checked, std::move(why), false};
 }
 
-sign::Check check_pages(const Evaluated& again, const std::string& output, std::string_view pdf) {
-  sign::Check check{"content.printed", State::fails, {}};
-  const Artifact* drawn = nullptr;
-  for (const Results::Written& w : again.results.outputs)
-    for (const Artifact& a : w.result.artifacts)
-      if (w.plugin == output && a.bytes.starts_with("%PDF-")) drawn = &a;
-  if (drawn == nullptr) {
-    check.says = "the output " + output + " does not draw it again" +
-                 (again.results.errors.empty() ? "" : ": " + again.results.errors.front().message);
-    return check;
-  }
-  const auto now = sign::page_contents(drawn->bytes), then = sign::page_contents(pdf);
-  if (!now || !then) {
-    check.says = now ? then.error().message : now.error().message;
-    return check;
-  }
-  const auto differ = std::mismatch(now->begin(), now->end(), then->begin(), then->end());
-  if (differ.first == now->end() && differ.second == then->end()) {
-    check.state = State::holds;
-    check.says = "the attached readings give the same " + std::to_string(then->size()) +
-                 (then->size() == 1 ? " page" : " pages");
-  } else {
-    check.says = "page " + std::to_string(differ.second - then->begin() + 1) +
-                 " is not what the attached readings give";
-  }
-  return check;
+sign::Check answered(const char* id, const Expected<std::string>& answer) {
+  return {id, answer ? State::holds : State::fails, answer ? *answer : answer.error().message};
 }
 
 struct Content {
-  sign::Check values, printed;
+  sign::Check values, attachments, templates, printed;
 };
 
-/// In a process of its own: plugins read what is attached.
-Expected<Content> recompute(const sign::Verified& v, std::string_view pdf, const fs::path& folder,
-                            const Context& shared) {
-  Context context = shared;
-  if (const sign::Attachment* settings = find_attachment(v, settings_name)) {
-    auto site = parse_site(settings->bytes, settings_name);
-    if (!site) return fail(site.error().front());
-    context.site = std::move(*site);
+/// The content of a signed PDF in a process of its own: plugins read what is attached.
+class Again {
+ public:
+  Again(const sign::Verified& v, std::string_view pdf, const fs::path& folder,
+        const Context& shared)
+      : v_(v),
+        pdf_(pdf),
+        folder_(folder),
+        installed_(shared),
+        context_(shared),
+        results_(find_attachment(v, results_name)->bytes),
+        stated_(stated_in(results_)) {}
+
+  Expected<Content> run() {
+    if (const sign::Attachment* settings = find_attachment(v_, settings_name)) {
+      auto site = parse_site(settings->bytes, settings_name);
+      if (!site) return fail(site.error().front());
+      context_.site = std::move(*site);
+    }
+    auto manifest = parse_manifest(find_attachment(v_, manifest_name)->bytes, manifest_name);
+    if (!manifest) return fail(manifest.error().front());
+    Content content;
+    content.templates = take_templates();
+    const std::string why = why_not_drawn(content.templates);
+    const auto draw = [this](const Evaluated& e, bool) { return drawn(e); };
+    Evaluated again = evaluate(
+        folder_, manifest->campaign.id, context_, [](const std::string&) {},
+        stated_.certificate && why.empty() ? Draw(draw) : Draw());
+    content.attachments = answered("content.attachments", check_names(again));
+    Evaluated numbers = again;
+    numbers.results.outputs.clear();
+    content.values =
+        answered("content.values", same_values(results_, results_json(numbers, context_, {})));
+    content.printed = why.empty() ? answered("content.printed", same_file(again))
+                                  : not_checked("content.printed", why);
+    return content;
   }
-  auto manifest = parse_manifest(find_attachment(v, manifest_name)->bytes, manifest_name);
-  if (!manifest) return fail(manifest.error().front());
-  const std::string& attached = find_attachment(v, results_name)->bytes;
-  const auto stated = stated_in(attached);
-  Content content{{"content.values", State::fails, {}},
-                  {"content.printed", State::not_checked, why_not_drawn(stated, context), false}};
-  const bool draws = content.printed.says.empty();
-  const auto draw = [&](const Evaluated& e, std::vector<std::string>&) -> Expected<Certificate> {
-    Certificate certificate = stated->certificate;
-    const auto readings = readings_digest(e.inputs, folder);
+
+ private:
+  /// Those that the file was made with, if they are in it.
+  sign::Check take_templates() {
+    constexpr const char* id = "content.templates";
+    const sign::Attachment* carried = find_attachment(v_, templates_name);
+    if (carried == nullptr) return not_checked(id, "none are attached");
+    auto own = templates_from(carried->bytes, installed_.templates, installed_.templates_json);
+    if (!own) return not_checked(id, own.error().message);
+    context_.templates = std::move(own->templates);
+    context_.templates_sha256 = own->sha256;
+    context_.templates_json = carried->bytes;
+    if (own->strange.empty())
+      return {id, State::holds, "the attached ones are those that are installed"};
+    std::string names;
+    for (const std::string& name : own->strange) names += (names.empty() ? "" : ", ") + name;
+    return not_checked(
+        id, "the words and the layout are those attached, not those installed: " + names);
+  }
+
+  /// Why the file cannot be made again as it was; empty if it can.
+  std::string why_not_drawn(const sign::Check& templates) const {
+    if (stated_.nonio != context_.version)
+      return "was made by version " + stated_.nonio + ", this is " + context_.version;
+    if (context_.templates_json.empty() || find_attachment(v_, templates_name) == nullptr ||
+        context_.templates_json != find_attachment(v_, templates_name)->bytes)
+      return "was made with templates that are not to be had: " + templates.says;
+    if (stated_.certificate && stated_.certificate->templates_sha256 != context_.templates_sha256)
+      return "was issued with other templates than are attached";
+    return {};
+  }
+
+  Expected<Certificate> drawn(const Evaluated& e) const {
+    Certificate certificate = *stated_.certificate;
+    const auto readings = readings_digest(e.inputs, folder_);
     if (!readings) return fail(readings.error());
     certificate.issue.readings_sha256 = *readings;
     return certificate;
-  };
-  Evaluated again = evaluate(
-      folder, manifest->campaign.id, context, [](const std::string&) {},
-      draws ? Draw(draw) : Draw());
-  if (draws) content.printed = check_pages(again, stated->certificate.output, pdf);
-  again.results.outputs.clear();
-  const auto same = same_values(attached, results_json(again, context, {}));
-  content.values.state = same ? State::holds : State::fails;
-  content.values.says = same ? *same : same.error().message;
-  return content;
-}
+  }
+
+  /// The manifest, the readings that it names, what the host adds, and documents that results.json
+  /// lists: no more and no less.
+  Expected<std::string> check_names(const Evaluated& again) const {
+    std::vector<std::string> wanted = {results_name};
+    const std::string prefix = input_name("");
+    for (const auto& [input, digest] : again.inputs)
+      wanted.push_back(input.starts_with(prefix) ? input.substr(prefix.size()) : input);
+    for (const char* name : {settings_name, templates_name})
+      if (find_attachment(v_, name) != nullptr) wanted.emplace_back(name);
+    for (const sign::Attachment& a : v_.attachments)
+      if (is_document(a) && is_listed(a)) wanted.push_back(a.name);
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    for (const sign::Attachment& a : v_.attachments)
+      if (!std::binary_search(wanted.begin(), wanted.end(), a.name))
+        return fail("the attachment \"" + a.name + "\" belongs to nothing");
+    for (const std::string& name : wanted)
+      if (find_attachment(v_, name) == nullptr) return fail(name + " is not attached");
+    return std::to_string(wanted.size()) + " files, each with its place in the campaign";
+  }
+
+  /// With the digest that it has.
+  bool is_listed(const sign::Attachment& a) const {
+    const Json json = Json::parse(results_, nullptr, false);
+    if (!json.is_object() || !json.contains("outputs") || !json["outputs"].is_array()) return false;
+    return std::any_of(json["outputs"].begin(), json["outputs"].end(), [&](const Json& file) {
+      return file.is_object() && file.contains("file") && file["file"] == a.name &&
+             file.contains("sha256") && file["sha256"] == sha256(a.bytes);
+    });
+  }
+
+  /// The night's own way up to the signature, which holds what is to be signed against what is
+  /// there.
+  Expected<std::string> same_file(Evaluated& again) const {
+    if (again.status == "failed")
+      return fail("the attached readings cannot be evaluated: " +
+                  again.results.errors.front().message);
+    const auto time = sign::stated_time(pdf_);
+    if (!time) return fail(time.error());
+    std::size_t pages = 0;
+    std::string difference;
+    SignWith how;
+    how.sign = [&](const Artifact& a) -> Expected<sign::Signed> {
+      if (!a.bytes.starts_with("%PDF-")) return same_dcc(a);
+      const auto same = sign::same_pdf(pdf_, a.bytes);
+      if (!same)
+        difference += (difference.empty() ? "" : "; ") + a.name +
+                      " from the attached readings: " + where_pages_differ(a.bytes) +
+                      same.error().message;
+      else if (const auto drawn = sign::page_contents(a.bytes))
+        pages = drawn->size();
+      return sign::Signed{a.bytes};
+    };
+    how.results = [&](const std::string& made) -> Expected<std::string> {
+      std::vector<std::string> names;
+      for (const sign::Attachment& a : v_.attachments) names.push_back(a.name);
+      if (auto same = same_results(results_, made, names); !same) return fail(same.error());
+      return results_;
+    };
+    if (const auto done = sign_artifacts(again, folder_, context_, how, *time); !done)
+      return fail(done.error());
+    if (pages != 0)
+      return "the attached readings give this file and the same " + std::to_string(pages) +
+             (pages == 1 ? " page" : " pages");
+    return fail(difference.empty() ? "the attached readings give no document that is signed"
+                                   : difference);
+  }
+
+  Expected<sign::Signed> same_dcc(const Artifact& made) const {
+    const sign::Attachment* attached = find_attachment(v_, made.name);
+    if (attached == nullptr) return fail("it is not attached");
+    if (auto same = sign::same_document(attached->bytes, made.bytes); !same)
+      return fail(same.error());
+    return sign::Signed{attached->bytes};
+  }
+
+  std::string where_pages_differ(std::string_view made) const {
+    const auto now = sign::page_contents(made), then = sign::page_contents(pdf_);
+    if (!now || !then) return {};
+    const auto differ = std::mismatch(now->begin(), now->end(), then->begin(), then->end());
+    if (differ.first == now->end() && differ.second == then->end()) return {};
+    return "page " + std::to_string(differ.second - then->begin() + 1) + " is another, ";
+  }
+
+  const sign::Verified& v_;
+  std::string_view pdf_;
+  const fs::path& folder_;
+  const Context& installed_;
+  Context context_;
+  const std::string& results_;
+  Stated stated_;
+};
+
+constexpr std::array names = {"content.values", "content.attachments", "content.templates",
+                              "content.printed"};
 
 /// A line of a process that ends for the one that waits for it.
 std::string line_of(const sign::Check& check) {
-  constexpr std::size_t most = 1500;
+  constexpr std::size_t most = 900;
   std::string text = check.says.substr(0, most);
   std::replace(text.begin(), text.end(), '\n', ' ');
-  return (check.state == State::holds ? "+" : check.state == State::fails ? "-" : "?") + text;
+  return (check.state == State::holds   ? "+"
+          : check.state == State::fails ? "-"
+                                        : "?") +
+         text + "\n";
 }
 
-sign::Check check_of(const char* id, const std::string& line) {
-  sign::Check check{id, State::fails, line.empty() ? "there is no answer" : line.substr(1)};
-  if (line.starts_with('+')) check.state = State::holds;
-  if (line.starts_with('?')) {
-    check.state = State::not_checked;
-    check.essential = false;
-  }
-  return check;
+/// Takes a line off the answer.
+sign::Check check_of(const char* id, std::string& answer) {
+  const std::size_t end = answer.find('\n');
+  const std::string line = answer.substr(0, end);
+  answer.erase(0, end == std::string::npos ? end : end + 1);
+  if (line.starts_with('?')) return not_checked(id, line.substr(1));
+  return {id, line.starts_with('+') ? State::holds : State::fails,
+          line.empty() ? "there is no answer" : line.substr(1)};
 }
 
-/// Two lines: values and pages.
+/// A line for each of `names`.
 Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view pdf,
                                       const Context& context) {
   for (const char* name : {manifest_name, results_name})
@@ -196,9 +311,11 @@ Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view 
     settle_child();
     limit_memory(context.site.limits.memory_MB);
     const auto content =
-        guarded("the evaluation", [&] { return recompute(v, pdf, scratch.path(), context); });
-    words.set(content ? line_of(content->values) + "\n" + line_of(content->printed)
-                      : "-" + content.error().message.substr(0, 1500) + "\n?not drawn again");
+        guarded("the evaluation", [&] { return Again(v, pdf, scratch.path(), context).run(); });
+    words.set(content ? line_of(content->values) + line_of(content->attachments) +
+                            line_of(content->templates) + line_of(content->printed)
+                      : line_of({names[0], State::fails, content.error().message}) +
+                            "?not looked at\n?not looked at\n?not drawn again\n");
     ::_exit(0);
   }
   const ChildEnd end = child < 0 ? ChildEnd{false, "no process"}
@@ -209,15 +326,19 @@ Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view 
 
 }  // namespace
 
+bool is_document(const sign::Attachment& a) {
+  return a.name.ends_with(".xml") && a.type == "application/xml";
+}
+
 std::vector<sign::Check> check_content(const sign::Verified& v, std::string_view pdf,
                                        const Context& context) {
-  const auto lines = recompute_apart(v, pdf, context);
-  if (!lines)
-    return {{"content.values", State::fails, lines.error().message},
-            {"content.printed", State::not_checked, "the readings are not evaluated", false}};
-  const std::size_t end = lines->find('\n');
-  return {check_of("content.values", lines->substr(0, end)),
-          check_of("content.printed", end == std::string::npos ? "" : lines->substr(end + 1))};
+  auto answer = recompute_apart(v, pdf, context);
+  if (!answer)
+    return {{names[0], State::fails, answer.error().message},
+            not_checked(names[3], "the readings are not evaluated")};
+  std::vector<sign::Check> checks;
+  for (const char* name : names) checks.push_back(check_of(name, *answer));
+  return checks;
 }
 
 }  // namespace nonio::host

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "context.h"
 
+#include "json_values.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 
@@ -38,7 +39,54 @@ Expected<std::map<std::string, fs::path>> files_below(const fs::path& folder) {
 
 }  // namespace
 
-Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::string& digest) {
+namespace {
+
+/// Fonts have megabytes, and every installation has them.
+bool travels(std::string_view name) { return !name.starts_with("fonts/"); }
+
+std::string hex(std::string_view bytes) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string out;
+  for (const char c : bytes) {
+    out += digits[static_cast<unsigned char>(c) >> 4];
+    out += digits[static_cast<unsigned char>(c) & 15];
+  }
+  return out;
+}
+
+Expected<std::string> from_hex(const std::string& text) {
+  std::string out;
+  const auto value = [](char c) {
+    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+  };
+  for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
+    if (value(text[i]) < 0 || value(text[i + 1]) < 0) return fail("wanted hexadecimal digits");
+    out += static_cast<char>(value(text[i]) * 16 + value(text[i + 1]));
+  }
+  if (text.size() % 2 != 0) return fail("wanted hexadecimal digits");
+  return out;
+}
+
+std::string line_of(const std::string& name, const std::string& digest) {
+  return name + " " + digest + "\n";
+}
+
+Expected<void> keep(Templates& templates, const std::string& name, std::string bytes,
+                    const std::string& path) {
+  if (!name.ends_with(".toml")) {
+    templates.files[name] = std::move(bytes);
+    return {};
+  }
+  auto settings = parse_settings(bytes, path);
+  if (!settings) return fail(settings.error());
+  templates.tables[name.substr(0, name.size() - 5)] = std::move(*settings);
+  return {};
+}
+
+}  // namespace
+
+Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::string& digest,
+                                   std::string* json) {
   std::map<std::string, fs::path> files;
   for (const fs::path& folder : folders) {
     auto here = files_below(folder);
@@ -47,20 +95,66 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
   }
   Templates templates;
   std::string all;
+  Json carried = Json::object();
   for (const auto& [name, path] : files) {
     auto bytes = read_file(path);
     if (!bytes) return fail(bytes.error());
-    all += name + " " + sha256(*bytes) + "\n";
-    if (name.ends_with(".toml")) {
-      auto settings = parse_settings(*bytes, path.string());
-      if (!settings) return fail(settings.error());
-      templates.tables[name.substr(0, name.size() - 5)] = std::move(*settings);
-    } else {
-      templates.files[name] = std::move(*bytes);
-    }
+    const std::string sum = sha256(*bytes);
+    all += line_of(name, sum);
+    if (json != nullptr)
+      carried[name] = !travels(name)            ? Json{{"sha256", sum}}
+                      : name.ends_with(".toml") ? Json{{"text", *bytes}}
+                                                : Json{{"hex", hex(*bytes)}};
+    if (auto kept = keep(templates, name, std::move(*bytes), path.string()); !kept)
+      return fail(kept.error());
   }
   digest = sha256(all);
+  if (json != nullptr)
+    *json = dump(Json{{"schema", "nonio-templates/1"}, {"files", std::move(carried)}});
   return templates;
+}
+
+Expected<CarriedTemplates> templates_from(std::string_view text, const Templates& installed,
+                                          std::string_view installed_text) {
+  const Json json = Json::parse(text, nullptr, false),
+             ours = Json::parse(installed_text, nullptr, false);
+  if (!json.is_object() || !json.contains("files") || !json["files"].is_object())
+    return fail("the attached templates are none");
+  CarriedTemplates out;
+  std::string all;
+  for (const auto& [name, file] : json["files"].items()) {
+    const auto of = [&](const char* key) {
+      return file.is_object() && file.contains(key) && file[key].is_string()
+                 ? std::optional(file[key].get<std::string>())
+                 : std::nullopt;
+    };
+    std::string bytes;
+    if (const auto digest = of("sha256"); digest && !travels(name)) {
+      const auto own = installed.files.find(name);
+      if (own == installed.files.end() || sha256(own->second) != *digest)
+        return fail("the file " + name + " is not installed as it was then");
+      bytes = own->second;
+    } else if (const auto plain = of("text"); plain && travels(name)) {
+      bytes = *plain;
+    } else if (const auto digits = of("hex"); digits && travels(name)) {
+      auto packed = from_hex(*digits);
+      if (!packed) return fail("the template " + name + ": " + packed.error().message);
+      bytes = std::move(*packed);
+    } else {
+      return fail("the template " + name + " is not attached as Nonio attaches one");
+    }
+    const bool known = ours.is_object() && ours.contains("files") && ours["files"].contains(name) &&
+                       ours["files"][name] == file;
+    if (!known) out.strange.push_back(name);
+    all += line_of(name, sha256(bytes));
+    if (auto kept = keep(out.templates, name, std::move(bytes), name); !kept)
+      return fail(kept.error());
+  }
+  if (ours.is_object() && ours.contains("files"))
+    for (const auto& [name, file] : ours["files"].items())
+      if (!json["files"].contains(name)) out.strange.push_back(name);
+  out.sha256 = sha256(all);
+  return out;
 }
 
 }  // namespace nonio::host

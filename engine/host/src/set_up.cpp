@@ -20,7 +20,7 @@ std::string all_of(const std::vector<Error>& errors) {
 }
 
 /// What the morning's reader should know of the key.
-void note_key(SetUp& place) {
+void note_key(SetUp& place, bool is_stamped) {
   constexpr sign::Time month = sign::Time{30} * 86400;
   std::vector<std::string>& notes = place.notes;
   const auto who = place.signer->start();
@@ -31,6 +31,11 @@ void note_key(SetUp& place) {
     notes.push_back("the signing certificate of " + who->subject + " runs out on " +
                     sign::text_of(who->not_after) + ": have a new one made");
   }
+  if (who && !is_stamped)
+    notes.push_back(
+        "no time-stamp server is named (time_stamp in [signing] of site.toml): what is "
+        "signed holds until the certificate of " +
+        who->subject + " runs out on " + sign::text_of(who->not_after) + ", and no longer");
 }
 
 }  // namespace
@@ -45,12 +50,12 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
   place->notes = context.site.notes;
   if (context.site.signing && !options.dry_run) {  // before any plugin is in the memory
     place->signer.emplace(*context.site.signing, options.site);
-    note_key(*place);
+    note_key(*place, !context.site.signing->time_stamp.empty());
   }
   std::vector<fs::path> template_folders = options.template_folders;
   if (std::error_code error; fs::is_directory(options.site / "templates", error))
     template_folders.push_back(options.site / "templates");
-  auto templates = read_templates(template_folders, context.templates_sha256);
+  auto templates = read_templates(template_folders, context.templates_sha256, &context.templates_json);
   if (!templates) return fail(all_of({templates.error()}));
   context.templates = std::move(*templates);
   Plugins& plugins = place->plugins;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <fstream>
 
 #include "content_check.h"
 #include "context.h"
@@ -21,7 +22,7 @@ using State = sign::Check::State;
 void check_documents(sign::Verified& v, const sign::Verifier& verifier) {
   bool any = false;
   for (const sign::Attachment& a : v.attachments) {
-    if (!a.name.ends_with(".xml") || a.type != "application/xml") continue;
+    if (!is_document(a)) continue;
     any = true;
     for (sign::Check& c : sign::verify_xml(a.bytes, verifier, v.certificate).checks) {
       c.id = "dcc." + c.id.substr(c.id.find('.') + 1);
@@ -73,7 +74,8 @@ Expected<std::unique_ptr<Workplace>> open_to_verify(const std::vector<fs::path>&
   auto place = std::make_unique<Workplace>();
   Context& context = place->context;
   context.version = version;
-  auto templates = read_templates(template_folders, context.templates_sha256);
+  auto templates =
+      read_templates(template_folders, context.templates_sha256, &context.templates_json);
   if (!templates) return fail(templates.error());
   context.templates = std::move(*templates);
   place->plugins.load(plugin_folders);
@@ -82,9 +84,37 @@ Expected<std::unique_ptr<Workplace>> open_to_verify(const std::vector<fs::path>&
   return place;
 }
 
+namespace {
+
+/// Refused by its size where the system tells it, else when more comes than may; never read whole.
+Expected<std::string> read_bounded(const fs::path& path) {
+  const auto refuse = [&](const std::string& size) {
+    return fail("is larger than " + std::to_string(sign::max_bytes / 1'000'000) + " MB" + size +
+                ": no certificate of Nonio is");
+  };
+  std::error_code error;
+  if (fs::is_directory(path, error)) return fail(path.string() + " is a folder, wanted a file");
+  if (const auto size = fs::file_size(path, error); !error && size > sign::max_bytes)
+    return refuse(" (" + std::to_string(size) + " bytes)");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return fail("cannot read " + path.string());
+  std::string bytes;
+  if (const auto size = fs::file_size(path, error); !error) bytes.reserve(size + 1);
+  std::vector<char> part(std::size_t{1} << 16);
+  do {
+    file.read(part.data(), static_cast<std::streamsize>(part.size()));
+    bytes.append(part.data(), static_cast<std::size_t>(file.gcount()));
+    if (bytes.size() > sign::max_bytes) return refuse("");
+  } while (file);
+  if (file.bad()) return fail("cannot read " + path.string());
+  return bytes;
+}
+
+}  // namespace
+
 sign::Verified verify_file(const fs::path& path, const sign::Verifier& verifier,
                            const Context& context, const fs::path& site) {
-  const auto bytes = read_file(path);
+  const auto bytes = read_bounded(path);
   if (!bytes) return refused(bytes.error().message);
   if (bytes->starts_with("<?xml")) {
     sign::Verified v = sign::verify_xml(*bytes, verifier);
@@ -94,10 +124,8 @@ sign::Verified verify_file(const fs::path& path, const sign::Verifier& verifier,
     return v;
   }
   sign::Verified v = sign::verify_pdf(*bytes, verifier);
-  const bool is_signed = std::none_of(v.checks.begin(), v.checks.end(),
-                                      [](const sign::Check& c) { return c.state == State::fails; });
   // What nobody signed is not given to plugins.
-  if (!is_signed) {
+  if (!v.holds()) {
     for (const char* check : {"content.values", "content.printed"})
       v.checks.push_back({check, State::not_checked, "the signature does not hold"});
     return v;
@@ -106,6 +134,18 @@ sign::Verified verify_file(const fs::path& path, const sign::Verifier& verifier,
   check_documents(v, verifier);
   for (sign::Check& c : check_content(v, *bytes, context)) v.checks.push_back(std::move(c));
   return v;
+}
+
+std::string verdict_of(const sign::Verified& v) {
+  if (!v.holds()) return "DOES NOT HOLD";
+  const auto is_open = [&](std::string_view id) {
+    return std::any_of(v.checks.begin(), v.checks.end(), [&](const sign::Check& c) {
+      return c.id == id && c.state == State::not_checked;
+    });
+  };
+  if (is_open("content.printed")) return "holds, pages not compared";
+  if (is_open("content.templates")) return "holds, with other words than are installed";
+  return "HOLDS";
 }
 
 }  // namespace nonio::host

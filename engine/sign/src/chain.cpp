@@ -2,11 +2,13 @@
 #include <openssl/err.h>
 #include <openssl/pem.h>
 #include <openssl/x509_vfy.h>
+#include <openssl/x509v3.h>
 
 #include <algorithm>
 #include <ctime>
 
 #include "signed_data.h"
+#include "verify_parts.h"
 
 namespace nonio::sign {
 
@@ -63,7 +65,7 @@ Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,
     const X509* where = X509_STORE_CTX_get_current_cert(context.get());
     ERR_clear_error();
     return fail(std::string(X509_verify_cert_error_string(code)) +
-                (where == nullptr ? "" : ", at " + subject_of(where)));
+                (where == nullptr ? "" : ", at " + quoted(subject_of(where))));
   }
   std::vector<CertificatePtr> out;
   const STACK_OF(X509)* chain = X509_STORE_CTX_get0_chain(context.get());
@@ -86,39 +88,92 @@ Expected<void> check_issued(const std::vector<CertificatePtr>& certificates, con
                       std::any_of(known.roots.begin(), known.roots.end(), by);
     ERR_clear_error();
     if (!fits)
-      return fail("the certificate of " + subject_of(one.get()) +
+      return fail("the certificate of " + quoted(subject_of(one.get())) +
                   " is damaged, or nobody who is known issued it");
   }
   return {};
 }
 
+namespace {
+
+/// The newest list that the issuer signed; null if there is none.
+X509_CRL* newest_list(const Trusted& known, X509* issuer) {
+  X509_CRL* newest = nullptr;
+  for (const RevocationPtr& l : known.lists) {
+    const bool is_his =
+        X509_NAME_cmp(X509_CRL_get_issuer(l.get()), X509_get_subject_name(issuer)) == 0 &&
+        X509_CRL_verify(l.get(), X509_get0_pubkey(issuer)) == 1;
+    if (is_his && (newest == nullptr || time_of(X509_CRL_get0_lastUpdate(newest)) <
+                                            time_of(X509_CRL_get0_lastUpdate(l.get()))))
+      newest = l.get();
+  }
+  ERR_clear_error();
+  return newest;
+}
+
+Expected<void> check_list(const X509_CRL* list, const std::string& issuer, Time now) {
+  const auto refuse = [&](const std::string& why) {
+    return fail("the revocation list of " + quoted(issuer) + " " + why);
+  };
+  const Time made = time_of(X509_CRL_get0_lastUpdate(list));
+  const Time next = time_of(X509_CRL_get0_nextUpdate(list));
+  if (made > now + clock_tolerance) return refuse("is of " + text_of(made) + ", yet to come");
+  if (next == 0) return refuse("does not say how long it is good for (nextUpdate)");
+  if (next < now) return refuse("was good until " + text_of(next) + ": wanted a newer one");
+  // Delta lists and lists of some certificates only say so in critical extensions.
+  for (int i = 0; i < X509_CRL_get_ext_count(list); ++i)
+    if (X509_EXTENSION_get_critical(X509_CRL_get_ext(list, i)) != 0)
+      return refuse("is not a plain and whole one: it has a critical extension");
+  return {};
+}
+
+/// From when on the certificate counts as revoked.
+Time revoked_from(const X509_REVOKED* entry) {
+  const Time when = time_of(X509_REVOKED_get0_revocationDate(entry));
+  const std::unique_ptr<ASN1_GENERALIZEDTIME, Freed<ASN1_GENERALIZEDTIME_free>> invalid(
+      static_cast<ASN1_GENERALIZEDTIME*>(
+          X509_REVOKED_get_ext_d2i(entry, NID_invalidity_date, nullptr, nullptr)));
+  const Time stated = invalid ? time_of(invalid.get()) : 0;
+  return stated == 0 ? when : std::min(when, stated);
+}
+
+/// RFC 3161, 4, 1: unspecified, affiliationChanged, superseded, cessationOfOperation, and stated.
+bool leaves_stamps_good(const X509_REVOKED* entry) {
+  const std::unique_ptr<ASN1_ENUMERATED, Freed<ASN1_ENUMERATED_free>> reason(
+      static_cast<ASN1_ENUMERATED*>(
+          X509_REVOKED_get_ext_d2i(entry, NID_crl_reason, nullptr, nullptr)));
+  if (!reason) return false;
+  const long code = ASN1_ENUMERATED_get(reason.get());
+  return code == 0 || (code >= 3 && code <= 5);
+}
+
+}  // namespace
+
 Expected<std::string> check_revocation(const std::vector<CertificatePtr>& chain,
-                                       const Trusted& known, Time at, bool& looked) {
+                                       const Trusted& known, const Revocation& revocation,
+                                       bool& looked) {
   std::string says;
   looked = false;
   for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
     X509* one = chain[i].get();
-    X509* issuer = chain[i + 1].get();
-    const auto list =
-        std::find_if(known.lists.begin(), known.lists.end(), [&](const RevocationPtr& l) {
-          return X509_NAME_cmp(X509_CRL_get_issuer(l.get()), X509_get_subject_name(issuer)) == 0 &&
-                 X509_CRL_verify(l.get(), X509_get0_pubkey(issuer)) == 1;
-        });
-    ERR_clear_error();
+    const std::string issuer = subject_of(chain[i + 1].get()), subject = subject_of(one);
+    X509_CRL* list = newest_list(known, chain[i + 1].get());
     if (!says.empty()) says += "; ";
-    if (list == known.lists.end()) {
-      says += "no list of " + subject_of(issuer);
+    if (list == nullptr) {
+      says += "no list of " + quoted(issuer);
       continue;
     }
+    if (auto sound = check_list(list, issuer, revocation.now); !sound) return fail(sound.error());
     X509_REVOKED* entry = nullptr;
-    const Time made = time_of(X509_CRL_get0_lastUpdate(list->get()));
-    if (X509_CRL_get0_by_cert(list->get(), &entry, one) == 1) {
-      const Time when = time_of(X509_REVOKED_get0_revocationDate(entry));
-      if (when <= at)
-        return fail("the certificate of " + subject_of(one) + " was revoked on " + text_of(when));
+    if (X509_CRL_get0_by_cert(list, &entry, one) == 1) {
+      const Time when = revoked_from(entry);
+      const bool good_before = revocation.of == Revocation::Of::signer || leaves_stamps_good(entry);
+      if (when <= revocation.at || !good_before)
+        return fail("the certificate of " + quoted(subject) + " was revoked on " + text_of(when));
     }
     if (i == 0) looked = true;
-    says += subject_of(one) + " is not revoked by the list of " + text_of(made);
+    says += quoted(subject) + " is not revoked by the list of " +
+            text_of(time_of(X509_CRL_get0_lastUpdate(list)));
   }
   return says;
 }

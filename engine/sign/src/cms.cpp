@@ -56,8 +56,9 @@ Expected<void> sign_attributes(const Key::Impl& key, CMS_SignerInfo* signer,
   return {};
 }
 
-Expected<void> add_time_stamp(CMS_SignerInfo* signer, const TimeStamping& stamping) {
-  const auto token = ask_for_time_stamp(stamping, bytes_of(CMS_SignerInfo_get0_signature(signer)));
+Expected<void> add_time_stamp(CMS_SignerInfo* signer, const TimeStamping& stamping, Time now) {
+  const auto token =
+      ask_for_time_stamp(stamping, bytes_of(CMS_SignerInfo_get0_signature(signer)), now);
   if (!token) return fail(token.error());
   if (CMS_unsigned_add1_attr_by_NID(signer, NID_id_smime_aa_timeStampToken, V_ASN1_SEQUENCE,
                                     token->data(), static_cast<int>(token->size())) != 1)
@@ -68,7 +69,7 @@ Expected<void> add_time_stamp(CMS_SignerInfo* signer, const TimeStamping& stampi
 }  // namespace
 
 Expected<std::string> make_cms(const Key::Impl& key, std::string_view before,
-                               std::string_view behind, const TimeStamping& stamping,
+                               std::string_view behind, Time now, const TimeStamping& stamping,
                                std::string& no_time_stamp) {
   ERR_clear_error();
   const Borrowed chain(sk_X509_new_null());
@@ -82,7 +83,7 @@ Expected<std::string> make_cms(const Key::Impl& key, std::string_view before,
   if (auto done = sign_attributes(key, signer, sha256(before, behind)); !done)
     return fail(done.error());
   if (!stamping.url.empty())
-    if (auto stamped = add_time_stamp(signer, stamping); !stamped) {
+    if (auto stamped = add_time_stamp(signer, stamping, now); !stamped) {
       if (stamping.required) return fail("no time stamp: " + stamped.error().message);
       no_time_stamp = stamped.error().message;
     }

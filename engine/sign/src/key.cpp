@@ -122,7 +122,8 @@ Expected<std::string> Key::Impl::sign_bytes(std::string_view bytes) const {
 
 namespace {
 
-Expected<Signed> sign_pdf(const Key::Impl& key, std::string bytes, const TimeStamping& stamping) {
+Expected<Signed> sign_pdf(const Key::Impl& key, std::string bytes, Time now,
+                          const TimeStamping& stamping) {
   const auto file = pdf::parse(bytes);
   if (!file) return fail("is not a PDF that can be signed: " + file.error().message);
   const auto dictionary = find_signature(*file);
@@ -132,11 +133,12 @@ Expected<Signed> sign_pdf(const Key::Impl& key, std::string bytes, const TimeSta
   if (place->contents.find_first_not_of('0') != std::string_view::npos)
     return fail("is signed already");
   Signed out;
-  const auto cms = make_cms(key, place->before, place->behind, stamping, out.no_time_stamp);
+  const auto cms = make_cms(key, place->before, place->behind, now, stamping, out.no_time_stamp);
   if (!cms) return fail(cms.error());
   if (cms->size() > place->room())
     return fail("the signature has " + std::to_string(cms->size()) +
                 " bytes and does not fit into " + std::to_string(place->room()));
+  if (bytes.size() > max_file) return fail(too_large);
   bytes.replace(place->gap + 1, 2 * cms->size(), hex(*cms));
   out.bytes = std::move(bytes);
   return out;
@@ -144,12 +146,10 @@ Expected<Signed> sign_pdf(const Key::Impl& key, std::string bytes, const TimeSta
 
 }  // namespace
 
-Expected<Signed> Key::sign(std::string bytes, const TimeStamping& stamping) const {
-  if (bytes.starts_with("%PDF-")) return sign_pdf(*impl_, std::move(bytes), stamping);
+Expected<Signed> Key::sign(std::string bytes, Time now, const TimeStamping& stamping) const {
+  if (bytes.starts_with("%PDF-")) return sign_pdf(*impl_, std::move(bytes), now, stamping);
   if (!bytes.starts_with("<?xml")) return fail("is neither a PDF nor an XML document");
-  auto document = sign_xml(*impl_, bytes);
-  if (!document) return fail(document.error());
-  return Signed{std::move(*document)};
+  return sign_xml(*impl_, bytes, now, stamping);
 }
 
 }  // namespace nonio::sign

@@ -20,9 +20,10 @@ Expected<Key::Impl> open_token(const KeyPlace& place, const std::string& passwor
 
 /// The CMS object over two parts of a file, in DER.
 Expected<std::string> make_cms(const Key::Impl& key, std::string_view before,
-                               std::string_view behind, const TimeStamping& stamping,
+                               std::string_view behind, Time now, const TimeStamping& stamping,
                                std::string& no_time_stamp);
 
-Expected<std::string> sign_xml(const Key::Impl& key, std::string_view document);
+Expected<Signed> sign_xml(const Key::Impl& key, std::string_view document, Time now,
+                          const TimeStamping& stamping);
 
 }  // namespace nonio::sign

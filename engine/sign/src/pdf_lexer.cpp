@@ -89,15 +89,13 @@ Expected<void> Lexer::read_container(Value& value, int depth) {
   const bool is_dictionary = value.is(Value::Kind::dictionary);
   for (;;) {
     skip_space();
-    if (take(is_dictionary ? ">>" : "]")) return {};
+    if (take(is_dictionary ? ">>" : "]")) return check_keys(value);
     if (is_dictionary) {
       Value key;
       if (!take("/")) return refuse("wanted a key of a dictionary");
       if (auto done = read_name(key); !done) return done;
-      if (value.find(key.text) != nullptr)
-        return refuse("the key /" + key.text + " is there twice");
       value.keys.push_back(std::move(key.text));
-      value.items.emplace_back();  // so that find() never sees keys without values
+      value.items.emplace_back();
     }
     auto item = value_in(depth + 1);
     if (!item) return fail(item.error());
@@ -106,6 +104,15 @@ Expected<void> Lexer::read_container(Value& value, int depth) {
     else
       value.items.push_back(std::move(*item));
   }
+}
+
+/// None twice; in n log n, since nobody says how many there are.
+Expected<void> Lexer::check_keys(const Value& value) const {
+  std::vector<std::string_view> keys(value.keys.begin(), value.keys.end());
+  std::sort(keys.begin(), keys.end());
+  const auto twice = std::adjacent_find(keys.begin(), keys.end());
+  if (twice != keys.end()) return refuse("the key /" + std::string(*twice) + " is there twice");
+  return {};
 }
 
 Expected<void> Lexer::read_number(Value& value) {

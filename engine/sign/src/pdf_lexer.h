@@ -32,6 +32,7 @@ class Lexer {
   tl::unexpected<Error> refuse(const std::string& what) const;
   Expected<Value> value_in(int depth);
   Expected<void> read_container(Value& value, int depth);
+  Expected<void> check_keys(const Value& value) const;
   Expected<void> read_number(Value& value);
   Expected<void> read_name(Value& value);
   Expected<void> read_text(Value& value);

@@ -93,17 +93,6 @@ Expected<std::string> utf16(std::string_view text) {
   return out;
 }
 
-/// What every reader shows: letters, digits and a few marks; others become "_".
-std::string plain(std::string_view name) {
-  std::string out;
-  for (const char c : name) {
-    const bool kept = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                      std::string_view("-_./ ").find(c) != std::string_view::npos;
-    out += kept ? c : '_';
-  }
-  return out;
-}
-
 /// Of a MIME type: "text/csv" becomes /text#2Fcsv.
 std::string name_of(std::string_view text) {
   std::string out = "/";
@@ -196,11 +185,11 @@ class Reservation {
                     std::to_string(a.bytes.size()) + " /ModDate " + pdf_date(time_) +
                     " >>\n/Filter /FlateDecode\n/Length " + std::to_string(packed.size()) +
                     "\n>>\nstream\n" + packed + "\nendstream");
-    attached_.emplace_back(specification, "<<\n/Type /Filespec\n/F (" + plain(a.name) + ")\n/UF " +
-                                              hexadecimal(*name) + "\n/Desc " + hexadecimal(*says) +
-                                              "\n/AFRelationship " + name_of(a.relation) +
-                                              "\n/EF << /F " + reference(stream) + " /UF " +
-                                              reference(stream) + " >>\n>>");
+    attached_.emplace_back(specification,
+                           "<<\n/Type /Filespec\n/F (" + plain_name(a.name) + ")\n/UF " +
+                               hexadecimal(*name) + "\n/Desc " + hexadecimal(*says) +
+                               "\n/AFRelationship " + name_of(a.relation) + "\n/EF << /F " +
+                               reference(stream) + " /UF " + reference(stream) + " >>\n>>");
     names += hexadecimal(a.name) + " " + reference(specification) + "\n";
     files_ += reference(specification) + " ";
     return {};
@@ -297,6 +286,16 @@ std::string text_of(Time time) {
                    c.seconds);
 }
 
+std::string plain_name(std::string_view name) {
+  std::string out;
+  for (const char c : name) {
+    const bool kept = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                      std::string_view("-_./ ").find(c) != std::string_view::npos;
+    out += kept ? c : '_';
+  }
+  return out;
+}
+
 Expected<std::string> reserve(std::string_view bytes, const std::vector<Attachment>& attachments,
                               Time time, std::size_t room) {
   const auto file = pdf::parse(bytes);
@@ -304,7 +303,7 @@ Expected<std::string> reserve(std::string_view bytes, const std::vector<Attachme
     return fail("cannot be signed, since it is no PDF as Nonio writes it: " + file.error().message);
   std::size_t total = bytes.size();
   for (const Attachment& a : attachments) total += a.bytes.size();
-  if (total > max_file) return fail("is with its attachments larger than 500 MB");
+  if (total > max_file) return fail("is with its attachments larger than 100 MB");
   return Reservation(*file, time, room).make(attachments);
 }
 

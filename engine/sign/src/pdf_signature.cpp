@@ -2,6 +2,9 @@
 #include "pdf_signature.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
 
 namespace nonio::sign {
 
@@ -37,7 +40,75 @@ bool is_lower_hexadecimal(std::string_view text) {
   return text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
+/// (D:20261121150007Z), in UTC as `reserve` writes it.
+Expected<Time> time_in(std::string_view text) {
+  constexpr std::string_view form = "(D:00000000000000Z)";
+  const bool fits = text.size() == form.size() &&
+                    std::equal(text.begin(), text.end(), form.begin(), [](char c, char f) {
+                      return f == '0' ? c >= '0' && c <= '9' : c == f;
+                    });
+  if (!fits) return fail("does not say when it was signed as Nonio says it");
+  const auto number = [&](std::size_t at, std::size_t count) {
+    int value = 0;
+    for (const char c : text.substr(at, count)) value = value * 10 + (c - '0');
+    return value;
+  };
+  namespace chrono = std::chrono;
+  const chrono::year_month_day date{chrono::year(number(3, 4)),
+                                    chrono::month(static_cast<unsigned>(number(7, 2))),
+                                    chrono::day(static_cast<unsigned>(number(9, 2)))};
+  const int hours = number(11, 2), minutes = number(13, 2), seconds = number(15, 2);
+  if (!date.ok() || hours > 23 || minutes > 59 || seconds > 60)
+    return fail("says that it was signed at a time that does not exist");
+  return chrono::sys_seconds(chrono::sys_days(date)).time_since_epoch().count() +
+         hours * Time{3600} + minutes * Time{60} + seconds;
+}
+
 }  // namespace
+
+Expected<PdfSignature> signature_at_end(std::string_view bytes) {
+  // What follows the signature: its field and the table of at most 100,000 objects.
+  constexpr std::size_t farthest = 3'000'000;
+  constexpr std::string_view range = "\n/ByteRange [0 ", then = "]\n/Contents ";
+  constexpr std::size_t digits = 10, time_size = 19;
+  const std::size_t from = bytes.size() - std::min(bytes.size(), farthest);
+  const std::size_t found = bytes.substr(from).rfind(range);
+  if (found == std::string_view::npos || from + found < time_size)
+    return fail("has no signature of Nonio");
+  std::size_t at = from + found + range.size();
+  std::array<std::size_t, 3> numbers{};
+  for (std::size_t i = 0; i < numbers.size(); ++i, at += digits + 1) {
+    const std::string_view text = bytes.substr(std::min(at, bytes.size()), digits);
+    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), numbers.at(i));
+    if (text.size() != digits || parsed.ptr != text.data() + digits ||
+        !bytes.substr(at + digits).starts_with(i < 2 ? " " : then))
+      return fail("/ByteRange: wanted four numbers");
+  }
+  PdfSignature signature;
+  signature.gap = at - 1 + then.size();
+  const std::size_t behind = numbers[1];
+  if (numbers[0] != signature.gap || behind <= signature.gap + 2 || behind > bytes.size() ||
+      numbers[2] != bytes.size() - behind)
+    return fail("the signed range is not the whole file but for the signature itself");
+  if (behind - signature.gap > 2 * max_room + 2)
+    return fail("/Contents: longer than any signature of Nonio");
+  signature.contents = bytes.substr(signature.gap + 1, behind - signature.gap - 2);
+  if (bytes[signature.gap] != '<' || bytes[behind - 1] != '>' ||
+      signature.contents.size() % 2 != 0 || !is_lower_hexadecimal(signature.contents))
+    return fail("/Contents: wanted digits and small letters a to f");
+  signature.before = bytes.substr(0, signature.gap);
+  signature.behind = bytes.substr(behind);
+  const auto time = time_in(bytes.substr(from + found - time_size, time_size));
+  if (!time) return fail(time.error());
+  signature.time = *time;
+  return signature;
+}
+
+Expected<Time> stated_time(std::string_view bytes) {
+  const auto signature = signature_at_end(bytes);
+  if (!signature) return fail(signature.error());
+  return signature->time;
+}
 
 Expected<PdfSignature> signature_of(const File& file, const Value& dictionary) {
   const Value* range = dictionary.find("ByteRange");
@@ -61,7 +132,11 @@ Expected<PdfSignature> signature_of(const File& file, const Value& dictionary) {
   // Upper case would say the same in other bytes: a file has one form.
   if (!is_lower_hexadecimal(signature.contents))
     return fail("/Contents: wanted digits and small letters a to f");
-  if (const Value* time = dictionary.find("M")) signature.time = time->text;
+  const Value* time = dictionary.find("M");
+  const auto stated =
+      time_in(time == nullptr ? "" : file.bytes.substr(time->begin, time->end - time->begin));
+  if (!stated) return fail(stated.error());
+  signature.time = *stated;
   return signature;
 }
 

@@ -64,8 +64,21 @@ Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,
 Expected<void> check_issued(const std::vector<CertificatePtr>& certificates,
                             const Trusted& trusted);
 
-/// "was revoked on ..." as an error if a list says so; else what was and was not looked at.
+/// What a revocation is held against.
+struct Revocation {
+  enum class Of { signer, time_server };
+  Time at;   ///< when the certificates were used
+  Time now;  ///< when they are checked: lists must be of use now
+  Of of;
+};
+/// How far two clocks may differ.
+inline constexpr Time clock_tolerance = 60;
+/// An error if a certificate of the chain was revoked before `at`, or if the newest list of an
+/// issuer is of no use: past its nextUpdate, from the future, or a part of a list only. Of a time
+/// server (RFC 3161, 4): revoked later counts too, unless the reason leaves its key unharmed.
+/// Else what was and was not looked at.
 Expected<std::string> check_revocation(const std::vector<CertificatePtr>& chain,
-                                       const Trusted& trusted, Time at, bool& looked);
+                                       const Trusted& trusted, const Revocation& revocation,
+                                       bool& looked);
 
 }  // namespace nonio::sign

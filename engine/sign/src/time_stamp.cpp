@@ -10,6 +10,7 @@
 #include <array>
 
 #include "der.h"
+#include "verify_parts.h"
 
 namespace nonio::sign {
 
@@ -111,7 +112,8 @@ std::string nonce_of(const TS_TST_INFO* info) {
 
 }  // namespace
 
-Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::string_view signature) {
+Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::string_view signature,
+                                         Time now) {
   const auto request = request_for(signature);
   if (!request) return fail(request.error());
   const auto answer = post(stamping, request->der);
@@ -120,7 +122,7 @@ Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::stri
   if (!token) return fail(stamping.url + ": " + token.error().message);
   const auto roots = trusted(stamping.trust, {});
   if (!roots) return fail(roots.error());
-  const auto stamp = check_time_stamp(*token, signature, *roots);
+  const auto stamp = check_time_stamp(*token, signature, *roots, now);
   if (!stamp) return fail(stamping.url + ": the time stamp " + stamp.error().message);
   if (stamp->nonce != request->nonce)
     return fail(stamping.url + ": the answer is not to this question");
@@ -128,7 +130,7 @@ Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::stri
 }
 
 Expected<Stamp> check_time_stamp(std::string_view token, std::string_view signature,
-                                 const Trusted& known) {
+                                 const Trusted& known, Time now) {
   const auto data = SignedData::parse(token, SignedData::Content::time_stamp);
   if (!data) return fail(data.error());
   if (auto holds = data->check_signature(data->content(), {}); !holds) return fail(holds.error());
@@ -146,14 +148,23 @@ Expected<Stamp> check_time_stamp(std::string_view token, std::string_view signat
   Stamp stamp{time_of(TS_TST_INFO_get_time(info.get())), subject_of(data->certificate()),
               nonce_of(info.get())};
   if (stamp.time == 0) return fail("holds no time");
+  if (stamp.time > now + clock_tolerance)
+    return fail("is of " + text_of(stamp.time) + ", which is yet to come: here it is " +
+                text_of(now) + " (a wrong clock, here or there?)");
   if (X509_check_purpose(data->certificate(), X509_PURPOSE_TIMESTAMP_SIGN, 0) != 1)
-    return fail("was made by " + stamp.by + ", whose certificate is not for time stamps");
+    return fail("was made by " + quoted(stamp.by) + ", whose certificate is not for time stamps");
   // At the time of the stamp: that the server's certificate has run out since does not make it
   // less true that it was given.
   const auto chain = chain_of(data->certificate(), data->certificates(), known, stamp.time);
   if (!chain)
-    return fail("was made by " + stamp.by + ", who is not trusted: " + chain.error().message);
+    return fail("was made by " + quoted(stamp.by) +
+                ", who is not trusted: " + chain.error().message);
   if (auto sound = check_issued(data->certificates(), known); !sound) return fail(sound.error());
+  bool looked = false;
+  const auto revocation =
+      check_revocation(*chain, known, {stamp.time, now, Revocation::Of::time_server}, looked);
+  if (!revocation)
+    return fail("was made by " + quoted(stamp.by) + ": " + revocation.error().message);
   return stamp;
 }
 

@@ -8,15 +8,17 @@ namespace nonio::sign {
 
 /// A token (RFC 3161) over a signature value, from the configured server and checked as `verify`
 /// will check it.
-Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::string_view signature);
+Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::string_view signature,
+                                         Time now);
 
 struct Stamp {
   Time time = 0;
   std::string by;
   std::string nonce;  ///< as in the token; empty if it has none
 };
-/// Over this signature value, by somebody who may and whom the verifier trusts.
+/// Over this signature value, by somebody who may, whom the verifier trusts, and whose certificate
+/// was not revoked; not later than `now`, give or take a minute.
 Expected<Stamp> check_time_stamp(std::string_view token, std::string_view signature,
-                                 const Trusted& trusted);
+                                 const Trusted& trusted, Time now);
 
 }  // namespace nonio::sign

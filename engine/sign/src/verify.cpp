@@ -29,11 +29,11 @@ void Report::skip(const char* id, const std::string& why, bool essential) {
 }
 
 void Report::check_signer(X509* certificate, const Verifier& verifier) {
-  const std::string subject = subject_of(certificate);
+  const std::string subject = subject_of(certificate), shown = quoted(subject);
   const std::string fingerprint = hex(sha256(der_of(certificate)));
   out_.subject = subject;
   if (verifier.signer.empty())
-    return skip("signer.expected", "signed by " + subject + ", certificate " + fingerprint +
+    return skip("signer.expected", "signed by " + shown + ", certificate " + fingerprint +
                                        "; nobody said who should have signed");
   std::string wanted = verifier.signer;
   const bool by_subject = wanted == subject;
@@ -41,15 +41,23 @@ void Report::check_signer(X509* certificate, const Verifier& verifier) {
   std::transform(wanted.begin(), wanted.end(), wanted.begin(), [](char c) {
     return c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
   });
-  if (by_subject || wanted == fingerprint)
-    return add("signer.expected", {}, "signed by " + subject);
+  if (by_subject || wanted == fingerprint) return add("signer.expected", {}, "signed by " + shown);
   add("signer.expected",
-      fail("signed by " + subject + ", certificate " + fingerprint + "; wanted " + verifier.signer),
+      fail("signed by " + shown + ", certificate " + fingerprint + "; wanted " + verifier.signer),
       {});
 }
 
+void Report::check_stamp(const char* id, std::string_view token, std::string_view stamped,
+                         const std::string& said, const Trusted& known, const Verifier& verifier) {
+  if (token.empty()) return skip(id, "no time stamp: the signer says " + said, false);
+  const auto stamp = check_time_stamp(token, stamped, known, verifier.now);
+  if (!stamp) return add(id, fail("the time stamp " + stamp.error().message), {});
+  out_.at = stamp->time;
+  add(id, {}, "signed before " + text_of(stamp->time) + ", says " + quoted(stamp->by));
+}
+
 void Report::check_chain(X509* certificate, const std::vector<CertificatePtr>& others,
-                         const Trusted& known, bool revocation_given) {
+                         const Trusted& known, const Verifier& verifier) {
   add("certificate.use", check_signer_use(certificate),
       "the certificate is for signatures on documents");
   if (known.roots.empty()) {
@@ -62,22 +70,26 @@ void Report::check_chain(X509* certificate, const std::vector<CertificatePtr>& o
         fail("not trusted at " + text_of(out_.at) + ": " + chain.error().message), {});
     return skip("certificate.revocation", "needs the chain", false);
   }
-  auto issued = check_issued(others, known);
-  add("certificate.chain", issued,
-      "leads to " + subject_of(chain->back().get()) + ", valid at " + text_of(out_.at));
-  if (!revocation_given)
+  add("certificate.chain", check_issued(others, known),
+      "leads to " + quoted(subject_of(chain->back().get())) + ", valid at " + text_of(out_.at));
+  if (verifier.revocation.empty())
     return skip("certificate.revocation", "no revocation list was given", false);
   bool looked = false;
-  const auto revocation = check_revocation(*chain, known, out_.at, looked);
+  const auto revocation =
+      check_revocation(*chain, known, {out_.at, verifier.now, Revocation::Of::signer}, looked);
   if (revocation && !looked) return skip("certificate.revocation", *revocation);
-  if (!revocation)
-    add("certificate.revocation", fail(revocation.error()), {});
-  else
-    add("certificate.revocation", {}, *revocation);
+  add("certificate.revocation", to_void(revocation), revocation ? *revocation : "");
+}
+
+std::string quoted(std::string_view text) {
+  constexpr std::size_t most = 200;
+  return "\"" + std::string(text.substr(0, most)) + (text.size() > most ? "..." : "") + "\"";
 }
 
 namespace {
 
+/// The signature first, by its place in the file; what is in the file only where it holds and is of
+/// somebody who is trusted.
 class PdfCheck {
  public:
   PdfCheck(std::string_view bytes, const Verifier& verifier)
@@ -86,31 +98,43 @@ class PdfCheck {
   }
 
   Verified run() {
-    const auto file = parse();
-    report_.add("file.structure", to_void(file),
-                "a PDF of one revision, every byte of it accounted for");
-    if (!file) return std::move(out_);
-    const auto dictionary = find_signature(*file);
-    report_.add("signature.one", to_void(dictionary), "one signature, " + std::string(sub_filter));
-    if (!dictionary) return std::move(out_);
-    const auto place = signature_of(*file, **dictionary);
+    if (bytes_.size() > max_file || !bytes_.starts_with("%PDF-")) {
+      report_.add(
+          "file.structure",
+          fail(bytes_.size() > max_file ? too_large : "is neither a PDF nor an XML document"), {});
+      return std::move(out_);
+    }
+    const auto place = signature_at_end(bytes_);
     report_.add("signature.range", to_void(place), "covers the whole file but for itself");
-    if (!place) return std::move(out_);
-    check_cms(*place);
-    read_attachments(*file);
+    if (place) check_cms(*place);
+    if (out_.holds()) return read(*place);
+    for (const char* id : {"file.structure", "signature.one", "attachments"})
+      report_.skip(id, "nobody who is trusted signed it");
     return std::move(out_);
   }
 
  private:
-  template <class T>
-  static Expected<void> to_void(const Expected<T>& result) {
-    if (result) return {};
-    return fail(result.error());
+  Verified read(const PdfSignature& found) {
+    const auto file = pdf::parse(bytes_);
+    report_.add("file.structure", to_void(file),
+                "a PDF of one revision, every byte of it accounted for");
+    if (!file) return std::move(out_);
+    report_.add("signature.one", check_only(*file, found),
+                "one signature, " + std::string(sub_filter));
+    read_attachments(*file);
+    return std::move(out_);
   }
 
-  Expected<pdf::File> parse() const {
-    if (bytes_.size() > max_file) return fail("is larger than 500 MB");
-    return pdf::parse(bytes_);
+  /// The one that a reader of PDF finds is the one that was checked.
+  static Expected<void> check_only(const pdf::File& file, const PdfSignature& found) {
+    const auto dictionary = find_signature(file);
+    if (!dictionary) return fail(dictionary.error());
+    const auto place = signature_of(file, **dictionary);
+    if (!place) return fail(place.error());
+    if (place->gap != found.gap || place->contents.size() != found.contents.size() ||
+        place->time != found.time)
+      return fail("has another signature than the last one in the file");
+    return {};
   }
 
   void check_cms(const PdfSignature& place) {
@@ -141,21 +165,10 @@ class PdfCheck {
       report_.add("certificate.chain", fail(known.error()), {});
       return;
     }
-    check_stamp(*data, *known, place.time);
+    report_.check_stamp("signature.time", data->time_stamp(), data->signature(),
+                        text_of(place.time), *known, verifier_);
     report_.check_signer(data->certificate(), verifier_);
-    report_.check_chain(data->certificate(), data->certificates(), *known,
-                        !verifier_.revocation.empty());
-  }
-
-  void check_stamp(const SignedData& data, const Trusted& known, const std::string& said) {
-    if (data.time_stamp().empty())
-      return report_.skip("signature.time", "no time stamp: the signer says " + said, false);
-    const auto stamp = check_time_stamp(data.time_stamp(), data.signature(), known);
-    if (!stamp)
-      return report_.add("signature.time", fail("the time stamp " + stamp.error().message), {});
-    out_.at = stamp->time;
-    report_.add("signature.time", {},
-                "signed before " + text_of(stamp->time) + ", says " + stamp->by);
+    report_.check_chain(data->certificate(), data->certificates(), *known, verifier_);
   }
 
   static int digit(char c) { return c <= '9' ? c - '0' : c - 'a' + 10; }

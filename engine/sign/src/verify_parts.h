@@ -9,6 +9,15 @@
 
 namespace nonio::sign {
 
+/// Text out of a file that nobody vouches for: in quotes, at most 200 bytes of it.
+std::string quoted(std::string_view text);
+
+template <class T>
+Expected<void> to_void(const Expected<T>& result) {
+  if (result) return {};
+  return fail(result.error());
+}
+
 /// The lines of a verification as they are found.
 class Report {
  public:
@@ -16,9 +25,12 @@ class Report {
   void add(const char* id, const Expected<void>& result, const std::string& well);
   void skip(const char* id, const std::string& why, bool essential = true);
   void check_signer(X509* certificate, const Verifier& verifier);
+  /// Sets `Verified::at` to what a time stamp over `stamped` proves; `said` is the signer's time.
+  void check_stamp(const char* id, std::string_view token, std::string_view stamped,
+                   const std::string& said, const Trusted& known, const Verifier& verifier);
   /// At `Verified::at`.
   void check_chain(X509* certificate, const std::vector<CertificatePtr>& others,
-                   const Trusted& known, bool revocation_given);
+                   const Trusted& known, const Verifier& verifier);
 
  private:
   Verified& out_;

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// XML-DSig, enveloped, over the whole document, with exclusive canonicalisation.
+// XML-DSig and XAdES, enveloped, over the whole document.
 #include <libxml/c14n.h>
 #include <libxml/parser.h>
 #include <libxml/tree.h>
 #include <openssl/bn.h>
 #include <openssl/ecdsa.h>
+#include <openssl/err.h>
 #include <xmlsec/crypto.h>
 #include <xmlsec/errors.h>
 #include <xmlsec/openssl/evp.h>
-#include <xmlsec/templates.h>
 #include <xmlsec/xmldsig.h>
 #include <xmlsec/xmlsec.h>
 #include <xmlsec/xmltree.h>
 
+#include <algorithm>
+
 #include "key.h"
 #include "pdf_signature.h"
+#include "time_stamp.h"
 #include "verify_parts.h"
 #include "xml_document.h"
+#include "xml_text.h"
 
 namespace nonio::sign {
 
@@ -24,8 +28,6 @@ namespace {
 
 using ContextPtr = std::unique_ptr<xmlSecDSigCtx, Freed<xmlSecDSigCtxDestroy>>;
 using XmlKeyPtr = std::unique_ptr<xmlSecKey, Freed<xmlSecKeyDestroy>>;
-
-const xmlChar* xml(const char* text) { return reinterpret_cast<const xmlChar*>(text); }
 
 /// Once in a process: that is how xmlsec wants it.
 bool started() {
@@ -40,37 +42,11 @@ bool started() {
   return well;
 }
 
-/// xmlsec's own, of a public key.
-Expected<XmlKeyPtr> key_of(EVP_PKEY* pkey) {
-  EVP_PKEY_up_ref(pkey);
-  xmlSecKeyDataPtr value = xmlSecOpenSSLEvpKeyAdopt(pkey);
-  XmlKeyPtr key(xmlSecKeyCreate());
-  if (value == nullptr || !key || xmlSecKeySetValue(key.get(), value) != 0)
-    return fail("the key cannot be used for XML");
-  return key;
-}
-
-xmlNode* add_template(xmlDoc* document, bool with_rsa) {
-  xmlNode* signature = xmlSecTmplSignatureCreate(
-      document, xmlSecTransformExclC14NId,
-      with_rsa ? xmlSecTransformRsaSha256Id : xmlSecTransformEcdsaSha256Id, nullptr);
-  if (signature == nullptr) return nullptr;
-  xmlAddChild(xmlDocGetRootElement(document), signature);
-  xmlNode* reference = xmlSecTmplSignatureAddReference(signature, xmlSecTransformSha256Id, nullptr,
-                                                       xml(""), nullptr);
-  xmlNode* key_info = xmlSecTmplSignatureEnsureKeyInfo(signature, nullptr);
-  xmlNode* data = key_info == nullptr ? nullptr : xmlSecTmplKeyInfoAddX509Data(key_info);
-  const bool well = reference != nullptr && data != nullptr &&
-                    xmlSecTmplReferenceAddTransform(reference, xmlSecTransformEnvelopedId) &&
-                    xmlSecTmplReferenceAddTransform(reference, xmlSecTransformExclC14NId);
-  return well ? signature : nullptr;
-}
-
 }  // namespace
 
 Expected<DocumentPtr> parse_xml(std::string_view bytes) {
   if (!started()) return fail("xmlsec does not start");
-  if (bytes.size() > max_file) return fail("is larger than 500 MB");
+  if (bytes.size() > max_file) return fail(too_large);
   DocumentPtr document(xmlReadMemory(bytes.data(), static_cast<int>(bytes.size()), "document.xml",
                                      nullptr,
                                      XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING));
@@ -83,30 +59,41 @@ Expected<DocumentPtr> parse_xml(std::string_view bytes) {
 
 namespace {
 
-/// Of the whole document, or of one element and what is in it.
-std::string canonical(xmlDoc* document, const xmlNode* only) {
-  const auto visible = [](void* top, xmlNode* node, xmlNode* parent) {
-    const bool has_parent = node != nullptr && node->type != XML_NAMESPACE_DECL;
-    for (const xmlNode* n = has_parent ? node : parent; n != nullptr; n = n->parent)
-      if (n == top) return 1;
-    return top == nullptr ? 1 : 0;
-  };
+/// Elements and text and nothing else: what one program reads and another leaves out (comments,
+/// instructions for programs, sections that are not parsed) has no place in a certificate.
+Expected<void> check_nodes(const xmlNode* node) {
+  for (; node != nullptr; node = node->next) {
+    if (node->type == XML_COMMENT_NODE) return fail("has a comment: wanted none");
+    if (node->type == XML_PI_NODE) return fail("has an instruction for programs: wanted none");
+    if (node->type == XML_CDATA_SECTION_NODE) return fail("has a CDATA section: wanted none");
+    if (node->type != XML_ELEMENT_NODE && node->type != XML_TEXT_NODE)
+      return fail("has something else than elements and text");
+    if (node->type == XML_ELEMENT_NODE)
+      if (auto sound = check_nodes(node->children); !sound) return sound;
+  }
+  return {};
+}
+
+/// Canonical XML 1.0, without comments.
+std::string canonical(xmlDoc* document) {
   xmlOutputBuffer* buffer = xmlAllocOutputBuffer(nullptr);
   std::string out;
-  if (buffer != nullptr && xmlC14NExecute(document, visible, const_cast<xmlNode*>(only),
-                                          XML_C14N_EXCLUSIVE_1_0, nullptr, 0, buffer) >= 0)
+  if (buffer != nullptr &&
+      xmlC14NDocSaveTo(document, nullptr, XML_C14N_1_0, nullptr, 0, buffer) >= 0)
     out.assign(reinterpret_cast<const char*>(xmlOutputBufferGetContent(buffer)),
                xmlOutputBufferGetSize(buffer));
   if (buffer != nullptr) xmlOutputBufferClose(buffer);
   return out;
 }
 
-std::string base64(std::string_view bytes) {
-  std::string out((bytes.size() + 2) / 3 * 4 + 1, '\0');
-  out.resize(
-      static_cast<std::size_t>(EVP_EncodeBlock(reinterpret_cast<unsigned char*>(out.data()),
-                                               data_of(bytes), static_cast<int>(bytes.size()))));
-  return out;
+/// The canonical form of a document that has nothing that this form leaves out.
+Expected<std::string> canonical_form(std::string_view bytes) {
+  const auto document = parse_xml(bytes);
+  if (!document) return fail(document.error());
+  if (auto sound = check_nodes(document->get()->children); !sound) return fail(sound.error());
+  auto text = canonical(document->get());
+  if (text.empty()) return fail("has no canonical form");
+  return text;
 }
 
 /// XML wants r and s side by side where ECDSA gives a sequence of two numbers (RFC 4050).
@@ -122,192 +109,250 @@ Expected<std::string> side_by_side(const std::string& der, std::size_t size) {
   return out;
 }
 
-void set(xmlNode* node, const std::string& text) { xmlNodeSetContent(node, xml(text.c_str())); }
+std::string as_sequence(std::string_view pair) {
+  const int half = static_cast<int>(pair.size() / 2);
+  const std::unique_ptr<ECDSA_SIG, Freed<ECDSA_SIG_free>> signature(ECDSA_SIG_new());
+  BIGNUM* r = BN_bin2bn(data_of(pair), half, nullptr);
+  BIGNUM* s = BN_bin2bn(data_of(pair) + half, half, nullptr);
+  if (r == nullptr || s == nullptr || ECDSA_SIG_set0(signature.get(), r, s) != 1) return {};
+  return der_of(signature.get(), &i2d_ECDSA_SIG);
+}
+
+std::size_t size_of(EVP_PKEY* key) {
+  return static_cast<std::size_t>(EVP_PKEY_get_bits(key) + 7) / 8;
+}
+
+/// As XML writes it: 2026-11-22T14:20:00Z.
+std::string xml_time(Time time) {
+  std::string text = text_of(time).substr(0, 19);
+  text[10] = 'T';
+  return text + "Z";
+}
+
+Expected<void> add_time_stamp(XmlSignature& signature, Time now, const TimeStamping& stamping,
+                              std::string& no_time_stamp) {
+  if (stamping.url.empty()) return {};
+  auto token = ask_for_time_stamp(stamping, signature.value_element(), now);
+  if (token) {
+    signature.token = std::move(*token);
+    return {};
+  }
+  if (stamping.required) return fail("no time stamp: " + token.error().message);
+  no_time_stamp = token.error().message;
+  return {};
+}
 
 }  // namespace
 
 /// Put together here and not by xmlsec, which cannot sign with a key that is in a token.
-Expected<std::string> sign_xml(const Key::Impl& key, std::string_view bytes) {
-  auto document = parse_xml(bytes);
-  if (!document) return fail(document.error());
-  xmlNode* root = xmlDocGetRootElement(document->get());
-  if (xmlSecFindNode(root, xmlSecNodeSignature, xmlSecDSigNs) != nullptr)
-    return fail("is signed already");
-  const std::string content = canonical(document->get(), nullptr);
-  const bool rsa = EVP_PKEY_get_base_id(key.key.get()) == EVP_PKEY_RSA;
-  xmlNode* signature = content.empty() ? nullptr : add_template(document->get(), rsa);
-  if (signature == nullptr) return fail("no place for a signature in the XML document");
-  set(xmlSecFindNode(signature, xmlSecNodeDigestValue, xmlSecDSigNs), base64(sha256(content)));
-  const xmlNode* info = xmlSecFindNode(signature, xmlSecNodeSignedInfo, xmlSecDSigNs);
-  auto value = key.sign_bytes(canonical(document->get(), info));
-  if (value && !rsa)
-    value =
-        side_by_side(*value, static_cast<std::size_t>(EVP_PKEY_get_bits(key.key.get()) + 7) / 8);
+Expected<Signed> sign_xml(const Key::Impl& key, std::string_view bytes, Time now,
+                          const TimeStamping& stamping) {
+  auto content = canonical_form(bytes);
+  if (!content) return fail(content.error());
+  if (content->find(signature_namespace) != std::string::npos) return fail("is signed already");
+  XmlSignature signature;
+  signature.rsa = EVP_PKEY_get_base_id(key.key.get()) == EVP_PKEY_RSA;
+  signature.content = sha256(*content);
+  signature.time = xml_time(now);
+  signature.certificates = {der_of(key.certificate.get())};
+  for (const CertificatePtr& c : key.chain) signature.certificates.push_back(der_of(c.get()));
+  signature.certificate = sha256(signature.certificates.front());
+  signature.properties = sha256(signature.signed_properties());
+  auto value = key.sign_bytes(signature.signed_info());
+  if (value && !signature.rsa) value = side_by_side(*value, size_of(key.key.get()));
   if (!value) return fail(value.error());
-  set(xmlSecFindNode(signature, xmlSecNodeSignatureValue, xmlSecDSigNs), base64(*value));
-  xmlNode* data = xmlSecFindNode(signature, xmlSecNodeX509Data, xmlSecDSigNs);
-  const auto add = [&](const CertificatePtr& c) {
-    set(xmlSecAddChild(data, xmlSecNodeX509Certificate, xmlSecDSigNs), base64(der_of(c.get())));
-  };
-  add(key.certificate);
-  for (const CertificatePtr& c : key.chain) add(c);
-  xmlChar* text = nullptr;
-  int size = 0;
-  xmlDocDumpMemoryEnc(document->get(), &text, &size, "UTF-8");
-  std::string out(reinterpret_cast<const char*>(text), static_cast<std::size_t>(size));
-  xmlFree(text);
+  signature.value = std::move(*value);
+  Signed out;
+  if (auto stamped = add_time_stamp(signature, now, stamping, out.no_time_stamp); !stamped)
+    return fail(stamped.error());
+  content->insert(content->rfind("</"), signature.text());
+  out.bytes = std::string(xml_head) + *content + "\n";
+  if (out.bytes.size() > max_file) return fail(too_large);
   return out;
 }
 
 namespace {
 
-bool is(const xmlNode* node, const xmlChar* name) {
-  return node != nullptr &&
-         xmlSecCheckNodeName(const_cast<xmlNode*>(node), name, xmlSecDSigNs) == 1;
-}
+/// A signed document as bytes: since it is its own canonical form, nobody need read it as XML to
+/// know what was signed.
+struct Parts {
+  std::string_view before, behind;  ///< around the signature
+  XmlSignature signature;
 
-xmlNode* next(xmlNode* node) {
-  return node == nullptr ? nullptr : xmlSecGetNextElementNode(node->next);
-}
-xmlNode* first(xmlNode* node) {
-  return node == nullptr ? nullptr : xmlSecGetNextElementNode(node->children);
-}
-
-bool has(xmlNode* node, const xmlChar* attribute, std::string_view wanted) {
-  if (node == nullptr) return false;
-  const std::unique_ptr<xmlChar, void (*)(xmlChar*)> value(xmlGetNoNsProp(node, attribute),
-                                                           [](xmlChar* p) { xmlFree(p); });
-  return value != nullptr && reinterpret_cast<const char*>(value.get()) == wanted;
-}
-
-constexpr std::string_view exclusive = "http://www.w3.org/2001/10/xml-exc-c14n#";
-constexpr std::string_view enveloped = "http://www.w3.org/2000/09/xmldsig#enveloped-signature";
-constexpr std::string_view sha256_method = "http://www.w3.org/2001/04/xmlenc#sha256";
-constexpr std::string_view by_rsa = "http://www.w3.org/2001/04/xmldsig-more#rsa-sha256";
-constexpr std::string_view by_ecdsa = "http://www.w3.org/2001/04/xmldsig-more#ecdsa-sha256";
-
-std::size_t count(xmlNode* node) {
-  std::size_t n = 0;
-  for (; node != nullptr; node = xmlSecGetNextElementNode(node->next)) {
-    if (is(node, xmlSecNodeSignature)) ++n;
-    n += count(xmlSecGetNextElementNode(node->children));
+  static Expected<Parts> of(std::string_view bytes) {
+    if (bytes.size() > max_file) return fail(too_large);
+    if (!bytes.starts_with(xml_head) || !bytes.ends_with(">\n"))
+      return fail(
+          "wanted it to begin with <?xml version=\"1.0\" encoding=\"UTF-8\"?> and to end "
+          "with its root and a new line");
+    bytes.remove_prefix(xml_head.size());
+    bytes.remove_suffix(1);
+    // Only where the signature must be: nobody has proven yet that the rest is worth reading.
+    const std::size_t root_end = bytes.rfind('<');
+    const std::size_t from = bytes.size() - std::min(bytes.size(), longest_xml_signature);
+    const std::size_t begin = bytes.find(signature_begin, from);
+    if (begin == std::string_view::npos || root_end == std::string_view::npos || begin > root_end ||
+        !bytes.substr(begin, root_end - begin).ends_with(signature_end))
+      return fail("is not signed, or something stands behind its signature");
+    Parts parts;
+    parts.before = bytes.substr(0, begin);
+    parts.behind = bytes.substr(root_end);
+    if (!parts.behind.starts_with("</")) return fail("has something behind its signature");
+    auto signature = read_xml_signature(bytes.substr(begin, root_end - begin));
+    if (!signature) return fail(signature.error());
+    parts.signature = std::move(*signature);
+    return parts;
   }
-  return n;
-}
+};
 
-/// One signature, the last child of the root, over the whole document and nothing else.
-Expected<xmlNode*> find_xml_signature(xmlDoc* document) {
-  xmlNode* root = xmlDocGetRootElement(document);
-  xmlNode* signature = first(root);
-  while (next(signature) != nullptr) signature = next(signature);
-  if (!is(signature, xmlSecNodeSignature)) return fail("is not signed");
-  if (count(first(root)) != 1) return fail("has more than one signature");
-  xmlNode* info = first(signature);
-  xmlNode* canonical = first(info);
-  xmlNode* method = next(canonical);
-  xmlNode* reference = next(method);
-  if (!is(info, xmlSecNodeSignedInfo) || !is(reference, xmlSecNodeReference) ||
-      next(reference) != nullptr || !has(canonical, xmlSecAttrAlgorithm, exclusive) ||
-      !(has(method, xmlSecAttrAlgorithm, by_rsa) || has(method, xmlSecAttrAlgorithm, by_ecdsa)))
-    return fail("is signed in another way than Nonio does");
-  xmlNode* transforms = first(reference);
-  xmlNode* one = first(transforms);
-  xmlNode* two = next(one);
-  if (!has(reference, xmlSecAttrURI, "") || !has(one, xmlSecAttrAlgorithm, enveloped) ||
-      !has(two, xmlSecAttrAlgorithm, exclusive) || next(two) != nullptr ||
-      !has(next(transforms), xmlSecAttrAlgorithm, sha256_method))
-    return fail("has a signature that does not cover the whole document");
-  return signature;
-}
-
-std::string from_base64(std::string_view text) {
-  std::string packed;
-  for (const char c : text)
-    if (std::string_view(" \t\r\n").find(c) == std::string_view::npos) packed += c;
-  std::string out(packed.size() / 4 * 3 + 3, '\0');
-  const int size = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(out.data()), data_of(packed),
-                                   static_cast<int>(packed.size()));
-  if (size < 0) return {};
-  std::size_t real = static_cast<std::size_t>(size);
-  for (std::size_t i = packed.size(); i > 0 && packed[i - 1] == '=' && real > 0; --i) --real;
-  out.resize(real);
-  return out;
-}
-
-Expected<std::vector<CertificatePtr>> certificates_in(xmlNode* signature) {
+Expected<std::vector<CertificatePtr>> certificates_in(const XmlSignature& signature) {
   std::vector<CertificatePtr> out;
-  xmlNode* info = next(next(first(signature)));
-  for (xmlNode* c = first(first(info)); c != nullptr; c = next(c)) {
-    if (!is(c, xmlSecNodeX509Certificate)) continue;
-    const std::unique_ptr<xmlChar, void (*)(xmlChar*)> text(xmlNodeGetContent(c),
-                                                            [](xmlChar* p) { xmlFree(p); });
-    const std::string der = from_base64(reinterpret_cast<const char*>(text.get()));
+  for (const std::string& der : signature.certificates) {
     const unsigned char* at = data_of(der);
     CertificatePtr certificate(d2i_X509(nullptr, &at, static_cast<long>(der.size())));
-    if (!certificate || at != data_of(der) + der.size() || out.size() >= 20)
+    if (!certificate || at != data_of(der) + der.size() || der_of(certificate.get()) != der) {
+      ERR_clear_error();
       return fail("has a certificate that cannot be read");
+    }
     out.push_back(std::move(certificate));
   }
-  if (out.empty()) return fail("has no certificate");
   return out;
 }
 
-Expected<void> check_value(xmlNode* signature, X509* certificate) {
-  auto key = key_of(X509_get0_pubkey(certificate));
-  if (!key) return fail(key.error());
-  const ContextPtr context(xmlSecDSigCtxCreate(nullptr));
-  context->enabledReferenceUris = xmlSecTransformUriTypeEmpty;
-  context->signKey = key->release();
-  if (xmlSecDSigCtxVerify(context.get(), signature) != 0 ||
-      context->status != xmlSecDSigStatusSucceeded)
-    return fail("the document was changed after it was signed");
+Expected<void> check_value(const XmlSignature& s, X509* certificate) {
+  EVP_PKEY* key = X509_get0_pubkey(certificate);
+  if (auto known = algorithm_of(key, true); !known) return fail(known.error());
+  const bool rsa = EVP_PKEY_get_base_id(key) == EVP_PKEY_RSA;
+  if (rsa != s.rsa || (!rsa && s.value.size() != 2 * size_of(key)))
+    return fail("was made with another kind of key than its certificate has");
+  ERR_clear_error();
+  const std::string value = rsa ? s.value : as_sequence(s.value), text = s.signed_info();
+  const std::unique_ptr<EVP_MD_CTX, Freed<EVP_MD_CTX_free>> context(EVP_MD_CTX_new());
+  const bool well = EVP_DigestVerifyInit(context.get(), nullptr, EVP_sha256(), nullptr, key) == 1 &&
+                    EVP_DigestVerify(context.get(), data_of(value), value.size(), data_of(text),
+                                     text.size()) == 1;
+  ERR_clear_error();
+  if (!well) return fail("was not made with the key of its certificate, or is damaged");
   return {};
 }
 
-template <class T>
-Expected<void> to_void(const Expected<T>& result) {
-  if (result) return {};
-  return fail(result.error());
+Expected<void> check_digests(const Parts& parts) {
+  const XmlSignature& s = parts.signature;
+  if (s.content != sha256(parts.before, parts.behind))
+    return fail("the document was changed after it was signed");
+  if (s.properties != sha256(s.signed_properties()))
+    return fail("the properties of the signature were changed after it was signed");
+  if (s.certificate != sha256(s.certificates.front()))
+    return fail("another certificate was signed with than the one that is there");
+  return {};
 }
+
+/// xmlsec's own, of a public key.
+Expected<XmlKeyPtr> key_of(EVP_PKEY* pkey) {
+  EVP_PKEY_up_ref(pkey);
+  xmlSecKeyDataPtr value = xmlSecOpenSSLEvpKeyAdopt(pkey);
+  XmlKeyPtr key(xmlSecKeyCreate());
+  if (value == nullptr || !key || xmlSecKeySetValue(key.get(), value) != 0)
+    return fail("the key cannot be used for XML");
+  return key;
+}
+
+/// A second opinion, by somebody else's program.
+Expected<void> ask_xmlsec(xmlDoc* document, X509* certificate) {
+  auto key = key_of(X509_get0_pubkey(certificate));
+  if (!key) return fail(key.error());
+  xmlNode* signature =
+      xmlSecFindNode(xmlDocGetRootElement(document), xmlSecNodeSignature, xmlSecDSigNs);
+  const ContextPtr context(xmlSecDSigCtxCreate(nullptr));
+  context->enabledReferenceUris = xmlSecTransformUriTypeEmpty | xmlSecTransformUriTypeSameDocument;
+  context->signKey = key->release();
+  if (signature == nullptr || xmlSecDSigCtxVerify(context.get(), signature) != 0 ||
+      context->status != xmlSecDSigStatusSucceeded)
+    return fail("xmlsec does not find the signature well");
+  return {};
+}
+
+/// What is read as XML is, to the byte, what was signed.
+Expected<void> check_form(std::string_view bytes, const Parts& parts, X509* certificate) {
+  if (parts.before.find(signature_namespace) != std::string_view::npos)
+    return fail("has more than one signature");
+  const auto document = parse_xml(bytes);
+  if (!document) return fail(document.error());
+  if (auto sound = check_nodes(document->get()->children); !sound) return sound;
+  if (std::string(xml_head) + canonical(document->get()) + "\n" != bytes)
+    return fail("is not in its canonical form");
+  return ask_xmlsec(document->get(), certificate);
+}
+
+class XmlCheck {
+ public:
+  XmlCheck(std::string_view bytes, const Verifier& verifier, std::string_view wanted)
+      : bytes_(bytes), verifier_(verifier), wanted_(wanted), report_(out_) {
+    out_.at = verifier.now;
+  }
+
+  Verified run() {
+    const auto parts = Parts::of(bytes_);
+    report_.add("xml.one", to_void(parts), "one signature, written as Nonio writes it");
+    if (!parts) return std::move(out_);
+    const auto certificates = certificates_in(parts->signature);
+    report_.add("xml.certificates", to_void(certificates), "can be read");
+    if (!certificates) return std::move(out_);
+    X509* certificate = certificates->front().get();
+    out_.certificate = parts->signature.certificates.front();
+    auto holds = check_digests(*parts);
+    if (holds) holds = check_value(parts->signature, certificate);
+    report_.add("xml.content", holds, "the document is as it was signed");
+    if (holds) check_people(parts->signature, certificate, *certificates);
+    if (holds && (wanted_.empty() ? out_.holds() : wanted_ == out_.certificate))
+      report_.add("xml.form", check_form(bytes_, *parts, certificate),
+                  "is its own canonical form, without comments and instructions");
+    else
+      report_.skip("xml.form", "nobody who is trusted signed it");
+    return std::move(out_);
+  }
+
+ private:
+  void check_people(const XmlSignature& s, X509* certificate,
+                    const std::vector<CertificatePtr>& all) {
+    const auto known = trusted(verifier_.trust, verifier_.revocation);
+    if (!known) return report_.add("certificate.chain", fail(known.error()), {});
+    report_.check_stamp("xml.time", s.token, s.value_element(), s.time, *known, verifier_);
+    if (wanted_.empty()) {
+      report_.check_signer(certificate, verifier_);
+      return report_.check_chain(certificate, all, *known, verifier_);
+    }
+    report_.add("xml.signer",
+                wanted_ == out_.certificate ? Expected<void>{}
+                                            : fail("signed by " + quoted(subject_of(certificate)) +
+                                                   ", who did not sign the PDF"),
+                "signed by the signer of the PDF");
+  }
+
+  std::string_view bytes_;
+  const Verifier& verifier_;
+  std::string_view wanted_;
+  Verified out_;
+  Report report_;
+};
 
 }  // namespace
 
 Verified verify_xml(std::string_view bytes, const Verifier& verifier, std::string_view wanted) {
-  Verified out;
-  out.at = verifier.now;
-  Report report(out);
-  auto document = parse_xml(bytes);
-  report.add("xml.structure", to_void(document), "XML without a document type");
-  if (!document) return out;
-  const auto signature = find_xml_signature(document->get());
-  report.add("xml.one", to_void(signature), "one signature over the whole document");
-  if (!signature) return out;
-  const auto certificates = certificates_in(*signature);
-  if (!certificates) {
-    report.add("xml.content", fail(certificates.error()), {});
-    return out;
-  }
-  X509* certificate = certificates->front().get();
-  out.certificate = der_of(certificate);
-  auto holds = to_void(algorithm_of(X509_get0_pubkey(certificate), true));
-  if (holds) holds = check_value(*signature, certificate);
-  report.add("xml.content", holds, "the document is as it was signed");
-  if (!wanted.empty()) {
-    report.add("xml.signer",
-               wanted == out.certificate
-                   ? Expected<void>{}
-                   : fail("signed by " + subject_of(certificate) + ", who did not sign the PDF"),
-               "signed by the signer of the PDF");
-    return out;
-  }
-  const auto known = trusted(verifier.trust, verifier.revocation);
-  if (!known) {
-    report.add("certificate.chain", fail(known.error()), {});
-    return out;
-  }
-  report.check_signer(certificate, verifier);
-  report.check_chain(certificate, *certificates, *known, !verifier.revocation.empty());
-  return out;
+  return XmlCheck(bytes, verifier, wanted).run();
+}
+
+Expected<void> same_document(std::string_view signed_bytes, std::string_view written) {
+  const auto parts = Parts::of(signed_bytes);
+  if (!parts) return fail(parts.error());
+  const auto form = canonical_form(written);
+  if (!form) return fail(form.error());
+  const std::string was = std::string(parts->before) + std::string(parts->behind);
+  if (was == *form) return {};
+  const auto differ = std::mismatch(was.begin(), was.end(), form->begin(), form->end());
+  const auto line = 2 + std::count(was.begin(), differ.first, '\n');
+  return fail("is another document than the readings give, from line " + std::to_string(line) +
+              " on");
 }
 
 }  // namespace nonio::sign

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "nonio/host/evaluate.h"
@@ -29,8 +30,19 @@ ReadCampaign read_campaign(const std::filesystem::path& folder, const Context& c
 void keep_rows(Observations& observations, const std::vector<char>& kept);
 
 /// All template folders laid over each other, the later ones winning, and one digest of them.
+/// `json`, if wanted: all of them in one text, from which `templates_from` has them again.
 Expected<Templates> read_templates(const std::vector<std::filesystem::path>& folders,
-                                   std::string& digest);
+                                   std::string& digest, std::string* json = nullptr);
+
+/// Templates that travelled in a signed file.
+struct CarriedTemplates {
+  Templates templates;
+  std::string sha256;                ///< as `read_templates` gives it
+  std::vector<std::string> strange;  ///< names of those that differ from the installed ones
+};
+/// Fonts do not travel: an error if one of those installed is another.
+Expected<CarriedTemplates> templates_from(std::string_view json, const Templates& installed,
+                                          std::string_view installed_json);
 
 /// What a verb about one campaign works with.
 struct Workplace {

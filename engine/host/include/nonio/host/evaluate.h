@@ -23,6 +23,7 @@ struct Context {
   std::string plugins_sha256;
   Templates templates;
   std::string templates_sha256;
+  std::string templates_json{};  ///< see `read_templates`; travels in what is signed
 };
 
 /// What a campaign's results depend on, in the order in which a change is reported.

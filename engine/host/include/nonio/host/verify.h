@@ -35,4 +35,8 @@ Expected<std::unique_ptr<Workplace>> open_to_verify(
 sign::Verified verify_file(const std::filesystem::path& path, const sign::Verifier& verifier,
                            const Context& context, const std::filesystem::path& site);
 
+/// What it all comes to, in a few words: "HOLDS", "DOES NOT HOLD", or "holds, ..." with what was
+/// not compared.
+std::string verdict_of(const sign::Verified& verified);
+
 }  // namespace nonio::host

@@ -85,9 +85,10 @@ class Key {
   ~Key();
 
   const Identity& identity() const;
-  /// A PDF from `reserve`: PAdES B-B, or B-T with a time stamp. An XML document: XML-DSig,
-  /// enveloped. Anything else is an error.
-  Expected<Signed> sign(std::string bytes, const TimeStamping& stamping = {}) const;
+  /// A PDF from `reserve`: PAdES B-B, or B-T with a time stamp. An XML document: put into its
+  /// canonical form, with an enveloped signature, XAdES B-B or B-T; `now` is what that signature
+  /// says of its time. Anything else is an error.
+  Expected<Signed> sign(std::string bytes, Time now, const TimeStamping& stamping = {}) const;
 
   struct Impl;
 

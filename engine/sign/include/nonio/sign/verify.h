@@ -11,6 +11,9 @@
 /// trusted roots: whom to trust is given.
 namespace nonio::sign {
 
+/// What is larger is refused unread; it is not signed either.
+inline constexpr std::size_t max_bytes = 100'000'000;
+
 struct Check {
   enum class State { holds, fails, not_checked };
   std::string id;  ///< "signature.digest"
@@ -39,13 +42,23 @@ struct Verified {
   bool holds() const;  ///< every check, and no essential one was left out
 };
 
-/// `max_bytes` of attachments are unpacked at the most.
+/// The signature comes first, found by its place at the end of the file. Only where it holds and is
+/// of the expected signer is the rest read: what a stranger sends costs no more than its digest.
 Verified verify_pdf(std::string_view bytes, const Verifier& verifier);
 /// What is drawn on each page, uncompressed, as the writer of the PDF put it down.
 Expected<std::vector<std::string>> page_contents(std::string_view pdf);
-/// An XML document with one enveloped signature over all of it. `certificate` (DER): only that
-/// signer will do, and its chain is not looked at again.
+/// An XML document as `Key::sign` writes one: in its canonical form, with one enveloped signature
+/// over all of it. `certificate` (DER): only that signer will do, and its chain is not looked at
+/// again.
 Verified verify_xml(std::string_view bytes, const Verifier& verifier,
                     std::string_view certificate = {});
+/// Whether a signed document, its signature taken out, has the canonical form of `written`.
+Expected<void> same_document(std::string_view signed_document, std::string_view written);
+/// Whether two PDFs of `reserve`, one of them signed, have the same objects, streams uncompressed;
+/// only the signature itself and the identifier that is made from the whole file may differ.
+Expected<void> same_pdf(std::string_view signed_pdf, std::string_view reserved);
+/// When a signed PDF says that it was signed (/M); an error if it says it in another way than
+/// `reserve` does.
+Expected<Time> stated_time(std::string_view pdf);
 
 }  // namespace nonio::sign
