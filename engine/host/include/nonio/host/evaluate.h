@@ -80,6 +80,7 @@ Evaluated evaluate(const std::filesystem::path& folder, const std::string& id,
 std::vector<Error> site_mistakes(const Context& context);
 
 /// ISO 14253-1 with an upper limit; source: ISO 14253-1:2017, confidence of the reading: medium.
-Decision decide(double value, double U, double tolerance);
+Decision decide(double value, double U, double tolerance,
+                std::string_view rule = "iso14253-1");
 
 }  // namespace nonio::host
