@@ -91,6 +91,9 @@ std::optional<Stated> stated_in(std::string_view results) {
   issue.date = text(c, "date");
   issue.replaces = text(c, "replaces");
   issue.replaces_date = text(c, "replaces_date");
+  issue.replaces_readings = text(c, "replaces_readings");
+  issue.replaces_file = text(c, "replaces_file");
+  issue.replaces_sha256 = text(c, "replaces_sha256");
   if (c.contains("changes") && c["changes"].is_array())
     for (const Json& file : c["changes"])
       if (file.is_string()) issue.changes.push_back(file.get<std::string>());

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "database.h"
+#include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 
 namespace nonio::host {
@@ -220,6 +221,16 @@ std::vector<IssuedFile> Register::files_of(std::int64_t id) {
   return files;
 }
 
+void Register::note_replaced(std::int64_t id, Issue& issue) {
+  issue.replaces_readings =
+      database_->first("SELECT readings FROM certificates WHERE id = ?", {id});
+  for (const IssuedFile& file : files_of(id))
+    if (issue.replaces_file.empty() || file.name.ends_with(".xml")) {
+      issue.replaces_file = file.name;
+      issue.replaces_sha256 = sha256(file.bytes);
+    }
+}
+
 Certificate Register::load(std::int64_t id) {
   Certificate certificate;
   auto rows = database_->rows(
@@ -232,8 +243,10 @@ Certificate Register::load(std::int64_t id) {
   Issue& issue = certificate.issue;
   issue = {std::move(row[0]), std::move(row[1]), std::move(row[7]), std::move(row[8]), {},
            std::move(row[2])};
-  if (!issue.replaces.empty())
+  if (!issue.replaces.empty()) {
     issue.changes = differences(inputs_of(integer(row[6])), inputs_of(id));
+    note_replaced(integer(row[6]), issue);
+  }
   certificate.output = std::move(row[3]);
   certificate.templates_sha256 = std::move(row[4]);
   certificate.results = std::move(row[5]);
@@ -309,6 +322,7 @@ Expected<Certificate> Register::draw(const std::string& campaign, const Inputs& 
     drawn.issue.replaces = old.front()[2];
     drawn.issue.replaces_date = old.front()[3];
     drawn.issue.changes = differences(inputs_of(integer(old.front()[0])), data);
+    note_replaced(integer(old.front()[0]), drawn.issue);
   }
   if (auto ended = transaction.end(); !ended) return fail(ended.error());
   return drawn;

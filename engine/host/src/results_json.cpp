@@ -246,6 +246,9 @@ void put_certificate(JsonWriter& json, const std::optional<Certificate>& certifi
   json.member("date", issue.date);
   put_text(json, "replaces", issue.replaces);
   put_text(json, "replaces_date", issue.replaces_date);
+  put_text(json, "replaces_readings", issue.replaces_readings);
+  put_text(json, "replaces_file", issue.replaces_file);
+  put_text(json, "replaces_sha256", issue.replaces_sha256);
   if (!issue.replaces.empty()) {
     json.key("changes");
     json.begin_array();

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "dcc.h"
 #include "pages.h"
 
 /// The document that goes to the customer: what ISO/IEC 17025:2017, 7.8 asks for.
@@ -59,6 +60,12 @@ void add_overview(const Source&, Blocks&);
 void add_opinions(const Source&, Blocks&);
 void add_statements(const Source&, Blocks&);
 void add_authority(const Source&, Blocks&);
+
+/// What it says of the certificate that it replaces; empty if there is none.
+std::string amendment_text(const Source&);
+
+/// What the DCC says in words; a source for each language.
+dcc::About about_of(const std::vector<Source>&, const char* release);
 
 /// The document in one language.
 reports::Document compose(const Source&);

@@ -133,11 +133,14 @@ void add_overview(const Source& source, Blocks& blocks) {
     if (plot->scales) plot->title = pages::heading_of(source, m);
     if (const pages::Measured* before = as_found(all, m)) lay_under(source, *before, *plot);
     limits |= add_limit(source, m, *plot);
+    if (!plots.empty() && plot->scales)  // the first one says what the lines are
+      for (Curve& c : plot->curves)
+        if (c.dash != Dash::dash_dot) c.legend.clear();
     plots.push_back(std::move(*plot));
   }
   if (plots.empty()) return;
   const std::size_t per_row = std::min<std::size_t>(plots.size(), plots.size() == 4 ? 2 : 3);
-  const double height = plots.size() > 3 ? 92 : plots.size() == 1 ? 150 : 125;
+  const double height = plots.size() > 3 ? 92 : plots.size() == 1 ? 134 : 125;
   blocks.push_back({Spacer{3}});
   for (std::size_t i = 0; i < plots.size(); i += per_row) {
     Columns row;

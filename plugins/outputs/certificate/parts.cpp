@@ -95,9 +95,9 @@ void add_title(const Source& source, Blocks& blocks) {
   blocks.push_back({Spacer{6}});
 }
 
-void add_amendment(const Source& source, Blocks& blocks) {
+std::string amendment_text(const Source& source) {
   const Issue& issue = *source.in.issue;
-  if (issue.replaces.empty()) return;
+  if (issue.replaces.empty()) return {};
   std::string changes;
   for (const std::string& name : issue.changes) changes += (changes.empty() ? "" : ", ") + name;
   std::string text = source.words.get("amendment.replaces",
@@ -105,6 +105,12 @@ void add_amendment(const Source& source, Blocks& blocks) {
   if (!changes.empty()) text += " " + source.words.get("amendment.changes", {{"changes", changes}});
   if (const std::string& why = source.in.campaign.certificate.amendment; !why.empty())
     text += " " + source.words.get("amendment.why", {{"why", why}});
+  return text;
+}
+
+void add_amendment(const Source& source, Blocks& blocks) {
+  const std::string text = amendment_text(source);
+  if (text.empty()) return;
   blocks.push_back({Note{Level::attention, source.words.get("amendment.title"), text, ""},
                     "certificate.amendment"});
 }
@@ -348,9 +354,10 @@ void add_authority(const Source& source, Blocks& blocks) {
   const Issue& issue = *source.in.issue;
   Grid grid{w.get("authority.title"),
             {{w.get("authority.by"), c.laboratory.authoriser, "laboratory.authoriser"},
-             {w.get("authority.signed"), w.get("authority.electronic"), "authority.electronic"},
-             {w.get("authority.verify"), w.get("authority.how"), "authority.how"},
-             {w.get("authority.readings"), issue.readings_sha256, "readings"}}};
+             {w.get("authority.signed"), w.get("authority.electronic"), "authority.electronic"}}};
+  Grid check{"",
+             {{w.get("authority.verify"), w.get("authority.how"), "authority.how"},
+              {w.get("authority.readings"), issue.readings_sha256, "readings"}}};
   SignatureBox box{w.get("authority.box"),
                    {c.laboratory.authoriser, c.laboratory.name,
                     w.get("title.number", {{"number", issue.number}}), issue.date}};
@@ -360,8 +367,9 @@ void add_authority(const Source& source, Blocks& blocks) {
   blocks.push_back({Columns{{{{std::move(grid), "authority"}},
                              {{std::move(box), "authority.box"}},
                              {{std::move(code), "authority.code"}}},
-                            {0.56, 0.28, 0.16}},
+                            {0.5, 0.33, 0.17}},
                     "authority"});
+  blocks.push_back({std::move(check), "authority"});
 }
 
 }  // namespace nonio::certificate

@@ -202,7 +202,6 @@ std::optional<Plot> runs_plot(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
   if (o.axes.empty() || o.size() == 0) return {};
   Plot plot = empty_plot(source, m, source.words.get("plot.runs"));
-  plot.title += " (" + source.words.get("plot.directions") + ")";
   plot.y_title = source.words.get("plot.deviation", {{"unit", unit_text(deviation_of(o.angular))}});
   add_runs(source, o, plot);
   const Points points(m, {"mean+", "mean-"});

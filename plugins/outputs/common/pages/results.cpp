@@ -169,7 +169,9 @@ const Conformity* conformity_of(const OutputInput& in, const Results::Analysed& 
 /// is said of the second one stands beside it.
 void add_results(const Source& source, const Measured& m, Blocks& blocks) {
   std::vector<Blocks> parts;
-  bool decisions = false, second_decides = false;
+  // In two languages a column of meanings takes the width.
+  const bool wide = source.certificate && source.in.campaign.certificate.languages.size() > 1;
+  bool decisions = wide, second_decides = false;
   for (const auto* a : m.analyses) {
     const auto& values = a->evaluation.values;
     if (a->plugin == model_analysis ||

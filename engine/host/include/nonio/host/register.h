@@ -61,6 +61,7 @@ class Register {
   Certificate load(std::int64_t id);
   Inputs inputs_of(std::int64_t id);
   std::vector<IssuedFile> files_of(std::int64_t id);
+  void note_replaced(std::int64_t id, Issue& issue);
 
   std::unique_ptr<Database> database_;
   std::string pattern_;

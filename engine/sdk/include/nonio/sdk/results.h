@@ -114,9 +114,17 @@ struct Issue {
   std::string replaces, replaces_date;  ///< the one that this amends; empty: none
   std::vector<std::string> changes;     ///< files that are other than in the one that it replaces
   std::string readings_sha256;          ///< of the files of readings, one behind the other
+  std::string replaces_readings{};      ///< readings_sha256 of the one that it replaces
+  std::string replaces_file{};          ///< a file of that one, its DCC if it has one,
+  std::string replaces_sha256{};        ///< and its digest
 };
 
-/// ISO 14253-1 with an upper limit.
+/// Of a certificate, the same nowhere else: its number and what was read.
+inline std::string identifier_of(std::string_view number, std::string_view readings_sha256) {
+  return std::string(number) + "." + std::string(readings_sha256);
+}
+
+/// With an upper limit, by the rule of the certificate.
 enum class Decision { conforms, does_not_conform, cannot_be_decided };
 
 /// One tolerance of the manifest held against one result.
