@@ -177,6 +177,7 @@ std::string campaign_text(const NewCampaign& c) {
   }
   return text +
          "# exclude = [57]  # lines of the file whose readings do not count\n"
+         "# exclude_reason = \"beam interrupted, see the record of the test\"\n"
          "\n# The error model, for `nonio compare` and `nonio explain`.\n"
          "# [model]\n"
          "# effects = [\"scale:" +

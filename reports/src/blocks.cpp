@@ -273,6 +273,15 @@ Expected<Laid> lay(const Image& image, double width, const Context& context, std
   return Laid{{{height, 4, std::move(canvas.ops), false}}};
 }
 
+Expected<Laid> lay(const Code& code, double width, const Context& context, std::string_view field) {
+  return lay_code(code, width, context, field);
+}
+
+Expected<Laid> lay(const SignatureBox& box, double width, const Context& context,
+                   std::string_view field) {
+  return lay_signature(box, width, context, field);
+}
+
 Expected<Laid> lay(const Spacer& spacer, double, const Context&, std::string_view) {
   return Laid{{{0.0, spacer.height, {}, true}}};  // what stands before it may have to stay with
                                                   // what follows
@@ -308,6 +317,11 @@ Expected<Laid> lay_all(const std::vector<Block>& blocks, double width, const Con
   return out;
 }
 
+SignatureFrame moved(SignatureFrame frame, double x, double y) {
+  frame.x += x, frame.y += y;
+  return frame;
+}
+
 Expected<Laid> lay(const Columns& columns, double width, const Context& context, std::string_view) {
   constexpr double gutter = 16;
   const std::size_t n = columns.parts.size();
@@ -315,6 +329,7 @@ Expected<Laid> lay(const Columns& columns, double width, const Context& context,
   Canvas canvas;
   double x = 0, height = 0;
   bool with_next = false;
+  std::optional<SignatureFrame> signature;
   for (std::size_t i = 0; i < n; ++i) {
     const double share =
         i < columns.shares.size() ? columns.shares[i] : 1.0 / static_cast<double>(n);
@@ -323,13 +338,15 @@ Expected<Laid> lay(const Columns& columns, double width, const Context& context,
     double y = 0;
     for (const Piece& piece : part->pieces) {
       canvas.place(x, -y, piece.ops);
+      if (piece.signature) signature = moved(*piece.signature, x, -y);
       y += piece.height + piece.gap;
     }
     height = std::max(height, y);
     with_next = with_next || (!part->pieces.empty() && part->pieces.back().with_next);
     x += room * share + gutter;
   }
-  if (height <= context.page_room) return Laid{{{height, 0, std::move(canvas.ops), with_next}}};
+  if (height <= context.page_room)
+    return Laid{{{height, 0, std::move(canvas.ops), with_next, false, signature}}};
   Laid out;
   for (const std::vector<Block>& blocks : columns.parts) {
     auto part = lay_all(blocks, width, context);

@@ -40,6 +40,7 @@ class Pages {
   }
 
   std::vector<Canvas> take() { return std::move(pages_); }
+  const std::optional<SignaturePlace>& signature() const { return signature_; }
 
  private:
   double top_of_page() const { return pages_.size() > 1 ? head_ : 0.0; }
@@ -48,7 +49,11 @@ class Pages {
     y_ = top_of_page();
   }
   void put(const Piece& piece) {
-    pages_.back().place(style_.left, style_.page_height - style_.top - y_, piece.ops);
+    const double x = style_.left, y = style_.page_height - style_.top - y_;
+    pages_.back().place(x, y, piece.ops);
+    if (const auto& frame = piece.signature)
+      signature_ = {pages_.size() - 1, x + frame->x, y + frame->y - frame->height,
+                    x + frame->x + frame->width, y + frame->y};
     y_ += piece.height + piece.gap;
   }
 
@@ -56,6 +61,7 @@ class Pages {
   double room_, head_;
   std::vector<Canvas> pages_;
   double y_ = 0.0;
+  std::optional<SignaturePlace> signature_;
 };
 
 std::string numbered(std::string text, std::string_view place, std::size_t number) {
@@ -166,6 +172,7 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
                document.date,    style.page_width,     style.page_height,        style.see_through,
                used.common_only, std::move(used.wide), std::move(used.pictures), {}};
   file.profile = document.profile;
+  file.signature = pages.signature();
   for (Canvas& canvas : drawn) file.pages.push_back(std::move(canvas.ops));
   return write_pdf(std::move(file), fonts);
 }

@@ -29,17 +29,7 @@ std::string rounded_text(double printed_value, int place, std::string_view langu
   if (!std::isfinite(printed_value)) return dash;
   if (std::fabs(printed_value) >= largest_plain)
     return typeset(short_text(printed_value, 4), language);
-  if (place <= 0) return typeset(fixed_text(printed_value, -place), language);
-  const double unit = std::pow(10.0, place);
-  return typeset(fixed_text(std::round(printed_value / unit) * unit, 0), language);
-}
-
-/// The place (power of ten) of the second significant digit, after rounding to it: 0.0996 gives
-/// 0.10 and so -2.
-int place_of_second_digit(double size) {
-  const int place = static_cast<int>(std::floor(std::log10(size))) - 1;
-  const double carried = std::round(size / std::pow(10.0, place));
-  return carried >= 100.0 ? place + 1 : place;
+  return typeset(nonio::rounded_text(printed_value, place), language);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 
 #include "bytes.h"
 #include "font_subset.h"
+#include "nonio/reports/document.h"
 #include "xmp.h"
 
 // The one place that knows libharu. Its own text functions are not used: libharu 2.3.0 would parse
@@ -332,14 +333,21 @@ void add_kept(HaruDocument& pdf, const Kept& kept) {
   }
 }
 
-void add_page(HaruDocument& pdf, const PdfFile& file, const std::string& compressed,
-              HPDF_Dict resources) {
+void add_page(HaruDocument& pdf, const PdfFile& file, std::size_t number,
+              const std::string& compressed, HPDF_Dict resources) {
   HPDF_Page page = HPDF_AddPage(pdf.doc);
   if (page == nullptr) return;
   HPDF_Page_SetWidth(page, static_cast<HPDF_REAL>(file.width));
   HPDF_Page_SetHeight(page, static_cast<HPDF_REAL>(file.height));
   HPDF_Dict_RemoveElement(page, "Resources");
   HPDF_Dict_Add(page, "Resources", resources);
+  if (file.signature && file.signature->page == number) {
+    HPDF_Array corners = HPDF_Array_New(pdf.doc->mmgr);
+    HPDF_Dict_Add(page, signature_key, corners);
+    const SignaturePlace& s = *file.signature;
+    for (const double v : {s.left, s.low, s.right, s.high})
+      HPDF_Array_AddNumber(corners, static_cast<HPDF_INT32>(std::lround(v)));
+  }
   fill(pdf, static_cast<HPDF_PageAttr>(page->attr)->contents, compressed);
 }
 
@@ -364,7 +372,8 @@ Expected<std::string> write_pdf(PdfFile file, const Fonts& fonts) {
   add_properties(pdf.doc, file);
   if (!file.profile.empty()) add_kept(pdf, kept = kept_of(pdf.doc, file, contents, fast));
   if (HPDF_Dict resources = add_resources(pdf, fonts, file, wide)) {
-    for (const std::string& content : contents) add_page(pdf, file, content, resources);
+    for (std::size_t i = 0; i < contents.size(); ++i)
+      add_page(pdf, file, i, contents[i], resources);
     pdf.doc->stream = HPDF_CallbackWriter_New(pdf.doc->mmgr, append, &pdf.bytes);
     if (pdf.failure.code == HPDF_OK) HPDF_SaveToStream(pdf.doc);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,12 @@
 #include "nonio/reports/picture.h"
 
 namespace nonio::reports {
+
+/// Where a signature is shown, pt.
+struct SignaturePlace {
+  std::size_t page = 0;
+  double left = 0.0, low = 0.0, right = 0.0, high = 0.0;
+};
 
 /// Pages as content streams; fonts are /F1 (regular), /F2 (bold) and /F3 (wide) with glyph numbers
 /// of two bytes, /P0, /P1, ... are pictures, and /G1 is the graphics state for see-through areas.
@@ -23,6 +30,7 @@ struct PdfFile {
   std::vector<std::shared_ptr<const Picture>> pictures;
   std::vector<std::string> pages;
   std::string profile{};  ///< as in Document
+  std::optional<SignaturePlace> signature{};
 };
 
 Expected<std::string> write_pdf(PdfFile, const Fonts&);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,11 @@
 
 namespace nonio::reports {
 
+/// The frame of a signature, from an origin to its upper left corner; y downwards is negative.
+struct SignatureFrame {
+  double x = 0.0, y = 0.0, width = 0.0, height = 0.0;
+};
+
 /// A strip of the document that no page break divides; its origin is its upper left corner.
 struct Piece {
   double height = 0.0;
@@ -20,6 +26,7 @@ struct Piece {
   std::string ops{};
   bool with_next = false;  ///< not the last one on a page
   bool new_page = false;   ///< first on its page
+  std::optional<SignatureFrame> signature{};
 };
 
 /// A block as strips; `repeated` stands again at the top of each further page that begins behind
@@ -82,6 +89,9 @@ Expected<void> draw_axis_text(Canvas&, const Context&, const AxisScale&, std::st
 Expected<Laid> lay_block(const Block&, double width, const Context&);
 Expected<Laid> lay_table(const Table&, double width, const Context&, std::string_view field);
 Expected<Laid> lay_bars(const BarChart&, double width, const Context&, std::string_view field);
+Expected<Laid> lay_code(const Code&, double width, const Context&, std::string_view field);
+Expected<Laid> lay_signature(const SignatureBox&, double width, const Context&,
+                             std::string_view field);
 Expected<Laid> lay_plot(const Plot&, double width, const Context&, std::string_view field);
 
 }  // namespace nonio::reports

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "pieces.h"
 
@@ -234,7 +235,12 @@ class PlotSetter {
     Expected<double> top = draw_title();
     if (top) top = draw_legend(*top);
     if (!top) return fail(top.error());
-    const double height = std::max(plot_.height > 0 ? plot_.height : style_.plot_height, *top + 60);
+    // Title and legend may take many lines; the drawing stays one.
+    constexpr double least_drawn = 85, least_of_given = 45;
+    const double below = 2.9 * size_ + 3;
+    const double height =
+        std::max(plot_.height > 0 ? plot_.height : style_.plot_height,
+                 *top + below + (plot_.height > 0 ? least_of_given : least_drawn));
     Range across, up;
     for (const Curve& curve : plot_.curves) {
       for (const double v : curve.x) across.add(v);
@@ -337,7 +343,10 @@ class PlotSetter {
       label_width = std::max(label_width, text->lines[0].width * size_);
       labels.push_back(std::move(*text));
     }
-    frame.x = 1.5 * size_ + label_width + 4;
+    auto up_title = set_text(context_, plot_.y_title, false, size_, frame.h, field_);
+    if (!up_title) return fail(up_title.error());
+    frame.x =
+        1.3 * size_ * static_cast<double>(up_title->lines.size()) + 0.2 * size_ + label_width + 4;
     frame.y = -height + below;
     frame.w = width_ - frame.x - 2 - span_room() * static_cast<double>(plot_.spans.size());
     if (plot_.same_scale) widen(across, (up.high - up.low) * frame.w / frame.h);
@@ -345,7 +354,7 @@ class PlotSetter {
     frame.across =
         axis_scale(across.low, across.high, std::clamp(static_cast<int>(width_ / 30), 2, 7), ticks,
                    plot_.language);
-    if (auto ok = draw_axes(frame, labels); !ok) return ok;
+    if (auto ok = draw_axes(frame, labels, *up_title); !ok) return ok;
     canvas_.clip(frame.x, frame.y, frame.w, frame.h);
     canvas_.ops += "1 j\n";  // round joins: no spikes where a curve turns
     for (const Curve& curve : plot_.curves) {
@@ -391,7 +400,7 @@ class PlotSetter {
     return {};
   }
 
-  Expected<void> draw_axes(const Frame& f, const std::vector<SetText>& labels) {
+  Expected<void> draw_axes(const Frame& f, const std::vector<SetText>& labels, const SetText& up) {
     for (const Plot::Belt& belt : plot_.belts)
       canvas_.filled(f.x, f.py(belt.from), f.w, f.py(belt.to) - f.py(belt.from), belt.colour);
     canvas_.stroke_colour(style_.rule);
@@ -411,10 +420,12 @@ class PlotSetter {
                                  size_, field_);
         !ok)
       return ok;
-    auto up = set_line(context_, plot_.y_title, false, size_, f.h, field_);
-    if (!up) return fail(up.error());
-    canvas_.text_upwards(size_, f.y + (f.h - up->lines[0].width * size_) / 2, false, size_,
-                         up->glyphs);
+    for (std::size_t i = 0; i < up.lines.size(); ++i) {
+      const TextLine& line = up.lines[i];
+      canvas_.text_upwards(size_ * (1.0 + 1.3 * static_cast<double>(i)),
+                           f.y + (f.h - line.width * size_) / 2, false, size_,
+                           std::span(up.glyphs).subspan(line.begin, line.end - line.begin));
+    }
     return {};
   }
 

@@ -187,10 +187,15 @@ class CampaignReader {
       if (!lines.contains(o.source_line[i])) continue;
       kept[i] = 0;
       const Quantity q = o.angular ? Quantity::angular_deviation : Quantity::deviation;
-      o.notes.push_back({"reading.excluded",
-                         {{"line", static_cast<double>(o.source_line[i]), Quantity::count},
-                          {"deviation", o.deviation[i], q}},
-                         {{"file", m.file}}});
+      Remark note{"reading.excluded",
+                  {{"line", static_cast<double>(o.source_line[i]), Quantity::count},
+                   {"deviation", o.deviation[i], q}},
+                  {{"file", m.file}}};
+      if (!m.exclude_reason.empty()) {
+        note.id = "reading.excluded-why";
+        note.texts.emplace_back("reason", m.exclude_reason);
+      }
+      o.notes.push_back(std::move(note));
     }
     keep_rows(o, kept);
     return {};

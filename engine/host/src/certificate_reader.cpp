@@ -14,12 +14,13 @@ CertificateTexts read_certificate(TableReader& reader) {
   c.location = reader.text("location");
   c.procedure = reader.text("procedure");
   c.title = reader.translations("title");
-  reader.text("decision_rule");
+  c.decision_rule = reader.text("decision_rule");
   return c;
 }
 
 void read_certificate_of_campaign(TableReader& reader, CertificateTexts& into) {
   into.deviations = reader.text("deviations");
+  into.nothing_else_by = reader.text("nothing_else_by");
   into.conditions = reader.text("conditions");
   into.opinions = reader.text("opinions");
   into.amendment = reader.text("amendment");
@@ -54,9 +55,11 @@ CertificateTexts certificate_of(const CertificateTexts& site, const CertificateT
   if (out.languages.empty()) out.languages = site.languages;
   if (out.languages.empty()) out.languages = {"en"};
   if (out.title.empty()) out.title = site.title;
-  for (const auto& [mine, others, otherwise] : {std::tuple{&out.form, &site.form, "certificate"},
-                                                {&out.location, &site.location, "customer"},
-                                                {&out.procedure, &site.procedure, ""}}) {
+  for (const auto& [mine, others, otherwise] :
+       {std::tuple{&out.form, &site.form, "certificate"},
+        {&out.location, &site.location, "customer"},
+        {&out.procedure, &site.procedure, ""},
+        {&out.decision_rule, &site.decision_rule, "iso14253-1"}}) {
     if (mine->empty()) *mine = *others;
     if (mine->empty()) *mine = otherwise;
   }

@@ -140,10 +140,24 @@ class CampaignRun {
         evaluation.error().file = measurement == nullptr ? manifest_name : measurement->file;
       return report(std::move(evaluation.error()));
     }
+    const std::vector<std::string>& uses = evaluation->uses;
+    for (const Measurement& m : out_.campaign.measurements)
+      if (m.id == id || std::find(uses.begin(), uses.end(), m.id) != uses.end())
+        note_reasons_missing(m, *evaluation);
     for (Finding& f : evaluation->findings) f.measurement = id;
     word(evaluation->notes);
     out_.results.analyses.push_back(
         {analysis.info.name, analysis.info.version, id, std::move(*evaluation)});
+  }
+
+  /// Readings that were taken out without a word why. The evaluation stands; nothing is issued.
+  static void note_reasons_missing(const Measurement& m, Evaluation& evaluation) {
+    if (m.exclude.empty() || !m.exclude_reason.empty()) return;
+    evaluation.findings.push_back(
+        {.id = "readings.excluded-without-reason",
+         .attention = true,
+         .evidence = {{"excluded", static_cast<double>(m.exclude.size()), Quantity::count}},
+         .texts = {{"file", m.file}, {"id", m.id}}});
   }
 
   void fit_model() {
@@ -226,7 +240,8 @@ class CampaignRun {
                      .decision = Decision::cannot_be_decided,
                      .reason = {}};
         if (v.U) {
-          c.decision = decide(std::fabs(v.value), *v.U, tolerance);
+          c.decision =
+              decide(std::fabs(v.value), *v.U, tolerance, out_.campaign.certificate.decision_rule);
           if (c.decision == Decision::cannot_be_decided) c.reason = "near-limit";
         } else {
           c.reason = "no-uncertainty";
@@ -467,7 +482,11 @@ class CampaignRun {
 
 }  // namespace
 
-Decision decide(double value, double U, double tolerance) {
+Decision decide(double value, double U, double tolerance, std::string_view rule) {
+  const bool simple = rule == "ilac-g8-simple", guarded = rule == "ilac-g8-guarded";
+  if (simple || guarded)
+    return value <= (guarded ? tolerance - U : tolerance) ? Decision::conforms
+                                                          : Decision::does_not_conform;
   if (value <= tolerance - U) return Decision::conforms;
   if (value > tolerance + U) return Decision::does_not_conform;
   return Decision::cannot_be_decided;

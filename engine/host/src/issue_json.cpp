@@ -91,6 +91,9 @@ void put_certificate(JsonWriter& json, const Certificate& certificate) {
   }
   put_if_there(json, "replaces", issue.replaces);
   put_if_there(json, "replaces_date", issue.replaces_date);
+  put_if_there(json, "replaces_readings", issue.replaces_readings);
+  put_if_there(json, "replaces_file", issue.replaces_file);
+  put_if_there(json, "replaces_sha256", issue.replaces_sha256);
   if (!issue.replaces.empty()) {
     put_changes(json, issue.changes);
     put_if_there(json, "why", issue.why);
@@ -112,6 +115,9 @@ Certificate certificate_of(const Json& json) {
   issue.date = text_in(json, "date");
   issue.replaces = text_in(json, "replaces");
   issue.replaces_date = text_in(json, "replaces_date");
+  issue.replaces_readings = text_in(json, "replaces_readings");
+  issue.replaces_file = text_in(json, "replaces_file");
+  issue.replaces_sha256 = text_in(json, "replaces_sha256");
   for (const Json& change : list_in(json, "changes")) issue.changes.push_back(change_in(change));
   issue.readings_sha256 = text_in(json, "readings_sha256");
   issue.why = text_in(json, "why");

@@ -189,11 +189,18 @@ constexpr Key environment_keys[] = {
      .unit = "arcsec",
      .wanted = not_negative,
      .least = 0.0},
+    {.name = "warm_up",
+     .holds = text,
+     .help = "What the machine did before the test, for the certificate: \"30 min at half feed\"."},
+    {.name = "sensors",
+     .holds = text,
+     .help = "Where the sensors of temperature were, for the certificate."},
 };
 
 constexpr Choice measurement_kinds[] = {{"axis"},         {"straightness"},  {"angle"},
                                         {"diagonal"},     {"step-diagonal"}, {"ball-centres"},
                                         {"observations"}, {"ballbar"}};
+constexpr Choice on_or_off[] = {{"on"}, {"off"}};
 constexpr Choice adjustments[] = {{"before"}, {"after"}};
 constexpr Choice linear_axes[] = {{"X"}, {"Y"}, {"Z"}};
 constexpr Words of_one_axis[] = {"axis", "straightness", "angle", "ball-centres"};
@@ -251,6 +258,9 @@ constexpr Key measurement_keys[] = {
      .wanted = "wanted line numbers of the file, whole and from 1",
      .least = 1.0,
      .most = 4e9},
+    {.name = "exclude_reason",
+     .holds = text,
+     .help = "Why the lines of exclude do not count; without it there is no certificate."},
     {.name = "from",
      .holds = number_table,
      .help = "Axis positions at the begin of a diagonal, { X = 0, Y = 0 }.",
@@ -268,6 +278,53 @@ constexpr Key measurement_keys[] = {
      .help = "Where the axes that stood still were, { Y = 500 }: on which line this axis was "
              "measured.",
      .unit = "mm"},
+    {.name = "feed_mm_per_min",
+     .holds = number,
+     .help = "Feed between the targets of a linear axis or along a line, for the certificate.",
+     .unit = "mm/min",
+     .wanted = above_0,
+     .least = 0.0,
+     .above = true},
+    {.name = "feed_deg_per_min",
+     .holds = number,
+     .help = "Feed between the targets of a rotary axis, for the certificate.",
+     .unit = "deg/min",
+     .wanted = above_0,
+     .least = 0.0,
+     .above = true},
+    {.name = "dwell_s",
+     .holds = number,
+     .help = "Rest at a target before it is read, for the certificate.",
+     .unit = "s",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "over_travel_mm",
+     .holds = number,
+     .help = "How far a linear axis went beyond the last target, for the certificate.",
+     .unit = "mm",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "over_travel_deg",
+     .holds = number,
+     .help = "How far a rotary axis went beyond the last target, for the certificate.",
+     .unit = "deg",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "tool_offset",
+     .holds = number_table,
+     .help = "Offset from the tool's reference to the place that was measured, { Z = -120 }, for "
+             "the certificate.",
+     .unit = "mm"},
+    {.name = "workpiece_offset",
+     .holds = number_table,
+     .help = "Offset from the work-piece's reference to the place that was measured, { X = 40 }, "
+             "for the certificate.",
+     .unit = "mm"},
+    {.name = "compensation",
+     .holds = text,
+     .help = "Whether the control's compensation (tables and backlash) was on or off during the "
+             "test, for the certificate.",
+     .choices = on_or_off},
 };
 
 constexpr auto unit_choices = [] {
@@ -357,7 +414,9 @@ constexpr Key run_keys[] = {
 
 constexpr Choice locations[] = {
     {"laboratory"}, {"customer"}, {"laboratoryBranch"}, {"customerBranch"}, {"other"}};
-constexpr Choice decision_rules[] = {{"iso14253-1"}};
+constexpr Choice decision_rules[] = {{"iso14253-1", "in between undecided"},
+                                     {"ilac-g8-simple", "simple acceptance"},
+                                     {"ilac-g8-guarded", "guard band w = U"}};
 
 constexpr TextRule language = {.letters = "a-z", .shortest = 2, .longest = 2};
 constexpr Key languages_key = {.name = "languages",
@@ -407,7 +466,14 @@ constexpr Key certificate_of_campaign[] = {
     decision_rule_key,
     {.name = "deviations",
      .holds = text,
-     .help = "Additions to the method, deviations from it, exclusions."},
+     .help =
+         "Additions to the method, deviations from it, exclusions, beside those that the program "
+         "finds by itself."},
+    {.name = "nothing_else_by",
+     .holds = text,
+     .help =
+         "The person who states that, beyond what the certificate says, nothing was added to the "
+         "method, changed in it or left out of it. Without it no such statement is printed."},
     {.name = "conditions",
      .holds = text,
      .help = "Conditions that influence the results; wanted where no readings have temperatures."},

@@ -117,6 +117,8 @@ Environment read_environment(TableReader& top) {
   environment.expansion_range = reader->number("expansion_range_um_per_m_K", um);
   environment.drift = reader->number("drift_um", um);
   environment.drift_angle = reader->number("drift_arcsec", arcsec);
+  environment.warm_up = reader->text("warm_up");
+  environment.sensors = reader->text("sensors");
   reader->finish();
   return environment;
 }
@@ -156,6 +158,28 @@ Signing read_signing(TableReader& reader) {
   return s;
 }
 
+/// One key for linear and one for rotary axes.
+std::optional<double> either(TableReader& reader, const char* linear, double linear_unit,
+                             const char* rotary, double rotary_unit) {
+  const auto length = reader.number(linear, linear_unit),
+             angle = reader.number(rotary, rotary_unit);
+  if (length && angle)
+    reader.error(rotary, "stands beside " + std::string(linear) + "; wanted one of them");
+  return length ? length : angle;
+}
+
+void read_test(TableReader& reader, Measurement& m) {
+  constexpr double minute = 60.0;
+  m.feed = either(reader, "feed_mm_per_min", mm / minute, "feed_deg_per_min", deg / minute);
+  m.dwell = reader.number("dwell_s");
+  m.over_travel = either(reader, "over_travel_mm", mm, "over_travel_deg", deg);
+  for (const auto& [axis, offset] : reader.number_table("tool_offset", mm))
+    m.tool_offset[axis] = offset;
+  for (const auto& [axis, offset] : reader.number_table("workpiece_offset", mm))
+    m.workpiece_offset[axis] = offset;
+  m.compensation = reader.text("compensation");
+}
+
 Measurement read_measurement(TableReader& reader) {
   Measurement m;
   m.id = reader.text("id");
@@ -170,11 +194,13 @@ Measurement read_measurement(TableReader& reader) {
                                 ", which moves: along it the deviation is one of positioning");
   if (m.kind == "angle") m.lateral = reader.text("about");
   m.exclude = reader.wholes("exclude");
+  m.exclude_reason = reader.text("exclude_reason");
   for (const auto& [axis, position] : reader.number_table("from", mm)) m.from[axis] = position;
   for (const auto& [axis, position] : reader.number_table("to", mm)) m.to[axis] = position;
   for (const auto& [axis, position] : reader.number_table("at", mm)) m.at[axis] = position;
   if (m.at.contains(m.axis))
     reader.error("at", "wanted the axes that stood still, found " + m.axis + ", which moves");
+  read_test(reader, m);
   reader.finish();
   return m;
 }

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "json_values.h"
 #include "nonio/host/record.h"
+#include "nonio/sdk/format.h"
 #include "nonio/sign/dcc.h"
 
 namespace nonio::host {
@@ -145,6 +147,15 @@ bool is_number(const Json& value, const char* key) {
   return value.is_object() && value.contains(key) && value[key].is_number();
 }
 
+/// A DCC has the digits that are printed, as U allows them; earlier ones had all.
+bool same_when_rounded(const sign::DccValue& v, double value, std::optional<double> U) {
+  if (v.U.has_value() != U.has_value()) return false;
+  if (same(value, v.value) && (!U || same(*U, *v.U))) return true;
+  const auto rounded = U ? rounded_result(value, *U) : std::nullopt;
+  return rounded && std::strtod(rounded->value.c_str(), nullptr) == v.value &&
+         std::strtod(rounded->U.c_str(), nullptr) == *v.U;
+}
+
 /// "" if the number is in results.json, else what is wrong.
 std::string contradiction(const sign::DccValue& v, const Json& results) {
   const Json* analysis = find(results, v.analysis);
@@ -153,13 +164,13 @@ std::string contradiction(const sign::DccValue& v, const Json& results) {
       !(*analysis)["values"].contains(v.name))
     return who + " is not in results.json";
   const Json& value = (*analysis)["values"][v.name];
-  if (!is_number(value, "value") || !same(value["value"].get<double>(), v.value))
-    return who + " is another number in results.json";
+  if (!is_number(value, "value")) return who + " is no number in results.json";
   if (!value.contains("unit") || value["unit"] != v.unit)
     return who + " has another unit in results.json";
   const bool has_U = is_number(value, "U");
-  if (has_U != v.U.has_value() || (has_U && !same(value["U"].get<double>(), *v.U)))
-    return who + " has another uncertainty in results.json";
+  const auto U = has_U ? std::optional(value["U"].get<double>()) : std::nullopt;
+  if (!same_when_rounded(v, value["value"].get<double>(), U))
+    return who + " is another number in results.json, or has another uncertainty there";
   return {};
 }
 

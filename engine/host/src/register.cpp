@@ -181,6 +181,19 @@ Expected<std::vector<IssuedFile>> Register::files_of(std::int64_t id) {
   return files;
 }
 
+Expected<void> Register::note_replaced(std::int64_t id, Issue& issue) {
+  issue.replaces_readings =
+      database_->first("SELECT readings FROM certificates WHERE id = ?", {id});
+  const auto files = files_of(id);
+  if (!files) return fail(files.error());
+  for (const IssuedFile& file : *files)
+    if (issue.replaces_file.empty() || file.name.ends_with(".xml")) {
+      issue.replaces_file = file.name;
+      issue.replaces_sha256 = sha256(file.bytes);
+    }
+  return {};
+}
+
 Expected<Certificate> Register::load(std::int64_t id) {
   Certificate certificate;
   auto rows = database_->rows(
@@ -196,8 +209,10 @@ Expected<Certificate> Register::load(std::int64_t id) {
   issue.replaces = std::move(row[7]);
   issue.replaces_date = std::move(row[8]);
   issue.readings_sha256 = std::move(row[2]);
-  if (!issue.replaces.empty())
+  if (!issue.replaces.empty()) {
     issue.changes = differences(inputs_of(integer(row[6])), inputs_of(id));
+    if (auto noted = note_replaced(integer(row[6]), issue); !noted) return fail(noted.error());
+  }
   certificate.output = std::move(row[3]);
   certificate.templates_sha256 = std::move(row[4]);
   certificate.results = std::move(row[5]);
@@ -308,6 +323,7 @@ Expected<Certificate> Register::draw(const std::string& campaign, const Inputs& 
     drawn.issue.replaces = old.front()[2];
     drawn.issue.replaces_date = old.front()[3];
     drawn.issue.changes = differences(inputs_of(integer(old.front()[0])), data);
+    note_replaced(integer(old.front()[0]), drawn.issue);
   }
   if (auto ended = transaction.end(); !ended) return fail(ended.error());
   return drawn;

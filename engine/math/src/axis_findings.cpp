@@ -21,10 +21,13 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings) {
   using Kind = Reversal::Kind;
   const Reversal r = assess_reversal(test);
   const bool attention = !std::isnan(r.largest) && matters(test, r.largest);
-  const char* id = r.kind == Kind::lost_motion        ? "reversal.lost-motion"
-                   : r.kind == Kind::over_compensated ? "reversal.over-compensated"
-                   : r.kind == Kind::not_constant     ? "reversal.not-constant"
-                                                      : nullptr;
+  // One value for the whole axis that leaves more somewhere than there is now is no advice to give.
+  const bool constant = r.kind == Kind::lost_motion || r.kind == Kind::over_compensated;
+  const char* id = constant && !(r.largest_left < r.largest) ? "reversal.one-value-worse"
+                   : r.kind == Kind::lost_motion             ? "reversal.lost-motion"
+                   : r.kind == Kind::over_compensated        ? "reversal.over-compensated"
+                   : r.kind == Kind::not_constant            ? "reversal.not-constant"
+                                                             : nullptr;
   if (id != nullptr)
     findings.push_back(FindingBuilder(id, attention, test.rotary)
                            .deviation("mean", r.mean)

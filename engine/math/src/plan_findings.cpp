@@ -37,6 +37,22 @@ std::size_t wanted_targets(const AxisTest& test) {
   return std::max<std::size_t>(5, whole(5.0 * L));
 }
 
+// A stretch of 2 m (a full turn) with the targets and approaches of the full test.
+bool has_full_test(const AxisTest& test) {
+  constexpr std::size_t runs = 5;
+  const double stretch = test.rotary ? full_turn : long_axis;
+  const std::size_t wanted = test.rotary ? 8 : 10;
+  std::vector<double> often;
+  for (std::size_t i = 0; i < test.targets.size(); ++i)
+    if (test.plus(i).size() >= runs && test.minus(i).size() >= runs)
+      often.push_back(test.targets[i]);
+  for (std::size_t i = 0, j = 0; j < often.size(); ++j) {
+    while (often[j] - often[i] > stretch + close) ++i;
+    if (j - i + 1 >= wanted) return true;
+  }
+  return false;
+}
+
 bool even(const AxisTest& test) {
   const std::size_t m = test.targets.size();
   if (m < 4) return false;
@@ -152,7 +168,7 @@ void plan_findings(const AxisTest& test, const Observations& o, const Axis* axis
                            .position("interval", test.length() / (m - 1.0))
                            .count("targets", m)
                            .done());
-  if (is_long(test))
+  if (is_long(test) && !has_full_test(test))
     findings.push_back(FindingBuilder("plan.long-axis", false, test.rotary)
                            .position("length", test.length())
                            .count("runs", static_cast<double>(test.most_approaches()))

@@ -126,8 +126,10 @@ class Reservation {
 
   Expected<std::string> make(const std::vector<Attachment>& attachments) {
     if (auto fit = check(); !fit) return fail(fit.error());
-    const std::size_t page = file_.first_page(), signature = offsets_.size(), field = signature + 1;
-    offsets_.resize(field + 1);
+    const std::size_t page = page_of_signature(), signature = offsets_.size(),
+                      field = signature + 1, look = field + 1;
+    const std::string frame = frame_of(page);
+    offsets_.resize(frame.empty() ? look : look + 1);
     std::string names;
     for (const std::size_t i : in_order_of_names(attachments))
       if (auto added = attach(attachments[i], names); !added) return fail(added.error());
@@ -136,19 +138,43 @@ class Reservation {
     for (const std::size_t number : file_.order) copy(number, page, field, names);
     for (const auto& [number, text] : attached_) put(number, text);
     put_signature(signature);
-    put(field,
-        "<<\n/Type /Annot\n/Subtype /Widget\n/FT /Sig\n/T (Signature1)\n/F 132\n/Rect [0 0 0 0]\n"
-        "/P " +
-            reference(page) + "\n/V " + reference(signature) + "\n>>");
+    put(field, "<<\n/Type /Annot\n/Subtype /Widget\n/FT /Sig\n/T (Signature1)\n/F 132\n/Rect " +
+                   (frame.empty() ? "[0 0 0 0]" : frame) + "\n" +
+                   (frame.empty() ? "" : "/AP << /N " + reference(look) + " >>\n") + "/P " +
+                   reference(page) + "\n/V " + reference(signature) + "\n>>");
+    if (!frame.empty())  // what is seen there is drawn by the page itself
+      put(look, "<<\n/Type /XObject\n/Subtype /Form\n/BBox " + frame +
+                    "\n/Length 0\n>>\nstream\n\nendstream");
     put_table();
     fill_range();
     return std::move(out_);
   }
 
  private:
+  /// The frame that the document has for its signature: four whole numbers, as they stand there.
+  std::string frame_of(std::size_t page) const {
+    const Value* frame = file_.objects[page].value.find("NonioSignature");
+    if (frame == nullptr || !frame->is(Value::Kind::array) || frame->items.size() != 4) return {};
+    std::string text = "[";
+    for (const Value& number : frame->items) {
+      if (!number.is(Value::Kind::integer)) return {};
+      text += (text.size() > 1 ? " " : "") + std::to_string(number.integer);
+    }
+    return text + "]";
+  }
+
+  /// The page with that frame, else the first.
+  std::size_t page_of_signature() const {
+    for (const std::size_t number : file_.order) {
+      const Value* type = file_.objects[number].value.find("Type");
+      if (type != nullptr && type->is_name("Page") && !frame_of(number).empty()) return number;
+    }
+    return file_.first_page();
+  }
+
   Expected<void> check() const {
     const Value* catalog = file_.catalog();
-    const std::size_t page = file_.first_page();
+    const std::size_t page = file_.first_page() == 0 ? 0 : page_of_signature();
     if (catalog == nullptr || page == 0) return fail("wanted a PDF with pages");
     for (const char* key : {"AcroForm", "Names", "AF", "Perms"})
       if (catalog->find(key) != nullptr)

@@ -10,6 +10,7 @@ namespace {
 
 std::set<std::string> full_keys(const std::vector<std::string_view>& keys) {
   std::set<std::string> out;
+  if (!keys.empty()) out.emplace("drifted");
   for (const std::string_view k : keys) {
     if (k.back() == ':') {
       out.emplace(k.substr(0, k.size() - 1));

@@ -112,6 +112,19 @@ void say_what_was_left_out(const AxisJob& job, OutputResult& result) {
     say("table.reversal-unjudged");
 }
 
+// A table of the state in which the axis happened to be is wrong by tomorrow.
+void refuse_drift(const AxisJob& job, OutputResult& result) {
+  result.findings.push_back(
+      {"table.refused-drift",
+       true,
+       {},
+       {{"axis", job.axis}, {"drift", joined(job.drift, ", ")}},
+       job.measurement,
+       "Do not compensate yet: find the cause of the drift and measure the axis again. To have the "
+       "table all the same: axes = [\"" +
+           job.axis + " drifted=1\"] under the options of this output."});
+}
+
 // Two measurements of one axis (before, after): each has its own files, and the user chooses.
 Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
   std::map<std::string, std::size_t> count;
@@ -152,6 +165,18 @@ bool has_tables(const Campaign& campaign) {
 
 Remark remark(const AxisJob& job, std::string id) {
   return {std::move(id), {}, {{"axis", job.axis}, {"unit", std::string(job.unit())}}};
+}
+
+bool AxisJob::one_value_helps() const {
+  if (!curve.bidirectional()) return false;
+  const double mean = curve.mean_reversal();
+  double largest = 0.0, left = 0.0;
+  for (std::size_t i = 0; i < curve.plus.size(); ++i) {
+    const double B = curve.plus[i] - curve.minus[i];
+    largest = std::max(largest, std::fabs(B));
+    left = std::max(left, std::fabs(B - mean));
+  }
+  return left < largest;
 }
 
 std::optional<double> AxisJob::setting(std::string_view name) const {
@@ -196,6 +221,10 @@ Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
         return wrong_axes("option axes, axis " + job.axis +
                           ": number must be a whole number from 1 to 99");
       job.number = static_cast<std::size_t>(*n);
+    }
+    if (!job.drift.empty() && !job.takes_drift()) {
+      refuse_drift(job, result);
+      continue;
     }
     job.about = about(input, job);
     say_what_was_left_out(job, result);
@@ -296,12 +325,28 @@ std::string reversal_words(const AxisJob& job, bool directions) {
     return "mean reversal B = " + mean +
            ": contained in the two directions of the table; backlash parameter = " +
            with_unit(job, job.present_backlash(), 6) + ", as while it was measured";
+  if (!job.one_value_helps())
+    return "mean reversal B = " + mean +
+           ": one value would not make it smaller; backlash parameter = " +
+           with_unit(job, job.present_backlash(), 6) + ", as while it was measured";
   return "mean reversal B = " + mean +
          ": backlash parameter = " + with_unit(job, job.backlash(), 6) +
          " (opposite sign, lost motion is positive)";
 }
 
 void doubt_backlash(const AxisJob& job, OutputResult& result) {
+  if (!job.one_value_helps()) {
+    const Quantity q = deviation_of(job.rotary);
+    result.findings.push_back({"table.backlash-no-gain",
+                               false,
+                               {{"mean", job.reversal.mean, q},
+                                {"before", job.reversal.largest, q},
+                                {"after", job.reversal.largest_left, q}},
+                               {{"axis", job.axis}},
+                               job.measurement,
+                               "The backlash value stays as it was while the axis was measured."});
+    return;
+  }
   doubt_uneven_reversal(job, result);
   if (job.reversal.kind != math::Reversal::Kind::over_compensated ||
       job.settings.count("backlash_mm") || job.settings.count("backlash_deg"))

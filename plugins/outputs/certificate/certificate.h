@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "dcc.h"
 #include "pages.h"
 
 /// The document that goes to the customer: what ISO/IEC 17025:2017, 7.8 asks for.
@@ -12,7 +13,13 @@ namespace nonio::certificate {
 using pages::Blocks;
 using pages::Source;
 
-/// The name of an analysis as a method, with the edition and k that it used.
+/// What of a test was other than its method plans, as the program knows it: sentences.
+std::vector<std::string> departures_of(const Source&, const pages::Measured&);
+/// How a test was made, and what of that nobody said.
+std::string test_parameters(const Source&, const pages::Measured&);
+
+/// The name of an analysis as a method, with the edition and k that it used; without that of a
+/// standard whose plan of the test was not followed.
 std::string method_of(const Source&, const Results::Analysed&);
 
 /// Where the conditions of a measurement stand in its readings, degC, hPa, %: lowest and highest.
@@ -27,6 +34,7 @@ Conditions conditions_of(const std::vector<Observations>&);
 
 /// An analysis whose values a certificate prints.
 bool is_printed(const Results::Analysed&);
+bool is_printed(const pages::Measured&);
 
 /// The title in the document's language: the laboratory's, or that of the words.
 std::string title_of(const Source&);
@@ -50,9 +58,17 @@ void add_item(const Source&, Blocks&);
 void add_method(const Source&, Blocks&);
 void add_conditions(const Source&, Blocks&);
 void add_conformity(const Source&, Blocks&);
+/// Pictures with the lines of the limits; before and after an adjustment in one.
+void add_overview(const Source&, Blocks&);
 void add_opinions(const Source&, Blocks&);
 void add_statements(const Source&, Blocks&);
 void add_authority(const Source&, Blocks&);
+
+/// What it says of the certificate that it replaces, with every change; empty if there is none.
+std::string amendment_text(const Source&);
+
+/// What the DCC says in words; a source for each language.
+dcc::About about_of(const std::vector<Source>&, const char* release);
 
 /// The document in one language.
 reports::Document compose(const Source&);

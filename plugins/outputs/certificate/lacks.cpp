@@ -46,7 +46,8 @@ void want_uncertainty(const OutputInput& in, List& list) {
           for (std::string& key : split(text)) list.want(false, std::move(key));
   }
   const auto& analyses = in.results.analyses;
-  list.want(std::any_of(analyses.begin(), analyses.end(), is_printed),
+  list.want(std::any_of(analyses.begin(), analyses.end(),
+                        [](const Results::Analysed& a) { return is_printed(a); }),
             "a result with an uncertainty (no analysis gives one; see the findings)");
 }
 
@@ -81,6 +82,9 @@ std::vector<std::string> lacks(const OutputInput& in) {
   list.want(!c.instrument.serial.empty(), "instrument.serial");
   list.want(!c.instrument.calibrated.empty(), "instrument.calibrated");
   list.want(!c.instrument.certificate.empty(), "instrument.certificate");
+  for (const Measurement& m : c.measurements)
+    list.want(m.exclude.empty() || !m.exclude_reason.empty(),
+              "measurement." + m.id + ".exclude_reason (why readings were excluded)");
   const Conditions found = conditions_of(in.observations);
   list.want(found.material.known() || found.air.known() || !c.certificate.conditions.empty(),
             "certificate.conditions (no file of readings has temperatures)");

@@ -3,6 +3,7 @@
 // Blocks of the first page and the statements; clauses are those of ISO/IEC 17025:2017.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "certificate.h"
 #include "nonio/reports/number.h"
@@ -40,14 +41,6 @@ std::string days(const Campaign& c) {
   return c.end_date.empty() || c.end_date == c.date ? c.date : c.date + " – " + c.end_date;
 }
 
-const Value* value_of(const OutputInput& in, const Conformity& c) {
-  for (const Results::Analysed& a : in.results.analyses)
-    if (a.plugin == c.plugin && a.measurement == c.measurement)
-      for (const Value& v : a.evaluation.values)
-        if (v.name == c.name) return &v;
-  return nullptr;
-}
-
 }  // namespace
 
 Conditions conditions_of(const std::vector<Observations>& observations) {
@@ -70,7 +63,8 @@ std::string method_of(const Source& source, const Results::Analysed& a) {
       if (n.name == "edition") edition = text;
       if (n.name == "k") k = text;
     }
-  const std::string key = "method." + a.plugin;
+  const std::string key =
+      (pages::follows_plan(source.in, a) ? "method." : "method_own_plan.") + a.plugin;
   if (source.words.get_or(key, "").empty()) return pages::analysis_title(source, a);
   return source.words.get(key, {{"edition", edition}, {"k", k}});
 }
@@ -127,19 +121,40 @@ void add_changes(const Source& source, const FileChange& file, Grid& into) {
         {file.file, w.get("amendment.more", {{"count", std::to_string(file.more)}}), field});
 }
 
+std::string replaced_text(const Source& source) {
+  const Wording& w = source.words;
+  const Issue& issue = *source.in.issue;
+  std::string text =
+      w.get("amendment.replaces", {{"number", issue.replaces}, {"date", issue.replaces_date}});
+  if (!issue.why.empty()) text += " " + w.get("amendment.why", {{"why", issue.why}});
+  if (issue.changes.empty()) text += " " + w.get("amendment.nothing");
+  return text;
+}
+
+Grid changes_of(const Source& source) {
+  Grid changes{source.words.get("amendment.changed"), {}};
+  for (const FileChange& file : source.in.issue->changes) add_changes(source, file, changes);
+  return changes;
+}
+
 }  // namespace
 
+std::string amendment_text(const Source& source) {
+  if (source.in.issue->replaces.empty()) return {};
+  std::string text = replaced_text(source);
+  const Grid changes = changes_of(source);
+  if (!changes.rows.empty()) text += " " + changes.title + ": ";
+  for (const Grid::Row& row : changes.rows)
+    text += (&row == &changes.rows.front() ? "" : "; ") + row.label + ": " + row.value;
+  return text;
+}
+
 void add_amendment(const Source& source, Blocks& blocks) {
-  const Issue& issue = *source.in.issue;
-  if (issue.replaces.empty()) return;
-  std::string text = source.words.get("amendment.replaces",
-                                      {{"number", issue.replaces}, {"date", issue.replaces_date}});
-  if (!issue.why.empty()) text += " " + source.words.get("amendment.why", {{"why", issue.why}});
-  if (issue.changes.empty()) text += " " + source.words.get("amendment.nothing");
-  blocks.push_back({Note{Level::attention, source.words.get("amendment.title"), text, ""},
-                    "certificate.amendment"});
-  Grid changes{source.words.get("amendment.changed"), {}};
-  for (const FileChange& file : issue.changes) add_changes(source, file, changes);
+  if (source.in.issue->replaces.empty()) return;
+  blocks.push_back(
+      {Note{Level::attention, source.words.get("amendment.title"), replaced_text(source), ""},
+       "certificate.amendment"});
+  Grid changes = changes_of(source);
   if (!changes.rows.empty()) blocks.push_back({std::move(changes), "amendment.changes"});
 }
 
@@ -185,6 +200,49 @@ void add_item(const Source& source, Blocks& blocks) {
       {Columns{{{{std::move(item), "machine"}}, {{std::move(instrument), "instrument"}}}}, "item"});
 }
 
+namespace {
+
+/// Its readings are behind what is printed, of itself or of another measurement.
+bool has_part(const OutputInput& in, const pages::Measured& m) {
+  const auto& analyses = in.results.analyses;
+  return is_printed(m) ||
+         std::any_of(analyses.begin(), analyses.end(), [&](const Results::Analysed& a) {
+           const auto& uses = a.evaluation.uses;
+           return is_printed(a) &&
+                  std::find(uses.begin(), uses.end(), m.measurement.id) != uses.end();
+         });
+}
+
+/// What the program found, then what a person states. Nobody states by default.
+void add_departures(const Source& source, Blocks& blocks) {
+  const CertificateTexts& texts = source.in.campaign.certificate;
+  blocks.push_back({Heading{label(source, "method_heading.departures"), 2}, "departures"});
+  bool none = true;
+  for (const pages::Measured& m : pages::measured(source.in)) {
+    if (!has_part(source.in, m)) continue;
+    std::string all;
+    for (const std::string& sentence : departures_of(source, m))
+      all += (all.empty() ? "" : " ") + sentence;
+    if (all.empty()) continue;
+    none = false;
+    paragraph(blocks,
+              source.words.get("method_heading.departures_of",
+                               {{"measurement", m.measurement.id}, {"departures", all}}),
+              "departures of measurement " + m.measurement.id);
+  }
+  if (none) paragraph(blocks, source.words.get("method_heading.none_found"), "departures");
+  if (!texts.deviations.empty())
+    paragraph(blocks,
+              source.words.get("method_heading.deviations", {{"deviations", texts.deviations}}),
+              "certificate.deviations");
+  if (!texts.nothing_else_by.empty())
+    paragraph(blocks,
+              source.words.get("method_heading.nothing_else", {{"person", texts.nothing_else_by}}),
+              "certificate.nothing_else_by");
+}
+
+}  // namespace
+
 void add_method(const Source& source, Blocks& blocks) {
   const CertificateTexts& texts = source.in.campaign.certificate;
   blocks.push_back({Heading{label(source, "method_heading.title"), 2}, "method_heading.title"});
@@ -203,14 +261,10 @@ void add_method(const Source& source, Blocks& blocks) {
               source.words.get("method_heading.procedure", {{"procedure", texts.procedure}}),
               "certificate.procedure");
   paragraph(blocks,
-            texts.deviations.empty()
-                ? source.words.get("method_heading.no_deviations")
-                : source.words.get("method_heading.deviations", {{"deviations", texts.deviations}}),
-            "certificate.deviations");
-  paragraph(blocks,
             source.words.get("method_heading.traceability",
                              {{"certificate", source.in.campaign.instrument.certificate}}),
             "instrument.certificate");
+  add_departures(source, blocks);
 }
 
 void add_conditions(const Source& source, Blocks& blocks) {
@@ -233,34 +287,88 @@ void add_conditions(const Source& source, Blocks& blocks) {
   paragraph(blocks, stated, "certificate.conditions");
 }
 
+namespace {
+
+/// A result of the first page.
+struct Shown {
+  const pages::Measured* measured;
+  const Value* value;
+  const Conformity* limit;
+};
+
+/// Those with a limit, and those that the template names; of very many the former alone.
+std::vector<Shown> shown_results(const Source& source,
+                                 const std::vector<pages::Measured>& measured) {
+  constexpr std::size_t most = 18;
+  const std::vector<std::string>& summary = source.look.summary;
+  std::vector<Shown> all;
+  for (const pages::Measured& m : measured)
+    for (const Results::Analysed* a : m.analyses) {
+      if (!is_printed(*a)) continue;
+      for (const Value& v : a->evaluation.values) {
+        const Conformity* limit = pages::conformity_of(source.in, *a, v.name);
+        const bool named = std::find(summary.begin(), summary.end(), v.name) != summary.end();
+        if (v.U && (named || limit != nullptr)) all.push_back({&m, &v, limit});
+      }
+    }
+  const auto limited = [](const Shown& s) { return s.limit != nullptr; };
+  if (all.size() > most && std::any_of(all.begin(), all.end(), limited))
+    std::erase_if(all, [&](const Shown& s) { return !limited(s); });
+  if (all.size() > most) {  // the first of each measurement
+    const pages::Measured* last = nullptr;
+    std::erase_if(all,
+                  [&](const Shown& s) { return std::exchange(last, s.measured) == s.measured; });
+  }
+  return all;
+}
+
+Level level_of(Decision decision) {
+  return decision == Decision::conforms           ? Level::good
+         : decision == Decision::does_not_conform ? Level::failed
+                                                  : Level::attention;
+}
+
+}  // namespace
+
 void add_conformity(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
+  const std::vector<pages::Measured> measured = pages::measured(source.in);
+  const std::vector<Shown> all = shown_results(source, measured);
+  if (all.empty()) return;
+  const bool limits =
+      std::any_of(all.begin(), all.end(), [](const Shown& s) { return s.limit != nullptr; });
   Table table;
   table.columns = {
       {w.get("conformity.measurement"), "", false}, {w.get("results.symbol"), "", false},
-      {w.get("results.value"), "", true},           {w.get("results.uncertainty"), "", true},
-      {w.get("results.tolerance"), "", true},       {"", "", false},
-      {w.get("results.decision"), "", false}};
-  for (const Conformity& c : source.in.results.conformity) {
-    const Value* v = value_of(source.in, c);
-    if (v == nullptr || !v->U) continue;
-    const Printed shown = printed_result(v->value, v->U, c.quantity, source.language());
-    const bool good = c.decision == Decision::conforms;
-    table.rows.push_back({{c.measurement},
-                          {pages::symbol(c.name), true},
-                          {shown.value},
-                          {shown.U},
-                          {pages::plain_number(source, c.tolerance, c.quantity)},
-                          {unit_text(c.quantity)},
-                          {pages::decision_text(source, c.decision), !good,
-                           good                                       ? Level::good
-                           : c.decision == Decision::does_not_conform ? Level::failed
-                                                                      : Level::attention}});
+      {w.get("results.meaning"), "", false},        {w.get("results.value"), "", true},
+      {w.get("targets.uncertainty"), "", true},     {"", "", false}};
+  if (limits) {
+    table.columns.insert(table.columns.end() - 1, {w.get("conformity.limit"), "", true});
+    table.columns.push_back({w.get("results.decision"), "", false});
   }
-  if (table.rows.empty()) return;
-  blocks.push_back({Heading{w.get("conformity.title"), 1}, "conformity.title"});
+  for (const Shown& s : all) {
+    const Value& v = *s.value;
+    const Printed shown = printed_result(v.value, v.U, v.quantity, source.language());
+    std::vector<Table::Cell> row = {{s.measured->measurement.id},
+                                    {pages::symbol(v.name), true},
+                                    {w.get_or("value." + v.name, "")},
+                                    {shown.value},
+                                    {shown.U}};
+    if (limits)
+      row.push_back(
+          {s.limit == nullptr ? "–" : pages::plain_number(source, s.limit->tolerance, v.quantity)});
+    row.push_back({unit_text(v.quantity)});
+    if (limits && s.limit == nullptr) row.push_back({"–"});
+    if (limits && s.limit != nullptr)
+      row.push_back({pages::decision_text(source, s.limit->decision),
+                     s.limit->decision != Decision::conforms, level_of(s.limit->decision)});
+    table.rows.push_back(std::move(row));
+  }
+  blocks.push_back(
+      {Heading{w.get(limits ? "conformity.title" : "conformity.results"), 1}, "conformity.title"});
   blocks.push_back({std::move(table), "conformity"});
-  paragraph(blocks, w.get("conformity.rule"), "conformity.rule");
+  if (limits)
+    paragraph(blocks, pages::rule_text(source) + " " + w.get("conformity.specification"), "rule");
 }
 
 void add_opinions(const Source& source, Blocks& blocks) {
@@ -272,6 +380,7 @@ void add_opinions(const Source& source, Blocks& blocks) {
 
 void add_statements(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
+  blocks.push_back({Heading{w.get("statements.title"), 2}, "statements.title"});
   paragraph(blocks, w.get("notes.uncertainty") + " " + w.get("statements.guides"), "statements");
   paragraph(blocks, w.get("notes.sign"), "notes.sign");
   paragraph(blocks, w.get("notes.items") + " " + w.get("statements.whole"), "statements");
@@ -292,18 +401,38 @@ std::string released_by(const Source& source) {
 
 }  // namespace
 
+/// Beside who authorised it: where the electronic signature is shown, and number and digest for who
+/// holds a print in his hands. A draft has neither.
 void add_authority(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
-  const bool draft = source.in.issue->is_draft();
+  const Issue& issue = *source.in.issue;
+  const bool draft = issue.is_draft();
+  const std::string by = released_by(source);
   Grid grid{w.get("authority.title"),
-            {{w.get("authority.by"), released_by(source), "laboratory.authoriser"},
-             {w.get("authority.author"), source.in.issue->author, "authority.author"},
+            {{w.get("authority.by"), by, "laboratory.authoriser"},
+             {w.get("authority.author"), issue.author, "authority.author"},
              {w.get("authority.signed"), w.get(draft ? "draft.says" : "authority.electronic"),
-              "authority.electronic"},
-             {w.get("authority.verify"), draft ? "" : w.get("authority.how"), "authority.how"},
-             {w.get("authority.readings"), source.in.issue->readings_sha256, "readings"},
-             {w.get("authority.register"), source.in.issue->register_id, "register"}}};
-  blocks.push_back({std::move(grid), "authority"});
+              "authority.electronic"}}};
+  Grid check{"",
+             {{w.get("authority.verify"), draft ? "" : w.get("authority.how"), "authority.how"},
+              {w.get("authority.readings"), issue.readings_sha256, "readings"},
+              {w.get("authority.register"), issue.register_id, "register"}}};
+  blocks.push_back({Spacer{4}});
+  if (draft) {
+    blocks.push_back({std::move(grid), "authority"});
+  } else {
+    SignatureBox box{w.get("authority.box"),
+                     {by, source.in.campaign.laboratory.name,
+                      w.get("title.number", {{"number", issue.number}}), issue.date}};
+    Code code{issue.number + "\n" + issue.date + "\nSHA-256 " + issue.readings_sha256,
+              w.get("authority.code")};
+    blocks.push_back({Columns{{{{std::move(grid), "authority"}},
+                               {{std::move(box), "authority.box"}},
+                               {{std::move(code), "authority.code"}}},
+                              {0.5, 0.33, 0.17}},
+                      "authority"});
+  }
+  blocks.push_back({std::move(check), "authority"});
 }
 
 }  // namespace nonio::certificate

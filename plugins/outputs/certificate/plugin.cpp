@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "certificate.h"
-#include "dcc.h"
 #include "nonio/reports/picture.h"
 #include "two_languages.h"
 
@@ -75,12 +74,12 @@ Expected<Document> document_of(const OutputInput& in, const pages::Look& look, c
 }
 
 std::string dcc_of(const OutputInput& in, const pages::Look& look, const Fonts& fonts) {
-  const CertificateTexts& texts = in.campaign.certificate;
-  const Wording words = words_of(in.templates, texts.languages.front());
-  dcc::About about{in.issue->number, texts.languages, texts.location, "certificate", version};
-  for (const Results::Analysed& a : in.results.analyses)
-    about.methods[a.plugin] = method_of({in, look, words, fonts, true}, a);
-  return dcc::write(in, about);
+  std::vector<Wording> words;
+  for (const std::string& language : in.campaign.certificate.languages)
+    words.push_back(words_of(in.templates, language));
+  std::vector<Source> sources;
+  for (const Wording& w : words) sources.push_back({in, look, w, fonts, true});
+  return dcc::write(in, about_of(sources, version));
 }
 
 Expected<OutputResult> write(const OutputInput& in) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "dcc.h"
+#include "nonio/sdk/format.h"
 
 namespace {
 
@@ -32,6 +33,21 @@ Expected<void> check(const Campaign& c) {
   return fail("a DCC needs what is missing: " + missing);
 }
 
+/// One for each tolerance of which something is decided, without words.
+void add_decided(const OutputInput& in, dcc::About& about) {
+  const std::string& rule = in.campaign.certificate.decision_rule;
+  about.norm = rule.starts_with("ilac") ? "ILAC-G8:09/2019" : "ISO 14253-1:2013";
+  for (const Conformity& c : in.results.conformity)
+    about.decided.push_back(
+        {{{"", c.name + " of " + (c.measurement.empty() ? c.axis : c.measurement) + ", tolerance " +
+                   short_text(printed(c.tolerance, c.quantity), 6) + " " +
+                   std::string(unit_of(c.quantity).symbol)}},
+         {},
+         c.decision == Decision::conforms           ? "pass"
+         : c.decision == Decision::does_not_conform ? "fail"
+                                                    : ""});
+}
+
 Expected<OutputResult> write(const OutputInput& in) {
   if (auto complete = check(in.campaign); !complete) return fail(complete.error());
   const auto has_values = [](const auto& a) { return !a.evaluation.values.empty(); };
@@ -39,11 +55,12 @@ Expected<OutputResult> write(const OutputInput& in) {
   if (std::none_of(analyses.begin(), analyses.end(), has_values))
     return fail("a DCC needs at least one result, and there is none");
   const std::string number = in.options.text("number");
-  const dcc::About about{number.empty() ? in.campaign.id : number,
-                         {in.options.text("language", "en")},
-                         in.options.text("location", "customer"),
-                         "dcc",
-                         version};
+  dcc::About about{number.empty() ? in.campaign.id : number,
+                   {in.options.text("language", "en")},
+                   in.options.text("location", "customer"),
+                   "dcc",
+                   version};
+  add_decided(in, about);
   OutputResult result;
   result.artifacts.push_back({"dcc.xml", dcc::write(in, about), in.options.flag("sign", true)});
   return result;

@@ -238,7 +238,7 @@ void add_notes(const Source& source, Blocks& blocks) {
   const auto say = [&](const char* key) { ours += (ours.empty() ? "" : " ") + w.get(key); };
   if (with_U) say("notes.uncertainty");
   if (without_U) say("notes.no_uncertainty");
-  if (!results.conformity.empty()) say("notes.decision");
+  if (!results.conformity.empty()) ours += (ours.empty() ? "" : " ") + rule_text(source);
   say("notes.sign");
   say("notes.items");
   add(ours);

@@ -177,7 +177,7 @@ TEST(EveryTable, RefusalIsOfOneAxis) {
 }
 
 // Without any analysis: the readings themselves say it.
-TEST(EveryTable, WarnsOfDrift) {
+TEST(EveryTable, RefusesDriftUnlessAskedFor) {
   for (const Kind& k : kinds()) {
     std::mt19937 random(9);
     Measured axis = random_axis(random, false);
@@ -186,9 +186,20 @@ TEST(EveryTable, WarnsOfDrift) {
     const auto calm = b.write(k.output(), k.options);
     ASSERT_TRUE(calm);
     EXPECT_EQ(finding(*calm, "table.unstable-axis"), nullptr) << k.name;
+    EXPECT_EQ(finding(*calm, "table.refused-drift"), nullptr) << k.name;
+    EXPECT_FALSE(calm->artifacts.empty()) << k.name;
     Observations& o = b.observations[0];
     for (std::size_t i = 0; i < o.size(); ++i) o.deviation[i] += 3 * um * o.run[i];
-    const auto r = b.write(k.output(), k.options);
+    const auto none = b.write(k.output(), k.options);
+    ASSERT_TRUE(none);
+    EXPECT_TRUE(none->artifacts.empty()) << k.name;
+    const Finding* refused = finding(*none, "table.refused-drift");
+    ASSERT_NE(refused, nullptr) << k.name;
+    EXPECT_TRUE(refused->attention);
+    EXPECT_TRUE(contains(refused->advice, "drifted=1")) << refused->advice;
+    Options asked = k.options;
+    asked["axes"] = std::vector<std::string>{"X drifted=1"};
+    const auto r = b.write(k.output(), asked);
     ASSERT_TRUE(r);
     const Finding* f = finding(*r, "table.unstable-axis");
     ASSERT_NE(f, nullptr) << k.name;

@@ -80,7 +80,7 @@ TEST_F(Certificate, SaysWhatTheStandardAsksFor) {
                            "ISO 230-2:2014",
                            "VDI/DGQ 3441:1977",
                            "Temperature of the machine 20.1 – 20.2 °C.",
-                           "Statement of conformity",
+                           "statement of conformity",
                            "does not conform",
                            "ISO 14253-1",
                            "coverage factor k = 2",
@@ -376,10 +376,10 @@ TEST_F(Certificate, TheDccHasTheSameNumberAndValues) {
   const auto result = write(c);
   ASSERT_TRUE(result);
   const std::string& xml = result->artifacts[1].bytes;
-  for (const char* what : {"<dcc:uniqueIdentifier>2026-0012<", "<dcc:issueDate>2026-11-21<",
-                           "<dcc:receiptDate>2026-11-01<", "<dcc:endPerformanceDate>2026-11-04<",
-                           "<dcc:replacedUniqueIdentifier>2026-0003<", "<dcc:conformity>fail<",
-                           "<dcc:content>ISO 230-2:2014", "LAT 123 / 2026-045", "\\micro\\metre"})
+  for (const char* what :
+       {"<dcc:value>2026-0012<", "<dcc:issueDate>2026-11-21<", "<dcc:receiptDate>2026-11-01<",
+        "<dcc:endPerformanceDate>2026-11-04<", "<dcc:replacedUniqueIdentifier>2026-0003<",
+        "<dcc:conformity>fail<", ">ISO 230-2:2014", "LAT 123 / 2026-045", "\\micro\\metre"})
     EXPECT_TRUE(has(xml, what)) << what;
 }
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// PTB's schema 3.3.0; the order of elements is the schema's.
+// PTB's schema 3.3.0; the order of elements is the schema's. Words of the templates carry their
+// language; names, symbols and what the manifest says carry none.
 #include "dcc.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include "nonio/sdk/dsi_units.h"
 #include "nonio/sdk/format.h"
@@ -19,6 +21,13 @@ std::string number_text(double si, Quantity q) {
   std::array<char, 32> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), printed(si, q));
   return {buffer.data(), end.ptr};
+}
+
+/// As it stands on paper: to the digits that U allows.
+RoundedResult result_text(double si, std::optional<double> U, Quantity q) {
+  if (U)
+    if (const auto rounded = rounded_result(printed(si, q), printed(*U, q))) return *rounded;
+  return {number_text(si, q), ""};
 }
 
 class Writer {
@@ -34,21 +43,38 @@ class Writer {
     core();
     item();
     people();
+    statements();
     xml_.close();
     xml_.open("dcc:measurementResults");
     for (const Results::Analysed& a : in_.results.analyses)
-      if (!a.evaluation.values.empty()) result(a);
+      if (has_values(a)) result(a);
     xml_.close();
     xml_.close();
     return xml_.take();
   }
 
  private:
-  void text(const char* name, const std::string& content) {
+  bool is_told(const Value& v) const { return !about_.only_with_U || v.U.has_value(); }
+  bool has_values(const Results::Analysed& a) const {
+    const auto& values = a.evaluation.values;
+    return std::any_of(values.begin(), values.end(), [&](const Value& v) { return is_told(v); });
+  }
+
+  void contents(const Text& text) {
+    for (const auto& [language, content] : text)
+      if (!content.empty())
+        xml_.element("dcc:content", content, language.empty() ? "" : "lang=\"" + language + "\"");
+  }
+  static bool empty(const Text& text) {
+    return std::all_of(text.begin(), text.end(), [](const auto& t) { return t.second.empty(); });
+  }
+  void text(const char* name, const Text& content) {
+    if (empty(content)) return;
     xml_.open(name);
-    xml_.element("dcc:content", content);
+    contents(content);
     xml_.close();
   }
+  void text(const char* name, const std::string& content) { text(name, Text{{"", content}}); }
 
   void software() {
     xml_.open("dcc:dccSoftware");
@@ -66,20 +92,44 @@ class Writer {
     xml_.element("dcc:countryCodeISO3166_1", c.laboratory.country);
     for (const char* element : {"dcc:usedLangCodeISO639_1", "dcc:mandatoryLangCodeISO639_1"})
       for (const std::string& language : about_.languages) xml_.element(element, language);
-    xml_.element("dcc:uniqueIdentifier", about_.number);
+    const Issue* issue = in_.issue != nullptr && !in_.issue->is_draft() ? in_.issue : nullptr;
+    xml_.element(
+        "dcc:uniqueIdentifier",
+        issue == nullptr ? about_.number : identifier_of(issue->number, issue->readings_sha256));
+    if (issue != nullptr) {
+      xml_.open("dcc:identifications");
+      xml_.open("dcc:identification");
+      xml_.element("dcc:issuer", "calibrationLaboratory");
+      xml_.element("dcc:value", issue->number);
+      xml_.close();
+      xml_.close();
+    }
     if (!c.received.empty()) xml_.element("dcc:receiptDate", c.received);
     xml_.element("dcc:beginPerformanceDate", c.date);
     xml_.element("dcc:endPerformanceDate", c.end_date.empty() ? c.date : c.end_date);
     xml_.element("dcc:performanceLocation", about_.location);
-    if (in_.issue != nullptr && !in_.issue->is_draft()) {
-      xml_.element("dcc:issueDate", in_.issue->date);
-      if (!in_.issue->replaces.empty()) {
-        xml_.open("dcc:reportAmendedSubstituted");
-        xml_.element("dcc:typeOfChange", "substituted");
-        xml_.element("dcc:replacedUniqueIdentifier", in_.issue->replaces);
-        xml_.close();
-      }
+    if (issue != nullptr) {
+      xml_.element("dcc:issueDate", issue->date);
+      replaced(*issue);
     }
+    xml_.close();
+  }
+
+  void replaced(const Issue& issue) {
+    if (issue.replaces.empty()) return;
+    const std::string identifier = issue.replaces_readings.empty()
+                                       ? issue.replaces
+                                       : identifier_of(issue.replaces, issue.replaces_readings);
+    xml_.open("dcc:reportAmendedSubstituted");
+    xml_.element("dcc:typeOfChange", "substituted");
+    xml_.element("dcc:replacedUniqueIdentifier", identifier);
+    xml_.close();
+    if (issue.replaces_sha256.empty()) return;
+    xml_.open("dcc:previousReport");
+    text("dcc:referral", issue.replaces + ", " + issue.replaces_file);
+    xml_.element("dcc:referralID", identifier);
+    xml_.element("dcc:procedure", "SHA-256 of the file");
+    xml_.element("dcc:value", issue.replaces_sha256);
     xml_.close();
   }
 
@@ -88,70 +138,77 @@ class Writer {
     xml_.open("dcc:items");
     xml_.open("dcc:item");
     text("dcc:name", m.description.empty() ? m.model : m.description);
-    if (!m.maker.empty()) {
-      xml_.open("dcc:manufacturer");
-      text("dcc:name", m.maker);
-      xml_.close();
-    }
+    text("dcc:description", about_.item);
+    manufacturer(m.maker);
     xml_.element("dcc:model", m.model);
+    serial_number(m.serial);
+    xml_.close();
+    xml_.close();
+  }
+
+  void manufacturer(const std::string& maker) {
+    if (maker.empty()) return;
+    xml_.open("dcc:manufacturer");
+    text("dcc:name", maker);
+    xml_.close();
+  }
+  void serial_number(const std::string& serial) {
+    if (serial.empty()) return;
     xml_.open("dcc:identifications");
     xml_.open("dcc:identification", "refType=\"basic_serialNumber\"");
     xml_.element("dcc:issuer", "manufacturer");
-    xml_.element("dcc:value", m.serial);
-    xml_.close();
-    xml_.close();
+    xml_.element("dcc:value", serial);
     xml_.close();
     xml_.close();
   }
 
   void people() {
     const Campaign& c = in_.campaign;
+    const Laboratory& l = c.laboratory;
     xml_.open("dcc:calibrationLaboratory");
-    contact("dcc:contact", c.laboratory.name, c.laboratory.address, c.laboratory.country);
+    if (!l.accreditation.empty()) xml_.element("dcc:calibrationLaboratoryCode", l.accreditation);
+    contact("dcc:contact", l.name,
+            l.address + (l.contact.empty() ? "" : (l.address.empty() ? "" : " · ") + l.contact),
+            l.country);
     xml_.close();
     xml_.open("dcc:respPersons");
-    xml_.open("dcc:respPerson");
-    xml_.open("dcc:person");
     const bool by_a_person = in_.issue != nullptr && !in_.issue->released_by.empty();
-    text("dcc:name", by_a_person ? in_.issue->released_by : c.laboratory.authoriser);
-    xml_.close();
-    xml_.element("dcc:mainSigner", "true");
-    xml_.close();
+    person(by_a_person ? in_.issue->released_by : l.authoriser, "authoriser", true);
+    if (!c.operator_name.empty()) person(c.operator_name, "operator", false);
     xml_.close();
     contact("dcc:customer", c.customer, c.customer_address.empty() ? c.site : c.customer_address,
             {});
-    statements();
   }
 
-  /// One for each tolerance. Undecided by ISO 14253-1 is what ILAC-G8 calls conditional.
-  void statements() {
-    if (in_.results.conformity.empty()) return;
-    xml_.open("dcc:statements");
-    for (const Conformity& c : in_.results.conformity) {
-      const Value* value = value_of(c);
-      xml_.open("dcc:statement");
-      text("dcc:name", c.name + " of " + (c.measurement.empty() ? c.axis : c.measurement) +
-                           ", tolerance " + number_text(c.tolerance, c.quantity) + " " +
-                           std::string(unit_of(c.quantity).symbol));
-      xml_.element("dcc:norm", "ISO 14253-1");
-      if (value != nullptr && value->U) {
-        const bool inside = std::fabs(value->value) <= c.tolerance;
-        xml_.element("dcc:conformity", c.decision == Decision::conforms           ? "pass"
-                                       : c.decision == Decision::does_not_conform ? "fail"
-                                       : inside ? "conditionalPass"
-                                                : "conditionalFail");
-      }
-      xml_.close();
-    }
+  void person(const std::string& name, const char* role, bool signer) {
+    xml_.open("dcc:respPerson");
+    xml_.open("dcc:person");
+    text("dcc:name", name);
+    xml_.close();
+    xml_.element("dcc:role", role);
+    xml_.element("dcc:mainSigner", signer ? "true" : "false");
     xml_.close();
   }
 
-  const Value* value_of(const Conformity& c) const {
-    for (const Results::Analysed& a : in_.results.analyses)
-      if (a.plugin == c.plugin && a.measurement == c.measurement)
-        for (const Value& v : a.evaluation.values)
-          if (v.name == c.name) return &v;
-    return nullptr;
+  /// Conformity in the words of the rule by which was decided; what that leaves open has no status.
+  void statements() {
+    if (about_.decided.empty() && about_.statements.empty()) return;
+    xml_.open("dcc:statements");
+    for (const Decided& d : about_.decided) {
+      xml_.open("dcc:statement", "refType=\"basic_conformity\"");
+      text("dcc:name", d.name);
+      text("dcc:description", about_.rule);
+      if (!about_.norm.empty()) xml_.element("dcc:norm", about_.norm);
+      text("dcc:declaration", d.says);
+      if (!d.is.empty()) xml_.element("dcc:conformity", d.is);
+      xml_.close();
+    }
+    for (const Statement& s : about_.statements) {
+      xml_.open("dcc:statement", s.ref_type.empty() ? "" : "refType=\"" + s.ref_type + "\"");
+      text("dcc:declaration", s.says);
+      xml_.close();
+    }
+    xml_.close();
   }
 
   void contact(const char* element, const std::string& name, const std::string& place,
@@ -165,32 +222,49 @@ class Writer {
     xml_.close();
   }
 
-  /// Named as `nonio verify` finds it again: "iso230-2 of X".
   void result(const Results::Analysed& a) {
-    const std::string name = a.measurement.empty() ? a.plugin : a.plugin + " of " + a.measurement;
+    static const Words none;
+    const std::string name = name_of(a);
+    const auto found = about_.words.find(name);
+    const Words& words = found == about_.words.end() ? none : found->second;
+    const Text title = empty(words.title) ? Text{{"", name}} : words.title;
     xml_.open("dcc:measurementResult");
-    text("dcc:name", name);
-    method(a.plugin);
+    text("dcc:name", title);
+    text("dcc:description", name);
+    methods(words);
     equipment();
+    influences(words);
     xml_.open("dcc:results");
     xml_.open("dcc:result", "refType=\"basic_measurementResult\"");
-    text("dcc:name", name);
+    text("dcc:name", title);
     xml_.open("dcc:data");
-    for (const Value& v : a.evaluation.values) value(v);
+    for (const Value& v : a.evaluation.values)
+      if (is_told(v)) value(v);
     table(a.evaluation.points);
+    for (const Series& s : a.evaluation.series) series(s);
     xml_.close();
     xml_.close();
     xml_.close();
     xml_.close();
   }
 
-  void method(const std::string& plugin) {
-    const auto known = about_.methods.find(plugin);
-    if (known == about_.methods.end()) return;
+  void methods(const Words& words) {
+    if (empty(words.method)) return;
     xml_.open("dcc:usedMethods");
     xml_.open("dcc:usedMethod");
-    text("dcc:name", known->second);
+    text("dcc:name", words.method);
+    if (!words.departures.empty() || !empty(words.test)) {
+      xml_.open("dcc:description");
+      contents(words.test);
+      for (const Text& departure : words.departures) contents(departure);
+      xml_.close();
+    }
     xml_.close();
+    if (!empty(about_.uncertainty)) {
+      xml_.open("dcc:usedMethod", "refType=\"basic_methodMeasurementUncertainty\"");
+      text("dcc:name", about_.uncertainty);
+      xml_.close();
+    }
     xml_.close();
   }
 
@@ -198,36 +272,58 @@ class Writer {
     const Instrument& i = in_.campaign.instrument;
     if (i.model.empty()) return;
     xml_.open("dcc:measuringEquipments");
-    xml_.open("dcc:measuringEquipment");
+    xml_.open("dcc:measuringEquipment", "refType=\"basic_measurementStandard\"");
     text("dcc:name", i.certificate.empty() ? i.model : i.model + ", certificate " + i.certificate);
-    if (!i.maker.empty()) {
-      xml_.open("dcc:manufacturer");
-      text("dcc:name", i.maker);
-      xml_.close();
-    }
+    text("dcc:description", about_.equipment);
+    manufacturer(i.maker);
     xml_.element("dcc:model", i.model);
-    if (!i.serial.empty()) {
-      xml_.open("dcc:identifications");
-      xml_.open("dcc:identification", "refType=\"basic_serialNumber\"");
-      xml_.element("dcc:issuer", "manufacturer");
-      xml_.element("dcc:value", i.serial);
-      xml_.close();
-      xml_.close();
-    }
+    serial_number(i.serial);
     xml_.close();
     xml_.close();
   }
 
+  void influences(const Words& words) {
+    if (words.conditions.empty()) return;
+    xml_.open("dcc:influenceConditions");
+    for (const Condition& c : words.conditions) {
+      xml_.open("dcc:influenceCondition",
+                c.ref_type.empty() ? "" : "refType=\"" + c.ref_type + "\"");
+      text("dcc:name", c.name);
+      if (!words.status.empty()) xml_.element("dcc:status", words.status);
+      xml_.open("dcc:data");
+      for (const auto& [name, number] :
+           {std::pair(&about_.lowest, &c.low), std::pair(&about_.highest, &c.high)}) {
+        xml_.open("dcc:quantity");
+        text("dcc:name", *name);
+        xml_.open("si:real");
+        xml_.element("si:value", *number);
+        xml_.element("si:unit", c.unit);
+        xml_.close();
+        xml_.close();
+      }
+      xml_.close();
+      xml_.close();
+    }
+    xml_.close();
+  }
+
+  void meaning(const std::string& name) {
+    const auto known = about_.meaning.find(name);
+    if (known != about_.meaning.end()) text("dcc:description", known->second);
+  }
+
   void value(const Value& v) {
-    xml_.open("dcc:quantity");
+    const RoundedResult said = result_text(v.value, v.U, v.quantity);
+    xml_.open("dcc:quantity", "refType=\"basic_measuredValue\"");
     text("dcc:name", v.name);
+    meaning(v.name);
     xml_.open("si:real");
-    xml_.element("si:value", number_text(v.value, v.quantity));
+    xml_.element("si:value", said.value);
     xml_.element("si:unit", dsi_of(unit_of(v.quantity).symbol));
-    if (v.U) {
+    if (!said.U.empty()) {
       xml_.open("si:measurementUncertaintyUnivariate");
       xml_.open("si:expandedMU");
-      xml_.element("si:valueExpandedMU", number_text(*v.U, v.quantity));
+      xml_.element("si:valueExpandedMU", said.U);
       xml_.element("si:coverageFactor", "2");
       xml_.element("si:coverageProbability", "0.95");
       xml_.close();
@@ -237,29 +333,98 @@ class Writer {
     xml_.close();
   }
 
-  /// A list cannot say that a value is missing: such a column stays out, and is in results.json.
-  void table(const PointTable& points) {
-    std::vector<const PointTable::Column*> columns;
-    for (const PointTable::Column& c : points.columns)
-      if (!c.values.empty() &&
-          std::all_of(c.values.begin(), c.values.end(), [](double x) { return std::isfinite(x); }))
-        columns.push_back(&c);
-    if (columns.empty()) return;
-    xml_.open("dcc:list");
-    text("dcc:name", "points");
-    for (const PointTable::Column* c : columns) {
-      std::string all;
-      for (const double x : c->values)
-        all += (all.empty() ? "" : " ") + number_text(x, c->quantity);
-      xml_.open("dcc:quantity");
-      text("dcc:name", c->name);
-      xml_.open("si:realListXMLList");
-      xml_.element("si:valueXMLList", all);
-      xml_.element("si:unitXMLList", dsi_of(unit_of(c->quantity).symbol));
+  /// One quantity of a list: the same rows of each.
+  struct Column {
+    std::string name, ref_type;
+    Quantity quantity;
+    std::vector<double> values;
+    std::vector<double> U;  ///< of each; empty: none
+  };
+
+  void column(const Column& c) {
+    std::string values, Us, ks, ps;
+    const auto add = [](std::string& to, const std::string& one) {
+      to += (to.empty() ? "" : " ") + one;
+    };
+    for (std::size_t i = 0; i < c.values.size(); ++i) {
+      const RoundedResult said =
+          result_text(c.values[i], c.U.empty() ? std::nullopt : std::optional(c.U[i]), c.quantity);
+      add(values, said.value);
+      if (c.U.empty()) continue;
+      add(Us, said.U.empty() ? "0" : said.U), add(ks, "2"), add(ps, "0.95");
+    }
+    xml_.open("dcc:quantity", c.ref_type.empty() ? "" : "refType=\"" + c.ref_type + "\"");
+    text("dcc:name", c.name);
+    meaning(c.name);
+    xml_.open("si:realListXMLList");
+    xml_.element("si:valueXMLList", values);
+    xml_.element("si:unitXMLList", dsi_of(unit_of(c.quantity).symbol));
+    if (!c.U.empty() && !Us.empty()) {
+      xml_.open("si:measurementUncertaintyUnivariateXMLList");
+      xml_.open("si:expandedMUXMLList");
+      xml_.element("si:valueExpandedMUXMLList", Us);
+      xml_.element("si:coverageFactorXMLList", ks);
+      xml_.element("si:coverageProbabilityXMLList", ps);
       xml_.close();
       xml_.close();
     }
     xml_.close();
+    xml_.close();
+  }
+
+  void list(const std::string& name, const std::vector<Column>& columns) {
+    xml_.open("dcc:list");
+    text("dcc:name", name);
+    for (const Column& c : columns) column(c);
+    xml_.close();
+  }
+
+  /// Where every value is, in one list; a column with gaps has one of its own, without them.
+  void table(const PointTable& points) {
+    std::vector<Column> whole;
+    std::vector<std::vector<Column>> parts;
+    for (const PointTable::Column& c : points.columns) {
+      const bool first = &c == &points.columns.front(), count = c.quantity == Quantity::count;
+      if (about_.only_with_U && !first && !count && !c.U) continue;
+      const auto finite = [](double x) { return std::isfinite(x); };
+      const auto n = std::count_if(c.values.begin(), c.values.end(), finite);
+      Column out{c.name,
+                 first   ? "basic_nominalValue"
+                 : count ? ""
+                         : "basic_measuredValue",
+                 c.quantity,
+                 c.values,
+                 {}};
+      if (c.U) out.U.assign(c.values.size(), *c.U);
+      if (n == static_cast<std::ptrdiff_t>(c.values.size()) && n > 0)
+        whole.push_back(std::move(out));
+      else if (n > 0 && !whole.empty())
+        parts.push_back(without_gaps({whole.front(), std::move(out)}));
+    }
+    if (!whole.empty()) list("points", whole);
+    for (const auto& part : parts) list("points of " + part.back().name, part);
+  }
+
+  static std::vector<Column> without_gaps(std::vector<Column> columns) {
+    std::vector<Column> out = columns;
+    for (Column& c : out) c.values.clear(), c.U.clear();
+    for (std::size_t i = 0; i < columns.back().values.size(); ++i) {
+      if (!std::isfinite(columns.back().values[i])) continue;
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        out[k].values.push_back(columns[k].values[i]);
+        if (!columns[k].U.empty()) out[k].U.push_back(columns[k].U[i]);
+      }
+    }
+    return out;
+  }
+
+  /// A curve over an axis, with U at each place.
+  void series(const Series& s) {
+    if (about_.only_with_U && s.U.size() != s.value.size()) return;
+    Column place{s.over, "basic_nominalValue", s.position_quantity, s.position, {}};
+    Column curve{s.name, "basic_measuredValue", s.quantity, s.value, s.U};
+    const auto columns = without_gaps({std::move(place), std::move(curve)});
+    if (!columns.back().values.empty()) list("curve " + s.name, columns);
   }
 
   const OutputInput& in_;
@@ -268,6 +433,10 @@ class Writer {
 };
 
 }  // namespace
+
+std::string name_of(const Results::Analysed& a) {
+  return a.measurement.empty() ? a.plugin : a.plugin + " of " + a.measurement;
+}
 
 std::string write(const OutputInput& in, const About& about) { return Writer(in, about).write(); }
 

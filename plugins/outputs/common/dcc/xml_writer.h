@@ -27,10 +27,11 @@ class XmlWriter {
     indent();
     out_ += "</" + name + ">\n";
   }
-  void element(std::string_view name, std::string_view text) {
+  void element(std::string_view name, std::string_view text, std::string_view attributes = {}) {
     indent();
     out_ += '<';
     out_ += name;
+    if (!attributes.empty()) (out_ += ' ') += attributes;
     out_ += '>';
     escape(text);
     out_ += "</";

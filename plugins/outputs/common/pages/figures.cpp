@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
@@ -56,6 +57,15 @@ std::vector<double> combine(const std::vector<double>& a, const std::vector<doub
   std::vector<double> out(std::min(a.size(), b.size()));
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = f(a[i], b[i]);
   return out;
+}
+
+/// A word of the plot's title, without the name of a standard whose plan was not followed.
+std::string title_of(const Source& source, const Measured& m, const std::string& key,
+                     Wording::Places places = {}) {
+  const bool named =
+      std::all_of(m.analyses.begin(), m.analyses.end(),
+                  [&](const Results::Analysed* a) { return follows_plan(source.in, *a); });
+  return source.words.get(named ? key : key + "_own", places);
 }
 
 Colour lighter(Colour c, float share) {
@@ -148,11 +158,31 @@ void add_ranges(const Source& source, const Observations& o, Plot& plot) {
   }
 }
 
+/// From the first run to the last along colours that get lighter evenly, so that a drift is seen
+/// as an order, with any colour vision and in grey.
+Colour colour_of_run(std::size_t place, std::size_t count) {
+  constexpr Colour scale[] = {{0.27F, 0.00F, 0.33F},
+                              {0.23F, 0.32F, 0.55F},
+                              {0.13F, 0.57F, 0.55F},
+                              {0.37F, 0.79F, 0.38F},
+                              {0.80F, 0.75F, 0.10F}};
+  constexpr std::size_t last = std::size(scale) - 1;
+  if (count < 2) return scale[1];
+  const float at = static_cast<float>(place * last) / static_cast<float>(count - 1);
+  const std::size_t from = std::min(static_cast<std::size_t>(at), last - 1);
+  const float share = at - static_cast<float>(from);
+  const auto mix = [&](float a, float b) { return a + (b - a) * share; };
+  return {mix(scale[from].red, scale[from + 1].red), mix(scale[from].green, scale[from + 1].green),
+          mix(scale[from].blue, scale[from + 1].blue)};
+}
+
 void add_runs(const Source& source, const Observations& o, Plot& plot) {
   const auto runs = runs_of(o);
   constexpr std::size_t most_runs = 60, most_readings = 40000;
   if (runs.size() > most_runs || o.size() > most_readings) return add_ranges(source, o, plot);
-  bool named[2] = {false, false};
+  std::set<std::uint32_t> numbers;
+  for (const auto& [key, run] : runs) numbers.insert(key.second);
+  std::set<std::uint32_t> named;
   for (const auto& [key, run] : runs) {
     const bool minus = key.first;
     Curve c;
@@ -160,12 +190,13 @@ void add_runs(const Source& source, const Observations& o, Plot& plot) {
       c.x.push_back(x);
       c.y.push_back(y);
     }
-    c.colour = lighter(minus ? source.look.style.minus : source.look.style.plus, 0.45F);
-    c.width = 0.45;
+    const auto place = std::distance(numbers.begin(), numbers.find(key.second));
+    const bool end = place == 0 || place + 1 == static_cast<std::ptrdiff_t>(numbers.size());
+    c.colour = colour_of_run(static_cast<std::size_t>(place), numbers.size());
+    c.width = 0.6;
     c.dash = minus ? Dash::dashed : Dash::solid;
-    if (!named[minus])
-      c.legend = source.words.get(minus ? "plot.reading_minus" : "plot.reading_plus");
-    named[minus] = true;
+    if ((end || numbers.size() <= 6) && named.insert(key.second).second)
+      c.legend = source.words.get("plot.run", {{"run", std::to_string(key.second)}});
     plot.curves.push_back(std::move(c));
   }
 }
@@ -200,7 +231,8 @@ std::optional<Plot> iso_plot(const Source& source, const Measured& m) {
   const double k = coverage_factor(points);
   const std::string k_text = localised(short_text(k, 1), source.language());
   Plot plot = empty_plot(source, m,
-                         source.words.get(k > 0 ? "plot.iso" : "plot.iso_means", {{"k", k_text}}));
+                         k > 0 ? title_of(source, m, "plot.iso", {{"k", k_text}})
+                               : title_of(source, m, "plot.iso_means"));
   std::vector<double> bounds, means;
   for (const bool plus : {true, false}) {
     const auto mean = points[plus ? "mean+" : "mean-"], s = points[plus ? "s+" : "s-"];
@@ -235,7 +267,7 @@ std::optional<Plot> vdi_plot(const Source& source, const Measured& m) {
   if (!points || !any_finite(mean)) return {};
   const Style& style = source.look.style;
   const bool scatter = any_finite(Ps);
-  Plot plot = empty_plot(source, m, source.words.get(scatter ? "plot.vdi" : "plot.vdi_means"));
+  Plot plot = empty_plot(source, m, title_of(source, m, scatter ? "plot.vdi" : "plot.vdi_means"));
   const auto band = [&](std::vector<double> half, Colour colour, Dash dash, const char* key) {
     Curve c;
     c.kind = Curve::Kind::band;
@@ -344,6 +376,15 @@ void series_plots(const Source& source, const Measured& m, std::vector<Plot>& pl
 }
 
 }  // namespace
+
+std::optional<Plot> readings_plot(const Source& source, const Measured& m) {
+  if (over_one_position(m.measurement)) return runs_plot(source, m);
+  std::vector<Plot> plots;
+  if (m.measurement.kind == "ball-centres") add_circle(source, m, plots);
+  add_volume(source, m, plots);
+  if (plots.empty()) return {};
+  return std::move(plots.front());
+}
 
 void add_plots(const Source& source, const Measured& m, Blocks& blocks) {
   std::vector<Plot> plots;

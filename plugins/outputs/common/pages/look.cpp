@@ -44,6 +44,12 @@ class Keys {
     return number(key, least, most) * 72.0 / 25.4;
   }
 
+  Names any_names(const char* key) {
+    known_.insert(key);
+    const auto* value = settings_.has(key) ? find<Names>(key, "a list of names") : nullptr;
+    return value != nullptr ? *value : Names();
+  }
+
   Names names(const char* key, const Names& allowed) {
     const auto* value = find<Names>(key, "a list of names");
     if (value == nullptr) return {};
@@ -145,6 +151,7 @@ Expected<Look> read_look(const Templates& templates, const std::string& name, co
   look.measurement = keys.names("measurement", measurement);
   look.plots = keys.names(
       "plots", {"runs", "iso", "vdi", "reversal", "diagonals", "volume", "circle", "series"});
+  look.summary = keys.any_names("summary");
   look.plots_per_row = static_cast<int>(keys.number("plots_per_row", 1, 3));
   look.regular = keys.text("font.regular");
   look.bold = keys.text("font.bold");

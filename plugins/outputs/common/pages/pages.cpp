@@ -21,6 +21,8 @@ std::string symbol(std::string_view name) {
     out += plus ? "↑" : "↓";
   }
   std::replace(out.begin(), out.end(), '_', ' ');
+  // The standard's U is a span, and no uncertainty.
+  if (out == "U max" || out == "U mean" || out == "U") out.insert(1, "(VDI)");
   return out;
 }
 
@@ -91,6 +93,26 @@ std::string temperatures(const Source& source, const char* key, const std::vecto
   return " " + source.words.get(key, {{"from", text(low)}, {"to", text(high)}});
 }
 
+/// " Evaluated: 8 of 9 targets.", where some were left out.
+std::string evaluated(const Source& source, const Measured& m) {
+  double targets = 0, left_out = 0;
+  for (const Results::Analysed* a : m.analyses) {
+    double concerned = 0;
+    for (const Finding& f : a->evaluation.findings)
+      if (f.id == "targets.unpaired-left-out" || f.id == "readings.too-few-left-out")
+        for (const Number& n : f.evidence) {
+          if (n.name == "targets") targets = n.value;
+          if (n.name == "concerned") concerned += n.value;
+        }
+    left_out = std::max(left_out, concerned);
+  }
+  if (left_out == 0) return {};
+  return " " + source.words.get(
+                   "measurement.evaluated",
+                   {{"evaluated", printed_number(targets - left_out, Quantity::count, 0, "en")},
+                    {"targets", printed_number(targets, Quantity::count, 0, "en")}});
+}
+
 }  // namespace
 
 std::string heading_of(const Source& source, const Measured& m) {
@@ -152,6 +174,7 @@ std::string test_of(const Source& source, const Measured& m) {
                         {"directions", source.words.get(plus && minus ? "measurement.both"
                                                         : minus       ? "measurement.minus"
                                                                       : "measurement.plus")}});
+  text += evaluated(source, m);
   if (o.missing > 0)
     text += " " + source.words.get("measurement.missing", {{"count", std::to_string(o.missing)}});
   return text + temperatures(source, "measurement.material", o.material) +
@@ -202,6 +225,9 @@ Expected<void> check_texts(const Campaign& c, const Fonts& fonts) {
       {"laboratory.contact", l.contact},
       {"certificate.procedure", t.procedure},
       {"certificate.deviations", t.deviations},
+      {"certificate.nothing_else_by", t.nothing_else_by},
+      {"environment.warm_up", c.environment.warm_up},
+      {"environment.sensors", c.environment.sensors},
       {"certificate.conditions", t.conditions},
       {"certificate.opinions", t.opinions},
       {"certificate.amendment", t.amendment}};
@@ -216,6 +242,8 @@ Expected<void> check_texts(const Campaign& c, const Fonts& fonts) {
     texts.emplace_back(key + "id", one.id);
     texts.emplace_back(key + "axis", one.axis);
     texts.emplace_back(key + "lateral", one.lateral);
+    texts.emplace_back(key + "file", one.file);
+    texts.emplace_back(key + "exclude_reason", one.exclude_reason);
   }
   for (const auto& [key, text] : texts)
     if (auto printable = check_text(text, fonts, key); !printable) {

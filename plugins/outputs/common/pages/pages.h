@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,14 +57,23 @@ inline bool over_one_position(const Measurement& m) {
 std::string heading_of(const Source&, const Measured&);
 /// How the test was made, as the readings show it.
 std::string test_of(const Source&, const Measured&);
+/// Without the name of a standard whose plan of the test was not followed.
 std::string analysis_title(const Source&, const Results::Analysed&);
+/// Whether the test was made as the standard plans it, as the findings say. Of an axis that the
+/// standard wants measured in two tests (the whole travel, and a part of it more often) the other
+/// one may stand in another measurement.
+bool follows_plan(const OutputInput&, const Results::Analysed&);
 const Conformity* conformity_of(const OutputInput&, const Results::Analysed&,
                                 const std::string& name);
 std::string decision_text(const Source&, Decision);
+/// The rule by which is decided, in words, with its risk.
+std::string rule_text(const Source&);
 
 void add_results(const Source&, const Measured&, Blocks&);
 void add_targets(const Source&, const Measured&, Blocks&);
 void add_plots(const Source&, const Measured&, Blocks&);
+/// The one picture that says most of a measurement: its readings by run, circle or volume.
+std::optional<reports::Plot> readings_plot(const Source&, const Measured&);
 
 /// What manifest and site bring, before it is lost in sentences: an error names the key, so that
 /// the host can say where it stands.

@@ -140,10 +140,19 @@ void add_what_is_hidden(const Source& source, const Measured& m, Blocks& blocks)
 }  // namespace
 
 std::string analysis_title(const Source& source, const Results::Analysed& a) {
-  return source.words.get_or("analysis." + a.plugin, a.plugin);
+  const std::string known = source.words.get_or("analysis." + a.plugin, a.plugin);
+  return follows_plan(source.in, a) ? known
+                                    : source.words.get_or("analysis_own_plan." + a.plugin, known);
+}
+
+std::string rule_text(const Source& source) {
+  const std::string& rule = source.in.campaign.certificate.decision_rule;
+  return source.words.get("rule." + (rule.empty() ? "iso14253-1" : rule));
 }
 
 std::string decision_text(const Source& source, Decision decision) {
+  if (source.in.campaign.certificate.decision_rule.starts_with("ilac"))
+    return source.words.get(decision == Decision::conforms ? "results.pass" : "results.fail");
   return source.words.get(decision == Decision::conforms           ? "results.conforms"
                           : decision == Decision::does_not_conform ? "results.does_not_conform"
                                                                    : "results.cannot_be_decided");
@@ -160,7 +169,9 @@ const Conformity* conformity_of(const OutputInput& in, const Results::Analysed& 
 /// is said of the second one stands beside it.
 void add_results(const Source& source, const Measured& m, Blocks& blocks) {
   std::vector<Blocks> parts;
-  bool decisions = false, second_decides = false;
+  // In two languages a column of meanings takes the width.
+  const bool wide = source.certificate && source.in.campaign.certificate.languages.size() > 1;
+  bool decisions = wide, second_decides = false;
   for (const auto* a : m.analyses) {
     const auto& values = a->evaluation.values;
     if (a->plugin == model_analysis ||
@@ -259,8 +270,53 @@ std::vector<std::string> cells_of(const Source& source, const PointTable::Column
 
 }  // namespace
 
+namespace {
+
+/// Curves that no table of targets holds, each at its places with U.
+void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
+  const Wording& w = source.words;
+  Blocks tables;
+  for (const Results::Analysed* a : m.analyses) {
+    if (a->plugin == model_analysis) continue;
+    for (const Series& s : a->evaluation.series) {
+      if (s.position.empty() || (source.certificate && s.U.size() != s.value.size())) continue;
+      Table table;
+      table.title = w.get("targets.curve", {{"name", symbol(s.name)}});
+      table.columns = {
+          {w.get("plot.place", {{"axis", s.over}}), unit_text(s.position_quantity), true},
+          {symbol(s.name), unit_text(s.quantity), true},
+          {w.get("targets.uncertainty"), unit_text(s.quantity), true}};
+      const int decimals = decimals_for(s.position, s.position_quantity, 4);
+      for (std::size_t i = 0; i < s.position.size(); ++i) {
+        if (!std::isfinite(s.value[i])) continue;
+        const std::optional<double> U =
+            i < s.U.size() && std::isfinite(s.U[i]) ? std::optional(s.U[i]) : std::nullopt;
+        const Printed shown = printed_result(s.value[i], U, s.quantity, source.language());
+        table.rows.push_back(
+            {{printed_number(s.position[i], s.position_quantity, decimals, source.language())},
+             {shown.value},
+             {shown.U.empty() ? "–" : shown.U}});
+      }
+      if (!table.rows.empty())
+        tables.push_back({std::move(table), "curve " + s.name + " of " + m.measurement.id});
+    }
+  }
+  constexpr std::size_t per_row = 3;
+  for (std::size_t i = 0; i < tables.size(); i += per_row) {
+    Columns row;
+    for (std::size_t k = i; k < i + per_row; ++k) {
+      row.parts.emplace_back();
+      if (k < tables.size()) row.parts.back().push_back(std::move(tables[k]));
+    }
+    blocks.push_back({std::move(row), "curves of " + m.measurement.id});
+  }
+}
+
+}  // namespace
+
 void add_targets(const Source& source, const Measured& m, Blocks& blocks) {
   const Wording& w = source.words;
+  if (source.certificate) add_curves(source, m, blocks);
   for (const Joined& joined : joined_points(m)) {
     const auto n = common_count(joined);
     Table table;

@@ -68,6 +68,12 @@ Block merged(Block a, const Block& b) {
     join(note->title, other.title);
     join(note->says, other.says);
     join(note->advice, other.advice);
+  } else if (auto* code = std::get_if<Code>(&a.what)) {
+    join(code->caption, std::get<Code>(b.what).caption);
+  } else if (auto* box = std::get_if<SignatureBox>(&a.what)) {
+    const SignatureBox& other = std::get<SignatureBox>(b.what);
+    join(box->title, other.title);
+    for (std::size_t i = 0; i < box->lines.size(); ++i) join(box->lines[i], other.lines[i]);
   } else if (auto* columns = std::get_if<Columns>(&a.what)) {
     const Columns& other = std::get<Columns>(b.what);
     for (std::size_t i = 0; i < columns->parts.size(); ++i)

@@ -169,6 +169,22 @@ struct Image {
   double align = 0;    ///< 0 left, 0.5 centre, 1 right
 };
 
+/// A QR code (ISO/IEC 18004) of a short text, with a line below it.
+struct Code {
+  std::string text;     ///< up to 500 bytes
+  std::string caption;  ///< may be empty
+  double size = 62;     ///< of its side, with the quiet zone
+};
+
+/// A frame in which the file's electronic signature is shown; there is one at most. Where it stands
+/// is noted in the page (`signature_key`), for the program that signs.
+struct SignatureBox {
+  std::string title;
+  std::vector<std::string> lines;
+};
+/// Of the page's dictionary: the corners of the frame, [left low right high] in pt.
+inline constexpr const char* signature_key = "NonioSignature";
+
 struct Spacer {
   double height = 6;
 };
@@ -185,8 +201,8 @@ struct Columns {
 };
 
 struct Block {
-  std::variant<Heading, Paragraph, Grid, Table, Plot, BarChart, Note, Status, Image, Spacer,
-               PageBreak, Columns>
+  std::variant<Heading, Paragraph, Grid, Table, Plot, BarChart, Note, Status, Image, Code,
+               SignatureBox, Spacer, PageBreak, Columns>
       what;
   std::string field{};
 };

@@ -123,6 +123,7 @@ class Register {
   Inputs inputs_of(std::int64_t id);
   /// An error if they are not what the journal says was issued.
   Expected<std::vector<IssuedFile>> files_of(std::int64_t id);
+  Expected<void> note_replaced(std::int64_t id, Issue& issue);
 
   std::unique_ptr<Database> database_;
   std::string pattern_;

@@ -54,6 +54,8 @@ struct Environment {
   std::optional<double> expansion_range;         ///< 1/K, of the expansion coefficient
   std::optional<double> drift;                   ///< m, range of the drift test (E_VE)
   std::optional<double> drift_angle;             ///< rad, the same of a rotary axis
+  std::string warm_up{};                         ///< what the machine did before the test
+  std::string sensors{};                         ///< where the temperature sensors were
 };
 
 struct Laboratory {
@@ -73,6 +75,8 @@ struct CertificateTexts {
   std::string opinions;                      ///< opinions and interpretations, marked as such
   std::string amendment;                     ///< why an earlier certificate is replaced
   std::vector<std::string> customer_data;    ///< keys of the manifest that the customer stated
+  std::string nothing_else_by{};  ///< who states that nothing else was changed in the method
+  std::string decision_rule{};    ///< iso14253-1, ilac-g8-simple, ilac-g8-guarded
 };
 
 struct Measurement {
@@ -84,8 +88,17 @@ struct Measurement {
   std::string reader;                      ///< empty: chosen by content
   std::map<std::string, double> from, to;  ///< ends of a diagonal, m
   std::vector<std::uint32_t> exclude{};    ///< lines of the file whose readings do not count
+  std::string exclude_reason{};            ///< why they do not; a certificate needs it
   std::map<std::string, double> at{};      ///< where the axes that stood still were, m
   std::string adjustment{};                ///< "before" or "after" one; empty: not said
+
+  /// How the test was made, as ISO 230-2 wants it reported; what is empty was not said.
+  std::optional<double> feed{};                      ///< m/s, rad/s
+  std::optional<double> dwell{};                     ///< s, at a target before it is read
+  std::optional<double> over_travel{};               ///< m or rad, beyond the last target
+  std::map<std::string, double> tool_offset{};       ///< m, from the spindle nose to the probe
+  std::map<std::string, double> workpiece_offset{};  ///< m, from the table to the place measured
+  std::string compensation{};                        ///< "on" or "off": the control's tables
 };
 
 /// An effect of the user's own, without compiling.

@@ -108,6 +108,34 @@ inline std::string fixed_text(double value, int decimals) {
   return fixed_text_by_digits(value, decimals);
 }
 
+/// A result as it is said, in the printed unit, with a decimal point: U to two significant digits
+/// (GUM 7.2.6), the value to the same place. `U` is empty if there is none.
+struct RoundedResult {
+  std::string value, U;
+};
+
+/// The place (power of ten) of the second significant digit, after rounding to it: 0.0996 gives
+/// 0.10 and so -2.
+inline int place_of_second_digit(double size) {
+  const int place = static_cast<int>(std::floor(std::log10(size))) - 1;
+  const double carried = std::round(size / std::pow(10.0, place));
+  return carried >= 100.0 ? place + 1 : place;
+}
+
+/// To a multiple of 10^place.
+inline std::string rounded_text(double value, int place) {
+  if (place <= 0) return fixed_text(value, -place);
+  const double unit = std::pow(10.0, place);
+  return fixed_text(std::round(value / unit) * unit, 0);
+}
+
+/// Nothing where U is not above 0, or no number.
+inline std::optional<RoundedResult> rounded_result(double value, double U) {
+  if (!(U > 0.0) || !std::isfinite(U) || !std::isfinite(value)) return std::nullopt;
+  const int place = std::max(place_of_second_digit(U), -9);
+  return RoundedResult{rounded_text(value, place), rounded_text(U, place)};
+}
+
 /// With about `significant` digits and without an exponent where a person expects none.
 inline std::string short_text(double value, int significant = 3) {
   if (!std::isfinite(value)) return "";

@@ -130,6 +130,9 @@ struct Issue {
   std::string replaces, replaces_date;  ///< the one that this amends; empty: none
   std::vector<FileChange> changes;      ///< what is other than in the one that it replaces
   std::string readings_sha256;          ///< of the files of readings, one behind the other
+  std::string replaces_readings{};      ///< readings_sha256 of the one that it replaces
+  std::string replaces_file{};          ///< a file of that one, its DCC if it has one,
+  std::string replaces_sha256{};        ///< and its digest
   std::string why{};                    ///< the other one is replaced
   std::string released_by{};  ///< the person; empty: the laboratory's rules for automatic release
   std::string author{};       ///< who has approved it before, where that is another person
@@ -139,7 +142,12 @@ struct Issue {
   bool is_draft() const { return number.empty(); }
 };
 
-/// ISO 14253-1 with an upper limit.
+/// Of a certificate, the same nowhere else: its number and what was read.
+inline std::string identifier_of(std::string_view number, std::string_view readings_sha256) {
+  return std::string(number) + "." + std::string(readings_sha256);
+}
+
+/// With an upper limit, by the rule of the certificate.
 enum class Decision { conforms, does_not_conform, cannot_be_decided };
 
 /// One tolerance of the manifest held against one result.

@@ -39,10 +39,14 @@ struct AxisJob {
   const math::ErrorCurve& table_curve() const { return turn ? *turn : curve; }
   /// What the control's backlash parameter held while the axis was measured; setting `backlash`.
   double present_backlash() const { return position_setting("backlash").value_or(0.0); }
-  /// What goes into it now: positive for lost motion.
+  /// What goes into it now: positive for lost motion. One value that would leave a larger reversal
+  /// somewhere than there is now is no gain: then it stays as it was.
   double backlash() const {
-    return curve.bidirectional() ? present_backlash() - curve.mean_reversal() : present_backlash();
+    return one_value_helps() ? present_backlash() - curve.mean_reversal() : present_backlash();
   }
+  bool one_value_helps() const;
+  /// The table of an axis that drifted was asked for: setting `drifted`.
+  bool takes_drift() const { return setting("drifted").value_or(0.0) != 0.0; }
   /// Printed units per SI: mm per m, or deg per rad.
   double per_si() const { return rotary ? deg_per_rad : 1e3; }
   std::string_view unit() const { return rotary ? "deg" : "mm"; }

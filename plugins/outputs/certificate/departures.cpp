@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What of a test was other than its method plans, as far as readings and manifest show it (ISO/IEC
+// 17025:2017, 7.8.2.1 n), and how it was made. Nobody has to state it, and nobody can leave it out.
+#include <algorithm>
+#include <cmath>
+
+#include "certificate.h"
+#include "nonio/reports/model.h"
+#include "nonio/reports/number.h"
+#include "nonio/reports/wording.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio::certificate {
+
+using namespace reports;
+
+namespace {
+
+/// "x.csv: line 57 (88.0 µm), line 60 (91.2 µm). Reason: ..."
+std::string excluded(const Source& source, const pages::Measured& m) {
+  std::string which;
+  for (const Remark& note : m.observations.notes) {
+    if (!note.id.starts_with("reading.excluded")) continue;
+    const Finding as_finding{.id = note.id, .evidence = note.evidence, .texts = note.texts};
+    which += (which.empty() ? "" : ", ") +
+             typeset(filled(source.words.get("departure.line"), as_finding, source.language()));
+  }
+  if (which.empty()) return {};
+  const std::string& reason = m.measurement.exclude_reason;
+  return source.words.get(
+      "departure.excluded",
+      {{"file", m.measurement.file}, {"which", which}, {"reason", reason.empty() ? "–" : reason}});
+}
+
+/// Of ISO 230-2, where it is not the one that everybody takes it for.
+std::string edition(const Source& source, const Results::Analysed& a) {
+  for (const Remark& note : a.evaluation.notes)
+    for (const Number& n : note.evidence)
+      if (n.name == "edition" && n.value < 2014)
+        return source.words.get("departure.edition",
+                                {{"edition", printed_number(n.value, Quantity::number, 0, "en")}});
+  return {};
+}
+
+class Sentences {
+ public:
+  void add(std::string sentence) {
+    if (!sentence.empty() && std::find(all_.begin(), all_.end(), sentence) == all_.end())
+      all_.push_back(std::move(sentence));
+  }
+  std::vector<std::string> take() { return std::move(all_); }
+
+ private:
+  std::vector<std::string> all_;
+};
+
+std::string quantity(const Source& source, double si, Quantity q, const char* unit = nullptr) {
+  return pages::plain_number(source, si, q) + " " + (unit != nullptr ? unit : unit_text(q));
+}
+
+/// "X 0 mm, Z −120 mm"
+std::string places(const Source& source, const std::map<std::string, double>& at) {
+  std::string text;
+  for (const auto& [axis, position] : at)
+    text += (text.empty() ? "" : ", ") + axis + " " +
+            printed_number(position, Quantity::length,
+                           decimals_for({position}, Quantity::length, 4), source.language()) +
+            " mm";
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> departures_of(const Source& source, const pages::Measured& m) {
+  Sentences sentences;
+  sentences.add(excluded(source, m));
+  bool missing_said = false;
+  for (const Results::Analysed* a : m.analyses) {
+    if (a->plugin == model_analysis) continue;
+    sentences.add(edition(source, *a));
+    for (const Finding& f : a->evaluation.findings) {
+      const std::string words = source.words.get_or("departure." + f.id, "");
+      if (words.empty()) continue;
+      missing_said |= f.id == "readings.missing";
+      sentences.add(typeset(filled(words, f, source.language())));
+    }
+  }
+  if (m.observations.missing > 0 && !missing_said) {
+    const auto count = [](const char* name, std::size_t n) {
+      return Number{name, static_cast<double>(n), Quantity::count};
+    };
+    const Finding f{.id = "readings.missing",
+                    .evidence = {count("missing", m.observations.missing),
+                                 count("taken", m.observations.size())}};
+    sentences.add(filled(source.words.get("departure.readings.missing"), f, source.language()));
+  }
+  return sentences.take();
+}
+
+bool is_printed(const pages::Measured& m) {
+  return std::any_of(m.analyses.begin(), m.analyses.end(),
+                     [](const Results::Analysed* a) { return is_printed(*a); });
+}
+
+/// Its parts, and then what of them nobody said: ISO 230-2 wants them reported.
+std::string test_parameters(const Source& source, const pages::Measured& m) {
+  const Wording& w = source.words;
+  const Measurement& t = m.measurement;
+  const Environment& e = source.in.campaign.environment;
+  std::string said, not_said;
+  const auto add = [&](const char* name, bool there, const std::string& sentence) {
+    if (there)
+      said += (said.empty() ? "" : " ") + sentence;
+    else
+      not_said += (not_said.empty() ? "" : ", ") + w.get(std::string("test_name.") + name);
+  };
+  const auto with = [&](const char* key, const char* place, const std::string& text) {
+    return w.get(key, {{place, text}});
+  };
+  const double per_minute = 60.0;
+  const Quantity travel = position_of(m.rotary);
+  add("feed", t.feed.has_value(),
+      with("test.feed", "feed",
+           quantity(source, t.feed.value_or(0) * per_minute, travel,
+                    m.rotary ? "°/min" : "mm/min")));
+  add("dwell", t.dwell.has_value(),
+      with("test.dwell", "dwell", quantity(source, t.dwell.value_or(0), Quantity::time)));
+  add("over_travel", t.over_travel.has_value(),
+      with("test.over_travel", "over_travel", quantity(source, t.over_travel.value_or(0), travel)));
+  add("at", !t.at.empty(), with("test.at", "at", places(source, t.at)));
+  add("tool_offset", !t.tool_offset.empty(),
+      with("test.tool_offset", "offset", places(source, t.tool_offset)));
+  add("workpiece_offset", !t.workpiece_offset.empty(),
+      with("test.workpiece_offset", "offset", places(source, t.workpiece_offset)));
+  add("compensation", !t.compensation.empty(),
+      w.get(t.compensation == "on" ? "test.compensation_on" : "test.compensation_off"));
+  add("warm_up", !e.warm_up.empty(), with("test.warm_up", "text", e.warm_up));
+  add("sensors", !e.sensors.empty(), with("test.sensors", "text", e.sensors));
+  if (not_said.empty()) return said;
+  return said + (said.empty() ? "" : " ") + with("test.not_stated", "what", not_said);
+}
+
+}  // namespace nonio::certificate

@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What a signed paper says is so: of the method, of its departures, of the decision; and the DCC
+// says the same.
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+
+#include "certificate_case.h"
+#include "nonio/sdk/format.h"
+#include "pdf_reader.h"
+
+namespace nonio::fixtures {
+namespace {
+
+bool has(const std::string& text, const std::string& what) {
+  return text.find(what) != std::string::npos;
+}
+
+struct Truth : testing::Test {
+  Plugins plugins;
+  Templates templates = read_templates(NONIO_TEMPLATES);
+  Issue issue{"2026-0012", "2026-11-21", "", "", {}, std::string(64, 'a')};
+
+  void SetUp() override {
+    for (const char* name : {"iso230-2", "vdi-dgq-3441", "certificate"})
+      ASSERT_TRUE(plugins.load(std::string(NONIO_PLUGINS) + "/" + name + ".so"));
+  }
+  const Output& output() const { return plugins.outputs.front(); }
+  OutputInput input(const Case& c) const {
+    static const Settings none;
+    return {c.campaign, c.observations, c.results, none, templates, nullptr, &issue};
+  }
+  std::vector<std::string> files(const Case& c) const {
+    const auto result = output().write(input(c));
+    EXPECT_TRUE(result) << result.error().message;
+    if (!result) return {"", ""};
+    return {result->artifacts[0].bytes, result->artifacts[1].bytes};
+  }
+  std::string page(const Case& c) const {
+    std::string text = read_pdf(files(c)[0]).all();
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+  }
+  std::string dcc(const Case& c) const { return files(c)[1]; }
+
+  Case made(const Behaviour& b) const {
+    Case c = whole_case(plugins);
+    c.observations = {observe("X", "X", b)};
+    analyse(c);
+    return c;
+  }
+  void analyse(Case& c) const {
+    c.results.analyses.clear();
+    c.analyse(plugins);
+  }
+  /// With an option that both evaluations have.
+  void analyse_with(Case& c, const std::string& option, Setting value) const {
+    c.results.analyses.clear();
+    for (const Analysis& a : plugins.analyses) {
+      Settings options = defaults(a.info);
+      if (options.has(option)) options.values[option] = value;
+      auto e =
+          a.analyse({c.campaign, c.campaign.measurements[0], c.observations[0], options, nullptr});
+      ASSERT_TRUE(e) << e.error().message;
+      c.results.analyses.push_back({a.info.name, a.info.version, "X", std::move(*e)});
+    }
+  }
+};
+
+constexpr const char* unchanged = "othing was added to the method";
+
+TEST_F(Truth, NobodyStatesByDefaultThatNothingWasChanged) {
+  Case c = whole_case(plugins);
+  EXPECT_FALSE(has(page(c), unchanged));
+  EXPECT_TRUE(has(page(c), "The evaluation of the readings found none."));
+  c.campaign.certificate.nothing_else_by = "B. Verdi";
+  EXPECT_TRUE(has(page(c), "B. Verdi states: beyond what stands here, nothing was added"));
+  EXPECT_TRUE(has(dcc(c), "B. Verdi states: beyond"));
+}
+
+TEST_F(Truth, WhatWasExcludedIsSaidWithItsReasonAndWithoutOneThereIsNoCertificate) {
+  Case c = whole_case(plugins);
+  c.campaign.measurements[0].exclude = {57};
+  c.observations[0].notes = {
+      {"reading.excluded",
+       {{"line", 57, Quantity::count}, {"deviation", 88e-6, Quantity::deviation}},
+       {{"file", "X.csv"}}}};
+  const auto keys = output().lacks(input(c));
+  ASSERT_EQ(keys.size(), 1U);
+  EXPECT_TRUE(keys[0].starts_with("measurement.X.exclude_reason")) << keys[0];
+  c.campaign.measurements[0].exclude_reason = "beam interrupted";
+  EXPECT_TRUE(output().lacks(input(c)).empty());
+  const std::string said = "X.csv: line 57 (88.0 µm). Reason: beam interrupted";
+  EXPECT_TRUE(has(page(c), said));
+  EXPECT_TRUE(has(dcc(c), said));
+}
+
+TEST_F(Truth, ReadingsThatWereNotTakenAreCounted) {
+  Case c = whole_case(plugins);
+  c.observations[0].missing = 3;
+  analyse(c);
+  EXPECT_TRUE(has(page(c), "3 planned readings were not taken; 210 were."));
+}
+
+TEST_F(Truth, TargetsLeftOutAreNotCountedAsEvaluated) {
+  Case c = whole_case(plugins);
+  Observations& o = c.observations[0];
+  for (std::size_t i = 0; i < o.size();)  // one target from one direction only
+    if (o.axes[0].approach[i] < 0 && o.axes[0].position[i] == o.axes[0].position[3]) {
+      o.axes[0].position.erase(o.axes[0].position.begin() + static_cast<std::ptrdiff_t>(i));
+      o.axes[0].approach.erase(o.axes[0].approach.begin() + static_cast<std::ptrdiff_t>(i));
+      for (auto* column : {&o.deviation, &o.u, &o.material})
+        column->erase(column->begin() + static_cast<std::ptrdiff_t>(i));
+      o.run.erase(o.run.begin() + static_cast<std::ptrdiff_t>(i));
+    } else {
+      ++i;
+    }
+  analyse_with(c, "incomplete_targets", std::string("leave-out"));
+  const std::string text = page(c);
+  EXPECT_TRUE(has(text, "Evaluated: 20 of 21 targets."));
+  EXPECT_TRUE(has(text, "1 of 21 targets were left out"));
+}
+
+TEST_F(Truth, APlanThatIsNotTheStandardsHasNoTitleWithItsName) {
+  const Case follows = whole_case(plugins);
+  EXPECT_TRUE(has(page(follows), "ISO 230-2:2014, accuracy"));
+  EXPECT_FALSE(has(page(follows), "plan of its own"));
+  Behaviour two_runs;
+  two_runs.runs = 2;
+  Case c = made(two_runs);
+  for (const std::string& text : {page(c), dcc(c)}) {
+    EXPECT_TRUE(has(text, "approached 2 times from one direction; ISO 230-2 asks 5."));
+    EXPECT_TRUE(has(text, "the plan of ISO 230-2 was not followed"));
+    EXPECT_TRUE(has(text, "Positioning, to a test plan of its own"));
+    EXPECT_FALSE(has(text, "ISO 230-2:2014, accuracy"));
+    EXPECT_FALSE(has(text, "ISO 230-2: mean"));
+    EXPECT_FALSE(has(text, "VDI/DGQ 3441:1977, statistical"));
+  }
+  Case pitch = whole_case(plugins);
+  pitch.campaign.machine.axes[0].screw_pitch = 0.0001;
+  analyse(pitch);
+  EXPECT_TRUE(has(page(pitch), "whole multiples of 0.1 mm apart"));
+  EXPECT_TRUE(has(page(pitch), "plan of its own"));
+}
+
+TEST_F(Truth, OneDirectionAndDriftAndEditionAreSaid) {
+  Behaviour one;
+  one.minus = false;
+  const std::string single = page(made(one));
+  EXPECT_TRUE(has(single, "Approached in direction + only."));
+  EXPECT_TRUE(has(single, "plan of its own"));
+  Behaviour drifting;
+  drifting.drift = 3;
+  const Case drifted = made(drifting);
+  EXPECT_TRUE(has(page(drifted), "The whole travel drifted by 1"));
+  EXPECT_TRUE(has(dcc(drifted), "The whole travel drifted by 1"));
+  Case old = whole_case(plugins);
+  analyse_with(old, "edition", std::int64_t{2006});
+  EXPECT_TRUE(has(page(old), "Edition 2006 of the standard was used, not that of 2014."));
+}
+
+TEST_F(Truth, ASuspectThatCountsIsSaid) {
+  Case c = whole_case(plugins);
+  c.observations[0].deviation[50] += 30e-6;
+  analyse(c);
+  EXPECT_TRUE(has(page(c), "A suspected misreading counts in the results: run "));
+}
+
+TEST_F(Truth, HowTheTestWasMadeIsSaidAndWhatNobodySaidToo) {
+  Case c = whole_case(plugins);
+  const std::string before = page(c);
+  for (const char* what : {"Not stated: feed, dwell, over-travel", "places of the other axes",
+                           "whether the compensation in the control was on", "warm-up"})
+    EXPECT_TRUE(has(before, what)) << what;
+  Measurement& m = c.campaign.measurements[0];
+  m.feed = 1.2 / 60.0, m.dwell = 3.0, m.over_travel = 2e-3, m.compensation = "on";
+  m.at = {{"Y", 0.5}}, m.tool_offset = {{"Z", -0.12}}, m.workpiece_offset = {{"X", 0.04}};
+  c.campaign.environment.warm_up = "30 min at half feed";
+  c.campaign.environment.sensors = "bed, ball nut";
+  const std::string text = page(c);
+  for (const char* what :
+       {"Feed 1200 mm/min.", "Dwell 3 s.", "Over-travel 2 mm.", "Other axes at Y 500 mm.",
+        "Offset to the tool Z -120 mm.", "Offset to the work-piece X 40 mm.",
+        "Compensation in the control: on.", "Warm-up: 30 min at half feed.",
+        "Sensors of temperature: bed, ball nut."})
+    EXPECT_TRUE(has(text, what)) << what;
+  EXPECT_FALSE(has(text, "Not stated"));
+}
+
+TEST_F(Truth, TheRuleIsNamedWithItsEditionAndItsWordsAreUsed) {
+  struct Rule {
+    const char *rule, *words, *pass, *fail, *norm, *risk;
+  };
+  const Rule rules[] = {
+      {"iso14253-1", "ISO 14253-1:2013", "conforms", "does not conform", "ISO 14253-1:2013",
+       "below 2.5 %"},
+      {"ilac-g8-simple", "simple acceptance", "pass", "fail", "ILAC-G8:09/2019", "up to 50 %"},
+      {"ilac-g8-guarded", "guard band w = U", "pass", "fail", "ILAC-G8:09/2019", "below 2.5 %"}};
+  for (const Rule& r : rules) {
+    Case c = whole_case(plugins);
+    c.campaign.certificate.decision_rule = r.rule;
+    decide(c, "iso230-2", "A", 1e-6, Decision::does_not_conform);
+    decide(c, "iso230-2", "B", 50e-6, Decision::conforms);
+    const std::string text = page(c), xml = dcc(c);
+    for (const std::string& t : {text, xml}) {
+      EXPECT_TRUE(has(t, r.words)) << r.rule;
+      EXPECT_TRUE(has(t, r.risk)) << r.rule;
+      EXPECT_TRUE(has(t, r.pass)) << r.rule;
+      EXPECT_TRUE(has(t, r.fail)) << r.rule;
+    }
+    EXPECT_TRUE(has(xml, std::string("<dcc:norm>") + r.norm)) << r.rule;
+  }
+  Case open = whole_case(plugins);
+  decide(open, "iso230-2", "A", 19e-6, Decision::cannot_be_decided, "near-limit");
+  const std::string xml = dcc(open);
+  EXPECT_TRUE(has(xml, "undecided"));
+  EXPECT_FALSE(has(xml, "<dcc:conformity>")) << "ISO 14253-1 knows no conditional pass";
+}
+
+/// The texts between <element> and its end.
+std::vector<std::string> texts_of(const std::string& xml, const std::string& element) {
+  std::vector<std::string> out;
+  for (std::size_t at = 0; (at = xml.find("<" + element + ">", at)) != std::string::npos;) {
+    at += element.size() + 2;
+    out.push_back(xml.substr(at, xml.find('<', at) - at));
+  }
+  return out;
+}
+
+std::size_t digits_of(const std::string& number) {
+  std::size_t n = 0;
+  bool leading = true;
+  for (const char ch : number)
+    if (ch >= '0' && ch <= '9' && !(leading && ch == '0')) ++n, leading = false;
+  return n;
+}
+
+TEST_F(Truth, TheDccHasTheNumbersOfThePagesAndNoOthers) {
+  Case c = whole_case(plugins);
+  for (auto& a : c.results.analyses)
+    for (Value& v : a.evaluation.values)
+      if (v.name == "M") v.U.reset();
+  const std::string xml = dcc(c);
+  const auto values = texts_of(xml, "si:value"), Us = texts_of(xml, "si:valueExpandedMU");
+  const std::string text = page(c);
+  std::size_t told = 0;
+  for (const auto& a : c.results.analyses)
+    for (const Value& v : a.evaluation.values)
+      if (v.U) {
+        const auto shown = rounded_result(printed(v.value, v.quantity), printed(*v.U, v.quantity));
+        EXPECT_NE(std::find(values.begin(), values.end(), shown->value), values.end()) << v.name;
+        EXPECT_TRUE(has(text, " " + shown->value + " ")) << v.name;  // a reader copies "-" for "−"
+        ++told;
+      }
+  EXPECT_EQ(Us.size(), told);
+  EXPECT_FALSE(has(xml, "<dcc:content>M<")) << "without U it is not on paper either";
+  for (const std::string& U : Us) EXPECT_LE(digits_of(U), 2U) << U;
+  const auto lists = texts_of(xml, "si:valueExpandedMUXMLList");
+  EXPECT_FALSE(lists.empty());
+  for (const std::string& list : lists) {
+    std::istringstream all(list);
+    for (std::string U; all >> U;) EXPECT_LE(digits_of(U), 2U) << U;
+  }
+}
+
+TEST_F(Truth, TheDccSpeaksTheLanguagesOfThePages) {
+  Case c = whole_case(plugins);
+  c.campaign.certificate.languages = {"it", "en"};
+  c.campaign.certificate.procedure = "PT-07";
+  c.campaign.certificate.opinions = "Good enough.";
+  const std::string xml = dcc(c);
+  for (const char* what :
+       {"lang=\"it\">ISO 230-2:2014", "lang=\"en\">ISO 230-2:2014",
+        "lang=\"en\">The results are traceable", "lang=\"it\">I risultati",
+        "refType=\"basic_metrologicallyTraceableToSI\"",
+        "refType=\"basic_methodMeasurementUncertainty\"", "refType=\"basic_measurementStandard\"",
+        "refType=\"basic_temperature\"", "<si:value>20.1</si:value>", "PT-07", "Good enough.",
+        "M. Bianchi", "info@example.org", "reproduced in full only", "Condition: in use",
+        "Deviation = actual position"})
+    EXPECT_TRUE(has(xml, what)) << what;
+}
+
+TEST_F(Truth, TheDccNamesWhatItReplacesWithItsDigestAndItselfOnlyOnce) {
+  const Case c = whole_case(plugins);
+  issue.replaces = "2026-0003", issue.replaces_date = "2026-10-01";
+  issue.replaces_readings = std::string(64, 'b');
+  issue.replaces_file = "certificate.xml", issue.replaces_sha256 = std::string(64, 'c');
+  const std::string xml = dcc(c);
+  EXPECT_TRUE(has(xml, "<dcc:uniqueIdentifier>2026-0012." + std::string(64, 'a')));
+  EXPECT_TRUE(has(xml, "<dcc:value>2026-0012<"));
+  EXPECT_TRUE(has(xml, "<dcc:replacedUniqueIdentifier>2026-0003." + std::string(64, 'b')));
+  EXPECT_TRUE(has(xml, "<dcc:value>" + std::string(64, 'c')));
+  EXPECT_TRUE(has(xml, "refType=\"basic_revision\""));
+}
+
+TEST_F(Truth, CurvesAreTablesWithUOnPaperAndListsInTheDcc) {
+  Case c = whole_case(plugins);
+  c.results.analyses[0].evaluation.series.push_back({"EYX",
+                                                     "X",
+                                                     Quantity::length,
+                                                     Quantity::deviation,
+                                                     {0.0, 0.5, 1.0},
+                                                     {1.234e-6, -5.678e-6, 9.1e-6},
+                                                     {0.44e-6, 0.55e-6, 0.66e-6}});
+  const std::string text = page(c), xml = dcc(c);
+  EXPECT_TRUE(has(text, "Curve EYX"));
+  for (const char* what : {" 1.23 ", " -5.68 ", " 9.10 ", " 0.44 ", " 0.55 ", " 0.66 "})
+    EXPECT_TRUE(has(text, what)) << what;
+  EXPECT_TRUE(has(xml, "<si:valueXMLList>1.23 -5.68 9.10<"));
+  EXPECT_TRUE(has(xml, "<si:valueExpandedMUXMLList>0.44 0.55 0.66<"));
+}
+
+TEST_F(Truth, TheFirstPageSaysItAll) {
+  Case c = whole_case(plugins);
+  decide(c, "iso230-2", "A", 25e-6, Decision::conforms);
+  std::string first = read_pdf(files(c)[0]).pages.front();
+  std::replace(first.begin(), first.end(), '\n', ' ');
+  for (const char* what : {"Limit", "conforms", "U (k = 2)", "Limit of A = 25 µm", "run 1", "run 5",
+                           "Temperature of the machine", "Electronic signature", "B. Verdi"})
+    EXPECT_TRUE(has(first, what)) << what;
+}
+
+TEST_F(Truth, WithoutRoomForTwoThingsCalledU) {
+  const std::string text = page(whole_case(plugins));
+  EXPECT_TRUE(has(text, "U(VDI) max"));
+  EXPECT_TRUE(has(text, "Uncertainty (k = 2)"));
+  EXPECT_FALSE(has(text, " U max "));
+}
+
+TEST_F(Truth, TheSignatureHasAFrameOnThePage) {
+  const std::string bytes = files(whole_case(plugins))[0];
+  const std::size_t at = bytes.find("/NonioSignature");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(bytes.find("/NonioSignature", at + 1), std::string::npos);
+  double left = 0, low = 0, right = 0, high = 0;
+  ASSERT_EQ(std::sscanf(bytes.c_str() + bytes.find('[', at), "[ %lf %lf %lf %lf", &left, &low,
+                        &right, &high),
+            4);
+  EXPECT_GT(right - left, 100);
+  EXPECT_GT(high - low, 50);
+  EXPECT_GE(left, 0);
+  EXPECT_LE(right, 595);
+  EXPECT_LE(high, 842);
+}
+
+}  // namespace
+}  // namespace nonio::fixtures
