@@ -62,6 +62,7 @@ std::string pkcs12(const Folder& folder, const Holder& holder, const Holder& iss
 sign::Key open(const Holder& holder, const Holder& issuer);
 
 /// A PDF of one page as libharu would write it.
-std::string small_pdf(const std::string& text = "E = 4.5 um");
+std::string small_pdf(const std::string& text = "E = 4.5 um",
+                      const std::string& of_page = "");
 
 }  // namespace nonio::sign_tests
