@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pdf_file.h"
 
-#include "nonio/reports/document.h"
-
 #include <hpdf.h>
 #include <hpdf_conf.h>
 #include <hpdf_doc.h>
@@ -21,6 +19,7 @@
 
 #include "bytes.h"
 #include "font_subset.h"
+#include "nonio/reports/document.h"
 #include "xmp.h"
 
 // The one place that knows libharu. Its own text functions are not used: libharu 2.3.0 would parse

@@ -345,8 +345,8 @@ class PlotSetter {
     }
     auto up_title = set_text(context_, plot_.y_title, false, size_, frame.h, field_);
     if (!up_title) return fail(up_title.error());
-    frame.x = 1.3 * size_ * static_cast<double>(up_title->lines.size()) + 0.2 * size_ +
-              label_width + 4;
+    frame.x =
+        1.3 * size_ * static_cast<double>(up_title->lines.size()) + 0.2 * size_ + label_width + 4;
     frame.y = -height + below;
     frame.w = width_ - frame.x - 2 - span_room() * static_cast<double>(plot_.spans.size());
     if (plot_.same_scale) widen(across, (up.high - up.low) * frame.w / frame.h);
@@ -400,8 +400,7 @@ class PlotSetter {
     return {};
   }
 
-  Expected<void> draw_axes(const Frame& f, const std::vector<SetText>& labels,
-                           const SetText& up) {
+  Expected<void> draw_axes(const Frame& f, const std::vector<SetText>& labels, const SetText& up) {
     for (const Plot::Belt& belt : plot_.belts)
       canvas_.filled(f.x, f.py(belt.from), f.w, f.py(belt.to) - f.py(belt.from), belt.colour);
     canvas_.stroke_colour(style_.rule);

@@ -41,11 +41,11 @@ CertificateTexts certificate_of(const CertificateTexts& site, const CertificateT
   if (out.languages.empty()) out.languages = site.languages;
   if (out.languages.empty()) out.languages = {"en"};
   if (out.title.empty()) out.title = site.title;
-  for (const auto& [mine, others, otherwise] : {std::tuple{&out.form, &site.form, "certificate"},
-                                                {&out.location, &site.location, "customer"},
-                                                {&out.procedure, &site.procedure, ""},
-                                                {&out.decision_rule, &site.decision_rule,
-                                                 "iso14253-1"}}) {
+  for (const auto& [mine, others, otherwise] :
+       {std::tuple{&out.form, &site.form, "certificate"},
+        {&out.location, &site.location, "customer"},
+        {&out.procedure, &site.procedure, ""},
+        {&out.decision_rule, &site.decision_rule, "iso14253-1"}}) {
     if (mine->empty()) *mine = *others;
     if (mine->empty()) *mine = otherwise;
   }

@@ -414,10 +414,9 @@ constexpr Key run_keys[] = {
 
 constexpr Choice locations[] = {
     {"laboratory"}, {"customer"}, {"laboratoryBranch"}, {"customerBranch"}, {"other"}};
-constexpr Choice decision_rules[] = {
-    {"iso14253-1", "in between undecided"},
-    {"ilac-g8-simple", "simple acceptance"},
-    {"ilac-g8-guarded", "guard band w = U"}};
+constexpr Choice decision_rules[] = {{"iso14253-1", "in between undecided"},
+                                     {"ilac-g8-simple", "simple acceptance"},
+                                     {"ilac-g8-guarded", "guard band w = U"}};
 
 constexpr TextRule language = {.letters = "a-z", .shortest = 2, .longest = 2};
 constexpr Key languages_key = {.name = "languages",
@@ -467,12 +466,14 @@ constexpr Key certificate_of_campaign[] = {
     decision_rule_key,
     {.name = "deviations",
      .holds = text,
-     .help = "Additions to the method, deviations from it, exclusions, beside those that the program "
-             "finds by itself."},
+     .help =
+         "Additions to the method, deviations from it, exclusions, beside those that the program "
+         "finds by itself."},
     {.name = "nothing_else_by",
      .holds = text,
-     .help = "The person who states that, beyond what the certificate says, nothing was added to the "
-             "method, changed in it or left out of it. Without it no such statement is printed."},
+     .help =
+         "The person who states that, beyond what the certificate says, nothing was added to the "
+         "method, changed in it or left out of it. Without it no such statement is printed."},
     {.name = "conditions",
      .holds = text,
      .help = "Conditions that influence the results; wanted where no readings have temperatures."},

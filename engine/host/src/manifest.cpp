@@ -161,7 +161,8 @@ Signing read_signing(TableReader& reader) {
 /// One key for linear and one for rotary axes.
 std::optional<double> either(TableReader& reader, const char* linear, double linear_unit,
                              const char* rotary, double rotary_unit) {
-  const auto length = reader.number(linear, linear_unit), angle = reader.number(rotary, rotary_unit);
+  const auto length = reader.number(linear, linear_unit),
+             angle = reader.number(rotary, rotary_unit);
   if (length && angle)
     reader.error(rotary, "stands beside " + std::string(linear) + "; wanted one of them");
   return length ? length : angle;

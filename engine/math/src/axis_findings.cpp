@@ -25,9 +25,9 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings) {
   const bool constant = r.kind == Kind::lost_motion || r.kind == Kind::over_compensated;
   const char* id = constant && !(r.largest_left < r.largest) ? "reversal.one-value-worse"
                    : r.kind == Kind::lost_motion             ? "reversal.lost-motion"
-                   : r.kind == Kind::over_compensated ? "reversal.over-compensated"
-                   : r.kind == Kind::not_constant     ? "reversal.not-constant"
-                                                      : nullptr;
+                   : r.kind == Kind::over_compensated        ? "reversal.over-compensated"
+                   : r.kind == Kind::not_constant            ? "reversal.not-constant"
+                                                             : nullptr;
   if (id != nullptr)
     findings.push_back(FindingBuilder(id, attention, test.rotary)
                            .deviation("mean", r.mean)

@@ -137,8 +137,8 @@ class Reservation {
 
   Expected<std::string> make(const std::vector<Attachment>& attachments) {
     if (auto fit = check(); !fit) return fail(fit.error());
-    const std::size_t page = page_of_signature(), signature = offsets_.size(), field = signature + 1,
-                      look = field + 1;
+    const std::size_t page = page_of_signature(), signature = offsets_.size(),
+                      field = signature + 1, look = field + 1;
     const std::string frame = frame_of(page);
     offsets_.resize(frame.empty() ? look : look + 1);
     std::string names;
@@ -149,11 +149,10 @@ class Reservation {
     for (const std::size_t number : file_.order) copy(number, page, field, names);
     for (const auto& [number, text] : attached_) put(number, text);
     put_signature(signature);
-    put(field,
-        "<<\n/Type /Annot\n/Subtype /Widget\n/FT /Sig\n/T (Signature1)\n/F 132\n/Rect " +
-            (frame.empty() ? "[0 0 0 0]" : frame) + "\n" +
-            (frame.empty() ? "" : "/AP << /N " + reference(look) + " >>\n") + "/P " +
-            reference(page) + "\n/V " + reference(signature) + "\n>>");
+    put(field, "<<\n/Type /Annot\n/Subtype /Widget\n/FT /Sig\n/T (Signature1)\n/F 132\n/Rect " +
+                   (frame.empty() ? "[0 0 0 0]" : frame) + "\n" +
+                   (frame.empty() ? "" : "/AP << /N " + reference(look) + " >>\n") + "/P " +
+                   reference(page) + "\n/V " + reference(signature) + "\n>>");
     if (!frame.empty())  // what is seen there is drawn by the page itself
       put(look, "<<\n/Type /XObject\n/Subtype /Form\n/BBox " + frame +
                     "\n/Length 0\n>>\nstream\n\nendstream");

@@ -18,8 +18,7 @@ void add_measurements(const Source& source, Blocks& blocks) {
       heading += " – " + source.words.get("adjustment." + m.measurement.adjustment);
     blocks.push_back({Heading{heading, 1}, field});
     blocks.push_back({Paragraph{pages::test_of(source, m), Paragraph::Look::small, true}, field});
-    blocks.push_back(
-        {Paragraph{test_parameters(source, m), Paragraph::Look::small, true}, field});
+    blocks.push_back({Paragraph{test_parameters(source, m), Paragraph::Look::small, true}, field});
     for (const std::string& part : source.look.measurement) {
       if (part == "results") pages::add_results(source, m, blocks);
       if (part == "plots") pages::add_plots(source, m, blocks);
@@ -32,13 +31,12 @@ struct Part {
   const char* name;
   void (*add)(const Source&, Blocks&);
 };
-constexpr Part parts[] = {{"title", add_title},          {"amendment", add_amendment},
-                          {"parties", add_parties},      {"item", add_item},
-                          {"method", add_method},        {"conditions", add_conditions},
-                          {"results", add_measurements}, {"conformity", add_conformity},
-                          {"overview", add_overview},
-                          {"opinions", add_opinions},    {"statements", add_statements},
-                          {"authority", add_authority}};
+constexpr Part parts[] = {{"title", add_title},           {"amendment", add_amendment},
+                          {"parties", add_parties},       {"item", add_item},
+                          {"method", add_method},         {"conditions", add_conditions},
+                          {"results", add_measurements},  {"conformity", add_conformity},
+                          {"overview", add_overview},     {"opinions", add_opinions},
+                          {"statements", add_statements}, {"authority", add_authority}};
 
 /// Without these a certificate is none: a template may move them, not leave them out.
 constexpr const char* wanted[] = {"title",    "amendment",  "parties",  "item",

@@ -23,15 +23,14 @@ std::string excluded(const Source& source, const pages::Measured& m) {
   for (const Remark& note : m.observations.notes) {
     if (!note.id.starts_with("reading.excluded")) continue;
     const Finding as_finding{.id = note.id, .evidence = note.evidence, .texts = note.texts};
-    which +=
-        (which.empty() ? "" : ", ") +
-        typeset(filled(source.words.get("departure.line"), as_finding, source.language()));
+    which += (which.empty() ? "" : ", ") +
+             typeset(filled(source.words.get("departure.line"), as_finding, source.language()));
   }
   if (which.empty()) return {};
   const std::string& reason = m.measurement.exclude_reason;
-  return source.words.get("departure.excluded", {{"file", m.measurement.file},
-                                                 {"which", which},
-                                                 {"reason", reason.empty() ? "–" : reason}});
+  return source.words.get(
+      "departure.excluded",
+      {{"file", m.measurement.file}, {"which", which}, {"reason", reason.empty() ? "–" : reason}});
 }
 
 /// Of ISO 230-2, where it is not the one that everybody takes it for.

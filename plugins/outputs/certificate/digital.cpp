@@ -52,12 +52,12 @@ std::vector<dcc::Condition> conditions(const std::vector<Source>& sources,
       if (text.ends_with("。")) text.resize(text.size() - std::string_view("。").size());
       return text;
     });
-    out.push_back(
-        {ref_type, unit, std::move(name), number(range.low), number(range.high)});
+    out.push_back({ref_type, unit, std::move(name), number(range.low), number(range.high)});
   };
   add("basic_temperature", "\\degreecelsius", "conditions.material", found.material,
       Quantity::temperature, 1);
-  add("basic_temperature", "\\degreecelsius", "conditions.air", found.air, Quantity::temperature, 1);
+  add("basic_temperature", "\\degreecelsius", "conditions.air", found.air, Quantity::temperature,
+      1);
   add("", "\\hecto\\pascal", "conditions.pressure", found.pressure, Quantity::number, 0);
   add("", "\\percent", "conditions.humidity", found.humidity, Quantity::number, 0);
   return out;
@@ -102,12 +102,10 @@ void add_decided(const std::vector<Source>& sources, dcc::About& about) {
     if (!told) continue;
     dcc::Decided d;
     d.name = in_all(sources, [&](const Source& s) {
-      return pages::symbol(c.name) + ", " + c.measurement + ": " +
-             s.words.get("conformity.limit") + " " +
-             pages::plain_number(s, c.tolerance, c.quantity) + " " + unit_text(c.quantity);
+      return pages::symbol(c.name) + ", " + c.measurement + ": " + s.words.get("conformity.limit") +
+             " " + pages::plain_number(s, c.tolerance, c.quantity) + " " + unit_text(c.quantity);
     });
-    d.says =
-        in_all(sources, [&](const Source& s) { return pages::decision_text(s, c.decision); });
+    d.says = in_all(sources, [&](const Source& s) { return pages::decision_text(s, c.decision); });
     d.is = c.decision == Decision::conforms           ? "pass"
            : c.decision == Decision::does_not_conform ? "fail"
                                                       : "";
@@ -162,15 +160,15 @@ void add_statements(const std::vector<Source>& sources, dcc::About& about) {
 dcc::About about_of(const std::vector<Source>& sources, const char* release) {
   const OutputInput& in = sources.front().in;
   const Campaign& c = in.campaign;
-  dcc::About about{in.issue->number, c.certificate.languages, c.certificate.location,
-                   "certificate", release};
+  dcc::About about{in.issue->number, c.certificate.languages, c.certificate.location, "certificate",
+                   release};
   about.only_with_U = true;
   for (const Results::Analysed& a : in.results.analyses) {
     if (!is_printed(a)) continue;
     about.words[dcc::name_of(a)] = words_of(sources, a);
     for (const Value& v : a.evaluation.values)
-      about.meaning[v.name] = in_all(
-          sources, [&](const Source& s) { return s.words.get_or("value." + v.name, ""); });
+      about.meaning[v.name] =
+          in_all(sources, [&](const Source& s) { return s.words.get_or("value." + v.name, ""); });
   }
   about.lowest = word(sources, "conditions.lowest");
   about.highest = word(sources, "conditions.highest");
@@ -179,12 +177,11 @@ dcc::About about_of(const std::vector<Source>& sources, const char* release) {
   });
   about.item = in_all(sources, [&](const Source& s) {
     const std::string& structure = c.machine.structure;
-    return joined({labelled(s, "item.structure",
-                            structure.empty()
-                                ? ""
-                                : s.words.get_or("structure." + structure, structure)),
-                   labelled(s, "item.control", c.machine.control),
-                   labelled(s, "item.condition", c.machine.condition)});
+    return joined(
+        {labelled(s, "item.structure",
+                  structure.empty() ? "" : s.words.get_or("structure." + structure, structure)),
+         labelled(s, "item.control", c.machine.control),
+         labelled(s, "item.condition", c.machine.condition)});
   });
   about.equipment = in_all(sources, [&](const Source& s) {
     return joined({labelled(s, "instrument.calibrated", c.instrument.calibrated),

@@ -295,12 +295,10 @@ void add_conformity(const Source& source, Blocks& blocks) {
   const bool limits =
       std::any_of(all.begin(), all.end(), [](const Shown& s) { return s.limit != nullptr; });
   Table table;
-  table.columns = {{w.get("conformity.measurement"), "", false},
-                   {w.get("results.symbol"), "", false},
-                   {w.get("results.meaning"), "", false},
-                   {w.get("results.value"), "", true},
-                   {w.get("targets.uncertainty"), "", true},
-                   {"", "", false}};
+  table.columns = {
+      {w.get("conformity.measurement"), "", false}, {w.get("results.symbol"), "", false},
+      {w.get("results.meaning"), "", false},        {w.get("results.value"), "", true},
+      {w.get("targets.uncertainty"), "", true},     {"", "", false}};
   if (limits) {
     table.columns.insert(table.columns.end() - 1, {w.get("conformity.limit"), "", true});
     table.columns.push_back({w.get("results.decision"), "", false});
@@ -308,8 +306,11 @@ void add_conformity(const Source& source, Blocks& blocks) {
   for (const Shown& s : all) {
     const Value& v = *s.value;
     const Printed shown = printed_result(v.value, v.U, v.quantity, source.language());
-    std::vector<Table::Cell> row = {{s.measured->measurement.id}, {pages::symbol(v.name), true},
-                                    {w.get_or("value." + v.name, "")}, {shown.value}, {shown.U}};
+    std::vector<Table::Cell> row = {{s.measured->measurement.id},
+                                    {pages::symbol(v.name), true},
+                                    {w.get_or("value." + v.name, "")},
+                                    {shown.value},
+                                    {shown.U}};
     if (limits)
       row.push_back(
           {s.limit == nullptr ? "–" : pages::plain_number(source, s.limit->tolerance, v.quantity)});
@@ -324,9 +325,7 @@ void add_conformity(const Source& source, Blocks& blocks) {
       {Heading{w.get(limits ? "conformity.title" : "conformity.results"), 1}, "conformity.title"});
   blocks.push_back({std::move(table), "conformity"});
   if (limits)
-    paragraph(blocks,
-              pages::rule_text(source) + " " + w.get("conformity.specification"),
-              "rule");
+    paragraph(blocks, pages::rule_text(source) + " " + w.get("conformity.specification"), "rule");
 }
 
 void add_opinions(const Source& source, Blocks& blocks) {

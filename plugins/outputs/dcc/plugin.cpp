@@ -39,8 +39,8 @@ void add_decided(const OutputInput& in, dcc::About& about) {
   about.norm = rule.starts_with("ilac") ? "ILAC-G8:09/2019" : "ISO 14253-1:2013";
   for (const Conformity& c : in.results.conformity)
     about.decided.push_back(
-        {{{"", c.name + " of " + (c.measurement.empty() ? c.axis : c.measurement) +
-                   ", tolerance " + short_text(printed(c.tolerance, c.quantity), 6) + " " +
+        {{{"", c.name + " of " + (c.measurement.empty() ? c.axis : c.measurement) + ", tolerance " +
+                   short_text(printed(c.tolerance, c.quantity), 6) + " " +
                    std::string(unit_of(c.quantity).symbol)}},
          {},
          c.decision == Decision::conforms           ? "pass"
@@ -56,10 +56,10 @@ Expected<OutputResult> write(const OutputInput& in) {
     return fail("a DCC needs at least one result, and there is none");
   const std::string number = in.options.text("number");
   dcc::About about{number.empty() ? in.campaign.id : number,
-                         {in.options.text("language", "en")},
-                         in.options.text("location", "customer"),
-                         "dcc",
-                         version};
+                   {in.options.text("language", "en")},
+                   in.options.text("location", "customer"),
+                   "dcc",
+                   version};
   add_decided(in, about);
   OutputResult result;
   result.artifacts.push_back({"dcc.xml", dcc::write(in, about), in.options.flag("sign", true)});

@@ -30,11 +30,10 @@ void add_measurements(const Source& source, Blocks& blocks) {
 }  // namespace
 
 Expected<pages::Look> look_of(const Templates& templates, const std::string& name) {
-  return pages::read_look(
-      templates, name,
-      {"title", "identity", "status", "measurements", "notes", "laboratory", "models", "tables",
-       "residuals"},
-      {"results", "plots", "findings", "targets"});
+  return pages::read_look(templates, name,
+                          {"title", "identity", "status", "measurements", "notes", "laboratory",
+                           "models", "tables", "residuals"},
+                          {"results", "plots", "findings", "targets"});
 }
 
 Document compose(const Source& source) {

@@ -338,10 +338,10 @@ TEST_F(Certificate, TheDccHasTheSameNumberAndValues) {
   const auto result = write(c);
   ASSERT_TRUE(result);
   const std::string& xml = result->artifacts[1].bytes;
-  for (const char* what : {"<dcc:value>2026-0012<", "<dcc:issueDate>2026-11-21<",
-                           "<dcc:receiptDate>2026-11-01<", "<dcc:endPerformanceDate>2026-11-04<",
-                           "<dcc:replacedUniqueIdentifier>2026-0003<", "<dcc:conformity>fail<",
-                           ">ISO 230-2:2014", "LAT 123 / 2026-045", "\\micro\\metre"})
+  for (const char* what :
+       {"<dcc:value>2026-0012<", "<dcc:issueDate>2026-11-21<", "<dcc:receiptDate>2026-11-01<",
+        "<dcc:endPerformanceDate>2026-11-04<", "<dcc:replacedUniqueIdentifier>2026-0003<",
+        "<dcc:conformity>fail<", ">ISO 230-2:2014", "LAT 123 / 2026-045", "\\micro\\metre"})
     EXPECT_TRUE(has(xml, what)) << what;
 }
 

@@ -82,10 +82,10 @@ TEST_F(Truth, NobodyStatesByDefaultThatNothingWasChanged) {
 TEST_F(Truth, WhatWasExcludedIsSaidWithItsReasonAndWithoutOneThereIsNoCertificate) {
   Case c = whole_case(plugins);
   c.campaign.measurements[0].exclude = {57};
-  c.observations[0].notes = {{"reading.excluded",
-                              {{"line", 57, Quantity::count},
-                               {"deviation", 88e-6, Quantity::deviation}},
-                              {{"file", "X.csv"}}}};
+  c.observations[0].notes = {
+      {"reading.excluded",
+       {{"line", 57, Quantity::count}, {"deviation", 88e-6, Quantity::deviation}},
+       {{"file", "X.csv"}}}};
   const auto keys = output().lacks(input(c));
   ASSERT_EQ(keys.size(), 1U);
   EXPECT_TRUE(keys[0].starts_with("measurement.X.exclude_reason")) << keys[0];
@@ -179,11 +179,11 @@ TEST_F(Truth, HowTheTestWasMadeIsSaidAndWhatNobodySaidToo) {
   c.campaign.environment.warm_up = "30 min at half feed";
   c.campaign.environment.sensors = "bed, ball nut";
   const std::string text = page(c);
-  for (const char* what : {"Feed 1200 mm/min.", "Dwell 3 s.", "Over-travel 2 mm.",
-                           "Other axes at Y 500 mm.", "Offset to the tool Z -120 mm.",
-                           "Offset to the work-piece X 40 mm.",
-                           "Compensation in the control: on.", "Warm-up: 30 min at half feed.",
-                           "Sensors of temperature: bed, ball nut."})
+  for (const char* what :
+       {"Feed 1200 mm/min.", "Dwell 3 s.", "Over-travel 2 mm.", "Other axes at Y 500 mm.",
+        "Offset to the tool Z -120 mm.", "Offset to the work-piece X 40 mm.",
+        "Compensation in the control: on.", "Warm-up: 30 min at half feed.",
+        "Sensors of temperature: bed, ball nut."})
     EXPECT_TRUE(has(text, what)) << what;
   EXPECT_FALSE(has(text, "Not stated"));
 }
@@ -271,8 +271,9 @@ TEST_F(Truth, TheDccSpeaksTheLanguagesOfThePages) {
   c.campaign.certificate.opinions = "Good enough.";
   const std::string xml = dcc(c);
   for (const char* what :
-       {"lang=\"it\">ISO 230-2:2014", "lang=\"en\">ISO 230-2:2014", "lang=\"en\">The results are traceable",
-        "lang=\"it\">I risultati", "refType=\"basic_metrologicallyTraceableToSI\"",
+       {"lang=\"it\">ISO 230-2:2014", "lang=\"en\">ISO 230-2:2014",
+        "lang=\"en\">The results are traceable", "lang=\"it\">I risultati",
+        "refType=\"basic_metrologicallyTraceableToSI\"",
         "refType=\"basic_methodMeasurementUncertainty\"", "refType=\"basic_measurementStandard\"",
         "refType=\"basic_temperature\"", "<si:value>20.1</si:value>", "PT-07", "Good enough.",
         "M. Bianchi", "info@example.org", "reproduced in full only", "Condition: in use",

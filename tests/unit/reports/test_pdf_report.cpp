@@ -64,8 +64,8 @@ TEST_F(PdfReport, AnOrdinaryAxisTakesTwoPages) {
     const char* advice = "→ ";
     EXPECT_FALSE(has(pages[0] + pages[1], advice)) << language;
     EXPECT_TRUE(has(pages[2], advice)) << language;
-    EXPECT_TRUE(has(pages[2], std::string("it") == language ? "Per il laboratorio"
-                                                             : "For the laboratory"));
+    EXPECT_TRUE(
+        has(pages[2], std::string("it") == language ? "Per il laboratorio" : "For the laboratory"));
     EXPECT_LT(file.bytes.size(), 100000U);
   }
 }

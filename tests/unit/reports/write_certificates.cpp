@@ -16,8 +16,9 @@ using namespace nonio::fixtures;
 Case many(const Plugins& plugins) {
   Case c = whole_case(plugins);
   c.results = {};
-  const std::string name = "Vereinigte Werkzeugmaschinenfabriken Oberlausitz-Niederschlesien "
-                           "Aktiengesellschaft & Co. Kommanditgesellschaft";
+  const std::string name =
+      "Vereinigte Werkzeugmaschinenfabriken Oberlausitz-Niederschlesien "
+      "Aktiengesellschaft & Co. Kommanditgesellschaft";
   c.campaign.customer = name;
   c.campaign.customer_address =
       "Straße der Zusammenarbeit zwischen Hochschule und Handwerk 117, Gebäude 12, 02826 Görlitz";

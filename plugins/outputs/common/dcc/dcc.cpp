@@ -63,8 +63,7 @@ class Writer {
   void contents(const Text& text) {
     for (const auto& [language, content] : text)
       if (!content.empty())
-        xml_.element("dcc:content", content,
-                     language.empty() ? "" : "lang=\"" + language + "\"");
+        xml_.element("dcc:content", content, language.empty() ? "" : "lang=\"" + language + "\"");
   }
   static bool empty(const Text& text) {
     return std::all_of(text.begin(), text.end(), [](const auto& t) { return t.second.empty(); });
@@ -94,9 +93,9 @@ class Writer {
     for (const char* element : {"dcc:usedLangCodeISO639_1", "dcc:mandatoryLangCodeISO639_1"})
       for (const std::string& language : about_.languages) xml_.element(element, language);
     const Issue* issue = in_.issue;
-    xml_.element("dcc:uniqueIdentifier",
-                 issue == nullptr ? about_.number
-                                  : identifier_of(issue->number, issue->readings_sha256));
+    xml_.element(
+        "dcc:uniqueIdentifier",
+        issue == nullptr ? about_.number : identifier_of(issue->number, issue->readings_sha256));
     if (issue != nullptr) {
       xml_.open("dcc:identifications");
       xml_.open("dcc:identification");
@@ -167,8 +166,7 @@ class Writer {
     const Campaign& c = in_.campaign;
     const Laboratory& l = c.laboratory;
     xml_.open("dcc:calibrationLaboratory");
-    if (!l.accreditation.empty())
-      xml_.element("dcc:calibrationLaboratoryCode", l.accreditation);
+    if (!l.accreditation.empty()) xml_.element("dcc:calibrationLaboratoryCode", l.accreditation);
     contact("dcc:contact", l.name,
             l.address + (l.contact.empty() ? "" : (l.address.empty() ? "" : " · ") + l.contact),
             l.country);
@@ -348,8 +346,8 @@ class Writer {
       to += (to.empty() ? "" : " ") + one;
     };
     for (std::size_t i = 0; i < c.values.size(); ++i) {
-      const RoundedResult said = result_text(
-          c.values[i], c.U.empty() ? std::nullopt : std::optional(c.U[i]), c.quantity);
+      const RoundedResult said =
+          result_text(c.values[i], c.U.empty() ? std::nullopt : std::optional(c.U[i]), c.quantity);
       add(values, said.value);
       if (c.U.empty()) continue;
       add(Us, said.U.empty() ? "0" : said.U), add(ks, "2"), add(ps, "0.95");
@@ -389,8 +387,13 @@ class Writer {
       if (about_.only_with_U && !first && !count && !c.U) continue;
       const auto finite = [](double x) { return std::isfinite(x); };
       const auto n = std::count_if(c.values.begin(), c.values.end(), finite);
-      Column out{c.name, first ? "basic_nominalValue" : count ? "" : "basic_measuredValue",
-                 c.quantity, c.values, {}};
+      Column out{c.name,
+                 first   ? "basic_nominalValue"
+                 : count ? ""
+                         : "basic_measuredValue",
+                 c.quantity,
+                 c.values,
+                 {}};
       if (c.U) out.U.assign(c.values.size(), *c.U);
       if (n == static_cast<std::ptrdiff_t>(c.values.size()) && n > 0)
         whole.push_back(std::move(out));

@@ -49,13 +49,13 @@ struct About {
   std::string software, release;       ///< who writes
   /// Values without U are left out, as they are on paper.
   bool only_with_U = false;
-  std::map<std::string, Words> words{};   ///< by "plugin of measurement"
-  std::map<std::string, Text> meaning{};  ///< of values and curves, by their names
+  std::map<std::string, Words> words{};           ///< by "plugin of measurement"
+  std::map<std::string, Text> meaning{};          ///< of values and curves, by their names
   Text lowest{}, highest{}, equipment{}, item{};  ///< what else is said of instrument and item
   Text uncertainty{};                             ///< how it was determined
   std::vector<Statement> statements{};
-  Text rule{};            ///< by which was decided
-  std::string norm{};     ///< its name
+  Text rule{};         ///< by which was decided
+  std::string norm{};  ///< its name
   std::vector<Decided> decided{};
 };
 

@@ -62,9 +62,9 @@ std::vector<double> combine(const std::vector<double>& a, const std::vector<doub
 /// A word of the plot's title, without the name of a standard whose plan was not followed.
 std::string title_of(const Source& source, const Measured& m, const std::string& key,
                      Wording::Places places = {}) {
-  const bool named = std::all_of(
-      m.analyses.begin(), m.analyses.end(),
-      [&](const Results::Analysed* a) { return follows_plan(source.in, *a); });
+  const bool named =
+      std::all_of(m.analyses.begin(), m.analyses.end(),
+                  [&](const Results::Analysed* a) { return follows_plan(source.in, *a); });
   return source.words.get(named ? key : key + "_own", places);
 }
 
@@ -161,8 +161,11 @@ void add_ranges(const Source& source, const Observations& o, Plot& plot) {
 /// From the first run to the last along colours that get lighter evenly, so that a drift is seen
 /// as an order, with any colour vision and in grey.
 Colour colour_of_run(std::size_t place, std::size_t count) {
-  constexpr Colour scale[] = {{0.27F, 0.00F, 0.33F}, {0.23F, 0.32F, 0.55F}, {0.13F, 0.57F, 0.55F},
-                              {0.37F, 0.79F, 0.38F}, {0.80F, 0.75F, 0.10F}};
+  constexpr Colour scale[] = {{0.27F, 0.00F, 0.33F},
+                              {0.23F, 0.32F, 0.55F},
+                              {0.13F, 0.57F, 0.55F},
+                              {0.37F, 0.79F, 0.38F},
+                              {0.80F, 0.75F, 0.10F}};
   constexpr std::size_t last = std::size(scale) - 1;
   if (count < 2) return scale[1];
   const float at = static_cast<float>(place * last) / static_cast<float>(count - 1);

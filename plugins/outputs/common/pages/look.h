@@ -12,7 +12,8 @@ namespace nonio::pages {
 /// A template: templates/<name>.toml, checked.
 struct Look {
   std::vector<std::string> blocks, measurement, plots;
-  std::vector<std::string> summary;  ///< results that the first page shows besides those with limits
+  std::vector<std::string>
+      summary;  ///< results that the first page shows besides those with limits
   int plots_per_row = 2;
   std::string regular, bold, wide;  ///< names of the font files; `wide` may be empty
   std::string logo, mark;    ///< pictures: of the laboratory, of its accreditation; may be empty

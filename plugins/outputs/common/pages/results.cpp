@@ -282,9 +282,10 @@ void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
       if (s.position.empty() || (source.certificate && s.U.size() != s.value.size())) continue;
       Table table;
       table.title = w.get("targets.curve", {{"name", symbol(s.name)}});
-      table.columns = {{w.get("plot.place", {{"axis", s.over}}), unit_text(s.position_quantity), true},
-                       {symbol(s.name), unit_text(s.quantity), true},
-                       {w.get("targets.uncertainty"), unit_text(s.quantity), true}};
+      table.columns = {
+          {w.get("plot.place", {{"axis", s.over}}), unit_text(s.position_quantity), true},
+          {symbol(s.name), unit_text(s.quantity), true},
+          {w.get("targets.uncertainty"), unit_text(s.quantity), true}};
       const int decimals = decimals_for(s.position, s.position_quantity, 4);
       for (std::size_t i = 0; i < s.position.size(); ++i) {
         if (!std::isfinite(s.value[i])) continue;

@@ -79,9 +79,8 @@ Evaluated evaluate(const std::filesystem::path& folder, const std::string& id,
 /// What is wrong with the names and options of site.toml: it would be wrong in every campaign.
 std::vector<Error> site_mistakes(const Context& context);
 
-/// With an upper limit: ISO 14253-1:2013, guard band U (k = 2) to both sides; ILAC-G8:09/2019, simple
-/// acceptance (4.2.1) and guard band w = U (4.2.2). Confidence of the reading: medium.
-Decision decide(double value, double U, double tolerance,
-                std::string_view rule = "iso14253-1");
+/// With an upper limit: ISO 14253-1:2013, guard band U (k = 2) to both sides; ILAC-G8:09/2019,
+/// simple acceptance (4.2.1) and guard band w = U (4.2.2). Confidence of the reading: medium.
+Decision decide(double value, double U, double tolerance, std::string_view rule = "iso14253-1");
 
 }  // namespace nonio::host

@@ -93,12 +93,12 @@ struct Measurement {
   std::string adjustment{};                ///< "before" or "after" one; empty: not said
 
   /// How the test was made, as ISO 230-2 wants it reported; what is empty was not said.
-  std::optional<double> feed{};                     ///< m/s, rad/s
-  std::optional<double> dwell{};                    ///< s, at a target before it is read
-  std::optional<double> over_travel{};              ///< m or rad, beyond the last target
-  std::map<std::string, double> tool_offset{};      ///< m, from the spindle nose to the probe
-  std::map<std::string, double> workpiece_offset{}; ///< m, from the table to the place measured
-  std::string compensation{};                       ///< "on" or "off": the control's tables
+  std::optional<double> feed{};                      ///< m/s, rad/s
+  std::optional<double> dwell{};                     ///< s, at a target before it is read
+  std::optional<double> over_travel{};               ///< m or rad, beyond the last target
+  std::map<std::string, double> tool_offset{};       ///< m, from the spindle nose to the probe
+  std::map<std::string, double> workpiece_offset{};  ///< m, from the table to the place measured
+  std::string compensation{};                        ///< "on" or "off": the control's tables
 };
 
 /// An effect of the user's own, without compiling.
