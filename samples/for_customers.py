@@ -71,6 +71,8 @@ temperature_range_K = 0.2
 temperature_difference_K = 0.8
 expansion_range_um_per_m_K = 1.0
 drift_um = 0.6
+warm_up = "30 min over the whole travel at 5 m/min"
+sensors = "bed, at 200 mm and 600 mm"
 
 [certificate]
 customer_data = ["machine.serial"]
@@ -81,6 +83,13 @@ kind = "axis"
 axis = "X"
 file = "x-before.csv"
 adjustment = "before"
+feed_mm_per_min = 3000
+dwell_s = 4
+over_travel_mm = 2
+at = { Y = 250, Z = 150 }
+tool_offset = { Z = -120 }
+workpiece_offset = { Z = 80 }
+compensation = "on"
 
 [[measurement]]
 id = "X after"
@@ -88,6 +97,13 @@ kind = "axis"
 axis = "X"
 file = "x-after.csv"
 adjustment = "after"
+feed_mm_per_min = 3000
+dwell_s = 4
+over_travel_mm = 2
+at = { Y = 250, Z = 150 }
+tool_offset = { Z = -120 }
+workpiece_offset = { Z = 80 }
+compensation = "on"
 """
 
 # Throwaway: anybody can make this key, so what it signs proves nothing. The names are those of site.toml.

@@ -108,7 +108,7 @@ class Input(NightTest):
         self.assertEqual((results["status"], results["analyses"]), ("attention", []))
         for table in results["tables"]:
             found = {f["id"]: f["advice"] for f in table["findings"]}
-            self.assertIn("Do not compensate yet", found["table.unstable-axis"], table["plugin"])
+            self.assertIn("Do not compensate yet", found["table.refused-drift"], table["plugin"])
 
     def test_files_that_are_no_text_say_so(self):
         cases = {"empty": (b"", "empty file"), "blank": (b"\n \r\n", "empty file"),

@@ -185,14 +185,16 @@ sign::Key open(const Holder& holder, const Holder& issuer) {
   return std::move(key.value());
 }
 
-std::string small_pdf(const std::string& text) {
+std::string small_pdf(const std::string& text, const std::string& of_page) {
   const std::string page = "BT /F1 12 Tf 50 800 Td (" + text + ") Tj ET";
   const std::vector<std::string> objects = {
       "<<\n/Type /Catalog\n/Pages 2 0 R\n/Lang (en)\n>>",
       "<<\n/Type /Pages\n/Kids [ 4 0 R ]\n/Count 1\n>>",
       "<<\n/Title (Small)\n/CreationDate (D:20261121000000Z)\n>>",
-      "<<\n/Type /Page\n/Parent 2 0 R\n/MediaBox [ 0 0 595.28 841.89 ]\n/Contents 5 0 R\n"
-      "/Resources << /Font << /F1 << /Type /Font /Subtype /Type1 /BaseFont /Helvetica >> >> >>\n>>",
+      "<<\n/Type /Page\n/Parent 2 0 R\n" + of_page +
+          "/MediaBox [ 0 0 595.28 841.89 ]\n/Contents 5 0 R\n"
+          "/Resources << /Font << /F1 << /Type /Font /Subtype /Type1 /BaseFont /Helvetica >> >> "
+          ">>\n>>",
       "<<\n/Length " + std::to_string(page.size()) + "\n>>\nstream\r\n" + page + "\nendstream"};
   std::string out = "%PDF-1.7\n%\xB7\xBE\xAD\xAA\n", table = "0000000000 65535 f\r\n";
   for (std::size_t i = 0; i < objects.size(); ++i) {

@@ -73,7 +73,7 @@ inline constexpr const char* password = "correct horse";
 std::string pkcs12(const Folder& folder, const Holder& holder, const Holder& issuer);
 sign::Key open(const Holder& holder, const Holder& issuer);
 
-/// A PDF of one page as libharu would write it.
-std::string small_pdf(const std::string& text = "E = 4.5 um");
+/// A PDF of one page as libharu would write it; `of_page`: more lines of its dictionary.
+std::string small_pdf(const std::string& text = "E = 4.5 um", const std::string& of_page = "");
 
 }  // namespace nonio::sign_tests

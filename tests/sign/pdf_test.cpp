@@ -17,6 +17,24 @@ TEST(Reserve, IsReproducibleAndKeepsThePages) {
   EXPECT_EQ(one->find("startxref"), one->rfind("startxref"));
 }
 
+TEST(Reserve, ShowsTheSignatureInTheFrameThatThePageHasForIt) {
+  const auto plain = sign::reserve(small_pdf(), {}, now);
+  ASSERT_TRUE(plain);
+  EXPECT_NE(plain->find("/Rect [0 0 0 0]"), std::string::npos);
+  EXPECT_EQ(plain->find("/AP"), std::string::npos);
+  const auto framed =
+      sign::reserve(small_pdf("a", "/NonioSignature [ 300 100 450 160 ]\n"), {}, now);
+  ASSERT_TRUE(framed) << framed.error().message;
+  EXPECT_NE(framed->find("/Rect [300 100 450 160]\n/AP << /N "), std::string::npos);
+  EXPECT_NE(framed->find("/Subtype /Form\n/BBox [300 100 450 160]"), std::string::npos);
+  for (const char* odd : {"[ 1 2 3 ]", "[ 1 2 3 /X ]", "(text)", "[ 1 2 3 4.5 ]"}) {
+    const auto other =
+        sign::reserve(small_pdf("a", "/NonioSignature " + std::string(odd) + "\n"), {}, now);
+    ASSERT_TRUE(other) << odd;
+    EXPECT_NE(other->find("/Rect [0 0 0 0]"), std::string::npos) << odd;
+  }
+}
+
 TEST(Reserve, RefusesWhatItWouldHaveToGuess) {
   const auto why = [](const std::string& pdf, const std::vector<sign::Attachment>& files = {}) {
     const auto done = sign::reserve(pdf, files, now);

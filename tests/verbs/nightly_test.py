@@ -69,8 +69,15 @@ class Nightly(VerbTest):
     def test_excluded_lines_are_noted_and_do_not_count(self):
         text = manifest([], self.RUN).replace('file = "x.csv"\n', 'file = "x.csv"\nexclude = [5, 9]\n')
         self.campaign(text, x=readings())
-        results = self.night()
+        results = self.night(expect=None)
         self.assertEqual(sum("is excluded by the manifest" in n for n in results["notes"]), 2)
+        found = [f for a in results["analyses"] for f in a["findings"] if f["id"] == "readings.excluded-without-reason"]
+        self.assertTrue(found)
+        self.assertIn("exclude_reason", found[0]["advice"])
+        self.campaign(text.replace("exclude = [5, 9]", 'exclude = [5, 9]\nexclude_reason = "beam broken"'), x=readings())
+        results = self.night(expect=None)
+        self.assertEqual(sum("is excluded by the manifest: beam broken" in n for n in results["notes"]), 2)
+        self.assertNotIn("readings.excluded-without-reason", json.dumps(results))
 
     def test_the_history_is_a_record_only(self):
         self.campaign(manifest(["scale:X"], self.RUN), x=readings(scale=20))
@@ -84,6 +91,7 @@ class Nightly(VerbTest):
 
     def columns(self, model, drift):
         run = '[run]\nanalyses = ["iso230-2"]\noutputs = ["linuxcnc"]\n'
+        run += '[options.linuxcnc]\naxes = ["X drifted=1"]\n'
         self.campaign(manifest(["scale:X", "backlash:X", "zero-drift:X"], run, model),
                       x=readings(noise=0.05, scale=20, backlash=-6, drift=drift))
         results = self.night(expect=None)

@@ -125,7 +125,7 @@ class Again {
     Content content;
     content.templates = take_templates();
     const std::string why = why_not_drawn(content.templates);
-    const auto draw = [this](const Evaluated& e, bool) { return drawn(e); };
+    const auto draw = [this](const Evaluated& e, std::vector<std::string>&) { return drawn(e); };
     Evaluated again = evaluate(
         folder_, manifest->campaign.id, context_, [](const std::string&) {},
         stated_.certificate && why.empty() ? Draw(draw) : Draw());

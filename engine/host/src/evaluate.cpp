@@ -484,6 +484,7 @@ class CampaignRun {
 
 Decision decide(double value, double U, double tolerance, std::string_view rule) {
   const bool simple = rule == "ilac-g8-simple", guarded = rule == "ilac-g8-guarded";
+  if (!std::isfinite(value) || !std::isfinite(U)) return Decision::cannot_be_decided;
   if (simple || guarded)
     return value <= (guarded ? tolerance - U : tolerance) ? Decision::conforms
                                                           : Decision::does_not_conform;

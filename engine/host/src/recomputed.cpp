@@ -147,13 +147,15 @@ bool is_number(const Json& value, const char* key) {
   return value.is_object() && value.contains(key) && value[key].is_number();
 }
 
-/// A DCC has the digits that are printed, as U allows them; earlier ones had all.
-bool same_when_rounded(const sign::DccValue& v, double value, std::optional<double> U) {
-  if (v.U.has_value() != U.has_value()) return false;
-  if (same(value, v.value) && (!U || same(*U, *v.U))) return true;
-  const auto rounded = U ? rounded_result(value, *U) : std::nullopt;
+/// A DCC has the digits that are printed, as U allows them; earlier ones had all. `U` is NaN where
+/// there is none.
+bool same_when_rounded(const sign::DccValue& v, double value, double U) {
+  if (v.U.has_value() != std::isfinite(U)) return false;
+  const double stated_U = v.U.value_or(0.0);
+  if (same(value, v.value) && (!v.U || same(U, stated_U))) return true;
+  const auto rounded = rounded_result(value, U);
   return rounded && std::strtod(rounded->value.c_str(), nullptr) == v.value &&
-         std::strtod(rounded->U.c_str(), nullptr) == *v.U;
+         std::strtod(rounded->U.c_str(), nullptr) == stated_U;
 }
 
 /// "" if the number is in results.json, else what is wrong.
@@ -167,8 +169,7 @@ std::string contradiction(const sign::DccValue& v, const Json& results) {
   if (!is_number(value, "value")) return who + " is no number in results.json";
   if (!value.contains("unit") || value["unit"] != v.unit)
     return who + " has another unit in results.json";
-  const bool has_U = is_number(value, "U");
-  const auto U = has_U ? std::optional(value["U"].get<double>()) : std::nullopt;
+  const double U = is_number(value, "U") ? value["U"].get<double>() : std::nan("");
   if (!same_when_rounded(v, value["value"].get<double>(), U))
     return who + " is another number in results.json, or has another uncertainty there";
   return {};

@@ -30,10 +30,10 @@ void add_measurements(const Source& source, Blocks& blocks) {
 }  // namespace
 
 Expected<pages::Look> look_of(const Templates& templates, const std::string& name) {
-  return pages::read_look(
-      templates, name,
-      {"title", "identity", "status", "measurements", "models", "tables", "notes", "residuals"},
-      {"results", "plots", "findings", "targets"});
+  return pages::read_look(templates, name,
+                          {"title", "identity", "status", "measurements", "notes", "laboratory",
+                           "models", "tables", "residuals"},
+                          {"results", "plots", "findings", "targets"});
 }
 
 Document compose(const Source& source) {
@@ -66,6 +66,7 @@ Document compose(const Source& source) {
       add_measurements(source, document.blocks);
       add_plans(source, document.blocks);
     }
+    if (block == "laboratory") add_laboratory(source, document.blocks);
     if (block == "models") add_models(source, document.blocks);
     if (block == "tables") add_tables(source, document.blocks);
     if (block == "notes") add_notes(source, document.blocks);

@@ -33,6 +33,9 @@ void add_status(const Source&, Blocks&);
 
 /// What analyses of the whole campaign say: rows of a plan, and their findings.
 void add_plans(const Source&, Blocks&);
+/// Whether advice stands in a part of its own, block "laboratory".
+bool has_laboratory_part(const Source&);
+void add_laboratory(const Source&, Blocks&);
 void add_findings(const Source&, const Measured&, Blocks&);
 /// What controllers' tables have to say; what several of them say alike once, with all their names.
 struct TableFinding {

@@ -21,10 +21,54 @@ Block note_of(const Source& source, const Finding& f) {
           "finding " + f.id};
 }
 
+namespace {
+
+/// Controllers' tables are told from other outputs by what they say.
+bool speaks(const OutputResult& r) {
+  return !r.predictions.empty() || !r.findings.empty() || !r.notes.empty();
+}
+
+}  // namespace
+
 void add_findings(const Source& source, const Measured& m, Blocks& blocks) {
   if (m.findings.empty()) return;
   blocks.push_back({Heading{source.words.get("findings.title"), 2}, "findings.title"});
-  for (const Finding* f : m.findings) blocks.push_back(note_of(source, *f));
+  const bool apart = has_laboratory_part(source);
+  for (const Finding* f : m.findings) {
+    Block block = note_of(source, *f);
+    if (apart) std::get<Note>(block.what).advice.clear();
+    blocks.push_back(std::move(block));
+  }
+}
+
+bool has_laboratory_part(const Source& source) {
+  const auto& blocks = source.look.blocks;
+  return std::find(blocks.begin(), blocks.end(), "laboratory") != blocks.end();
+}
+
+/// What is to be done, for who measures and who keeps the machine; a customer who gets the pages
+/// before it has the whole result.
+void add_laboratory(const Source& source, Blocks& blocks) {
+  Blocks advice;
+  std::set<std::string> told;
+  for (const Measured& m : measured(source.in))
+    for (const Finding* f : m.findings) {
+      Block block = note_of(source, *f);
+      Note& note = std::get<Note>(block.what);
+      if (note.advice.empty() || !told.insert(m.measurement.id + note.title).second) continue;
+      note.title = m.measurement.id + ": " + note.title;
+      note.says.clear();
+      advice.push_back(std::move(block));
+    }
+  const auto& outputs = source.in.results.outputs;
+  const bool tables = std::any_of(outputs.begin(), outputs.end(),
+                                  [](const auto& output) { return speaks(output.result); });
+  if (advice.empty() && source.in.results.models.empty() && !tables) return;
+  blocks.push_back({PageBreak{}});
+  blocks.push_back({Heading{source.words.get("laboratory.title"), 1}, "laboratory"});
+  blocks.push_back(
+      {Paragraph{source.words.get("laboratory.says"), Paragraph::Look::small}, "laboratory"});
+  std::move(advice.begin(), advice.end(), std::back_inserter(blocks));
 }
 
 namespace {
@@ -90,11 +134,6 @@ Table predictions(const Source& source, bool& with_files) {
     table.rows.push_back(std::move(cells));
   }
   return table;
-}
-
-/// Controllers' tables are told from other outputs by what they say.
-bool speaks(const OutputResult& r) {
-  return !r.predictions.empty() || !r.findings.empty() || !r.notes.empty();
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ TILE = 8
 TOLERANCE = 2.0
 LEVELS = bytes(17 * round(grey / 17) for grey in range(256))
 PAGES = {"zh": 100, "el": 100, "ru": 100} | {
-    f"certificate-{languages}": 60 for languages in ("de", "en", "es", "it", "zh", "it-en")}
+    f"certificate-{languages}": 60 for languages in ("de", "en", "es", "it", "zh", "it-en")} | {
+    "six-de": 60, "six-de-en": 60}
 # The same pages with a part of a letter lost: they must not pass for what they are not.
 LOST = {"zh-lost-parts": "zh", "el-lost-tonos": "el", "ru-lost-accent": "ru"}
 

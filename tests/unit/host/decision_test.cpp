@@ -27,6 +27,33 @@ TEST(Decision, UpperLimitAfterIso14253) {
   EXPECT_EQ(decide(8.0, nan, 10.0), Decision::cannot_be_decided);
 }
 
+TEST(Decision, UpperLimitAfterIlacG8) {
+  using host::decide;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const char* rule : {"ilac-g8-simple", "ilac-g8-guarded"}) {
+    const bool guarded = std::string(rule) == "ilac-g8-guarded";
+    const Decision inside_guard = guarded ? Decision::does_not_conform : Decision::conforms;
+    EXPECT_EQ(decide(9.0, 1.0, 10.0, rule), Decision::conforms) << rule;
+    EXPECT_EQ(decide(9.5, 1.0, 10.0, rule), inside_guard) << rule;
+    EXPECT_EQ(decide(10.0, 1.0, 10.0, rule), inside_guard) << rule;
+    EXPECT_EQ(decide(10.1, 1.0, 10.0, rule), Decision::does_not_conform) << rule;
+    EXPECT_EQ(decide(nan, 1.0, 10.0, rule), Decision::cannot_be_decided) << rule;
+    EXPECT_EQ(decide(8.0, nan, 10.0, rule), Decision::cannot_be_decided) << rule;
+  }
+}
+
+TEST(Format, AResultHasTheDigitsThatItsUncertaintyAllows) {
+  const auto text = [](double value, double U) {
+    const auto r = rounded_result(value, U);
+    return r ? r->value + " +- " + r->U : std::string("none");
+  };
+  EXPECT_EQ(text(12.3456, 1.9499), "12.3 +- 1.9");
+  EXPECT_EQ(text(-4.56789, 0.123456), "-4.57 +- 0.12");
+  EXPECT_EQ(text(1.5, 0.0996), "1.50 +- 0.10");
+  EXPECT_EQ(text(12345.0, 1234.0), "12300 +- 1200");
+  EXPECT_EQ(text(1.0, 0.0), "none");
+}
+
 TEST(Format, PrintedGivesBackTheDecimalThatWasRead) {
   EXPECT_EQ(printed(25.2 * 1e-3, Quantity::length), 25.2);
   EXPECT_EQ(printed(90.0 / deg_per_rad, Quantity::angle), 90.0);

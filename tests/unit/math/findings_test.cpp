@@ -20,6 +20,33 @@ const Finding* find(const std::vector<Finding>& findings, const std::string& id)
   return nullptr;
 }
 
+// Where one value for the whole axis would leave more than the largest reversal there is, none is
+// advised (B from 1.40 to 1.56 um was).
+TEST(Findings, NoBacklashValueIsAdvisedThatMakesTheLargestReversalLarger) {
+  constexpr std::uint32_t seed = 140156;
+  made::Random random(seed);
+  made::Plan plan{{0.0, 0.11, 0.19, 0.31, 0.43, 0.5}, 5};
+  int worse = 0, advised = 0;
+  for (int round = 0; round < 400; ++round) {
+    const auto test = made::arranged(
+        plan,
+        [&](double, int d, std::uint32_t) {
+          return (d > 0 ? -0.7 : 0.0) * um + 1.2 * um * made::normal(random);
+        },
+        {}, random);
+    const Reversal r = assess_reversal(test);
+    std::vector<Finding> findings;
+    reversal_findings(test, findings);
+    const bool lost = find(findings, "reversal.lost-motion") != nullptr ||
+                      find(findings, "reversal.over-compensated") != nullptr;
+    if (lost) EXPECT_LT(r.largest_left, r.largest) << "seed " << seed << ", round " << round;
+    advised += lost ? 1 : 0;
+    worse += find(findings, "reversal.one-value-worse") != nullptr ? 1 : 0;
+  }
+  EXPECT_GT(worse, 0);
+  EXPECT_GT(advised, 0);
+}
+
 // Noise-free readings, as a simulation gives them: no test may stumble over 0/0.
 TEST(Findings, WithoutAnyScatter) {
   made::Random random(1);

@@ -52,13 +52,20 @@ std::size_t occurrences(const std::string& text, const std::string& what) {
   return n;
 }
 
+// What is for the customer; what follows is for the laboratory.
 TEST_F(PdfReport, AnOrdinaryAxisTakesTwoPages) {
   for (const char* language : {"en", "it"}) {
     const auto result = write(usual(), language);
     ASSERT_TRUE(result) << result.error().message;
     const Artifact& file = result->artifacts.front();
     EXPECT_EQ(file.name, std::string("it") == language ? "report-it.pdf" : "report.pdf");
-    EXPECT_EQ(read_pdf(file.bytes).pages.size(), 2U) << language;
+    const auto pages = read_pdf(file.bytes).pages;
+    ASSERT_EQ(pages.size(), 3U) << language;
+    const char* advice = "→ ";
+    EXPECT_FALSE(has(pages[0] + pages[1], advice)) << language;
+    EXPECT_TRUE(has(pages[2], advice)) << language;
+    EXPECT_TRUE(
+        has(pages[2], std::string("it") == language ? "Per il laboratorio" : "For the laboratory"));
     EXPECT_LT(file.bytes.size(), 100000U);
   }
 }
