@@ -4,6 +4,7 @@
     NONIO=build/dev/bin/nonio python3 tests/sign/forgeries/hostile.py [--measure]
 
 Exit status 0 only if each is refused within 1 s of processor time and 200 MB of memory. --measure: figures only."""
+import argparse
 import os
 import pathlib
 import re
@@ -13,7 +14,7 @@ import tempfile
 import zlib
 
 from forgeries import Keys, issue
-from pdf_file import Pdf
+from pdf_file import Pdf, openssl
 
 NONIO = os.environ.get("NONIO_MEASURED", os.environ["NONIO"])  # another build of it, to be compared
 SECONDS, MEGABYTES = 1.0, 200
@@ -38,11 +39,20 @@ def nested(depth):
     return out
 
 
-def files(honest, xml):
-    keys = b"".join(b"/k%d 0\n" % i for i in range(100_000))
+def signed_by_a_stranger(body, keys):
+    unsigned = signed_form(body, b"0" * 20000)
+    gap = unsigned.rindex(b"/Contents <") + len(b"/Contents ")
+    end = gap + 20002
+    cms = openssl("cms", "-sign", "-binary", "-cades", "-nosmimecap", "-md", "sha256", "-signer", keys.pem("namesake"), "-inkey",
+                  keys.key("namesake"), "-outform", "DER", data=unsigned[:gap] + unsigned[end:]).hex().encode()
+    return unsigned[:gap + 1] + cms.ljust(20000, b"0") + unsigned[end - 1:]
+
+
+def files(honest, xml, keys):
+    many = b"".join(b"/k%d 0\n" % i for i in range(100_000))
     pdf = Pdf(honest)
-    yield "100,000 keys in a dictionary.pdf", pdf.copy().insert(pdf.catalog(), keys).write()
-    yield "100,000 keys in the trailer.pdf", re.sub(rb"trailer\n<<\n", lambda _: b"trailer\n<<\n" + keys, honest)
+    yield "100,000 keys in a dictionary.pdf", pdf.copy().insert(pdf.catalog(), many).write()
+    yield "100,000 keys in the trailer.pdf", re.sub(rb"trailer\n<<\n", lambda _: b"trailer\n<<\n" + many, honest)
     other = pdf.copy()
     stream = pdf.attachments()["x-after.csv"][1]
     packer = zlib.compressobj(9)
@@ -55,6 +65,7 @@ def files(honest, xml):
     yield "brackets.pdf", b"%PDF-1.7\n" + b"[" * (LARGEST - 9)
     yield "signature places.pdf", b"%PDF-1.7\n" + b"\n/ByteRange [0 " * (LARGEST // 15 - 1)
     yield "100 MB in the form of a signed file.pdf", signed_form(b"%PDF-1.7\n" + b"0" * (LARGEST - 4000))
+    yield "100 MB signed by a stranger.pdf", signed_by_a_stranger(b"%PDF-1.7\n" + b"[" * (LARGEST - 30000), keys)
     yield "a signature of 32 kB of sequences.pdf", signed_form(b"%PDF-1.7\n" + b"0" * 1000, nested(7000).hex().encode()[:64000])
     attributes = " ".join(f'a{i}="1"' for i in range(100_000))
     yield "100,000 attributes.xml", xml.replace("<dcc:item>", f"<dcc:item {attributes}>", 1).encode()
@@ -81,22 +92,27 @@ def spent(site, file):
 
 
 def main():
-    measure = "--measure" in sys.argv[1:]
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("--measure", action="store_true")
+    arguments.add_argument("--only", default="", help="files whose names hold this text")
+    wanted = arguments.parse_args()
+    measure = wanted.measure
     worst = 0
     with tempfile.TemporaryDirectory(prefix="nonio-hostile-") as folder:
         root = pathlib.Path(folder)
-        site, honest, xml = issue(root, Keys(root / "keys"))
+        keys = Keys(root / "keys")
+        site, honest, xml = issue(root, keys)
         sparse = root / "20 GB, all of it holes.pdf"
         with open(sparse, "wb") as file:
             file.truncate(20_000_000_000)
         folder = root / "hostile"
         folder.mkdir()
         made = [sparse]
-        for name, data in files(honest, xml):
+        for name, data in files(honest, xml, keys):
             assert len(data) <= LARGEST, (name, len(data))
             (folder / name).write_bytes(data)
             made.append(folder / name)
-        for file in made:
+        for file in (f for f in made if wanted.only in f.name):
             status, seconds, megabytes = spent(site, file)
             good = status == 1 and seconds <= SECONDS and megabytes <= MEGABYTES
             worst |= not good
