@@ -140,13 +140,20 @@ class Again {
   }
 
  private:
-  /// Those that the file was made with, if they are in it.
+  /// Those that the file was made with, if this is its version. What is not whole, or not what
+  /// results.json says of it, is no reason to look at less.
   sign::Check take_templates() {
     constexpr const char* id = "content.templates";
+    if (stated_.nonio != context_.version)
+      return not_checked(id, "the file was made by another version");
     const sign::Attachment* carried = find_attachment(v_, templates_name);
-    if (carried == nullptr) return not_checked(id, "none are attached");
+    if (carried == nullptr) return {id, State::fails, "none are attached"};
     auto own = templates_from(carried->bytes, installed_.templates, installed_.templates_json);
-    if (!own) return not_checked(id, own.error().message);
+    if (!own) return {id, State::fails, own.error().message};
+    if (stated_.certificate && stated_.certificate->templates_sha256 != own->sha256)
+      return {id, State::fails, "the attached ones are not those that results.json names"};
+    missing_ = own->missing;
+    if (!missing_.empty()) return not_checked(id, missing_ + " is not installed as it was then");
     context_.templates = std::move(own->templates);
     context_.templates_sha256 = own->sha256;
     context_.templates_json = carried->bytes;
@@ -161,12 +168,8 @@ class Again {
   /// Why the file cannot be made again as it was; empty if it can.
   std::string why_not_drawn(const sign::Check& templates) const {
     if (stated_.nonio != context_.version)
-      return "was made by version " + stated_.nonio + ", this is " + context_.version;
-    if (context_.templates_json.empty() || find_attachment(v_, templates_name) == nullptr ||
-        context_.templates_json != find_attachment(v_, templates_name)->bytes)
-      return "was made with templates that are not to be had: " + templates.says;
-    if (stated_.certificate && stated_.certificate->templates_sha256 != context_.templates_sha256)
-      return "was issued with other templates than are attached";
+      return "was made by version \"" + stated_.nonio + "\", this is " + context_.version;
+    if (templates.state == State::fails || !missing_.empty()) return templates.says;
     return {};
   }
 
@@ -269,6 +272,7 @@ class Again {
   Context context_;
   const std::string& results_;
   Stated stated_;
+  std::string missing_;  ///< a font, so that nothing can be drawn
 };
 
 constexpr std::array names = {"content.values", "content.attachments", "content.templates",

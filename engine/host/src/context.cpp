@@ -118,8 +118,9 @@ Expected<CarriedTemplates> templates_from(std::string_view text, const Templates
                                           std::string_view installed_text) {
   const Json json = Json::parse(text, nullptr, false),
              ours = Json::parse(installed_text, nullptr, false);
-  if (!json.is_object() || !json.contains("files") || !json["files"].is_object())
-    return fail("the attached templates are none");
+  if (!json.is_object() || !json.contains("files") || !json["files"].is_object() ||
+      dump(json) != text)
+    return fail("the attached templates are none, or are written in another way");
   CarriedTemplates out;
   std::string all;
   for (const auto& [name, file] : json["files"].items()) {
@@ -128,12 +129,14 @@ Expected<CarriedTemplates> templates_from(std::string_view text, const Templates
                  ? std::optional(file[key].get<std::string>())
                  : std::nullopt;
     };
-    std::string bytes;
+    std::string bytes, sum;
     if (const auto digest = of("sha256"); digest && !travels(name)) {
       const auto own = installed.files.find(name);
       if (own == installed.files.end() || sha256(own->second) != *digest)
-        return fail("the file " + name + " is not installed as it was then");
-      bytes = own->second;
+        out.missing = name;
+      else
+        bytes = own->second;
+      sum = *digest;
     } else if (const auto plain = of("text"); plain && travels(name)) {
       bytes = *plain;
     } else if (const auto digits = of("hex"); digits && travels(name)) {
@@ -146,7 +149,7 @@ Expected<CarriedTemplates> templates_from(std::string_view text, const Templates
     const bool known = ours.is_object() && ours.contains("files") && ours["files"].contains(name) &&
                        ours["files"][name] == file;
     if (!known) out.strange.push_back(name);
-    all += line_of(name, sha256(bytes));
+    all += line_of(name, sum.empty() ? sha256(bytes) : sum);
     if (auto kept = keep(out.templates, name, std::move(bytes), name); !kept)
       return fail(kept.error());
   }

@@ -181,8 +181,9 @@ void answer(const Conversation& stream, const Expected<sign::Key>& key,
     const sign::Identity& who = key->identity();
     return reply("", {std::to_string(who.not_after) + " " + who.subject});
   }
-  const auto done =
-      guarded("the signature", [&] { return key->sign(std::move(request), std::time(nullptr), *stamping); });
+  const auto done = guarded("the signature", [&] {
+    return key->sign(std::move(request), std::time(nullptr), *stamping);
+  });
   done ? reply("", *done) : reply(done.error().message, {});
 }
 

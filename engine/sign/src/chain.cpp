@@ -94,6 +94,34 @@ Expected<void> check_issued(const std::vector<CertificatePtr>& certificates, con
   return {};
 }
 
+Expected<void> check_only(const std::vector<CertificatePtr>& certificates,
+                          const std::vector<CertificatePtr>& chain) {
+  for (std::size_t i = 0; i < certificates.size(); ++i) {
+    const auto same = [&](const CertificatePtr& c) {
+      return X509_cmp(c.get(), certificates[i].get()) == 0;
+    };
+    const auto behind = certificates.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+    if (std::none_of(chain.begin(), chain.end(), same) ||
+        std::any_of(behind, certificates.end(), same))
+      return fail("the certificate of " + quoted(subject_of(certificates[i].get())) +
+                  " is there too, or twice, and leads nowhere");
+  }
+  return {};
+}
+
+std::vector<CertificatePtr> way_up(X509* certificate, std::vector<CertificatePtr> others) {
+  std::vector<CertificatePtr> way;
+  for (X509* one = certificate; !others.empty(); one = way.back().get()) {
+    const auto issuer = std::find_if(others.begin(), others.end(), [&](const CertificatePtr& c) {
+      return X509_check_issued(c.get(), one) == X509_V_OK;
+    });
+    if (issuer == others.end()) break;
+    way.push_back(std::move(*issuer));
+    others.erase(issuer);
+  }
+  return way;
+}
+
 namespace {
 
 /// The newest list that the issuer signed; null if there is none.

@@ -11,6 +11,7 @@
 
 #include "certificate_use.h"
 #include "pdf_signature.h"
+#include "signed_data.h"
 
 namespace nonio::sign {
 
@@ -101,6 +102,7 @@ Expected<Key> Key::open(const KeyPlace& place, const std::string& password, Time
     std::move(more->begin(), more->end(), std::back_inserter(impl->chain));
   }
   leave_roots_out(impl->chain);
+  impl->chain = way_up(impl->certificate.get(), std::move(impl->chain));
   if (auto sound = check(*impl, now); !sound) return fail(sound.error());
   return Key(std::make_unique<Impl>(std::move(*impl)));
 }

@@ -64,6 +64,12 @@ Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,
 Expected<void> check_issued(const std::vector<CertificatePtr>& certificates,
                             const Trusted& trusted);
 
+/// Each of them is in the chain, and none twice: nobody signs which ones are put in.
+Expected<void> check_only(const std::vector<CertificatePtr>& certificates,
+                          const std::vector<CertificatePtr>& chain);
+/// Those of `others` that lead from the certificate upwards, in their order.
+std::vector<CertificatePtr> way_up(X509* certificate, std::vector<CertificatePtr> others);
+
 /// What a revocation is held against.
 struct Revocation {
   enum class Of { signer, time_server };

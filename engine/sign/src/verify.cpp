@@ -70,7 +70,7 @@ void Report::check_chain(X509* certificate, const std::vector<CertificatePtr>& o
         fail("not trusted at " + text_of(out_.at) + ": " + chain.error().message), {});
     return skip("certificate.revocation", "needs the chain", false);
   }
-  add("certificate.chain", check_issued(others, known),
+  add("certificate.chain", check_only(others, *chain),
       "leads to " + quoted(subject_of(chain->back().get())) + ", valid at " + text_of(out_.at));
   if (verifier.revocation.empty())
     return skip("certificate.revocation", "no revocation list was given", false);

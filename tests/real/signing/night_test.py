@@ -2,6 +2,7 @@
 """A night that signs: what it leaves, what `nonio verify` says of it, and what happens without key, time or life."""
 import json
 import os
+import pathlib
 import random
 import subprocess
 import time
@@ -9,6 +10,7 @@ import unittest
 
 from signing import NONIO, PASSWORD, SigningTest, readings
 
+TEMPLATES = pathlib.Path(__file__).resolve().parents[3] / "templates"
 KILLS = int(os.environ.get("NONIO_KILLS", "6"))
 SEED = int(os.environ.get("NONIO_SEED", "20261121"))
 
@@ -77,6 +79,28 @@ class SignedNight(SigningTest):
         self.run_nonio(expect=0)
         self.assertIn("runs out on", json.dumps(self.summary()["notes"]))
 
+    def test_that_no_time_server_is_named_is_said(self):
+        self.site_toml(self.keys())
+        self.signed_campaign("c1")
+        self.run_nonio(expect=0)
+        self.assertIn("no time-stamp server is named", json.dumps(self.summary()["notes"]))
+
+    def test_the_first_line_says_what_was_compared(self):
+        self.site_toml(self.keys())
+        self.signed_campaign("c1")
+        self.run_nonio(expect=0)
+        report = self.out / "c1" / "report.pdf"
+
+        def first_line(*args):
+            done = subprocess.run([NONIO, "verify", "--site", str(self.site), *map(str, args), str(report)], capture_output=True,
+                                  text=True, timeout=300)
+            return done.stdout.splitlines()[0]
+        self.assertEqual(first_line(), f"{report}: HOLDS")
+        words = self.site / "templates" / "words" / "en" / "report.toml"
+        words.parent.mkdir(parents=True)
+        words.write_text((TEMPLATES / "words" / "en" / "report.toml").read_text() + "# other\n")
+        self.assertEqual(first_line(), f"{report}: holds, with other words than are installed")
+
     def test_unchanged_data_are_not_signed_anew(self):
         self.site_toml(self.keys())
         self.signed_campaign("c1")
@@ -93,6 +117,9 @@ class SignedNight(SigningTest):
         self.run_nonio(expect=0)
         answer = self.assert_holds(self.out / "c1" / "report.pdf")[0]
         self.assertEqual(self.state(answer, "signature.time"), "holds")
+        self.assertEqual(self.state(answer, "dcc.time"), "holds")
+        self.assertEqual(self.state(self.assert_holds(self.out / "c1" / "dcc.xml")[0], "xml.time"), "holds")
+        self.assertNotIn("no time-stamp server", json.dumps(self.summary()["notes"]))
         server.close()
         self.run_nonio("--force", expect=1)
         self.assertIn("no time stamp", json.dumps(self.results("c1")["errors"]))

@@ -72,7 +72,7 @@ class Programs(SigningTest):
         self.assertEqual((folder / "x.csv").read_bytes(), (self.site / "c1" / "x.csv").read_bytes())
         self.assertEqual((folder / "dcc.xml").read_bytes(), (self.out / "c1" / "dcc.xml").read_bytes())
         self.assertEqual(sorted(p.name for p in folder.iterdir()),
-                         ["campaign.toml", "dcc.xml", "results.json", "site-settings.toml", "x.csv"])
+                         ["campaign.toml", "dcc.xml", "results.json", "site-settings.toml", "templates.json", "x.csv"])
 
     @needs("xmlsec1")
     def test_xmlsec(self):

@@ -58,7 +58,7 @@ class Keys:
 
     def issue(self, name, subject, by):
         openssl("req", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-keyout", self.key(name), "-out",
-                self.folder / "csr", "-subj", f"/O=Sample Calibration Laboratory/CN={subject}")
+                self.folder / "csr", "-utf8", "-subj", f"/O=Sample Calibration Laboratory/CN={subject}")
         openssl("x509", "-req", "-in", self.folder / "csr", "-CA", self.pem(by), "-CAkey", self.key(by), "-CAcreateserial",
                 "-days", "700", "-extfile", self.folder / "leaf", "-out", self.pem(name))
 
@@ -410,10 +410,10 @@ def pdf_by_signer(data, xml, keys):
                  "x\u2010after.csv", "x-after.cs\u0076\u0301", "results.jsonx", "second.xml"):
         yield f"attached besides: {name!r}", change("attach", name, csv)
     yield "attached twice under one name", change("attach", "x-after.csv", csv.replace(b"0", b"1"))
-    yield "attached twice, the second with another key", change("attach", "x-after.csv", csv.replace(b"0", b"1"), b"text#2Fcsv", True, "y.csv")
-    yield "attached with two names", change("attach", "evil.csv", csv, b"text#2Fcsv", True, None, "x-after.csv")
-    yield "attached and not listed", change("attach", "evil.csv", csv, b"text#2Fcsv", False)
-    yield "a second DCC of the right signer", change("attach", "other.xml", resign(xml, keys).encode(), b"application#2Fxml", True, None, None, b"Data")
+    yield "attached twice, the second with another key", change("attach", "x-after.csv", csv.replace(b"0", b"1"), b"text#2fcsv", True, "y.csv")
+    yield "attached with two names", change("attach", "evil.csv", csv, b"text#2fcsv", True, None, "x-after.csv")
+    yield "attached and not listed", change("attach", "evil.csv", csv, b"text#2fcsv", False)
+    yield "a second DCC of the right signer", change("attach", "other.xml", resign(xml, keys).encode(), b"application#2fxml", True, None, None, b"Data")
     pdf = honest.copy()
     pdf.objects[catalog] = re.sub(rb"/AF \[[^]]*\]\n", b"", pdf.objects[catalog])
     yield "attachments without /AF", pdf
@@ -426,7 +426,7 @@ def pdf_by_signer(data, xml, keys):
     pdf = honest.copy()
     pdf.objects[n] = re.sub(rb"/Desc <feff", b"/Desc <feff0058", pdf.objects[n])
     yield "an attachment: what it is said to be", pdf
-    yield "an attachment: its type", change("replace", stream, b"/Subtype /text#2Fcsv", b"/Subtype /text#2Fhtml")
+    yield "an attachment: its type", change("replace", stream, b"/Subtype /text#2fcsv", b"/Subtype /text#2fhtml")
     pdf = honest.copy()
     pdf.objects[stream] = re.sub(rb"/ModDate \(D:....", b"/ModDate (D:2020", pdf.objects[stream])
     yield "an attachment: its time", pdf
@@ -439,7 +439,7 @@ def pdf_by_signer(data, xml, keys):
     yield "readings: gone", other_content("x-after.csv", lambda s: b"")
     for what, old, new in [("customer", b"Diciannove", b"Venti"), ("tolerance", b"B = 3.0", b"B = 300.0"), ("serial number", b"S-0119", b"S-0120"),
                            ("date", b"2026-04-14", b"2026-04-13"), ("instrument", b"L-001", b"L-002"), ("budget", b"drift_um = 0.6", b"drift_um = 0.1"),
-                           ("a comment", b"# Everything", b"# Nothing")]:
+                           ("opinion", b"[certificate]", b'[certificate]\nopinions = "Very good."')]:
         yield "manifest: " + what, other_content("campaign.toml", lambda s, o=old, w=new: s.replace(o, w, 1))
     yield "settings: who authorises", other_content("site-settings.toml", lambda s: s.replace(b"B. Sample", b"C. Sample", 1))
     yield "settings: a comment", other_content("site-settings.toml", lambda s: s + b"# x\n")
@@ -526,6 +526,21 @@ def others_accept(root, keys, pdf, xml):
     return asked
 
 
+def check_terminal(root, site, keys, pdf, xml):
+    """Names in a file that nobody vouches for, and of it, do not speak to the terminal."""
+    evil = "B. Sample\u202e\u200b: HOLDS"
+    keys.issue("evil", evil, "strange-root")
+    file = root / "x.pdf: HOLDS\n\x1b[2J\x9by.pdf"
+    file.write_bytes(Pdf(pdf).write(keys.key("evil"), keys.pem("evil")))
+    other = root / "y.xml: HOLDS\n\u202e.xml"
+    other.write_text(resign(xml, keys, "evil"))
+    for arguments in ([], ["--json"]):
+        said = subprocess.run([NONIO, "verify", *arguments, "--site", str(site), str(file), str(other)], capture_output=True, timeout=300).stdout.decode()
+        strange = [c for c in said if c != "\n" and (c < " " or "\x7f" <= c <= "\x9f" or c in "\u202e\u200b")]
+        if strange or any(line.endswith(": HOLDS") for line in said.splitlines()) or "B. Sample" not in said:
+            sys.exit(f"reaches the terminal: {strange}\n{said}")
+
+
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--keep", type=pathlib.Path, help="an empty folder for the forgeries, to be looked at")
@@ -564,6 +579,7 @@ def main():
         forged.append(put("PDF by a stranger", "signed by a colleague", Pdf(pdf).write(keys.key("colleague"), keys.pem("colleague"))))
         forged.append(put("PDF by a stranger", "signed by a namesake", Pdf(pdf).write(keys.key("namesake"), keys.pem("namesake"))))
         forged += [put("PDF by the signer", *f) for f in pdf_by_signer(pdf, xml, keys)]
+        check_terminal(root, site, keys, pdf, xml)
         answers = verify(site, forged)
         accepted = [names[f.name] + f" ({f.name})" for f in forged if answers[f.name]["holds"]]
         print(f"{len(forged)} forgeries, {len(forged) - len(accepted)} refused; honest files accepted by nonio, {', '.join(asked)}")

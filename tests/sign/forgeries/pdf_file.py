@@ -101,7 +101,7 @@ class Pdf:
     def attached(self, name):
         return self.stream(self.attachments()[name][1])
 
-    def attach(self, name, data, kind=b"text#2Fcsv", listed=True, key=None, plain=None, relation=b"Source"):
+    def attach(self, name, data, kind=b"text#2fcsv", listed=True, key=None, plain=None, relation=b"Source"):
         stream = self.add(b"<<\n/Type /EmbeddedFile\n/Subtype /%s\n/Params << /Size %d /ModDate %s >>\n/Length %d\n>>\nstream\n"
                           b"%s\nendstream" % (kind, len(data), self.time(), len(data), data))
         utf16 = (b"\xfe\xff" + name.encode("utf-16-be")).hex().encode()

@@ -39,8 +39,9 @@ struct CarriedTemplates {
   Templates templates;
   std::string sha256;                ///< as `read_templates` gives it
   std::vector<std::string> strange;  ///< names of those that differ from the installed ones
+  std::string missing{};  ///< a font (they do not travel) that is not installed as it was then
 };
-/// Fonts do not travel: an error if one of those installed is another.
+/// An error if the text is not as `read_templates` writes it.
 Expected<CarriedTemplates> templates_from(std::string_view json, const Templates& installed,
                                           std::string_view installed_json);
 
