@@ -155,7 +155,7 @@ Expected<Content> recompute(const sign::Verified& v, std::string_view pdf, const
   Content content{{"content.values", State::fails, {}},
                   {"content.printed", State::not_checked, why_not_drawn(stated, context), false}};
   const bool draws = content.printed.says.empty();
-  const auto draw = [&](const Evaluated& e, bool) -> Expected<Certificate> {
+  const auto draw = [&](const Evaluated& e, std::vector<std::string>&) -> Expected<Certificate> {
     Certificate certificate = stated->certificate;
     const auto readings = readings_digest(e.inputs, folder);
     if (!readings) return fail(readings.error());

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "nonio/sdk/error.h"
 
@@ -15,9 +16,13 @@ struct NightState {
   bool force = false;
   bool resumed = false;
   std::uint64_t issued_before = 0;  ///< certificates in the register when it began
+  std::string site{};               ///< whose results they are, its folder
 };
 
-Expected<NightState> begin_night(const std::filesystem::path& out, bool force, bool dry_run,
+/// An error if the folder holds the results of another site that is still there: campaigns of both
+/// would be taken for one another's, and the summary would tell of one of them only.
+Expected<NightState> begin_night(const std::filesystem::path& out,
+                                 const std::filesystem::path& site, bool force, bool dry_run,
                                  std::uint64_t issued_so_far);
 Expected<void> end_night(const std::filesystem::path& out, const NightState& night);
 

@@ -10,6 +10,7 @@
 #include "nonio/host/register.h"
 #include "nonio/host/results_json.h"
 #include "recomputed.h"
+#include "traceability.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -61,7 +62,10 @@ bool Numbers::has_register() const {
 }
 
 Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& folder,
-                                    bool complete) const {
+                                    std::vector<std::string>& missing) const {
+  for (std::string& key : days_to_come(evaluated.campaign, today_))
+    missing.push_back(std::move(key));
+  const bool complete = missing.empty();
   if (!complete && !has_register()) return Certificate{};
   auto opened = Register::open(site_, context_.site.numbering);
   if (!opened) return fail(opened.error());

@@ -21,7 +21,7 @@ class Numbers {
 
   /// See `Draw`.
   Expected<Certificate> draw(const Evaluated& evaluated, const std::filesystem::path& folder,
-                             bool complete) const;
+                             std::vector<std::string>& missing) const;
   /// After signing: enters what is issued into the register, and gives the campaign what the
   /// register holds. Of what was issued before it is said if its numbers are others now.
   Expected<void> issue(Evaluated& evaluated) const;

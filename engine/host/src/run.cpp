@@ -162,7 +162,9 @@ class Runner {
     const fs::path folder = options_.site / c.folder;
     Evaluated evaluated = evaluate(
         folder, c.id, context_, [&](const std::string& s) { stage.set(s); },
-        [&](const Evaluated& e, bool complete) { return numbers_.draw(e, folder, complete); });
+        [&](const Evaluated& e, std::vector<std::string>& missing) {
+          return numbers_.draw(e, folder, missing);
+        });
     stage.set("signing");
     auto certified = sign_artifacts(evaluated, folder, context_, signer_, std::time(nullptr));
     if (certified) certified = numbers_.issue(evaluated);
@@ -451,8 +453,8 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   }
   const auto numbers = numbers_of(options, context);
   if (!numbers) return refuse(numbers.error().message);
-  const auto state =
-      begin_night(options.out, options.force, options.dry_run, issued_so_far(*numbers));
+  const auto state = begin_night(options.out, options.site, options.force, options.dry_run,
+                                 issued_so_far(*numbers));
   if (!state) return refuse(state.error().message);
   const std::size_t notes_so_far = night.notes.size();
   auto campaigns = survey({options.site, options.out, context, state->number, state->force,

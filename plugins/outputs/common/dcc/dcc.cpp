@@ -195,25 +195,42 @@ class Writer {
 
   void equipment() {
     const Instrument& i = in_.campaign.instrument;
-    if (i.model.empty()) return;
+    if (i.model.empty() && in_.campaign.sensors.empty()) return;
     xml_.open("dcc:measuringEquipments");
+    if (!i.model.empty())
+      one_equipment(
+          {"", i.maker, i.model, i.serial, i.calibrated, i.valid_until, i.certificate, i.issuer});
+    for (const Sensor& s : in_.campaign.sensors) one_equipment(s);
+    xml_.close();
+  }
+
+  void one_equipment(const Sensor& s) {
+    std::string name = s.model;
+    const auto add = [&](const std::string& before, const std::string& text) {
+      if (!text.empty()) name += (name.empty() ? "" : ", ") + before + text;
+    };
+    add("sensor of ",
+        s.measures == "material" || s.measures == "air" ? s.measures + " temperature" : s.measures);
+    add("certificate ", s.certificate);
+    add("issued by ", s.issuer);
+    add("calibrated ", s.calibrated);
+    add("valid until ", s.valid_until);
     xml_.open("dcc:measuringEquipment");
-    text("dcc:name", i.certificate.empty() ? i.model : i.model + ", certificate " + i.certificate);
-    if (!i.maker.empty()) {
+    text("dcc:name", name);
+    if (!s.maker.empty()) {
       xml_.open("dcc:manufacturer");
-      text("dcc:name", i.maker);
+      text("dcc:name", s.maker);
       xml_.close();
     }
-    xml_.element("dcc:model", i.model);
-    if (!i.serial.empty()) {
+    if (!s.model.empty()) xml_.element("dcc:model", s.model);
+    if (!s.serial.empty()) {
       xml_.open("dcc:identifications");
       xml_.open("dcc:identification", "refType=\"basic_serialNumber\"");
       xml_.element("dcc:issuer", "manufacturer");
-      xml_.element("dcc:value", i.serial);
+      xml_.element("dcc:value", s.serial);
       xml_.close();
       xml_.close();
     }
-    xml_.close();
     xml_.close();
   }
 

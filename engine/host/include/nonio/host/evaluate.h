@@ -67,9 +67,10 @@ struct Evaluated {
 /// Told what is about to be called, for the case that it does not come back.
 using Stage = std::function<void(const std::string&)>;
 
-/// What was issued for what is evaluated here, whatever is missing for it today; else, if it is
-/// `complete`, a number; else a certificate without one.
-using Draw = std::function<Expected<Certificate>(const Evaluated&, bool complete)>;
+/// What was issued for what is evaluated here, whatever is `missing` for it today; else, if nothing
+/// is, a number; else a certificate without one. Adds to `missing` what only the day tells.
+using Draw =
+    std::function<Expected<Certificate>(const Evaluated&, std::vector<std::string>& missing)>;
 
 /// One campaign from its folder to its artifacts; writes nothing. Without `draw` there is no
 /// certificate.
