@@ -76,7 +76,7 @@ def gantry_diagonals():
     for side, line in enumerate(Gantry.lines_of_x):
         curve = [round(1000.0 * (before.x(side, p) - before.x(side, 0.0))) for p in t]
         add("X%d" % (side + 1), "x%d.csv" % (side + 1), gantry_rows(steps_x, curve, Gantry.B_x, noise),
-            kind="axis", axis="X", at={"Y": line})
+            kind="axis", axis="X", at={"Y": line}, side=("master", "slave")[side])
     curve = [round(1000.0 * (before.y(p) - before.y(0.0))) for p in t]
     add("Y", "y.csv", gantry_rows(steps_y, curve, Gantry.B_y, noise), kind="axis", axis="Y")
     reversal = 0.8 * Gantry.B_x + 0.6 * Gantry.B_y
@@ -98,8 +98,8 @@ def gantry_diagonals():
         story, "13-gantry-diagonals", "Esempio Tredici S.p.A.", "Verona", "2026-04-02",
         {"maker": "Sample Machines", "model": "PG 12", "serial": "S-0113", "structure": "gantry",
          "control": "siemens-840d"},
-        {"X": linear(12000.0), "Y": linear(9000.0)}, measurements, environment=GOOD_ROOM,
-        analyses=["iso230-2", "diagonal-straightness"])
+        {"X": linear(12000.0, slave='"X2"'), "Y": linear(9000.0), "X2": {"kind": '"linear"'}}, measurements,
+        environment=GOOD_ROOM, analyses=["iso230-2", "diagonal-straightness"])
     return files
 
 

@@ -48,6 +48,7 @@ void print_json(const host::ImportReport& report, bool dry_run) {
     campaigns.push_back({{"id", c.id},
                          {"whole", c.whole()},
                          {"written", c.written},
+                         {"there", c.there},
                          {"lacks", c.lacks},
                          {"files", std::move(files)}});
   }
@@ -68,6 +69,10 @@ void print(const char* title, const std::vector<host::ImportReport::Passed>& lis
 
 void print(const host::ImportReport& report) {
   for (const host::ImportedCampaign& c : report.campaigns) {
+    if (c.there) {
+      std::cout << c.id << ": imported before, nothing to do\n";
+      continue;
+    }
     std::cout << c.id
               << (c.written   ? ": written"
                   : c.whole() ? ": whole"
@@ -152,7 +157,8 @@ Verb import_verb(Common& common) {
           "content.\n"
           "Every file is read as a night would read it; a campaign is written when nothing is "
           "missing.\n"
-          "Nothing that is there is touched.\n\n"
+          "Nothing that is there is touched; what was imported before needs nothing, and is no "
+          "error.\n\n"
           "Example: nonio import laser --rule '{machine}_{axis}_{date}.rtl' --out site --dry-run",
       .run = [arguments, &common] { return import_files(*arguments, common); }};
 }

@@ -5,6 +5,7 @@
 
 #include "campaign_verb.h"
 #include "nonio/host/files.h"
+#include "nonio/host/plan.h"
 #include "nonio/host/table_check.h"
 #include "nonio/sdk/format.h"
 #include "tables.h"
@@ -17,9 +18,44 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ProbeWish {
-  std::string folder, axis, out;
+  std::string folder, axis, out, control;
+  std::vector<std::string> settings;
   double feed = 1000.0;
 };
+
+/// The writer of part programs for a control of this name: heidenhain-tnc has that of heidenhain,
+/// a control without one of its own plain G-code.
+std::string writer_for(const std::string& control, const host::Plugins& plugins) {
+  const std::string family = control.substr(0, control.find('-'));
+  for (const Output& o : plugins.outputs())
+    if (!family.empty() && o.info.name == "program-" + family) return family;
+  return "gcode";
+}
+
+/// The part program of a probe, by the writer of all part programs.
+Expected<Artifact> program_of(const host::SignProbe& p, const Machine& machine, const ProbeWish& w,
+                              const std::map<std::string, std::string>& given,
+                              const host::Plugins& plugins) {
+  const Quantity at = position_of(p.rotary);
+  PointTable stops;
+  stops.columns = {{"start", at, {p.start}}, {"from", at, {p.from}}, {"to", at, {p.to}}};
+  Machine with_axis = machine;
+  if (with_axis.axis(p.axis) == nullptr)
+    with_axis.axes.push_back({.name = p.axis, .rotary = p.rotary});
+  auto settings = given;
+  settings["programs"] = "sign-probe";
+  settings["axes"] = p.axis;
+  settings[p.rotary ? "feed_deg_per_min" : "feed_mm_per_min"] = std::to_string(w.feed);
+  const std::string control = w.control.empty() ? writer_for(machine.control, plugins) : w.control;
+  auto files = host::write_programs(plugins, control, with_axis, stops, settings);
+  if (!files) return fail(files.error().front());
+  Artifact& program = files->front();
+  std::string ending = std::filesystem::path(program.name).extension().string();
+  if (ending == ".ngc") ending = ".nc";  // as these files have always been called
+  if (ending == ".h") ending = ".H";
+  program.name = "sign-probe-" + p.axis + ending;
+  return std::move(program);
+}
 
 Json probe_json(const host::SignProbe& p, const std::string& file) {
   const Quantity q = deviation_of(p.rotary);
@@ -65,7 +101,8 @@ int probe(const ProbeWish& w, const Common& common) {
   const auto& campaign = open.campaign();
   if (!w.axis.empty() && campaign.machine.axis(w.axis) == nullptr)
     return complain(verb, "--axis: the campaign has no axis " + w.axis);
-  const bool heidenhain = campaign.machine.control.rfind("heidenhain", 0) == 0;
+  const auto settings = settings_of(w.settings);
+  if (!settings) return complain(verb, settings.error().message);
   Json all = Json::array();
   std::vector<Artifact> files;
   bool good = true;
@@ -82,11 +119,12 @@ int probe(const ProbeWish& w, const Common& common) {
     }
     std::string file;
     if (!w.out.empty()) {
-      Artifact program = host::probe_program(*p, heidenhain, w.feed);
+      auto program = program_of(*p, campaign.machine, w, *settings, open.place->plugins);
+      if (!program) return complain(verb, text_of(program.error()));
       for (const Artifact& f : files)
-        if (f.name == program.name) program.name = m.id + "-" + program.name;
-      file = (std::filesystem::path(w.out) / program.name).string();
-      files.push_back(std::move(program));
+        if (f.name == program->name) program->name = m.id + "-" + program->name;
+      file = (std::filesystem::path(w.out) / program->name).string();
+      files.push_back(std::move(*program));
     }
     good = good && p->shows();
     all.push_back(probe_json(*p, file));
@@ -114,14 +152,24 @@ Verb sign_probe_verb(Common& common) {
           campaign_arguments(w->folder, common),
           {{"--axis", &w->axis, "Only this axis"},
            takes(Argument::Takes::folder, {"--out", &w->out, "Folder for the part programs"}),
-           {"--feed", &w->feed, "Feed of the programs, mm/min or deg/min (default 1000)"}}),
+           {"--feed", &w->feed, "Feed of the programs, mm/min or deg/min (default 1000)"},
+           {"--control", &w->control,
+            "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name "
+            "(default:\n"
+            "that of the campaign's control)"},
+           settings_argument(w->settings,
+                             "NAME=VALUE: an option of that writer, such as dwell_s=3; may be "
+                             "given several\n"
+                             "times")}),
       .footer =
           "The two stops are the targets between which the error changed most, both reached "
           "towards\n"
           "plus. Load the table, reference the axis, run the program, set the instrument to zero "
           "at\n"
           "the first stop (M0) and read it at the second. Near zero: the sign is right. Twice the\n"
-          "error: it is wrong. The error itself: no table is active.\n\n"
+          "error: it is wrong. The error itself: no table is active. DRY RUN FIRST: the program "
+          "moves\n"
+          "the axis in coordinates of the machine.\n\n"
           "Exit status: 0 every axis shows it; 1 an axis is too good or too short; 2 usage.\n\n"
           "Example: nonio plan sign-probe site/2026-11-rossi --out p",
       .run = [w, &common] { return probe(*w, common); }};

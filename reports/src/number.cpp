@@ -82,6 +82,14 @@ std::string unit_text(Quantity quantity) {
       return "arcsec/(°·h)";
     case Quantity::angular_expansion:
       return "arcsec/(°·K)";
+    case Quantity::deviation_per_reading:
+      return "µm/reading";
+    case Quantity::angle_per_reading:
+      return "arcsec/reading";
+    case Quantity::growth_per_reading:
+      return "µm/(m·reading)";
+    case Quantity::angular_growth_per_reading:
+      return "arcsec/(°·reading)";
     case Quantity::temperature:
       return "°C";
     default:

@@ -5,7 +5,7 @@ import json
 import math
 import unittest
 
-from bench import BenchTest, wave
+from bench import BenchTest, axis_csv, wave
 
 TARGETS = [50.0 * i for i in range(9)]
 
@@ -148,8 +148,31 @@ class Probe(BenchTest):
         self.assertAlmostEqual(p["wrong_sign_um"], 2.0 * p["without_table_um"], places=9)
         text = (self.site / "p" / "sign-probe-X.nc").read_text()
         self.assertEqual(text.count("M0\n"), 2)
-        self.assertEqual(text.splitlines()[1], "G1 X0.0000 F1000")
         self.assertTrue(text.endswith("M30\n"))
+        # It moves a machine: dry run first, unit and plane said, every offset and cycle switched off, a rest before it is read.
+        comments, code = text.split("G21 ", 1)
+        self.assertIn("(DRY RUN FIRST", comments)
+        self.assertIn("(positions are those of the machine: no offset may be active)", comments)
+        self.assertEqual(code.splitlines()[:4], ["G17 G90 G94 G40 G49 G80", "G61", "G54", "F1000"])
+        stops = ["G1 X%s\nG4 P5\nM0\n" % float(p[k]) for k in ("from_mm", "to_mm")]
+        self.assertTrue(code.endswith("F1000\nG1 X0.0\n" + "".join(stops) + "M30\n"), code)
+
+    def test_what_the_writer_of_programs_refuses_is_refused_here(self):
+        """X1 and a number behind it would be another position of X."""
+        self.one_axis(TARGETS, wave, wave, axis="X1")
+        done = self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", expect=2)
+        self.assertIn("axis X1: wanted a single letter", done.stderr)
+        self.assertFalse((self.site / "p").exists())
+
+    def test_dwell_and_writer_can_be_said(self):
+        self.one_axis(TARGETS, wave, wave, control="siemens-840d")
+        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", "--set", "dwell_s=3")
+        text = (self.site / "p" / "sign-probe-X.mpf").read_text()
+        self.assertIn("G710 G90 G94 G40 G500 D0\n", text)
+        self.assertIn("DRY RUN FIRST", text)
+        self.assertEqual(text.count("G4 F3\nM0\n"), 2)
+        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", "--control", "gcode")
+        self.assertIn("G21 ", (self.site / "p" / "sign-probe-X.nc").read_text())
 
     def test_the_probe_tells_a_wrong_sign(self):
         """The readings that it promises, from an axis with the table that it is about."""
@@ -165,8 +188,15 @@ class Probe(BenchTest):
         self.one_axis(TARGETS, wave, wave, control="heidenhain-tnc")
         self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
         lines = (self.site / "p" / "sign-probe-X.H").read_text().splitlines()
-        self.assertEqual(lines[0], "0 BEGIN PGM SIGN_PROBE MM")
-        self.assertEqual(sum(l.endswith("STOP") for l in lines), 2)
+        self.assertEqual(lines[0], "0 BEGIN PGM NONIO_sign_probe_X MM")
+        words = [l.split(" ", 1)[1] for l in lines]
+        self.assertIn("; DRY RUN FIRST, without instrument, at low override", words)
+        self.assertIn("TOOL CALL 0 Z", words)
+        moves = [w for w in words if w.startswith("L ")]
+        self.assertEqual(len(moves), 3)
+        self.assertTrue(all(w.endswith(" R0 F1000 M91") for w in moves), moves)
+        stops = [i for i, w in enumerate(words) if w == "STOP"]
+        self.assertEqual([words[i - 1] for i in stops], ["CYCL DEF 9.1 DWELL 5"] * 2)
 
     def test_an_axis_that_is_too_good_shows_nothing(self):
         noise = iter([0.3, -0.4, 0.1, 0.5, -0.2] * 100)
@@ -175,6 +205,82 @@ class Probe(BenchTest):
         self.assertFalse(p["shows"])
         self.one_axis([0.0, 10.0], wave, wave)
         self.assertIn("3 targets", self.nonio("plan", "sign-probe", self.folder, expect=1).stderr)
+
+
+class Gantry(BenchTest):
+    """X has a scale on each side: master and slave are two axes of the control, and have a table each."""
+
+    def gantry(self, axis="", sides=("", ""), extra="", control="siemens-840d", structure="gantry"):
+        text = ('format = 1\n[campaign]\nid = "c"\n[machine]\nstructure = "%s"\ncontrol = "%s"\n[machine.axes.X]\n'
+                'kind = "linear"\n%s\n[machine.axes.Y]\nkind = "linear"\n' % (structure, control, axis))
+        for name, side, at, size in (("X1", sides[0], 300, 1.0), ("X2", sides[1], 8700, -2.0)):
+            error = lambda x, size=size: size * wave(x)
+            (self.folder / (name + ".csv")).write_text(axis_csv(TARGETS, error, error))
+            text += ('[[measurement]]\nid = "%s"\nkind = "axis"\naxis = "X"\nfile = "%s.csv"\nat = { Y = %d }\n%s\n'
+                     % (name, name, at, 'side = "%s"' % side if side else ""))
+        (self.folder / "campaign.toml").write_text(text + '[run]\nanalyses = ["iso230-2"]\noutputs = ["%s"]\n' % control + extra)
+
+    def tables(self, control="siemens-840d"):
+        results = self.run_site(expect=None)
+        table = next(t for t in results["tables"] if t["plugin"] == control) if "tables" in results else {"findings": []}
+        return ({p.name: p.read_text() for p in (self.out / "c").glob(control + "-*")},
+                [f["id"] for f in table["findings"]], results)
+
+    def test_nothing_is_written_before_the_sides_are_said(self):
+        self.gantry()
+        files, findings, _ = self.tables()
+        self.assertEqual(files, {})
+        self.assertEqual(findings, ["table.gantry-sides"])
+        # One of them said is not enough.
+        self.gantry('slave = "X2"', ("", "slave"))
+        self.assertEqual(self.tables()[:2], ({}, ["table.gantry-sides"]))
+
+    def test_master_and_slave_have_a_table_each(self):
+        said = '[options.siemens-840d]\naxes = ["X2 number=4"]\n'
+        self.gantry('slave = "X2"', ("master", "slave"), said)
+        files, findings, results = self.tables()
+        self.assertNotIn("table.two-measurements", findings)
+        self.assertNotIn("table.gantry-sides", findings)
+        master, slave = files["siemens-840d-X-EEC.ini"], files["siemens-840d-X2-EEC.ini"]
+        self.assertIn("%_N_AX1_EEC_INI", master)
+        self.assertNotIn("AX4", master)
+        self.assertIn("%_N_AX4_EEC_INI", slave)
+        self.assertNotIn("AX1", slave)
+        entries = [[float(l.split("=")[1]) for l in text.splitlines() if l.startswith("$AA_ENC_COMP[")]
+                   for text in (master, slave)]
+        for a, b in zip(*entries):  # each from its own readings: the second side errs by -2 times the first
+            self.assertAlmostEqual(b, -2.0 * a, delta=1.1e-6)
+        # Each is predicted for the readings of its own side.
+        after = {p["measurement"]: p["predicted"] for t in results["tables"] for p in t["predictions"] if p["name"] == "E"}
+        self.assertEqual(set(after), {"X1", "X2"})
+        self.assertTrue(all(abs(v) < 0.01 for v in after.values()), after)
+
+    def test_a_slave_without_a_number_gets_no_table_under_a_guessed_one(self):
+        self.gantry('slave = "X2"', ("master", "slave"))
+        files, findings, _ = self.tables()
+        self.assertIn("table.slave-number", findings)
+        self.assertIn("siemens-840d-X-EEC.ini", files)
+        self.assertFalse([n for n in files if "X2" in n])
+        # Its place among the machine's axes says it too.
+        self.gantry('slave = "X2"\n[machine.axes.Z]\nkind = "linear"\n[machine.axes.X2]\nkind = "linear"', ("master", "slave"))
+        self.assertIn("%_N_AX3_EEC_INI", self.tables()[0]["siemens-840d-X2-EEC.ini"])
+
+    def test_a_control_that_counts_no_axes_needs_the_name_only(self):
+        self.gantry('slave = "X2"', ("master", "slave"), control="heidenhain-tnc")
+        files, findings, _ = self.tables("heidenhain-tnc")
+        self.assertNotIn("table.slave-number", findings)
+        self.assertIn("heidenhain-tnc-X2.COM", files)
+
+    def test_a_side_wants_the_name_of_the_second_axis(self):
+        self.gantry("", ("master", "slave"))
+        done = self.nonio("run", self.site, "--out", self.out, expect=1)
+        self.assertIn("wanted [machine.axes.X] slave", done.stderr + (self.out / "c" / "results.json").read_text())
+
+    def test_two_lines_of_another_machine_are_a_choice_as_before(self):
+        self.gantry(structure="bridge")
+        files, findings, _ = self.tables()
+        self.assertIn("table.two-measurements", findings)
+        self.assertEqual(len([n for n in files if n.endswith("EEC.ini")]), 2)
 
 
 if __name__ == "__main__":

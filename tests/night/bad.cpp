@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An analysis and an output that misbehave in the way that the option `how` names.
+// An analysis, an output and a reader that misbehave in the way that the option `how` names.
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -54,11 +54,33 @@ Expected<OutputResult> write(const OutputInput& in) {
   return result;
 }
 
+/// Two readings of an axis, and what a reader may get wrong that others index by or divide by.
+Expected<Observations> read(const ReadInput& in) {
+  const std::string how = in.options.text("how");
+  Observations o;
+  o.measurement = in.measurement.id;
+  o.axes = {{in.measurement.axis, false, {0.0, 0.1}, {1, 1}}};
+  o.lines = {{in.measurement.id, {1.0, 0.0, 0.0}}};
+  o.deviation = {0.0, 1e-6};
+  o.run = {1, 1};
+  if (how == "line") o.line = {0, 4000000};
+  if (how == "no-lines") o.lines.clear();
+  if (how == "u-zero") o.u = {1e-6, 0.0};
+  if (how == "u-nan") o.u = {1e-6, std::numeric_limits<double>::quiet_NaN()};
+  if (how == "approach") o.axes.front().approach = {1, 7};
+  if (how == "sense") o.lines.front().sense[0] = std::numeric_limits<double>::infinity();
+  return o;
+}
+
 const std::vector<Option> options = {{"how", std::string("well"), "", "What to do wrong"}};
 
 }  // namespace
 
 NONIO_PLUGIN(registry) {
+  registry.add(Reader{{"bad-reader", "1", "Misreads", options},
+                      [](std::string_view) { return false; },
+                      [](std::string_view kind) { return kind == "axis"; },
+                      read});
   registry.add(Analysis{{"bad-analysis", "1", "Misbehaves", options},
                         [](const Campaign&, const Measurement&) { return true; },
                         analyse});

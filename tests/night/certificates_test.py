@@ -178,6 +178,45 @@ class Certificates(SigningTest):
         self.night()
         self.assertEqual(self.states(), {number(1): "issued"})
 
+    def test_days_that_cannot_be_stop_the_certificate(self):
+        """What makes a measurement traceable has to hold on the day on which it was made: 2026-11-03."""
+        instrument = '[instrument]\nserial = "L-1"\n%s\n'
+        sensor = '[[sensor]]\nmeasures = "pressure"\nserial = "P-7"\n%s\n'
+        later = time.strftime("%Y-%m-%d", time.localtime(time.time() + 3 * 86400))
+        cases = {
+            "later": (instrument % "calibrated = 2026-11-04", "", "traceability.calibrated-later"),
+            "ago": (instrument % "calibrated = 2015-11-02", "", "traceability.calibrated-long-ago"),
+            "expired": (instrument % "calibrated = 2026-01-02\nvalid_until = 2026-11-02", "", "traceability.calibration-expired"),
+            "during": (instrument % "calibrated = 2026-01-02\nvalid_until = 2026-11-04", "end_date = 2026-11-05\n",
+                       "traceability.calibration-expired"),
+            "sensor": (sensor % "calibrated = 2026-11-04", "", "traceability.calibrated-later"),
+            "sensor-ago": (sensor % "calibrated = 2021-11-04", "", "traceability.calibrated-long-ago"),
+            "received": ("", "received = 2026-11-04\n", "traceability.received-later"),
+            "future": ("", f"end_date = {later}\n", "certificate.incomplete"),
+        }
+        good = {
+            "day": (instrument % "calibrated = 2026-11-03\nvalid_until = 2026-11-03", ""),
+            "two-years": (instrument % "calibrated = 2024-11-03", ""),
+            "stated": (instrument % "calibrated = 2015-11-02\nvalid_until = 2027-01-01" + sensor % "calibrated = 2026-01-02",
+                       "received = 2026-11-03\n"),
+        }
+        for name, (tables, keys, *_) in (cases | good).items():
+            folder = self.signed_campaign(name)
+            text = (folder / "campaign.toml").read_text("utf-8").replace("date =", keys + "date =", 1)
+            (folder / "campaign.toml").write_text(text + tables, encoding="utf-8")
+        self.night()
+        self.assertEqual(sorted(e["campaign"] for e in self.entries()), sorted(good))
+        self.assertEqual(self.ids("failed"), [])
+        for name, (_, _, finding) in cases.items():
+            self.assertFalse(self.pdf(name).exists(), name)
+            self.assertIn(name, self.ids("attention"))
+            self.assertIsNotNone(self.finding(name, finding), name)
+            self.assertIsNotNone(self.finding(name, "certificate.incomplete"), name)
+        evidence = self.finding("sensor", "traceability.calibrated-later")["evidence"]
+        self.assertEqual((evidence["instrument"], evidence["calibrated"], evidence["measured"]),
+                         ("sensor pressure P-7", "2026-11-04", "2026-11-03"))
+        self.assertIn(f"campaign.end_date ({later} is still to come", self.finding("future", "certificate.incomplete")["evidence"]["missing"])
+
     def test_a_number_that_was_not_issued_says_why_and_is_used_again(self):
         self.signed_campaign("c1")
         for how, why in (("crash", "signal 11"), ("fail", "an error on purpose"), ("leave unsigned", "nothing that is signed")):

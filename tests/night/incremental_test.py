@@ -39,6 +39,31 @@ class Incremental(NightTest):
         self.run_nonio("--jobs", "3", out=other, expect=0)
         self.assertEqual(tree(self.out), tree(other))
 
+    def test_an_output_folder_is_of_one_site(self):
+        """Campaigns of two sites would be taken for one another's, and the summary tells of one only."""
+        self.run_nonio(expect=0)
+        before = tree(self.out)
+        other = self.root / "other-site"
+        shutil.copytree(self.site, other)
+        for more in ([], ["--force"], ["--dry-run"]):
+            done = subprocess.run([NONIO, "run", str(other), "--out", str(self.out), *more], capture_output=True,
+                                  text=True, check=False)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("holds the results of the site " + str(self.site.resolve()), done.stderr)
+            self.assertEqual(tree(self.out), before)
+        # The same site by another name, or moved, is no other one.
+        link = self.root / "link"
+        link.symlink_to(self.site)
+        for site in (link, self.site):
+            done = subprocess.run([NONIO, "run", str(site), "--out", str(self.out)], capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        shutil.rmtree(other)
+        link.unlink()
+        self.site.rename(other)
+        done = subprocess.run([NONIO, "run", str(other), "--out", str(self.out)], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.ids("unchanged"), ["a", "b", "c"])
+
     def test_reasons(self):
         a = self.site / "a"
         rows = (

@@ -21,6 +21,51 @@ class Input(NightTest):
         self.assertIn("second", message)
         self.assertEqual(self.ids("done"), ["other"])
 
+    def test_targets_that_differ_in_a_last_digit_are_one(self):
+        """What a file computed: two targets of one reading each would leave A, B and R without a value."""
+        run = '[run]\nanalyses = ["iso230-2"]\noutputs = []\n'
+        for name, shift in (("clean", 0.0), ("digit", 1e-9), ("micron", 1e-3)):
+            self.campaign(name, run=run, seed="clean")
+            path = self.site / name / "x.csv"
+            rows = path.read_text("utf-8").splitlines()
+            target = rows[0].split(",").index("target_mm")
+            for i in range(1, len(rows), 2):  # every other reading
+                cells = rows[i].split(",")
+                if cells[0].isdigit():
+                    cells[target] = "%.12f" % (float(cells[target]) + shift)
+                    rows[i] = ",".join(cells)
+            path.write_text("\n".join(rows) + "\n", encoding="utf-8")
+        self.run_nonio(expect=0)
+        results = {name: self.results(name) for name in ("clean", "digit", "micron")}
+        values = {name: {k: v["value"] for k, v in r["analyses"][0]["values"].items()} for name, r in results.items()}
+        self.assertIn("A", values["clean"])
+        self.assertEqual(values["digit"], values["clean"])
+        points = {name: len(r["analyses"][0]["points"]) for name, r in results.items()}
+        self.assertEqual(points["digit"], points["clean"])
+        self.assertTrue([n for n in results["digit"]["notes"] if "within 0.0001 mm (0.02 arcsec)" in n])
+        self.assertNotIn("notes", results["clean"])
+        # A micrometre is another target, and stays one.
+        self.assertGreater(points["micron"], points["clean"])
+
+    def test_what_a_spreadsheet_calls_missing_is_missing(self):
+        self.campaign("good", run='[run]\nanalyses = ["iso230-2"]\noutputs = []\n')
+        path = self.site / "good" / "x.csv"
+        rows = path.read_text("utf-8").splitlines()
+        deviation = next(i for i, c in enumerate(rows[0].split(",")) if c.startswith("deviation"))
+        taken = len(rows) - 1
+        for row, word in ((3, "#N/A"), (5, "#N/D"), (7, "#NV"), (9, "#n/a")):
+            cells = rows[row].split(",")
+            cells[deviation] = word
+            rows[row] = ",".join(cells)
+        # In a file whose first column is the reading, it is no comment either.
+        swapped = [",".join([r.split(",")[deviation]] + [c for i, c in enumerate(r.split(",")) if i != deviation]) for r in rows]
+        for text in (rows, swapped):
+            path.write_text("\n".join(text) + "\n", encoding="utf-8")
+            self.run_nonio("--force", expect=0)
+            findings = {f["id"]: f for f in self.results("good")["analyses"][0]["findings"]}
+            evidence = findings["readings.missing"]["evidence"]
+            self.assertEqual((evidence["missing"], evidence["taken"]), (4, taken - 4))
+
     def test_broken_manifest_names_the_line(self):
         self.campaign("bad", text=manifest("bad").replace("kind = \"linear\"", "kind = linear"))
         self.campaign("good")

@@ -56,6 +56,25 @@ class Isolation(NightTest):
         self.assertFalse([p for p in other.rglob("*") if "escaped" in p.name])
         self.assertFalse(os.path.exists("/tmp/escaped.txt"))
 
+    def test_what_a_reader_gives_is_checked_before_anybody_indexes_by_it(self):
+        expected = {
+            "line": "reading 2 of line 4000000; wanted 0 to 0",
+            "no-lines": "readings of no line; wanted one line at least",
+            "u-zero": "an uncertainty of a reading that is not a number above 0",
+            "u-nan": "an uncertainty of a reading that is not a number above 0",
+            "approach": "an approach that is none of +1, -1 and 0",
+            "sense": "a direction of sensing that is not a number",
+            "well": None,
+        }
+        for how in expected:
+            self.campaign(f"reader-{how}", run='[run]\nanalyses = ["iso230-2"]\noutputs = []\n',
+                          extra='[[measurement]]\nid = "Y"\nkind = "axis"\naxis = "X"\nfile = "x.csv"\n'
+                                f'reader = "bad-reader"\n[options.bad-reader]\nhow = "{how}"\n')
+        self.run_nonio("--plugin-path", str(PLUGINS / "bad"), expect=1)
+        for how, words in expected.items():
+            errors = [e["message"] for e in self.results(f"reader-{how}")["errors"]]
+            self.assertEqual(errors, [] if words is None else ["reader bad-reader gave " + words], how)
+
     @unittest.skipIf("NONIO_TEST_NO_MEMORY_LIMIT" in os.environ, "nothing stops the parser there")
     def test_a_manifest_that_brings_its_parser_down(self):
         (self.site / "site.toml").write_text("[limits]\nmemory_MB = 150\n")

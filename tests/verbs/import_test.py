@@ -116,6 +116,24 @@ class Import(unittest.TestCase):
         self.assertIn("is there; it is left as it is", said["campaigns"][0]["lacks"][0])
         self.assertEqual(manifest.read_text(encoding="utf-8"), "mine")
 
+    def test_a_second_time_there_is_nothing_to_do(self):
+        self.file("FP12_X_20240302.rtl", rtl([1, 2, 3]))
+        self.run_import()
+        manifest = self.site / "2024-03-02-fp12/campaign.toml"
+        manifest.write_text(manifest.read_text("utf-8") + '[run]\noutputs = ["json"]\n', encoding="utf-8")
+        before = {p: p.read_bytes() for p in self.site.rglob("*") if p.is_file()}
+        for more in ((), ("--dry-run",), ("--partial",)):
+            said = self.run_import(*more)["campaigns"][0]
+            self.assertEqual((said["there"], said["written"], said["whole"], said["lacks"]), (True, False, True, []))
+        self.assertEqual({p: p.read_bytes() for p in self.site.rglob("*") if p.is_file()}, before)
+        # A file that came later, or another one of that name, is no repetition.
+        self.file("FP12_Y_20240302.rtl", rtl([1, 2, 4]))
+        self.assertIn("is there; it is left as it is", self.run_import(status=1)["campaigns"][0]["lacks"][0])
+        (self.source / "FP12_Y_20240302.rtl").unlink()
+        self.file("FP12_X_20240302.rtl", rtl([1, 2, 9]))
+        self.assertIn("is there; it is left as it is", self.run_import(status=1)["campaigns"][0]["lacks"][0])
+        self.assertEqual({p: p.read_bytes() for p in self.site.rglob("*") if p.is_file()}, before)
+
     def test_a_link_for_a_campaign_is_not_followed(self):
         self.file("FP12_X_20240302.rtl", rtl([1, 2, 3]))
         self.site.mkdir()

@@ -2,6 +2,7 @@
 """compare, explain, model on machines with several axes: the samples' stories, what is refused."""
 import json
 import pathlib
+import re
 import shutil
 import unittest
 
@@ -45,6 +46,24 @@ class Space(VerbTest):
         self.assertLess(abs(square["value"] - 12.0), 0.5)  # slopes of both curves belong to it
         # Odd parts of both on two diagonals: what is not in the data is not claimed.
         self.assertTrue(any("cannot be told" in w and "straightness" in w for w in said["warnings"]))
+
+    def test_the_pitch_of_the_axis_that_moves_is_not_called_unstated(self):
+        """A straightness has the phase of the one screw that turns; diagonals have none, and are not told to state one."""
+        def pages(sample, effects):
+            self.sample(sample)
+            path = self.folder / "campaign.toml"
+            text = re.sub(r"\n\[(model|run)\]\n[^\[]*", "\n", path.read_text())
+            path.write_text(text + f'\n[model]\neffects = {json.dumps(effects)}\n[run]\nanalyses = ["model-fit"]\n'
+                            'outputs = ["model-html"]\n')
+            out = self.site.parent / "out"
+            self.nonio("run", self.site, "--out", out, "--force", expect=None)
+            return {p.name: p.read_text("utf-8") for p in (out / sample).glob("*.html")}
+
+        straight = next(t for n, t in pages("12-straightness", ["straightness:EYX"]).items() if "EYX" in n)
+        self.assertEqual(float(re.search(r'"period":\s*([\d.]+)', straight)[1]), 10.0)
+        for text in pages("17-straight-or-square", ["squareness:XY"]).values():
+            self.assertNotIn("Screw pitch not stated", text)
+            self.assertIn("or several axes move", text)
 
     def test_on_one_column_it_is_yaw(self):
         self.sample("18-one-column")

@@ -13,6 +13,7 @@
 #include "nonio/host/formula.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
+#include "targets.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -106,6 +107,13 @@ class CampaignReader {
     if (auto sound = check(*observations); !sound)
       return fail(who + " gave " + sound.error().message);
     if (auto excluded = exclude(m, *observations); !excluded) return excluded;
+    if (observations->missing > 0 && m.kind != "axis")  // of an axis its analyses say it
+      observations->notes.push_back(
+          {"readings.not-taken",
+           {{"missing", static_cast<double>(observations->missing), Quantity::count}}});
+    if (const std::size_t moved = join_targets(*observations); moved > 0)
+      observations->notes.push_back(
+          {"targets.joined", {{"readings", static_cast<double>(moved), Quantity::count}}});
     into = std::move(*observations);
     for (Remark note : into.notes) {
       note.measurement = m.id;
@@ -171,6 +179,30 @@ class CampaignReader {
     for (const auto& axis : o.axes)
       if (!std::all_of(axis.position.begin(), axis.position.end(), finite))
         return fail("a position that is not a number");
+    return check_lines(o);
+  }
+
+  /// What is read by index, and what is divided by: wrong numbers here would be read past the end.
+  static Expected<void> check_lines(const Observations& o) {
+    if (o.size() == 0) return {};
+    if (o.lines.empty()) return fail("readings of no line; wanted one line at least");
+    for (std::size_t i = 0; i < o.line.size(); ++i)
+      if (o.line[i] >= o.lines.size())
+        return fail("reading " + std::to_string(i + 1) + " of line " + std::to_string(o.line[i]) +
+                    "; wanted 0 to " + std::to_string(o.lines.size() - 1));
+    const auto direction = [](const std::array<double, 3>& s) {
+      return std::all_of(s.begin(), s.end(), [](double x) { return std::isfinite(x); });
+    };
+    if (!std::all_of(o.sense.begin(), o.sense.end(), direction) ||
+        !std::all_of(o.lines.begin(), o.lines.end(),
+                     [&](const Observations::Line& l) { return direction(l.sense); }))
+      return fail("a direction of sensing that is not a number");
+    if (!std::all_of(o.u.begin(), o.u.end(), [](double u) { return std::isfinite(u) && u > 0.0; }))
+      return fail("an uncertainty of a reading that is not a number above 0");
+    const auto way = [](std::int8_t a) { return a >= -1 && a <= 1; };
+    for (const auto& axis : o.axes)
+      if (!std::all_of(axis.approach.begin(), axis.approach.end(), way))
+        return fail("an approach that is none of +1, -1 and 0");
     return {};
   }
 

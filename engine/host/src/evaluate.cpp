@@ -13,6 +13,7 @@
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
 #include "nonio/sdk/format.h"
+#include "traceability.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -334,6 +335,9 @@ class CampaignRun {
       return numbered->output.lacks(input(*numbered));
     });
     if (!missing) return report(missing.error());
+    OutputResult incomplete;
+    incomplete.findings = traceability_findings(out_.campaign);
+    for (const Finding& f : incomplete.findings) missing->push_back(reason_of(f));
     if (draw_) {
       auto drawn = draw_(out_, *missing);
       if (!drawn) {
@@ -346,12 +350,15 @@ class CampaignRun {
       }
     }
     if (!missing->empty() && !out_.certificate) {
-      OutputResult incomplete;
       incomplete.findings.push_back({.id = "certificate.incomplete",
                                      .attention = true,
                                      .texts = {{"missing", list(*missing)}}});
       keep(info, std::move(incomplete));
     }
+  }
+
+  std::string reason_of(const Finding& f) const {
+    return finding_text(context_.templates, "en", f, "title") + " (" + f.id + ")";
   }
 
   static std::string list(const std::vector<std::string>& names) {

@@ -155,6 +155,12 @@ class Importer {
                                "\"; say it in the rule: campaign = \"{date}-{machine}\"");
     std::set<std::string> names, ids;
     for (const Found& f : found) campaign.files.push_back(file_of(f, names, ids));
+    if (is_campaign_id(id) && is_there(wish_.out / id, campaign, found)) {
+      campaign.there = true;
+      for (ImportedFile& file : campaign.files) file.lacks.clear();
+      report_.campaigns.push_back(std::move(campaign));
+      return {};
+    }
     const std::string text = manifest_of(campaign, found);
     check(campaign, found, text);
     std::error_code error;
@@ -174,6 +180,28 @@ class Importer {
     }
     report_.campaigns.push_back(std::move(campaign));
     return {};
+  }
+
+  /// Whether a folder has all these files, and its manifest a measurement of each: imported before,
+  /// and perhaps filled in since.
+  static bool is_there(const fs::path& folder, const ImportedCampaign& campaign,
+                       const std::vector<Found>& found) {
+    std::error_code error;
+    if (!fs::is_directory(fs::symlink_status(folder, error))) return false;
+    const auto text = read_file(folder / manifest_name);
+    const auto manifest = text ? parse_manifest(*text, manifest_name)
+                               : Checked<Manifest>(tl::unexpected(std::vector<Error>{}));
+    if (!manifest || manifest->campaign.id != campaign.id) return false;
+    const auto& measurements = manifest->campaign.measurements;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const std::string& name = campaign.files[i].name;
+      const bool measured = std::any_of(measurements.begin(), measurements.end(),
+                                        [&](const Measurement& m) { return m.file == name; });
+      const auto path = path_inside(folder, name);
+      const auto bytes = measured && path ? read_file(*path) : Expected<std::string>(fail(""));
+      if (!bytes || *bytes != found[i].bytes) return false;
+    }
+    return true;
   }
 
   ImportedFile file_of(const Found& f, std::set<std::string>& names,

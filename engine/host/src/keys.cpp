@@ -23,6 +23,9 @@ constexpr Choice axis_kinds[] = {{"linear"}, {"rotary"}};
 constexpr Words linear[] = {"linear"}, rotary[] = {"rotary"};
 constexpr When if_linear{"kind", linear}, if_rotary{"kind", rotary};
 
+constexpr Choice sides[] = {{"master"}, {"slave"}};
+constexpr Words axis_runs[] = {"axis"};
+
 constexpr Key axis_keys[] = {
     {.name = "kind",
      .holds = text,
@@ -52,6 +55,11 @@ constexpr Key axis_keys[] = {
      .holds = number,
      .help = "Coefficient of thermal expansion of the scale or of the machine.",
      .unit = "um/(m K)",
+     .only = if_linear},
+    {.name = "slave",
+     .holds = text,
+     .help = "Of a gantry axis: name of the control's axis that drives the second side; its table "
+             "is made of the measurement with side = \"slave\".",
      .only = if_linear},
     {.name = "tolerance_um",
      .holds = number_table,
@@ -131,6 +139,13 @@ constexpr Key instrument_keys[] = {
     {.name = "certificate",
      .holds = text,
      .help = "Number of the calibration certificate of the measuring instrument."},
+    {.name = "issuer",
+     .holds = text,
+     .help = "Laboratory that issued the calibration certificate of the measuring instrument."},
+    {.name = "valid_until",
+     .holds = date,
+     .help = "Last day on which that calibration holds; without it two years from its day. A "
+             "certificate needs it to hold on the day of the measurement."},
     {.name = "U_fixed_um",
      .holds = number,
      .help = "Expanded uncertainty (k = 2) of the instrument: the part that does not depend on "
@@ -150,6 +165,28 @@ constexpr Key instrument_keys[] = {
      .unit = "arcsec",
      .wanted = not_negative,
      .least = 0.0},
+};
+
+constexpr Choice measured_by_sensor[] = {{"material"}, {"air"}, {"pressure"}, {"humidity"}};
+
+constexpr Key sensor_keys[] = {
+    {.name = "measures",
+     .holds = text,
+     .help = "What the sensor measures: temperature of the machine's material or of the air, "
+             "pressure, humidity.",
+     .required = true,
+     .choices = measured_by_sensor},
+    {.name = "maker", .holds = text, .help = "Maker of the sensor."},
+    {.name = "model", .holds = text, .help = "Model of the sensor."},
+    {.name = "serial", .holds = text, .help = "Serial number of the sensor."},
+    {.name = "calibrated", .holds = date, .help = "Day on which the sensor was calibrated."},
+    {.name = "valid_until",
+     .holds = date,
+     .help = "Last day on which that calibration holds; without it two years from its day."},
+    {.name = "certificate",
+     .holds = text,
+     .help = "Number of the calibration certificate of the sensor."},
+    {.name = "issuer", .holds = text, .help = "Laboratory that issued that certificate."},
 };
 
 constexpr Key environment_keys[] = {
@@ -244,6 +281,12 @@ constexpr Key measurement_keys[] = {
      .help = "Which of two tests was made before and which after the machine was adjusted, for "
              "the certificate.",
      .choices = adjustments},
+    {.name = "side",
+     .holds = text,
+     .help = "Of a gantry axis with a scale on each side: on which one this line lies. Each side "
+             "has a table of its own.",
+     .only = {"kind", axis_runs},
+     .choices = sides},
     {.name = "about",
      .holds = text,
      .help = "The direction about which the axis turns while it moves (yaw of X: Z), right-handed "
@@ -587,6 +630,11 @@ constexpr Key campaign_file_keys[] = {
      .holds = table,
      .help = "The measuring instrument.",
      .keys = instrument_keys},
+    {.name = "sensor",
+     .holds = tables,
+     .help = "A sensor of temperature, pressure or humidity: an instrument of its own, with a "
+             "calibration of its own.",
+     .keys = sensor_keys},
     {.name = "environment",
      .holds = table,
      .help = "What the uncertainty budget needs beside the instrument: full ranges of what "

@@ -66,6 +66,9 @@ Axis read_axis(const std::string& name, TableReader& reader) {
   } else {
     axis.screw_pitch = reader.number("screw_pitch_mm", mm);
     axis.expansion = reader.number("expansion_um_per_m_K", um);
+    axis.slave = reader.text("slave");
+    if (axis.slave == axis.name && !axis.slave.empty())
+      reader.error("slave", "wanted another axis than " + axis.name + ", which is the master");
   }
   for (const auto& [result, limit] : axis.rotary ? reader.number_table("tolerance_arcsec", arcsec)
                                                  : reader.number_table("tolerance_um", um))
@@ -100,11 +103,31 @@ Instrument read_instrument(TableReader& top) {
   instrument.serial = reader->text("serial");
   instrument.calibrated = reader->date("calibrated");
   instrument.certificate = reader->text("certificate");
+  instrument.issuer = reader->text("issuer");
+  instrument.valid_until = reader->date("valid_until");
   instrument.U_fixed = reader->number("U_fixed_um", um);
   instrument.U_per_length = reader->number("U_per_m_um", um);
   instrument.U_angle = reader->number("U_arcsec", arcsec);
   reader->finish();
   return instrument;
+}
+
+std::vector<Sensor> read_sensors(TableReader& top) {
+  std::vector<Sensor> sensors;
+  for (TableReader& reader : top.tables("sensor")) {
+    Sensor s;
+    s.measures = reader.text("measures");
+    s.maker = reader.text("maker");
+    s.model = reader.text("model");
+    s.serial = reader.text("serial");
+    s.calibrated = reader.date("calibrated");
+    s.valid_until = reader.date("valid_until");
+    s.certificate = reader.text("certificate");
+    s.issuer = reader.text("issuer");
+    reader.finish();
+    sensors.push_back(std::move(s));
+  }
+  return sensors;
 }
 
 Environment read_environment(TableReader& top) {
@@ -189,6 +212,7 @@ Measurement read_measurement(TableReader& reader) {
   m.axis = reader.text("axis");
   m.lateral = reader.text("lateral");
   m.adjustment = reader.text("adjustment");
+  if (m.kind == "axis") m.side = reader.text("side");
   if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
     reader.error("lateral", "wanted another axis than " + m.axis +
                                 ", which moves: along it the deviation is one of positioning");
@@ -218,6 +242,10 @@ void read_measurements(TableReader& top, Campaign& campaign, bool plans) {
       reader.error("id", "\"" + m.id + "\" is there twice");
     if (!m.axis.empty() && campaign.machine.axis(m.axis) == nullptr)
       campaign.machine.axes.push_back(Axis{.name = m.axis, .rotary = rotary_by_name(m.axis)});
+    if (const Axis* axis = campaign.machine.axis(m.axis);
+        m.side == "slave" && axis != nullptr && axis->slave.empty())
+      reader.error("side", "wanted [machine.axes." + m.axis +
+                               "] slave, the name of the control's axis on that side");
     campaign.measurements.push_back(std::move(m));
   }
 }
@@ -283,6 +311,7 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
   campaign.machine = read_machine(top);
   restore_axis_order(*root, campaign.machine);
   campaign.instrument = read_instrument(top);
+  campaign.sensors = read_sensors(top);
   campaign.environment = read_environment(top);
   if (auto reader = top.table("certificate")) {
     campaign.certificate = read_certificate(*reader);

@@ -143,19 +143,34 @@ void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& wh
       {part.terms.empty() ? "" : part.terms.back().name(), whole.fit.rms, whole.cv_rms});
 }
 
+/// The axis that moved, if only one did in all the readings; a line has the phase of no other
+/// screw.
+const Axis* one_moved(const model::Part& part) {
+  const Axis* moved = nullptr;
+  for (const auto& column : part.table.axes) {
+    const auto [low, high] = std::minmax_element(column.position.begin(), column.position.end());
+    if (low == high || !(*low < *high)) continue;
+    const auto axis = std::find_if(part.axes.begin(), part.axes.end(),
+                                   [&](const Axis& a) { return a.name == column.axis; });
+    if (moved != nullptr || axis == part.axes.end()) return nullptr;
+    moved = &*axis;
+  }
+  return moved;
+}
+
 /// The value that documents draw.
 ModelFit value_of(const PartModel& part, const model::Explanation& e) {
-  const Axis& axis = part.part.axes.front();
-  const bool alone = part.part.kind == model::Part::Kind::axis;
+  const bool balls = part.part.kind == model::Part::Kind::balls;
+  const Axis* const axis = balls ? nullptr : one_moved(part.part);
   ModelFit out;
   out.part = out.axis = part.part.name;
   out.measurements = part.part.measurements;
   out.rotary = part.position() == Quantity::angle;
   out.angular = part.part.table.angular;
-  if (alone && axis.rotary && axis.teeth)
-    out.period = 2.0 * std::numbers::pi / static_cast<double>(*axis.teeth);
-  else if (alone)
-    out.period = axis.screw_pitch;
+  if (axis != nullptr && axis->rotary && axis->teeth)
+    out.period = 2.0 * std::numbers::pi / static_cast<double>(*axis->teeth);
+  else if (axis != nullptr)
+    out.period = axis->screw_pitch;
   put_readings(out, part.part);
   put_fit(out, e.comparison);
   put_steps(out, part, e.comparison);

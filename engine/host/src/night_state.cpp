@@ -24,16 +24,30 @@ Expected<void> write_state(const fs::path& out, const NightState& night, bool ru
   Json json = {{"schema", "nonio-night/1"},
                {"night", night.number},
                {"state", running ? "running" : "complete"},
-               {"force", night.force}};
+               {"force", night.force},
+               {"site", night.site}};
   if (night.issued_before) json["issued_before"] = *night.issued_before;
   return publish(out / state_folder, {{state_name, dump(json)}});
 }
 
+/// Why the results of `site` may not go among those of `other`; empty if they may. A site that was
+/// moved is the same one under another name, and its old folder is gone.
+std::string other_site(const std::string& other, const std::string& site, const fs::path& out) {
+  std::error_code error;
+  if (other.empty() || other == site || !fs::is_directory(other, error) ||
+      fs::equivalent(other, site, error))
+    return {};
+  return "the output folder " + out.string() + " holds the results of the site " + other +
+         "; wanted a folder of its own for " + site;
+}
+
 }  // namespace
 
-Expected<NightState> begin_night(const fs::path& out, bool force, bool dry_run,
-                                 std::optional<std::uint64_t> issued_so_far) {
+Expected<NightState> begin_night(const fs::path& out, const fs::path& site, bool force,
+                                 bool dry_run, std::optional<std::uint64_t> issued_so_far) {
   NightState night;
+  std::error_code error;
+  night.site = fs::weakly_canonical(site, error).string();
   night.force = force;
   night.issued_before = issued_so_far;
   if (const auto file = MappedFile::open(out / state_folder / state_name)) {
@@ -42,6 +56,9 @@ Expected<NightState> begin_night(const fs::path& out, bool force, bool dry_run,
         !json["night"].is_number_unsigned())
       return fail((out / state_folder / state_name).string() +
                   " is damaged; remove it to do every campaign anew");
+    if (const auto other = json.find("site"); other != json.end() && other->is_string())
+      if (std::string why = other_site(other->get<std::string>(), night.site, out); !why.empty())
+        return fail(std::move(why));
     night.resumed = json.value("state", "") == "running";
     night.number = json["night"].get<std::uint64_t>() + (night.resumed ? 0 : 1);
     // A forced run that was interrupted is finished as what it was.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "nonio/sdk/error.h"
 
@@ -18,9 +19,13 @@ struct NightState {
   /// Certificates in the register when the night before ended, or when the first one began; none
   /// if the register could not be read.
   std::optional<std::uint64_t> issued_before{};
+  std::string site{};  ///< whose results they are, its folder
 };
 
-Expected<NightState> begin_night(const std::filesystem::path& out, bool force, bool dry_run,
+/// An error if the folder holds the results of another site that is still there: campaigns of both
+/// would be taken for one another's, and the summary would tell of one of them only.
+Expected<NightState> begin_night(const std::filesystem::path& out,
+                                 const std::filesystem::path& site, bool force, bool dry_run,
                                  std::optional<std::uint64_t> issued_so_far);
 /// `night.issued_before` is then what the next one begins with.
 Expected<void> end_night(const std::filesystem::path& out, const NightState& night);

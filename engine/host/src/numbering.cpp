@@ -13,6 +13,7 @@
 #include "nonio/sign/verify.h"
 #include "recomputed.h"
 #include "store.h"
+#include "traceability.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -210,6 +211,8 @@ Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
 
 Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& folder,
                                     std::vector<std::string>& missing, bool as_draft) const {
+  for (std::string& key : days_to_come(evaluated.campaign, where_.today))
+    missing.push_back(std::move(key));
   if (!missing.empty() && !has_register()) return Certificate{};
   auto opened = open();
   if (!opened) return fail(opened.error());

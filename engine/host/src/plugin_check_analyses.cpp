@@ -256,12 +256,15 @@ std::optional<int> power_of(Quantity q) {
     case Quantity::deviation_per_angle:
     case Quantity::deviation_per_time:
     case Quantity::angle_per_time:
+    case Quantity::deviation_per_reading:
+    case Quantity::angle_per_reading:
       return 1;
     case Quantity::count:
     case Quantity::length:
     case Quantity::angle:
     case Quantity::temperature:
     case Quantity::time:
+    case Quantity::readings:
       return 0;
     default:
       return std::nullopt;

@@ -58,7 +58,9 @@ void put_campaign(JsonWriter& json, const Campaign& c) {
              {"model", c.instrument.model},
              {"serial", c.instrument.serial},
              {"calibrated", c.instrument.calibrated},
-             {"certificate", c.instrument.certificate}});
+             {"certificate", c.instrument.certificate},
+             {"issuer", c.instrument.issuer},
+             {"valid_until", c.instrument.valid_until}});
   json.end_object();
 }
 

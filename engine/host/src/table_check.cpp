@@ -110,13 +110,13 @@ double present_backlash(const Settings& options, const std::string& axis, bool r
   return value / (rotary ? deg_per_rad : 1e3);
 }
 
-TableForecast forecast_of(const Measurement& m, const math::ErrorCurve& measured,
-                          const math::ErrorCurve& raw, bool rotary, const Tables& tables,
-                          double present) {
-  TableForecast f{m.id, m.axis, rotary};
+TableForecast forecast_of(const std::string& measurement, const std::string& axis,
+                          const math::ErrorCurve& measured, const math::ErrorCurve& raw,
+                          bool rotary, const Tables& tables, double present) {
+  TableForecast f{measurement, axis, rotary};
   const auto was = math::before(measured);
   f.E[0] = was.E(), f.B[0] = was.B(), f.M[0] = was.M();
-  const auto whole = math::correction_of(tables, m.axis, present);
+  const auto whole = math::correction_of(tables, axis, present);
   const math::Correction c = [&](double x, int dir) {
     return whole ? (*whole)(x, dir) - (dir > 0 ? present / 2.0 : -present / 2.0) : 0.0;
   };
@@ -216,12 +216,13 @@ std::vector<TableForecast> forecast(const ReadCampaign& read, const Tables& tabl
   const auto& measurements = read.manifest->campaign.measurements;
   for (std::size_t i = 0; i < read.observations.size(); ++i) {
     const Measurement& m = measurements[i];
-    if (m.kind != "axis" || read.observations[i].size() == 0 || !corrects(tables, m.axis)) continue;
+    const std::string axis = control_axis(read.manifest->campaign.machine, m);
+    if (m.kind != "axis" || read.observations[i].size() == 0 || !corrects(tables, axis)) continue;
     const auto test = math::AxisTest::arrange(read.observations[i]);
     const auto curve = math::error_curve(test);
     if (curve.position.size() < 2) continue;
-    out.push_back(forecast_of(m, curve, curve, test.rotary, tables,
-                              present_backlash(options, m.axis, test.rotary)));
+    out.push_back(forecast_of(m.id, axis, curve, curve, test.rotary, tables,
+                              present_backlash(options, axis, test.rotary)));
   }
   return out;
 }
@@ -237,7 +238,8 @@ Expected<RenewedTables> renew(const ReadCampaign& read, const Output& output, Se
   options.values["axes"] = axes;
   std::vector<Observations> raw;
   for (std::size_t i = 0; i < read.observations.size(); ++i)
-    raw.push_back(without(read.observations[i], campaign.measurements[i].axis, present));
+    raw.push_back(without(read.observations[i],
+                          control_axis(campaign.machine, campaign.measurements[i]), present));
   const Results none;
   const auto write = [&](const Campaign& c, const std::vector<Observations>& o) {
     return guarded("output " + output.info.name, [&] {
@@ -258,9 +260,10 @@ Expected<RenewedTables> renew(const ReadCampaign& read, const Output& output, Se
     const auto tables = tables_in(output, files->artifacts, one, options);
     if (!tables) return tl::unexpected<Error>(tables.error());
     const auto test = math::AxisTest::arrange(read.observations[i]);
-    out.forecast.push_back(
-        forecast_of(m, math::error_curve(test), math::error_curve(math::AxisTest::arrange(raw[i])),
-                    test.rotary, *tables, present_backlash(options, m.axis, test.rotary)));
+    const std::string axis = control_axis(campaign.machine, m);
+    out.forecast.push_back(forecast_of(
+        m.id, axis, math::error_curve(test), math::error_curve(math::AxisTest::arrange(raw[i])),
+        test.rotary, *tables, present_backlash(options, axis, test.rotary)));
     out.tables.insert(out.tables.end(), tables->begin(), tables->end());
   }
   return out;
@@ -294,31 +297,6 @@ Expected<SignProbe> sign_probe(const Measurement& m, const Observations& o) {
   }
   probe.scatter = n == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(n));
   return probe;
-}
-
-Artifact probe_program(const SignProbe& p, bool heidenhain, double feed) {
-  const double per_si = p.rotary ? deg_per_rad : 1e3;
-  const auto at = [&](double x) { return fixed_text(x * per_si, 4); };
-  const std::string F = fixed_text(feed, 0);
-  std::string name = "sign-probe-" + p.axis, text;
-  if (heidenhain) {
-    const auto signed_at = [&](double x) { return (x < 0.0 ? "" : "+") + at(x); };
-    std::size_t block = 0;
-    const auto line = [&](const std::string& words) {
-      text += std::to_string(block++) + " " + words + "\n";
-    };
-    line("BEGIN PGM SIGN_PROBE MM");
-    line("L " + p.axis + signed_at(p.start) + " R0 F" + F);
-    for (const double x : {p.from, p.to}) {
-      line("L " + p.axis + signed_at(x) + " R0 F" + F);
-      line("STOP");
-    }
-    line("END PGM SIGN_PROBE MM");
-    return {name + ".H", text};
-  }
-  text = "G90 G94\nG1 " + p.axis + at(p.start) + " F" + F + "\n";
-  for (const double x : {p.from, p.to}) text += "G1 " + p.axis + at(x) + "\nM0\n";
-  return {name + ".nc", text + "M30\n"};
 }
 
 }  // namespace nonio::host

@@ -15,27 +15,32 @@ using Quiet = bp::policy<bp::domain_error<bp::ignore_error>, bp::pole_error<bp::
                          bp::overflow_error<bp::ignore_error>,
                          bp::evaluation_error<bp::ignore_error>, bp::promote_double<false>>;
 
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
 bool positive(double dof) { return std::isfinite(dof) && dof > 0.0; }
 }  // namespace
 
 double f_upper(double f, double dof1, double dof2) {
-  if (!positive(dof1) || !positive(dof2) || !(f > 0.0)) return 1.0;
+  if (std::isnan(f) || std::isnan(dof1) || std::isnan(dof2)) return not_a_number;
+  if (!positive(dof1) || !positive(dof2) || f <= 0.0) return 1.0;
   if (std::isinf(f)) return 0.0;
-  const double p =
-      cdf(complement(boost::math::fisher_f_distribution<double, Quiet>(dof1, dof2), f));
-  return std::isnan(p) ? 1.0 : p;
+  return cdf(complement(boost::math::fisher_f_distribution<double, Quiet>(dof1, dof2), f));
 }
 
 double t_two_sided(double t, double dof) {
-  if (!positive(dof) || std::isnan(t)) return 1.0;
+  if (std::isnan(t) || std::isnan(dof)) return not_a_number;
+  if (!positive(dof)) return 1.0;
   if (std::isinf(t)) return 0.0;
-  const double p =
-      2.0 * cdf(complement(boost::math::students_t_distribution<double, Quiet>(dof), std::fabs(t)));
-  return std::isnan(p) ? 1.0 : p;
+  return 2.0 *
+         cdf(complement(boost::math::students_t_distribution<double, Quiet>(dof), std::fabs(t)));
+}
+
+double test_ratio(double found, double scatter) {
+  return found == 0.0 && scatter == 0.0 ? 0.0 : found / scatter;
 }
 
 double coverage_factor(double dof) {
-  if (!(dof > 0.0)) return std::numeric_limits<double>::quiet_NaN();
+  if (!(dof > 0.0)) return not_a_number;
   constexpr double outside = 0.04550026389635842;  // 1 - erf(2/sqrt 2)
   return quantile(
       complement(boost::math::students_t_distribution<double, Quiet>(dof), 0.5 * outside));

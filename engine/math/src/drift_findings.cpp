@@ -57,7 +57,7 @@ Line common_line(
   line.slope = xy / xx;
   line.dof = n - used;
   const double left = std::max(0.0, yy - xy * line.slope);
-  line.t = line.slope / std::sqrt(left / line.dof / xx);
+  line.t = line.dof > 0.0 ? test_ratio(line.slope, std::sqrt(left / line.dof / xx)) : 0.0;
   return line;
 }
 
@@ -97,9 +97,10 @@ Trend trend_of(const Runs& runs) {
   trend.per_run = of_runs.slope;
   trend.total = of_runs.slope * (runs.number.back() - runs.number.front());
   trend.p = t_two_sided(of_runs.t, of_runs.dof);
-  trend.found = trend.p < significance;
+  trend.found = significant(trend.p, significance);
   const double p_passes = t_two_sided(of_passes.t, of_passes.dof);
-  if (!trend.found && runs.y.size() >= 5 && monotone(runs.y) && p_passes < significance) {
+  if (!trend.found && runs.y.size() >= 5 && monotone(runs.y) &&
+      significant(p_passes, significance)) {
     trend.found = true;
     trend.p = p_passes;
   }

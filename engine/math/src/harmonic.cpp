@@ -51,7 +51,7 @@ Harmonic fit_harmonic(std::span<const double> angle, std::span<const double> y) 
   h.amplitude = std::hypot(fit(1), fit(2));
   h.share = all > 0.0 ? 1.0 - left / all : 0.0;
   const double dof = static_cast<double>(rows) - 3.0;
-  h.p = f_upper((all - left) / 2.0 / (left / dof), 2.0, dof);
+  h.p = f_upper(test_ratio((all - left) / 2.0, left / dof), 2.0, dof);
   return h;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace nonio::math {
@@ -26,14 +27,14 @@ double rounded(double value, const AxisTargets& wish) {
 std::vector<MeasuringMove> to_and_fro(const std::vector<std::vector<double>>& stops,
                                       const std::vector<double>& before,
                                       const std::vector<double>& after, const MeasuringWish& wish) {
-  std::vector<MeasuringMove> moves{{before, 0.0}};
+  std::vector<MeasuringMove> moves{{before}};
   for (int run = 0; run < wish.runs; ++run) {
     for (const auto& stop : stops) moves.push_back({stop, wish.dwell});
-    if (wish.over_travel > 0.0 && wish.both_directions) moves.push_back({after, 0.0});
+    if (wish.over_travel > 0.0 && wish.both_directions) moves.push_back({after});
     if (wish.both_directions)
       for (auto stop = stops.rbegin(); stop != stops.rend(); ++stop)
         moves.push_back({*stop, wish.dwell});
-    if (wish.over_travel > 0.0 || !wish.both_directions) moves.push_back({before, 0.0});
+    if (wish.over_travel > 0.0 || !wish.both_directions) moves.push_back({before});
   }
   return moves;
 }
@@ -67,7 +68,7 @@ MeasuringPath step_path(const std::string& name, const Volume& v, const Measurin
   }
   std::vector<double> before = start;
   for (std::size_t a = 0; a < 3; ++a) before[a] -= sign[a] * wish.over_travel;
-  path.moves.push_back({before, 0.0});
+  path.moves.push_back({before});
   for (int run = 0; run < wish.runs; ++run) {
     path.moves.push_back({start, wish.dwell});
     std::vector<double> at = start;
@@ -76,7 +77,7 @@ MeasuringPath step_path(const std::string& name, const Volume& v, const Measurin
         at[a] = start[a] + sign[a] * i * v.step[a];
         path.moves.push_back({at, wish.dwell});
       }
-    path.moves.push_back({before, 0.0});
+    path.moves.push_back({before});
   }
   return path;
 }
@@ -86,6 +87,23 @@ MeasuringPath step_path(const std::string& name, const Volume& v, const Measurin
 int axis_points(double length) {
   const double intervals = length > 2.0 ? length / 0.25 : 5.0 * length - 1.0;
   return std::max(5, 1 + static_cast<int>(std::ceil(intervals - 1e-9)));
+}
+
+int rotary_points(double angle) {
+  constexpr double close = 1e-6;
+  const double quarter = std::numbers::pi / 2.0;
+  if (angle > 4.0 * quarter + close)
+    return static_cast<int>(std::ceil(2.0 * angle / quarter - 1e-9));
+  return angle <= quarter + close ? 3 : angle <= 2.0 * quarter + close ? 5 : 8;
+}
+
+std::vector<double> cardinal_angles(double first, double last) {
+  constexpr double close = 1e-9;
+  const double quarter = std::numbers::pi / 2.0;
+  std::vector<double> angles;
+  for (double k = std::ceil((first - close) / quarter); k * quarter <= last + close; ++k)
+    angles.push_back(k * quarter);
+  return angles;
 }
 
 Expected<std::vector<double>> axis_targets(const AxisTargets& wish) {
@@ -104,6 +122,10 @@ Expected<std::vector<double>> axis_targets(const AxisTargets& wish) {
                                                   : offset;
     targets.push_back(rounded(even + inwards, wish));
   }
+  for (const double place : wish.among)
+    *std::min_element(targets.begin(), targets.end(), [&](double a, double b) {
+      return std::fabs(a - place) < std::fabs(b - place);
+    }) = place;
   return targets;
 }
 
@@ -116,6 +138,14 @@ MeasuringPath axis_path(const std::string& axis, bool rotary, const std::vector<
           {rotary},
           to_and_fro(stops, {targets.front() - wish.over_travel},
                      {targets.back() + wish.over_travel}, wish)};
+}
+
+MeasuringPath probe_path(const std::string& axis, bool rotary, double start, double from, double to,
+                         const MeasuringWish& wish) {
+  return {"sign-probe-" + axis,
+          {axis},
+          {rotary},
+          {{{start}}, {{from}, wish.dwell, true}, {{to}, wish.dwell, true}}};
 }
 
 std::vector<MeasuringPath> diagonal_paths(const Rectangle& r, const MeasuringWish& wish) {

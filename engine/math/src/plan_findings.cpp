@@ -14,6 +14,7 @@
 #include "constants.h"
 #include "finding_builder.h"
 #include "nonio/math/axis_findings.h"
+#include "nonio/math/measuring_path.h"
 
 namespace nonio::math {
 namespace {
@@ -28,11 +29,7 @@ bool is_long(const AxisTest& test) {
 std::size_t wanted_targets(const AxisTest& test) {
   const double L = test.length();
   const auto whole = [](double x) { return static_cast<std::size_t>(std::ceil(x - 1e-9)); };
-  if (test.rotary) {
-    if (L > full_turn + close) return whole(8.0 * L / full_turn);
-    const double quarter = full_turn / 4.0;
-    return L <= quarter + close ? 3 : L <= 2.0 * quarter + close ? 5 : 8;
-  }
+  if (test.rotary) return static_cast<std::size_t>(rotary_points(L));
   if (L > long_axis + close) return whole(L / 0.25);
   return std::max<std::size_t>(5, whole(5.0 * L));
 }

@@ -81,7 +81,7 @@ Estimate scatter_of_mean(const AxisTest& test, const PassModel& model) {
   Estimate single = scatter_of_B_i(test, model);
   single.variance /= sized(test.targets.size());
   if (passes.dof <= 0.0 || single.dof <= 0.0) return passes.dof > 0.0 ? passes : Estimate{};
-  const double p = f_upper(passes.variance / single.variance, passes.dof, single.dof);
+  const double p = f_upper(test_ratio(passes.variance, single.variance), passes.dof, single.dof);
   if (p < (passes.dof > 1.0 ? pooling_level : pooling_level_of_pair)) return passes;
   const double dof = passes.dof + single.dof;
   return {(passes.variance * passes.dof + single.variance * single.dof) / dof, dof};
@@ -91,8 +91,8 @@ Reversal::Kind decide(const Reversal& r, bool scatter_known) {
   using Kind = Reversal::Kind;
   if (r.largest < negligible) return scatter_known ? Kind::none : Kind::unknown;
   const bool one_value_helps = r.largest_left <= tolerated_share * r.largest;
-  const bool exists = r.p_mean < significance && r.mean != 0.0;
-  const bool varies = scatter_known && r.p_varies < significance;
+  const bool exists = significant(r.p_mean, significance) && r.mean != 0.0;
+  const bool varies = scatter_known && significant(r.p_varies, significance);
   const Kind constant = r.mean < 0.0 ? Kind::lost_motion : Kind::over_compensated;
   if (!scatter_known) return exists && one_value_helps ? constant : Kind::unknown;
   if (exists && (!varies || one_value_helps)) return constant;
@@ -112,11 +112,12 @@ void fit_turn(const AxisTest& test, const std::vector<double>& plus,
   if (!opposed.known || !concordant.known) return;
   r.opposed_amplitude = opposed.amplitude;
   r.p_opposed = opposed.p;
-  r.opposed = opposed.p < significance && opposed.share >= most && opposed.amplitude > negligible;
+  r.opposed = significant(opposed.p, significance) && opposed.share >= most &&
+              opposed.amplitude > negligible;
   r.concordant_amplitude = concordant.amplitude;
   r.p_concordant = concordant.p;
-  r.concordant =
-      concordant.p < significance && concordant.share >= most && concordant.amplitude > negligible;
+  r.concordant = significant(concordant.p, significance) && concordant.share >= most &&
+                 concordant.amplitude > negligible;
 }
 
 }  // namespace
@@ -143,10 +144,10 @@ Reversal assess_reversal(const AxisTest& test) {
   const Estimate of_mean = scatter_of_mean(test, model);
   const double spread = standard_deviation(B);
   if (of_B_i.dof > 0.0 && m > 1.0)
-    r.p_varies = f_upper(spread * spread / of_B_i.variance, m - 1.0, of_B_i.dof);
+    r.p_varies = f_upper(test_ratio(spread * spread, of_B_i.variance), m - 1.0, of_B_i.dof);
   const bool known = of_mean.dof > 0.0;
   r.u_mean = known ? std::sqrt(of_mean.variance) : spread / std::sqrt(m);
-  r.p_mean = t_two_sided(r.mean / r.u_mean, known ? of_mean.dof : m - 1.0);
+  r.p_mean = t_two_sided(test_ratio(r.mean, r.u_mean), known ? of_mean.dof : m - 1.0);
   r.kind = decide(r, known);
   if (test.rotary) fit_turn(test, plus, minus, r);
   return r;

@@ -60,8 +60,7 @@ DoubleWave double_wave(const RotaryFit& fit, std::span<const BallCentre> centres
   wave.amplitude = std::hypot(x[3], x[4]);
   wave.phase = 0.5 * std::atan2(x[4], x[3]);
   wave.left = std::sqrt(remains / dof);
-  const double f = (own - left) / 2.0 / (remains / dof);
-  wave.p = f_upper(std::isnan(f) ? 0.0 : f, 2.0, dof);
+  wave.p = f_upper(test_ratio((own - left) / 2.0, remains / dof), 2.0, dof);
   return wave;
 }
 

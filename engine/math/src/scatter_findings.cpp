@@ -58,7 +58,7 @@ SideScatter scatter_of(const PassModel& m, std::size_t d) {
 struct Asymmetry {
   SideScatter side[2];
   double ratio = 1.0, p = 1.0;
-  bool clear() const { return p < significance && ratio >= 1.5; }
+  bool clear() const { return significant(p, significance) && ratio >= 1.5; }
 };
 
 Asymmetry asymmetry_of(const PassModel& m) {
@@ -69,8 +69,9 @@ Asymmetry asymmetry_of(const PassModel& m) {
   const SideScatter &more = a.side[wide], &less = a.side[1 - wide];
   if (more.s() < rounding) return a;
   a.ratio = more.s() / less.s();
-  const double single = f_upper(more.single / less.single, more.single_dof, less.single_dof);
-  const double pass = f_upper(more.pass / less.pass, more.pass_dof, less.pass_dof);
+  const double single =
+      f_upper(test_ratio(more.single, less.single), more.single_dof, less.single_dof);
+  const double pass = f_upper(test_ratio(more.pass, less.pass), more.pass_dof, less.pass_dof);
   a.p = std::min(1.0, 4.0 * std::min(single, pass));  // two tests, two sides
   return a;
 }
@@ -145,7 +146,7 @@ Suspect most_suspect(const AxisTest& test, const PassModel& m, bool slopes) {
     const double of_pass = 1.0 / s.n + (slopes && s.zz > 0.0 ? z * z / s.zz : 0.0);
     const double free = (1.0 - 1.0 / n) * (1.0 - std::min(of_pass, 0.9));  // 1 - h, equal runs
     const double rest = std::max(0.0, side.squares - m.e[k] * m.e[k] / free) / (side.dof - 1.0);
-    const double t = m.e[k] / std::sqrt(rest * free);
+    const double t = test_ratio(m.e[k], std::sqrt(rest * free));
     if (std::fabs(t) <= std::fabs(worst.t)) continue;
     worst = {k, t, 1.0, test.readings()[k].deviation - m.e[k] / free};
     dof = side.dof - 1.0;
@@ -199,7 +200,7 @@ Worst worst_of(const Curve& c) {
     if (!(vv > 0.0) || vq * vq / vv <= largest) continue;
     largest = vq * vq / vv;
     const double height = vq / vv;
-    const double t_value = height * std::sqrt(vv) / std::sqrt(rest / others);
+    const double t_value = test_ratio(height * std::sqrt(vv), std::sqrt(rest / others));
     // Neighbouring q_i share readings: correlated by -2/3 and 1/6, so that their squares are worth
     // 1/(1 + 2 (4/9 + 1/36)) = 18/35 of as many free ones.
     const double dof = others * 18.0 / 35.0;
@@ -211,7 +212,7 @@ Worst worst_of(const Curve& c) {
 void worst_target_finding(const AxisTest& test, std::vector<Finding>& findings) {
   const Curve curve = mean_curve(test);
   const Worst worst = worst_of(curve);
-  if (!(worst.p < significance) || std::fabs(worst.height) < 10.0 * rounding) return;
+  if (!significant(worst.p, significance) || std::fabs(worst.height) < 10.0 * rounding) return;
   const PassModel m = fit_passes(test, false);
   double variance = 0.0;  // of the mean of a target, as the readings show it
   for (const auto& side : m.side)
@@ -240,7 +241,7 @@ void suspect_findings(const AxisTest& test, std::vector<Finding>& findings) {
   while (left_out.size() < most && test.most_approaches() >= 3) {
     const PassModel m = fit_passes(test, slopes, left_out);
     const Suspect s = most_suspect(test, m, slopes);
-    if (!(s.p < significance)) break;
+    if (!significant(s.p, significance)) break;
     const auto& reading = test.readings()[s.reading];
     findings.push_back(FindingBuilder("reading.suspect", true, test.rotary)
                            .count("run", reading.run)

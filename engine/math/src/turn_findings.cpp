@@ -79,8 +79,8 @@ void turn_findings(const AxisTest& test, std::vector<Finding>& findings) {
   if (!(dof > 0.0)) return;
   const double gap = sum / directions;
   const double u = std::sqrt(squares / dof * weight) / directions;
-  const double p = t_two_sided(gap / u, dof);
-  if (!(std::fabs(gap) > rounding) || !(p < significance)) return;
+  const double p = t_two_sided(test_ratio(gap, u), dof);
+  if (!(std::fabs(gap) > rounding) || !significant(p, significance)) return;
   findings.push_back(FindingBuilder("rotary.not-closed", matters(test, std::fabs(gap)), true)
                          .position("from", test.targets[pairs.front().earlier])
                          .position("to", test.targets[pairs.front().later])

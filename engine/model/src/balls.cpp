@@ -89,6 +89,12 @@ std::optional<Part> balls_of(const Observations& read, const Axis& axis, const s
       o.line.push_back(radial ? 0 : 1);
       o.run.push_back(read.run.empty() ? 1 : read.run[ball.row]);
       if (!read.source_line.empty()) o.source_line.push_back(read.source_line[ball.row]);
+      if (!read.u.empty()) {
+        double square = 0.0;
+        for (std::size_t k = 0; k < 3; ++k)
+          square += sense[k] * sense[k] * read.u[ball.row + k] * read.u[ball.row + k];
+        o.u.push_back(std::sqrt(square));
+      }
       keep(o.time, read.time, ball.row);
       keep(o.material, read.material, ball.row);
       part.measurement.push_back(0);

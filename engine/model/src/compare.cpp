@@ -100,7 +100,7 @@ std::optional<LackOfFit> lack_of_fit(const Fit& fit, const Saturated& repeats, d
   out.dof1 = static_cast<double>(fit.redundancy) - repeats.dof;
   out.dof2 = repeats.dof;
   if (!(out.dof1 >= 1.0)) return std::nullopt;
-  out.F = (squares - repeats.squares) / out.dof1 / (repeats.squares / repeats.dof);
+  out.F = math::test_ratio((squares - repeats.squares) / out.dof1, repeats.squares / repeats.dof);
   out.p = math::f_upper(out.F, out.dof1, out.dof2);
   return out;
 }

@@ -88,11 +88,23 @@ std::vector<std::vector<double>> shapes_of(const Observations& o, const Term& te
   return all;
 }
 
+std::vector<double> stated_u(const Observations& o) {
+  std::vector<double> u = o.u;
+  const auto stated = [](double one) { return std::isfinite(one) && one > 0.0; };
+  double sum = 0.0, n = 0.0;
+  for (const double one : u)
+    if (stated(one)) sum += one, ++n;
+  if (!(n > 0.0)) return {};
+  for (double& one : u)
+    if (!stated(one)) one = sum / n;
+  return u;
+}
+
 VectorXd root_weights(const Observations& o, const std::vector<double>& weight) {
   const auto n = static_cast<Index>(o.size());
   VectorXd root = VectorXd::Ones(n);
-  if (!o.u.empty()) {
-    const Eigen::Map<const VectorXd> u(o.u.data(), n);
+  if (const std::vector<double> stated = stated_u(o); !stated.empty()) {
+    const Eigen::Map<const VectorXd> u(stated.data(), n);
     root = u.cwiseInverse() * u.mean();
   }
   if (!weight.empty())

@@ -37,6 +37,10 @@ Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vect
 /// that the term has already is kept. Empty if the readings cannot show the effect.
 std::vector<std::vector<double>> shapes_of(const Observations& o, const Term& term);
 
+/// Uncertainties of the readings as their readers stated them; a reading without one counts as one
+/// of mean uncertainty. Empty where none was stated.
+std::vector<double> stated_u(const Observations& o);
+
 /// Square root of the weight of each reading: sqrt(weight) * (mean u)/u.
 VectorXd root_weights(const Observations& o, const std::vector<double>& weight);
 

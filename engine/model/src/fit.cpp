@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "design.h"
+#include "nonio/sdk/axis_readings.h"
 #include "thin.h"
 #include "workbench.h"
 
@@ -240,21 +241,31 @@ void step_shapes(const Observations& o, std::vector<Term>& terms, const std::vec
   }
 }
 
-void name_parameters(Fit& out, const Design& design) {
+/// Times that nobody measured are counted in readings, and not called seconds.
+bool untimed(const Observations& o, const Axis& axis) {
+  const auto r = readings_of(o, axis);
+  return r && !r->timed;
+}
+
+void name_parameters(Fit& out, const Observations& o, const Design& design) {
   for (std::size_t t = 0; t < out.terms.size(); ++t) {
     const Term& term = out.terms[t];
+    const bool by_count = untimed(o, term.axis);
+    const auto quantity = [&](const Effect::Parameter& p) {
+      const Quantity q = quantity_of(p, term.axis);
+      return by_count ? by_readings(q) : q;
+    };
     const auto k = static_cast<std::size_t>(design.blocks[t].cols());
     for (std::size_t i = 0; i < k; ++i) {
       const Effect::Parameter& p = term.effect->linear[term.effect->curve ? 0 : i];
       out.parameters.push_back({term.name(),
                                 term.effect->curve ? p.name + std::to_string(i + 1) : p.name, 0.0,
-                                0.0, quantity_of(p, term.axis), false});
+                                0.0, quantity(p), false});
     }
     for (std::size_t i = 0; i < term.shape.size(); ++i) {
       const Effect::Parameter& p = term.effect->shapes[i].parameter;
       out.parameters.push_back({term.name(), p.name, term.shape[i],
-                                std::numeric_limits<double>::quiet_NaN(), quantity_of(p, term.axis),
-                                true});
+                                std::numeric_limits<double>::quiet_NaN(), quantity(p), true});
     }
   }
 }
@@ -358,7 +369,7 @@ Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
     out.part.emplace_back(part.data(), part.data() + part.size());
   }
   out.residual.assign(residual.data(), residual.data() + residual.size());
-  name_parameters(out, *design);
+  name_parameters(out, o, *design);
   for (const Index lost : design->lost) out.lost.push_back(static_cast<std::size_t>(lost));
   Index column = lines;
   for (Parameter& p : out.parameters)

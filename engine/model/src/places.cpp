@@ -300,7 +300,7 @@ void find_level(const Factor& f, const VectorXd& root, const VectorXd& residual,
     if (sum * sum / norm2 <= most) continue;
     most = sum * sum / norm2;
     place.at = f.levels[static_cast<std::size_t>(k)];
-    t_most = sum / std::sqrt(norm2 * s2);
+    t_most = math::test_ratio(sum, std::sqrt(norm2 * s2));
   }
   place.at_quantity = f.quantity;
   if (most < 0.5 * total) place.at.reset();
@@ -346,7 +346,7 @@ std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
     if (!(place.rms > least)) continue;
     place.where = tests_->factors.all()[f].name;
     place.line = tests_->factors.all()[f].line;
-    place.p = math::f_upper(here / k / s2, k, dof);
+    place.p = math::f_upper(math::test_ratio(here / k, s2), k, dof);
     place.share = squares > 0.0 ? excess / squares : 0.0;
     find_level(tests_->factors.all()[f], tests_->root, residual, s2,
                floor ? floor->dof : tests_->dof, place);
@@ -392,7 +392,7 @@ std::vector<Place> seats_of(const Leftover& left) {
     seat.rms = std::sqrt(fall / n);
     const auto k = static_cast<double>(bases[best].cols());
     const double dof = left.dof - k;
-    seat.p = math::f_upper(fall / k / ((rest.squaredNorm() - fall) / dof), k, dof) *
+    seat.p = math::f_upper(math::test_ratio(fall / k, (rest.squaredNorm() - fall) / dof), k, dof) *
              static_cast<double>(bases.size());
     find_level(factors.all()[best], left.root_weight, rest, (rest.squaredNorm() - fall) / dof,
                left.floor ? left.floor->dof : left.dof, seat);

@@ -60,8 +60,8 @@ std::vector<char> on_repeated_lines(const Observations& o) {
   std::vector<char> several(lines_of(o), 0), out(o.size(), 0);
   for (std::size_t i = 0; i < o.size() && !o.run.empty(); ++i) {
     std::uint32_t& run = first[line_of(o, i)];
-    if (run == 0) run = o.run[i];
-    if (run != o.run[i]) several[line_of(o, i)] = 1;
+    if (run == 0) run = o.run_of(i);
+    if (run != o.run_of(i)) several[line_of(o, i)] = 1;
   }
   for (std::size_t i = 0; i < o.size(); ++i) out[i] = several[line_of(o, i)];
   return out;
@@ -99,7 +99,7 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
       if (r != run)
         for (const double x : of_run[r]) others.push_back(std::fabs(x));
     const double s_others = 1.4826 * math::median(others);
-    const double F = s * s / (s_others * s_others);
+    const double F = math::test_ratio(s * s, s_others * s_others);
     // A median knows a scatter as well as 0.37 times as many squares do.
     const double p = math::f_upper(F, 0.37 * k, 0.37 * (n - k)) * runs;
     if (F < 4.0 || p > 1e-4 || (worst && p >= worst->p)) continue;

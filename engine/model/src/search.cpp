@@ -202,8 +202,9 @@ class ChanceOf {
   /// Of a fall with so many parameters.
   double p(Index shuffle, double fall, double parameters) const {
     const double dof = dof_ - parameters;
-    return math::f_upper(fall / parameters / ((shuffles_.squares(shuffle) - fall) / dof),
-                         parameters, dof);
+    return math::f_upper(
+        math::test_ratio(fall / parameters, (shuffles_.squares(shuffle) - fall) / dof), parameters,
+        dof);
   }
 
  private:

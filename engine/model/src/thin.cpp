@@ -6,6 +6,8 @@
 #include <map>
 #include <tuple>
 
+#include "design.h"
+
 namespace nonio::model {
 
 namespace {
@@ -61,6 +63,8 @@ Observations thinned(const Observations& o, const std::vector<double>& weight) {
   out.axes = {{axis.axis, axis.rotary, {}, {}}};
   std::map<std::tuple<std::uint32_t, std::size_t, std::int8_t, std::size_t>, std::size_t> row_of;
   std::vector<double> count;
+  std::vector<double> squared_u, mean_squared_u;
+  for (const double u : stated_u(o)) squared_u.push_back(u * u);
   const auto mean_into = [&](std::vector<double>& to, const std::vector<double>& from,
                              std::size_t i, std::size_t row) {
     if (from.empty()) return;
@@ -86,6 +90,7 @@ Observations thinned(const Observations& o, const std::vector<double>& weight) {
     mean_into(out.deviation, o.deviation, i, row);
     mean_into(out.time, o.time, i, row);
     mean_into(out.material, o.material, i, row);
+    mean_into(mean_squared_u, squared_u, i, row);
   }
   // Rows whose target is in one bin get one position, or they would not repeat each other.
   std::map<std::size_t, std::pair<double, double>> place;
@@ -102,7 +107,9 @@ Observations thinned(const Observations& o, const std::vector<double>& weight) {
   }
   double mean_count = 0.0;
   for (const double c : count) mean_count += c / static_cast<double>(count.size());
-  for (const double c : count) out.u.push_back(std::sqrt(mean_count / c));
+  for (std::size_t row = 0; row < count.size(); ++row)
+    out.u.push_back(
+        std::sqrt((mean_squared_u.empty() ? 1.0 : mean_squared_u[row]) * mean_count / count[row]));
   return out;
 }
 

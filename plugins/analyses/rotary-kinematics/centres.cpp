@@ -37,14 +37,14 @@ tl::expected<std::vector<math::BallCentre>, Finding> centres_of(const Observatio
   std::map<long long, math::BallCentre> places;
   std::set<std::tuple<std::uint32_t, int, double>> seen;
   for (std::size_t i = 0; i < o.size(); ++i) {
-    if (o.line[i] != 0) continue;  // three readings a centre, each with the whole position
+    if (o.line_of(i) != 0) continue;  // three readings a centre, each with the whole position
     const double angle = rotary.position[i];
     const int approach = rotary.approach.empty() ? 0 : rotary.approach[i];
-    if (!std::isfinite(angle) || !seen.emplace(o.run[i], approach, angle).second) {
+    if (!std::isfinite(angle) || !seen.emplace(o.run_of(i), approach, angle).second) {
       Finding repeated{.id = "rotary.repeated-angles", .attention = true};
       repeated.evidence = {{"angle", std::isfinite(angle) ? angle : 0.0, Quantity::angle},
-                           {"run", static_cast<double>(o.run[i]), Quantity::count},
-                           {"line", static_cast<double>(o.source_line[i]), Quantity::count}};
+                           {"run", static_cast<double>(o.run_of(i)), Quantity::count},
+                           {"line", static_cast<double>(o.source_line_of(i)), Quantity::count}};
       return tl::unexpected(std::move(repeated));
     }
     math::BallCentre& c =

@@ -113,7 +113,8 @@ class Judge {
     const RotaryFit& fit = out_.fit;
     if (wish_.sigma) {
       const double ratio = fit.s / *wish_.sigma;
-      exceeds_ = fit.dof > 0 && math::f_upper(ratio * ratio, fit.dof, 1e9) < surely;
+      exceeds_ =
+          fit.dof > 0 && math::significant(math::f_upper(ratio * ratio, fit.dof, 1e9), surely);
       if (!exceeds_) {
         out_.sigma = *wish_.sigma;
         return true;
@@ -132,7 +133,7 @@ class Judge {
 
   bool a_circle() {
     const RotaryFit& fit = out_.fit;
-    const double left = radial_.p < significant ? radial_.left : fit.s;
+    const double left = math::significant(radial_.p, significant) ? radial_.left : fit.s;
     const double expected = wish_.sigma ? *wish_.sigma : 0.5 * wish_.U_instrument.value_or(0.0);
     const double limit =
         expected > 0.0 ? wish_.circle_limit * expected : no_circle_share * fit.radius;
@@ -185,13 +186,13 @@ class Judge {
 
   void tell_waves() {
     const RotaryFit& fit = out_.fit;
-    if (radial_.p < significant)
+    if (math::significant(radial_.p, significant))
       out_.findings.push_back(finding("rotary.ellipse", true,
                                       {um("amplitude", radial_.amplitude),
                                        urad("shear", 2.0 * radial_.amplitude / fit.radius),
                                        deg("at", radial_.phase),
                                        {"p", radial_.p, Quantity::probability}}));
-    if (axial_.p < significant)
+    if (math::significant(axial_.p, significant))
       out_.findings.push_back(finding("rotary.axial-run-out", true,
                                       {um("amplitude", axial_.amplitude),
                                        deg("at", axial_.phase),
@@ -212,7 +213,7 @@ class Judge {
     const double dof = points() - 1.0, others = fit.dof - dof;
     if (!(others > 0.0) || !(rest > 0.0)) return;
     const double p = math::f_upper(along / dof / (rest / others), dof, others);
-    if (p < surely)
+    if (math::significant(p, surely))
       out_.findings.push_back(finding("rotary.angles-not-trusted", true,
                                       {um("along", std::sqrt(along / dof)),
                                        um("rest", std::sqrt(rest / others)),

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nonio/math/distributions.h"
 #include "nonio/math/step_diagonals.h"
 #include "nonio/sdk/plugin.h"
 #include "passes.h"
@@ -55,7 +56,7 @@ struct Work {
 
 void judge_checks(Work& w) {
   const StepChecks& c = w.checks;
-  if (c.p_constant < level) {
+  if (math::significant(c.p_constant, level)) {
     const auto worst =
         *std::max_element(c.constant.begin(), c.constant.end(),
                           [](double a, double b) { return std::fabs(a) < std::fabs(b); });
@@ -68,7 +69,7 @@ void judge_checks(Work& w) {
     w.out.findings.push_back(std::move(f));
     w.choices.set_up_known = false;
   }
-  if (c.p_trend < level)
+  if (math::significant(c.p_trend, level))
     w.out.findings.push_back(
         attention("step-diagonal.drift", {number("per_step", c.trend, Quantity::deviation),
                                           number("u", c.u_reading, Quantity::deviation),
@@ -77,7 +78,7 @@ void judge_checks(Work& w) {
 
 void judge_lengths(Work& w, double u) {
   for (const ShapeContrast& c : contrast_shapes(w.passes.readings, w.lengths.series, w.choices))
-    if (c.p < level / 3.0)
+    if (math::significant(c.p, level / 3.0))
       w.out.findings.push_back(
           attention("step-diagonal.axis-disagrees",
                     {number("rms", c.rms, Quantity::deviation),

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "nonio/controllers/text.h"
 #include "nonio/math/axis_findings.h"
+#include "nonio/math/distributions.h"
 #include "nonio/sdk/format.h"
 #include "series_jobs.h"
 
@@ -18,7 +20,7 @@ Expected<void> check_names(const std::map<std::string, AxisSettings>& settings,
   std::set<std::string> known;
   for (const Axis& a : input.campaign.machine.axes) known.insert(a.name);
   for (const Measurement& m : input.campaign.measurements)
-    if (m.kind == "axis") known.insert(m.axis);
+    if (m.kind == "axis") known.insert(control_axis(input.campaign.machine, m));
   for (const AxisJob& job : series_jobs(input)) known.insert(job.axis);
   for (const auto& [axis, of_axis] : settings)
     if (known.count(axis) == 0)
@@ -84,7 +86,7 @@ AxisJob job_of(const OutputInput& input, std::size_t index) {
   const Measurement& m = input.campaign.measurements[index];
   const math::AxisTest test = math::AxisTest::arrange(input.observations[index]);
   AxisJob job;
-  job.axis = m.axis;
+  job.axis = control_axis(input.campaign.machine, m);
   job.measurement = m.id;
   job.rotary = test.rotary;
   job.curve = math::error_curve(test);
@@ -155,6 +157,33 @@ Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
   return {};
 }
 
+/// A gantry axis measured on lines beside each other, and nobody said which side has which: the
+/// tables of master and slave would be taken for each other.
+std::set<std::string> unsided_axes(const Campaign& campaign) {
+  std::set<std::string> axes;
+  if (campaign.machine.structure != "gantry") return axes;
+  std::map<std::string, std::map<std::string, double>> line;
+  std::set<std::string> several, unsaid;
+  for (const Measurement& m : campaign.measurements) {
+    if (m.kind != "axis") continue;
+    if (line.emplace(m.axis, m.at).first->second != m.at) several.insert(m.axis);
+    if (m.side.empty()) unsaid.insert(m.axis);
+  }
+  std::set_intersection(several.begin(), several.end(), unsaid.begin(), unsaid.end(),
+                        std::inserter(axes, axes.end()));
+  return axes;
+}
+
+/// Whether a control that counts its axes would get a table under a number that nobody stated: the
+/// second side of a gantry has no place among the machine's axes.
+bool number_unsaid(const AxisJob& job, const OutputInput& input,
+                   const std::vector<std::string_view>& keys) {
+  const auto& all = input.campaign.machine.axes;
+  return std::any_of(all.begin(), all.end(), [&](const Axis& a) { return a.slave == job.axis; }) &&
+         input.campaign.machine.axis(job.axis) == nullptr && !job.setting("number") &&
+         std::find(keys.begin(), keys.end(), "number:") != keys.end();
+}
+
 }  // namespace
 
 bool has_tables(const Campaign& campaign) {
@@ -198,9 +227,20 @@ Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
     return tl::unexpected<Error>(known.error());
   std::vector<AxisJob> all, jobs;
   const auto& measurements = input.campaign.measurements;
+  const std::set<std::string> unsided = unsided_axes(input.campaign);
   for (std::size_t i = 0; i < std::min(measurements.size(), input.observations.size()); ++i)
-    if (measurements[i].kind == "axis" && input.observations[i].size() > 0)
+    if (measurements[i].kind == "axis" && input.observations[i].size() > 0 &&
+        !unsided.contains(measurements[i].axis))
       all.push_back(job_of(input, i));
+  for (const std::string& axis : unsided)
+    result.findings.push_back({"table.gantry-sides",
+                               true,
+                               {},
+                               {{"axis", axis}},
+                               {},
+                               "Say on which side each line lies: side = \"master\" or \"slave\" "
+                               "in [[measurement]], and slave in [machine.axes." +
+                                   axis + "]."});
   for (AxisJob& job : series_jobs(input)) all.push_back(std::move(job));
   for (AxisJob& job : all) {
     if (job.curve.position.size() < 2) {
@@ -224,6 +264,16 @@ Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
     }
     if (!job.drift.empty() && !job.takes_drift()) {
       refuse_drift(job, result);
+      continue;
+    }
+    if (number_unsaid(job, input, keys)) {
+      result.findings.push_back(
+          {"table.slave-number",
+           true,
+           {},
+           {{"axis", job.axis}},
+           job.measurement,
+           "Say its number in the control: axes = [\"" + job.axis + " number=...\"]."});
       continue;
     }
     job.about = about(input, job);
@@ -296,7 +346,7 @@ std::string suspect_warning(const AxisJob& job, OutputResult& result) {
 void doubt_uneven_reversal(const AxisJob& job, OutputResult& result) {
   constexpr double level = 0.01, share = 0.25;
   const math::Reversal& r = job.reversal;
-  if (!(r.p_varies < level) || !(r.largest_left > share * r.largest)) return;
+  if (!math::significant(r.p_varies, level) || !(r.largest_left > share * r.largest)) return;
   const Quantity q = deviation_of(job.rotary);
   result.findings.push_back({"table.uneven-reversal",
                              true,

@@ -15,7 +15,7 @@ namespace {
 /// Coordinates across the axis; none if the table has no axial reading.
 std::vector<std::size_t> across(const Observations& o) {
   for (std::size_t i = 0; i < o.line.size(); ++i) {
-    if (o.line[i] != 1) continue;
+    if (o.line_of(i) != 1) continue;
     std::size_t along = 0;
     for (std::size_t k = 1; k < 3; ++k)
       if (std::fabs(o.sense_of(i)[k]) > std::fabs(o.sense_of(i)[along])) along = k;
@@ -48,7 +48,7 @@ Expected<Effect::Columns> direction(const Observations& o, const Axis&,
   const SpaceReadings s = space_of(o);
   Effect::Columns out(2, std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i)
-    for (std::size_t k = 0; k < 2 && o.line[i] == 1; ++k) out[k][i] = -s.lever(e[k], i);
+    for (std::size_t k = 0; k < 2 && o.line_of(i) == 1; ++k) out[k][i] = -s.lever(e[k], i);
   return out;
 }
 

@@ -30,7 +30,7 @@ Expected<Effect::Columns> columns(const Observations& o, const std::vector<doubl
   const auto waves = static_cast<std::size_t>(std::lround(shape[0]));
   Effect::Columns out(2 * waves, std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.line.size(); ++i) {
-    if (o.line[i] != line) continue;
+    if (o.line_of(i) != line) continue;
     for (std::size_t w = 0; w < waves; ++w) {
       const double angle = static_cast<double>(w + 2) * o.axes.front().position[i];
       out[2 * w][i] = std::cos(angle);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "certificate.h"
@@ -9,6 +10,20 @@
 namespace nonio::certificate {
 
 namespace {
+
+/// A serial number of blanks, dashes or "n/a" names no instrument.
+bool names_something(std::string text) {
+  for (const std::string_view mark : {"\u2010", "\u2011", "\u2012", "\u2013", "\u2014", "\u2015",
+                                      "\u2212", "\uff0d", "\u00a0", "\u3000"})  // dashes, blanks
+    for (std::size_t at; (at = text.find(mark)) != std::string::npos;) text.erase(at, mark.size());
+  std::string letters;
+  for (const char c : text)
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80)
+      letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  static const std::set<std::string> nothing = {"",    "na",   "nd",      "nn",  "none",
+                                                "nil", "null", "unknown", "tbd", "todo"};
+  return !nothing.contains(letters) && letters.find_first_not_of("x0") != std::string::npos;
+}
 
 class List {
  public:
@@ -74,14 +89,20 @@ std::vector<std::string> lacks(const OutputInput& in) {
   list.want(!c.customer_address.empty(), "campaign.customer_address");
   list.want(!c.site.empty(), "campaign.site");
   list.want(!c.date.empty(), "campaign.date");
-  list.want(!c.machine.maker.empty(), "machine.maker");
-  list.want(!c.machine.model.empty(), "machine.model");
-  list.want(!c.machine.serial.empty(), "machine.serial");
-  list.want(!c.instrument.maker.empty(), "instrument.maker");
-  list.want(!c.instrument.model.empty(), "instrument.model");
-  list.want(!c.instrument.serial.empty(), "instrument.serial");
+  list.want(names_something(c.machine.maker), "machine.maker");
+  list.want(names_something(c.machine.model), "machine.model");
+  list.want(names_something(c.machine.serial), "machine.serial");
+  list.want(names_something(c.instrument.maker), "instrument.maker");
+  list.want(names_something(c.instrument.model), "instrument.model");
+  list.want(names_something(c.instrument.serial), "instrument.serial");
   list.want(!c.instrument.calibrated.empty(), "instrument.calibrated");
-  list.want(!c.instrument.certificate.empty(), "instrument.certificate");
+  list.want(names_something(c.instrument.certificate), "instrument.certificate");
+  for (const Sensor& s : c.sensors) {
+    const std::string key = "sensor " + s.measures + ": ";
+    list.want(names_something(s.serial), key + "serial");
+    list.want(!s.calibrated.empty(), key + "calibrated");
+    list.want(names_something(s.certificate), key + "certificate");
+  }
   for (const Measurement& m : c.measurements)
     list.want(m.exclude.empty() || !m.exclude_reason.empty(),
               "measurement." + m.id + ".exclude_reason (why readings were excluded)");

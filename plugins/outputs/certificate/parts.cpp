@@ -175,6 +175,29 @@ void add_parties(const Source& source, Blocks& blocks) {
       {Columns{{{{std::move(customer), "customer"}}, {{std::move(work), "work"}}}}, "parties"});
 }
 
+namespace {
+
+/// "Thermo T2, no. 17, certificate C-3 (LAT 9), calibrated 2026-01-02, valid until 2027-01-02".
+std::string sensor_text(const Source& source, const Sensor& s) {
+  std::string text;
+  const auto add = [&](const std::string& part, const char* between = ", ") {
+    if (!part.empty()) text += (text.empty() ? "" : between) + part;
+  };
+  const auto said = [&](const char* key, const std::string& value) {
+    if (!value.empty()) add(source.words.get(key, {{"value", value}}));
+  };
+  add(s.maker);
+  add(s.model, " ");
+  said("sensor.serial", s.serial);
+  said("sensor.certificate", s.certificate);
+  if (!s.issuer.empty()) add("(" + s.issuer + ")", " ");
+  said("sensor.calibrated", s.calibrated);
+  said("sensor.valid_until", s.valid_until);
+  return text;
+}
+
+}  // namespace
+
 void add_item(const Source& source, Blocks& blocks) {
   const Machine& m = source.in.campaign.machine;
   const Instrument& i = source.in.campaign.instrument;
@@ -194,8 +217,13 @@ void add_item(const Source& source, Blocks& blocks) {
        {label(source, "item.model"), i.model, "instrument.model"},
        {label(source, "item.serial"), i.serial, "instrument.serial"},
        {label(source, "instrument.certificate"), i.certificate, "instrument.certificate"},
+       {label(source, "instrument.issuer"), i.issuer, "instrument.issuer"},
        {label(source, "instrument.calibrated"), i.calibrated, "instrument.calibrated"},
+       {label(source, "instrument.valid_until"), i.valid_until, "instrument.valid_until"},
        {label(source, "instrument.uncertainty"), pages::instrument_U(source), "instrument.U"}}};
+  for (const Sensor& s : source.in.campaign.sensors)
+    instrument.rows.push_back(
+        {source.words.get("sensor." + s.measures), sensor_text(source, s), "sensor " + s.measures});
   blocks.push_back(
       {Columns{{{{std::move(item), "machine"}}, {{std::move(instrument), "instrument"}}}}, "item"});
 }

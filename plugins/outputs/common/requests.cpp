@@ -16,6 +16,7 @@ using math::MeasuringWish;
 
 constexpr double mm = 1e-3;
 constexpr double deg = 1.0 / deg_per_rad;
+constexpr double full_turn = 360.0 * deg;
 constexpr double slack = 1e-9;         // m or rad: rounding, no travel
 constexpr double most_readings = 1e5;  // of one program: 140 h at 5 s
 
@@ -72,6 +73,7 @@ class Requests {
                         : what == "diagonals"      ? diagonals(false)
                         : what == "half-diagonal"  ? diagonals(true)
                         : what == "step-diagonals" ? step_diagonals()
+                        : what == "sign-probe"     ? sign_probe()
                                                    : unknown(what);
       if (!done) return fail(done.error());
     }
@@ -139,8 +141,9 @@ class Requests {
     std::string how;
     const std::string choice = o_.text("targets", "auto");
     const bool planned = plan_ && choice != "random" && (a.name == plan_->x || a.name == plan_->y);
-    wanted.first = a.travel->first + over_travel(a.rotary);
-    wanted.last = a.travel->second - over_travel(a.rotary);
+    const auto [first, last] = range(a);
+    wanted.first = first;
+    wanted.last = last;
     wanted.resolution = a.rotary ? 1e-4 * deg : o_.number("resolution_mm") * mm;
     wanted.seed = static_cast<std::uint64_t>(o_.integer("seed"));
     if (planned) {
@@ -157,8 +160,29 @@ class Requests {
     if (!targets)
       return wrong("machine.axes." + a.name, "axis " + a.name + ": " + targets.error().message);
     wish_.over_travel = over_travel(a.rotary);
+    if (beyond(a, targets->front(), targets->back()))
+      how += "; the travel is a whole turn: it is taken to go on beyond its ends";
     add(math::axis_path(a.name, a.rotary, *targets, wish_), how);
     return {};
+  }
+
+  bool beyond(const Axis& a, double first, double last) const {
+    return first - over_travel(a.rotary) < a.travel->first - slack ||
+           last + over_travel(a.rotary) > a.travel->second + slack;
+  }
+
+  /// Where targets may lie: the travel less the over-travel. Of a whole turn one turn, from a
+  /// cardinal angle where there is room: 0 deg and 360 deg are both targets, and the over-travel
+  /// goes beyond the travel if need be.
+  std::pair<double, double> range(const Axis& a) const {
+    const auto [from, to] = *a.travel;
+    const double o = over_travel(a.rotary);
+    if (!a.rotary || to - from < full_turn - slack) return {from + o, to - o};
+    for (const double angle : math::cardinal_angles(from + o, to - o - full_turn))
+      return {angle, angle + full_turn};
+    for (const double angle : math::cardinal_angles(from, to - full_turn))
+      return {angle, angle + full_turn};
+    return {from, from + full_turn};
   }
 
   /// Targets as ISO 230-2 asks for them.
@@ -170,12 +194,14 @@ class Requests {
     const double intervals = interval > 0.0 ? std::ceil(length / interval - slack) : length / 0.2;
     if (auto fine = bounded(a.name, intervals + 1.0); !fine) return fine;
     wanted.points = interval > 0.0 ? 1 + static_cast<int>(intervals) : math::axis_points(length);
-    wanted.points = std::max(wanted.points, 2);
-    // Rotary: even, so that 0, 90, 180 and 270 deg can be among the targets.
-    wanted.scatter = choice != "even" && !a.rotary;
-    wanted.period = a.screw_pitch.value_or(0.0);
+    wanted.points = std::max(wanted.points, a.rotary ? math::rotary_points(length) : 2);
+    wanted.scatter = choice != "even";
+    wanted.period = a.rotary ? full_turn / a.teeth.value_or(1) : a.screw_pitch.value_or(0.0);
     how = wanted.scatter ? "targets: random offsets, seed " + std::to_string(wanted.seed)
                          : "targets: even";
+    if (!a.rotary || !wanted.scatter) return {};
+    wanted.among = math::cardinal_angles(wanted.first, wanted.last);
+    how += "; 0, 90, 180, 270 deg as ISO 230-2 asks";
     return {};
   }
 
@@ -232,6 +258,27 @@ class Requests {
     return {};
   }
 
+  /// Stops of the rows `start`, `from`, `to` on the one axis of option `axes`.
+  Expected<void> sign_probe() {
+    const std::vector<std::string> names = o_.texts("axes");
+    const Axis* a = names.size() == 1 ? in_.campaign.machine.axis(names.front()) : nullptr;
+    for (const Results::Analysed& analysed : in_.results.analyses) {
+      const PointTable& rows = analysed.evaluation.rows;
+      const auto start = cell(rows, "start", 0), from = cell(rows, "from", 0),
+                 to = cell(rows, "to", 0);
+      if (a == nullptr || !start || !from || !to) continue;
+      const double size = a->rotary ? deg : mm;
+      wish_.runs = 1;
+      add(math::probe_path(a->name, a->rotary, *start, *from, *to, wish_),
+          "set the instrument to zero at the first stop, " + number(*from / size) +
+              ", read it at the second, " + number(*to / size) + ": actual - nominal");
+      return {};
+    }
+    return wrong(
+        "programs",
+        "the stops of a sign probe are chosen by `nonio plan sign-probe CAMPAIGN --out p`");
+  }
+
   void add(MeasuringPath path, const std::string& how) {
     Program p{std::move(path), {}, 0.0};
     const bool rotary = p.path.rotary.front();
@@ -255,11 +302,14 @@ class Requests {
     lines.push_back(how);
     lines.push_back(std::to_string(wish_.runs) + " runs, " + direction(path) + ", " +
                     std::to_string(readings) + " readings");
-    lines.push_back("dwell " + number(wish_.dwell) + " s at each reading, over-travel " +
-                    number(rotary ? wish_.over_travel / deg : wish_.over_travel / mm) +
-                    (rotary ? " deg, feed " : " mm, feed ") + number(p.feed) +
+    const bool probe = path.moves.back().stop;
+    const std::string over_travel =
+        ", over-travel " + number(rotary ? wish_.over_travel / deg : wish_.over_travel / mm) +
+        (rotary ? " deg" : " mm");
+    lines.push_back("dwell " + number(wish_.dwell) + " s at each reading" +
+                    (probe ? ", then a stop" : over_travel) + ", feed " + number(p.feed) +
                     (rotary ? " deg/min" : " mm/min"));
-    if (wish_.over_travel <= 0.0)
+    if (!probe && wish_.over_travel <= 0.0)
       lines.emplace_back("no over-travel: the targets at the ends are reached from inside only");
     lines.emplace_back("DRY RUN FIRST, without instrument, at low override");
     lines.emplace_back("positions are those of the machine: no offset may be active");
@@ -268,8 +318,8 @@ class Requests {
   }
 
   std::string direction(const MeasuringPath& path) const {
-    const bool steps = path.axes.size() == 3;
-    return wish_.both_directions && !steps ? "both directions" : "one direction";
+    const bool one_way = path.axes.size() == 3 || path.moves.back().stop;
+    return wish_.both_directions && !one_way ? "both directions" : "one direction";
   }
 
   const OutputInput& in_;

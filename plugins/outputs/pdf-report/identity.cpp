@@ -106,6 +106,34 @@ void add_conformity(const Source& source, std::vector<std::string>& lines) {
   }
 }
 
+bool has_results(const Evaluation& e) {
+  return !e.values.empty() || !e.series.empty() || !e.points.columns.empty() ||
+         !e.rows.columns.empty();
+}
+
+/// Nothing asks for attention. Green only where there was something that could have: what was not
+/// evaluated, or held against no tolerance, is not good for that.
+void say_what_was_looked_at(const Source& source, Status& status) {
+  const Results& results = source.in.results;
+  const Wording& w = source.words;
+  std::string not_evaluated;
+  for (const Remark& note : results.notes)
+    if (note.id == "measurement.not-evaluated")
+      not_evaluated += (not_evaluated.empty() ? "" : ", ") + note.measurement;
+  const bool any = !results.models.empty() ||
+                   std::any_of(results.analyses.begin(), results.analyses.end(),
+                               [](const auto& a) { return has_results(a.evaluation); });
+  status.level = Level::info;
+  if (!any)
+    status.level = Level::attention, status.text = w.get("status.nothing_evaluated");
+  else if (!not_evaluated.empty())
+    status.text = w.get("status.part_evaluated", {{"measurements", not_evaluated}});
+  else if (results.conformity.empty())
+    status.text = w.get("status.not_judged");
+  else
+    status.level = Level::good, status.text = w.get("status.ok");
+}
+
 }  // namespace
 
 void add_status(const Source& source, Blocks& blocks) {
@@ -147,8 +175,10 @@ void add_status(const Source& source, Blocks& blocks) {
   for (const TableFinding& f : table_findings(source))
     if (f.finding->attention) status.lines.push_back(title_of(source, f));
   if (status.lines.empty() && !results.errors.empty()) return;
-  status.level = status.lines.empty() ? Level::good : Level::attention;
-  status.text = w.get(status.lines.empty() ? "status.ok" : "status.attention");
+  if (status.lines.empty())
+    say_what_was_looked_at(source, status);
+  else
+    status.level = Level::attention, status.text = w.get("status.attention");
   blocks.push_back({std::move(status), "status"});
 }
 

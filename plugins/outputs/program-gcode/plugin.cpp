@@ -29,6 +29,7 @@ std::string format(const Program& p, const Settings& options) {
       out += " " + p.path.axes[a] + programs::position(p.path, a, move.to[a]);
     out += "\n";
     if (move.dwell > 0.0) out += dwell(move.dwell, word) + "\n";
+    if (move.stop) out += "M0\n";
   }
   return out + "M30\n";
 }

@@ -49,6 +49,7 @@ std::string format(const Program& p, const Settings&) {
       blocks.add("CYCL DEF 9.0 DWELL TIME");
       blocks.add("CYCL DEF 9.1 DWELL " + programs::number(move.dwell));
     }
+    if (move.stop) blocks.add("STOP");
   }
   blocks.add("M30");
   blocks.add("END PGM " + name + " MM");

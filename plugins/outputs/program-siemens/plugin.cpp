@@ -27,6 +27,7 @@ std::string format(const Program& p, const Settings&) {
     out += " F" + programs::number(p.feed) + "\n";
     // F of a G4 block is seconds and leaves the feed alone.
     if (move.dwell > 0.0) out += "G4 F" + programs::number(move.dwell) + "\n";
+    if (move.stop) out += "M0\n";
   }
   return out + "MSG()\nM30\n";
 }

@@ -28,6 +28,8 @@ bool same_word(std::string_view text, std::string_view lower) {
 
 bool means_not_taken(std::string_view text) {
   if (text.empty() || same_word(text, "n/a")) return true;
+  for (const std::string_view of_a_spreadsheet : {"#n/a", "#n/d", "#nv"})  // en; it, es; de
+    if (same_word(text, of_a_spreadsheet)) return true;
   if (text.front() == '+' || text.front() == '-') text.remove_prefix(1);
   return same_word(text, "nan") || same_word(text, "inf") || same_word(text, "infinity");
 }

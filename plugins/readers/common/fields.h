@@ -15,7 +15,7 @@ enum class DecimalMark : std::uint8_t { none, point, comma };
 struct Field {
   enum class Kind : std::uint8_t {
     taken,      ///< a finite number below 1e19 in size
-    not_taken,  ///< blank, nan, n/a, infinite, or 1e19 and more in size
+    not_taken,  ///< blank, nan, n/a, #N/A (#N/D, #NV), infinite, or 1e19 and more in size
     bad,        ///< anything else
   };
   Kind kind = Kind::bad;

@@ -28,10 +28,24 @@ bool Lines::next(std::string_view& line) {
 
 std::size_t Lines::offset() const { return std::min(offset_, bytes_.size()); }
 
+namespace {
+
+/// A row whose first cell is a spreadsheet's #N/A, and no comment.
+bool begins_with_missing(std::string_view line) {
+  for (const std::string_view word : {"#N/A", "#N/D", "#NV"})
+    if (line.starts_with(word) && line.size() > word.size() &&
+        std::string_view(",;\t").find(line[word.size()]) != std::string_view::npos)
+      return true;
+  return false;
+}
+
+}  // namespace
+
 Content content_of(std::string_view line) {
-  for (const char c : line)
-    if (c != ' ' && c != '\t') return c == '#' ? Content::comment : Content::fields;
-  return Content::nothing;
+  const std::size_t first = line.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return Content::nothing;
+  return line[first] == '#' && !begins_with_missing(line.substr(first)) ? Content::comment
+                                                                        : Content::fields;
 }
 
 std::optional<Error> not_text(std::string_view line) {

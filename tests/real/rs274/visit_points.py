@@ -117,9 +117,9 @@ class Interpreter(unittest.TestCase):
             self.same(folder / f"program-gcode-{name}.ngc", step_diagonal(name))
 
     def test_a_rotary_axis(self):
-        folder = self.write("--set", "interval_deg=45", axes=["--axis", "C=-5:365"])
-        stops = [[-3.0 + i * 366.0 / 9] for i in range(10)]
-        self.same(folder / "program-gcode-C.ngc", to_and_fro(stops, [-5.0], [365.0]), axes=(5,))
+        folder = self.write("--set", "interval_deg=45", "--set", "targets=even", axes=["--axis", "C=-5:365"])
+        stops = [[i * 45.0] for i in range(9)]
+        self.same(folder / "program-gcode-C.ngc", to_and_fro(stops, [-2.0], [362.0]), axes=(5,))
 
     def test_random_offsets_are_the_same_in_every_run(self):
         folder = self.write(axes=["--axis", "X=0:1003"])

@@ -30,16 +30,28 @@ TEST(Distributions, ClosedForms) {
   EXPECT_NEAR(t_two_sided(3.3554, 8.0), 0.01, 1e-6);
 }
 
-TEST(Distributions, WhatIsNotANumberIsNoEvidence) {
+// "Not significant" is a statement, and of what is not a number nobody can make it.
+TEST(Distributions, WhatIsNotANumberIsNotPassedOver) {
   const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(f_upper(nan, 2, 2), 1.0);
+  EXPECT_TRUE(std::isnan(f_upper(nan, 2, 2)));
   EXPECT_EQ(f_upper(3, 0, 2), 1.0);
   EXPECT_EQ(f_upper(3, 2, -1), 1.0);
-  EXPECT_EQ(f_upper(3, 2, nan), 1.0);
+  EXPECT_TRUE(std::isnan(f_upper(3, 2, nan)));
+  EXPECT_TRUE(std::isnan(f_upper(3, nan, 2)));
   EXPECT_EQ(f_upper(infinite, 2, 2), 0.0);
-  EXPECT_EQ(t_two_sided(nan, 3), 1.0);
+  EXPECT_TRUE(std::isnan(t_two_sided(nan, 3)));
+  EXPECT_TRUE(std::isnan(t_two_sided(2, nan)));
   EXPECT_EQ(t_two_sided(2, 0), 1.0);
   EXPECT_EQ(t_two_sided(-infinite, 3), 0.0);
+  EXPECT_TRUE(significant(nan, 0.01));
+  EXPECT_TRUE(significant(0.009, 0.01));
+  EXPECT_FALSE(significant(0.01, 0.01));
+  // Readings that neither scatter nor differ are no case of it; those that differ without scatter
+  // are as clear as can be.
+  EXPECT_EQ(f_upper(test_ratio(0.0, 0.0), 2, 2), 1.0);
+  EXPECT_EQ(t_two_sided(test_ratio(0.0, 0.0), 3), 1.0);
+  EXPECT_EQ(f_upper(test_ratio(1.0, 0.0), 2, 2), 0.0);
+  EXPECT_TRUE(std::isnan(test_ratio(nan, 0.0)));
 }
 
 // d_n = integral of 1 - (1 - Phi)^n - Phi^n: the mean range of n normal values.

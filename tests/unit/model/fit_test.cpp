@@ -52,6 +52,44 @@ TEST(Fit, StraightLineByHand) {
   EXPECT_EQ(f->redundancy, 3u);
 }
 
+// y = 0, 1, 5 at x = 0, 1, 2 with u = 1, 1, 2. A reading without u counts as one of the mean u.
+TEST(Fit, AReadingCountsByItsUncertainty) {
+  const Effect line = line_effect(false);
+  Observations o = points({0, 1, 2}, {0, 1, 5});
+  o.u = {1.0, 1.0, 2.0};
+  // sums of w = 4, 4, 1: w 9, wx 6, wxx 8, wy 9, wxy 14; slope (9*14 - 6*9)/(9*8 - 36) = 2,
+  // intercept (9 - 12)/9.
+  const auto f = fit(o, {{&line, Axis{.name = "X"}}});
+  ASSERT_TRUE(f) << f.error().message;
+  EXPECT_NEAR(f->parameters[0].value, 2.0, 1e-12);
+  EXPECT_NEAR(f->zero[0], -1.0 / 3.0, 1e-12);
+  o.u = {1.0, 3.0, std::nan("")};
+  const auto g = fit(o, {{&line, Axis{.name = "X"}}});
+  o.u = {1.0, 3.0, 2.0};
+  const auto h = fit(o, {{&line, Axis{.name = "X"}}});
+  ASSERT_TRUE(g && h);
+  EXPECT_NEAR(g->parameters[0].value, h->parameters[0].value, 1e-12);
+}
+
+// Nobody measured times: a drift is so much from one reading to the next, and no um/h.
+TEST(Fit, TimesThatNobodyMeasuredAreNotHours) {
+  Effect drift = line_effect(false);
+  drift.linear = {{"z", "", Quantity::deviation_per_time, Quantity::angle_per_time}};
+  Observations o = points({0, 1, 2, 3, 4}, {1, 3, 2, 5, 4});
+  o.axes[0].approach.assign(5, 1);
+  auto f = fit(o, {{&drift, Axis{.name = "X"}}});
+  ASSERT_TRUE(f) << f.error().message;
+  EXPECT_EQ(unit_of(f->parameters[0].quantity).symbol, "um/reading");
+  o.time = {0, 10, 20, 30, 40};
+  f = fit(o, {{&drift, Axis{.name = "X"}}});
+  ASSERT_TRUE(f) << f.error().message;
+  EXPECT_EQ(unit_of(f->parameters[0].quantity).symbol, "um/h");
+  o.time[3] = std::nan("");  // not all of them
+  f = fit(o, {{&drift, Axis{.name = "X"}}});
+  ASSERT_TRUE(f) << f.error().message;
+  EXPECT_EQ(unit_of(f->parameters[0].quantity).symbol, "um/reading");
+}
+
 TEST(Fit, EachLineHasItsOwnZero) {
   const Effect line = line_effect(false);
   Observations o = points({0, 1, 2, 0, 1, 2}, {10, 11, 12, -5, -4, -3});

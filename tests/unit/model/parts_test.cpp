@@ -183,6 +183,44 @@ TEST(Parts, RunsOfAnAxisAreOnePartEach) {
   }
 }
 
+// What a reader says of a reading's uncertainty comes along, whatever it is joined with.
+TEST(Parts, TheUncertaintyOfReadingsIsKept) {
+  Visit t;
+  t.run("X1", "X", {1, 0, 0});
+  t.run("X2", "X", {1, 0, 0});
+  t.read[1].run.clear();
+  for (std::size_t i = 0; i < t.read[1].size(); ++i)
+    t.read[1].u.push_back(1e-6 * static_cast<double>(i + 1));
+  const Part run = t.parts().at(0);
+  ASSERT_EQ(run.table.u.size(), run.table.size());
+  ASSERT_EQ(run.table.run.size(), run.table.size());
+  for (std::size_t i = 0; i < run.table.size(); ++i) {
+    const bool stated = i >= t.read[0].size();
+    EXPECT_EQ(std::isnan(run.table.u[i]), !stated);
+    if (!stated) continue;
+    EXPECT_EQ(run.table.u[i], t.read[1].u[run.row[i]]);
+  }
+
+  Visit space;
+  space.diagonals();
+  space.read[0].u.assign(space.read[0].size(), 2e-6);
+  space.read[1].u.assign(space.read[1].size(), 5e-6);
+  const Part diagonals = space.parts().at(0);
+  ASSERT_EQ(diagonals.table.u.size(), diagonals.table.size());
+  for (std::size_t i = 0; i < diagonals.table.size(); ++i)
+    EXPECT_EQ(diagonals.table.u[i], diagonals.measurement[i] == 0 ? 2e-6 : 5e-6);
+
+  // Of a ball's centre: along the radius and along the axis, which is Z here.
+  Visit balls;
+  balls.balls("B", 12);
+  for (std::size_t i = 0; i < balls.read[0].size(); ++i)
+    balls.read[0].u.push_back(i % 3 == 2 ? 4e-6 : 1e-6);
+  const Part part = balls.parts().at(0);
+  ASSERT_EQ(part.table.u.size(), part.table.size());
+  for (std::size_t i = 0; i < part.table.size(); ++i)
+    EXPECT_NEAR(part.table.u[i], part.table.line[i] == 0 ? 1e-6 : 4e-6, 1e-12);
+}
+
 // Yaw read by an autocollimator is no position of the axis.
 TEST(Parts, AnAngleOfALinearAxisIsLeftOut) {
   Visit t;

@@ -133,6 +133,25 @@ TEST_F(Certificate, EverythingThatIsMissingIsListedAtOnce) {
   EXPECT_EQ(lacks(none).size(), std::size(gaps));
 }
 
+// A place-holder is no serial number: nothing on the paper would say which instrument it was.
+TEST_F(Certificate, ASerialNumberThatNamesNothingIsMissing) {
+  for (const char* text : {" ", "-", "--", "n/a", "N.A.", "?", "unknown", "\u2013", "xxx", "000"})
+    for (const bool machine : {true, false}) {
+      Case c = whole();
+      (machine ? c.campaign.machine.serial : c.campaign.instrument.serial) = text;
+      ASSERT_EQ(lacks(c).size(), 1U) << text;
+      EXPECT_EQ(lacks(c)[0], machine ? "machine.serial" : "instrument.serial") << text;
+    }
+  for (const char* text : {"0417", "L-001", "A", "\u7532-7"}) {
+    Case c = whole();
+    c.campaign.instrument.serial = text;
+    EXPECT_TRUE(lacks(c).empty()) << text;
+  }
+  Case c = whole();
+  c.campaign.sensors = {{.measures = "pressure", .serial = "-"}};
+  EXPECT_EQ(lacks(c).size(), 3U);  // serial, calibrated, certificate
+}
+
 TEST_F(Certificate, WithoutTemperaturesTheConditionsMustBeStated) {
   Case c = whole();
   for (Observations& o : c.observations) o.material.clear();

@@ -121,6 +121,71 @@ TEST_F(PdfReport, NoCellOfAValuesTableWithTolerancesIsDivided) {
   }
 }
 
+TEST_F(PdfReport, NothingNeedsAttentionOnlyWhereSomethingWasJudged) {
+  Behaviour even;
+  even.reversal = 0;
+  even.s_plus = even.s_minus = 0.5;
+  const Case quiet = usual(even);
+  const std::string green = "Nothing needs attention.";
+  // No tolerance: nothing was judged.
+  EXPECT_FALSE(has(text(quiet), green));
+  EXPECT_TRUE(has(text(quiet), "nothing was judged"));
+  // A tolerance that is kept is.
+  Case judged = quiet;
+  decide(judged, "iso230-2", "A", 50e-6, Decision::conforms);
+  EXPECT_TRUE(has(text(judged), green));
+  EXPECT_FALSE(has(text(judged), "nothing was judged"));
+  // Beside it a measurement that nobody looked at: not green.
+  Case part = judged;
+  part.results.notes.push_back({"measurement.not-evaluated", {}, {{"kind", "angle"}}, "yaw"});
+  EXPECT_FALSE(has(text(part), green));
+  EXPECT_TRUE(has(text(part), "Not evaluated: yaw."));
+  // Nothing evaluated at all.
+  Case nothing = quiet;
+  nothing.results.analyses.clear();
+  EXPECT_FALSE(has(text(nothing), green));
+  EXPECT_TRUE(has(text(nothing), "Nothing was evaluated"));
+}
+
+// What the table refuses, the figure does not show.
+TEST_F(PdfReport, NoBracketStandsForAResultThatIsNotThere) {
+  Case c = usual();
+  const auto marks = [&](const std::string& name) { return has_line(text(c), name); };
+  ASSERT_TRUE(marks("E"));
+  for (const char* gone : {"A", "E", "P", "Pa"}) {
+    for (auto& a : c.results.analyses)
+      std::erase_if(a.evaluation.values, [&](const Value& v) { return v.name == gone; });
+    EXPECT_FALSE(marks(gone)) << gone;
+  }
+}
+
+TEST_F(PdfReport, ADiagonalIsAsLongAsItIs) {
+  Case c = usual();
+  Measurement m;
+  m.id = "D1";
+  m.kind = "diagonal";
+  m.file = "d1.csv";
+  m.from = {{"X", 0.0}, {"Y", 1.0}};
+  m.to = {{"X", 12.0}, {"Y", 10.0}};
+  Observations o;
+  o.measurement = "D1";
+  o.axes = {{"X", false, {}, {}}, {"Y", false, {}, {}}};
+  o.lines = {{"D1", {0.8, 0.6, 0.0}}};
+  for (int i = 0; i <= 30; ++i) {
+    const double along = 0.5 * i + (i == 30 ? 5e-8 : 0.0);  // the last digit of the file
+    o.axes[0].position.push_back(0.8 * along);
+    o.axes[1].position.push_back(1.0 + 0.6 * along);
+    for (auto& axis : o.axes) axis.approach.push_back(1);
+    o.deviation.push_back(1e-6 * i);
+    o.run.push_back(1);
+  }
+  c.campaign.measurements.push_back(m);
+  c.observations.push_back(o);
+  const std::string report = text(c);
+  EXPECT_TRUE(has(report, "31 targets from 0 to 15000")) << report;
+  EXPECT_FALSE(has(report, "12000.0"));
+}
+
 TEST_F(PdfReport, AFindingOfTwoAnalysesIsSaidOnce) {
   const std::string report = text(usual());
   // once in the status at the top, once among the findings

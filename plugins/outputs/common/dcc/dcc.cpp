@@ -270,15 +270,33 @@ class Writer {
 
   void equipment() {
     const Instrument& i = in_.campaign.instrument;
-    if (i.model.empty()) return;
+    if (i.model.empty() && in_.campaign.sensors.empty()) return;
     xml_.open("dcc:measuringEquipments");
-    xml_.open("dcc:measuringEquipment", "refType=\"basic_measurementStandard\"");
-    text("dcc:name", i.certificate.empty() ? i.model : i.model + ", certificate " + i.certificate);
-    text("dcc:description", about_.equipment);
-    manufacturer(i.maker);
-    xml_.element("dcc:model", i.model);
-    serial_number(i.serial);
+    if (!i.model.empty())
+      one_equipment(
+          {"", i.maker, i.model, i.serial, i.calibrated, i.valid_until, i.certificate, i.issuer},
+          "refType=\"basic_measurementStandard\"", about_.equipment);
+    for (const Sensor& s : in_.campaign.sensors) one_equipment(s, "", {});
     xml_.close();
+  }
+
+  void one_equipment(const Sensor& s, const std::string& attributes, const Text& description) {
+    std::string name = s.model;
+    const auto add = [&](const std::string& before, const std::string& text) {
+      if (!text.empty()) name += (name.empty() ? "" : ", ") + before + text;
+    };
+    add("sensor of ",
+        s.measures == "material" || s.measures == "air" ? s.measures + " temperature" : s.measures);
+    add("certificate ", s.certificate);
+    add("issued by ", s.issuer);
+    add("calibrated ", s.calibrated);
+    add("valid until ", s.valid_until);
+    xml_.open("dcc:measuringEquipment", attributes);
+    text("dcc:name", name);
+    if (!empty(description)) text("dcc:description", description);
+    manufacturer(s.maker);
+    if (!s.model.empty()) xml_.element("dcc:model", s.model);
+    if (!s.serial.empty()) serial_number(s.serial);
     xml_.close();
   }
 

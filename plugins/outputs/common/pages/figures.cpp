@@ -33,6 +33,7 @@ class Points {
           std::all_of(wanted.begin(), wanted.end(),
                       [&](std::string_view name) { return p.column(name) != nullptr; })) {
         table_ = &p;
+        values_ = &a->evaluation.values;
         return;
       }
     }
@@ -43,9 +44,15 @@ class Points {
     const auto* c = table_ != nullptr ? table_->column(name) : nullptr;
     return c != nullptr ? in_print(c->values, c->quantity) : std::vector<double>();
   }
+  /// Whether their analysis gives a result of this name; a figure shows no other.
+  bool result(std::string_view name) const {
+    return values_ != nullptr && std::any_of(values_->begin(), values_->end(),
+                                             [&](const Value& v) { return v.name == name; });
+  }
 
  private:
   const PointTable* table_ = nullptr;
+  const std::vector<Value>* values_ = nullptr;
 };
 
 bool any_finite(const std::vector<double>& values) {
@@ -255,8 +262,8 @@ std::optional<Plot> iso_plot(const Source& source, const Measured& m) {
     plot.curves.push_back(mean_curve(source, x, mean, plus));
   }
   if (any_finite(points["mean+"]) && any_finite(points["mean-"])) {
-    add_span(plot, "E", {means});
-    if (!bounds.empty()) add_span(plot, "A", {bounds});
+    if (points.result("E")) add_span(plot, "E", {means});
+    if (points.result("A")) add_span(plot, "A", {bounds});
   }
   return plot;
 }
@@ -284,8 +291,8 @@ std::optional<Plot> vdi_plot(const Source& source, const Measured& m) {
   if (scatter) {
     const Curve outer = band(combine(U, Ps, [](double u, double ps) { return (u + ps) / 2; }),
                              lighter(style.muted, 0.1F), Dash::dotted, "plot.scatter");
-    add_span(plot, "Pa", {mean});
-    add_span(plot, "P", {outer.y, outer.y2});
+    if (points.result("Pa")) add_span(plot, "Pa", {mean});
+    if (points.result("P")) add_span(plot, "P", {outer.y, outer.y2});
   }
   band(combine(U, U, [](double u, double) { return u / 2; }), style.accent, Dash::solid,
        "plot.span");

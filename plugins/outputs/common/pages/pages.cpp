@@ -141,6 +141,27 @@ std::string heading_of(const Source& source, const Measured& m) {
   return words.get("measurement.other", {{"id", measurement.id}, {"kind", measurement.kind}});
 }
 
+namespace {
+
+/// Where the targets lie: positions of the axis, of a diagonal the distance from its begin.
+std::vector<double> along_line(const Measured& m) {
+  const auto& axes = m.observations.axes;
+  if (m.measurement.kind != "diagonal" || axes.size() < 2) return axes.front().position;
+  std::vector<double> along(m.observations.size(), 0.0);
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    for (const auto& axis : axes) {
+      const auto from = m.measurement.from.find(axis.axis);
+      const double way = axis.position[i] - (from == m.measurement.from.end() ? 0.0 : from->second);
+      along[i] = std::hypot(along[i], way);
+    }
+    // The file has 0.0001 mm; components along the axes were computed from it.
+    along[i] = std::round(along[i] / grid_tolerance) * grid_tolerance;
+  }
+  return along;
+}
+
+}  // namespace
+
 /// How the test was made, as the readings show it.
 std::string test_of(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
@@ -152,7 +173,7 @@ std::string test_of(const Source& source, const Measured& m) {
            temperatures(source, "measurement.material", o.material) +
            temperatures(source, "measurement.air", o.air);
   const auto& axis = o.axes.front();
-  std::vector<double> targets = axis.position;
+  std::vector<double> targets = along_line(m);
   std::sort(targets.begin(), targets.end());
   targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
   std::vector<std::uint32_t> runs = o.run;
@@ -217,6 +238,7 @@ Expected<void> check_texts(const Campaign& c, const Fonts& fonts) {
       {"instrument.model", i.model},
       {"instrument.serial", i.serial},
       {"instrument.certificate", i.certificate},
+      {"instrument.issuer", i.issuer},
       {"laboratory.name", l.name},
       {"laboratory.address", l.address},
       {"laboratory.country", l.country},
@@ -231,6 +253,13 @@ Expected<void> check_texts(const Campaign& c, const Fonts& fonts) {
       {"certificate.conditions", t.conditions},
       {"certificate.opinions", t.opinions},
       {"certificate.amendment", t.amendment}};
+  for (const Sensor& s : c.sensors)
+    for (const auto& [key, text] : {std::pair{".maker", &s.maker},
+                                    {".model", &s.model},
+                                    {".serial", &s.serial},
+                                    {".certificate", &s.certificate},
+                                    {".issuer", &s.issuer}})
+      texts.emplace_back("sensor " + s.measures + key, *text);
   for (const auto& [language, title] : t.title) texts.emplace_back("certificate.title", title);
   for (const Axis& a : m.axes) {
     texts.emplace_back("machine.axes." + a.name, a.name);

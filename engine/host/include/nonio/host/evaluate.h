@@ -71,7 +71,8 @@ struct Evaluated {
 using Stage = std::function<void(const std::string&)>;
 
 /// What was issued for what is evaluated here, whatever is `missing` for it today; else, if nothing
-/// is, a draft or a number; else neither. Adds to `missing` what only the register knows.
+/// is, a draft or a number; else neither. Adds to `missing` what only the day and the register
+/// tell.
 using Draw =
     std::function<Expected<Certificate>(const Evaluated&, std::vector<std::string>& missing)>;
 

@@ -47,6 +47,7 @@ struct ImportedCampaign {
   std::vector<ImportedFile> files;
   std::vector<std::string> lacks;  ///< of the campaign as a whole
   bool written = false;
+  bool there = false;  ///< imported before: its folder has these files, and measurements of them
 
   bool whole() const;
 };
@@ -67,7 +68,7 @@ struct ImportWish {
 };
 
 /// Makes campaigns from a folder of files. A campaign's folder is new and appears whole; nothing
-/// that is there is touched.
+/// that is there is touched. Where all of it is there already, there is nothing to do.
 Expected<ImportReport> import_folder(const ImportWish& wish, const Plugins& plugins);
 
 }  // namespace nonio::host

@@ -83,8 +83,4 @@ struct SignProbe {
 };
 Expected<SignProbe> sign_probe(const Measurement&, const Observations&);
 
-/// The part program of it: two stops to read the instrument at. "heidenhain" has a language of its
-/// own.
-Artifact probe_program(const SignProbe&, bool heidenhain, double feed);
-
 }  // namespace nonio::host

@@ -3,10 +3,18 @@
 
 namespace nonio::math {
 
-/// P(F > f) of Fisher's distribution; 1 if a degree of freedom is not positive.
+/// P(F > f) of Fisher's distribution; 1 if a degree of freedom is not positive: nothing was tested.
+/// NaN where f or a degree of freedom is not a number.
 double f_upper(double f, double dof1, double dof2);
-/// P(|T| > |t|) of Student's distribution; 1 if the degree of freedom is not positive.
+/// P(|T| > |t|) of Student's distribution; 1 if the degree of freedom is not positive, NaN as
+/// above.
 double t_two_sided(double t, double dof);
+/// What a test divides by: 0 where there is nothing of either (readings without scatter that do not
+/// differ), so that only what is really unknown is NaN.
+double test_ratio(double found, double scatter);
+/// p < level. What is not a number was not judged, so it is not passed over either: it counts as
+/// significant, and evidence that is not a number stops its campaign.
+inline bool significant(double p, double level) { return !(p >= level); }
 /// k with P(|T| > k) = 4.55 %, so 2 for many degrees of freedom; NaN if they are not positive.
 double coverage_factor(double dof);
 

@@ -14,6 +14,7 @@ namespace nonio::math {
 struct MeasuringMove {
   std::vector<double> to;  ///< one position for each axis of the path
   double dwell = 0.0;      ///< s at rest, in which the instrument reads; 0: a point of turning
+  bool stop = false;       ///< after that the program waits for the operator
 };
 
 struct MeasuringPath {
@@ -35,6 +36,7 @@ struct MeasuringWish {
 /// With `scatter`, r_i is random, uniform within +- min(period, 0.3 p), at the ends only inwards:
 /// even steps would not see an error with the period of the screw or of the scale. Multiples of
 /// `resolution` between first and last; the same seed gives the same targets on every computer.
+/// Those of `among` that lie in the range take the place of the nearest target.
 /// Source: ISO 230-2:2014, test plan; the 30 % where no period is known is common practice.
 struct AxisTargets {
   double first = 0.0, last = 0.0;
@@ -43,16 +45,25 @@ struct AxisTargets {
   double period = 0.0;  ///< expected period of an error; 0: not known
   double resolution = 1e-6;
   std::uint64_t seed = 1;
+  std::vector<double> among{};
 };
 Expected<std::vector<double>> axis_targets(const AxisTargets& wish);
 
 /// How many targets ISO 230-2 asks of a linear axis: five a metre up to 2 m and five at least, then
 /// one every 250 mm.
 int axis_points(double length);
+/// The same of a rotary axis: 3, 5, 8 for up to 90, 180, 360 deg; 8 a turn beyond.
+int rotary_points(double angle);
+/// Which angles it wants among the targets: 0, 90, 180, 270 deg, in every turn of the range, rad.
+std::vector<double> cardinal_angles(double first, double last);
 
 /// Each run: all targets upwards, and downwards if both directions are asked for.
 MeasuringPath axis_path(const std::string& axis, bool rotary, const std::vector<double>& targets,
                         const MeasuringWish& wish);
+
+/// Two stops of an axis at which a person reads the instrument, both reached from `start`'s side.
+MeasuringPath probe_path(const std::string& axis, bool rotary, double start, double from, double to,
+                         const MeasuringWish& wish);
 
 /// A rectangle with n equal steps.
 struct Rectangle {

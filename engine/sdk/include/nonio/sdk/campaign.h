@@ -21,6 +21,7 @@ struct Axis {
   std::optional<int> teeth{};                 ///< periods per revolution of a rotary axis
   std::optional<double> expansion{};          ///< 1/K
   std::map<std::string, double> tolerance{};  ///< upper limit of a result, by its name: m or rad
+  std::string slave{};  ///< of a gantry: name of the control's axis that drives the second side
 };
 
 struct Machine {
@@ -40,9 +41,16 @@ struct Machine {
 /// The measuring instrument; U are expanded uncertainties (k = 2) of its certificate.
 struct Instrument {
   std::string maker, model, serial, calibrated, certificate;
-  std::optional<double> U_fixed;       ///< m
-  std::optional<double> U_per_length;  ///< m/m
-  std::optional<double> U_angle;       ///< rad
+  std::optional<double> U_fixed;        ///< m
+  std::optional<double> U_per_length;   ///< m/m
+  std::optional<double> U_angle;        ///< rad
+  std::string issuer{}, valid_until{};  ///< of its certificate: who issued it, its last day
+};
+
+/// A sensor of what the instrument is compensated by or the machine was held at.
+struct Sensor {
+  std::string measures{};  ///< material, air, pressure, humidity
+  std::string maker{}, model{}, serial{}, calibrated{}, valid_until{}, certificate{}, issuer{};
 };
 
 /// What the uncertainty budget needs beside the instrument (ISO/TR 230-9:2005 Annex C); each is
@@ -99,7 +107,15 @@ struct Measurement {
   std::map<std::string, double> tool_offset{};       ///< m, from the spindle nose to the probe
   std::map<std::string, double> workpiece_offset{};  ///< m, from the table to the place measured
   std::string compensation{};                        ///< "on" or "off": the control's tables
+  std::string side{};  ///< of a gantry axis: "master" or "slave"; empty: not said
 };
+
+/// The axis of the control whose scale a measurement of an axis was made on: on the second side of
+/// a gantry the slave, else the axis itself.
+inline std::string control_axis(const Machine& machine, const Measurement& m) {
+  const Axis* axis = machine.axis(m.axis);
+  return m.side == "slave" && axis != nullptr ? axis->slave : m.axis;
+}
 
 /// An effect of the user's own, without compiling.
 struct Formula {
@@ -120,6 +136,7 @@ struct Campaign {
   std::string end_date, received;  ///< of the last measurement; of the item; YYYY-MM-DD, or empty
   Machine machine;
   Instrument instrument;
+  std::vector<Sensor> sensors{};
   Environment environment;
   Laboratory laboratory;
   CertificateTexts certificate;

@@ -8,7 +8,7 @@
 namespace nonio {
 
 /// Units as `unit_of` prints them, and as D-SI writes them (PTB's D-SI 2.2: names of siunitx).
-inline constexpr std::array<std::pair<std::string_view, std::string_view>, 18> dsi_units = {{
+inline constexpr std::array<std::pair<std::string_view, std::string_view>, 23> dsi_units = {{
     {"", "\\one"},
     {"mm", "\\milli\\metre"},
     {"um", "\\micro\\metre"},
@@ -27,6 +27,11 @@ inline constexpr std::array<std::pair<std::string_view, std::string_view>, 18> d
     {"arcsec/(deg h)", "\\arcsecond\\per\\degree\\per\\hour"},
     {"arcsec/(deg K)", "\\arcsecond\\per\\degree\\per\\kelvin"},
     {"hPa", "\\hecto\\pascal"},
+    {"readings", "\\one"},
+    {"um/reading", "\\micro\\metre"},
+    {"arcsec/reading", "\\arcsecond"},
+    {"um/(m reading)", "\\micro\\metre\\per\\metre"},
+    {"arcsec/(deg reading)", "\\arcsecond\\per\\degree"},
 }};
 
 /// Empty if there is none.

@@ -19,6 +19,9 @@ inline std::size_t coordinate_of(std::string_view axis) {
   return at == std::string_view::npos ? 3 : at;
 }
 
+/// Commanded positions that lie nearer together are one target: 0.0001 mm, 0.02 arcsec. m or rad.
+inline constexpr double grid_tolerance = 1e-7;
+
 /// The one table that all measurements reduce to: a row is one reading that was taken. Columns
 /// have `size()` entries, or none where the file did not have them. SI: m, rad, s, degC.
 struct Observations {
@@ -64,8 +67,14 @@ struct Observations {
       if (a.axis == name) return &a;
     return nullptr;
   }
+  /// Of a reading, also where the file did not say it.
+  std::uint32_t line_of(std::size_t i) const { return line.empty() ? 0 : line[i]; }
+  std::uint32_t run_of(std::size_t i) const { return run.empty() ? 1 : run[i]; }
+  std::uint32_t source_line_of(std::size_t i) const {
+    return source_line.empty() ? 0 : source_line[i];
+  }
   const std::array<double, 3>& sense_of(std::size_t i) const {
-    return sense.empty() ? lines[line.empty() ? 0 : line[i]].sense : sense[i];
+    return sense.empty() ? lines[line_of(i)].sense : sense[i];
   }
 };
 

@@ -29,7 +29,31 @@ enum class Quantity {
   growth,                  ///< 1/s, printed in um/(m h)
   angular_growth,          ///< 1/s, printed in arcsec/(deg h)
   angular_expansion,       ///< 1/K, printed in arcsec/(deg K)
+  // Where nobody measured times, one reading after the other takes their place.
+  readings,                    ///< how many readings later
+  deviation_per_reading,       ///< m, printed in um/reading
+  angle_per_reading,           ///< rad, printed in arcsec/reading
+  growth_per_reading,          ///< m/m, printed in um/(m reading)
+  angular_growth_per_reading,  ///< rad/rad, printed in arcsec/(deg reading)
 };
+
+/// Of the same, counted in readings.
+constexpr Quantity by_readings(Quantity q) {
+  switch (q) {
+    case Quantity::time:
+      return Quantity::readings;
+    case Quantity::deviation_per_time:
+      return Quantity::deviation_per_reading;
+    case Quantity::angle_per_time:
+      return Quantity::angle_per_reading;
+    case Quantity::growth:
+      return Quantity::growth_per_reading;
+    case Quantity::angular_growth:
+      return Quantity::angular_growth_per_reading;
+    default:
+      return q;
+  }
+}
 
 struct Unit {
   std::string_view symbol;  ///< as printed: "um"
@@ -79,6 +103,16 @@ constexpr Unit unit_of(Quantity q) {
       return {"arcsec/(deg h)", "_arcsec_per_deg_h", 3600.0 * 3600.0};
     case Quantity::angular_expansion:
       return {"arcsec/(deg K)", "_arcsec_per_deg_K", 3600.0};
+    case Quantity::readings:
+      return {"readings", "_readings", 1.0};
+    case Quantity::deviation_per_reading:
+      return {"um/reading", "_um_per_reading", 1e6};
+    case Quantity::angle_per_reading:
+      return {"arcsec/reading", "_arcsec_per_reading", arcsec_per_rad};
+    case Quantity::growth_per_reading:
+      return {"um/(m reading)", "_um_per_m_reading", 1e6};
+    case Quantity::angular_growth_per_reading:
+      return {"arcsec/(deg reading)", "_arcsec_per_deg_reading", 3600.0};
   }
   return {"", "", 1.0};
 }
