@@ -296,7 +296,7 @@ class Writer {
     if (!empty(description)) text("dcc:description", description);
     manufacturer(s.maker);
     if (!s.model.empty()) xml_.element("dcc:model", s.model);
-    if (!s.serial.empty()) serial_number(s.serial);
+    serial_number(s.serial);
     xml_.close();
   }
 
