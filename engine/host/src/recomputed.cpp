@@ -40,8 +40,10 @@ class Comparison {
 
  private:
   void compare_objects(const Json& attached, const Json& again, const std::string& where) {
+    // Certificates of earlier versions say neither k, which was 2, nor their budget.
     for (const auto& [key, value] : again.items())
-      if (!attached.contains(key)) difference = where + " lacks " + key;
+      if (!attached.contains(key) && key != "k" && key != "budget")
+        difference = where + " lacks " + key;
     for (const auto& [key, value] : attached.items()) {
       if (!again.contains(key)) {
         difference = where + " " + key + " is not found again";
@@ -56,7 +58,7 @@ class Comparison {
 Json values_of(const Json& analysis) {
   Json out = Json::object();
   for (const char* key :
-       {"values", "points", "point_units", "point_U", "rows", "row_units", "series"})
+       {"values", "points", "point_units", "point_U", "rows", "row_units", "series", "budget"})
     if (analysis.contains(key)) out[key] = analysis[key];
   return out;
 }
@@ -132,6 +134,9 @@ std::string contradiction(const sign::DccValue& v, const Json& results) {
   const bool has_U = is_number(value, "U");
   if (has_U != v.U.has_value() || (has_U && !same(value["U"].get<double>(), *v.U)))
     return who + " has another uncertainty in results.json";
+  // Results of earlier versions do not say k, which was 2.
+  if (has_U && !same(is_number(value, "k") ? value["k"].get<double>() : 2.0, v.k))
+    return who + " has another coverage factor in results.json";
   return {};
 }
 

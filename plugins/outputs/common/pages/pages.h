@@ -64,6 +64,8 @@ std::string decision_text(const Source&, Decision);
 void add_results(const Source&, const Measured&, Blocks&);
 void add_targets(const Source&, const Measured&, Blocks&);
 void add_plots(const Source&, const Measured&, Blocks&);
+/// What its uncertainties are made of, from the budget that results.json has too.
+void add_budget(const Source&, const Measured&, Blocks&);
 
 /// What manifest and site bring, before it is lost in sentences: an error names the key, so that
 /// the host can say where it stands.

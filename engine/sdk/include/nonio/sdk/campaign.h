@@ -43,6 +43,11 @@ struct Instrument {
   std::optional<double> U_fixed;       ///< m
   std::optional<double> U_per_length;  ///< m/m
   std::optional<double> U_angle;       ///< rad
+  /// Of a probe: full ranges of the form of its ball, and of what the probe itself adds, m.
+  std::optional<double> sphere{}, probe{};
+  /// Of a device that has a length of its own (a scale, a step gauge); none: its length does not
+  /// depend on its temperature, or that is in U_per_length. 1/K, K and 1/K, the latter full ranges.
+  std::optional<double> expansion{}, temperature_range{}, expansion_range{};
 };
 
 /// What the uncertainty budget needs beside the instrument (ISO/TR 230-9:2005 Annex C); each is
@@ -54,10 +59,20 @@ struct Environment {
   std::optional<double> expansion_range;         ///< 1/K, of the expansion coefficient
   std::optional<double> drift;                   ///< m, range of the drift test (E_VE)
   std::optional<double> drift_angle;             ///< rad, the same of a rotary axis
+  std::optional<double> drift_time{};            ///< s, how long the drift test took
+};
+
+/// The smallest expanded uncertainty that an accreditation covers (CMC): a + b L for lengths.
+struct Cmc {
+  std::optional<double> fixed{};       ///< m
+  std::optional<double> per_length{};  ///< m/m
+  std::optional<double> angle{};       ///< rad, of angles and directions
+  bool stated() const { return fixed || per_length || angle; }
 };
 
 struct Laboratory {
   std::string name, address, country, accreditation, authoriser, contact;
+  Cmc cmc{};
 };
 
 /// What a certificate says beside the results (ISO/IEC 17025:2017, 7.8): of site.toml, and of the
