@@ -242,15 +242,17 @@ def rotary_table():
     text = manifest(story, "14-rotary-table", "Esempio Quattordici S.r.l.", "Udine", "2026-04-02",
                     {"maker": "Sample Machines", "model": "UM 5", "serial": "S-0114", "structure": "bridge"},
                     {"C": {"kind": '"rotary"', "travel": "[0.0, 360.0]"},
-                     "B": {"kind": '"rotary"', "travel": "[-60.0, 90.0]"}},
+                     "B": {"kind": '"rotary"', "travel": "[-60.0, 90.0]"},
+                     **{axis: {"kind": '"linear"', "expansion_um_per_m_K": "11.5"} for axis in "XYZ"}},
                     [axis_measurement("C", "ball-centres"), axis_measurement("B", "ball-centres")],
-                    PROBE)
+                    PROBE, {key: value for key, value in GOOD_ROOM.items() if key != "misalignment_mm"})
     text += """
 [run]
 analyses = ["rotary-kinematics"]
 
 [options.rotary-kinematics]
 same_reference = ["C", "B"]
+linear_axes_urad = 5.0
 """
     made = [MADE_UP]
     return {"campaign.toml": text,

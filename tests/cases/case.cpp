@@ -100,7 +100,7 @@ void evaluate_iso(const Case& c, const AxisTest& test, Outcome& out) {
     out.values["n+" + at] = static_cast<double>(p.n_plus);
     out.values["n-" + at] = static_cast<double>(p.n_minus);
   }
-  const auto of = uncertainty_budget(c.campaign, "X", test);
+  const auto of = uncertainty_budget(c.campaign, c.campaign.environment, "X", test);
   if (!of.budget) return;
   const auto U = iso230_2_uncertainty(*of.budget, approaches_behind_means(test), k);
   put(out, "U(A)", U.A, um), put(out, "U(A+)", U.A_plus, um), put(out, "U(A-)", U.A_minus, um);
@@ -129,7 +129,7 @@ void evaluate_vdi(const Case& c, const AxisTest& test, Outcome& out) {
     put(out, "mean" + at, p.mean, um), put(out, "S" + at, p.S, um);
     put(out, "U" + at, p.U, um), put(out, "Ps" + at, p.Ps, um);
   }
-  const auto of = uncertainty_budget(c.campaign, "X", test);
+  const auto of = uncertainty_budget(c.campaign, c.campaign.environment, "X", test);
   if (!of.budget) return;
   const auto U = vdi3441_uncertainty(*of.budget, approaches_behind_means(test));
   put(out, "U(P)", U.P, um), put(out, "U(Pa)", U.Pa, um), put(out, "U(Ps_max)", U.Ps_max, um);

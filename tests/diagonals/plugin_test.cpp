@@ -483,10 +483,11 @@ TEST(DiagonalPlugin, UncertaintiesFromTheScatterCoverTheTruth) {
       for (std::size_t i = 1; i < rect.n; ++i) {
         const double here = errors.EYX(rect.x(i)), across = errors.EYX(rect.x(rect.n - i));
         const double truth = both ? here : (here + across) / 2.0;
-        inside += (std::fabs(f->value[i] - truth) <= f->U[i]) / static_cast<double>(rect.n - 1);
+        inside += (std::fabs(f->value[i] - truth) <= f->repeatability[i]) /
+                  static_cast<double>(rect.n - 1);
       }
       for (const Value& v : e.values)
-        if (v.name == "C0Y") inside_k += std::fabs(v.value - errors.C0Y) <= *v.U;
+        if (v.name == "C0Y") inside_k += std::fabs(v.value - errors.C0Y) <= *v.repeatability;
     }
     std::cout << "seed " << seed + 2 << ", " << how << ": EYX " << 100.0 * inside / solved
               << " %, C0Y " << 100.0 * inside_k / solved << " % of " << solved << "\n";

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "cmc.h"
 #include "guarded.h"
 #include "model_fit.h"
 #include "names.h"
@@ -145,6 +146,7 @@ class CampaignRun {
     for (const Measurement& m : out_.campaign.measurements)
       if (m.id == id || std::find(uses.begin(), uses.end(), m.id) != uses.end())
         note_reasons_missing(m, *evaluation);
+    apply_cmc(out_.campaign.laboratory, length_of(*evaluation, measurement), *evaluation);
     for (Finding& f : evaluation->findings) f.measurement = id;
     word(evaluation->notes);
     out_.results.analyses.push_back(
@@ -159,6 +161,21 @@ class CampaignRun {
          .attention = true,
          .evidence = {{"excluded", static_cast<double>(m.exclude.size()), Quantity::count}},
          .texts = {{"file", m.file}, {"id", m.id}}});
+  }
+
+  /// Over which an evaluation was measured: its budget's, or as far as the axes moved.
+  double length_of(const Evaluation& e, const Measurement* measurement) const {
+    if (e.budget) return e.budget->length;
+    double most = 0.0;
+    for (std::size_t i = 0; measurement != nullptr && i < read_.observations.size(); ++i)
+      if (out_.campaign.measurements[i].id == measurement->id)
+        for (const auto& axis : read_.observations[i].axes)
+          if (!axis.rotary && !axis.position.empty()) {
+            const auto [low, high] =
+                std::minmax_element(axis.position.begin(), axis.position.end());
+            most = std::max(most, *high - *low);
+          }
+    return most;
   }
 
   void fit_model() {
@@ -181,7 +198,8 @@ class CampaignRun {
 
   static Expected<void> check(const Evaluation& e) {
     for (const Value& v : e.values)
-      if (!std::isfinite(v.value) || (v.U && !std::isfinite(*v.U)))
+      if (!std::isfinite(v.value) || (v.U && !std::isfinite(*v.U)) || !std::isfinite(v.k) ||
+          (v.repeatability && !std::isfinite(*v.repeatability)))
         return fail("a value " + v.name + " that is not a number");
     for (const Finding& f : e.findings)
       for (const Number& n : f.evidence)
@@ -192,8 +210,13 @@ class CampaignRun {
         if (c.values.size() != table->columns.front().values.size())
           return fail("a table with columns of different lengths");
     for (const Series& s : e.series)
-      if (s.value.size() != s.position.size() || (!s.U.empty() && s.U.size() != s.value.size()))
+      if (s.value.size() != s.position.size() || (!s.U.empty() && s.U.size() != s.value.size()) ||
+          (!s.repeatability.empty() && s.repeatability.size() != s.value.size()))
         return fail("a series " + s.name + " with columns of different lengths");
+    if (e.budget)
+      for (const auto& r : e.budget->results)
+        if (r.u.size() != e.budget->contributions.size())
+          return fail("a budget of " + r.name + " with other contributions than it lists");
     return {};
   }
 
@@ -240,7 +263,7 @@ class CampaignRun {
                      .quantity = v.quantity,
                      .decision = Decision::cannot_be_decided,
                      .reason = {}};
-        if (v.U) {
+        if (v.U && *v.U > 0.0) {
           c.decision =
               decide(std::fabs(v.value), *v.U, tolerance, out_.campaign.certificate.decision_rule);
           if (c.decision == Decision::cannot_be_decided) c.reason = "near-limit";

@@ -165,6 +165,35 @@ constexpr Key instrument_keys[] = {
      .unit = "arcsec",
      .wanted = not_negative,
      .least = 0.0},
+    {.name = "sphere_um",
+     .holds = number,
+     .help = "Range of the form of the ball that is probed.",
+     .unit = "um",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "probe_um",
+     .holds = number,
+     .help = "Range of what the probe adds to a centre: form of its tip, pre-travel.",
+     .unit = "um",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "expansion_um_per_m_K",
+     .holds = number,
+     .help = "Coefficient of thermal expansion of an instrument that has a length of its own: a "
+             "scale, a step gauge. Without it: a laser, whose U_per_m_um has the air in it.",
+     .unit = "um/(m K)"},
+    {.name = "temperature_range_K",
+     .holds = number,
+     .help = "Range in which the reading of that instrument's temperature lies.",
+     .unit = "K",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "expansion_range_um_per_m_K",
+     .holds = number,
+     .help = "Range in which that instrument's coefficient of thermal expansion lies.",
+     .unit = "um/(m K)",
+     .wanted = not_negative,
+     .least = 0.0},
 };
 
 constexpr Choice measured_by_sensor[] = {{"material"}, {"air"}, {"pressure"}, {"humidity"}};
@@ -232,6 +261,14 @@ constexpr Key environment_keys[] = {
     {.name = "sensors",
      .holds = text,
      .help = "Where the sensors of temperature were, for the certificate."},
+    {.name = "drift_minutes",
+     .holds = number,
+     .help = "How long the drift test took; of a measurement that took longer, the drift counts "
+             "so much more.",
+     .unit = "min",
+     .wanted = "wanted a number above 0",
+     .least = 0.0,
+     .above = true},
 };
 
 constexpr Choice measurement_kinds[] = {{"axis"},         {"straightness"},  {"angle"},
@@ -657,6 +694,27 @@ constexpr Key campaign_file_keys[] = {
     options_key,
 };
 
+constexpr Key cmc_keys[] = {
+    {.name = "fixed_um",
+     .holds = number,
+     .help = "The part a of a + b L.",
+     .unit = "um",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "per_m_um",
+     .holds = number,
+     .help = "The part b of a + b L, for each metre of length.",
+     .unit = "um",
+     .wanted = not_negative,
+     .least = 0.0},
+    {.name = "arcsec",
+     .holds = number,
+     .help = "That of angles: rotary axes, squareness, directions.",
+     .unit = "arcsec",
+     .wanted = not_negative,
+     .least = 0.0},
+};
+
 constexpr Key laboratory_keys[] = {
     {.name = "name", .holds = text, .help = "Name of the laboratory."},
     {.name = "address", .holds = text, .help = "Address of the laboratory."},
@@ -666,6 +724,11 @@ constexpr Key laboratory_keys[] = {
      .help = "Number of the accreditation; only for a laboratory that has one."},
     {.name = "authoriser", .holds = text, .help = "Who authorises certificates."},
     {.name = "contact", .holds = text, .help = "How to reach the laboratory."},
+    {.name = "cmc",
+     .holds = table,
+     .help = "The smallest expanded uncertainty (k = 2) that the accreditation covers, a + b L: no "
+             "result gets a smaller one.",
+     .keys = cmc_keys},
 };
 
 constexpr Key limits_keys[] = {

@@ -108,6 +108,11 @@ Instrument read_instrument(TableReader& top) {
   instrument.U_fixed = reader->number("U_fixed_um", um);
   instrument.U_per_length = reader->number("U_per_m_um", um);
   instrument.U_angle = reader->number("U_arcsec", arcsec);
+  instrument.sphere = reader->number("sphere_um", um);
+  instrument.probe = reader->number("probe_um", um);
+  instrument.expansion = reader->number("expansion_um_per_m_K", um);
+  instrument.temperature_range = reader->number("temperature_range_K");
+  instrument.expansion_range = reader->number("expansion_range_um_per_m_K", um);
   reader->finish();
   return instrument;
 }
@@ -142,6 +147,7 @@ Environment read_environment(TableReader& top) {
   environment.drift_angle = reader->number("drift_arcsec", arcsec);
   environment.warm_up = reader->text("warm_up");
   environment.sensors = reader->text("sensors");
+  environment.drift_time = reader->number("drift_minutes", 60.0);
   reader->finish();
   return environment;
 }
@@ -335,6 +341,17 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
 
 namespace {
 
+Cmc read_cmc(TableReader& laboratory) {
+  Cmc cmc;
+  auto reader = laboratory.table("cmc");
+  if (!reader) return cmc;
+  cmc.fixed = reader->number("fixed_um", um);
+  cmc.per_length = reader->number("per_m_um", um);
+  cmc.angle = reader->number("arcsec", arcsec);
+  reader->finish();
+  return cmc;
+}
+
 std::string settings_of(const toml::table& root, std::initializer_list<const char*> keys) {
   toml::table out;
   for (const char* key : keys)
@@ -357,7 +374,8 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   if (auto reader = top.table("laboratory")) {
     site.laboratory = {reader->text("name"),       reader->text("address"),
                        reader->text("country"),    reader->text("accreditation"),
-                       reader->text("authoriser"), reader->text("contact")};
+                       reader->text("authoriser"), reader->text("contact"),
+                       read_cmc(*reader)};
     reader->finish();
   }
   if (auto reader = top.table("limits")) {
@@ -374,6 +392,8 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
     for (const char* key : {"release", "may_stand", "two_persons", "register", "register_seconds"})
       certificate->erase(key);
   site.settings = settings_of(printed, {"run", "options", "laboratory", "certificate"});
+  if (const toml::table* laboratory = (*root)["laboratory"].as_table())
+    site.evaluation += settings_of(*laboratory, {"cmc"});
   if (auto reader = top.table("signing")) site.signing = read_signing(*reader);
   if (auto reader = top.table("certificate")) {
     site.certificate = read_certificate(*reader);

@@ -43,8 +43,10 @@ class Comparison {
 
  private:
   void compare_objects(const Json& attached, const Json& again, const std::string& where) {
+    // Certificates of earlier versions say neither k, which was 2, nor their budget.
     for (const auto& [key, value] : again.items())
-      if (!attached.contains(key)) difference = where + " lacks " + key;
+      if (!attached.contains(key) && key != "k" && key != "budget")
+        difference = where + " lacks " + key;
     for (const auto& [key, value] : attached.items()) {
       if (!again.contains(key)) {
         difference = where + " " + key + " is not found again";
@@ -59,7 +61,7 @@ class Comparison {
 Json values_of(const Json& analysis) {
   Json out = Json::object();
   for (const char* key :
-       {"values", "points", "point_units", "point_U", "rows", "row_units", "series"})
+       {"values", "points", "point_units", "point_U", "rows", "row_units", "series", "budget"})
     if (analysis.contains(key)) out[key] = analysis[key];
   return out;
 }
@@ -169,9 +171,13 @@ std::string contradiction(const sign::DccValue& v, const Json& results) {
   if (!is_number(value, "value")) return who + " is no number in results.json";
   if (!value.contains("unit") || value["unit"] != v.unit)
     return who + " has another unit in results.json";
-  const double U = is_number(value, "U") ? value["U"].get<double>() : std::nan("");
-  if (!same_when_rounded(v, value["value"].get<double>(), U))
+  const bool has_U = is_number(value, "U");
+  if (!same_when_rounded(v, value["value"].get<double>(),
+                         has_U ? value["U"].get<double>() : std::nan("")))
     return who + " is another number in results.json, or has another uncertainty there";
+  // Results of earlier versions do not say k, which was 2.
+  if (has_U && !same(is_number(value, "k") ? value["k"].get<double>() : 2.0, v.k))
+    return who + " has another coverage factor in results.json";
   return {};
 }
 

@@ -71,6 +71,8 @@ void put_value(JsonWriter& json, const Value& v, const Results::Analysed& a,
   json.member("value", printed(v.value, v.quantity));
   json.member("unit", unit_of(v.quantity).symbol);
   if (v.U) json.member("U", printed(*v.U, v.quantity));
+  if (v.repeatability) json.member("repeatability", printed(*v.repeatability, v.quantity));
+  if (v.U || v.repeatability) json.member("k", printed(v.k, Quantity::number));
   for (const Conformity& c : conformity)
     if (c.measurement == a.measurement && c.plugin == a.plugin && c.name == v.name) {
       json.member("tolerance", printed(c.tolerance, c.quantity));
@@ -136,8 +138,52 @@ void put_series(JsonWriter& json, const std::vector<Series>& all) {
     list("position", s.position, s.position_quantity);
     list("value", s.value, s.quantity);
     if (!s.U.empty()) list("U", s.U, s.quantity);
+    if (!s.repeatability.empty()) list("repeatability", s.repeatability, s.quantity);
+    if (!s.U.empty() || !s.repeatability.empty()) json.member("k", printed(s.k, Quantity::number));
     json.end_object();
   }
+  json.end_object();
+}
+
+void put_contribution(JsonWriter& json, const Contribution& c) {
+  json.begin_object();
+  json.member("id", c.id);
+  json.member("u", printed(c.u, c.quantity));
+  json.member("unit", unit_of(c.quantity).symbol);
+  json.member("with_length", c.with_length);
+  json.member("distribution", to_text(c.distribution));
+  json.member("correlation", to_text(c.correlation));
+  if (c.dof) json.member("dof", printed(*c.dof, Quantity::number));
+  json.member("source", c.source);
+  json.end_object();
+}
+
+/// Standard uncertainties: what goes in, and what it makes in each result.
+void put_budget(JsonWriter& json, const std::optional<UncertaintyBudget>& budget) {
+  if (!budget) return;
+  json.key("budget");
+  json.begin_object();
+  json.member("length_mm", printed(budget->length, Quantity::length));
+  json.key("contributions");
+  json.begin_array();
+  for (const Contribution& c : budget->contributions) put_contribution(json, c);
+  json.end_array();
+  json.key("results");
+  json.begin_object();
+  for (const auto& r : budget->results) {
+    json.key(r.name);
+    json.begin_object();
+    json.member("unit", unit_of(r.quantity).symbol);
+    json.member("k", printed(r.k, Quantity::number));
+    if (std::isfinite(r.dof)) json.member("dof", printed(r.dof, Quantity::number));
+    json.key("u");
+    json.begin_object();
+    for (std::size_t i = 0; i < r.u.size(); ++i)
+      json.member(budget->contributions[i].id, printed(r.u[i], r.quantity));
+    json.end_object();
+    json.end_object();
+  }
+  json.end_object();
   json.end_object();
 }
 
@@ -183,6 +229,7 @@ void put_analysis(JsonWriter& json, const Results::Analysed& a,
   put_point_U(json, a.evaluation.points);
   put_table(json, a.evaluation.rows, "rows", "row_units");
   put_series(json, a.evaluation.series);
+  put_budget(json, a.evaluation.budget);
   put_findings(json, a.evaluation.findings, false);
   put_notes(json, a.evaluation.notes);
   json.end_object();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "nonio/math/axis_findings.h"
+#include "nonio/math/budget.h"
 
 namespace nonio::math {
 
@@ -31,22 +32,38 @@ Expected<AxisAnalysis> begin_axis_analysis(const AnalysisInput& in) {
   if (all.targets.empty()) return fail("wanted readings with a direction of approach, found none");
 
   AxisAnalysis a;
+  a.axis = in.measurement.axis;
   a.test = choose_targets(all, in.options.text("incomplete_targets") == "leave-out", a.findings);
   a.deviation = deviation_of(a.test.rotary);
   a.position = position_of(a.test.rotary);
   a.approaches = approaches_behind_means(a.test);
   for (Finding& f : axis_findings(a.test, o, in.campaign.machine.axis(in.measurement.axis)))
     a.findings.push_back(std::move(f));
-  const BudgetOrGap of = uncertainty_budget(in.campaign, in.measurement.axis, a.test);
+  const Observations* own = &o;
+  HeldLimits limits = limits_held(in.campaign, {&own, 1});
+  const BudgetOrGap of =
+      uncertainty_budget(in.campaign, limits.environment, in.measurement.axis, a.test);
   a.budget = of.budget;
+  for (Finding& f : limits.findings) a.findings.push_back(std::move(f));
   a.findings.push_back(budget_finding(of, a.test.rotary));
+  if (of.budget && of.budget->U_EVE == 0.0)
+    a.findings.push_back({.id = "uncertainty.zero",
+                          .attention = true,
+                          .texts = {{"missing", a.test.rotary ? "environment.drift_arcsec"
+                                                              : "environment.drift_um"}}});
   return a;
 }
 
-void add_value(Evaluation& e, const AxisAnalysis& a, std::string name, double value, double U) {
+void add_value(Evaluation& e, const AxisAnalysis& a, std::string name, double value, double U,
+               Made made) {
   if (!std::isfinite(value)) return;
   Value v{std::move(name), value, a.deviation};
-  if (a.budget && std::isfinite(U)) v.U = U;
+  if (a.budget && std::isfinite(U) && U > 0.0) {
+    v.U = U;
+    if (!e.budget) e.budget = contributions_of(*a.budget, a.axis, a.test.rotary);
+    e.budget->results.push_back(
+        {v.name, a.deviation, shares_of(*a.budget, U, made == Made::of_all), 2.0, INFINITY});
+  }
   e.values.push_back(std::move(v));
 }
 

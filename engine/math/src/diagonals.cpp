@@ -121,6 +121,10 @@ class System {
   }
 
   const Matrix& A() const { return A_; }
+  /// Of the rows by the readings: y = N readings.
+  const Matrix& N() const { return N_; }
+  std::size_t first_of_X() const { return r_.Y.size() * (n_ + 1); }
+  std::size_t first_of_yaw() const { return first_of_X() + r_.X.size() * (n_ + 1); }
   const Vector& y() const { return y_; }
   bool noise_known() const { return noise_known_; }
   std::size_t unknowns() const { return unknowns_; }
@@ -258,7 +262,7 @@ class System {
 /// determine has no value.
 class Solution {
  public:
-  explicit Solution(const System& system) {
+  Solution(const System& system, const ReadingModel* model) : model_(model) {
     const Matrix C = system.covariance();
     const Eigen::LLT<Matrix> llt(C);
     const Matrix A = llt.matrixL().solve(system.A());
@@ -272,6 +276,7 @@ class Solution {
     projector_ = inverse * A;
     root_ = inverse;
     gain_ = inverse * llt.matrixL().solve(system.unit_noise());
+    if (model_ != nullptr) jacobian_ = inverse * llt.matrixL().solve(system.N());
     const auto rows = static_cast<std::size_t>(A.rows());
     dof_ = rows > rank_ ? rows - rank_ : 0;
     if (dof_ > 0) scale_ = (y - A * theta_).norm() / std::sqrt(static_cast<double>(dof_));
@@ -287,10 +292,19 @@ class Solution {
   double value(const Row& h) const { return h * theta_; }
   double u(const Row& h) const { return factor_ * (h * root_).norm(); }
   double gain(const Row& h) const { return (h * gain_).norm(); }
+  Shares shares(const Row& h) const {
+    return model_ == nullptr ? Shares{} : shares_of_readings(h * jacobian_);
+  }
+  /// Of what is made of the readings directly.
+  Shares shares_of_readings(const Row& J) const {
+    if (model_ == nullptr) return {};
+    return model_->shares({J.data(), static_cast<std::size_t>(J.size())});
+  }
 
  private:
+  const ReadingModel* model_;
   Vector theta_;
-  Matrix projector_, root_, gain_;
+  Matrix projector_, root_, gain_, jacobian_;
   std::size_t rank_ = 0, dof_ = 0;
   double scale_ = 0.0, factor_ = 1.0;
 };
@@ -303,6 +317,7 @@ KnownCurve known(const Solution& s, const Functional& h) {
   for (const Row& row : h) {
     out.value.push_back(s.value(row));
     out.u.push_back(s.u(row));
+    out.shares.push_back(s.shares(row));
     sum += s.gain(row) * s.gain(row);
   }
   out.gain = std::sqrt(sum / static_cast<double>(h.size() - 2));  // both ends are 0
@@ -329,18 +344,15 @@ Row slope(const Functional& h, double length) {
   return sum / squares;
 }
 
-std::vector<double> less_line(const std::vector<double>& v) {
-  const double n = static_cast<double>(v.size() - 1);
-  double mean = 0.0, sum = 0.0, squares = 0.0;
-  for (const double x : v) mean += x / (n + 1.0);
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    const double p = static_cast<double>(i) / n - 0.5;
-    sum += p * v[i];
-    squares += p * p;
-  }
-  std::vector<double> out;
-  for (std::size_t i = 0; i < v.size(); ++i)
-    out.push_back(v[i] - mean - sum / squares * (static_cast<double>(i) / n - 0.5));
+/// Less the least-squares line.
+Functional less_line(const Functional& h) {
+  const double n = static_cast<double>(h.size() - 1);
+  const Row tilt = slope(h, 1.0);
+  Row mean = Row::Zero(h.front().size());
+  for (const Row& row : h) mean += row / (n + 1.0);
+  Functional out;
+  for (std::size_t i = 0; i < h.size(); ++i)
+    out.push_back(h[i] - mean - tilt * (static_cast<double>(i) / n - 0.5));
   return out;
 }
 
@@ -370,27 +382,60 @@ Closure closure_of(const System& system, std::size_t n, double factor) {
   return c;
 }
 
-void fill_yaw(const DiagonalReadings& r, DiagonalResult& out) {
+void fill_yaw(const DiagonalReadings& r, const System& system, const Solution& s,
+              DiagonalResult& out) {
   const auto X = of_direction(r.X, r.D1.x_direction);
   if (X.size() == 1 && r.ECX.empty()) return;
+  const auto readings = system.N().cols();
+  // The scatter of lengths says nothing of an angle.
+  const bool known = system.noise_known() || X.size() == 2;
+  const auto put = [&](double value, double u, const Row& J) {
+    out.ECX.value.push_back(value);
+    if (!known) return;
+    out.ECX.u.push_back(s.factor() * u);
+    out.ECX.shares.push_back(s.shares_of_readings(J));
+  };
+  const std::size_t curve = r.n + 1;
+  const auto noise = [&](const MeanCurve& c, std::size_t i) {  // of a difference to the first
+    const double one = system.noise_known() ? c.u : 1.0;
+    return i == 0 ? 0.0 : one * (c.zeroed ? 1.0 : std::sqrt(2.0));
+  };
   if (X.size() == 1) {
-    const auto& yaw = r.ECX[of_direction(r.ECX, r.D1.x_direction).front()].mean;
-    for (const double v : yaw) out.ECX.push_back(v - yaw.front());
+    const std::size_t which = of_direction(r.ECX, r.D1.x_direction).front();
+    const std::size_t first = system.first_of_yaw() + which * curve;
+    const MeanCurve& yaw = r.ECX[which];
+    for (std::size_t i = 0; i <= r.n; ++i) {
+      Row J = Row::Zero(readings);
+      J[at(first + i)] += 1.0;
+      J[at(first)] -= 1.0;
+      put(yaw.mean[i] - yaw.mean[0], noise(yaw, i), J);
+    }
     return;
   }
   const PitchLine &one = r.X[X[0]], &other = r.X[X[1]];
   const double W = other.across - one.across;
-  for (std::size_t i = 0; i <= r.n; ++i)
-    out.ECX.push_back(((one.mean[i] - one.mean[0]) - (other.mean[i] - other.mean[0])) / W);
+  for (std::size_t i = 0; i <= r.n; ++i) {
+    Row J = Row::Zero(readings);
+    for (const auto& [k, sign] : {std::pair{X[0], 1.0}, std::pair{X[1], -1.0}}) {
+      const std::size_t first = system.first_of_X() + k * curve;
+      J[at(first + i)] += sign / W;
+      J[at(first)] -= sign / W;
+    }
+    put(((one.mean[i] - one.mean[0]) - (other.mean[i] - other.mean[0])) / W,
+        std::hypot(noise(one, i), noise(other, i)) / std::fabs(W), J);
+  }
   out.slave_shift = W * out.C0Y;
 }
 
 }  // namespace
 
-Expected<DiagonalResult> solve_diagonals(const DiagonalReadings& r) {
+Expected<DiagonalResult> solve_diagonals(const DiagonalReadings& r, const ReadingModel* model) {
   if (auto ok = check(r); !ok) return fail(ok.error());
   const System system(r);
-  const Solution s(system);
+  if (model != nullptr && at(model->readings()) != system.N().cols())
+    return fail("wanted a model of " + std::to_string(system.N().cols()) + " readings, found " +
+                std::to_string(model->readings()));
+  const Solution s(system, model);
   const double L = std::hypot(r.Lx, r.Ly);
   Functional f, g, q;
   for (std::size_t i = 0; i <= r.n; ++i) f.push_back(system.f(i)), g.push_back(system.g(i));
@@ -410,23 +455,25 @@ Expected<DiagonalResult> solve_diagonals(const DiagonalReadings& r) {
   out.C0Y = s.value(square);
   out.u_C0Y = s.u(square);
   out.gain_C0Y = s.gain(square);
+  out.shares_C0Y = s.shares(square);
   out.EYX_even = known(s, part(f, 1.0));
   out.EXY_even = known(s, part(g, 1.0));
   out.q_odd = known(s, part(q, -1.0));
   out.lsq.C0Y = s.value(lsq);
   out.lsq.u_C0Y = s.u(lsq);
+  out.lsq.shares_C0Y = s.shares(lsq);
   if (out.separable()) {
     out.EYX = known(s, f);
     out.EXY = known(s, g);
-    out.lsq.EYX = less_line(out.EYX.value);
-    out.lsq.EXY = less_line(out.EXY.value);
+    out.lsq.EYX = known(s, less_line(f));
+    out.lsq.EXY = known(s, less_line(g));
   }
   for (auto [d, from] : {std::pair{&out.d1, 0UL}, std::pair{&out.d2, r.n}}) {
     d->push_back(0.0);
     for (std::size_t i = 0; i < r.n; ++i) d->push_back(system.y()[at(from + i)]);
   }
   out.closure = closure_of(system, r.n, s.factor());
-  fill_yaw(r, out);
+  fill_yaw(r, system, s, out);
   return out;
 }
 

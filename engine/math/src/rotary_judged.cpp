@@ -111,6 +111,11 @@ LineRelation relation_of(const RotaryFit& a, double sigma_a, const RotaryFit& b,
   const auto ca = covariance(a, sigma_a), cb = covariance(b, sigma_b);
   out.u_distance = std::sqrt(std::max(0.0, da.dot(ca * da) + db.dot(cb * db)));
   out.u_angle = std::sqrt(std::max(0.0, ta.dot(ca * ta) + tb.dot(cb * tb)));
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    out.distance_by_a[i] = da[k], out.distance_by_b[i] = db[k];
+    out.angle_by_a[i] = ta[k], out.angle_by_b[i] = tb[k];
+  }
   return out;
 }
 

@@ -202,7 +202,8 @@ StepChecks check_step_diagonals(const StepDiagonals& d) {
   return c;
 }
 
-Expected<StepSolution> average_step_diagonals(const StepDiagonals& d, const StepChoices& choices) {
+Expected<StepSolution> average_step_diagonals(const StepDiagonals& d, const StepChoices& choices,
+                                              const ReadingModel* model) {
   for (const double share : shares(d))
     if (!std::isfinite(share)) return fail("expected the four body diagonals, found fewer");
   const std::size_t each = 3 * d.n + 1;
@@ -223,7 +224,9 @@ Expected<StepSolution> average_step_diagonals(const StepDiagonals& d, const Step
   slopes_from_totals(d, 0, 2, W);
   slopes_from_totals(d, 1, 2, W);
   const bool known = choices.set_up_known;
-  present(d, W * readings, out.u_reading * out.u_reading * (W * W.transpose()),
+  if (model != nullptr && model->readings() != each * d.passes.size())
+    return fail("wanted a model of the readings of all passes");
+  present(d, W * readings, out.u_reading * out.u_reading * (W * W.transpose()), {model, W},
           {known, known, known}, out);
   return out;
 }

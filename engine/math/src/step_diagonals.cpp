@@ -43,6 +43,8 @@ struct Design {
   MatrixXd A;
   VectorXd b;
   std::vector<ReadingRow> readings;
+  VectorXd
+      series_weight;  ///< of each series' readings, one behind the other; 0 if it does not count
 };
 
 std::size_t node(const StepDiagonals& d, int sign, std::size_t moves) {
@@ -106,6 +108,9 @@ Design begin_design(const StepDiagonals& d, const std::vector<AxisSeries>& serie
   for (const AxisSeries& s : series) rows += s.position.size();
   design.A = MatrixXd::Zero(static_cast<Index>(rows), l.columns());
   design.b = VectorXd::Zero(static_cast<Index>(rows));
+  std::size_t of_series = 0;
+  for (const AxisSeries& s : series) of_series += s.position.size();
+  design.series_weight = VectorXd::Zero(static_cast<Index>(of_series));
   return design;
 }
 
@@ -123,6 +128,7 @@ Design design_of(const StepDiagonals& d, const std::vector<AxisSeries>& series,
       row[design.layout.first_series() + static_cast<Index>(k)] = weight;
       design.A.row(r) = row;
       design.b[r] = weight * s.deviation[i];
+      design.series_weight[r - static_cast<Index>(design.readings.size())] = weight;
     }
   }
   if (choices.set_up_known) return design;
@@ -222,7 +228,7 @@ bool complete(const StepDiagonals& d, const Factor& f, const std::array<bool, 3>
   if (f.open.cols() > 8) return false;
   for (Index k = 0; k < f.open.cols(); ++k) {
     StepSolution moved;
-    present(d, f.open.col(k).head(size), MatrixXd::Zero(size, size), known, moved);
+    present(d, f.open.col(k).head(size), MatrixXd::Zero(size, size), {}, known, moved);
     for (const StepCurve& c : moved.curves)
       for (const double v : c.value)
         if (!(std::fabs(v) < unmoved)) return false;
@@ -230,6 +236,26 @@ bool complete(const StepDiagonals& d, const Factor& f, const std::array<bool, 3>
       if (!(std::fabs(s.value) * d.diagonal() < unmoved)) return false;
   }
   return true;
+}
+
+/// Function values by the readings in the order of the model: passes with their zeros, series.
+Sensitivity sensitivity_of(const StepDiagonals& d, const Design& design, const Factor& f,
+                           const ReadingModel* model) {
+  Sensitivity out{model, {}};
+  if (model == nullptr) return out;
+  const auto each = static_cast<Index>(3 * d.n + 1);
+  const auto passes = each * static_cast<Index>(d.passes.size());
+  const auto read = static_cast<Index>(design.readings.size());
+  const MatrixXd G = f.inverse.topRows(design.layout.functions) * design.A.transpose();
+  out.of_readings = MatrixXd::Zero(G.rows(), passes + design.series_weight.size());
+  for (Index r = 0; r < read; ++r) {
+    const ReadingRow& row = design.readings[static_cast<std::size_t>(r)];
+    out.of_readings.col(static_cast<Index>(row.pass) * each + static_cast<Index>(row.moves)) =
+        G.col(r);
+  }
+  for (Index i = 0; i < design.series_weight.size(); ++i)
+    out.of_readings.col(passes + i) = G.col(read + i) * design.series_weight[i];
+  return out;
 }
 
 double used_u(const StepChoices& choices, const Scatter& s) {
@@ -240,7 +266,7 @@ double used_u(const StepChoices& choices, const Scatter& s) {
 
 Expected<StepSolution> solve_step_diagonals(const StepDiagonals& d,
                                             const std::vector<AxisSeries>& series,
-                                            const StepChoices& choices) {
+                                            const StepChoices& choices, const ReadingModel* model) {
   Design design = design_of(d, {}, choices, 0.0);
   Factor f = factor(design);
   const Scatter scatter = scatter_of(design, f);
@@ -266,9 +292,12 @@ Expected<StepSolution> solve_step_diagonals(const StepDiagonals& d,
     for (std::size_t k = 0; k < d.passes.size(); ++k)
       out.set_up.push_back(set_up_of(d, k, design, x).norm());
   }
+  const Sensitivity sensitivity = sensitivity_of(d, design, f, model);
+  if (model != nullptr && static_cast<Index>(model->readings()) != sensitivity.of_readings.cols())
+    return fail("wanted a model of the readings of all passes and series");
   present(d, x.head(l.functions),
-          out.u_reading * out.u_reading * f.inverse.topLeftCorner(l.functions, l.functions), known,
-          out);
+          out.u_reading * out.u_reading * f.inverse.topLeftCorner(l.functions, l.functions),
+          sensitivity, known, out);
   return out;
 }
 

@@ -40,8 +40,13 @@ Eigen::RowVectorXd end_slope(std::size_t n) {
 
 double root(double variance) { return std::sqrt(std::max(variance, 0.0)); }
 
+Shares shares_of(const Sensitivity& s, const Eigen::RowVectorXd& J) {
+  return s.model->shares({J.data(), static_cast<std::size_t>(J.size())});
+}
+
 StepCurve curve(const StepDiagonals& d, std::size_t axis, std::size_t along,
-                const Eigen::VectorXd& x, const Eigen::MatrixXd& C, bool known) {
+                const Eigen::VectorXd& x, const Eigen::MatrixXd& C, const Sensitivity& s,
+                bool known) {
   StepCurve c;
   c.name = std::string("E") + "XYZ"[along] + "XYZ"[axis];
   c.axis = axis;
@@ -56,17 +61,22 @@ StepCurve curve(const StepDiagonals& d, std::size_t axis, std::size_t along,
     c.value.push_back(value[at(i)]);
     c.u.push_back(root(PC.row(at(i)).dot(P.row(at(i)))));
   }
+  if (s.model == nullptr) return c;
+  const Eigen::MatrixXd J =
+      P * s.of_readings.middleRows(at(function_column(axis, along, 1, d.n)), at(d.n));
+  for (std::size_t i = 0; i <= d.n; ++i) c.shares.push_back(shares_of(s, J.row(at(i))));
   return c;
 }
 
 /// sign (slope E_qp + slope E_pq), slopes per m.
 Estimated shear(const StepDiagonals& d, std::size_t p, std::size_t q, double sign,
-                const Eigen::VectorXd& x, const Eigen::MatrixXd& C) {
+                const Eigen::VectorXd& x, const Eigen::MatrixXd& C, const Sensitivity& s) {
   Eigen::RowVectorXd t = Eigen::RowVectorXd::Zero(x.size());
   const Eigen::RowVectorXd slope = line_slope(d.n) * (sign * static_cast<double>(d.n));
   t.segment(at(function_column(p, q, 1, d.n)), at(d.n)) = slope / d.travel[p];
   t.segment(at(function_column(q, p, 1, d.n)), at(d.n)) = slope / d.travel[q];
-  return {t.dot(x), root((t * C).dot(t))};
+  return {t.dot(x), root((t * C).dot(t)),
+          s.model == nullptr ? Shares{} : shares_of(s, t * s.of_readings)};
 }
 
 }  // namespace
@@ -96,18 +106,18 @@ Eigen::Vector3d displacement(const StepDiagonals& d, const StepDiagonals::Pass& 
 }
 
 void present(const StepDiagonals& d, const Eigen::VectorXd& values,
-             const Eigen::MatrixXd& covariance, const std::array<bool, 3>& known,
-             StepSolution& out) {
+             const Eigen::MatrixXd& covariance, const Sensitivity& sensitivity,
+             const std::array<bool, 3>& known, StepSolution& out) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::size_t along = 0; along < 3; ++along) {
       const Index first = at(function_column(axis, along, 1, d.n)), n = at(d.n);
       out.curves[3 * axis + along] =
           curve(d, axis, along, values.segment(first, n), covariance.block(first, first, n, n),
-                axis != along || known[axis]);
+                sensitivity, axis != along || known[axis]);
     }
-  out.squareness = {shear(d, 0, 1, -1.0, values, covariance),
-                    shear(d, 0, 2, 1.0, values, covariance),
-                    shear(d, 1, 2, -1.0, values, covariance)};
+  out.squareness = {shear(d, 0, 1, -1.0, values, covariance, sensitivity),
+                    shear(d, 0, 2, 1.0, values, covariance, sensitivity),
+                    shear(d, 1, 2, -1.0, values, covariance, sensitivity)};
 }
 
 }  // namespace nonio::math

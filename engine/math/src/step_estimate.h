@@ -18,9 +18,15 @@ Eigen::Vector3d direction(const StepDiagonals&, const StepDiagonals::Pass&);
 /// Nominal displacement after t moves.
 Eigen::Vector3d displacement(const StepDiagonals&, const StepDiagonals::Pass&, std::size_t t);
 
+/// What the function values depend on.
+struct Sensitivity {
+  const ReadingModel* model = nullptr;
+  Eigen::MatrixXd of_readings{};  ///< function values by readings, in the order of the model
+};
+
 /// Curves and squareness in the gauge of ISO 230-1 from function values and their covariance.
 /// known: of X, Y, Z, whether the scale is.
 void present(const StepDiagonals&, const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance,
-             const std::array<bool, 3>& known, StepSolution& out);
+             const Sensitivity&, const std::array<bool, 3>& known, StepSolution& out);
 
 }  // namespace nonio::math

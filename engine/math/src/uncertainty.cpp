@@ -9,7 +9,9 @@
 //   U_M   = 0.6 alpha L R(theta)                  m      alpha: 1/K, R(theta): K
 //   U_E   = 0.6 dT L R(alpha)                     m      dT: largest distance from 20 degC, K
 //   U_EVE = 0.6 E_VE                              m      E_VE: range of the drift test
-// With S2 = U_DEV^2 + U_MIS^2 + U_M^2 + U_E^2, n approaches, and R+ = 2 k s, A with k s:
+// and U_MD, U_ED as U_M, U_E of a device that has a length of its own, where that is stated.
+// With S2 = U_DEV^2 + U_MIS^2 + U_M^2 + U_E^2 (+ U_MD^2 + U_ED^2), n approaches, and R+ = 2 k s, A
+// with k s:
 //   U(B)^2 = 2 U_EVE^2/n                 systematic parts cancel
 //   U(M)^2 = S2 + U_EVE^2/n;   U(E)^2 = S2 + 2 U_EVE^2/n
 //   U(R+)  = k U_EVE;          U(R)^2 = (k U_EVE)^2 + 2 U_EVE^2/n
@@ -20,6 +22,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "nonio/math/budget.h"
 
 namespace nonio::math {
 namespace {
@@ -33,18 +37,17 @@ double get(const std::optional<double>& given, const std::string& key,
   return 0.0;
 }
 
-Budget angular(const Campaign& c, std::vector<std::string>& missing) {
+Budget angular(const Campaign& c, const Environment& e, std::vector<std::string>& missing) {
   Budget b;
   b.U_DEV = get(c.instrument.U_angle, "instrument.U_arcsec", missing);
-  b.U_EVE = of_range * get(c.environment.drift_angle, "environment.drift_arcsec", missing);
+  b.U_EVE = of_range * get(e.drift_angle, "environment.drift_arcsec", missing);
   return b;
 }
 
-Budget linear(const Campaign& c, const std::string& name, double L,
+Budget linear(const Campaign& c, const Environment& e, const std::string& name, double L,
               std::vector<std::string>& missing) {
   const Axis* axis = c.machine.axis(name);
   const Instrument& i = c.instrument;
-  const Environment& e = c.environment;
   const double U_fixed = get(i.U_fixed, "instrument.U_fixed_um", missing);
   const double U_per_length = get(i.U_per_length, "instrument.U_per_m_um", missing);
   const double R_mis = get(e.misalignment, "environment.misalignment_mm", missing);
@@ -60,6 +63,12 @@ Budget linear(const Campaign& c, const std::string& name, double L,
   b.U_M = of_range * std::fabs(alpha) * L * R_theta;
   b.U_E = of_range * std::fabs(dT) * L * R_alpha;
   b.U_EVE = of_range * E_VE;
+  if (i.expansion) {
+    b.U_MD = of_range * std::fabs(*i.expansion) * L *
+             get(i.temperature_range, "instrument.temperature_range_K", missing);
+    b.U_ED = of_range * std::fabs(dT) * L *
+             get(i.expansion_range, "instrument.expansion_range_um_per_m_K", missing);
+  }
   return b;
 }
 
@@ -68,15 +77,20 @@ double root(double a, double b) { return std::sqrt(a * a + b * b); }
 }  // namespace
 
 double Budget::systematic() const {
-  return std::sqrt(U_DEV * U_DEV + U_MIS * U_MIS + U_M * U_M + U_E * U_E);
+  return std::sqrt(U_DEV * U_DEV + U_MIS * U_MIS + U_M * U_M + U_E * U_E + U_MD * U_MD +
+                   U_ED * U_ED);
 }
 
-BudgetOrGap uncertainty_budget(const Campaign& campaign, const std::string& axis,
-                               const AxisTest& test) {
+BudgetOrGap uncertainty_budget(const Campaign& campaign, const Environment& environment,
+                               const std::string& axis, const AxisTest& test) {
   BudgetOrGap out;
   const double L = test.length();
-  Budget b = test.rotary ? angular(campaign, out.missing) : linear(campaign, axis, L, out.missing);
+  Budget b = test.rotary ? angular(campaign, environment, out.missing)
+                         : linear(campaign, environment, axis, L, out.missing);
   b.length = L;
+  b.rotary = test.rotary;
+  if (const auto exact = exact_instrument(campaign.instrument, test.rotary))
+    out.missing.push_back(*exact);
   if (out.missing.empty()) out.budget = b;
   return out;
 }
@@ -106,6 +120,55 @@ Iso230Uncertainty iso230_2_uncertainty(const Budget& b, std::size_t n, double k)
 VdiUncertainty vdi3441_uncertainty(const Budget& b, std::size_t n) {
   const Iso230Uncertainty iso = iso230_2_uncertainty(b, n, 3.0);
   return {iso.A, iso.M, iso.R_plus, iso.R_plus, iso.B, iso.B};
+}
+
+UncertaintyBudget contributions_of(const Budget& b, const std::string& axis, bool rotary) {
+  UncertaintyBudget out;
+  out.length = b.length;
+  const auto add = [&](const char* id, double U, Distribution d, Correlation c, bool with_length,
+                       std::string source) {
+    out.contributions.push_back({.id = id,
+                                 .u = U / 2.0,
+                                 .quantity = deviation_of(rotary),
+                                 .with_length = with_length,
+                                 .distribution = d,
+                                 .correlation = c,
+                                 .source = std::move(source)});
+  };
+  using D = Distribution;
+  using C = Correlation;
+  if (rotary) {
+    add("device-angle", b.U_DEV, D::normal, C::lines, false, "instrument.U_arcsec");
+    add("drift-angle", b.U_EVE, D::rectangular, C::readings, false, "environment.drift_arcsec");
+    return out;
+  }
+  add("device", b.U_DEV, D::normal, C::lines, true, "instrument.U_fixed_um, instrument.U_per_m_um");
+  add("misalignment", b.U_MIS, D::rectangular, C::lines, true, "environment.misalignment_mm");
+  add("temperature", b.U_M, D::rectangular, C::lines, true,
+      "environment.temperature_range_K, machine.axes." + axis + ".expansion_um_per_m_K");
+  add("expansion", b.U_E, D::rectangular, C::lines, true,
+      "environment.temperature_difference_K, environment.expansion_range_um_per_m_K");
+  if (b.U_MD > 0.0)
+    add("device-temperature", b.U_MD, D::rectangular, C::lines, true,
+        "instrument.temperature_range_K, instrument.expansion_um_per_m_K");
+  if (b.U_ED > 0.0)
+    add("device-expansion", b.U_ED, D::rectangular, C::lines, true,
+        "environment.temperature_difference_K, instrument.expansion_range_um_per_m_K");
+  add("drift", b.U_EVE, D::rectangular, C::readings, false, "environment.drift_um");
+  return out;
+}
+
+std::vector<double> shares_of(const Budget& b, double U, bool systematic) {
+  const double S = systematic ? b.systematic() : 0.0;
+  std::vector<double> out;
+  const auto add = [&](double part) { out.push_back(systematic ? part / 2.0 : 0.0); };
+  add(b.U_DEV);
+  if (b.rotary) return out.push_back(std::sqrt(std::max(0.0, U * U - S * S)) / 2.0), out;
+  for (const double part : {b.U_MIS, b.U_M, b.U_E}) add(part);
+  for (const double part : {b.U_MD, b.U_ED})
+    if (part > 0.0) add(part);
+  out.push_back(std::sqrt(std::max(0.0, U * U - S * S)) / 2.0);
+  return out;
 }
 
 }  // namespace nonio::math

@@ -102,8 +102,11 @@ class Reader {
     if (expanded != nullptr) {
       const auto U = number(content_of(child(expanded, "valueExpandedMU")));
       if (!U) return in(v.name, U.error());
-      if (content_of(child(expanded, "coverageFactor")) != "2") return in(v.name, {"wanted k = 2"});
+      const auto k = number(content_of(child(expanded, "coverageFactor")));
+      if (!k) return in(v.name, k.error());
+      if (!(*k >= 1.0)) return in(v.name, {"wanted a coverage factor of 1 or more"});
       v.U = *U;
+      v.k = *k;
     }
     values_.push_back(std::move(v));
     return {};

@@ -194,14 +194,15 @@ class Gatherer {
     line.y_direction = rises(i) ? line.x_direction : -line.x_direction;
     for (const Curve::Stop& stop : curve.stops)
       line.mean.push_back(sign * stop.mean(line.x_direction));
-    line.u = u_of(curve, line.x_direction);
+    put_u(line, curve, line.x_direction);
     line.zeroed = curve.zeroed;
     return line;
   }
 
-  double u_of(const Curve& curve, int direction) const {
+  void put_u(math::MeanCurve& to, const Curve& curve, int direction) const {
     const double stated = in_.options.number("reading_u_um") * 1e-6;
-    return stated > 0.0 ? stated : curve.u_mean(direction);
+    to.u = stated > 0.0 ? stated : curve.u_mean(direction);
+    if (!(stated > 0.0)) to.dof = static_cast<double>(curve.dof);
   }
 
   /// Measurements of this kind along an axis of this letter: those of the set by name, else those
@@ -254,7 +255,7 @@ class Gatherer {
 
   void put(math::MeanCurve& to, const Curve& curve, int direction) const {
     for (const Curve::Stop& stop : curve.stops) to.mean.push_back(stop.mean(direction));
-    to.u = u_of(curve, direction);
+    put_u(to, curve, direction);
     to.zeroed = curve.zeroed;
     to.direction = direction;
   }
@@ -347,7 +348,10 @@ class Gatherer {
     std::vector<math::MeanCurve> yaw;
     if (!put_all(yaw, {}, *curve, true)) return one_direction(found);
     const double stated = in_.options.number("yaw_u_urad") * 1e-6;
-    for (math::MeanCurve& of : yaw) of.u = stated > 0.0 ? stated : curve->u_mean(of.direction);
+    for (math::MeanCurve& of : yaw) {
+      of.u = stated > 0.0 ? stated : curve->u_mean(of.direction);
+      of.dof = stated > 0.0 ? INFINITY : static_cast<double>(curve->dof);
+    }
     if (x_.size() == 1)
       out_.readings.ECX = std::move(yaw);
     else

@@ -80,6 +80,7 @@ Curve curve_of(const Observations& o, std::size_t column) {
     curve.stops.push_back(stop);
     begin = end;
   }
+  curve.dof = dof;
   if (dof > 0) curve.s = std::sqrt(squares / static_cast<double>(dof));
   return curve;
 }

@@ -30,6 +30,7 @@ struct Curve {
   };
   std::vector<Stop> stops;  ///< ascending
   double s = 0.0;           ///< pooled standard deviation of a reading; 0: no repetition
+  std::size_t dof = 0;      ///< of s
   bool zeroed = false;      ///< every reading at the first stop is 0
 
   /// Whether every stop was read from this direction, or (0) from both.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "doubt.h"
 #include "nonio/math/diagonals.h"
 #include "sets.h"
 
@@ -22,8 +23,15 @@ bool applies(const Campaign& campaign, const Measurement& m) {
 /// Curves and values of one set that was solved.
 class Report {
  public:
-  Report(const AnalysisInput& in, const Collected& c, const math::DiagonalResult& r, Evaluation& e)
-      : in_(in), c_(c), r_(r), e_(e), known_(r.noise_known || r.dof >= enough_dof) {}
+  Report(const AnalysisInput& in, const Collected& c, const math::DiagonalResult& r,
+         const math::ReadingModel& model, Evaluation& e)
+      : in_(in),
+        c_(c),
+        r_(r),
+        e_(e),
+        known_(r.noise_known || r.dof >= enough_dof),
+        budget_(model, noise(), r.noise_known ? c.readings.D1.dof : static_cast<double>(r.dof),
+                Quantity::deviation, source(in)) {}
 
   void fill(bool first_set) {
     add_points();
@@ -45,19 +53,33 @@ class Report {
       return add_squareness();
     }
     add_squareness();
-    series("ECX", c_.x_axis, r_.ECX, {}, Quantity::small_angle);
+    series("ECX", c_.x_axis, r_.ECX, Quantity::small_angle);
     if (r_.separable())
       add_both();
     else
       add_parts();
     if (!first_set) e_.findings.push_back({.id = "diagonals.remeasured"});
+    if (known_ && budget_.budget().missing.empty()) e_.budget = budget_.budget();
   }
 
  private:
-  void value(const char* name, double v, Quantity q, std::optional<double> u = {}) {
-    Value out{name, v, q};
-    if (u && known_) out.U = 2.0 * *u;
-    e_.values.push_back(std::move(out));
+  static std::string source(const AnalysisInput& in) {
+    return in.options.number("reading_u_um") > 0.0 ? "options.diagonal-straightness.reading_u_um"
+                                                   : "readings";
+  }
+  /// Of the noisiest curve of lengths.
+  double noise() const {
+    if (!r_.noise_known) return r_.residual_u;
+    double most = std::max(c_.readings.D1.u, c_.readings.D2.u);
+    for (const auto* curves : {&c_.readings.X, &c_.readings.Y})
+      for (const math::PitchLine& line : *curves) most = std::max(most, line.u);
+    return most;
+  }
+
+  void value(const char* name, double v, Quantity q) { e_.values.push_back({name, v, q}); }
+  void value(const char* name, double v, Quantity q, double u, const math::Shares& shares) {
+    if (!known_) return value(name, v, q);
+    e_.values.push_back(budget_.value(name, v, q, u, shares));
   }
 
   std::vector<double> positions(const std::string& axis) const {
@@ -70,12 +92,16 @@ class Report {
     return out;
   }
 
+  void series(const char* name, const std::string& axis, const math::KnownCurve& c,
+              Quantity q = Quantity::deviation) {
+    series(name, axis, c.value, c, q);
+  }
+  /// `v` with the uncertainty of c.
   void series(const char* name, const std::string& axis, const std::vector<double>& v,
-              const std::vector<double>& u, Quantity q = Quantity::deviation) {
+              const math::KnownCurve& c, Quantity q = Quantity::deviation) {
     if (v.empty()) return;
     Series s{name, axis, Quantity::length, q, positions(axis), v, {}};
-    if (known_)
-      for (const double x : u) s.U.push_back(2.0 * x);
+    if (known_ && !c.u.empty()) budget_.put(s, c.u, c.shares);
     e_.series.push_back(std::move(s));
   }
 
@@ -98,27 +124,29 @@ class Report {
   }
 
   void add_squareness() {
-    value("C0Y", r_.C0Y, Quantity::small_angle, r_.u_C0Y);
-    value("C0Y_LSQ", r_.lsq.C0Y, Quantity::small_angle, r_.lsq.u_C0Y);
+    value("C0Y", r_.C0Y, Quantity::small_angle, r_.u_C0Y, r_.shares_C0Y);
+    value("C0Y_LSQ", r_.lsq.C0Y, Quantity::small_angle, r_.lsq.u_C0Y, r_.lsq.shares_C0Y);
     if (r_.slave_shift) {
       const double W = c_.readings.X.back().across - c_.readings.X.front().across;
-      value("slave_shift", *r_.slave_shift, Quantity::deviation, std::fabs(W) * r_.u_C0Y);
+      math::Shares shares = r_.shares_C0Y;
+      for (double& u : shares.u) u *= std::fabs(W);
+      value("slave_shift", *r_.slave_shift, Quantity::deviation, std::fabs(W) * r_.u_C0Y, shares);
     }
   }
 
   void add_both() {
-    series("EYX", c_.x_axis, r_.EYX.value, r_.EYX.u);
-    series("EXY", c_.y_axis, r_.EXY.value, r_.EXY.u);
-    series("EYX_LSQ", c_.x_axis, r_.lsq.EYX, {});
-    series("EXY_LSQ", c_.y_axis, r_.lsq.EXY, {});
+    series("EYX", c_.x_axis, r_.EYX);
+    series("EXY", c_.y_axis, r_.EXY);
+    series("EYX_LSQ", c_.x_axis, r_.lsq.EYX);
+    series("EXY_LSQ", c_.y_axis, r_.lsq.EXY);
     value("gain_EYX", r_.EYX.gain, Quantity::ratio);
     value("gain_EXY", r_.EXY.gain, Quantity::ratio);
   }
 
   void add_parts() {
-    series("EYX_even", c_.x_axis, r_.EYX_even.value, r_.EYX_even.u);
-    series("EXY_even", c_.y_axis, r_.EXY_even.value, r_.EXY_even.u);
-    series("q_odd", c_.x_axis, r_.q_odd.value, r_.q_odd.u);
+    series("EYX_even", c_.x_axis, r_.EYX_even);
+    series("EXY_even", c_.y_axis, r_.EXY_even);
+    series("q_odd", c_.x_axis, r_.q_odd);
     value("gain_EYX_even", r_.EYX_even.gain, Quantity::ratio);
     value("gain_EXY_even", r_.EXY_even.gain, Quantity::ratio);
     value("gain_q_odd", r_.q_odd.gain, Quantity::ratio);
@@ -131,8 +159,8 @@ class Report {
               .texts = {{"x", c_.x_axis}, {"y", c_.y_axis}}};
     if (bound > 0.0) {
       const math::Band band = math::straightness_band(r_, r.Lx, r.Ly, bound);
-      series("EYX_low", c_.x_axis, band.low, r_.EYX_even.u);
-      series("EYX_high", c_.x_axis, band.high, r_.EYX_even.u);
+      series("EYX_low", c_.x_axis, band.low, r_.EYX_even);
+      series("EYX_high", c_.x_axis, band.high, r_.EYX_even);
       f.evidence.push_back({"bound", bound, Quantity::deviation});
       f.evidence.push_back({"half_width", bound * r.Lx / r.Ly, Quantity::deviation});
     }
@@ -170,6 +198,7 @@ class Report {
   const math::DiagonalResult& r_;
   Evaluation& e_;
   bool known_;
+  math::BudgetOf budget_;
 };
 
 Expected<Evaluation> analyse(const AnalysisInput& in) {
@@ -189,9 +218,14 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   for (const std::string& id : collected->uses)
     if (std::find(e.uses.begin(), e.uses.end(), id) == e.uses.end()) e.uses.push_back(id);
   e.findings = collected->findings;
-  const auto solved = math::solve_diagonals(collected->readings);
+  const math::HeldLimits limits = math::limits_held(in.campaign, observations_of(in, e.uses));
+  const math::ReadingModel model =
+      math::reading_model(in.campaign, limits.environment, budget_lines(*collected, in.campaign));
+  e.findings.insert(e.findings.end(), limits.findings.begin(), limits.findings.end());
+  if (!model.missing.empty()) e.findings.push_back(math::missing_finding(model.missing));
+  const auto solved = math::solve_diagonals(collected->readings, &model);
   if (!solved) return fail(solved.error());
-  Report(in, *collected, *solved, e).fill(set == &sets.front());
+  Report(in, *collected, *solved, model, e).fill(set == &sets.front());
   return e;
 }
 

@@ -18,18 +18,18 @@ bool applies(const Campaign&, const Measurement& m) { return m.kind == "axis"; }
 
 void add_values(Evaluation& e, const AxisAnalysis& a, const Iso230Result& r) {
   const Iso230Uncertainty U = iso230_2_uncertainty(a.budget.value_or(Budget{}), a.approaches, r.k);
-  add_value(e, a, "A", r.A, U.A);
-  add_value(e, a, "A+", r.A_plus, U.A_plus);
-  add_value(e, a, "A-", r.A_minus, U.A_minus);
-  add_value(e, a, "E", r.E, U.E);
-  add_value(e, a, "E+", r.E_plus, U.E_plus);
-  add_value(e, a, "E-", r.E_minus, U.E_minus);
-  add_value(e, a, "M", r.M, U.M);
-  add_value(e, a, "R", r.R, U.R);
-  add_value(e, a, "R+", r.R_plus, U.R_plus);
-  add_value(e, a, "R-", r.R_minus, U.R_minus);
-  add_value(e, a, "B", r.B, U.B);
-  add_value(e, a, "B_mean", r.B_mean, U.B_mean);
+  add_value(e, a, "A", r.A, U.A, Made::of_all);
+  add_value(e, a, "A+", r.A_plus, U.A_plus, Made::of_all);
+  add_value(e, a, "A-", r.A_minus, U.A_minus, Made::of_all);
+  add_value(e, a, "E", r.E, U.E, Made::of_all);
+  add_value(e, a, "E+", r.E_plus, U.E_plus, Made::of_all);
+  add_value(e, a, "E-", r.E_minus, U.E_minus, Made::of_all);
+  add_value(e, a, "M", r.M, U.M, Made::of_all);
+  add_value(e, a, "R", r.R, U.R, Made::of_environment);
+  add_value(e, a, "R+", r.R_plus, U.R_plus, Made::of_environment);
+  add_value(e, a, "R-", r.R_minus, U.R_minus, Made::of_environment);
+  add_value(e, a, "B", r.B, U.B, Made::of_environment);
+  add_value(e, a, "B_mean", r.B_mean, U.B_mean, Made::of_environment);
 }
 
 /// U at each target is that of the largest: of a mean that of M, of s that of R = 2 k s.

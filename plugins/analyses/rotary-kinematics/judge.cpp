@@ -122,6 +122,7 @@ class Judge {
     }
     if (fit.dof > 0) {
       out_.sigma = fit.s;
+      out_.dof = fit.dof;
       out_.k = math::expansion_factor(fit.dof);
       return true;
     }
@@ -246,19 +247,15 @@ class Judge {
 
 }  // namespace
 
-double Judged::U_centre(std::size_t i) const {
-  const double across = 1.0 - fit.direction[i] * fit.direction[i];
-  return std::sqrt(std::pow(k * sigma, 2) * fit.cofactor[i][i] +
-                   U_shear * U_shear * std::max(0.0, across));
+double Judged::u_centre(std::size_t i) const {
+  return sigma * std::sqrt(std::max(0.0, fit.cofactor[i][i]));
 }
 
-double Judged::U_direction(std::size_t i) const {
-  return k * sigma * std::sqrt(std::max(0.0, fit.cofactor[3 + i][3 + i]));
+double Judged::u_direction(std::size_t i) const {
+  return sigma * std::sqrt(std::max(0.0, fit.cofactor[3 + i][3 + i]));
 }
 
-double Judged::U_radius() const {
-  return std::hypot(k * sigma * std::sqrt(fit.cofactor_radius), U_shear);
-}
+double Judged::u_radius() const { return sigma * std::sqrt(fit.cofactor_radius); }
 
 Judged judge(const Observations& o, const Wish& wish) { return Judge(o, wish).done(); }
 

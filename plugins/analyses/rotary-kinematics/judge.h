@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -25,14 +26,16 @@ struct Judged {
   std::vector<math::BallCentre> centres;
   bool given = false;  ///< else refused, and the findings say why
   math::RotaryFit fit;
-  double sigma = 0.0;    ///< standard uncertainty that the covariance is scaled with
-  double k = 2.0;        ///< expands it to 95 %
-  double U_shear = 0.0;  ///< in the plane, from the bound of the linear axes
+  double sigma = 0.0;     ///< standard uncertainty that the covariance is scaled with
+  double dof = INFINITY;  ///< of sigma; infinite if it is stated
+  double k = 2.0;         ///< expands it to 95 %
+  double U_shear = 0.0;   ///< in the plane, from the bound of the linear axes
   std::vector<Finding> findings;
 
-  double U_centre(std::size_t coordinate) const;
-  double U_direction(std::size_t coordinate) const;
-  double U_radius() const;
+  /// Standard uncertainties that the repetition makes.
+  double u_centre(std::size_t coordinate) const;
+  double u_direction(std::size_t coordinate) const;
+  double u_radius() const;
 };
 
 Judged judge(const Observations&, const Wish&);

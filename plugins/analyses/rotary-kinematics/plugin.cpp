@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "doubt.h"
 #include "judge.h"
 
 namespace nonio {
@@ -48,44 +49,122 @@ double range(const std::vector<double>& values) {
   return *high - *low;
 }
 
-void add_values(Evaluation& e, const Judged& j) {
-  const RotaryFit& fit = j.fit;
-  for (std::size_t i = 0; i < 3; ++i)
-    e.values.push_back(
-        {std::string("centre_") + "xyz"[i], fit.centre[i], Quantity::length, j.U_centre(i)});
-  e.values.push_back({"radius", fit.radius, Quantity::length, j.U_radius()});
-  for (std::size_t i = 0; i < 3; ++i)
-    e.values.push_back({std::string("direction_") + "ijk"[i], fit.direction[i], Quantity::number,
-                        j.U_direction(i)});
-  if (fit.dof == 0) return;
-  e.values.push_back({"s", fit.s, Quantity::deviation});
-  e.values.push_back({"run_out_radial", range(fit.radial), Quantity::deviation});
-  e.values.push_back({"run_out_axial", range(fit.axial), Quantity::deviation});
+/// One axis with its budget while the results are written.
+struct Work {
+  const AnalysisInput& in;
+  Wish wish;
+  math::HeldLimits limits;
+  Judged own;
+  rotary::Derivatives by;
+  math::ReadingModel model;
+  math::BudgetOf budget;
+  Evaluation out;
+};
+
+std::string source_of(const Wish& wish, const Judged& j) {
+  if (std::isfinite(j.dof)) return "readings";
+  return wish.sigma ? "options.rotary-kinematics.sigma_um" : "instrument.U_fixed_um";
 }
 
-void add_curves(Evaluation& e, const Judged& j, const std::string& axis) {
-  const RotaryFit& fit = j.fit;
+void add_values(Work& w) {
+  const RotaryFit& fit = w.own.fit;
+  const auto value = [&](std::string name, double v, Quantity q, double u,
+                         const std::vector<double>& by) {
+    w.out.values.push_back(w.budget.value(std::move(name), v, q, u, w.model.shares(by)));
+  };
+  for (std::size_t i = 0; i < 3; ++i)
+    value(std::string("centre_") + "xyz"[i], fit.centre[i], Quantity::length, w.own.u_centre(i),
+          w.by.centre[i]);
+  value("radius", fit.radius, Quantity::length, w.own.u_radius(), w.by.radius);
+  for (std::size_t i = 0; i < 3; ++i)
+    value(std::string("direction_") + "ijk"[i], fit.direction[i], Quantity::number,
+          w.own.u_direction(i), w.by.direction[i]);
+  if (fit.dof == 0) return;
+  w.out.values.push_back({"s", fit.s, Quantity::deviation});
+  w.out.values.push_back({"run_out_radial", range(fit.radial), Quantity::deviation});
+  w.out.values.push_back({"run_out_axial", range(fit.axial), Quantity::deviation});
+}
+
+/// What the repetition of the coordinates makes in something that depends on them.
+double repetition_in(const Judged& j, const std::vector<double>& by) {
+  const std::size_t n = j.centres.size();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < by.size(); ++i) sum += by[i] * by[i] / j.centres[i % n].weight;
+  return j.sigma * std::sqrt(sum);
+}
+
+void add_curve(Work& w, const char* name, const std::vector<double>& angle,
+               const std::vector<double>& value, const std::vector<rotary::Derivatives::Row>& by) {
+  Series s{name, w.in.measurement.axis, Quantity::angle, Quantity::deviation, angle, value, {}};
+  std::vector<double> u;
+  std::vector<math::Shares> shares;
+  for (const auto& row : by) {
+    u.push_back(repetition_in(w.own, row));
+    shares.push_back(w.model.shares(row));
+  }
+  if (w.own.fit.dof > 0 && !u.empty()) w.budget.put(s, u, shares);
+  w.out.series.push_back(std::move(s));
+}
+
+void add_curves(Work& w) {
+  const RotaryFit& fit = w.own.fit;
   std::vector<double> angle, x, y, z, n;
-  for (const math::BallCentre& c : j.centres) {
+  for (const math::BallCentre& c : w.own.centres) {
     angle.push_back(c.angle);
     x.push_back(c.at[0]), y.push_back(c.at[1]), z.push_back(c.at[2]);
     n.push_back(c.weight);
   }
-  e.points.columns = {{"target", Quantity::angle, angle},
-                      {"x", Quantity::length, std::move(x)},
-                      {"y", Quantity::length, std::move(y)},
-                      {"z", Quantity::length, std::move(z)},
-                      {"radial", Quantity::deviation, fit.radial},
-                      {"axial", Quantity::deviation, fit.axial},
-                      {"tangential", Quantity::deviation, fit.tangential},
-                      {"n", Quantity::count, std::move(n)}};
-  for (const auto& [name, values] : {std::pair("radial", &fit.radial), {"axial", &fit.axial}})
-    e.series.push_back({name, axis, Quantity::angle, Quantity::deviation, angle, *values, {}});
+  w.out.points.columns = {{"target", Quantity::angle, angle},
+                          {"x", Quantity::length, std::move(x)},
+                          {"y", Quantity::length, std::move(y)},
+                          {"z", Quantity::length, std::move(z)},
+                          {"radial", Quantity::deviation, fit.radial},
+                          {"axial", Quantity::deviation, fit.axial},
+                          {"tangential", Quantity::deviation, fit.tangential},
+                          {"n", Quantity::count, std::move(n)}};
+  add_curve(w, "radial", angle, fit.radial, w.by.radial);
+  add_curve(w, "axial", angle, fit.axial, w.by.axial);
+}
+
+/// The rows of both circles as one of all coordinates: x of both, y of both, z of both.
+std::vector<double> joined(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> out;
+  const auto n = static_cast<std::ptrdiff_t>(a.size() / 3),
+             m = static_cast<std::ptrdiff_t>(b.size() / 3);
+  for (std::ptrdiff_t k = 0; k < 3; ++k) {
+    out.insert(out.end(), a.begin() + k * n, a.begin() + (k + 1) * n);
+    out.insert(out.end(), b.begin() + k * m, b.begin() + (k + 1) * m);
+  }
+  return out;
+}
+
+/// Degrees of freedom of both repetitions together (Welch-Satterthwaite).
+double joined_dof(double u_a, double dof_a, double u_b, double dof_b) {
+  const double fourth = std::pow(u_a, 4) / dof_a + std::pow(u_b, 4) / dof_b;
+  return fourth > 0.0 ? std::pow(std::hypot(u_a, u_b), 4) / fourth : INFINITY;
+}
+
+void add_relation(Work& w, const std::string& id, const Judged& j) {
+  const auto r = math::relation_of(j.fit, j.sigma, w.own.fit, w.own.sigma);
+  const auto a = math::relation_of(j.fit, j.sigma, w.own.fit, 0.0),
+             b = math::relation_of(j.fit, 0.0, w.own.fit, w.own.sigma);
+  const auto by = derivatives_of(j, w.wish.use_angles);
+  // One instrument in one frame: what it has in common for both circles is no distance.
+  const auto model = rotary::coordinate_model(w.in.campaign, w.limits.environment, {&j, &w.own},
+                                              w.wish.linear_axes);
+  auto distance = model.shares(joined(chain(by, r.distance_by_a), chain(w.by, r.distance_by_b)));
+  auto angle = model.shares(joined(chain(by, r.angle_by_a), chain(w.by, r.angle_by_b)));
+  distance.dof = joined_dof(a.u_distance, j.dof, b.u_distance, w.own.dof);
+  angle.dof = joined_dof(a.u_angle, j.dof, b.u_angle, w.own.dof);
+  w.out.values.push_back(
+      w.budget.value("distance_" + id, r.distance, Quantity::length, r.u_distance, distance));
+  w.out.values.push_back(w.budget.value("angle_" + id, r.angle, Quantity::angle, r.u_angle, angle));
 }
 
 /// Against the axes that stand before this one in the manifest: only where the user says that their
 /// centres have one reference point.
-void add_relations(Evaluation& e, const Judged& own, const AnalysisInput& in) {
+void add_relations(Work& w) {
+  const AnalysisInput& in = w.in;
   if (in.all == nullptr) return;
   const auto& measurements = in.campaign.measurements;
   const std::vector<std::string> same = in.options.texts("same_reference");
@@ -97,35 +176,60 @@ void add_relations(Evaluation& e, const Judged& own, const AnalysisInput& in) {
     if (other.id == in.measurement.id) break;
     if (other.kind != in.measurement.kind || (*in.all)[i].size() == 0) continue;
     if (!shares(other.id) || !shares(in.measurement.id)) {
-      e.findings.push_back({.id = "rotary.reference-unknown",
-                            .texts = {{"one", other.id}, {"other", in.measurement.id}}});
+      w.out.findings.push_back({.id = "rotary.reference-unknown",
+                                .texts = {{"one", other.id}, {"other", in.measurement.id}}});
       continue;
     }
     const Judged j = judge((*in.all)[i], wish_of(in.campaign, (*in.all)[i], in.options));
     if (!j.given) continue;  // its own findings say why
-    // Each expanded by its own factor: U is then twice the combined uncertainty.
-    const auto r = math::relation_of(j.fit, 0.5 * j.k * j.sigma, own.fit, 0.5 * own.k * own.sigma);
-    e.values.push_back({"distance_" + other.id, r.distance, Quantity::length,
-                        std::hypot(2.0 * r.u_distance, j.U_shear, own.U_shear)});
-    e.values.push_back({"angle_" + other.id, r.angle, Quantity::angle, 2.0 * r.u_angle});
-    e.uses.push_back(other.id);
-    e.notes.push_back({"rotary.chain", {}, {{"one", other.id}, {"other", in.measurement.id}}});
+    add_relation(w, other.id, j);
+    w.out.uses.push_back(other.id);
+    w.out.notes.push_back({"rotary.chain", {}, {{"one", other.id}, {"other", in.measurement.id}}});
   }
 }
 
+/// The measurement, and those of the same kind, which may be compared with it.
+std::vector<const Observations*> observations_of(const AnalysisInput& in) {
+  std::vector<const Observations*> out{&in.observations};
+  for (std::size_t i = 0; in.all != nullptr && i < in.all->size(); ++i)
+    if (in.campaign.measurements[i].kind == in.measurement.kind) out.push_back(&(*in.all)[i]);
+  return out;
+}
+
 Expected<Evaluation> analyse(const AnalysisInput& in) {
-  Judged judged = judge(in.observations, wish_of(in.campaign, in.observations, in.options));
-  Evaluation e;
-  e.findings = std::move(judged.findings);
-  if (!judged.given) return e;
-  add_values(e, judged);
-  add_curves(e, judged, in.measurement.axis);
-  add_relations(e, judged, in);
-  e.notes.push_back({judged.k > 2.0 ? "method.rotary-residuals" : "method.rotary-sigma",
-                     {{"sigma", judged.sigma, Quantity::deviation},
-                      {"k", judged.k, Quantity::ratio},
-                      {"dof", static_cast<double>(judged.fit.dof), Quantity::count}}});
-  return e;
+  const Wish wish = wish_of(in.campaign, in.observations, in.options);
+  Judged judged = judge(in.observations, wish);
+  if (!judged.given) {
+    Evaluation refused;
+    refused.findings = std::move(judged.findings);
+    return refused;
+  }
+  math::HeldLimits limits = math::limits_held(in.campaign, observations_of(in));
+  math::ReadingModel model =
+      rotary::coordinate_model(in.campaign, limits.environment, {&judged}, wish.linear_axes);
+  math::BudgetOf budget(model, judged.sigma, judged.dof, Quantity::deviation,
+                        source_of(wish, judged));
+  rotary::Derivatives by = derivatives_of(judged, wish.use_angles);
+  Work w{in,
+         wish,
+         std::move(limits),
+         std::move(judged),
+         std::move(by),
+         std::move(model),
+         std::move(budget),
+         {}};
+  w.out.findings = std::move(w.own.findings);
+  w.out.findings.insert(w.out.findings.end(), w.limits.findings.begin(), w.limits.findings.end());
+  if (!w.model.missing.empty()) w.out.findings.push_back(math::missing_finding(w.model.missing));
+  add_values(w);
+  add_curves(w);
+  add_relations(w);
+  if (w.model.missing.empty()) w.out.budget = w.budget.budget();
+  w.out.notes.push_back({w.own.k > 2.0 ? "method.rotary-residuals" : "method.rotary-sigma",
+                         {{"sigma", w.own.sigma, Quantity::deviation},
+                          {"k", w.own.k, Quantity::ratio},
+                          {"dof", static_cast<double>(w.own.fit.dof), Quantity::count}}});
+  return std::move(w.out);
 }
 
 std::vector<Option> options() {

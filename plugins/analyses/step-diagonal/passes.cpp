@@ -7,10 +7,8 @@
 #include <map>
 #include <set>
 
-#include "nonio/math/axis_findings.h"
 #include "nonio/math/axis_test.h"
 #include "nonio/math/statistics.h"
-#include "nonio/math/uncertainty.h"
 
 namespace nonio::step_diagonal {
 namespace {
@@ -262,8 +260,6 @@ bool wanted(const AnalysisInput& in, const std::string& id) {
 Lengths lengths_of(const AnalysisInput& in, const Passes& passes) {
   Lengths out;
   if (in.all == nullptr) return out;
-  bool budgets = true;
-  double relative = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     std::vector<std::size_t> candidates;
     for (std::size_t i = 0; i < in.all->size(); ++i) {
@@ -280,15 +276,50 @@ Lengths lengths_of(const AnalysisInput& in, const Passes& passes) {
     const auto test = math::AxisTest::arrange((*in.all)[candidates[0]]);
     math::AxisSeries series = series_of(test, k);
     if (series.position.size() < 2) continue;
-    const auto budget = math::uncertainty_budget(in.campaign, passes.axes[k], test);
-    if (budget.budget && test.length() > 0.0)
-      relative = std::max(relative, budget.budget->systematic() / test.length());
-    else if (std::exchange(budgets, false))
-      out.findings.push_back(math::budget_finding(budget, false));
     out.series.push_back(std::move(series));
     out.ids.push_back(in.campaign.measurements[candidates[0]].id);
   }
-  if (budgets && !out.series.empty()) out.relative = relative;
+  return out;
+}
+
+std::vector<math::BudgetLine> budget_lines(const Passes& p, const Lengths& lengths,
+                                           const Campaign& campaign) {
+  const math::StepDiagonals& d = p.readings;
+  std::vector<math::BudgetLine> lines;
+  const std::array<double, 3> cosines{d.travel[0] / d.diagonal(), d.travel[1] / d.diagonal(),
+                                      d.travel[2] / d.diagonal()};
+  for (std::size_t k = 0; k < d.passes.size(); ++k) {
+    math::BudgetLine line;
+    line.zeroed = true;
+    line.group = k;
+    for (std::size_t t = 0; t <= 3 * d.n; ++t) {
+      const auto moves = d.counts(t);
+      double along = 0.0;
+      for (std::size_t a = 0; a < 3; ++a)
+        along +=
+            cosines[a] * d.travel[a] * static_cast<double>(moves[a]) / static_cast<double>(d.n);
+      line.length.push_back(along);
+    }
+    put_expansion(line, campaign, p.axes, cosines);
+    lines.push_back(std::move(line));
+  }
+  for (const math::AxisSeries& s : lengths.series) {
+    math::BudgetLine line;
+    line.group = lines.size();
+    for (const double x : s.position) line.length.push_back(x - s.position.front());
+    const double whole = 1.0;
+    put_expansion(line, campaign, {&p.axes[s.axis], 1}, {&whole, 1});
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::vector<const Observations*> observations_of(const AnalysisInput& in, const Lengths& lengths) {
+  std::vector<const Observations*> out{&in.observations};
+  for (std::size_t i = 0; in.all != nullptr && i < in.all->size(); ++i)
+    if (std::find(lengths.ids.begin(), lengths.ids.end(), in.campaign.measurements[i].id) !=
+        lengths.ids.end())
+      out.push_back(&(*in.all)[i]);
   return out;
 }
 

@@ -22,10 +22,14 @@ Expected<Passes> passes_of(const AnalysisInput& in);
 /// The axis measurements of the campaign that go along its axes.
 struct Lengths {
   std::vector<math::AxisSeries> series;
-  std::vector<std::string> ids;    ///< of the measurements, one for each series
-  std::optional<double> relative;  ///< expanded, of a length; none if the manifest lacks a key
+  std::vector<std::string> ids;  ///< of the measurements, one for each series
   std::vector<Finding> findings;
 };
 Lengths lengths_of(const AnalysisInput& in, const Passes& passes);
+
+/// Passes and series as their budget needs them, in the order of solve_step_diagonals.
+std::vector<math::BudgetLine> budget_lines(const Passes&, const Lengths&, const Campaign&);
+/// The measurement and those of its lengths.
+std::vector<const Observations*> observations_of(const AnalysisInput&, const Lengths&);
 
 }  // namespace nonio::step_diagonal

@@ -124,8 +124,7 @@ bool withheld(Work& w, const StepCurve& c) {
   return true;
 }
 
-void put_curve(Work& w, const StepCurve& c, bool certain) {
-  const bool positioning = c.name[1] == c.name[2];
+void put_curve(Work& w, const StepCurve& c, const BudgetOf* budget) {
   Series s{c.known ? c.name : c.name + "_shape",
            w.passes.axes[c.axis],
            Quantity::length,
@@ -133,31 +132,44 @@ void put_curve(Work& w, const StepCurve& c, bool certain) {
            c.position,
            c.value,
            {}};
-  const bool scale = positioning && c.known;
-  const bool budget = !scale || w.lengths.series.empty() || w.lengths.relative.has_value();
-  if (certain && budget)
-    for (std::size_t i = 0; i < c.u.size(); ++i) {
-      const double far = c.position[i] - c.position.front();
-      const double systematic = scale ? w.lengths.relative.value_or(0.0) * far : 0.0;
-      s.U.push_back(std::hypot(2.0 * c.u[i], systematic));
-    }
+  if (budget != nullptr) budget->put(s, c.u, c.shares);
   w.out.series.push_back(std::move(s));
 }
 
-void put_values(Work& w, const StepSolution& s) {
-  const bool certain = w.choices.u_reading > 0.0 || s.dof >= enough_dof;
+void put_values(Work& w, const StepSolution& s, const ReadingModel& model) {
+  const bool stated = w.choices.u_reading > 0.0, certain = stated || s.dof >= enough_dof;
   if (!certain)
     w.out.findings.push_back(attention(
         "step-diagonal.no-uncertainty",
         {number("dof", s.dof, Quantity::count), number("wanted", enough_dof, Quantity::count)}));
+  BudgetOf budget(model, s.u_reading, stated ? INFINITY : s.dof, Quantity::deviation,
+                  stated ? "options.step-diagonal.u_reading_um" : "readings");
   static constexpr std::array<const char*, 3> names{"C0Y", "B0Z", "A0Z"};
   for (std::size_t k = 0; k < 3; ++k) {
-    Value v{names[k], s.squareness[k].value, Quantity::small_angle};
-    if (certain) v.U = 2.0 * s.squareness[k].u;
-    w.out.values.push_back(std::move(v));
+    const Estimated& v = s.squareness[k];
+    if (certain)
+      w.out.values.push_back(budget.value(names[k], v.value, Quantity::small_angle, v.u, v.shares));
+    else
+      w.out.values.push_back({names[k], v.value, Quantity::small_angle});
   }
   for (const StepCurve& c : s.curves)
-    if (!withheld(w, c)) put_curve(w, c, certain);
+    if (!withheld(w, c)) put_curve(w, c, certain ? &budget : nullptr);
+  if (certain && model.missing.empty()) w.out.budget = budget.budget();
+}
+
+/// The largest drift that the check sums show, over a whole pass.
+HeldLimits limits_of(const Work& w) {
+  HeldLimits held = limits_held(w.in.campaign, observations_of(w.in, w.lengths));
+  auto& drift = held.environment.drift;
+  const double n = static_cast<double>(w.passes.readings.n), seen = std::fabs(w.checks.trend) * n;
+  if (w.checks.p_trend < level && drift && seen > *drift) {
+    held.findings.push_back(attention(
+        "uncertainty.limit-exceeded",
+        {number("stated", *drift, Quantity::deviation), number("found", seen, Quantity::deviation)},
+        {{"key", "environment.drift_um"}}));
+    drift = seen;
+  }
+  return held;
 }
 
 void put_notes(Work& w, const StepSolution& s) {
@@ -211,9 +223,12 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
                in.options.number("u_reading_um") * um};
   w.checks = check_step_diagonals(passes->readings);
   judge_checks(w);
-  const auto solution = w.averaging
-                            ? average_step_diagonals(passes->readings, w.choices)
-                            : solve_step_diagonals(passes->readings, w.lengths.series, w.choices);
+  const HeldLimits limits = limits_of(w);
+  const ReadingModel model =
+      reading_model(in.campaign, limits.environment, budget_lines(*passes, w.lengths, in.campaign));
+  const auto solution =
+      w.averaging ? average_step_diagonals(passes->readings, w.choices, &model)
+                  : solve_step_diagonals(passes->readings, w.lengths.series, w.choices, &model);
   if (!solution) {
     w.out.findings.push_back(attention(
         "step-diagonal.incomplete",
@@ -222,7 +237,9 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   }
   if (!w.averaging) judge_lengths(w, solution->u_reading);
   say_scales(w, *solution);
-  put_values(w, *solution);
+  w.out.findings.insert(w.out.findings.end(), limits.findings.begin(), limits.findings.end());
+  if (!model.missing.empty()) w.out.findings.push_back(missing_finding(model.missing));
+  put_values(w, *solution, model);
   put_notes(w, *solution);
   return finished(w);
 }

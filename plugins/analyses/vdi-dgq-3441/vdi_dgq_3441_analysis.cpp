@@ -19,12 +19,12 @@ bool applies(const Campaign&, const Measurement& m) { return m.kind == "axis"; }
 
 void add_values(Evaluation& e, const AxisAnalysis& a, const VdiResult& r) {
   const VdiUncertainty U = vdi3441_uncertainty(a.budget.value_or(Budget{}), a.approaches);
-  add_value(e, a, "P", r.P, U.P);
-  add_value(e, a, "Pa", r.Pa, U.Pa);
-  add_value(e, a, "Ps_max", r.Ps_max, U.Ps_max);
-  add_value(e, a, "Ps_mean", r.Ps_mean, U.Ps_mean);
-  add_value(e, a, "U_max", r.U_max, U.U_max);
-  add_value(e, a, "U_mean", r.U_mean, U.U_mean);
+  add_value(e, a, "P", r.P, U.P, Made::of_all);
+  add_value(e, a, "Pa", r.Pa, U.Pa, Made::of_all);
+  add_value(e, a, "Ps_max", r.Ps_max, U.Ps_max, Made::of_environment);
+  add_value(e, a, "Ps_mean", r.Ps_mean, U.Ps_mean, Made::of_environment);
+  add_value(e, a, "U_max", r.U_max, U.U_max, Made::of_environment);
+  add_value(e, a, "U_mean", r.U_mean, U.U_mean, Made::of_environment);
 }
 
 PointTable table(const AxisAnalysis& a, const VdiResult& r) {

@@ -23,6 +23,7 @@ void add_measurements(const Source& source, Blocks& blocks) {
       if (part == "results") pages::add_results(source, m, blocks);
       if (part == "plots") pages::add_plots(source, m, blocks);
       if (part == "targets") pages::add_targets(source, m, blocks);
+      if (part == "budget") pages::add_budget(source, m, blocks);
     }
   }
 }
@@ -48,7 +49,7 @@ constexpr const char* wanted[] = {"title",    "amendment",  "parties",  "item",
 Expected<pages::Look> look_of(const Templates& templates, const std::string& name) {
   std::vector<std::string> names;
   for (const Part& part : parts) names.emplace_back(part.name);
-  auto look = pages::read_look(templates, name, names, {"results", "plots", "targets"});
+  auto look = pages::read_look(templates, name, names, {"results", "plots", "targets", "budget"});
   if (!look) return look;
   const std::string file = "templates/" + name + ".toml";
   for (const char* part : wanted)

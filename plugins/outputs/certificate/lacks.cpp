@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cctype>
 #include <set>
+#include <string_view>
 
 #include "certificate.h"
 #include "dcc.h"
@@ -11,17 +12,32 @@ namespace nonio::certificate {
 
 namespace {
 
-/// A serial number of blanks, dashes or "n/a" names no instrument.
-bool names_something(std::string text) {
-  for (const std::string_view mark : {"\u2010", "\u2011", "\u2012", "\u2013", "\u2014", "\u2015",
-                                      "\u2212", "\uff0d", "\u00a0", "\u3000"})  // dashes, blanks
-    for (std::size_t at; (at = text.find(mark)) != std::string::npos;) text.erase(at, mark.size());
+/// Marks and spaces of Unicode: Latin-1 A0 to BF, general punctuation, minus, CJK punctuation.
+bool is_mark(std::string_view c) {
+  return c[0] == '\xC2' || c.starts_with("\xE2\x80") || c.starts_with("\xE2\x81") ||
+         c == "\xE2\x88\x92" || c.starts_with("\xE3\x80") || c.starts_with("\xEF\xBC\x8D");
+}
+
+/// "", "  ", "-", "—" and "?" say nothing; a name or number has a letter or digit of some script.
+bool says_something(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const auto c = static_cast<unsigned char>(text[at]);
+    const std::size_t length = c < 0x80 ? 1 : c < 0xE0 ? 2 : c < 0xF0 ? 3 : 4;
+    if (length == 1 ? std::isalnum(c) != 0 : !is_mark(text.substr(at, length))) return true;
+    at += length;
+  }
+  return false;
+}
+
+/// Nor does a place-holder name an instrument: "n/a", "unknown", "xxx", "000".
+bool names_something(std::string_view text) {
+  if (!says_something(text)) return false;
   std::string letters;
   for (const char c : text)
     if (std::isalnum(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80)
       letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  static const std::set<std::string> nothing = {"",    "na",   "nd",      "nn",  "none",
-                                                "nil", "null", "unknown", "tbd", "todo"};
+  static const std::set<std::string> nothing = {"na",   "nd",      "nn",  "none", "nil",
+                                                "null", "unknown", "tbd", "todo"};
   return !nothing.contains(letters) && letters.find_first_not_of("x0") != std::string::npos;
 }
 
@@ -31,7 +47,7 @@ class List {
     if (!there && seen_.insert(key).second) keys_.push_back(std::move(key));
   }
   void laboratory(const std::string& value, const char* key) {
-    want(!value.empty(), std::string("laboratory.") + key + " (site.toml)");
+    want(says_something(value), std::string("laboratory.") + key + " (site.toml)");
   }
   std::vector<std::string> take() { return std::move(keys_); }
 
@@ -50,15 +66,18 @@ std::vector<std::string> split(const std::string& text) {
   return out;
 }
 
-/// The keys of the uncertainty budget, as the analyses name them.
+/// The keys of the uncertainty budget, as the analyses name them. A budget that is stated with
+/// zeros only in part (no drift) leaves results without U among others: no certificate either.
 void want_uncertainty(const OutputInput& in, List& list) {
   for (const Results::Analysed& a : in.results.analyses) {
-    if (a.plugin == reports::model_analysis || a.evaluation.values.empty() || is_printed(a))
-      continue;
+    if (a.plugin == reports::model_analysis || a.evaluation.values.empty()) continue;
     for (const Finding& f : a.evaluation.findings)
-      for (const auto& [name, text] : f.texts)
-        if (f.id == "uncertainty.no-data" && name == "missing")
+      for (const auto& [name, text] : f.texts) {
+        if (name != "missing") continue;
+        if (f.id == "uncertainty.no-data")
           for (std::string& key : split(text)) list.want(false, std::move(key));
+        if (f.id == "uncertainty.zero") list.want(false, text + " (0: nothing is without drift)");
+      }
   }
   const auto& analyses = in.results.analyses;
   list.want(std::any_of(analyses.begin(), analyses.end(),
@@ -71,7 +90,8 @@ void want_uncertainty(const OutputInput& in, List& list) {
 bool is_printed(const Results::Analysed& a) {
   const auto& values = a.evaluation.values;
   return a.plugin != reports::model_analysis &&
-         std::any_of(values.begin(), values.end(), [](const Value& v) { return v.U.has_value(); });
+         std::any_of(values.begin(), values.end(),
+                     [](const Value& v) { return v.U && *v.U > 0.0; });
 }
 
 std::vector<std::string> lacks(const OutputInput& in) {
@@ -83,17 +103,17 @@ std::vector<std::string> lacks(const OutputInput& in) {
             "laboratory.country (site.toml; two capital letters: IT)");
   list.laboratory(c.laboratory.authoriser, "authoriser");
   if (const std::string claim = accredited_claim(in); !claim.empty())
-    list.want(!c.laboratory.accreditation.empty(),
+    list.want(says_something(c.laboratory.accreditation),
               "laboratory.accreditation (site.toml; " + claim + ")");
-  list.want(!c.customer.empty(), "campaign.customer");
-  list.want(!c.customer_address.empty(), "campaign.customer_address");
-  list.want(!c.site.empty(), "campaign.site");
+  list.want(says_something(c.customer), "campaign.customer");
+  list.want(says_something(c.customer_address), "campaign.customer_address");
+  list.want(says_something(c.site), "campaign.site");
   list.want(!c.date.empty(), "campaign.date");
-  list.want(names_something(c.machine.maker), "machine.maker");
-  list.want(names_something(c.machine.model), "machine.model");
+  list.want(says_something(c.machine.maker), "machine.maker");
+  list.want(says_something(c.machine.model), "machine.model");
   list.want(names_something(c.machine.serial), "machine.serial");
-  list.want(names_something(c.instrument.maker), "instrument.maker");
-  list.want(names_something(c.instrument.model), "instrument.model");
+  list.want(says_something(c.instrument.maker), "instrument.maker");
+  list.want(says_something(c.instrument.model), "instrument.model");
   list.want(names_something(c.instrument.serial), "instrument.serial");
   list.want(!c.instrument.calibrated.empty(), "instrument.calibrated");
   list.want(names_something(c.instrument.certificate), "instrument.certificate");
@@ -107,7 +127,7 @@ std::vector<std::string> lacks(const OutputInput& in) {
     list.want(m.exclude.empty() || !m.exclude_reason.empty(),
               "measurement." + m.id + ".exclude_reason (why readings were excluded)");
   const Conditions found = conditions_of(in.observations);
-  list.want(found.material.known() || found.air.known() || !c.certificate.conditions.empty(),
+  list.want(found.material.known() || found.air.known() || says_something(c.certificate.conditions),
             "certificate.conditions (no file of readings has temperatures)");
   want_uncertainty(in, list);
   return list.take();

@@ -23,6 +23,7 @@ void add_measurements(const Source& source, Blocks& blocks) {
       if (part == "plots") add_plots(source, m, blocks);
       if (part == "findings") add_findings(source, m, blocks);
       if (part == "targets") add_targets(source, m, blocks);
+      if (part == "budget") add_budget(source, m, blocks);
     }
   }
 }
@@ -33,7 +34,7 @@ Expected<pages::Look> look_of(const Templates& templates, const std::string& nam
   return pages::read_look(templates, name,
                           {"title", "identity", "status", "measurements", "notes", "laboratory",
                            "models", "tables", "residuals"},
-                          {"results", "plots", "findings", "targets"});
+                          {"results", "plots", "findings", "targets", "budget"});
 }
 
 Document compose(const Source& source) {

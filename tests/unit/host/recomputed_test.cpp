@@ -69,6 +69,34 @@ TEST(Dcc, ItsNumbersAreThoseOfTheResults) {
   EXPECT_EQ(state(dcc("11.96", "\\micro\\metre"), "{}"), State::fails);
 }
 
+TEST(Dcc, ItsCoverageFactorIsThatOfTheResults) {
+  using State = sign::Check::State;
+  const auto with_k = [](const std::string& k) {
+    std::string text = dcc("11.96", "\\micro\\metre");
+    const std::string two = "<si:coverageFactor>2<";
+    return text.replace(text.find(two), two.size(), "<si:coverageFactor>" + k + "<");
+  };
+  std::string json = results("11.96");
+  EXPECT_EQ(state(with_k("2.3"), json), State::fails);  // results of earlier versions: k = 2
+  json.replace(json.find("\"U\": 1.9"), 8, "\"U\": 1.9, \"k\": 2.3");
+  EXPECT_EQ(state(with_k("2.3"), json), State::holds);
+  EXPECT_EQ(state(with_k("2"), json), State::fails);
+  EXPECT_EQ(state(with_k("0.1"), json), State::fails);
+  EXPECT_EQ(state(with_k(""), json), State::fails);
+}
+
+TEST(Recomputed, ResultsOfEarlierVersionsHaveNeitherCoverageFactorNorBudget) {
+  const std::string before = results("11.96");
+  std::string now = before;
+  now.replace(now.find("\"U\": 1.9"), 8, "\"U\": 1.9, \"k\": 2.0");
+  now.replace(now.find("\"findings\""), 10, "\"budget\": {\"length_mm\": 1}, \"findings\"");
+  EXPECT_EQ(why(before, now), "");
+  EXPECT_NE(why(now, before), "");
+  std::string other = now;
+  other.replace(other.find("\"length_mm\": 1"), 14, "\"length_mm\": 2");
+  EXPECT_NE(why(now, other), "");
+}
+
 TEST(Dcc, UnitsAndLengthsOfListsThatTheSchemaLetsPass) {
   using State = sign::Check::State;
   EXPECT_EQ(state(dcc("11.96", "um"), results("11.96")), State::fails);

@@ -197,7 +197,7 @@ TEST(Budget, WhatIsMissingIsNamedByItsKey) {
   c.machine.axes[0].name = "X";
   c.instrument.U_fixed = 1e-7;
   c.environment.drift = 1e-6;
-  const auto of = uncertainty_budget(c, "X", AxisTest::arrange(o));
+  const auto of = uncertainty_budget(c, c.environment, "X", AxisTest::arrange(o));
   EXPECT_FALSE(of.budget);
   const Finding f = budget_finding(of, false);
   EXPECT_EQ(f.id, "uncertainty.no-data");

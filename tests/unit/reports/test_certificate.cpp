@@ -152,6 +152,66 @@ TEST_F(Certificate, ASerialNumberThatNamesNothingIsMissing) {
   EXPECT_EQ(lacks(c).size(), 3U);  // serial, calibrated, certificate
 }
 
+TEST_F(Certificate, ABlankOrADashIsNoStatement) {
+  for (const char* nothing :
+       {" ", "-", "--", " - ", "?", "/", "—", "–", "\xC2\xA0", "\xE3\x80\x80", "..."}) {
+    Case c = whole();
+    c.campaign.machine.serial = nothing;
+    c.campaign.instrument.serial = nothing;
+    c.campaign.instrument.certificate = nothing;
+    EXPECT_EQ(lacks(c), (std::vector<std::string>{"machine.serial", "instrument.serial",
+                                                  "instrument.certificate"}))
+        << nothing;
+  }
+  for (const char* serial : {"7", "A-7", "№ 7", "甲", "É"}) {
+    Case c = whole();
+    c.campaign.machine.serial = serial;
+    EXPECT_TRUE(lacks(c).empty()) << serial;
+  }
+}
+
+TEST_F(Certificate, ABudgetOfZerosIsNone) {
+  Case c = whole();
+  Environment& e = c.campaign.environment;
+  e.misalignment = e.temperature_range = e.temperature_difference = e.expansion_range = e.drift =
+      0.0;
+  c.campaign.instrument.U_fixed = c.campaign.instrument.U_per_length = 0.0;
+  c.results = {};
+  c.analyse(plugins);
+  const auto keys = lacks(c);
+  EXPECT_TRUE(std::any_of(keys.begin(), keys.end(), [](const std::string& key) {
+    return key.starts_with("instrument.U_fixed_um (0");
+  }));
+  c.campaign.instrument.U_fixed = 1e-7;
+  c.results = {};
+  c.analyse(plugins);
+  ASSERT_EQ(lacks(c).size(), 1U);
+  EXPECT_TRUE(lacks(c)[0].starts_with("environment.drift_um (0"));
+}
+
+TEST_F(Certificate, TheBudgetStandsInIt) {
+  Case c = whole();
+  for (const char* language : {"en", "it", "de", "es", "zh"}) {
+    c.campaign.certificate.languages = {language};
+    EXPECT_TRUE(write(c)) << language;
+  }
+  c.campaign.certificate.languages = {"en"};
+  const std::string page = text(c);
+  for (const char* what : {"Uncertainty budget of ISO 230-2", "Misalignment",
+                           "Drift during the test", "environment.drift_um", "rectangular"})
+    EXPECT_TRUE(says(page, what)) << what;
+  EXPECT_FALSE(has(page, "230-9")) << "its text was not read";
+}
+
+TEST_F(Certificate, TheCoverageFactorThatWasUsedIsPrinted) {
+  Case c = whole();
+  c.results.analyses.front().evaluation.values.front().k = 2.318;
+  EXPECT_TRUE(has(text(c), "\n2.32\n"));
+  const auto result = write(c);
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(has(result->artifacts[1].bytes, "<si:coverageFactor>2.318<"));
+}
+
 TEST_F(Certificate, WithoutTemperaturesTheConditionsMustBeStated) {
   Case c = whole();
   for (Observations& o : c.observations) o.material.clear();

@@ -169,10 +169,10 @@ TEST(RotaryTable, UCoversTheTruth) {
       ASSERT_TRUE(j.given) << kind.name << ": " << j.findings.front().id;
       for (std::size_t k = 0; k < 3; ++k) {
         const auto c = static_cast<int>(k);
-        covered[k] += std::fabs(j.fit.centre[k] - t.centre[c]) <= j.U_centre(k);
-        covered[3 + k] += std::fabs(j.fit.direction[k] - t.direction[c]) <= j.U_direction(k);
+        covered[k] += std::fabs(j.fit.centre[k] - t.centre[c]) <= j.k * j.u_centre(k);
+        covered[3 + k] += std::fabs(j.fit.direction[k] - t.direction[c]) <= j.k * j.u_direction(k);
       }
-      covered[6] += std::fabs(j.fit.radius - t.radius) <= j.U_radius();
+      covered[6] += std::fabs(j.fit.radius - t.radius) <= j.k * j.u_radius();
     }
     std::printf("seed %u %-28s centre %.2f %.2f %.2f direction %.2f %.2f %.2f radius %.2f %%\n",
                 seed, kind.name, covered[0] / 20.0, covered[1] / 20.0, covered[2] / 20.0,

@@ -125,6 +125,13 @@ std::string words_of(const std::string& id) {
   return out;
 }
 
+/// One whose words are the program's, not this plugin's.
+const Finding* finding_of_host(const Evaluation& e, const std::string& id) {
+  for (const Finding& f : e.findings)
+    if (f.id == id) return &f;
+  return nullptr;
+}
+
 /// The finding, whose words find all that they name.
 const Finding* finding(const Evaluation& e, const std::string& id) {
   for (const Finding& f : e.findings) {
@@ -175,16 +182,21 @@ TEST(StepDiagonal, WithAxisRunsEverythingIsGiven) {
   const auto square = true_squareness(e, b.volume);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(result->values[k].value, square[k], 0.5 * urad) << result->values[k].name;
-    EXPECT_TRUE(result->values[k].U.has_value());
+    // The manifest has no budget: then the fit's repeatability, under its own name.
+    EXPECT_FALSE(result->values[k].U);
+    EXPECT_TRUE(result->values[k].repeatability);
   }
+  EXPECT_NE(finding_of_host(*result, "uncertainty.no-data"), nullptr);
+  EXPECT_FALSE(result->budget);
   ASSERT_EQ(result->series.size(), 9U);
   const Series* eyx = series(*result, "EYX");
   ASSERT_NE(eyx, nullptr);
-  EXPECT_EQ(eyx->U.size(), eyx->value.size());
+  EXPECT_TRUE(eyx->U.empty());
+  EXPECT_EQ(eyx->repeatability.size(), eyx->value.size());
   const auto wanted = levelled(sampled(e.EYX, 0.8, 10));
   EXPECT_LT(largest_difference(eyx->value, wanted), 0.3 * um);
   ASSERT_NE(series(*result, "EXX"), nullptr);
-  EXPECT_TRUE(series(*result, "EXX")->U.empty());  // the manifest has no budget
+  EXPECT_TRUE(series(*result, "EXX")->U.empty());
   const Finding* askew = finding(*result, "step-diagonal.set-up-seen");
   ASSERT_NE(askew, nullptr);
   EXPECT_FALSE(askew->attention);
@@ -392,7 +404,7 @@ TEST(StepDiagonal, FewStepsHaveNoUncertaintyUnlessItIsStated) {
   b.options.values["u_reading_um"] = 0.05;
   result = b.evaluated();
   ASSERT_TRUE(result);
-  EXPECT_TRUE(result->values[0].U);
+  EXPECT_TRUE(result->values[0].repeatability);
 }
 
 }  // namespace

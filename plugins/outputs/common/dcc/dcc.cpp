@@ -342,7 +342,7 @@ class Writer {
       xml_.open("si:measurementUncertaintyUnivariate");
       xml_.open("si:expandedMU");
       xml_.element("si:valueExpandedMU", said.U);
-      xml_.element("si:coverageFactor", "2");
+      xml_.element("si:coverageFactor", number_text(v.k, Quantity::number));
       xml_.element("si:coverageProbability", "0.95");
       xml_.close();
       xml_.close();

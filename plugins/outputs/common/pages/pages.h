@@ -74,6 +74,8 @@ void add_targets(const Source&, const Measured&, Blocks&);
 void add_plots(const Source&, const Measured&, Blocks&);
 /// The one picture that says most of a measurement: its readings by run, circle or volume.
 std::optional<reports::Plot> readings_plot(const Source&, const Measured&);
+/// What its uncertainties are made of, from the budget that results.json has too.
+void add_budget(const Source&, const Measured&, Blocks&);
 
 /// What manifest and site bring, before it is lost in sentences: an error names the key, so that
 /// the host can say where it stands.

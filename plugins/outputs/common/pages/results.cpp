@@ -35,7 +35,8 @@ std::string tolerance_text(const Source& source, const Conformity* c) {
 
 /// What a table of values has room and reason for.
 struct Shape {
-  bool meaning = false, U = false, decision = false, own_units = false;
+  bool meaning = false, U = false, k = false, repeatability = false;
+  bool decision = false, own_units = false;
   std::string unit;
 };
 
@@ -60,6 +61,8 @@ Shape shape_of(const Source& source, const Results::Analysed& a) {
     if (left_out(source, v)) continue;
     s.meaning |= !meaning_of(source, v.name).empty();
     s.U |= v.U.has_value();
+    s.k |= (v.U || v.repeatability) && std::fabs(v.k - 2.0) >= 0.005;
+    s.repeatability |= v.repeatability.has_value();
     s.decision |= !source.certificate && conformity_of(source.in, a, v.name) != nullptr;
     s.own_units |= unit_text(v.quantity) != s.unit;
   }
@@ -78,17 +81,28 @@ Block value_table(const Source& source, const Results::Analysed& a) {
   if (shape.meaning) column("results.meaning", false, false);
   column("results.value", true, true);
   if (shape.U) column("results.uncertainty", true, true);
+  if (shape.repeatability) column("results.repeatability", true, true);
+  if (shape.k) column("results.k", true, false);
   if (shape.decision) column("results.tolerance", true, true);
   if (shape.own_units) table.columns.push_back({"", "", false});
   if (shape.decision) column("results.decision", false, false);
   for (const Value& v : a.evaluation.values) {
     if (left_out(source, v)) continue;
-    const Printed shown = printed_result(v.value, v.U, v.quantity, source.language());
+    const Printed shown =
+        printed_result(v.value, v.U ? v.U : v.repeatability, v.quantity, source.language());
     const Conformity* c = conformity_of(source.in, a, v.name);
     std::vector<Table::Cell> row = {{symbol(v.name), true}};
     if (shape.meaning) row.push_back({meaning_of(source, v.name)});
     row.push_back({shown.value});
-    if (shape.U) row.push_back({shown.U.empty() ? "–" : shown.U});
+    if (shape.U) row.push_back({v.U ? shown.U : "–"});
+    if (shape.repeatability)
+      row.push_back({v.repeatability
+                         ? printed_result(v.value, v.repeatability, v.quantity, source.language()).U
+                         : "–"});
+    if (shape.k)
+      row.push_back({v.U || v.repeatability
+                         ? printed_number(v.k, Quantity::number, 2, source.language())
+                         : ""});
     if (shape.decision) row.push_back({tolerance_text(source, c)});
     if (shape.own_units) row.push_back({unit_text(v.quantity)});
     if (shape.decision) row.push_back(decision_cell(source, c));

@@ -13,6 +13,7 @@ namespace nonio::math {
 Option incomplete_targets_option();
 
 struct AxisAnalysis {
+  std::string axis;
   AxisTest test;
   std::optional<Budget> budget;
   std::size_t approaches = 0;     ///< behind each mean, at least
@@ -23,7 +24,11 @@ struct AxisAnalysis {
 /// Fails if the measurement is not one of an axis with directions of approach.
 Expected<AxisAnalysis> begin_axis_analysis(const AnalysisInput&);
 
-/// Adds the value, with U if the budget is known; a value that is not finite is absent.
-void add_value(Evaluation&, const AxisAnalysis&, std::string name, double value, double U);
+/// What an uncertainty is made of: the whole budget, or what does not drop out of a difference.
+enum class Made { of_all, of_environment };
+
+/// Adds the value, with U if the budget is known, which notes it; a value that is not finite is
+/// absent.
+void add_value(Evaluation&, const AxisAnalysis&, std::string name, double value, double U, Made);
 
 }  // namespace nonio::math

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "nonio/math/budget.h"
 #include "nonio/sdk/error.h"
 
 /// Squareness and straightness of two axes from the diagonals of their rectangle.
@@ -33,7 +34,8 @@ namespace nonio::math {
 /// Means of readings, and the standard uncertainty of each mean.
 struct MeanCurve {
   std::vector<double> mean;
-  double u = 0.0;  ///< 0: not known
+  double u = 0.0;         ///< 0: not known
+  double dof = INFINITY;  ///< of u
   /// The first stop was not read, or the instrument was set to zero there each time: 0 by
   /// definition.
   bool zeroed = true;
@@ -72,16 +74,19 @@ struct DiagonalReadings {
   std::optional<DirectStraightness> EYX, EXY;
 };
 
-/// A curve over n + 1 points with its standard uncertainty at each.
+/// A curve over n + 1 points with its standard uncertainty at each: of the repetition, and of the
+/// inputs of a ReadingModel, if there was one.
 struct KnownCurve {
   std::vector<double> value, u;
+  std::vector<Shares> shares;
   double gain = 0.0;  ///< rms over the inner points of u for white noise 1 of the readings of lines
 };
 
 /// Least-squares line of ISO 230-1 taken out.
 struct LsqGauge {
-  std::vector<double> EYX, EXY;  ///< empty if they cannot be separated
+  KnownCurve EYX, EXY;  ///< empty if they cannot be separated
   double C0Y = 0.0, u_C0Y = 0.0;
+  Shares shares_C0Y;
 };
 
 struct Closure {
@@ -95,6 +100,7 @@ struct Closure {
 
 struct DiagonalResult {
   double C0Y = 0.0, u_C0Y = 0.0, gain_C0Y = 0.0;  ///< end-point gauge; gain in 1/m
+  Shares shares_C0Y;
   std::size_t unknowns = 0, rank = 0;
   std::size_t nullity() const { return unknowns - rank; }
   bool separable() const { return rank == unknowns; }
@@ -102,7 +108,7 @@ struct DiagonalResult {
   KnownCurve EYX_even, EXY_even, q_odd;  ///< always; q = c EXY + s EYX
   LsqGauge lsq;
   std::vector<double> d1, d2;         ///< readings less positioning and yaw
-  std::vector<double> ECX;            ///< yaw as it was subtracted; empty if there was none
+  KnownCurve ECX;                     ///< yaw as it was subtracted; empty if there was none
   std::optional<double> slave_shift;  ///< of the second line's zero, removes C0Y; from two lines
   Closure closure;
   /// Standard deviation of a mean as the residuals of the fit say, with its degrees of freedom.
@@ -111,8 +117,9 @@ struct DiagonalResult {
   bool noise_known = false;  ///< every u was given: else all are taken as equal, from residual_u
 };
 
-/// Fails if the curves do not have the lengths that the grid asks for.
-Expected<DiagonalResult> solve_diagonals(const DiagonalReadings&);
+/// Fails if the curves do not have the lengths that the grid asks for. The lines of the model, if
+/// there is one, are Y, X, ECX, D1, D2, the third lines, EYX, EXY, a reading for each mean.
+Expected<DiagonalResult> solve_diagonals(const DiagonalReadings&, const ReadingModel* = nullptr);
 
 /// What a bound abs(EXY_odd) <= G says of EYX_odd = (q_odd - c EXY_odd)/s.
 struct Band {

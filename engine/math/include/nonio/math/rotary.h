@@ -85,6 +85,8 @@ double expansion_factor(int dof);
 struct LineRelation {
   double distance = 0.0, u_distance = 0.0;  ///< m
   double angle = 0.0, u_angle = 0.0;        ///< rad
+  /// Derivatives by centre (0..2) and direction (3..5) of each line.
+  std::array<double, 6> distance_by_a{}, distance_by_b{}, angle_by_a{}, angle_by_b{};
 };
 /// sigma_a, sigma_b: standard uncertainty of a coordinate in each of them.
 LineRelation relation_of(const RotaryFit& a, double sigma_a, const RotaryFit& b, double sigma_b);

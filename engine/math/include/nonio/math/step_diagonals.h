@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "nonio/math/budget.h"
 #include "nonio/sdk/error.h"
 
 /// Sequential step diagonals: along each of the four body diagonals of a volume the axes move one
@@ -90,6 +91,7 @@ struct StepChoices {
 struct Estimated {
   double value = 0.0;
   double u = 0.0;  ///< standard uncertainty of the noise
+  Shares shares;   ///< and of the inputs of a ReadingModel, if there was one
 };
 
 struct StepCurve {
@@ -97,6 +99,7 @@ struct StepCurve {
   std::size_t axis = 0;
   bool known = true;  ///< positioning: false if less its end line, as the scale is not known
   std::vector<double> position, value, u;  ///< m
+  std::vector<Shares> shares;
 };
 
 struct StepSolution {
@@ -110,11 +113,14 @@ struct StepSolution {
   bool scales_known() const { return curves[0].known && curves[4].known && curves[8].known; }
 };
 
-/// An error if a function cannot be known, as too many readings are missing.
+/// An error if a function cannot be known, as too many readings are missing. The lines of the
+/// model, if there is one, are the passes, each with its zero before the 3n readings, and the
+/// series.
 Expected<StepSolution> solve_step_diagonals(const StepDiagonals&, const std::vector<AxisSeries>&,
-                                            const StepChoices&);
-/// Needs every reading.
-Expected<StepSolution> average_step_diagonals(const StepDiagonals&, const StepChoices&);
+                                            const StepChoices&, const ReadingModel* = nullptr);
+/// Needs every reading. The lines of the model are the passes.
+Expected<StepSolution> average_step_diagonals(const StepDiagonals&, const StepChoices&,
+                                              const ReadingModel* = nullptr);
 
 /// What the check sums say.
 struct StepChecks {

@@ -41,9 +41,14 @@ struct Machine {
 /// The measuring instrument; U are expanded uncertainties (k = 2) of its certificate.
 struct Instrument {
   std::string maker, model, serial, calibrated, certificate;
-  std::optional<double> U_fixed;        ///< m
-  std::optional<double> U_per_length;   ///< m/m
-  std::optional<double> U_angle;        ///< rad
+  std::optional<double> U_fixed;       ///< m
+  std::optional<double> U_per_length;  ///< m/m
+  std::optional<double> U_angle;       ///< rad
+  /// Of a probe: full ranges of the form of its ball, and of what the probe itself adds, m.
+  std::optional<double> sphere{}, probe{};
+  /// Of a device that has a length of its own (a scale, a step gauge); none: its length does not
+  /// depend on its temperature, or that is in U_per_length. 1/K, K and 1/K, the latter full ranges.
+  std::optional<double> expansion{}, temperature_range{}, expansion_range{};
   std::string issuer{}, valid_until{};  ///< of its certificate: who issued it, its last day
 };
 
@@ -64,10 +69,20 @@ struct Environment {
   std::optional<double> drift_angle;             ///< rad, the same of a rotary axis
   std::string warm_up{};                         ///< what the machine did before the test
   std::string sensors{};                         ///< where the temperature sensors were
+  std::optional<double> drift_time{};            ///< s, how long the drift test took
+};
+
+/// The smallest expanded uncertainty that an accreditation covers (CMC): a + b L for lengths.
+struct Cmc {
+  std::optional<double> fixed{};       ///< m
+  std::optional<double> per_length{};  ///< m/m
+  std::optional<double> angle{};       ///< rad, of angles and directions
+  bool stated() const { return fixed || per_length || angle; }
 };
 
 struct Laboratory {
   std::string name, address, country, accreditation, authoriser, contact;
+  Cmc cmc{};
 };
 
 /// What a certificate says beside the results (ISO/IEC 17025:2017, 7.8): of site.toml, and of the

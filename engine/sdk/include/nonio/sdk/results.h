@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "nonio/sdk/budget.h"
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/units.h"
 
@@ -24,7 +25,10 @@ struct Value {
   std::string name;  ///< the standard's: A, R+, Ps_max
   double value = 0.0;
   Quantity quantity = Quantity::number;
-  std::optional<double> U{};  ///< expanded uncertainty, k = 2
+  std::optional<double> U{};  ///< expanded uncertainty
+  double k = 2.0;             ///< the coverage factor of `U` or of `repeatability`
+  /// Where a contribution was not stated, in place of U: the expanded scatter of the fit alone.
+  std::optional<double> repeatability{};
 };
 
 /// Something that the numbers mean. Its words are looked up by `id` in templates/words, with
@@ -73,6 +77,8 @@ struct Series {
   Quantity position_quantity = Quantity::length;
   Quantity quantity = Quantity::deviation;
   std::vector<double> position, value, U;
+  double k = 2.0;                       ///< of U or of `repeatability`
+  std::vector<double> repeatability{};  ///< in place of U, as in Value
 };
 
 /// What an analysis says of one measurement, or of the campaign.
@@ -84,6 +90,7 @@ struct Evaluation {
   std::vector<Finding> findings;
   std::vector<Remark> notes;
   std::vector<std::string> uses{};  ///< ids of the other measurements that it is made from
+  std::optional<UncertaintyBudget> budget{};
 };
 
 /// One result before a table is loaded, and as its consumer's model predicts it after.

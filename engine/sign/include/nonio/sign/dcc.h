@@ -17,6 +17,7 @@ struct DccValue {
   std::string unit;      ///< "um"
   double value = 0.0;
   std::optional<double> U{};
+  double k = 2.0;  ///< coverage factor of U
 };
 
 /// The single values of a DCC 3.3.0 as Nonio writes it. What the schema lets pass is checked here:

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "nonio/sdk/budget.h"
+#include "nonio/sdk/campaign.h"
+#include "nonio/sdk/observations.h"
+#include "nonio/sdk/results.h"
+
+/// The uncertainty of whatever is fitted to readings: every analysis of several lines fills its
+/// budget here.
+///
+/// A result f depends on the readings y_i with J_i = df/dy_i. An input quantity of standard
+/// uncertainty u makes errors in the readings, and with them the error of f:
+///
+///     each reading its own      u_f^2 = u^2 sum_i J_i^2
+///     a walk along a line       u_f^2 = u^2/(m - 1) sum_lines sum_k (sum_(i >= k) J_i)^2
+///     one for a line            u_f^2 = u^2 sum_lines (sum_i J_i)^2,  or with J_i d_i
+///     one for the instrument    u_f^2 = u^2 (sum_i J_i)^2,            or with J_i d_i
+///
+/// d_i: distance of reading i from the zero of its line, where the error grows with the length; m:
+/// readings of a line. This is J V J' with the covariance V of the readings; what one instrument
+/// has in common for all of them (its scale) drops out of what does not depend on the scale.
+///
+/// Expanded: U = k u, k of Student's t at 95.45 % for the effective degrees of freedom
+/// nu = u^4/sum(u_k^4/nu_k); only the repetition has finite ones.
+///
+/// Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (Welch-Satterthwaite); the inputs are
+/// those of uncertainty.h; their correlations are ours (docs/formulas.md), checked by Monte Carlo
+/// after JCGM 101 (bench/coverage.cpp).
+namespace nonio::math {
+
+/// Readings that share a zero, in the order of the walk.
+struct BudgetLine {
+  enum class Kind {
+    length,      ///< of a beam: deviations along its line
+    lateral,     ///< across it: straightness
+    angle,       ///< rad
+    coordinate,  ///< of the machine's own axis, probed
+  };
+  Kind kind = Kind::length;
+  std::vector<double> length;         ///< of each reading, from the zero; m
+  bool zeroed = false;                ///< its first reading is 0 by definition
+  std::optional<double> expansion{};  ///< coefficient along the line, 1/K
+  std::string expansion_keys{};       ///< that give it
+  std::size_t group = 0;              ///< lines of one measurement have what a line has in common
+  /// Repetition of one reading, and its degrees of freedom, where lines differ in them.
+  double u = 0.0, dof = INFINITY;
+};
+
+/// Standard uncertainty in a result, of each input in the order of `inputs`.
+struct Shares {
+  std::vector<double> u;
+  double dof = 0.0;  ///< of the repetition, where the lines have one each; 0: as the budget says
+};
+
+/// What is known of the errors of readings, beside their repetition.
+struct ReadingModel {
+  struct Input {
+    Contribution is;
+    std::vector<double> of_line;  ///< standard uncertainty by line: m or rad, or for each m
+    /// In place of these: independent errors of all readings, each a row of standard uncertainties.
+    std::vector<std::vector<double>> patterns{};
+  };
+  std::vector<BudgetLine> lines;
+  std::vector<Input> inputs;
+  std::vector<std::string> missing;  ///< keys that nobody stated
+
+  std::size_t readings() const;
+  /// row: derivative of a result by each reading, in the order of the lines.
+  Shares shares(std::span<const double> row) const;
+};
+
+/// The inputs as the manifest states them. Nothing is assumed for what it does not say.
+ReadingModel reading_model(const Campaign&, const Environment&, std::vector<BudgetLine>);
+
+/// Expansion of the machine along a direction: sum of c^2 alpha over the axes.
+void put_expansion(BudgetLine&, const Campaign&, std::span<const std::string> axes,
+                   std::span<const double> direction);
+
+/// One result with its whole uncertainty.
+struct Expanded {
+  double u = 0.0;              ///< combined
+  double k = 2.0;              ///< of U, or where that is not known of the repeatability
+  double dof = INFINITY;       ///< effective
+  std::optional<double> U;     ///< absent if a contribution was not stated
+  double repeatability = 0.0;  ///< expanded, of the repetition alone
+};
+
+/// The budget of one evaluation while it is filled.
+class BudgetOf {
+ public:
+  /// repetition: standard uncertainty of one reading, at most; dof: of it, infinite if stated;
+  /// source: "readings", or the option that states it. Where it comes from the residuals of a fit
+  /// (finite dof, and no line has a repetition of its own), they show what each reading has for
+  /// itself: of inputs of that kind only the rest counts that the residuals do not show, the root
+  /// of u^2 - repetition^2 of all of them.
+  BudgetOf(const ReadingModel&, double repetition, double dof, Quantity quantity,
+           std::string source = "readings");
+
+  /// u_repetition: of this result.
+  Expanded expand(double u_repetition, const Shares&) const;
+  /// The same, as a value with U and k, or with its repeatability; noted in the budget.
+  Value value(std::string name, double v, Quantity, double u_repetition, const Shares&);
+  /// Uncertainty of a curve: one k for all of it, the largest.
+  void put(Series&, std::span<const double> u_repetition, std::span<const Shares>) const;
+
+  const UncertaintyBudget& budget() const { return budget_; }
+
+ private:
+  /// Of the inputs that count, in the order of the budget.
+  std::vector<double> counted(const Shares&) const;
+
+  UncertaintyBudget budget_;
+  std::vector<double> factor_;  ///< of each input of the model
+};
+
+/// What the readings themselves say of limits that the manifest states: the larger one counts.
+struct HeldLimits {
+  Environment environment;
+  std::vector<Finding> findings;  ///< one for each limit that the readings go beyond
+};
+HeldLimits limits_held(const Campaign&, std::span<const Observations* const>);
+
+/// `uncertainty.no-data` with these keys.
+Finding missing_finding(const std::vector<std::string>& keys);
+
+/// Whether the instrument is stated to be exact, which none is; the key to say so.
+std::optional<std::string> exact_instrument(const Instrument&, bool angular);
+
+}  // namespace nonio::math

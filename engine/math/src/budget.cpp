@@ -1,0 +1,495 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A quantity that lies within a full range r, all places equally likely, has the standard
+// uncertainty r/(2 sqrt 3). A limit that a quantity of one sign reaches at most (the short path of
+// a beam beside the axis) and that nobody corrects has the root mean square r/sqrt 3.
+//   device-fixed      U_fixed/2                    each reading (coordinates: one for a line)
+//   device-length     U_per_length/2 d             one for the instrument (coordinates: for a line)
+//   misalignment      R_mis^2/(2 L^2)/sqrt 3 d     one for a line of length L
+//   temperature       alpha R(theta)/(2 sqrt 3) d  one for a line: the sensor lies anew
+//   expansion         dT R(alpha)/(2 sqrt 3) d     one for a line: each at a temperature of its own
+//   device-temperature, device-expansion           the same of a device with a length of its own,
+//                                                  one for the instrument
+//   drift             E_VE/sqrt 3 at a line's end  a walk along each line; not less for more runs
+//   sphere            r/(2 sqrt 3)                 each reading: the ball turns under the probe
+//   probe             r/(2 sqrt 3)                 one for a coordinate
+#include "nonio/math/budget.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "finding_builder.h"
+#include "nonio/math/axis_findings.h"
+#include "nonio/math/axis_test.h"
+#include "nonio/math/distributions.h"
+
+namespace nonio::math {
+namespace {
+
+using Kind = BudgetLine::Kind;
+
+constexpr double as_if_known = 500.0;  // degrees of freedom from which on k is 2.00
+
+double k_of(double dof) { return dof < as_if_known ? coverage_factor(dof) : 2.0; }
+
+const double of_range = 1.0 / (2.0 * std::numbers::sqrt3), of_limit = 1.0 / std::numbers::sqrt3;
+
+bool along(const BudgetLine& line) {
+  return line.kind == Kind::length || line.kind == Kind::coordinate;
+}
+
+double extent(const BudgetLine& line) {
+  double most = 0.0;
+  for (const double d : line.length) most = std::max(most, std::fabs(d));
+  return most;
+}
+
+/// Builds the inputs one after the other.
+class Builder {
+ public:
+  Builder(const Campaign& c, const Environment& e, ReadingModel& out) : c_(c), e_(e), out_(out) {
+    for (const BudgetLine& line : out_.lines) {
+      lengths_ |= line.kind == Kind::length;
+      laterals_ |= line.kind == Kind::lateral;
+      angles_ |= line.kind == Kind::angle;
+      coordinates_ |= line.kind == Kind::coordinate;
+    }
+  }
+
+  void run() {
+    device();
+    if (lengths_) misalignment();
+    if (lengths_ || coordinates_) temperatures(), own_length();
+    drift();
+    if (coordinates_) probing();
+    std::erase_if(out_.inputs, [](const auto& input) {
+      return std::all_of(input.of_line.begin(), input.of_line.end(),
+                         [](double u) { return u == 0.0; });
+    });
+  }
+
+ private:
+  double get(const std::optional<double>& given, const std::string& key) {
+    if (given && std::isfinite(*given)) return *given;
+    want(key);
+    return 0.0;
+  }
+  void want(const std::string& key) {
+    auto& all = out_.missing;
+    if (std::find(all.begin(), all.end(), key) == all.end()) all.push_back(key);
+  }
+
+  /// of: standard uncertainty by line, for each m where it grows with the length.
+  template <class Of>
+  void add(const char* id, Distribution d, Correlation c, bool with_length, std::string source,
+           const Of& of, bool angles = false) {
+    ReadingModel::Input input;
+    input.is = {.id = id,
+                .quantity = angles ? Quantity::small_angle : Quantity::deviation,
+                .with_length = with_length,
+                .distribution = d,
+                .correlation = c,
+                .source = std::move(source)};
+    for (const BudgetLine& line : out_.lines) {
+      const bool here = (line.kind == Kind::angle) == angles;
+      input.of_line.push_back(here ? of(line) : 0.0);
+      input.is.u = std::max(input.is.u, input.of_line.back() * (with_length ? extent(line) : 1.0));
+    }
+    out_.inputs.push_back(std::move(input));
+  }
+
+  void device() {
+    const Instrument& i = c_.instrument;
+    if (lengths_ || laterals_ || coordinates_) {
+      const double fixed = get(i.U_fixed, "instrument.U_fixed_um"),
+                   each = get(i.U_per_length, "instrument.U_per_m_um");
+      if (const auto exact = exact_instrument(i, false)) want(*exact);
+      add("device-fixed", Distribution::normal,
+          coordinates_ ? Correlation::lines : Correlation::readings, false, "instrument.U_fixed_um",
+          [&](const BudgetLine&) { return fixed / 2.0; });
+      add("device-length", Distribution::normal,
+          coordinates_ ? Correlation::lines : Correlation::device, true, "instrument.U_per_m_um",
+          [&](const BudgetLine&) { return each / 2.0; });
+    }
+    if (!angles_) return;
+    const double U = get(i.U_angle, "instrument.U_arcsec");
+    if (const auto exact = exact_instrument(i, true)) want(*exact);
+    add(
+        "device-angle", Distribution::normal, Correlation::readings, false, "instrument.U_arcsec",
+        [&](const BudgetLine&) { return U / 2.0; }, true);
+  }
+
+  void misalignment() {
+    const double R = get(e_.misalignment, "environment.misalignment_mm");
+    add("misalignment", Distribution::rectangular, Correlation::lines, true,
+        "environment.misalignment_mm", [&](const BudgetLine& line) {
+          const double L = extent(line);
+          return line.kind == Kind::length && L > 0.0 ? of_limit * R * R / (2.0 * L * L) : 0.0;
+        });
+  }
+
+  void temperatures() {
+    const double reading = get(e_.temperature_range, "environment.temperature_range_K"),
+                 distance = get(e_.temperature_difference, "environment.temperature_difference_K"),
+                 range = get(e_.expansion_range, "environment.expansion_range_um_per_m_K");
+    std::string keys;
+    for (const BudgetLine& line : out_.lines)
+      if (along(line) && !line.expansion) want(line.expansion_keys);
+    add("temperature", Distribution::rectangular, Correlation::lines, true,
+        "environment.temperature_range_K, machine.axes.*.expansion_um_per_m_K",
+        [&](const BudgetLine& line) {
+          return along(line) ? of_range * reading * std::fabs(line.expansion.value_or(0.0)) : 0.0;
+        });
+    add("expansion", Distribution::rectangular, Correlation::lines, true,
+        "environment.temperature_difference_K, environment.expansion_range_um_per_m_K",
+        [&](const BudgetLine& line) {
+          return along(line) ? of_range * std::fabs(distance) * range : 0.0;
+        });
+  }
+
+  void own_length() {
+    const Instrument& i = c_.instrument;
+    if (!i.expansion) return;
+    const double reading = get(i.temperature_range, "instrument.temperature_range_K"),
+                 range = get(i.expansion_range, "instrument.expansion_range_um_per_m_K");
+    const double distance = e_.temperature_difference.value_or(0.0);
+    add("device-temperature", Distribution::rectangular, Correlation::device, true,
+        "instrument.temperature_range_K, instrument.expansion_um_per_m_K",
+        [&](const BudgetLine& line) {
+          return along(line) ? of_range * reading * std::fabs(*i.expansion) : 0.0;
+        });
+    add("device-expansion", Distribution::rectangular, Correlation::device, true,
+        "environment.temperature_difference_K, instrument.expansion_range_um_per_m_K",
+        [&](const BudgetLine& line) {
+          return along(line) ? of_range * std::fabs(distance) * range : 0.0;
+        });
+  }
+
+  void drift() {
+    if (lengths_ || laterals_ || coordinates_) {
+      const double range = get(e_.drift, "environment.drift_um");
+      add("drift", Distribution::normal, Correlation::walk, false, "environment.drift_um",
+          [&](const BudgetLine&) { return of_limit * range; });
+    }
+    if (!angles_) return;
+    const double range = get(e_.drift_angle, "environment.drift_arcsec");
+    add(
+        "drift-angle", Distribution::normal, Correlation::walk, false, "environment.drift_arcsec",
+        [&](const BudgetLine&) { return of_limit * range; }, true);
+  }
+
+  void probing() {
+    const double sphere = get(c_.instrument.sphere, "instrument.sphere_um"),
+                 probe = get(c_.instrument.probe, "instrument.probe_um");
+    add("sphere", Distribution::rectangular, Correlation::readings, false, "instrument.sphere_um",
+        [&](const BudgetLine&) { return of_range * sphere; });
+    add("probe", Distribution::rectangular, Correlation::lines, false, "instrument.probe_um",
+        [&](const BudgetLine&) { return of_range * probe; });
+  }
+
+  const Campaign& c_;
+  const Environment& e_;
+  ReadingModel& out_;
+  bool lengths_ = false, laterals_ = false, angles_ = false, coordinates_ = false;
+};
+
+/// Variance in a result of one input.
+class Variance {
+ public:
+  Variance(const ReadingModel& model, const ReadingModel::Input& input, std::span<const double> J)
+      : model_(model), input_(input), J_(J) {}
+
+  double all() const {
+    if (!input_.patterns.empty()) return of_patterns();
+    std::map<std::size_t, double> sums;  // by group; one for all of a device
+    double variance = 0.0;
+    std::size_t first = 0;
+    for (std::size_t l = 0; l < model_.lines.size(); ++l) {
+      const BudgetLine& line = model_.lines[l];
+      const auto part = J_.subspan(first, line.length.size());
+      first += line.length.size();
+      const double u = input_.of_line[l];
+      if (u == 0.0) continue;
+      switch (input_.is.correlation) {
+        case Correlation::readings:
+          variance += u * u * squares(line, part);
+          break;
+        case Correlation::walk:
+          variance += u * u * walk(part);
+          break;
+        case Correlation::lines:
+          sums[line.group] += u * sum(line, part);
+          break;
+        case Correlation::device:
+          sums[0] += u * sum(line, part);
+      }
+    }
+    for (const auto& [group, value] : sums) variance += value * value;
+    return variance;
+  }
+
+ private:
+  double factor(const BudgetLine& line, std::size_t i) const {
+    if (input_.is.with_length) return line.length[i];
+    return i == 0 && line.zeroed ? 0.0 : 1.0;
+  }
+  double squares(const BudgetLine& line, std::span<const double> J) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < J.size(); ++i) sum += std::pow(J[i] * factor(line, i), 2);
+    return sum;
+  }
+  double sum(const BudgetLine& line, std::span<const double> J) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < J.size(); ++i) sum += J[i] * factor(line, i);
+    return sum;
+  }
+  static double walk(std::span<const double> J) {
+    double variance = 0.0, rest = 0.0;
+    for (std::size_t i = J.size(); i-- > 1;) rest += J[i], variance += rest * rest;
+    return J.size() < 2 ? 0.0 : variance / static_cast<double>(J.size() - 1);
+  }
+  double of_patterns() const {
+    double variance = 0.0;
+    for (const auto& pattern : input_.patterns) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < J_.size(); ++i) sum += J_[i] * pattern[i];
+      variance += sum * sum;
+    }
+    return variance;
+  }
+
+  const ReadingModel& model_;
+  const ReadingModel::Input& input_;
+  std::span<const double> J_;
+};
+
+}  // namespace
+
+std::size_t ReadingModel::readings() const {
+  std::size_t n = 0;
+  for (const BudgetLine& line : lines) n += line.length.size();
+  return n;
+}
+
+Shares ReadingModel::shares(std::span<const double> row) const {
+  Shares out;
+  for (const Input& input : inputs)
+    out.u.push_back(std::sqrt(std::max(0.0, Variance(*this, input, row).all())));
+  double variance = 0.0, fourth = 0.0;
+  std::size_t i = 0;
+  for (const BudgetLine& line : lines) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < line.length.size(); ++k, ++i)
+      if (k > 0 || !line.zeroed) sum += row[i] * row[i];
+    const double own = line.u * line.u * sum;
+    variance += own;
+    fourth += own * own / line.dof;
+  }
+  if (std::any_of(lines.begin(), lines.end(), [](const BudgetLine& l) { return l.u > 0.0; }))
+    out.dof = fourth > 0.0 ? variance * variance / fourth : INFINITY;
+  return out;
+}
+
+ReadingModel reading_model(const Campaign& c, const Environment& e, std::vector<BudgetLine> lines) {
+  ReadingModel out;
+  out.lines = std::move(lines);
+  Builder(c, e, out).run();
+  return out;
+}
+
+void put_expansion(BudgetLine& line, const Campaign& c, std::span<const std::string> axes,
+                   std::span<const double> direction) {
+  double sum = 0.0;
+  bool known = true;
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    const Axis* axis = c.machine.axis(axes[k]);
+    if (axis != nullptr && axis->expansion) {
+      sum += direction[k] * direction[k] * *axis->expansion;
+      continue;
+    }
+    known = false;
+    if (line.expansion_keys.empty())
+      line.expansion_keys = "machine.axes." + axes[k] + ".expansion_um_per_m_K";
+  }
+  if (known) line.expansion = sum;
+}
+
+namespace {
+
+bool of_each_reading(const ReadingModel::Input& input) {
+  return input.is.correlation == Correlation::readings &&
+         input.is.quantity != Quantity::small_angle && input.patterns.empty();
+}
+
+/// What of the inputs that each reading has for itself is not in the residuals' scatter already.
+double beside_residuals(const ReadingModel& model, double scatter) {
+  double squares = 0.0;
+  for (const auto& input : model.inputs)
+    if (of_each_reading(input)) squares += input.is.u * input.is.u;
+  return squares > 0.0 ? std::sqrt(std::max(0.0, 1.0 - scatter * scatter / squares)) : 0.0;
+}
+
+}  // namespace
+
+BudgetOf::BudgetOf(const ReadingModel& model, double repetition, double dof, Quantity quantity,
+                   std::string source) {
+  const bool repeated = std::any_of(model.lines.begin(), model.lines.end(),
+                                    [](const BudgetLine& line) { return line.u > 0.0; });
+  const bool residuals = std::isfinite(dof) && source == "readings" && !repeated;
+  const double rest = residuals ? beside_residuals(model, repetition) : 1.0;
+  budget_.contributions.push_back(
+      {.id = "repetition",
+       .u = repetition,
+       .quantity = quantity,
+       .distribution = std::isfinite(dof) ? Distribution::student : Distribution::normal,
+       .correlation = Correlation::readings,
+       .source = std::move(source)});
+  if (std::isfinite(dof)) budget_.contributions.front().dof = dof;
+  for (const auto& input : model.inputs) {
+    factor_.push_back(of_each_reading(input) ? rest : 1.0);
+    if (factor_.back() == 0.0) {
+      budget_.contributions.front().source += ", " + input.is.source;
+      continue;
+    }
+    budget_.contributions.push_back(input.is);
+    budget_.contributions.back().u *= factor_.back();
+  }
+  for (const BudgetLine& line : model.lines)
+    if (along(line)) budget_.length = std::max(budget_.length, extent(line));
+  budget_.missing = model.missing;
+}
+
+std::vector<double> BudgetOf::counted(const Shares& shares) const {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < shares.u.size(); ++i)
+    if (factor_[i] > 0.0) out.push_back(factor_[i] * shares.u[i]);
+  return out;
+}
+
+Expanded BudgetOf::expand(double u_repetition, const Shares& shares) const {
+  Expanded out;
+  double variance = u_repetition * u_repetition;
+  for (const double u : counted(shares)) variance += u * u;
+  out.u = std::sqrt(variance);
+  const double dof =
+      shares.dof > 0.0 ? shares.dof : budget_.contributions.front().dof.value_or(INFINITY);
+  const double k_repetition = k_of(dof);
+  out.repeatability = k_repetition * u_repetition;
+  out.dof = u_repetition > 0.0 ? dof * std::pow(out.u / u_repetition, 4) : INFINITY;
+  out.k = budget_.missing.empty() ? k_of(out.dof) : k_repetition;
+  if (budget_.missing.empty() && out.u > 0.0) out.U = out.k * out.u;
+  return out;
+}
+
+Value BudgetOf::value(std::string name, double v, Quantity quantity, double u_repetition,
+                      const Shares& shares) {
+  const Expanded e = expand(u_repetition, shares);
+  Value out{name, v, quantity, e.U, e.k, {}};
+  if (!e.U) {
+    if (e.repeatability > 0.0) out.repeatability = e.repeatability;
+    return out;
+  }
+  UncertaintyBudget::Result line{std::move(name), quantity, {u_repetition}, e.k, e.dof};
+  const auto others = counted(shares);
+  line.u.insert(line.u.end(), others.begin(), others.end());
+  budget_.results.push_back(std::move(line));
+  return out;
+}
+
+void BudgetOf::put(Series& s, std::span<const double> u_repetition,
+                   std::span<const Shares> shares) const {
+  const bool whole = budget_.missing.empty();
+  std::vector<double> u;
+  s.k = 2.0;
+  for (std::size_t i = 0; i < u_repetition.size(); ++i) {
+    const Expanded e = expand(u_repetition[i], shares[i]);
+    u.push_back(whole ? e.u : u_repetition[i]);
+    if (u.back() > 0.0) s.k = std::max(s.k, e.k);  // a point that is 0 by definition has no say
+  }
+  for (const double one : u) (whole ? s.U : s.repeatability).push_back(s.k * one);
+}
+
+namespace {
+
+/// Largest drift from run to run that its readings show, m or rad.
+double drift_of(const Observations& o) {
+  if (o.axes.empty() || o.axes.front().approach.empty()) return 0.0;
+  std::vector<Finding> found;
+  drift_findings(AxisTest::arrange(o), found);
+  double most = 0.0;
+  for (const Finding& f : found)
+    for (const Number& n : f.evidence)
+      if (n.name == "total") most = std::max(most, std::fabs(n.value));
+  return most;
+}
+
+double distance_from_20(const Observations& o) {
+  double most = 0.0;
+  for (const double t : o.material)
+    if (std::isfinite(t)) most = std::max(most, std::fabs(t - 20.0));
+  return most;
+}
+
+double duration_of(const Observations& o) {
+  double first = INFINITY, last = -INFINITY;
+  for (const double t : o.time)
+    if (std::isfinite(t)) first = std::min(first, t), last = std::max(last, t);
+  return last > first ? last - first : 0.0;
+}
+
+/// Takes what the readings have where that is more than what is stated.
+void hold(std::optional<double>& stated, double found, const char* key, Quantity quantity,
+          std::vector<Finding>& findings) {
+  constexpr double slack = 1e-9;  // of the number: what rounding in a file makes
+  if (!stated || !(found > *stated * (1.0 + slack) + 1e-15)) return;
+  findings.push_back({.id = "uncertainty.limit-exceeded",
+                      .attention = true,
+                      .evidence = {{"stated", *stated, quantity}, {"found", found, quantity}},
+                      .texts = {{"key", key}}});
+  stated = found;
+}
+
+}  // namespace
+
+HeldLimits limits_held(const Campaign& c, std::span<const Observations* const> all) {
+  HeldLimits out{c.environment, {}};
+  double distance = 0.0, drift = 0.0, drift_angle = 0.0, duration = 0.0;
+  for (const Observations* o : all) {
+    distance = std::max(distance, distance_from_20(*o));
+    duration = std::max(duration, duration_of(*o));
+    double& of = o->angular ? drift_angle : drift;
+    of = std::max(of, drift_of(*o));
+  }
+  Environment& e = out.environment;
+  // A drift grows with the time; of a test that took longer than the drift test it is larger.
+  if (e.drift_time && duration > *e.drift_time) {
+    const double longer = duration / *e.drift_time;
+    hold(e.drift_time, duration, "environment.drift_minutes", Quantity::time, out.findings);
+    if (e.drift) *e.drift *= longer;
+    if (e.drift_angle) *e.drift_angle *= longer;
+  }
+  hold(e.temperature_difference, distance, "environment.temperature_difference_K",
+       Quantity::temperature_difference, out.findings);
+  hold(e.drift, drift, "environment.drift_um", Quantity::deviation, out.findings);
+  hold(e.drift_angle, drift_angle, "environment.drift_arcsec", Quantity::angular_deviation,
+       out.findings);
+  return out;
+}
+
+Finding missing_finding(const std::vector<std::string>& missing) {
+  std::string keys;
+  for (const std::string& key : missing) keys += (keys.empty() ? "" : ", ") + key;
+  return FindingBuilder("uncertainty.no-data", false, false).text("missing", keys).done();
+}
+
+std::optional<std::string> exact_instrument(const Instrument& i, bool angular) {
+  if (angular && i.U_angle && *i.U_angle == 0.0)
+    return "instrument.U_arcsec (0: no instrument is exact)";
+  if (!angular && i.U_fixed && i.U_per_length && *i.U_fixed == 0.0 && *i.U_per_length == 0.0)
+    return "instrument.U_fixed_um (0: no instrument is exact)";
+  return {};
+}
+
+}  // namespace nonio::math

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The uncertainty budget of a measurement: what goes in, and what it makes in each result.
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/reports/number.h"
+#include "nonio/sdk/format.h"
+#include "pages.h"
+
+namespace nonio::pages {
+
+using namespace reports;
+
+namespace {
+
+/// Two significant digits; 0 where it is nothing beside the others.
+std::string small(const Source& source, double u, Quantity q) {
+  if (!(u > 0.0)) return "0";
+  return printed_result(u, u, q, source.language()).U;
+}
+
+std::string source_text(const Source& source, const Contribution& c) {
+  constexpr std::string_view own = "readings";  // of a fit's residuals: with what they show
+  if (!c.source.starts_with(own)) return c.source;
+  return source.words.get("budget.from_readings") + c.source.substr(own.size());
+}
+
+std::string distribution_text(const Source& source, const Contribution& c) {
+  const std::string key = "budget.distribution_of." + std::string(to_text(c.distribution));
+  if (!c.dof) return source.words.get(key);
+  return source.words.get(
+      key, {{"dof", printed_number(*c.dof, Quantity::number, 0, source.language())}});
+}
+
+Table inputs(const Source& source, const Results::Analysed& a, const UncertaintyBudget& budget) {
+  const Wording& w = source.words;
+  Table table;
+  table.title = w.get("budget.title", {{"analysis", analysis_title(source, a)}});
+  table.columns = {{w.get("budget.no"), "", true},
+                   {w.get("budget.contribution"), "", false},
+                   {w.get("budget.u"), "", true},
+                   {"", "", false},
+                   {w.get("budget.distribution"), "", false},
+                   {w.get("budget.correlation"), "", false},
+                   {w.get("budget.source"), "", false}};
+  const std::string length =
+      printed_number(budget.length, Quantity::length, 0, source.language()) + " mm";
+  for (std::size_t i = 0; i < budget.contributions.size(); ++i) {
+    const Contribution& c = budget.contributions[i];
+    std::string unit = unit_text(c.quantity);
+    if (c.with_length) unit += " " + w.get("budget.length", {{"length", length}});
+    table.rows.push_back({{std::to_string(i + 1)},
+                          {w.get_or("budget.item." + c.id, c.id)},
+                          {small(source, c.u, c.quantity)},
+                          {unit},
+                          {distribution_text(source, c)},
+                          {w.get("budget.correlation_of." + std::string(to_text(c.correlation)))},
+                          {source_text(source, c)}});
+  }
+  return table;
+}
+
+/// Results with the same uncertainties share a row: "A, A↑, A↓".
+struct Row {
+  std::string names;
+  const UncertaintyBudget::Result* result;
+};
+
+std::vector<Row> rows_of(const UncertaintyBudget& budget) {
+  std::vector<Row> rows;
+  for (const auto& r : budget.results) {
+    const auto same = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
+      return row.result->u == r.u && row.result->k == r.k && row.result->quantity == r.quantity;
+    });
+    if (same == rows.end())
+      rows.push_back({symbol(r.name), &r});
+    else
+      same->names += ", " + symbol(r.name);
+  }
+  return rows;
+}
+
+Table results(const Source& source, const Results::Analysed& a, const UncertaintyBudget& budget) {
+  const Wording& w = source.words;
+  Table table;
+  table.title = w.get("budget.results");
+  table.columns = {{w.get("budget.result"), "", false}, {"", "", false}};
+  for (std::size_t i = 0; i < budget.contributions.size(); ++i)
+    table.columns.push_back({std::to_string(i + 1), "", true});
+  table.columns.push_back({w.get("results.k"), "", true});
+  table.columns.push_back({w.get("results.uncertainty"), "", true});
+  for (const Row& row : rows_of(budget)) {
+    const UncertaintyBudget::Result& r = *row.result;
+    std::vector<Table::Cell> cells = {{row.names, true}, {unit_text(r.quantity)}};
+    for (const double u : r.u) cells.push_back({small(source, u, r.quantity)});
+    cells.push_back({printed_number(r.k, Quantity::number, 2, source.language())});
+    std::string U;
+    for (const Value& v : a.evaluation.values)
+      if (v.name == r.name && v.U) U = small(source, *v.U, v.quantity);
+    cells.push_back({U, true});
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+}  // namespace
+
+void add_budget(const Source& source, const Measured& m, Blocks& blocks) {
+  for (const auto* a : m.analyses) {
+    const auto& budget = a->evaluation.budget;
+    if (!budget || budget->results.empty()) continue;
+    const std::string field = "budget of " + a->plugin + ", measurement " + a->measurement;
+    blocks.push_back({inputs(source, *a, *budget), field});
+    blocks.push_back({results(source, *a, *budget), field});
+  }
+}
+
+}  // namespace nonio::pages
