@@ -201,8 +201,9 @@ class Variance {
   Variance(const ReadingModel& model, const ReadingModel::Input& input, std::span<const double> J)
       : model_(model), input_(input), J_(J) {}
 
-  double all() const {
-    if (!input_.patterns.empty()) return of_patterns();
+  /// in_residuals: of the lines only that are in the residuals of the fit.
+  double all(bool in_residuals = false) const {
+    if (!input_.patterns.empty()) return in_residuals ? 0.0 : of_patterns();
     std::map<std::size_t, double> sums;  // by group; one for all of a device
     double variance = 0.0;
     std::size_t first = 0;
@@ -211,7 +212,7 @@ class Variance {
       const auto part = J_.subspan(first, line.length.size());
       first += line.length.size();
       const double u = input_.of_line[l];
-      if (u == 0.0) continue;
+      if (u == 0.0 || (in_residuals && !line.in_residuals)) continue;
       switch (input_.is.correlation) {
         case Correlation::readings:
           variance += u * u * squares(line, part);
@@ -275,8 +276,12 @@ std::size_t ReadingModel::readings() const {
 
 Shares ReadingModel::shares(std::span<const double> row) const {
   Shares out;
-  for (const Input& input : inputs)
-    out.u.push_back(std::sqrt(std::max(0.0, Variance(*this, input, row).all())));
+  for (const Input& input : inputs) {
+    const Variance of(*this, input, row);
+    out.u.push_back(std::sqrt(of.all()));
+    out.in_residuals.push_back(
+        input.is.correlation == Correlation::readings ? std::sqrt(of.all(true)) : 0.0);
+  }
   double variance = 0.0, fourth = 0.0;
   std::size_t i = 0;
   for (const BudgetLine& line : lines) {
@@ -347,14 +352,17 @@ BudgetOf::BudgetOf(const ReadingModel& model, double repetition, double dof, Qua
        .correlation = Correlation::readings,
        .source = std::move(source)});
   if (std::isfinite(dof)) budget_.contributions.front().dof = dof;
+  const bool others = std::any_of(model.lines.begin(), model.lines.end(),
+                                  [](const BudgetLine& line) { return !line.in_residuals; });
   for (const auto& input : model.inputs) {
     factor_.push_back(of_each_reading(input) ? rest : 1.0);
-    if (factor_.back() == 0.0) {
+    counts_.push_back(factor_.back() > 0.0 || others);
+    if (!counts_.back()) {
       budget_.contributions.front().source += ", " + input.is.source;
       continue;
     }
     budget_.contributions.push_back(input.is);
-    budget_.contributions.back().u *= factor_.back();
+    if (!others) budget_.contributions.back().u *= factor_.back();
   }
   for (const BudgetLine& line : model.lines)
     if (along(line)) budget_.length = std::max(budget_.length, extent(line));
@@ -364,7 +372,11 @@ BudgetOf::BudgetOf(const ReadingModel& model, double repetition, double dof, Qua
 std::vector<double> BudgetOf::counted(const Shares& shares) const {
   std::vector<double> out;
   for (std::size_t i = 0; i < shares.u.size(); ++i)
-    if (factor_[i] > 0.0) out.push_back(factor_[i] * shares.u[i]);
+    if (counts_[i]) {
+      const double in = i < shares.in_residuals.size() ? shares.in_residuals[i] : 0.0;
+      out.push_back(std::sqrt(
+          std::max(0.0, shares.u[i] * shares.u[i] - (1.0 - factor_[i] * factor_[i]) * in * in)));
+    }
   return out;
 }
 

@@ -124,7 +124,7 @@ VdiUncertainty vdi3441_uncertainty(const Budget& b, std::size_t n) {
 
 UncertaintyBudget contributions_of(const Budget& b, const std::string& axis, bool rotary) {
   UncertaintyBudget out;
-  out.length = b.length;
+  if (!rotary) out.length = b.length;
   const auto add = [&](const char* id, double U, Distribution d, Correlation c, bool with_length,
                        std::string source) {
     out.contributions.push_back({.id = id,

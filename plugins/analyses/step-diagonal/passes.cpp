@@ -306,6 +306,7 @@ std::vector<math::BudgetLine> budget_lines(const Passes& p, const Lengths& lengt
   for (const math::AxisSeries& s : lengths.series) {
     math::BudgetLine line;
     line.group = lines.size();
+    line.in_residuals = false;  // the scatter is that of the passes
     for (const double x : s.position) line.length.push_back(x - s.position.front());
     const double whole = 1.0;
     put_expansion(line, campaign, {&p.axes[s.axis], 1}, {&whole, 1});

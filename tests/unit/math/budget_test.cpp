@@ -139,15 +139,34 @@ TEST(Budget, CoverageFactorOfTheEffectiveDegreesOfFreedom) {
   const ReadingModel m = reading_model(c, c.environment, {line(c)});
   BudgetOf budget(m, 3 * um, 5.0, Quantity::deviation);
   Shares shares;
-  shares.u = {4 * um};
+  shares.u = {0.0, 4 * um};  // the part with the length
   const Expanded e = budget.expand(3 * um, shares);
   EXPECT_NEAR(e.u, 5 * um, 1e-15);
   EXPECT_NEAR(e.dof, 5.0 * std::pow(5.0 / 3.0, 4), 1e-9);  // 38.6
   EXPECT_GT(e.k, 2.05);
   EXPECT_LT(e.k, 2.07);
   EXPECT_NEAR(*e.U, e.k * 5 * um, 1e-15);
-  shares.u = {300 * um};
+  shares.u = {0.0, 300 * um};
   EXPECT_EQ(budget.expand(3 * um, shares).k, 2.0);
+}
+
+/// Residuals of 0.6 um hold what each reading has for itself, 1 um of it or less: only the rest
+/// counts beside them; of lines that are not among the residuals all of it.
+TEST(Budget, WhatResidualsShowCountsOnce) {
+  const Campaign c = stated();
+  BudgetLine other = line(c, 1);
+  other.in_residuals = false;
+  const ReadingModel m = reading_model(c, c.environment, {line(c, 0), other});
+  const auto u_of = [&](double scatter, const std::vector<double>& row, const std::string& source) {
+    BudgetOf budget(m, scatter, 20.0, Quantity::deviation, source);
+    budget.value("f", 0.0, Quantity::deviation, 0.0, m.shares(row));
+    return budget.budget().results.at(0).u.at(1);  // device-fixed
+  };
+  const std::vector<double> of_fit{0, 0, 1, 0, 0, 0}, of_other{0, 0, 0, 0, 0, 1};
+  EXPECT_NEAR(u_of(0.6 * um, of_fit, "readings"), 0.8 * um, 1e-15);
+  EXPECT_NEAR(u_of(2.0 * um, of_fit, "readings"), 0.0, 1e-15);
+  EXPECT_NEAR(u_of(2.0 * um, of_other, "readings"), 1.0 * um, 1e-15);
+  EXPECT_NEAR(u_of(0.6 * um, of_fit, "options.x.u_um"), 1.0 * um, 1e-15);  // stated: apart
 }
 
 Observations runs(double step, double material) {

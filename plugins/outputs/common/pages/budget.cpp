@@ -35,25 +35,28 @@ std::string distribution_text(const Source& source, const Contribution& c) {
 
 Table inputs(const Source& source, const Results::Analysed& a, const UncertaintyBudget& budget) {
   const Wording& w = source.words;
+  std::string longest;
+  if (budget.length > 0.0)
+    longest =
+        ", " +
+        w.get("budget.length",
+              {{"length",
+                printed_number(budget.length, Quantity::length, 0, source.language()) + " mm"}});
   Table table;
   table.title = w.get("budget.title", {{"analysis", analysis_title(source, a)}});
   table.columns = {{w.get("budget.no"), "", true},
                    {w.get("budget.contribution"), "", false},
-                   {w.get("budget.u"), "", true},
+                   {w.get("budget.u") + longest, "", true},
                    {"", "", false},
                    {w.get("budget.distribution"), "", false},
                    {w.get("budget.correlation"), "", false},
                    {w.get("budget.source"), "", false}};
-  const std::string length =
-      printed_number(budget.length, Quantity::length, 0, source.language()) + " mm";
   for (std::size_t i = 0; i < budget.contributions.size(); ++i) {
     const Contribution& c = budget.contributions[i];
-    std::string unit = unit_text(c.quantity);
-    if (c.with_length) unit += " " + w.get("budget.length", {{"length", length}});
     table.rows.push_back({{std::to_string(i + 1)},
                           {w.get_or("budget.item." + c.id, c.id)},
                           {small(source, c.u, c.quantity)},
-                          {unit},
+                          {unit_text(c.quantity)},
                           {distribution_text(source, c)},
                           {w.get("budget.correlation_of." + std::string(to_text(c.correlation)))},
                           {source_text(source, c)}});

@@ -49,6 +49,8 @@ struct BudgetLine {
   std::optional<double> expansion{};  ///< coefficient along the line, 1/K
   std::string expansion_keys{};       ///< that give it
   std::size_t group = 0;              ///< lines of one measurement have what a line has in common
+  /// Of a fit whose residuals give the repetition: this line's readings are among them.
+  bool in_residuals = true;
   /// Repetition of one reading, and its degrees of freedom, where lines differ in them.
   double u = 0.0, dof = INFINITY;
 };
@@ -56,6 +58,7 @@ struct BudgetLine {
 /// Standard uncertainty in a result, of each input in the order of `inputs`.
 struct Shares {
   std::vector<double> u;
+  std::vector<double> in_residuals;  ///< the part of it from lines that are in the residuals
   double dof = 0.0;  ///< of the repetition, where the lines have one each; 0: as the budget says
 };
 
@@ -117,7 +120,8 @@ class BudgetOf {
   std::vector<double> counted(const Shares&) const;
 
   UncertaintyBudget budget_;
-  std::vector<double> factor_;  ///< of each input of the model
+  std::vector<double> factor_;  ///< of each input, as far as it is in the residuals
+  std::vector<bool> counts_;    ///< of each input: whether something of it is left
 };
 
 /// What the readings themselves say of limits that the manifest states: the larger one counts.

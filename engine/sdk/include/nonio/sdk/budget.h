@@ -44,7 +44,7 @@ struct UncertaintyBudget {
     double k = 2.0;         ///< coverage factor
     double dof = INFINITY;  ///< effective degrees of freedom (Welch-Satterthwaite)
   };
-  double length = 0.0;  ///< m or rad: the longest reading
+  double length = 0.0;  ///< of the longest reading, m; 0 of angles
   std::vector<Contribution> contributions;
   std::vector<Result> results;
   /// Keys of contributions that nobody stated. Then no result has an uncertainty, only the
