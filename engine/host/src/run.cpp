@@ -356,8 +356,9 @@ void store_collisions(const RunOptions& options, const Context& context, const N
   }
 }
 
-/// What the morning's reader should know of the key.
-void note_key(Signer& signer, bool is_stamped, std::vector<std::string>& notes) {
+/// What the morning's reader should know of the key. What is returned is for the summary alone, not
+/// for whoever watches: it is the same every night.
+std::string note_key(Signer& signer, bool is_stamped, std::vector<std::string>& notes) {
   constexpr sign::Time month = sign::Time{30} * 86400;
   const auto who = signer.start();
   if (!who)
@@ -365,11 +366,10 @@ void note_key(Signer& signer, bool is_stamped, std::vector<std::string>& notes) 
   else if (who->not_after - std::time(nullptr) < month)
     notes.push_back("the signing certificate of " + who->subject + " runs out on " +
                     sign::text_of(who->not_after) + ": have a new one made");
-  if (who && !is_stamped)
-    notes.push_back(
-        "no time-stamp server is named (time_stamp in [signing] of site.toml): what is "
-        "signed holds until the certificate of " +
-        who->subject + " runs out on " + sign::text_of(who->not_after) + ", and no longer");
+  if (!who || is_stamped) return {};
+  return "no time-stamp server is named (time_stamp in [signing] of site.toml): what is signed "
+         "holds until the certificate of " +
+         who->subject + " runs out on " + sign::text_of(who->not_after) + ", and no longer";
 }
 
 /// A register in an output folder below the site would be lost with it.
@@ -429,9 +429,10 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   context.site = std::move(*site);
   night.notes = context.site.notes;
   std::optional<Signer> signer;  // before any plugin is in the memory
+  std::string unstamped;
   if (context.site.signing && !options.dry_run)
-    note_key(signer.emplace(*context.site.signing, options.site),
-             !context.site.signing->time_stamp.empty(), night.notes);
+    unstamped = note_key(signer.emplace(*context.site.signing, options.site),
+                         !context.site.signing->time_stamp.empty(), night.notes);
   std::vector<fs::path> template_folders = options.template_folders;
   if (fs::is_directory(options.site / "templates", error))
     template_folders.push_back(options.site / "templates");
@@ -445,6 +446,7 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   if (!plugins.conflicts().empty()) return refuse(plugins.conflicts().front());
   for (std::string& note : plugins.refusal_notes()) night.notes.push_back(std::move(note));
   for (const std::string& note : night.notes) events.note(note);
+  if (!unstamped.empty()) night.notes.push_back(std::move(unstamped));
   context.plugins = &plugins;
   context.plugins_sha256 = plugins.digest();
   if (const auto mistakes = site_mistakes(context); !mistakes.empty())
