@@ -32,10 +32,10 @@ void note_key(SetUp& place, bool is_stamped) {
                     sign::text_of(who->not_after) + ": have a new one made");
   }
   if (who && !is_stamped)
-    notes.push_back(
-        "no time-stamp server is named (time_stamp in [signing] of site.toml): what is "
-        "signed holds until the certificate of " +
-        who->subject + " runs out on " + sign::text_of(who->not_after) + ", and no longer");
+    place.unstamped =
+        "no time-stamp server is named (time_stamp in [signing] of site.toml): what is signed "
+        "holds until the certificate of " +
+        who->subject + " runs out on " + sign::text_of(who->not_after) + ", and no longer";
 }
 
 }  // namespace
@@ -55,7 +55,8 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
   std::vector<fs::path> template_folders = options.template_folders;
   if (std::error_code error; fs::is_directory(options.site / "templates", error))
     template_folders.push_back(options.site / "templates");
-  auto templates = read_templates(template_folders, context.templates_sha256, &context.templates_json);
+  auto templates =
+      read_templates(template_folders, context.templates_sha256, &context.templates_json);
   if (!templates) return fail(all_of({templates.error()}));
   context.templates = std::move(*templates);
   Plugins& plugins = place->plugins;

@@ -17,6 +17,7 @@ struct SetUp {
   std::optional<Signer> signer;
   Plugins plugins;
   std::vector<std::string> notes;  ///< for the morning's reader
+  std::string unstamped;           ///< for the summary alone: it is the same every night
   std::string no_key;              ///< why nothing can be signed; empty: it can
 };
 
