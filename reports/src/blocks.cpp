@@ -82,6 +82,11 @@ Expected<void> draw_axis_text(Canvas& canvas, const Context& context, const Axis
     free_from = x + half + 3;
     text->draw(canvas, 0, x - 50, top, 100, 0.5);
   }
+  // Of a title in two languages the first alone, where there is no room for both.
+  constexpr std::string_view between = " · ";
+  if (const auto whole = shape(title, context.fonts, false, field);
+      whole && width_of(*whole) * size > width && title.find(between) != std::string_view::npos)
+    title = title.substr(0, title.find(between));
   auto text = set_line(context, title, false, size, width, field);
   if (!text) return fail(text.error());
   text->draw(canvas, 0, left, top - 1.3 * size, width, 0.5);

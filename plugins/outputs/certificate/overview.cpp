@@ -130,7 +130,12 @@ void add_overview(const Source& source, Blocks& blocks) {
     if (!is_printed(m) || is_overlaid(m) || plots.size() == most) continue;
     auto plot = pages::readings_plot(source, m);
     if (!plot) continue;
-    if (plot->scales) plot->title = pages::heading_of(source, m);
+    if (plot->scales) {
+      plot->title = pages::heading_of(source, m);
+    } else {  // its caption stands with the measurement
+      plot->x_title.clear();
+      for (Curve& c : plot->curves) c.legend.clear();
+    }
     if (const pages::Measured* before = as_found(all, m)) lay_under(source, *before, *plot);
     limits |= add_limit(source, m, *plot);
     if (!plots.empty() && plot->scales)  // the first one says what the lines are

