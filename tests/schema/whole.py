@@ -30,7 +30,7 @@ def campaign():
                         "customer_data": ["machine.serial"]},
         "run": {"analyses": ["iso230-2", "model-fit"], "outputs": ["json"]},
         "measurement": [
-            {"id": "X 1", "kind": "axis", "file": "x.csv", "reader": "csv", "axis": "X", "adjustment": "before", "side": "slave",
+            {"id": "X 1", "kind": "axis", "file": "x.csv", "reader": "csv", "axis": "X", "adjustment": "before", "side": "master",
              "exclude": [3, 4], "at": {"Y": 300}},
             {"id": "S", "kind": "straightness", "file": "s.csv", "axis": "X", "lateral": "Y"},
             {"id": "W", "kind": "angle", "file": "w.csv", "axis": "X", "about": "Z"},
