@@ -66,7 +66,7 @@ std::pair<const char*, double> time_unit(const ModelFit& fit) {
 std::string no_phase(const ModelFit& fit, const Wording& words) {
   const double period = period_of(fit);
   const Quantity q = position_of(fit.rotary);
-  if (!(period > 0)) return words.get("picture.phase.none");
+  if (!(period > 0)) return words.get(fit.period ? "picture.phase.several" : "picture.phase.none");
   if (!one_phase(phase_of(fit, period), period)) return {};
   return words.get(
       "picture.phase.one",

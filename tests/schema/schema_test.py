@@ -24,7 +24,8 @@ WRONG = [7, -7, 0, 2.5, 1e12, True, "some text", "X", "2025-01-02", "", "a\tb", 
 DAYS = [f"= {toml.written(value)}" for value in WRONG if isinstance(value, (datetime.date, datetime.time))]
 # Where the schema accepts what the program refuses: (place, why).
 ONLY_PROGRAM = [
-    (r".*\b(date|end_date|received|calibrated)", "a date in quotes; the last day before the first one"),
+    (r".*\b(date|end_date|received|calibrated|valid_until)", "a date in quotes; the last day before the first one"),
+    (r"machine\.axes\.X\.slave", "the master"),
     (r"measurement\.\d+\.lateral", "the axis that moves"),
     (r"measurement\.\d+\.at", "the axis that moves"),
     (r"model\.formula\.0\.(axis|expression|parameters.*)", "a formula that is none on this machine"),
@@ -188,9 +189,12 @@ class Schema(unittest.TestCase):
         plan = {**data, "measurement": []}
         twice = copy.deepcopy(data)
         twice["measurement"][1]["id"] = "X 1"
-        cases = [plan, without(plan, ("run", "analyses")), without(without(data, ("run",)), ("measurement",)), twice]
+        slave = copy.deepcopy(data)
+        slave["measurement"][0]["side"] = "slave"
+        unnamed = without(slave, ("machine", "axes", "X", "slave"))
+        cases = [slave, unnamed, plan, without(plan, ("run", "analyses")), without(without(data, ("run",)), ("measurement",)), twice]
         self.assertEqual([answer == "ok" for answer in verdicts("campaign", map(toml.document, cases))],
-                         [True, False, False, False])
+                         [True, False, True, False, False, False])
         for case in cases:
             self.assertEqual(complaints("campaign", case), [])
 

@@ -171,8 +171,9 @@ class Programs(VerbTest):
                 self.campaign('format = 1\n[campaign]\nid = "c"\n[machine.axes.C]\nkind = "rotary"\ntravel = [%d, %d]\n'
                               '[[measurement]]\nid = "C"\nkind = "axis"\naxis = "C"\nfile = "c.csv"\n[run]\n'
                               'analyses = ["iso230-2"]\noutputs = []\n' % travel, c="\n".join(lines) + "\n")
-                self.nonio("run", self.site, "--out", self.out)
-                analysis = json.loads((self.out / "c" / "results.json").read_text())["analyses"][0]
+                out = self.site.parent / "out"
+                self.nonio("run", self.site, "--out", out)
+                analysis = json.loads((out / "c" / "results.json").read_text())["analyses"][0]
                 found = [f["id"] for f in analysis["findings"]]
                 self.assertEqual([f for f in found if f.startswith(("plan.", "targets.", "direction."))], [],
                                  (travel, setting, targets))

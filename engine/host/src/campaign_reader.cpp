@@ -2,7 +2,6 @@
 #include "nonio/host/campaign_reader.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "certificate_reader.h"
@@ -14,6 +13,7 @@
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
 #include "targets.h"
+#include "unsound.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -104,8 +104,8 @@ class CampaignReader {
       if (error.message.starts_with(who + ": ")) error.message.erase(0, who.size() + 2);
       return fail(std::move(error));
     }
-    if (auto sound = check(*observations); !sound)
-      return fail(who + " gave " + sound.error().message);
+    if (const std::string why = unsound(*observations); !why.empty())
+      return fail(who + " gave " + why);
     if (auto excluded = exclude(m, *observations); !excluded) return excluded;
     if (observations->missing > 0 && m.kind != "axis")  // of an axis its analyses say it
       observations->notes.push_back(
@@ -161,49 +161,6 @@ class CampaignReader {
     out_.unread.push_back(m.id);
     out_.notes.push_back({"measurement.unread", {}, {{"kind", m.kind}}, m.id});
     return nullptr;
-  }
-
-  /// What every later stage relies on, whatever the reader did.
-  static Expected<void> check(const Observations& o) {
-    const std::size_t n = o.size();
-    const auto fits = [n](const auto& column) { return column.empty() || column.size() == n; };
-    bool sound = fits(o.u) && fits(o.run) && fits(o.line) && fits(o.source_line) && fits(o.time) &&
-                 fits(o.material) && fits(o.air) && fits(o.pressure) && fits(o.humidity) &&
-                 fits(o.sense);
-    for (const auto& axis : o.axes)
-      sound = sound && axis.position.size() == n && fits(axis.approach);
-    if (!sound) return fail("columns of different lengths");
-    const auto finite = [](double x) { return std::isfinite(x); };
-    if (!std::all_of(o.deviation.begin(), o.deviation.end(), finite))
-      return fail("a deviation that is not a number");
-    for (const auto& axis : o.axes)
-      if (!std::all_of(axis.position.begin(), axis.position.end(), finite))
-        return fail("a position that is not a number");
-    return check_lines(o);
-  }
-
-  /// What is read by index, and what is divided by: wrong numbers here would be read past the end.
-  static Expected<void> check_lines(const Observations& o) {
-    if (o.size() == 0) return {};
-    if (o.lines.empty()) return fail("readings of no line; wanted one line at least");
-    for (std::size_t i = 0; i < o.line.size(); ++i)
-      if (o.line[i] >= o.lines.size())
-        return fail("reading " + std::to_string(i + 1) + " of line " + std::to_string(o.line[i]) +
-                    "; wanted 0 to " + std::to_string(o.lines.size() - 1));
-    const auto direction = [](const std::array<double, 3>& s) {
-      return std::all_of(s.begin(), s.end(), [](double x) { return std::isfinite(x); });
-    };
-    if (!std::all_of(o.sense.begin(), o.sense.end(), direction) ||
-        !std::all_of(o.lines.begin(), o.lines.end(),
-                     [&](const Observations::Line& l) { return direction(l.sense); }))
-      return fail("a direction of sensing that is not a number");
-    if (!std::all_of(o.u.begin(), o.u.end(), [](double u) { return std::isfinite(u) && u > 0.0; }))
-      return fail("an uncertainty of a reading that is not a number above 0");
-    const auto way = [](std::int8_t a) { return a >= -1 && a <= 1; };
-    for (const auto& axis : o.axes)
-      if (!std::all_of(axis.approach.begin(), axis.approach.end(), way))
-        return fail("an approach that is none of +1, -1 and 0");
-    return {};
   }
 
   /// Takes the readings out that the manifest excludes, and says so.

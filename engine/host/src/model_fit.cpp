@@ -171,6 +171,8 @@ ModelFit value_of(const PartModel& part, const model::Explanation& e) {
     out.period = 2.0 * std::numbers::pi / static_cast<double>(*axis->teeth);
   else if (axis != nullptr)
     out.period = axis->screw_pitch;
+  else if (!balls)
+    out.period = 0.0;
   put_readings(out, part.part);
   put_fit(out, e.comparison);
   put_steps(out, part, e.comparison);

@@ -81,26 +81,6 @@ Observations rearranged(const Observations& o, const std::vector<std::size_t>& o
   return out;
 }
 
-std::string unsound(const Observations& o) {
-  const std::size_t n = o.size();
-  const auto fits = [n](const auto& column) { return column.empty() || column.size() == n; };
-  bool same = fits(o.u) && fits(o.run) && fits(o.line) && fits(o.source_line) && fits(o.time) &&
-              fits(o.material) && fits(o.air) && fits(o.pressure) && fits(o.humidity) &&
-              fits(o.sense);
-  const auto finite = [](double x) { return std::isfinite(x); };
-  for (const auto& axis : o.axes) {
-    same = same && axis.position.size() == n && fits(axis.approach);
-    if (!std::all_of(axis.position.begin(), axis.position.end(), finite))
-      return "position of " + axis.axis + " that is not a number";
-  }
-  if (!same) return "columns of different lengths";
-  if (!std::all_of(o.deviation.begin(), o.deviation.end(), finite))
-    return "a deviation that is not a number";
-  for (const std::uint32_t line : o.line)
-    if (line >= o.lines.size()) return "a line that does not exist";
-  return {};
-}
-
 Settings settings_for(const Info& info, const Sample& sample) {
   auto settled = settle_options(info, {}, sample.options);
   if (settled) return std::move(*settled);

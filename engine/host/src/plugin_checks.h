@@ -10,6 +10,7 @@
 #include "nonio/host/plugins.h"
 #include "nonio/sdk/plugin.h"
 #include "random.h"
+#include "unsound.h"
 
 /// What the checks of all kinds of plugins share. They run in a child process, so that a plugin may
 /// crash or hang there.
@@ -79,8 +80,6 @@ const std::vector<Check<Output>>& controller_checks();
 std::vector<std::size_t> shuffled(std::size_t n, Random& random);
 /// The rows in this order; of lines and their names nothing changes.
 Observations rearranged(const Observations& o, const std::vector<std::size_t>& order);
-/// What the host would refuse: columns of different length, numbers that are not finite.
-std::string unsound(const Observations& o);
 /// The plugin's defaults, and what the sample says.
 Settings settings_for(const Info& info, const Sample& sample);
 /// All that the program's own analyses and its model say of a sample.

@@ -28,8 +28,7 @@ bool same_word(std::string_view text, std::string_view lower) {
 
 bool means_not_taken(std::string_view text) {
   if (text.empty() || same_word(text, "n/a")) return true;
-  for (const std::string_view of_a_spreadsheet : {"#n/a", "#n/d", "#nv"})  // en; it, es; de
-    if (same_word(text, of_a_spreadsheet)) return true;
+  if (missing_in_spreadsheet(text)) return true;
   if (text.front() == '+' || text.front() == '-') text.remove_prefix(1);
   return same_word(text, "nan") || same_word(text, "inf") || same_word(text, "infinity");
 }
@@ -101,6 +100,10 @@ double slow_value(std::string_view text, const Decimal& d) {
 }
 
 }  // namespace
+
+bool missing_in_spreadsheet(std::string_view text) {
+  return same_word(text, "#n/a") || same_word(text, "#n/d") || same_word(text, "#nv");
+}
 
 Field parse_number(std::string_view text, bool comma_allowed) {
   Decimal d;

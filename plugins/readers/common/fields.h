@@ -27,6 +27,9 @@ struct Field {
 /// separator, no hexadecimal, nothing behind it. The value is the double nearest to the text.
 Field parse_number(std::string_view text, bool comma_allowed);
 
+/// What a spreadsheet writes for a value that is not there: #N/A, in other languages #N/D, #NV.
+bool missing_in_spreadsheet(std::string_view text);
+
 /// 1..4294967295, digits only; 0 if it is anything else.
 std::uint32_t parse_run(std::string_view text);
 

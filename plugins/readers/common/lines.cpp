@@ -32,11 +32,8 @@ namespace {
 
 /// A row whose first cell is a spreadsheet's #N/A, and no comment.
 bool begins_with_missing(std::string_view line) {
-  for (const std::string_view word : {"#N/A", "#N/D", "#NV"})
-    if (line.starts_with(word) && line.size() > word.size() &&
-        std::string_view(",;\t").find(line[word.size()]) != std::string_view::npos)
-      return true;
-  return false;
+  const std::size_t end = line.find_first_of(",;\t");
+  return end != std::string_view::npos && missing_in_spreadsheet(line.substr(0, end));
 }
 
 }  // namespace
