@@ -26,7 +26,8 @@ def number(n):
     return f"{YEAR}-{n:04}"
 
 
-AUTOMATIC = 'release = "automatic"\nmay_stand = []\n'
+KNOWN = "reversal.lost-motion"  # all campaigns here have it
+AUTOMATIC = f'release = "automatic"\nmay_stand = [{{ finding = "{KNOWN}", reason = "it is what was ordered" }}]\n'
 
 
 class Certificates(SigningTest):
@@ -341,8 +342,8 @@ class Certificates(SigningTest):
         self.release = more
         self.site_with(extra=extra)
 
-    def release_verb(self, *args, expect=None, campaign="c1"):
-        done = run(NONIO, "release", self.site / campaign, *args, check=False, env=self.environment)
+    def release_verb(self, *args, expect=None, campaign="c1", known=("--reason", KNOWN + "=it is what was ordered")):
+        done = run(NONIO, "release", self.site / campaign, *args, *known, check=False, env=self.environment)
         if expect is not None:
             self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done
@@ -409,9 +410,11 @@ class Certificates(SigningTest):
         self.signed_campaign("c1")
         self.out_of_tolerance()
         self.night()
-        self.assertEqual(self.ids("attention"), ["c1"])
+        done = self.release_verb("--by", "B", expect=1, known=())
+        self.assertIn("X: " + KNOWN + " asks for attention", done.stderr)
         done = self.release_verb("--by", "B", expect=1)
-        self.assertIn("tolerance.X.E.iso230-2", done.stderr)
+        self.assertIn("X: tolerance.X.E.iso230-2 asks for attention", done.stderr)
+        self.assertNotIn("X: " + KNOWN + " asks for attention", done.stderr)
         self.assertEqual(self.entries(), [])
         for wrong in (["--reason", "nonsense=x"], ["--reason", "x"], ["--reason", "tolerance.X.E.iso230-2= "]):
             self.release_verb("--by", "B", *wrong, expect=2)
@@ -420,7 +423,8 @@ class Certificates(SigningTest):
         self.assertEqual(self.entries(), [])
         self.release_verb("--by", "B", "--reason", "tolerance.X.E.iso230-2=as found, the customer knows", expect=0)
         issued, = [says for what, _, says in self.journal() if what == "issued"]
-        self.assertEqual(list(issued["released"]["released"]["reasons"].values()), ["as found, the customer knows"])
+        self.assertEqual(issued["released"]["released"]["reasons"],
+                         {"X: " + KNOWN: "it is what was ordered", "X: tolerance.X.E.iso230-2": "as found, the customer knows"})
         self.assertEqual(self.states(), {number(1): "issued"})
 
     def test_author_and_authoriser_may_have_to_differ(self):
@@ -486,12 +490,13 @@ class Certificates(SigningTest):
         self.night()
         self.assertTrue(self.draft().exists(), "a finding that no rule lets stand")
         self.assertEqual(self.entries(), [])
-        self.release = 'release = "automatic"\nmay_stand = [{ finding = "tolerance.*", reason = "the result itself" }]\n'
+        self.release = AUTOMATIC.replace("[{", '[{ finding = "tolerance.*", reason = "the result itself" }, {')
         self.site_with()
         self.night()
         self.assertEqual(self.states(), {number(1): "issued"})
         issued, = [says for what, _, says in self.journal() if what == "issued"]
-        self.assertEqual(list(issued["released"]["rules"].values()), ["the result itself"])
+        self.assertEqual(issued["released"]["rules"],
+                         {"X: " + KNOWN: "it is what was ordered", "X: tolerance.X.E.iso230-2": "the result itself"})
         self.assertNotIn(b"the result itself", self.pdf("c1").read_bytes(), "what the laboratory thinks is not the customer's")
 
     def test_an_amendment_says_why(self):
@@ -604,7 +609,7 @@ class Certificates(SigningTest):
         self.night(expect=1)
         self.assertEqual(self.ids("failed"), ["needs"])
         self.assertIn("locked", self.summary()["failed"][0]["reason"])
-        self.assertEqual(self.results("plain")["status"], "ok")
+        self.assertNotEqual(self.results("plain")["status"], "failed")
         self.assertEqual({k: v for k, v in self.issued_files().items() if k.startswith("issued/")},
                          {k: v for k, v in before.items() if k.startswith("issued/")})
         lock.execute("ROLLBACK")
@@ -768,8 +773,8 @@ class Certificates(SigningTest):
         now = {p: p.read_bytes() for kind in ("*.pdf", "*.xml") for p in self.out.glob("*/" + kind)
                if not p.name.startswith(".")}
         fresh = [p for p, text in now.items() if self.held.get(p) != text]
-        if fresh:
-            self.assert_holds(*fresh)
+        if fresh:  # in force or, after a kill, replaced in the register already
+            self.assert_holds(*fresh, site=False, args=["--trust", self.key.ca, "--signer", SIGNER])
         self.held = now
 
 

@@ -17,9 +17,7 @@ bool is_locked(const Error& error) { return error.message.ends_with(locked_words
 
 Expected<Database> Database::open(const std::filesystem::path& path, Use use, double patience) {
   sqlite3* file = nullptr;
-  const int flags = use == Use::read     ? SQLITE_OPEN_READONLY
-                    : use == Use::create ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE
-                                         : SQLITE_OPEN_READWRITE;
+  const int flags = SQLITE_OPEN_READWRITE | (use == Use::create ? SQLITE_OPEN_CREATE : 0);
   const int opened = ::sqlite3_open_v2(path.c_str(), &file, flags, nullptr);
   Database database(file, path);
   if (file == nullptr) return fail("no memory for " + path.string());

@@ -26,7 +26,7 @@ class Database {
   using Value = std::variant<std::int64_t, std::string_view, Blob>;
   using Row = std::vector<std::string>;
 
-  enum class Use { read, write, create };
+  enum class Use { write, create };
   static constexpr double usual_patience = 60.0;
   /// Made if it is not there with Use::create. Whoever finds it locked waits up to `patience`
   /// seconds; the error is then one of which `is_locked` is true.

@@ -576,6 +576,7 @@ constexpr Key standing_keys[] = {
      .help = "Id of a finding, \"plan.few-runs\"; with \".*\" at its end all of a kind.",
      .required = true,
      .missing = "wanted the id of a finding",
+     .wanted = "wanted the id of a finding, or of a kind, \"tolerance.*\"; found \"{}\"",
      .text = {.letters = "a-zA-Z0-9.*+_-"}},
     {.name = "reason",
      .holds = text,

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "issue_json.h"
 #include "journal.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
@@ -68,7 +69,8 @@ Expected<Register> Register::open(const fs::path& site, const Numbering& numberi
 Expected<Register> Register::open_to_read(const fs::path& site, const Numbering& numbering) {
   const auto path = register_path(site, numbering);
   if (!path) return fail(path.error());
-  auto database = Database::open(*path, Database::Use::read);
+  // Not as read-only: what a killed process has left half-written is taken back.
+  auto database = Database::open(*path, Database::Use::write);
   if (!database) return fail("the register of certificates: " + database.error().message);
   return Register(std::make_unique<Database>(std::move(*database)), numbering.pattern);
 }
@@ -213,6 +215,12 @@ Expected<Certificate> Register::load(std::int64_t id) {
     issue.changes = differences(inputs_of(integer(row[6])), inputs_of(id));
     if (auto noted = note_replaced(integer(row[6]), issue); !noted) return fail(noted.error());
   }
+  // What it prints beside that stands in the results that are attached to it.
+  const Json results = Json::parse(row[5], nullptr, false);
+  if (results.is_object() && results.contains("certificate"))
+    if (Issue printed = certificate_of(results["certificate"]).issue;
+        printed.number == issue.number)
+      issue = std::move(printed);
   certificate.output = std::move(row[3]);
   certificate.templates_sha256 = std::move(row[4]);
   certificate.results = std::move(row[5]);
