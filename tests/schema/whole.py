@@ -65,7 +65,7 @@ def site():
                     "time_stamp_seconds": 20},
         "certificate": {"languages": ["en"], "template": "certificate", "location": "laboratory", "procedure": "P",
                         "title": "T", "decision_rule": "iso14253-1", "numbering": "{year}-{number:4}",
-                        "register": "r.sqlite", "register_seconds": 5, "release": "automatic", "two_persons": False,
+                        "register": "r.sqlite", "register_seconds": 5, "release": "by-hand", "two_persons": False,
                         "may_stand": [{"finding": "tolerance.*", "reason": "R"}]},
         "database": {"key": 1},
     }
