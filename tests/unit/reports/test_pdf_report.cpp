@@ -123,7 +123,7 @@ TEST_F(PdfReport, NoCellOfAValuesTableWithTolerancesIsDivided) {
 
 TEST_F(PdfReport, AFindingOfTwoAnalysesIsSaidOnce) {
   const std::string report = text(usual());
-  // once in the status at the top, once among the findings
+  // once in the status at the top, once among the findings, once with its advice
   EXPECT_EQ(occurrences(report, "Lost motion at reversal"), 3U);
 }
 
