@@ -188,7 +188,7 @@ TEST_F(PdfReport, ADiagonalIsAsLongAsItIs) {
 
 TEST_F(PdfReport, AFindingOfTwoAnalysesIsSaidOnce) {
   const std::string report = text(usual());
-  // once in the status at the top, once among the findings
+  // once in the status at the top, once among the findings, once with its advice
   EXPECT_EQ(occurrences(report, "Lost motion at reversal"), 3U);
 }
 
