@@ -93,7 +93,7 @@ double signing_ms(const std::string& pdf, const std::string& kind) {
   const sign::Key key = sign_tests::open(sign_tests::issue(wish, &root), root);
   const auto reserved = sign::reserve(pdf, {}, sign_tests::now);
   return median_ms([&] {
-    if (!reserved || !key.sign(*reserved)) std::exit(1);
+    if (!reserved || !key.sign(*reserved, sign_tests::now)) std::exit(1);
   });
 }
 

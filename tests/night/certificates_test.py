@@ -162,6 +162,11 @@ class Certificates(SigningTest):
         self.night()
         self.assertEqual(self.results("c1")["certificate"]["changes"],
                          [{"file": "site.toml", "places": [{"key": "options.dcc.location", "after": "laboratory"}]}])
+        # A rule of decision decides anew what conforms.
+        self.site_with(extra='[options.dcc]\nlocation = "laboratory"\n[certificate]\ndecision_rule = "ilac-g8-simple"\n')
+        self.amend("c1", "the customer wants another rule")
+        self.night()
+        self.assertEqual(self.printed("c1", "number"), number(4))
 
     def test_what_is_missing_is_said_at_once_and_no_number_is_drawn(self):
         self.campaign("c1")

@@ -394,6 +394,11 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   site.settings = settings_of(printed, {"run", "options", "laboratory", "certificate"});
   if (const toml::table* laboratory = (*root)["laboratory"].as_table())
     site.evaluation += settings_of(*laboratory, {"cmc"});
+  // Decides anew what conforms. The default is what certificates were issued by before there was a
+  // choice, and says nothing new.
+  if (const auto rule = (*root)["certificate"]["decision_rule"].value<std::string>();
+      rule && *rule != "iso14253-1")
+    site.evaluation += "decision_rule = \"" + *rule + "\"\n";
   if (auto reader = top.table("signing")) site.signing = read_signing(*reader);
   if (auto reader = top.table("certificate")) {
     site.certificate = read_certificate(*reader);

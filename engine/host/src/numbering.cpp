@@ -43,12 +43,14 @@ const std::string* find_file(const Files& files, const std::string& name) {
 }
 
 /// From what a certificate was made: manifest, readings, settings of the site.
-Files attached_files(const std::vector<IssuedFile>& issued) {
+Expected<Files> attached_files(const std::vector<IssuedFile>& issued) {
   Files files;
   for (const IssuedFile& f : issued) {
     if (!f.bytes.starts_with("%PDF-")) continue;
-    for (sign::Attachment& a : sign::verify_pdf(f.bytes, {}).attachments)
-      if (a.relation == source_relation)
+    auto attached = sign::unverified_attachments(f.bytes);
+    if (!attached) return fail(f.name + " in the register: " + attached.error().message);
+    for (sign::Attachment& a : *attached)
+      if (a.relation == source_relation && a.name != templates_name)
         files.emplace_back(a.name == settings_name ? site_name : std::move(a.name),
                            std::move(a.bytes));
     break;
@@ -189,7 +191,9 @@ Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
                               std::vector<std::string>& missing) const {
   const auto old_files = opened.files(before.number);
   if (!old_files) return fail(old_files.error());
-  const auto then = attached_files(*old_files);
+  auto attached = attached_files(*old_files);
+  if (!attached) return fail(attached.error());
+  const Files then = std::move(*attached);
   const auto now = current_files(evaluated, context_, folder);
   if (!now) return fail(now.error());
   issue.replaces = before.number;

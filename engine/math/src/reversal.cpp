@@ -90,6 +90,8 @@ Estimate scatter_of_mean(const AxisTest& test, const PassModel& model) {
 Reversal::Kind decide(const Reversal& r, bool scatter_known) {
   using Kind = Reversal::Kind;
   if (r.largest < negligible) return scatter_known ? Kind::none : Kind::unknown;
+  if (std::isnan(r.p_mean))
+    return Kind::unknown;  // one target, one run: no scatter to hold it against
   const bool one_value_helps = r.largest_left <= tolerated_share * r.largest;
   const bool exists = significant(r.p_mean, significance) && r.mean != 0.0;
   const bool varies = scatter_known && significant(r.p_varies, significance);

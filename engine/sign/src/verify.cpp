@@ -193,4 +193,10 @@ Verified verify_pdf(std::string_view bytes, const Verifier& verifier) {
   return PdfCheck(bytes, verifier).run();
 }
 
+Expected<std::vector<Attachment>> unverified_attachments(std::string_view pdf) {
+  const auto file = pdf::parse(pdf);
+  if (!file) return fail(file.error());
+  return attachments_of(*file);
+}
+
 }  // namespace nonio::sign

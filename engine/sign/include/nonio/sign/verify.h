@@ -45,6 +45,8 @@ struct Verified {
 /// The signature comes first, found by its place at the end of the file. Only where it holds and is
 /// of the expected signer is the rest read: what a stranger sends costs no more than its digest.
 Verified verify_pdf(std::string_view bytes, const Verifier& verifier);
+/// Of a PDF that is known to be our own, such as one from the register; nothing is checked.
+Expected<std::vector<Attachment>> unverified_attachments(std::string_view pdf);
 /// What is drawn on each page, uncompressed, as the writer of the PDF put it down.
 Expected<std::vector<std::string>> page_contents(std::string_view pdf);
 /// An XML document as `Key::sign` writes one: in its canonical form, with one enveloped signature
