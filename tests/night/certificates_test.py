@@ -729,6 +729,11 @@ class Certificates(SigningTest):
         print(f"seed {SEED}, {KILLS} kills", flush=True)
         rng = random.Random(SEED)
         names = [f"c{i}" for i in range(12)]
+        # Of so many readings drawn at random some look misread, some adrift: no reason here for a draft.
+        kinds = ("reversal.*", "reading.*", "drift.*", "scatter.*", "plan.*")
+        self.release = 'release = "automatic"\nmay_stand = [%s]\n' % ", ".join(
+            f'{{ finding = "{kind}", reason = "readings are drawn at random" }}' for kind in kinds)
+        self.site_with()
         for name in names:
             self.signed_campaign(name)
         began = time.monotonic()

@@ -123,8 +123,9 @@ Expected<CarriedTemplates> templates_from(std::string_view text, const Templates
     return fail("the attached templates are none, or are written in another way");
   CarriedTemplates out;
   std::string all;
-  for (const auto& [name, file] : json["files"].items()) {
-    const auto of = [&](const char* key) {
+  for (const auto& item : json["files"].items()) {
+    const std::string& name = item.key();
+    const auto of = [&file = item.value()](const char* key) {
       return file.is_object() && file.contains(key) && file[key].is_string()
                  ? std::optional(file[key].get<std::string>())
                  : std::nullopt;
@@ -147,7 +148,7 @@ Expected<CarriedTemplates> templates_from(std::string_view text, const Templates
       return fail("the template " + name + " is not attached as Nonio attaches one");
     }
     const bool known = ours.is_object() && ours.contains("files") && ours["files"].contains(name) &&
-                       ours["files"][name] == file;
+                       ours["files"][name] == item.value();
     if (!known) out.strange.push_back(name);
     all += line_of(name, sum.empty() ? sha256(bytes) : sum);
     if (auto kept = keep(out.templates, name, std::move(bytes), name); !kept)

@@ -60,11 +60,13 @@ Expected<std::map<std::string, std::string>> reasons_for(const WaitingDraft& dra
         break;
       }
   }
-  for (const auto& [name, reason] : wish.reasons)
+  for (const auto& given : wish.reasons) {
+    const std::string& name = given.first;
     if (std::none_of(draft.findings.begin(), draft.findings.end(),
                      [&](const KnownFinding& f) { return name == finding_key(f) || name == f.id; }))
       return fail("the draft has no finding " + name + "; it has " +
                   (known.empty() ? "none" : known));
+  }
   return reasons;
 }
 
@@ -129,7 +131,7 @@ class Releaser {
     if (!opened) return fail(opened.error());
     auto draft = opened->draft(id_);
     if (!draft) return fail(draft.error());
-    const auto last = opened->last_number(id_);
+    auto last = opened->last_number(id_);
     if (!last) return fail(last.error());
     if (*last) last_number_ = (*last)->number;
     if (!*draft)
@@ -195,7 +197,7 @@ class Releaser {
       return fail_with("interrupted");
     auto opened = Register::open(options_.site, numbering_);
     if (!opened) return fail_with(opened.error().message);
-    const auto last = opened->last_number(id_);
+    auto last = opened->last_number(id_);
     if (!last || !*last || (*last)->number == last_number_)
       return fail_with(campaigns.front().errors.empty() ? "nothing was issued"
                                                         : campaigns.front().errors.front().message);

@@ -148,7 +148,8 @@ Expected<sign::Key> open_key(const Signing& s, const fs::path& site) {
   auto key =
       sign::Key::open({in_site(site, s.pkcs12), s.pkcs11, s.module, in_site(site, s.certificates)},
                       *password, std::time(nullptr));
-  explicit_bzero(password->data(), password->size());  // a plain fill of what ends is left out
+  std::string& secret = *password;
+  explicit_bzero(secret.data(), secret.size());  // a plain fill of what ends is left out
   return key;
 }
 

@@ -273,6 +273,7 @@ def pdf_by_signer(data, xml, keys):
         assert now != was, n
         return pdf.set_stream(n, now)
     del form
+    signed = next(page for page in pages if b"/Annots [ " in honest.objects[page])  # where the signature is shown
     for i, page in enumerate(pages, 1):
         content = int(re.search(rb"/Contents (\d+) 0 R", honest.objects[page])[1])
         yield f"page {i}: something drawn over it", with_stream(content, lambda s: s + b"\n0 g 100 100 200 20 re f\n")
@@ -283,19 +284,21 @@ def pdf_by_signer(data, xml, keys):
         yield f"page {i}: turned", change("insert", page, b"/Rotate 180")
         yield f"page {i}: cut", change("insert", page, b"/CropBox [ 0 400 595 842 ]")
         yield f"page {i}: enlarged", change("insert", page, b"/UserUnit 10")
-        if i > 1:
+        if page != signed:
             yield f"page {i}: a note on it", change(
                 "insert", page, b"/Annots [ << /Type /Annot /Subtype /FreeText /Rect [ 50 50 300 90 ] /DA (/F1 12 Tf) /Contents (conforms) >> ]")
     first = pages[0]
     pdf = honest.copy()
     stamp = pdf.add_stream(b"1 0 0 RG 0 0 200 50 re S", b"/Type /XObject\n/Subtype /Form\n/BBox [ 0 0 200 50 ]\n")
-    pdf.replace(first, b"/Annots [ ", b"/Annots [ << /Type /Annot /Subtype /Stamp /F 4 /Rect [ 50 700 250 750 ] /AP << /N %d 0 R >> >> " % stamp)
-    yield "a stamp on the first page", pdf
+    pdf.replace(signed, b"/Annots [ ", b"/Annots [ << /Type /Annot /Subtype /Stamp /F 4 /Rect [ 50 700 250 750 ] /AP << /N %d 0 R >> >> " % stamp)
+    yield "a stamp on the page of the signature", pdf
     pdf = honest.copy()
     stamp = pdf.add_stream(b"1 0 0 RG 0 0 200 50 re S", b"/Type /XObject\n/Subtype /Form\n/BBox [ 0 0 200 50 ]\n")
-    pdf.replace(field, b"/Rect [0 0 0 0]", b"/Rect [50 700 250 750]").insert(field, b"/AP << /N %d 0 R >>" % stamp)
-    yield "a picture in the signature field", pdf
-    yield "a link over the page", change("replace", first, b"/Annots [ ", (
+    appearance = re.search(rb"/AP ?<< ?/N \d+ 0 R ?>>", honest.objects[field])[0]
+    yield "a picture in the signature field", pdf.replace(field, appearance, b"/AP << /N %d 0 R >>" % stamp)
+    place = re.search(rb"/Rect ?\[[^\]]*\]", honest.objects[field])[0]
+    yield "the signature field over the results", change("replace", field, place, b"/Rect [50 300 550 750]")
+    yield "a link over the page", change("replace", signed, b"/Annots [ ", (
         b"/Annots [ << /Type /Annot /Subtype /Link /Rect [ 0 0 595 842 ] /A << /S /URI /URI (http://x) >> >> "))
     yield "page: an action when it is opened", change("insert", first, b"/AA << /O << /S /JavaScript /JS (app.alert(1)) >> >>")
     yield "page: its media box", change("insert", first, b"/BleedBox [ 0 0 300 300 ]")
@@ -445,7 +448,8 @@ def pdf_by_signer(data, xml, keys):
                            ("date", b"2026-04-14", b"2026-04-13"), ("instrument", b"L-001", b"L-002"), ("budget", b"drift_um = 0.6", b"drift_um = 0.1"),
                            ("opinion", b"[certificate]", b'[certificate]\nopinions = "Very good."')]:
         yield "manifest: " + what, other_content("campaign.toml", lambda s, o=old, w=new: s.replace(o, w, 1))
-    yield "settings: who authorises", other_content("site-settings.toml", lambda s: s.replace(b"B. Sample", b"C. Sample", 1))
+    yield "settings: whose laboratory", other_content("site-settings.toml", lambda s: s.replace(b"Sample Calibration", b"Simple Calibration", 1))
+    yield "results: who released it", other_content("results.json", lambda s: s.replace(b'"released_by": "B. Sample"', b'"released_by": "C. Sample"', 1))
     yield "settings: a comment", other_content("site-settings.toml", lambda s: s + b"# x\n")
     yield "templates: a word", other_content("templates.json", lambda s: s.replace(b"does not conform", b"conforms", 1))
     yield "templates: a file less", other_content("templates.json", lambda s: json.dumps(
@@ -492,8 +496,13 @@ def pdf_by_signer(data, xml, keys):
         yield "DCC: " + what, other_content("certificate.xml", lambda _, t=text: t.encode())
 
 
+def whom(site):
+    """Whom to trust and expect. Not --site, whose register alone would refuse all but the file that it issued."""
+    return ["--trust", str(site / "keys" / "root.pem"), "--signer", "CN=B. Sample,O=Sample Calibration Laboratory"]
+
+
 def verify(site, files):
-    done = subprocess.run([NONIO, "verify", "--json", "--site", str(site), *map(str, files)], capture_output=True, text=True, timeout=1800)
+    done = subprocess.run([NONIO, "verify", "--json", *whom(site), *map(str, files)], capture_output=True, text=True, timeout=1800)
     if done.returncode not in (0, 1):
         sys.exit(done.stderr)
     return {pathlib.Path(a["file"]).name: a for a in map(json.loads, done.stdout.splitlines())}
@@ -539,7 +548,7 @@ def check_terminal(root, site, keys, pdf, xml):
     other = root / "y.xml: HOLDS\n\u202e.xml"
     other.write_text(resign(xml, keys, "evil"))
     for arguments in ([], ["--json"]):
-        said = subprocess.run([NONIO, "verify", *arguments, "--site", str(site), str(file), str(other)], capture_output=True, timeout=300).stdout.decode()
+        said = subprocess.run([NONIO, "verify", *arguments, *whom(site), str(file), str(other)], capture_output=True, timeout=300).stdout.decode()
         strange = [c for c in said if c != "\n" and (c < " " or "\x7f" <= c <= "\x9f" or c in "\u202e\u200b")]
         if strange or any(line.endswith(": HOLDS") for line in said.splitlines()) or "B. Sample" not in said:
             sys.exit(f"reaches the terminal: {strange}\n{said}")

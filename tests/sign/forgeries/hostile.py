@@ -13,7 +13,7 @@ import sys
 import tempfile
 import zlib
 
-from forgeries import Keys, issue
+from forgeries import Keys, issue, whom
 from pdf_file import Pdf, openssl
 
 NONIO = os.environ.get("NONIO_MEASURED", os.environ["NONIO"])  # another build of it, to be compared
@@ -86,7 +86,7 @@ def spent(site, file):
     if child == 0:
         with open(os.devnull, "wb") as nothing:
             os.dup2(nothing.fileno(), 1)
-            os.execv(NONIO, [NONIO, "verify", "--site", str(site), str(file)])
+            os.execv(NONIO, [NONIO, "verify", *whom(site), str(file)])
     _, status, usage = os.wait4(child, 0)
     return os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
