@@ -435,9 +435,9 @@ void add_authority(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
   const Issue& issue = *source.in.issue;
   const bool draft = issue.is_draft();
-  const std::string by = released_by(source);
+  const std::string& responsible = source.in.campaign.laboratory.authoriser;
   Grid grid{w.get("authority.title"),
-            {{w.get("authority.by"), by, "laboratory.authoriser"},
+            {{w.get("authority.by"), released_by(source), "laboratory.authoriser"},
              {w.get("authority.author"), issue.author, "authority.author"},
              {w.get("authority.signed"), w.get(draft ? "draft.says" : "authority.electronic"),
               "authority.electronic"}}};
@@ -450,7 +450,8 @@ void add_authority(const Source& source, Blocks& blocks) {
     blocks.push_back({std::move(grid), "authority"});
   } else {
     SignatureBox box{w.get("authority.box"),
-                     {by, source.in.campaign.laboratory.name,
+                     {issue.released_by.empty() ? responsible : issue.released_by,
+                      source.in.campaign.laboratory.name,
                       w.get("title.number", {{"number", issue.number}}), issue.date}};
     Code code{issue.number + "\n" + issue.date + "\nSHA-256 " + issue.readings_sha256,
               w.get("authority.code")};
