@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* verb = "nonio release";
+constexpr const char* release_name = "nonio release";
 
 struct ReleaseVerbWish {
   std::string folder, by, role, out;
@@ -72,7 +72,7 @@ std::string dumped(const Json& json) {
 
 int list_drafts(const ReleaseVerbWish& wish, const Common& common) {
   const auto drafts = host::waiting_drafts(wish.folder);
-  if (!drafts) return complain(verb, text_of(drafts.error()));
+  if (!drafts) return complain(release_name, text_of(drafts.error()));
   if (common.json) {
     Json all = Json::array();
     for (const WaitingDraft& d : *drafts) all.push_back(draft_json(d));
@@ -103,17 +103,18 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
   using State = Released::State;
   if (common.json) std::cout << dumped(released_json(done)) << "\n";
   for (const std::string& note : done.notes)
-    if (!common.quiet) std::cerr << verb << ": " << note << "\n";
+    if (!common.quiet) std::cerr << release_name << ": " << note << "\n";
   switch (done.state) {
     case State::refused:
-      return complain(verb, done.why);
+      return complain(release_name, done.why);
     case State::lacking:
       if (!common.json) print(std::cerr, *done.draft);
       for (const std::string& key : done.without_reason)
-        complain(verb, key +
-                           " asks for attention and no reason is given why it may stand; wanted "
-                           "--reason \"" +
-                           key + "=TEXT\"");
+        complain(release_name,
+                 key +
+                     " asks for attention and no reason is given why it may stand; wanted "
+                     "--reason \"" +
+                     key + "=TEXT\"");
       return exit_failed;
     case State::approved:
       if (!common.json)
@@ -122,7 +123,8 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
                   << " --by NAME --as authoriser\n";
       return exit_done;
     case State::failed:
-      return complain(verb, done.why + " (nothing was issued; the draft still waits)", exit_failed);
+      return complain(release_name, done.why + " (nothing was issued; the draft still waits)",
+                      exit_failed);
     case State::issued:
       break;
   }
@@ -132,18 +134,20 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
     for (const fs::path& f : done.files) std::cout << "  " << f.string() << "\n";
   }
   if (!done.why.empty())
-    complain(verb, done.why + " (it is issued; the next night gives its files)", exit_failed);
+    complain(release_name, done.why + " (it is issued; the next night gives its files)",
+             exit_failed);
   return done.why.empty() ? exit_done : exit_failed;
 }
 
 int release(const ReleaseVerbWish& wish, const Common& common) {
   if (wish.list) return list_drafts(wish, common);
-  if (wish.by.empty()) return complain(verb, "--by NAME is missing: who releases it? Or --list");
+  if (wish.by.empty())
+    return complain(release_name, "--by NAME is missing: who releases it? Or --list");
   host::ReleaseWish wanted{wish.folder, wish.by, wish.role, {}, wish.out};
   for (const std::string& given : wish.reasons) {
     const std::size_t equals = given.find('=');
     if (equals == std::string::npos || equals == 0)
-      return complain(verb, "--reason wants FINDING=TEXT, found \"" + given + "\"");
+      return complain(release_name, "--reason wants FINDING=TEXT, found \"" + given + "\"");
     wanted.reasons[given.substr(0, equals)] = given.substr(equals + 1);
   }
   host::RunOptions base;

@@ -75,9 +75,10 @@ TEST(Pages, AreWhatWasDrawn) {
 TEST(Verify, SaysNoToWhatIsNoSignedPdf) {
   sign::Verifier verifier;
   verifier.now = now;
+  const std::string brackets = "%PDF-1.7\n" + std::string(1000, '[');
   for (const std::string& bytes :
        {std::string(), std::string("hello"), small_pdf(), *sign::reserve(small_pdf(), {}, now),
-        std::string(1000, '('), std::string("%PDF-1.7\n") + std::string(1000, '[')}) {
+        std::string(1000, '('), brackets}) {
     const auto verified = sign::verify_pdf(bytes, verifier);
     EXPECT_FALSE(verified.holds());
     ASSERT_FALSE(verified.checks.empty());

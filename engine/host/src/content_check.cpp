@@ -275,8 +275,8 @@ class Again {
   std::string missing_;  ///< a font, so that nothing can be drawn
 };
 
-constexpr std::array names = {"content.values", "content.attachments", "content.templates",
-                              "content.printed"};
+constexpr std::array check_ids = {"content.values", "content.attachments", "content.templates",
+                                  "content.printed"};
 
 /// A line of a process that ends for the one that waits for it.
 std::string line_of(const sign::Check& check) {
@@ -299,7 +299,7 @@ sign::Check check_of(const char* id, std::string& answer) {
           line.empty() ? "there is no answer" : line.substr(1)};
 }
 
-/// A line for each of `names`.
+/// A line for each of `check_ids`.
 Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view pdf,
                                       const Context& context) {
   for (const char* name : {manifest_name, results_name})
@@ -318,7 +318,7 @@ Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view 
         guarded("the evaluation", [&] { return Again(v, pdf, scratch.path(), context).run(); });
     words.set(content ? line_of(content->values) + line_of(content->attachments) +
                             line_of(content->templates) + line_of(content->printed)
-                      : line_of({names[0], State::fails, content.error().message}) +
+                      : line_of({check_ids[0], State::fails, content.error().message}) +
                             "?not looked at\n?not looked at\n?not drawn again\n");
     ::_exit(0);
   }
@@ -338,10 +338,10 @@ std::vector<sign::Check> check_content(const sign::Verified& v, std::string_view
                                        const Context& context) {
   auto answer = recompute_apart(v, pdf, context);
   if (!answer)
-    return {{names[0], State::fails, answer.error().message},
-            not_checked(names[3], "the readings are not evaluated")};
+    return {{check_ids[0], State::fails, answer.error().message},
+            not_checked(check_ids[3], "the readings are not evaluated")};
   std::vector<sign::Check> checks;
-  for (const char* name : names) checks.push_back(check_of(name, *answer));
+  for (const char* name : check_ids) checks.push_back(check_of(name, *answer));
   return checks;
 }
 

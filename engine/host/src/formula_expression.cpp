@@ -19,24 +19,25 @@ struct Name {
   Dimension dimension;
 };
 
-constexpr Dimension none{0, 0, 0}, distance{1, 0, 0}, duration{0, 1, 0}, temperature{0, 0, 1};
+constexpr Dimension no_dimension{0, 0, 0}, distance{1, 0, 0}, duration{0, 1, 0},
+    temperature{0, 0, 1};
 
 /// In the order of Expression::Variable; on a rotary axis p and theta are angles.
 constexpr std::array<Name, Expression::variables> readings{{{"p", 0.0, distance},
                                                             {"theta", 0.0, distance},
-                                                            {"d", 0.0, none},
+                                                            {"d", 0.0, no_dimension},
                                                             {"t", 0.0, duration},
                                                             {"K", 0.0, temperature},
-                                                            {"run", 0.0, none}}};
+                                                            {"run", 0.0, no_dimension}}};
 constexpr std::array<Name, 9> units{{{"m", 1.0, distance},
                                      {"mm", 1e-3, distance},
                                      {"um", 1e-6, distance},
                                      {"s", 1.0, duration},
                                      {"h", 3600.0, duration},
                                      {"kelvin", 1.0, temperature},
-                                     {"rad", 1.0, none},
-                                     {"deg", 1.0 / deg_per_rad, none},
-                                     {"arcsec", 1.0 / arcsec_per_rad, none}}};
+                                     {"rad", 1.0, no_dimension},
+                                     {"deg", 1.0 / deg_per_rad, no_dimension},
+                                     {"arcsec", 1.0 / arcsec_per_rad, no_dimension}}};
 
 constexpr std::size_t most_characters = 400;
 
@@ -104,7 +105,7 @@ Dimension dimension_of(Quantity quantity) {
     case Quantity::angular_growth:
       return {0, -1, 0};
     default:
-      return none;
+      return no_dimension;
   }
 }
 
@@ -131,7 +132,7 @@ Expected<Expression> Expression::parse(const Formula& formula, const Axis& axis)
     own.dimensions.push_back(dimension);
   };
   for (const Name& v : readings)
-    add(v.name, v.si, axis.rotary && v.dimension == distance ? none : v.dimension);
+    add(v.name, v.si, axis.rotary && v.dimension == distance ? no_dimension : v.dimension);
   for (const Name& u : units) add(u.name, u.si, u.dimension);
   for (const Formula::Parameter& p : formula.parameters) {
     if (std::find(names.begin(), names.end(), p.name) != names.end())

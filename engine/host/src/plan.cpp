@@ -83,24 +83,24 @@ void append(std::string& list, const std::string& text, const char* between) {
 }
 
 Json wish_json(const math::TripleWish& w) {
-  const auto mm = [](double m) { return printed(m, Quantity::length); };
+  const auto in_mm = [](double m) { return printed(m, Quantity::length); };
   const auto all_mm = [&](const std::vector<double>& list) {
     Json out = Json::array();
-    for (const double m : list) out.push_back(mm(m));
+    for (const double m : list) out.push_back(in_mm(m));
     return out;
   };
   const char* even = w.even == math::EvenSteps::require  ? "require"
                      : w.even == math::EvenSteps::prefer ? "prefer"
                                                          : "any";
-  Json json = {{"x_mm", mm(w.x)},
-               {"y_mm", mm(w.y)},
-               {"over_travel_mm", mm(w.over_travel)},
-               {"resolution_mm", mm(w.resolution)},
+  Json json = {{"x_mm", in_mm(w.x)},
+               {"y_mm", in_mm(w.y)},
+               {"over_travel_mm", in_mm(w.over_travel)},
+               {"resolution_mm", in_mm(w.resolution)},
                {"max_points", w.max_points},
                {"hypotenuse", w.hypotenuse},
                {"density", w.density},
                {"even", even}};
-  if (w.largest_step > 0.0) json["max_step_mm"] = mm(w.largest_step);
+  if (w.largest_step > 0.0) json["max_step_mm"] = in_mm(w.largest_step);
   if (!w.pitch_x.empty()) json["pitch_x_mm"] = all_mm(w.pitch_x);
   if (!w.pitch_y.empty()) json["pitch_y_mm"] = all_mm(w.pitch_y);
   return json;

@@ -28,16 +28,17 @@
 namespace nonio::math {
 namespace {
 
-using Kind = BudgetLine::Kind;
+using LineKind = BudgetLine::Kind;
 
 constexpr double as_if_known = 500.0;  // degrees of freedom from which on k is 2.00
 
 double k_of(double dof) { return dof < as_if_known ? coverage_factor(dof) : 2.0; }
 
-const double of_range = 1.0 / (2.0 * std::numbers::sqrt3), of_limit = 1.0 / std::numbers::sqrt3;
+const double of_full_range = 1.0 / (2.0 * std::numbers::sqrt3),
+             of_limit = 1.0 / std::numbers::sqrt3;
 
 bool along(const BudgetLine& line) {
-  return line.kind == Kind::length || line.kind == Kind::coordinate;
+  return line.kind == LineKind::length || line.kind == LineKind::coordinate;
 }
 
 double extent(const BudgetLine& line) {
@@ -51,10 +52,10 @@ class Builder {
  public:
   Builder(const Campaign& c, const Environment& e, ReadingModel& out) : c_(c), e_(e), out_(out) {
     for (const BudgetLine& line : out_.lines) {
-      lengths_ |= line.kind == Kind::length;
-      laterals_ |= line.kind == Kind::lateral;
-      angles_ |= line.kind == Kind::angle;
-      coordinates_ |= line.kind == Kind::coordinate;
+      lengths_ |= line.kind == LineKind::length;
+      laterals_ |= line.kind == LineKind::lateral;
+      angles_ |= line.kind == LineKind::angle;
+      coordinates_ |= line.kind == LineKind::coordinate;
     }
   }
 
@@ -93,7 +94,7 @@ class Builder {
                 .correlation = c,
                 .source = std::move(source)};
     for (const BudgetLine& line : out_.lines) {
-      const bool here = (line.kind == Kind::angle) == angles;
+      const bool here = (line.kind == LineKind::angle) == angles;
       input.of_line.push_back(here ? of(line) : 0.0);
       input.is.u = std::max(input.is.u, input.of_line.back() * (with_length ? extent(line) : 1.0));
     }
@@ -126,7 +127,7 @@ class Builder {
     add("misalignment", Distribution::rectangular, Correlation::lines, true,
         "environment.misalignment_mm", [&](const BudgetLine& line) {
           const double L = extent(line);
-          return line.kind == Kind::length && L > 0.0 ? of_limit * R * R / (2.0 * L * L) : 0.0;
+          return line.kind == LineKind::length && L > 0.0 ? of_limit * R * R / (2.0 * L * L) : 0.0;
         });
   }
 
@@ -140,12 +141,13 @@ class Builder {
     add("temperature", Distribution::rectangular, Correlation::lines, true,
         "environment.temperature_range_K, machine.axes.*.expansion_um_per_m_K",
         [&](const BudgetLine& line) {
-          return along(line) ? of_range * reading * std::fabs(line.expansion.value_or(0.0)) : 0.0;
+          return along(line) ? of_full_range * reading * std::fabs(line.expansion.value_or(0.0))
+                             : 0.0;
         });
     add("expansion", Distribution::rectangular, Correlation::lines, true,
         "environment.temperature_difference_K, environment.expansion_range_um_per_m_K",
         [&](const BudgetLine& line) {
-          return along(line) ? of_range * std::fabs(distance) * range : 0.0;
+          return along(line) ? of_full_range * std::fabs(distance) * range : 0.0;
         });
   }
 
@@ -158,12 +160,12 @@ class Builder {
     add("device-temperature", Distribution::rectangular, Correlation::device, true,
         "instrument.temperature_range_K, instrument.expansion_um_per_m_K",
         [&](const BudgetLine& line) {
-          return along(line) ? of_range * reading * std::fabs(*i.expansion) : 0.0;
+          return along(line) ? of_full_range * reading * std::fabs(*i.expansion) : 0.0;
         });
     add("device-expansion", Distribution::rectangular, Correlation::device, true,
         "environment.temperature_difference_K, instrument.expansion_range_um_per_m_K",
         [&](const BudgetLine& line) {
-          return along(line) ? of_range * std::fabs(distance) * range : 0.0;
+          return along(line) ? of_full_range * std::fabs(distance) * range : 0.0;
         });
   }
 
@@ -184,9 +186,9 @@ class Builder {
     const double sphere = get(c_.instrument.sphere, "instrument.sphere_um"),
                  probe = get(c_.instrument.probe, "instrument.probe_um");
     add("sphere", Distribution::rectangular, Correlation::readings, false, "instrument.sphere_um",
-        [&](const BudgetLine&) { return of_range * sphere; });
+        [&](const BudgetLine&) { return of_full_range * sphere; });
     add("probe", Distribution::rectangular, Correlation::lines, false, "instrument.probe_um",
-        [&](const BudgetLine&) { return of_range * probe; });
+        [&](const BudgetLine&) { return of_full_range * probe; });
   }
 
   const Campaign& c_;

@@ -55,7 +55,7 @@ constexpr std::string_view null_parameters = "\x05\x00"sv;
 /// 2.16.840.1.101.3.4.2.1 to .3 (NIST)
 constexpr std::string_view sha2 = "\x06\x09\x60\x86\x48\x01\x65\x03\x04\x02"sv;
 /// 1.2.840.113549.1.1 (PKCS #1): 1 is rsaEncryption, 11 to 13 name SHA-256 to SHA-512 too
-constexpr std::string_view rsa = "\x06\x09\x2a\x86\x48\x86\xf7\x0d\x01\x01"sv;
+constexpr std::string_view pkcs1 = "\x06\x09\x2a\x86\x48\x86\xf7\x0d\x01\x01"sv;
 /// 1.2.840.10045.4.3.2 to .4 (X9.62): ECDSA with SHA-256 to SHA-512
 constexpr std::string_view ecdsa = "\x06\x08\x2a\x86\x48\xce\x3d\x04\x03"sv;
 
@@ -87,7 +87,7 @@ bool is_signature_algorithm(std::string_view content, const EVP_MD* digest) {
     return content.back() == 2 + rank(digest);
   if (!content.ends_with(null_parameters)) return false;
   content.remove_suffix(null_parameters.size());
-  if (content.size() != rsa.size() + 1 || !content.starts_with(rsa)) return false;
+  if (content.size() != pkcs1.size() + 1 || !content.starts_with(pkcs1)) return false;
   return content.back() == 1 || content.back() == 11 + rank(digest);
 }
 

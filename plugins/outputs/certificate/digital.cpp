@@ -27,9 +27,9 @@ dcc::Text word(const std::vector<Source>& sources, const char* key) {
   return in_all(sources, [&](const Source& s) { return s.words.get(key); });
 }
 
-std::string joined(std::initializer_list<std::string> parts, const char* between = ", ") {
+std::string joined(std::initializer_list<std::string> texts, const char* between = ", ") {
   std::string out;
-  for (const std::string& part : parts)
+  for (const std::string& part : texts)
     if (!part.empty()) out += (out.empty() ? "" : between) + part;
   return out;
 }

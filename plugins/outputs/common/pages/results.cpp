@@ -263,6 +263,11 @@ std::optional<double> common_count(const Joined& joined) {
 
 namespace {
 
+std::string U_heading(const Source& source, double k) {
+  return source.words.get("targets.uncertainty",
+                          {{"k", localised(short_text(k, k == 2.0 ? 0 : 2), source.language())}});
+}
+
 /// The column as its cells, then its U where a certificate wants it.
 std::vector<std::string> cells_of(const Source& source, const PointTable::Column& c, bool target,
                                   std::size_t rows) {
@@ -276,7 +281,7 @@ std::vector<std::string> cells_of(const Source& source, const PointTable::Column
                   : by_U ? printed_result(c.values[i], c.U, c.quantity, source.language()).value
                          : printed_number(c.values[i], c.quantity, decimals, source.language()));
   if (source.certificate)
-    out.push_back(target ? source.words.get("targets.uncertainty")
+    out.push_back(target ? U_heading(source, 2.0)
                   : by_U ? printed_result(0.0, c.U, c.quantity, source.language()).U
                          : "");
   return out;
@@ -299,7 +304,7 @@ void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
       table.columns = {
           {w.get("plot.place", {{"axis", s.over}}), unit_text(s.position_quantity), true},
           {symbol(s.name), unit_text(s.quantity), true},
-          {w.get("targets.uncertainty"), unit_text(s.quantity), true}};
+          {U_heading(source, s.k), unit_text(s.quantity), true}};
       const int decimals = decimals_for(s.position, s.position_quantity, 4);
       for (std::size_t i = 0; i < s.position.size(); ++i) {
         if (!std::isfinite(s.value[i])) continue;
