@@ -424,7 +424,9 @@ class Certificates(SigningTest):
         for wrong in (["--reason", "nonsense=x"], ["--reason", "x"], ["--reason", "tolerance.X.E.iso230-2= "]):
             self.release_verb("--by", "B", *wrong, expect=2)
         self.release_verb(expect=2)
-        self.release_verb("--by", " ", expect=2)
+        for nobody in (" ", "-", "\u2014", "?"):
+            self.release_verb("--by", nobody, expect=2)
+        self.release_verb("--by", "B", "--reason", "tolerance.X.E.iso230-2=-", expect=2)
         self.assertEqual(self.entries(), [])
         self.release_verb("--by", "B", "--reason", "tolerance.X.E.iso230-2=as found, the customer knows", expect=0)
         issued, = [says for what, _, says in self.journal() if what == "issued"]

@@ -5,6 +5,7 @@
 
 #include "context.h"
 #include "nonio/host/files.h"
+#include "nonio/sdk/statement.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -21,8 +22,7 @@ Expected<void> withdraw(const fs::path& site, const Numbering& numbering, const 
   const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
   if (std::any_of(by.begin(), by.end(), control))
     return fail("the name has a control character; wanted one line of text");
-  if (std::all_of(why.begin(), why.end(), [](char c) { return c == ' '; }))
-    return fail("the reason is empty; wanted why it is withdrawn");
+  if (!says_something(why)) return fail("the reason says nothing; wanted why it is withdrawn");
   if (std::any_of(why.begin(), why.end(), control))
     return fail("the reason has a control character; wanted one line of text");
   const auto entries = Register::entries(site, numbering);

@@ -14,6 +14,7 @@
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/statement.h"
 #include "traceability.h"
 
 namespace nonio::host {
@@ -155,7 +156,7 @@ class CampaignRun {
 
   /// Readings that were taken out without a word why. The evaluation stands; nothing is issued.
   static void note_reasons_missing(const Measurement& m, Evaluation& evaluation) {
-    if (m.exclude.empty() || !m.exclude_reason.empty()) return;
+    if (m.exclude.empty() || says_something(m.exclude_reason)) return;
     evaluation.findings.push_back(
         {.id = "readings.excluded-without-reason",
          .attention = true,

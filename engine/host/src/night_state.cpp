@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 #include "json_values.h"
@@ -83,11 +85,14 @@ Expected<OutputLock> OutputLock::take(const fs::path& out) {
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (fd < 0)
     return fail("cannot use the output folder " + out.string() + ": " + std::strerror(errno));
-  if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
-    ::close(fd);
-    return fail("another run is using the output folder " + out.string());
+  // What was killed has processes that end a moment later, as soon as the disk lets them.
+  constexpr int tries = 50;
+  for (int i = 0; i < tries; ++i) {
+    if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return OutputLock(fd);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
-  return OutputLock(fd);
+  ::close(fd);
+  return fail("another run is using the output folder " + out.string());
 }
 
 OutputLock::OutputLock(OutputLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}

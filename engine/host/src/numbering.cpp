@@ -10,6 +10,7 @@
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 #include "nonio/host/results_json.h"
+#include "nonio/sdk/statement.h"
 #include "nonio/sign/verify.h"
 #include "recomputed.h"
 #include "store.h"
@@ -201,10 +202,10 @@ Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
   issue.changes = changes_of(then, *now);
   const std::string& stated = evaluated.campaign.certificate.amendment;
   const std::string* manifest = find_file(then, manifest_name);
-  const bool is_old =
-      !stated.empty() && manifest != nullptr && flat_toml(*manifest)[amendment_key] == stated;
+  const bool is_old = says_something(stated) && manifest != nullptr &&
+                      flat_toml(*manifest)[amendment_key] == stated;
   issue.why = before.state == "withdrawn" ? before.reason : "";
-  if (!stated.empty() && !is_old && stated != issue.why)
+  if (says_something(stated) && !is_old && stated != issue.why)
     issue.why += (issue.why.empty() ? "" : "; ") + stated;
   if (issue.why.empty())
     missing.push_back(std::string(amendment_key) + " (why " + before.number + " is replaced" +

@@ -8,6 +8,7 @@
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 #include "nonio/host/record.h"
+#include "nonio/sdk/statement.h"
 #include "runner.h"
 #include "set_up.h"
 
@@ -39,11 +40,12 @@ bool is_one_line(const std::string& text) {
 /// What is wrong with names and reasons; empty if nothing.
 std::string mistake_in(const ReleaseWish& wish) {
   constexpr std::size_t longest = 100;
-  if (plain_name(wish.by).empty() || wish.by.size() > longest || !is_one_line(wish.by))
+  if (!says_something(wish.by) || wish.by.size() > longest || !is_one_line(wish.by))
     return "--by wants the name of a person, one line of up to 100 characters";
   for (const auto& [finding, reason] : wish.reasons)
-    if (plain_name(reason).empty() || !is_one_line(reason))
-      return "the reason for " + finding + " is empty or has a control character; wanted one line";
+    if (!says_something(reason) || !is_one_line(reason))
+      return "the reason for " + finding +
+             " says nothing or has a control character; wanted one line of text";
   return {};
 }
 

@@ -7,29 +7,13 @@
 #include "certificate.h"
 #include "dcc.h"
 #include "nonio/reports/model.h"
+#include "nonio/sdk/statement.h"
 
 namespace nonio::certificate {
 
 namespace {
 
-/// Marks and spaces of Unicode: Latin-1 A0 to BF, general punctuation, minus, CJK punctuation.
-bool is_mark(std::string_view c) {
-  return c[0] == '\xC2' || c.starts_with("\xE2\x80") || c.starts_with("\xE2\x81") ||
-         c == "\xE2\x88\x92" || c.starts_with("\xE3\x80") || c.starts_with("\xEF\xBC\x8D");
-}
-
-/// "", "  ", "-", "—" and "?" say nothing; a name or number has a letter or digit of some script.
-bool says_something(std::string_view text) {
-  for (std::size_t at = 0; at < text.size();) {
-    const auto c = static_cast<unsigned char>(text[at]);
-    const std::size_t length = c < 0x80 ? 1 : c < 0xE0 ? 2 : c < 0xF0 ? 3 : 4;
-    if (length == 1 ? std::isalnum(c) != 0 : !is_mark(text.substr(at, length))) return true;
-    at += length;
-  }
-  return false;
-}
-
-/// Nor does a place-holder name an instrument: "n/a", "unknown", "xxx", "000".
+/// A place-holder names no instrument: "n/a", "unknown", "xxx", "000".
 bool names_something(std::string_view text) {
   if (!says_something(text)) return false;
   std::string letters;
@@ -123,8 +107,10 @@ std::vector<std::string> lacks(const OutputInput& in) {
     list.want(!s.calibrated.empty(), key + "calibrated");
     list.want(names_something(s.certificate), key + "certificate");
   }
+  list.want(c.certificate.nothing_else_by.empty() || says_something(c.certificate.nothing_else_by),
+            "certificate.nothing_else_by (a person's name, or not at all)");
   for (const Measurement& m : c.measurements)
-    list.want(m.exclude.empty() || !m.exclude_reason.empty(),
+    list.want(m.exclude.empty() || says_something(m.exclude_reason),
               "measurement." + m.id + ".exclude_reason (why readings were excluded)");
   const Conditions found = conditions_of(in.observations);
   list.want(found.material.known() || found.air.known() || says_something(c.certificate.conditions),

@@ -365,15 +365,20 @@ void add_conformity(const Source& source, Blocks& blocks) {
   if (all.empty()) return;
   const bool limits =
       std::any_of(all.begin(), all.end(), [](const Shown& s) { return s.limit != nullptr; });
+  const bool factors = std::any_of(all.begin(), all.end(), [](const Shown& s) {
+    return s.value->U && std::fabs(s.value->k - 2.0) >= 0.005;
+  });
   Table table;
   table.columns = {
-      {w.get("conformity.measurement"), "", false}, {w.get("results.symbol"), "", false},
-      {w.get("results.meaning"), "", false},        {w.get("results.value"), "", true},
-      {w.get("targets.uncertainty"), "", true},     {"", "", false}};
-  if (limits) {
-    table.columns.insert(table.columns.end() - 1, {w.get("conformity.limit"), "", true});
-    table.columns.push_back({w.get("results.decision"), "", false});
-  }
+      {w.get("conformity.measurement"), "", false},
+      {w.get("results.symbol"), "", false},
+      {w.get("results.meaning"), "", false},
+      {w.get("results.value"), "", true},
+      {factors ? w.get("results.uncertainty") : pages::U_heading(source, 2.0), "", true}};
+  if (factors) table.columns.push_back({w.get("results.k"), "", true});
+  if (limits) table.columns.push_back({w.get("conformity.limit"), "", true});
+  table.columns.push_back({"", "", false});
+  if (limits) table.columns.push_back({w.get("results.decision"), "", false});
   for (const Shown& s : all) {
     const Value& v = *s.value;
     const Printed shown = printed_result(v.value, v.U, v.quantity, source.language());
@@ -382,6 +387,8 @@ void add_conformity(const Source& source, Blocks& blocks) {
                                     {w.get_or("value." + v.name, "")},
                                     {shown.value},
                                     {shown.U}};
+    if (factors)
+      row.push_back({v.U ? printed_number(v.k, Quantity::number, 2, source.language()) : ""});
     if (limits)
       row.push_back(
           {s.limit == nullptr ? "–" : pages::plain_number(source, s.limit->tolerance, v.quantity)});

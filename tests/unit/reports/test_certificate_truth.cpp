@@ -89,6 +89,8 @@ TEST_F(Truth, WhatWasExcludedIsSaidWithItsReasonAndWithoutOneThereIsNoCertificat
   const auto keys = output().lacks(input(c));
   ASSERT_EQ(keys.size(), 1U);
   EXPECT_TRUE(keys[0].starts_with("measurement.X.exclude_reason")) << keys[0];
+  c.campaign.measurements[0].exclude_reason = " - ";
+  EXPECT_EQ(output().lacks(input(c)), keys) << "a dash is no reason";
   c.campaign.measurements[0].exclude_reason = "beam interrupted";
   EXPECT_TRUE(output().lacks(input(c)).empty());
   const std::string said = "X.csv: line 57 (88.0 µm). Reason: beam interrupted";

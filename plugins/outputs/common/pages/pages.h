@@ -74,6 +74,8 @@ void add_targets(const Source&, const Measured&, Blocks&);
 void add_plots(const Source&, const Measured&, Blocks&);
 /// The one picture that says most of a measurement: its readings by run, circle or volume.
 std::optional<reports::Plot> readings_plot(const Source&, const Measured&);
+/// "U (k = 2)": the heading of expanded uncertainties that have one coverage factor.
+std::string U_heading(const Source&, double k);
 /// What its uncertainties are made of, from the budget that results.json has too.
 void add_budget(const Source&, const Measured&, Blocks&);
 

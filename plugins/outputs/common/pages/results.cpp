@@ -263,11 +263,6 @@ std::optional<double> common_count(const Joined& joined) {
 
 namespace {
 
-std::string U_heading(const Source& source, double k) {
-  return source.words.get("targets.uncertainty",
-                          {{"k", localised(short_text(k, k == 2.0 ? 0 : 2), source.language())}});
-}
-
 /// The column as its cells, then its U where a certificate wants it.
 std::vector<std::string> cells_of(const Source& source, const PointTable::Column& c, bool target,
                                   std::size_t rows) {
@@ -288,6 +283,11 @@ std::vector<std::string> cells_of(const Source& source, const PointTable::Column
 }
 
 }  // namespace
+
+std::string U_heading(const Source& source, double k) {
+  return source.words.get("targets.uncertainty",
+                          {{"k", localised(short_text(k, k == 2.0 ? 0 : 2), source.language())}});
+}
 
 namespace {
 
