@@ -262,47 +262,6 @@ double used_u(const StepChoices& choices, const Scatter& s) {
   return choices.u_reading > 0.0 ? choices.u_reading : s.u;
 }
 
-}  // namespace
-
-Expected<StepSolution> solve_step_diagonals(const StepDiagonals& d,
-                                            const std::vector<AxisSeries>& series,
-                                            const StepChoices& choices, const ReadingModel* model) {
-  Design design = design_of(d, {}, choices, 0.0);
-  Factor f = factor(design);
-  const Scatter scatter = scatter_of(design, f);
-  StepSolution out;
-  out.u_reading = used_u(choices, scatter);
-  out.dof = scatter.dof;
-  if (!series.empty()) {
-    design = design_of(d, series, choices, out.u_reading);
-    f = factor(design);
-  }
-  const Layout& l = design.layout;
-  out.unknowns = static_cast<std::size_t>(l.functions + l.set_up);
-  out.rank = static_cast<std::size_t>(f.rank - l.zeros - l.series);
-  const auto known = known_scales(d, f);
-  if (!complete(d, f, known))
-    return fail(
-        "the readings do not determine the functions: " + std::to_string(out.unknowns - out.rank) +
-        " numbers are open, as too many readings are missing");
-  VectorXd x = solve(design, f, design.b);
-  if (l.set_up > 0 && f.open.cols() == 0) {
-    for (int i = 0; i < corrections; ++i)
-      x = solve(design, f, without_second_order(d, design, x, choices));
-    for (std::size_t k = 0; k < d.passes.size(); ++k)
-      out.set_up.push_back(set_up_of(d, k, design, x).norm());
-  }
-  const Sensitivity sensitivity = sensitivity_of(d, design, f, model);
-  if (model != nullptr && static_cast<Index>(model->readings()) != sensitivity.of_readings.cols())
-    return fail("wanted a model of the readings of all passes and series");
-  present(d, x.head(l.functions),
-          out.u_reading * out.u_reading * f.inverse.topLeftCorner(l.functions, l.functions),
-          sensitivity, known, out);
-  return out;
-}
-
-namespace {
-
 /// Generalised least squares of values y with covariance C on a line; what is left of them.
 ShapeContrast against_line(const AxisSeries& s, const MatrixXd& C, const VectorXd& y, double dof) {
   ShapeContrast out;
@@ -336,16 +295,12 @@ AxisSeries inside(const StepDiagonals& d, const AxisSeries& s) {
   return in;
 }
 
-}  // namespace
-
+/// What each series says against the functions that the diagonals alone give.
 std::vector<ShapeContrast> contrast_shapes(const StepDiagonals& d,
                                            const std::vector<AxisSeries>& series,
-                                           const StepChoices& choices) {
+                                           const StepChoices& choices, const Design& design,
+                                           const Factor& f, const Scatter& scatter) {
   std::vector<ShapeContrast> out;
-  if (series.empty()) return out;
-  const Design design = design_of(d, {}, choices, 0.0);
-  const Factor f = factor(design);
-  const Scatter scatter = scatter_of(design, f);
   const double u = used_u(choices, scatter);
   const VectorXd x = solve(design, f, design.b);
   if (!(u > 0.0)) return out;
@@ -366,6 +321,46 @@ std::vector<ShapeContrast> contrast_shapes(const StepDiagonals& d,
     C.diagonal().array() += u_axis * u_axis;
     out.push_back(against_line(s, C, y, choices.u_reading > 0.0 ? 1e6 : scatter.dof));
   }
+  return out;
+}
+
+}  // namespace
+
+Expected<StepSolution> solve_step_diagonals(const StepDiagonals& d,
+                                            const std::vector<AxisSeries>& series,
+                                            const StepChoices& choices, const ReadingModel* model) {
+  Design design = design_of(d, {}, choices, 0.0);
+  Factor f = factor(design);
+  const Scatter scatter = scatter_of(design, f);
+  StepSolution out;
+  out.u_reading = used_u(choices, scatter);
+  out.dof = scatter.dof;
+  if (!series.empty()) {
+    out.shapes = contrast_shapes(d, series, choices, design, f, scatter);
+    design = design_of(d, series, choices, out.u_reading);
+    f = factor(design);
+  }
+  const Layout& l = design.layout;
+  out.unknowns = static_cast<std::size_t>(l.functions + l.set_up);
+  out.rank = static_cast<std::size_t>(f.rank - l.zeros - l.series);
+  const auto known = known_scales(d, f);
+  if (!complete(d, f, known))
+    return fail(
+        "the readings do not determine the functions: " + std::to_string(out.unknowns - out.rank) +
+        " numbers are open, as too many readings are missing");
+  VectorXd x = solve(design, f, design.b);
+  if (l.set_up > 0 && f.open.cols() == 0) {
+    for (int i = 0; i < corrections; ++i)
+      x = solve(design, f, without_second_order(d, design, x, choices));
+    for (std::size_t k = 0; k < d.passes.size(); ++k)
+      out.set_up.push_back(set_up_of(d, k, design, x).norm());
+  }
+  const Sensitivity sensitivity = sensitivity_of(d, design, f, model);
+  if (model != nullptr && static_cast<Index>(model->readings()) != sensitivity.of_readings.cols())
+    return fail("wanted a model of the readings of all passes and series");
+  present(d, x.head(l.functions),
+          out.u_reading * out.u_reading * f.inverse.topLeftCorner(l.functions, l.functions),
+          sensitivity, known, out);
   return out;
 }
 

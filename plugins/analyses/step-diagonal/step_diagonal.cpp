@@ -76,8 +76,8 @@ void judge_checks(Work& w) {
                                           number("p", c.p_trend, Quantity::probability)}));
 }
 
-void judge_lengths(Work& w, double u) {
-  for (const ShapeContrast& c : contrast_shapes(w.passes.readings, w.lengths.series, w.choices))
+void judge_lengths(Work& w, const StepSolution& s) {
+  for (const ShapeContrast& c : s.shapes)
     if (math::significant(c.p, level / 3.0))
       w.out.findings.push_back(
           attention("step-diagonal.axis-disagrees",
@@ -85,7 +85,7 @@ void judge_lengths(Work& w, double u) {
                      number("largest", c.largest, Quantity::deviation),
                      number("at", c.at, Quantity::length), number("p", c.p, Quantity::probability)},
                     {{"axis", w.passes.axes[c.axis]}}));
-  const auto gap = close_lengths(w.passes.readings, w.lengths.series, u);
+  const auto gap = close_lengths(w.passes.readings, w.lengths.series, s.u_reading);
   if (gap && std::fabs(gap->value) > 3.0 * gap->u)
     w.out.findings.push_back(
         attention("step-diagonal.lengths-disagree", {number("gap", gap->value, Quantity::deviation),
@@ -235,7 +235,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
         {number("missing", static_cast<double>(in.observations.missing), Quantity::count)}));
     return finished(w);
   }
-  if (!w.averaging) judge_lengths(w, solution->u_reading);
+  if (!w.averaging) judge_lengths(w, *solution);
   say_scales(w, *solution);
   w.out.findings.insert(w.out.findings.end(), limits.findings.begin(), limits.findings.end());
   if (!model.missing.empty()) w.out.findings.push_back(missing_finding(model.missing));

@@ -69,7 +69,7 @@ TEST(StepDoubt, AnAxisThatAgreesIsSeldomDoubted) {
   for (int k = 0; k < trials; ++k) {
     auto axes = lengths({}, v, "X", u);
     for (double& y : axes[0].deviation) y += u * noise.one(noise.rng);
-    const auto c = contrast_shapes(noise.on(empty(v)), axes, {});
+    const auto c = solve_step_diagonals(noise.on(empty(v)), axes, {})->shapes;
     ASSERT_EQ(c.size(), 1U);
     doubted += c[0].p < 0.01;
   }
@@ -83,7 +83,8 @@ TEST(StepDoubt, AngularErrorsThroughTheMirrorContradictTheAxis) {
   machine::Errors e;
   e.ECY = [](double y) { return 100 * urad * y / 0.6; };
   const auto d = measured(e, v);
-  const auto c = contrast_shapes(noise.on(d), lengths(e, v, "XYZ", u), {false, true, u});
+  const auto c =
+      solve_step_diagonals(noise.on(d), lengths(e, v, "XYZ", u), {false, true, u})->shapes;
   ASSERT_EQ(c.size(), 3U);
   double least = 1.0;
   for (const auto& axis : c) {

@@ -102,6 +102,13 @@ struct StepCurve {
   std::vector<Shares> shares;
 };
 
+/// An axis series against the positioning that the diagonals alone give, both less a line.
+struct ShapeContrast {
+  std::size_t axis = 0;
+  double rms = 0.0, largest = 0.0, at = 0.0;  ///< m
+  double p = 1.0;
+};
+
 struct StepSolution {
   std::array<StepCurve, 9> curves;      ///< EXX EYX EZX EXY EYY EZY EXZ EYZ EZZ
   std::array<Estimated, 3> squareness;  ///< C0Y, B0Z, A0Z, rad
@@ -110,6 +117,7 @@ struct StepSolution {
   double dof = 0.0;                     ///< of u_reading from the residuals
   /// Set-up angle of each pass, rad; empty where it cannot be told from the scales.
   std::vector<double> set_up;
+  std::vector<ShapeContrast> shapes;  ///< of each series
   bool scales_known() const { return curves[0].known && curves[4].known && curves[8].known; }
 };
 
@@ -137,14 +145,5 @@ StepChecks check_step_diagonals(const StepDiagonals&);
 /// mean D - sum of (T_a/L) E_aa(T_a). Nothing if an axis or a total is missing.
 std::optional<Estimated> close_lengths(const StepDiagonals&, const std::vector<AxisSeries>&,
                                        double u_reading);
-
-/// An axis series against the positioning that the diagonals alone give, both less a line.
-struct ShapeContrast {
-  std::size_t axis = 0;
-  double rms = 0.0, largest = 0.0, at = 0.0;  ///< m
-  double p = 1.0;
-};
-std::vector<ShapeContrast> contrast_shapes(const StepDiagonals&, const std::vector<AxisSeries>&,
-                                           const StepChoices&);
 
 }  // namespace nonio::math
