@@ -13,11 +13,20 @@ extern template class JacobiSVD<MatrixXd>;
 extern template class LDLT<MatrixXd>;
 extern template class LLT<MatrixXd>;
 extern template class PartialPivLU<MatrixXd>;
-extern template class SelfAdjointEigenSolver<MatrixXd>;
 
 }  // namespace Eigen
 
 namespace nonio::math {
+
+/// Eigenvalues, ascending, and in their order the unit eigenvectors as columns.
+struct Spectrum {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+
+/// Of a symmetric matrix. A function, so that nobody else compiles its loops: -O3 makes them
+/// 1.7 times as fast.
+Spectrum spectrum(const Eigen::MatrixXd& symmetric);
 
 /// A count or position as Eigen wants it.
 inline Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }

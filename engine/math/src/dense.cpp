@@ -9,6 +9,14 @@ template class JacobiSVD<MatrixXd>;
 template class LDLT<MatrixXd>;
 template class LLT<MatrixXd>;
 template class PartialPivLU<MatrixXd>;
-template class SelfAdjointEigenSolver<MatrixXd>;
 
 }  // namespace Eigen
+
+namespace nonio::math {
+
+Spectrum spectrum(const Eigen::MatrixXd& symmetric) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+}  // namespace nonio::math

@@ -145,16 +145,15 @@ struct Factor {
 };
 
 Factor factor(const Design& design) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(design.A.transpose() * design.A);
-  const VectorXd& values = eigen.eigenvalues();
+  const auto [values, vectors] = spectrum(design.A.transpose() * design.A);
   const Index size = values.size();
   const double least = undetermined * values[size - 1];
   Index open = 0;
   while (open < size && values[open] <= least) ++open;
-  const auto V = eigen.eigenvectors().rightCols(size - open);
+  const auto V = vectors.rightCols(size - open);
   Factor f;
   f.rank = size - open;
-  f.open = eigen.eigenvectors().leftCols(open);
+  f.open = vectors.leftCols(open);
   f.inverse = V * values.tail(size - open).cwiseInverse().asDiagonal() * V.transpose();
   return f;
 }

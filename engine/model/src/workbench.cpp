@@ -210,13 +210,13 @@ double fall_of(const MatrixXd& s, const VectorXd& t, double least) {
 
 /// The same in those directions of the block that are independent.
 double fall_of_some(const MatrixXd& s, const VectorXd& t) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(s);
-  const VectorXd along = eigen.eigenvectors().transpose() * t;
+  const auto [values, vectors] = math::spectrum(s);
+  const VectorXd along = vectors.transpose() * t;
   double fall = 0.0;
   bool any = false;
   for (Index k = 0; k < along.size(); ++k) {
-    if (!(eigen.eigenvalues()(k) > independent)) continue;
-    fall += along(k) * along(k) / eigen.eigenvalues()(k);
+    if (!(values(k) > independent)) continue;
+    fall += along(k) * along(k) / values(k);
     any = true;
   }
   return any ? fall : nan;
@@ -302,15 +302,15 @@ Workbench::Directions Workbench::directions(const std::vector<std::size_t>& bloc
     const Block& block = blocks_[b];
     const Index k = block.count, had = out.of_columns.cols();
     const MatrixXd inside = out.of_columns.transpose() * gram.middleCols(first, k);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> own(block.own - inside.transpose() * inside);
-    const Index rank = (own.eigenvalues().array() > least_of(block)).count();
+    const math::Spectrum own = math::spectrum(block.own - inside.transpose() * inside);
+    const Index rank = (own.values.array() > least_of(block)).count();
     out.sound = out.sound && rank > 0 && (rank == k || reducible(block));
     MatrixXd fresh = -out.of_columns * inside;
     fresh.middleRows(first, k) += MatrixXd::Identity(k, k);
     out.of_columns.conservativeResize(Eigen::NoChange, had + rank);
     out.of_columns.rightCols(rank) =
-        fresh * own.eigenvectors().rightCols(rank) *
-        own.eigenvalues().tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+        fresh * own.vectors.rightCols(rank) *
+        own.values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
     out.rank.push_back(rank);
     first += k;
   }
