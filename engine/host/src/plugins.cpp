@@ -131,11 +131,9 @@ void Plugins::load(const std::vector<fs::path>& folders) {
 }
 
 void Plugins::load_file(const fs::path& path, const std::string& refusal) {
-  files_.push_back(PluginFile{.path = path, .refused = refusal, .brought = {}, .sha256 = {}});
+  files_.push_back(PluginFile{.path = path, .refused = refusal, .brought = {}});
   PluginFile& file = files_.back();
   if (!file.refused.empty()) return;
-  const auto bytes = MappedFile::open(path);
-  if (bytes) file.sha256 = host::sha256(bytes->bytes());
   const auto entry = open_entry(path);
   if (entry)
     (*entry)->add_to(*this);
@@ -153,8 +151,11 @@ bool Plugins::all_from(const fs::path& folder) const {
 
 std::string Plugins::digest() const {
   std::string all;
-  for (const PluginFile& file : files_)
-    if (file.refused.empty()) all += file.path.filename().string() + " " + file.sha256 + "\n";
+  for (const PluginFile& file : files_) {
+    if (!file.refused.empty()) continue;
+    const auto bytes = MappedFile::open(file.path);
+    all += file.path.filename().string() + " " + (bytes ? sha256(bytes->bytes()) : "") + "\n";
+  }
   return host::sha256(all);
 }
 

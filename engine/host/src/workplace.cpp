@@ -41,7 +41,6 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
   place->notes = place->plugins.refusal_notes();
   context.plugins = &place->plugins;
-  context.plugins_sha256 = place->plugins.digest();
   return place;
 }
 

@@ -20,7 +20,7 @@ struct Context {
   SiteFile site;
   std::string site_sha256;  ///< of site.toml; of nothing if there is none
   const Plugins* plugins = nullptr;
-  std::string plugins_sha256;
+  std::string plugins_sha256;  ///< empty where no results are recorded
   Templates templates;
   std::string templates_sha256;
   std::string templates_json{};  ///< see `read_templates`; travels in what is signed

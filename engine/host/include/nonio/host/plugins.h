@@ -15,7 +15,6 @@ struct PluginFile {
   std::filesystem::path path;
   std::string refused;               ///< empty: loaded
   std::vector<std::string> brought;  ///< "analysis iso230-2 1.0.0", ...
-  std::string sha256;
 };
 
 /// All plugins of this process. Loaded once, never unloaded.
@@ -31,7 +30,7 @@ class Plugins final : public Registry {
   const std::vector<std::string>& conflicts() const { return conflicts_; }
   /// Whether every plugin that was loaded lies in this folder.
   bool all_from(const std::filesystem::path& folder) const;
-  /// One digest over all that was loaded.
+  /// One digest over the files of all that was loaded; reads them.
   std::string digest() const;
 
   const std::vector<Reader>& readers() const { return readers_; }
