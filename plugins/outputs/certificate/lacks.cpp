@@ -89,6 +89,8 @@ std::vector<std::string> lacks(const OutputInput& in) {
   if (const std::string claim = accredited_claim(in); !claim.empty())
     list.want(says_something(c.laboratory.accreditation),
               "laboratory.accreditation (site.toml; " + claim + ")");
+  list.want(c.laboratory.accreditation.empty() || c.laboratory.cmc.stated(),
+            "laboratory.cmc (site.toml; the smallest uncertainty that the accreditation covers)");
   list.want(says_something(c.customer), "campaign.customer");
   list.want(says_something(c.customer_address), "campaign.customer_address");
   list.want(says_something(c.site), "campaign.site");

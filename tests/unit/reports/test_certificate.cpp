@@ -363,6 +363,9 @@ TEST_F(Certificate, ATitleOrMarkOfAccreditationNeedsOne) {
   ASSERT_EQ(lacks(c).size(), 1U);
   EXPECT_TRUE(lacks(c)[0].starts_with("laboratory.accreditation (site.toml")) << lacks(c)[0];
   c.campaign.laboratory.accreditation = "LAT 123";
+  ASSERT_EQ(lacks(c).size(), 1U);
+  EXPECT_TRUE(lacks(c)[0].starts_with("laboratory.cmc (site.toml")) << lacks(c)[0];
+  c.campaign.laboratory.cmc.fixed = 0.5e-6;
   EXPECT_TRUE(lacks(c).empty());
   EXPECT_TRUE(has(text(c), "Accreditation: LAT 123"));
   c.campaign.laboratory.accreditation.clear();
