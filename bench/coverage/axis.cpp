@@ -56,8 +56,15 @@ void compare(const Analysis& analysis, const Scenario& s, unsigned seed, double 
   for (std::size_t k = 0; k < seen.points.columns.size(); ++k) {
     const PointTable::Column& column = seen.points.columns[k];
     if (!column.U) continue;
-    for (std::size_t i = 0; i < column.values.size(); ++i)
-      tally.put(column.name + "_i", column.values[i] - real.points.columns[k].values[i], *column.U);
+    std::vector<double> error;
+    double mean = 0.0;
+    for (std::size_t i = 0; i < column.values.size(); ++i) {
+      error.push_back(column.values[i] - real.points.columns[k].values[i]);
+      mean += error.back() / static_cast<double>(column.values.size());
+    }
+    // Where the display was preset is no property of the axis: mean deviations have a common zero.
+    const double zero = column.name.starts_with("mean") ? mean : 0.0;
+    for (const double e : error) tally.put(column.name + "_i", e - zero, *column.U);
   }
 }
 

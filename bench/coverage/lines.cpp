@@ -67,7 +67,8 @@ class Curves {
       out.push_back(name == "EYX_even"   ? (f_[i] + f_[j]) / 2.0
                     : name == "EXY_even" ? (g_[i] + g_[j]) / 2.0
                     : name == "q_odd"
-                        ? (f_[i] - f_[j]) / 2.0 + r_.Lx / r_.Ly * (g_[i] - g_[j]) / 2.0
+                        ? (r_.Ly * (f_[i] - f_[j]) + r_.Lx * (g_[i] - g_[j])) / 2.0 /
+                              std::hypot(r_.Lx, r_.Ly)
                         : NAN);
     }
     return out;

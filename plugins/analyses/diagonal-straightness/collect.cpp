@@ -196,6 +196,7 @@ class Gatherer {
       line.mean.push_back(sign * stop.mean(line.x_direction));
     put_u(line, curve, line.x_direction);
     line.zeroed = curve.zeroed;
+    line.visits = curve.visits(line.x_direction);
     return line;
   }
 
@@ -257,6 +258,7 @@ class Gatherer {
     for (const Curve::Stop& stop : curve.stops) to.mean.push_back(stop.mean(direction));
     put_u(to, curve, direction);
     to.zeroed = curve.zeroed;
+    to.visits = curve.visits(direction);
     to.direction = direction;
   }
 

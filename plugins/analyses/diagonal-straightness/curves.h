@@ -21,6 +21,7 @@ struct Curve {
     double position = 0.0, across = 0.0;  ///< of the axis, and of the second axis if there is one
     double plus = 0.0, minus = 0.0;       ///< means
     std::size_t n_plus = 0, n_minus = 0;
+    std::vector<double> at_plus, at_minus;  ///< time of each reading, 0 to 1 over the file
     std::uint32_t source_line = 0;  ///< of the file, of one reading; 0: not known
     /// Of the readings from one direction, or (0) of both.
     double mean(int direction = 0) const {
@@ -40,6 +41,8 @@ struct Curve {
   /// Standard uncertainty of the mean of this direction, or (0) of both; 0 if unknown.
   double u_mean(int direction = 0) const;
   double mean_reversal() const;
+  /// What the means of this direction, or (0) of both, were made of, by time.
+  std::vector<math::BudgetLine::Visit> visits(int direction) const;
   /// Index of the stop at this position, or the number of stops.
   std::size_t find(double position) const;
 };

@@ -55,6 +55,7 @@ class Lines {
     line.zeroed = curve.zeroed;
     line.u = curve.u;
     line.dof = curve.dof;
+    line.visits = curve.visits;
     return line;
   }
   static BudgetLine along(const MeanCurve& curve, double step) {

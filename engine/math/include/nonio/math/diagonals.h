@@ -40,6 +40,7 @@ struct MeanCurve {
   /// definition.
   bool zeroed = true;
   int direction = 0;  ///< of approach: +1, -1; 0: mean of both
+  std::vector<BudgetLine::Visit> visits{};  ///< what the means were made of, by time; or none
 };
 
 struct PitchLine : MeanCurve {
