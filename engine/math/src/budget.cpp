@@ -211,6 +211,11 @@ class Builder {
   bool lengths_ = false, laterals_ = false, angles_ = false, coordinates_ = false;
 };
 
+bool of_each_reading(const ReadingModel::Input& input) {
+  return input.is.correlation == Correlation::readings &&
+         input.is.quantity != Quantity::small_angle && input.patterns.empty();
+}
+
 /// Variance in a result of one input, and the sum of the fourth powers of its independent parts.
 struct Parts {
   double variance = 0.0, fourth = 0.0;
@@ -223,6 +228,21 @@ class Variance {
       : model_(model), input_(input), J_(J) {}
 
   /// in_residuals: of the lines only that are in the residuals of the fit.
+  /// Of the variance of the repetition.
+  double seen_elsewhere() const {
+    double variance = 0.0;
+    std::size_t first = 0;
+    for (std::size_t l = 0; l < model_.lines.size(); ++l) {
+      const BudgetLine& line = model_.lines[l];
+      double each = line.in_residuals ? input_.seen * input_.seen : 0.0;
+      if (input_.is.correlation == Correlation::walk)
+        each += std::pow(input_.of_line[l], 2) * line.walk_seen;
+      for (const double J : J_.subspan(first, line.length.size())) variance += each * J * J;
+      first += line.length.size();
+    }
+    return variance;
+  }
+
   Parts all(bool in_residuals = false) const {
     if (!input_.patterns.empty()) return in_residuals ? Parts{} : of_patterns();
     std::map<std::size_t, double> sums;  // by group; one for all of a device
@@ -315,8 +335,8 @@ Shares ReadingModel::shares(std::span<const double> row) const {
     const Variance of(*this, input, row);
     const Parts all = of.all();
     out.u.push_back(std::sqrt(all.variance));
-    out.in_residuals.push_back(
-        input.is.correlation == Correlation::readings ? std::sqrt(of.all(true).variance) : 0.0);
+    out.in_residuals.push_back(std::sqrt(of_each_reading(input) ? of.all(true).variance
+                                                                : of.seen_elsewhere()));
     out.rectangular.push_back(
         input.is.distribution == Distribution::rectangular ? std::sqrt(std::sqrt(all.fourth)) : 0.0);
   }
@@ -333,6 +353,16 @@ Shares ReadingModel::shares(std::span<const double> row) const {
   if (std::any_of(lines.begin(), lines.end(), [](const BudgetLine& l) { return l.u > 0.0; }))
     out.dof = fourth > 0.0 ? variance * variance / fourth : INFINITY;
   return out;
+}
+
+void ReadingModel::see_residuals(std::span<const std::vector<double>> rows, double dof) {
+  if (!(dof > 0.0)) return;
+  for (Input& input : inputs) {
+    if (of_each_reading(input)) continue;
+    double sum = 0.0;
+    for (const auto& row : rows) sum += Variance(*this, input, row).all().variance;
+    input.seen = std::sqrt(sum / dof);
+  }
 }
 
 std::vector<double> reading_times(const Observations& o) {
@@ -373,17 +403,12 @@ void put_expansion(BudgetLine& line, const Campaign& c, std::span<const std::str
 
 namespace {
 
-bool of_each_reading(const ReadingModel::Input& input) {
-  return input.is.correlation == Correlation::readings &&
-         input.is.quantity != Quantity::small_angle && input.patterns.empty();
-}
-
-/// What of the inputs that each reading has for itself is not in the residuals' scatter already.
-double beside_residuals(const ReadingModel& model, double scatter) {
+/// Variance of a reading by the inputs that each reading has for itself.
+double variance_of_each(const ReadingModel& model) {
   double squares = 0.0;
   for (const auto& input : model.inputs)
     if (of_each_reading(input)) squares += input.is.u * input.is.u;
-  return squares > 0.0 ? std::sqrt(std::max(0.0, 1.0 - scatter * scatter / squares)) : 0.0;
+  return squares;
 }
 
 }  // namespace
@@ -392,8 +417,11 @@ BudgetOf::BudgetOf(const ReadingModel& model, double repetition, double dof, Qua
                    std::string source) {
   const bool repeated = std::any_of(model.lines.begin(), model.lines.end(),
                                     [](const BudgetLine& line) { return line.u > 0.0; });
-  const bool residuals = std::isfinite(dof) && source == "readings" && !repeated;
-  const double rest = residuals ? beside_residuals(model, repetition) : 1.0;
+  const bool scatter = std::isfinite(dof) && source == "readings", residuals = scatter && !repeated;
+  const double each = variance_of_each(model), all = repetition * repetition;
+  double rest = 1.0;
+  if (residuals) rest = each > 0.0 ? std::sqrt(std::max(0.0, 1.0 - all / each)) : 0.0;
+  if (scatter) unexplained_ = residuals && all > 0.0 ? std::max(0.0, 1.0 - each / all) : 1.0;
   budget_.contributions.push_back(
       {.id = "repetition",
        .u = repetition,
@@ -405,7 +433,8 @@ BudgetOf::BudgetOf(const ReadingModel& model, double repetition, double dof, Qua
   const bool others = std::any_of(model.lines.begin(), model.lines.end(),
                                   [](const BudgetLine& line) { return !line.in_residuals; });
   for (const auto& input : model.inputs) {
-    factor_.push_back(of_each_reading(input) ? rest : 1.0);
+    each_.push_back(of_each_reading(input));
+    factor_.push_back(each_.back() ? rest : 1.0);
     counts_.push_back(factor_.back() > 0.0 || others);
     if (!counts_.back()) {
       budget_.contributions.front().source += ", " + input.is.source;
@@ -419,13 +448,21 @@ BudgetOf::BudgetOf(const ReadingModel& model, double repetition, double dof, Qua
   budget_.missing = model.missing;
 }
 
-std::vector<double> BudgetOf::counted(const Shares& shares) const {
+std::vector<double> BudgetOf::counted(double u_repetition, const Shares& shares) const {
+  const auto in = [&](std::size_t i) {
+    return i < shares.in_residuals.size() ? shares.in_residuals[i] * shares.in_residuals[i] : 0.0;
+  };
+  // The scatter that was found is the most that anything can have added to it.
+  const double found = unexplained_ * u_repetition * u_repetition;
+  double expected = 0.0;
+  for (std::size_t i = 0; i < shares.u.size(); ++i)
+    if (!each_[i]) expected += in(i);
+  const double part = expected > found ? found / expected : unexplained_ > 0.0 ? 1.0 : 0.0;
   std::vector<double> out;
   for (std::size_t i = 0; i < shares.u.size(); ++i)
     if (counts_[i]) {
-      const double in = i < shares.in_residuals.size() ? shares.in_residuals[i] : 0.0;
-      out.push_back(std::sqrt(
-          std::max(0.0, shares.u[i] * shares.u[i] - (1.0 - factor_[i] * factor_[i]) * in * in)));
+      const double once = each_[i] ? 1.0 - factor_[i] * factor_[i] : part;
+      out.push_back(std::sqrt(std::max(0.0, shares.u[i] * shares.u[i] - once * in(i))));
     }
   return out;
 }
@@ -433,7 +470,7 @@ std::vector<double> BudgetOf::counted(const Shares& shares) const {
 Expanded BudgetOf::expand(double u_repetition, const Shares& shares) const {
   Expanded out;
   double variance = u_repetition * u_repetition;
-  for (const double u : counted(shares)) variance += u * u;
+  for (const double u : counted(u_repetition, shares)) variance += u * u;
   out.u = std::sqrt(variance);
   const double dof =
       shares.dof > 0.0 ? shares.dof : budget_.contributions.front().dof.value_or(INFINITY);
@@ -459,7 +496,7 @@ Value BudgetOf::value(std::string name, double v, Quantity quantity, double u_re
     return out;
   }
   UncertaintyBudget::Result line{std::move(name), quantity, {u_repetition}, e.k, e.dof};
-  const auto others = counted(shares);
+  const auto others = counted(u_repetition, shares);
   line.u.insert(line.u.end(), others.begin(), others.end());
   budget_.results.push_back(std::move(line));
   return out;

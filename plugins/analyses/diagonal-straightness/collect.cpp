@@ -203,7 +203,9 @@ class Gatherer {
   void put_u(math::MeanCurve& to, const Curve& curve, int direction) const {
     const double stated = in_.options.number("reading_u_um") * 1e-6;
     to.u = stated > 0.0 ? stated : curve.u_mean(direction);
-    if (!(stated > 0.0)) to.dof = static_cast<double>(curve.dof);
+    if (stated > 0.0) return;
+    to.dof = static_cast<double>(curve.dof);
+    if (curve.s > 0.0) to.walk_seen = curve.walk_seen * std::pow(to.u / curve.s, 2);
   }
 
   /// Measurements of this kind along an axis of this letter: those of the set by name, else those

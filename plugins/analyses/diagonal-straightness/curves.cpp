@@ -59,6 +59,20 @@ std::size_t Curve::find(double position) const {
   return stops.size();
 }
 
+namespace {
+
+/// What a walk of variance 1 adds to the sum of squares about the mean of readings at these times.
+double squares_of_walk(const std::vector<double>& times) {
+  double sum = 0.0, common = 0.0;
+  for (const double t : times) {
+    sum += t;
+    for (const double other : times) common += std::min(t, other);
+  }
+  return times.empty() ? 0.0 : sum - common / static_cast<double>(times.size());
+}
+
+}  // namespace
+
 Curve curve_of(const Observations& o, std::size_t column) {
   const auto& axis = o.axes[column];
   std::vector<std::size_t> order(o.size());
@@ -93,6 +107,7 @@ Curve curve_of(const Observations& o, std::size_t column) {
         const double e = o.deviation[order[k]] - (plus ? stop.plus : stop.minus);
         squares += e * e;
       }
+      curve.walk_seen += squares_of_walk(stop.at_plus) + squares_of_walk(stop.at_minus);
       dof += std::max<std::size_t>(stop.n_plus, 1) - 1 + std::max<std::size_t>(stop.n_minus, 1) - 1;
     }
     curve.stops.push_back(stop);
@@ -100,6 +115,7 @@ Curve curve_of(const Observations& o, std::size_t column) {
   }
   curve.dof = dof;
   if (dof > 0) curve.s = std::sqrt(squares / static_cast<double>(dof));
+  if (dof > 0) curve.walk_seen /= static_cast<double>(dof);
   return curve;
 }
 

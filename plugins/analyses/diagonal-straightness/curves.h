@@ -30,6 +30,7 @@ struct Curve {
     double reversal() const { return plus - minus; }
   };
   std::vector<Stop> stops;  ///< ascending
+  double walk_seen = 0.0;   ///< of s^2, by a walk of variance 1 over the file
   double s = 0.0;           ///< pooled standard deviation of a reading; 0: no repetition
   std::size_t dof = 0;      ///< of s
   bool zeroed = false;      ///< every reading at the first stop is 0

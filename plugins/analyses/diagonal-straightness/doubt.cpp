@@ -56,6 +56,7 @@ class Lines {
     line.u = curve.u;
     line.dof = curve.dof;
     line.visits = curve.visits;
+    line.walk_seen = curve.walk_seen;
     return line;
   }
   static BudgetLine along(const MeanCurve& curve, double step) {

@@ -300,6 +300,8 @@ std::vector<math::BudgetLine> budget_lines(const Passes& p, const Lengths& lengt
     math::BudgetLine line;
     line.zeroed = true;
     line.group = k;
+    // The scatter of the passes is that of increments, which a walk has too: 1/(3 n) = 2 u^2.
+    line.walk_seen = 1.0 / (6.0 * static_cast<double>(d.n));
     for (std::size_t t = 0; t <= 3 * d.n; ++t) {
       const auto moves = d.counts(t);
       double along = 0.0;

@@ -66,12 +66,17 @@ struct BudgetLine {
     double weight = 1.0;      ///< in its mean
   };
   std::vector<Visit> visits{};  ///< by time; none: each reading once, one after the other
+  /// Variance of one reading that a walk of variance 1 along the line shows in what the repetition
+  /// was taken from.
+  double walk_seen = 0.0;
 };
 
 /// Standard uncertainty in a result, of each input in the order of `inputs`.
 struct Shares {
   std::vector<double> u;
-  std::vector<double> in_residuals;  ///< the part of it from lines that are in the residuals
+  /// What the repetition shows of it: where each reading has its own, the part of it from lines
+  /// that are in the residuals.
+  std::vector<double> in_residuals;
   /// Fourth root of the sum of c^4 over its independent rectangular parts; none where normal.
   std::vector<double> rectangular{};
   double dof = 0.0;  ///< of the repetition, where the lines have one each; 0: as the budget says
@@ -85,6 +90,8 @@ struct ReadingModel {
     /// Of what is one for a line: the share of its variance that all lines have together; absent
     /// if nobody knows.
     std::optional<double> together = 0.0;
+    /// Standard uncertainty of one reading that shows in the residuals of a fit (see_residuals).
+    double seen = 0.0;
     /// In place of these: independent errors of all readings, each a row of standard uncertainties.
     std::vector<std::vector<double>> patterns{};
   };
@@ -95,6 +102,9 @@ struct ReadingModel {
   std::size_t readings() const;
   /// row: derivative of a result by each reading, in the order of the lines.
   Shares shares(std::span<const double> row) const;
+  /// Derivatives of the residuals of a fit by the readings, and their degrees of freedom: what the
+  /// inputs make there is in the repetition that is taken from them.
+  void see_residuals(std::span<const std::vector<double>> rows, double dof);
 };
 
 /// When each reading was taken, 0 to 1 over all of them: by their times, or else by their order.
@@ -123,7 +133,8 @@ class BudgetOf {
   /// source: "readings", or the option that states it. Where it comes from the residuals of a fit
   /// (finite dof, and no line has a repetition of its own), they show what each reading has for
   /// itself: of inputs of that kind only the rest counts that the residuals do not show, the root
-  /// of u^2 - repetition^2 of all of them.
+  /// of u^2 - repetition^2 of all of them. What else the scatter shows (drift, shapes that the fit
+  /// does not take) counts once too: of these inputs only what is more than it.
   BudgetOf(const ReadingModel&, double repetition, double dof, Quantity quantity,
            std::string source = "readings");
 
@@ -138,11 +149,13 @@ class BudgetOf {
 
  private:
   /// Of the inputs that count, in the order of the budget.
-  std::vector<double> counted(const Shares&) const;
+  std::vector<double> counted(double u_repetition, const Shares&) const;
 
   UncertaintyBudget budget_;
   std::vector<double> factor_;  ///< of each input, as far as it is in the residuals
   std::vector<bool> counts_;    ///< of each input: whether something of it is left
+  std::vector<bool> each_;      ///< of each input: whether each reading has its own
+  double unexplained_ = 0.0;    ///< of the variance of the repetition: not of such inputs
 };
 
 /// What the readings themselves say of limits that the manifest states: the larger one counts.
