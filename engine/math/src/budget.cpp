@@ -5,9 +5,12 @@
 // a beam beside the axis) and that nobody corrects has the root mean square r/sqrt 3.
 //   device-fixed      U_fixed/2                    each reading (coordinates: one for a line)
 //   device-length     U_per_length/2 d             one for the instrument (coordinates: for a line)
-//   misalignment      R_mis^2/(2 L^2)/sqrt 3 d     one for a line of length L
-//   temperature       alpha R(theta)/(2 sqrt 3) d  one for a line: the sensor lies anew
-//   expansion         dT R(alpha)/(2 sqrt 3) d     one for a line: each at a temperature of its own
+//   misalignment      R_mis^2/(2 L^2)/sqrt 3 d     one for a line of length L; its mean, half of the
+//                     limit, is in all lines: 3/4 of the variance
+//   temperature       alpha R(theta)/(2 sqrt 3) d  one for a line if the sensor lies anew, one for
+//                     all if it stays: the larger
+//   expansion         dT R(alpha)/(2 sqrt 3) d     one for a line if each has a temperature of its
+//                     own, one for all if the shop keeps one: the larger
 //   device-temperature, device-expansion           the same of a device with a length of its own,
 //                                                  one for the instrument
 //   drift             E_VE/sqrt 3 at a line's end  a walk along each line; not less for more runs
@@ -33,6 +36,11 @@ using LineKind = BudgetLine::Kind;
 constexpr double as_if_known = 500.0;  // degrees of freedom from which on k is 2.00
 
 double k_of(double dof) { return dof < as_if_known ? coverage_factor(dof) : 2.0; }
+
+/// excess: of the whole distribution (kurtosis less 3), 0 or less.
+double k_of(double dof, double excess) { return k_of(dof) * shape_factor(excess); }
+
+constexpr double of_rectangle = -1.2;  // excess
 
 const double of_full_range = 1.0 / (2.0 * std::numbers::sqrt3),
              of_limit = 1.0 / std::numbers::sqrt3;
@@ -82,6 +90,9 @@ class Builder {
     if (std::find(all.begin(), all.end(), key) == all.end()) all.push_back(key);
   }
 
+  /// The last input: whether what is one for a line is one for all of them.
+  void together(std::optional<double> share) { out_.inputs.back().together = share; }
+
   /// of: standard uncertainty by line, for each m where it grows with the length.
   template <class Of>
   void add(const char* id, Distribution d, Correlation c, bool with_length, std::string source,
@@ -129,6 +140,7 @@ class Builder {
           const double L = extent(line);
           return line.kind == LineKind::length && L > 0.0 ? of_limit * R * R / (2.0 * L * L) : 0.0;
         });
+    together(0.75);
   }
 
   void temperatures() {
@@ -144,11 +156,13 @@ class Builder {
           return along(line) ? of_full_range * reading * std::fabs(line.expansion.value_or(0.0))
                              : 0.0;
         });
+    together(std::nullopt);
     add("expansion", Distribution::rectangular, Correlation::lines, true,
         "environment.temperature_difference_K, environment.expansion_range_um_per_m_K",
         [&](const BudgetLine& line) {
           return along(line) ? of_full_range * std::fabs(distance) * range : 0.0;
         });
+    together(std::nullopt);
   }
 
   void own_length() {
@@ -197,17 +211,42 @@ class Builder {
   bool lengths_ = false, laterals_ = false, angles_ = false, coordinates_ = false;
 };
 
-/// Variance in a result of one input.
+bool of_each_reading(const ReadingModel::Input& input) {
+  return input.is.correlation == Correlation::readings &&
+         input.is.quantity != Quantity::small_angle && input.patterns.empty();
+}
+
+/// Variance in a result of one input, and the sum of the fourth powers of its independent parts.
+struct Parts {
+  double variance = 0.0, fourth = 0.0;
+  void add(double part) { variance += part * part, fourth += std::pow(part, 4); }
+};
+
 class Variance {
  public:
   Variance(const ReadingModel& model, const ReadingModel::Input& input, std::span<const double> J)
       : model_(model), input_(input), J_(J) {}
 
   /// in_residuals: of the lines only that are in the residuals of the fit.
-  double all(bool in_residuals = false) const {
-    if (!input_.patterns.empty()) return in_residuals ? 0.0 : of_patterns();
-    std::map<std::size_t, double> sums;  // by group; one for all of a device
+  /// Of the variance of the repetition.
+  double seen_elsewhere() const {
     double variance = 0.0;
+    std::size_t first = 0;
+    for (std::size_t l = 0; l < model_.lines.size(); ++l) {
+      const BudgetLine& line = model_.lines[l];
+      double each = line.in_residuals ? input_.seen * input_.seen : 0.0;
+      if (input_.is.correlation == Correlation::walk)
+        each += std::pow(input_.of_line[l], 2) * line.walk_seen;
+      for (const double J : J_.subspan(first, line.length.size())) variance += each * J * J;
+      first += line.length.size();
+    }
+    return variance;
+  }
+
+  Parts all(bool in_residuals = false) const {
+    if (!input_.patterns.empty()) return in_residuals ? Parts{} : of_patterns();
+    std::map<std::size_t, double> sums;  // by group; one for all of a device
+    Parts out;
     std::size_t first = 0;
     for (std::size_t l = 0; l < model_.lines.size(); ++l) {
       const BudgetLine& line = model_.lines[l];
@@ -217,10 +256,10 @@ class Variance {
       if (u == 0.0 || (in_residuals && !line.in_residuals)) continue;
       switch (input_.is.correlation) {
         case Correlation::readings:
-          variance += u * u * squares(line, part);
+          for (std::size_t i = 0; i < part.size(); ++i) out.add(u * part[i] * factor(line, i));
           break;
         case Correlation::walk:
-          variance += u * u * walk(part);
+          out.variance += u * u * (line.visits.empty() ? walk(part) : walk(line, part));
           break;
         case Correlation::lines:
           sums[line.group] += u * sum(line, part);
@@ -229,8 +268,8 @@ class Variance {
           sums[0] += u * sum(line, part);
       }
     }
-    for (const auto& [group, value] : sums) variance += value * value;
-    return variance;
+    const Parts grouped = of_groups(sums);
+    return {out.variance + grouped.variance, out.fourth + grouped.fourth};
   }
 
  private:
@@ -238,29 +277,43 @@ class Variance {
     if (input_.is.with_length) return line.length[i];
     return i == 0 && line.zeroed ? 0.0 : 1.0;
   }
-  double squares(const BudgetLine& line, std::span<const double> J) const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < J.size(); ++i) sum += std::pow(J[i] * factor(line, i), 2);
-    return sum;
-  }
   double sum(const BudgetLine& line, std::span<const double> J) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < J.size(); ++i) sum += J[i] * factor(line, i);
     return sum;
+  }
+  Parts of_groups(const std::map<std::size_t, double>& sums) const {
+    Parts each, all;
+    double total = 0.0;
+    for (const auto& [group, value] : sums) each.add(value), total += value;
+    all.add(total);
+    if (!input_.together) return each.variance < all.variance ? all : each;
+    const double t = *input_.together;
+    return {(1.0 - t) * each.variance + t * all.variance,
+            (1.0 - t) * (1.0 - t) * each.fourth + t * t * all.fourth};
   }
   static double walk(std::span<const double> J) {
     double variance = 0.0, rest = 0.0;
     for (std::size_t i = J.size(); i-- > 1;) rest += J[i], variance += rest * rest;
     return J.size() < 2 ? 0.0 : variance / static_cast<double>(J.size() - 1);
   }
-  double of_patterns() const {
-    double variance = 0.0;
+  static double walk(const BudgetLine& line, std::span<const double> J) {
+    double variance = 0.0, rest = 0.0;
+    for (std::size_t v = line.visits.size(); v-- > 0;) {
+      const BudgetLine::Visit& visit = line.visits[v];
+      rest += visit.weight * J[visit.reading];
+      variance += (visit.time - (v > 0 ? line.visits[v - 1].time : 0.0)) * rest * rest;
+    }
+    return variance;
+  }
+  Parts of_patterns() const {
+    Parts out;
     for (const auto& pattern : input_.patterns) {
       double sum = 0.0;
       for (std::size_t i = 0; i < J_.size(); ++i) sum += J_[i] * pattern[i];
-      variance += sum * sum;
+      out.add(sum);
     }
-    return variance;
+    return out;
   }
 
   const ReadingModel& model_;
@@ -280,9 +333,12 @@ Shares ReadingModel::shares(std::span<const double> row) const {
   Shares out;
   for (const Input& input : inputs) {
     const Variance of(*this, input, row);
-    out.u.push_back(std::sqrt(of.all()));
-    out.in_residuals.push_back(
-        input.is.correlation == Correlation::readings ? std::sqrt(of.all(true)) : 0.0);
+    const Parts all = of.all();
+    out.u.push_back(std::sqrt(all.variance));
+    out.in_residuals.push_back(std::sqrt(of_each_reading(input) ? of.all(true).variance
+                                                                : of.seen_elsewhere()));
+    out.rectangular.push_back(
+        input.is.distribution == Distribution::rectangular ? std::sqrt(std::sqrt(all.fourth)) : 0.0);
   }
   double variance = 0.0, fourth = 0.0;
   std::size_t i = 0;
@@ -296,6 +352,28 @@ Shares ReadingModel::shares(std::span<const double> row) const {
   }
   if (std::any_of(lines.begin(), lines.end(), [](const BudgetLine& l) { return l.u > 0.0; }))
     out.dof = fourth > 0.0 ? variance * variance / fourth : INFINITY;
+  return out;
+}
+
+void ReadingModel::see_residuals(std::span<const std::vector<double>> rows, double dof) {
+  if (!(dof > 0.0)) return;
+  for (Input& input : inputs) {
+    if (of_each_reading(input)) continue;
+    double sum = 0.0;
+    for (const auto& row : rows) sum += Variance(*this, input, row).all().variance;
+    input.seen = std::sqrt(sum / dof);
+  }
+}
+
+std::vector<double> reading_times(const Observations& o) {
+  const bool timed = o.time.size() == o.size() &&
+                     std::all_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); });
+  std::vector<double> out(o.size(), 0.0);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = timed ? o.time[i] : static_cast<double>(i);
+  if (out.empty()) return out;
+  const auto [first, last] = std::minmax_element(out.begin(), out.end());
+  const double from = *first, whole = *last - *first;
+  for (double& t : out) t = whole > 0.0 ? (t - from) / whole : 0.0;
   return out;
 }
 
@@ -325,17 +403,12 @@ void put_expansion(BudgetLine& line, const Campaign& c, std::span<const std::str
 
 namespace {
 
-bool of_each_reading(const ReadingModel::Input& input) {
-  return input.is.correlation == Correlation::readings &&
-         input.is.quantity != Quantity::small_angle && input.patterns.empty();
-}
-
-/// What of the inputs that each reading has for itself is not in the residuals' scatter already.
-double beside_residuals(const ReadingModel& model, double scatter) {
+/// Variance of a reading by the inputs that each reading has for itself.
+double variance_of_each(const ReadingModel& model) {
   double squares = 0.0;
   for (const auto& input : model.inputs)
     if (of_each_reading(input)) squares += input.is.u * input.is.u;
-  return squares > 0.0 ? std::sqrt(std::max(0.0, 1.0 - scatter * scatter / squares)) : 0.0;
+  return squares;
 }
 
 }  // namespace
@@ -344,8 +417,11 @@ BudgetOf::BudgetOf(const ReadingModel& model, double repetition, double dof, Qua
                    std::string source) {
   const bool repeated = std::any_of(model.lines.begin(), model.lines.end(),
                                     [](const BudgetLine& line) { return line.u > 0.0; });
-  const bool residuals = std::isfinite(dof) && source == "readings" && !repeated;
-  const double rest = residuals ? beside_residuals(model, repetition) : 1.0;
+  const bool scatter = std::isfinite(dof) && source == "readings", residuals = scatter && !repeated;
+  const double each = variance_of_each(model), all = repetition * repetition;
+  double rest = 1.0;
+  if (residuals) rest = each > 0.0 ? std::sqrt(std::max(0.0, 1.0 - all / each)) : 0.0;
+  if (scatter) unexplained_ = residuals && all > 0.0 ? std::max(0.0, 1.0 - each / all) : 1.0;
   budget_.contributions.push_back(
       {.id = "repetition",
        .u = repetition,
@@ -357,7 +433,8 @@ BudgetOf::BudgetOf(const ReadingModel& model, double repetition, double dof, Qua
   const bool others = std::any_of(model.lines.begin(), model.lines.end(),
                                   [](const BudgetLine& line) { return !line.in_residuals; });
   for (const auto& input : model.inputs) {
-    factor_.push_back(of_each_reading(input) ? rest : 1.0);
+    each_.push_back(of_each_reading(input));
+    factor_.push_back(each_.back() ? rest : 1.0);
     counts_.push_back(factor_.back() > 0.0 || others);
     if (!counts_.back()) {
       budget_.contributions.front().source += ", " + input.is.source;
@@ -371,13 +448,21 @@ BudgetOf::BudgetOf(const ReadingModel& model, double repetition, double dof, Qua
   budget_.missing = model.missing;
 }
 
-std::vector<double> BudgetOf::counted(const Shares& shares) const {
+std::vector<double> BudgetOf::counted(double u_repetition, const Shares& shares) const {
+  const auto in = [&](std::size_t i) {
+    return i < shares.in_residuals.size() ? shares.in_residuals[i] * shares.in_residuals[i] : 0.0;
+  };
+  // The scatter that was found is the most that anything can have added to it.
+  const double found = unexplained_ * u_repetition * u_repetition;
+  double expected = 0.0;
+  for (std::size_t i = 0; i < shares.u.size(); ++i)
+    if (!each_[i]) expected += in(i);
+  const double part = expected > found ? found / expected : unexplained_ > 0.0 ? 1.0 : 0.0;
   std::vector<double> out;
   for (std::size_t i = 0; i < shares.u.size(); ++i)
     if (counts_[i]) {
-      const double in = i < shares.in_residuals.size() ? shares.in_residuals[i] : 0.0;
-      out.push_back(std::sqrt(
-          std::max(0.0, shares.u[i] * shares.u[i] - (1.0 - factor_[i] * factor_[i]) * in * in)));
+      const double once = each_[i] ? 1.0 - factor_[i] * factor_[i] : part;
+      out.push_back(std::sqrt(std::max(0.0, shares.u[i] * shares.u[i] - once * in(i))));
     }
   return out;
 }
@@ -385,14 +470,19 @@ std::vector<double> BudgetOf::counted(const Shares& shares) const {
 Expanded BudgetOf::expand(double u_repetition, const Shares& shares) const {
   Expanded out;
   double variance = u_repetition * u_repetition;
-  for (const double u : counted(shares)) variance += u * u;
+  for (const double u : counted(u_repetition, shares)) variance += u * u;
   out.u = std::sqrt(variance);
   const double dof =
       shares.dof > 0.0 ? shares.dof : budget_.contributions.front().dof.value_or(INFINITY);
   const double k_repetition = k_of(dof);
   out.repeatability = k_repetition * u_repetition;
   out.dof = u_repetition > 0.0 ? dof * std::pow(out.u / u_repetition, 4) : INFINITY;
-  out.k = budget_.missing.empty() ? k_of(out.dof) : k_repetition;
+  double fourth = 0.0;
+  for (std::size_t i = 0; i < shares.rectangular.size(); ++i)
+    if (counts_[i]) fourth += std::pow(factor_[i] * shares.rectangular[i], 4);
+  out.k = !budget_.missing.empty() ? k_repetition
+          : fourth > 0.0           ? k_of(out.dof, of_rectangle * fourth / (variance * variance))
+                                   : k_of(out.dof);
   if (budget_.missing.empty() && out.u > 0.0) out.U = out.k * out.u;
   return out;
 }
@@ -406,7 +496,7 @@ Value BudgetOf::value(std::string name, double v, Quantity quantity, double u_re
     return out;
   }
   UncertaintyBudget::Result line{std::move(name), quantity, {u_repetition}, e.k, e.dof};
-  const auto others = counted(shares);
+  const auto others = counted(u_repetition, shares);
   line.u.insert(line.u.end(), others.begin(), others.end());
   budget_.results.push_back(std::move(line));
   return out;
@@ -416,12 +506,13 @@ void BudgetOf::put(Series& s, std::span<const double> u_repetition,
                    std::span<const Shares> shares) const {
   const bool whole = budget_.missing.empty();
   std::vector<double> u;
-  s.k = 2.0;
+  double k = 0.0;
   for (std::size_t i = 0; i < u_repetition.size(); ++i) {
     const Expanded e = expand(u_repetition[i], shares[i]);
     u.push_back(whole ? e.u : u_repetition[i]);
-    if (u.back() > 0.0) s.k = std::max(s.k, e.k);  // a point that is 0 by definition has no say
+    if (u.back() > 0.0) k = std::max(k, e.k);  // a point that is 0 by definition has no say
   }
+  s.k = k > 0.0 ? k : 2.0;
   for (const double one : u) (whole ? s.U : s.repeatability).push_back(s.k * one);
 }
 

@@ -357,14 +357,20 @@ Functional less_line(const Functional& h) {
 }
 
 /// S = d1 + d2, of which only the even part can be an error of the machine.
-Closure closure_of(const System& system, std::size_t n, double factor) {
+/// Its limits are those of the whole budget, as far as there is one.
+Closure closure_of(const System& system, std::size_t n, const Solution& solution) {
   const Matrix C = system.covariance();
   const auto S = [&](std::size_t i) {
     Row h = Row::Zero(C.rows());
     if (i > 0) h[at(i - 1)] = h[at(n + i - 1)] = 1.0;
     return h;
   };
-  const auto variance = [&](const Row& h) { return factor * factor * h.dot(h * C); };
+  const double factor = solution.factor();
+  const auto variance = [&](const Row& h) {
+    double sum = factor * factor * h.dot(h * C);
+    for (const double u : solution.shares_of_readings(h * system.N()).u) sum += u * u;
+    return sum;
+  };
   Closure c;
   c.S_n = S(n) * system.y();
   c.S_n_limit = closure_limit * std::sqrt(variance(S(n)));
@@ -472,7 +478,7 @@ Expected<DiagonalResult> solve_diagonals(const DiagonalReadings& r, const Readin
     d->push_back(0.0);
     for (std::size_t i = 0; i < r.n; ++i) d->push_back(system.y()[at(from + i)]);
   }
-  out.closure = closure_of(system, r.n, s.factor());
+  out.closure = closure_of(system, r.n, s);
   fill_yaw(r, system, s, out);
   return out;
 }

@@ -6,6 +6,7 @@
 #include <boost/math/policies/policy.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace nonio::math {
 namespace {
@@ -44,6 +45,36 @@ double coverage_factor(double dof) {
   constexpr double outside = 0.04550026389635842;  // 1 - erf(2/sqrt 2)
   return quantile(
       complement(boost::math::students_t_distribution<double, Quiet>(dof), 0.5 * outside));
+}
+
+namespace {
+
+constexpr double within = 0.95449973610364158;  // erf(2/sqrt 2)
+
+/// P(|X| <= x), X of variance 1: rectangular of the variance share^2, and the rest normal.
+double share_within(double x, double share) {
+  const double half = share * std::sqrt(3.0), sigma = std::sqrt(std::max(0.0, 1.0 - share * share));
+  if (sigma < 1e-6) return std::min(1.0, x / half);
+  const auto integral = [](double z) {  // of the normal distribution function
+    return z * std::erfc(-z / std::numbers::sqrt2) / 2.0 +
+           std::exp(-z * z / 2.0) / std::sqrt(2.0 * std::numbers::pi);
+  };
+  return sigma / half * (integral((x + half) / sigma) - integral((x - half) / sigma)) - 1.0;
+}
+
+}  // namespace
+
+double shape_factor(double excess) {
+  constexpr double of_rectangle = -1.2, hardly_any = -1e-4;
+  if (!(excess < hardly_any)) return 1.0;
+  // The excess of the sum is that of the rectangle times the fourth power of its share.
+  const double share = std::pow(std::min(1.0, excess / of_rectangle), 0.25);
+  double low = 1.6, high = 2.1;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = (low + high) / 2.0;
+    (share_within(middle, share) < within ? low : high) = middle;
+  }
+  return (low + high) / 4.0;
 }
 
 }  // namespace nonio::math

@@ -196,13 +196,16 @@ class Gatherer {
       line.mean.push_back(sign * stop.mean(line.x_direction));
     put_u(line, curve, line.x_direction);
     line.zeroed = curve.zeroed;
+    line.visits = curve.visits(line.x_direction);
     return line;
   }
 
   void put_u(math::MeanCurve& to, const Curve& curve, int direction) const {
     const double stated = in_.options.number("reading_u_um") * 1e-6;
     to.u = stated > 0.0 ? stated : curve.u_mean(direction);
-    if (!(stated > 0.0)) to.dof = static_cast<double>(curve.dof);
+    if (stated > 0.0) return;
+    to.dof = static_cast<double>(curve.dof);
+    if (curve.s > 0.0) to.walk_seen = curve.walk_seen * std::pow(to.u / curve.s, 2);
   }
 
   /// Measurements of this kind along an axis of this letter: those of the set by name, else those
@@ -257,6 +260,7 @@ class Gatherer {
     for (const Curve::Stop& stop : curve.stops) to.mean.push_back(stop.mean(direction));
     put_u(to, curve, direction);
     to.zeroed = curve.zeroed;
+    to.visits = curve.visits(direction);
     to.direction = direction;
   }
 

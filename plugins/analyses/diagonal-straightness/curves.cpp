@@ -37,11 +37,41 @@ double Curve::mean_reversal() const {
   return sum / static_cast<double>(stops.size());
 }
 
+std::vector<math::BudgetLine::Visit> Curve::visits(int direction) const {
+  std::vector<math::BudgetLine::Visit> out;
+  for (std::size_t i = zeroed ? 1 : 0; i < stops.size(); ++i) {
+    const Stop& p = stops[i];
+    const double part = direction == 0 ? 0.5 : 1.0;
+    if (direction >= 0)
+      for (const double t : p.at_plus)
+        out.push_back({t, i, part / static_cast<double>(p.at_plus.size())});
+    if (direction <= 0)
+      for (const double t : p.at_minus)
+        out.push_back({t, i, part / static_cast<double>(p.at_minus.size())});
+  }
+  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+  return out;
+}
+
 std::size_t Curve::find(double position) const {
   for (std::size_t i = 0; i < stops.size(); ++i)
     if (std::fabs(stops[i].position - position) <= same_stop) return i;
   return stops.size();
 }
+
+namespace {
+
+/// What a walk of variance 1 adds to the sum of squares about the mean of readings at these times.
+double squares_of_walk(const std::vector<double>& times) {
+  double sum = 0.0, common = 0.0;
+  for (const double t : times) {
+    sum += t;
+    for (const double other : times) common += std::min(t, other);
+  }
+  return times.empty() ? 0.0 : sum - common / static_cast<double>(times.size());
+}
+
+}  // namespace
 
 Curve curve_of(const Observations& o, std::size_t column) {
   const auto& axis = o.axes[column];
@@ -50,6 +80,7 @@ Curve curve_of(const Observations& o, std::size_t column) {
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return axis.position[a] < axis.position[b];
   });
+  const std::vector<double> times = math::reading_times(o);
   Curve curve;
   double squares = 0.0;
   std::size_t dof = 0;
@@ -64,6 +95,7 @@ Curve curve_of(const Observations& o, std::size_t column) {
       const bool plus = axis.approach.empty() || axis.approach[order[end]] > 0;
       (plus ? stop.plus : stop.minus) += o.deviation[order[end]];
       ++(plus ? stop.n_plus : stop.n_minus);
+      (plus ? stop.at_plus : stop.at_minus).push_back(times[order[end]]);
       zero = zero && o.deviation[order[end]] == 0.0;
     }
     if (stop.n_plus > 0) stop.plus /= static_cast<double>(stop.n_plus);
@@ -75,6 +107,7 @@ Curve curve_of(const Observations& o, std::size_t column) {
         const double e = o.deviation[order[k]] - (plus ? stop.plus : stop.minus);
         squares += e * e;
       }
+      curve.walk_seen += squares_of_walk(stop.at_plus) + squares_of_walk(stop.at_minus);
       dof += std::max<std::size_t>(stop.n_plus, 1) - 1 + std::max<std::size_t>(stop.n_minus, 1) - 1;
     }
     curve.stops.push_back(stop);
@@ -82,6 +115,7 @@ Curve curve_of(const Observations& o, std::size_t column) {
   }
   curve.dof = dof;
   if (dof > 0) curve.s = std::sqrt(squares / static_cast<double>(dof));
+  if (dof > 0) curve.walk_seen /= static_cast<double>(dof);
   return curve;
 }
 

@@ -21,6 +21,7 @@ struct Curve {
     double position = 0.0, across = 0.0;  ///< of the axis, and of the second axis if there is one
     double plus = 0.0, minus = 0.0;       ///< means
     std::size_t n_plus = 0, n_minus = 0;
+    std::vector<double> at_plus, at_minus;  ///< time of each reading, 0 to 1 over the file
     std::uint32_t source_line = 0;  ///< of the file, of one reading; 0: not known
     /// Of the readings from one direction, or (0) of both.
     double mean(int direction = 0) const {
@@ -29,6 +30,7 @@ struct Curve {
     double reversal() const { return plus - minus; }
   };
   std::vector<Stop> stops;  ///< ascending
+  double walk_seen = 0.0;   ///< of s^2, by a walk of variance 1 over the file
   double s = 0.0;           ///< pooled standard deviation of a reading; 0: no repetition
   std::size_t dof = 0;      ///< of s
   bool zeroed = false;      ///< every reading at the first stop is 0
@@ -40,6 +42,8 @@ struct Curve {
   /// Standard uncertainty of the mean of this direction, or (0) of both; 0 if unknown.
   double u_mean(int direction = 0) const;
   double mean_reversal() const;
+  /// What the means of this direction, or (0) of both, were made of, by time.
+  std::vector<math::BudgetLine::Visit> visits(int direction) const;
   /// Index of the stop at this position, or the number of stops.
   std::size_t find(double position) const;
 };

@@ -129,7 +129,7 @@ class Report {
     if (r_.slave_shift) {
       const double W = c_.readings.X.back().across - c_.readings.X.front().across;
       math::Shares shares = r_.shares_C0Y;
-      for (auto* parts : {&shares.u, &shares.in_residuals})
+      for (auto* parts : {&shares.u, &shares.in_residuals, &shares.rectangular})
         for (double& u : *parts) u *= std::fabs(W);
       value("slave_shift", *r_.slave_shift, Quantity::deviation, std::fabs(W) * r_.u_C0Y, shares);
     }

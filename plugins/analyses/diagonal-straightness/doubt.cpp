@@ -55,6 +55,8 @@ class Lines {
     line.zeroed = curve.zeroed;
     line.u = curve.u;
     line.dof = curve.dof;
+    line.visits = curve.visits;
+    line.walk_seen = curve.walk_seen;
     return line;
   }
   static BudgetLine along(const MeanCurve& curve, double step) {

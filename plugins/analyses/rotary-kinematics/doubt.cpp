@@ -25,18 +25,17 @@ std::size_t count(const std::vector<const Judged*>& circles) {
   return n;
 }
 
-/// Coordinate `by` less its mean, as the error of coordinate `of`.
+/// Coordinate `by`, less that of the middle of the circles, as the error of coordinate `of`.
 std::vector<double> pattern(const std::vector<const Judged*>& circles, std::size_t of,
                             std::size_t by, double u) {
   const std::size_t n = count(circles);
   std::vector<double> out(3 * n, 0.0), at;
-  double mean = 0.0;
-  for (const Judged* j : circles)
-    for (const math::BallCentre& c : j->centres) {
-      at.push_back(c.at[by]);
-      mean += c.at[by] / static_cast<double>(n);
-    }
-  for (std::size_t i = 0; i < n; ++i) out[of * n + i] = u * (at[i] - mean);
+  double middle = 0.0;
+  for (const Judged* j : circles) {
+    for (const math::BallCentre& c : j->centres) at.push_back(c.at[by]);
+    middle += j->fit.centre[by] / static_cast<double>(circles.size());
+  }
+  for (std::size_t i = 0; i < n; ++i) out[of * n + i] = u * (at[i] - middle);
   return out;
 }
 

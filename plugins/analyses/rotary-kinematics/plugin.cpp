@@ -196,6 +196,16 @@ std::vector<const Observations*> observations_of(const AnalysisInput& in) {
   return out;
 }
 
+/// What the residuals of this circle show of the budget. (Each place read as often as the others.)
+void show_residuals(math::ReadingModel& model, const Judged& j, const rotary::Derivatives& by) {
+  const bool alike = std::all_of(j.centres.begin(), j.centres.end(),
+                                 [&](const auto& c) { return c.weight == j.centres[0].weight; });
+  if (!alike || j.fit.dof == 0 || by.radial.empty() || !std::isfinite(j.dof)) return;
+  auto rows = by.radial;
+  rows.insert(rows.end(), by.axial.begin(), by.axial.end());
+  model.see_residuals(rows, j.fit.dof);
+}
+
 Expected<Evaluation> analyse(const AnalysisInput& in) {
   const Wish wish = wish_of(in.campaign, in.observations, in.options);
   Judged judged = judge(in.observations, wish);
@@ -207,9 +217,10 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   math::HeldLimits limits = math::limits_held(in.campaign, observations_of(in));
   math::ReadingModel model =
       rotary::coordinate_model(in.campaign, limits.environment, {&judged}, wish.linear_axes);
+  rotary::Derivatives by = derivatives_of(judged, wish.use_angles);
+  show_residuals(model, judged, by);
   math::BudgetOf budget(model, judged.sigma, judged.dof, Quantity::deviation,
                         source_of(wish, judged));
-  rotary::Derivatives by = derivatives_of(judged, wish.use_angles);
   Work w{in,
          wish,
          std::move(limits),

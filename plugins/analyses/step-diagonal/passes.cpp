@@ -219,8 +219,9 @@ double mean_of(std::span<const math::AxisTest::Reading> readings) {
 }
 
 /// Mean deviations of an axis, and the standard uncertainty of one from the scatter of repeats.
-math::AxisSeries series_of(const math::AxisTest& test, std::size_t axis) {
-  math::AxisSeries s{axis, {}, {}, 0.0};
+math::AxisSeries series_of(const math::AxisTest& test, const std::vector<double>& times,
+                           std::size_t axis) {
+  math::AxisSeries s{axis, {}, {}, 0.0, {}};
   double squares = 0.0, dof = 0.0, share = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i) {
     double sum = 0.0, sides = 0.0, inverse = 0.0;
@@ -234,10 +235,16 @@ math::AxisSeries series_of(const math::AxisTest& test, std::size_t axis) {
       inverse += 1.0 / n;
     }
     if (sides == 0.0 || (test.bidirectional() && sides < 2.0)) continue;
+    for (const auto& readings : {test.plus(i), test.minus(i)})
+      for (const auto& r : readings)
+        s.visits.push_back({times[r.row], s.position.size(),
+                            1.0 / (sides * static_cast<double>(readings.size()))});
     s.position.push_back(test.targets[i]);
     s.deviation.push_back(sum / sides);
     share += inverse / (sides * sides);
   }
+  std::sort(s.visits.begin(), s.visits.end(),
+            [](const auto& a, const auto& b) { return a.time < b.time; });
   if (dof > 0.0 && !s.position.empty())
     s.u = std::sqrt(squares / dof * share / static_cast<double>(s.position.size()));
   return s;
@@ -273,8 +280,9 @@ Lengths lengths_of(const AnalysisInput& in, const Passes& passes) {
                                      {count("measurements", candidates.size())},
                                      {{"axis", passes.axes[k]}}));
     if (candidates.size() != 1) continue;
-    const auto test = math::AxisTest::arrange((*in.all)[candidates[0]]);
-    math::AxisSeries series = series_of(test, k);
+    const Observations& o = (*in.all)[candidates[0]];
+    math::AxisSeries series =
+        series_of(math::AxisTest::arrange(o), math::reading_times(o), k);
     if (series.position.size() < 2) continue;
     out.series.push_back(std::move(series));
     out.ids.push_back(in.campaign.measurements[candidates[0]].id);
@@ -292,6 +300,8 @@ std::vector<math::BudgetLine> budget_lines(const Passes& p, const Lengths& lengt
     math::BudgetLine line;
     line.zeroed = true;
     line.group = k;
+    // The scatter of the passes is that of increments, which a walk has too: 1/(3 n) = 2 u^2.
+    line.walk_seen = 1.0 / (6.0 * static_cast<double>(d.n));
     for (std::size_t t = 0; t <= 3 * d.n; ++t) {
       const auto moves = d.counts(t);
       double along = 0.0;
@@ -307,6 +317,7 @@ std::vector<math::BudgetLine> budget_lines(const Passes& p, const Lengths& lengt
     math::BudgetLine line;
     line.group = lines.size();
     line.in_residuals = false;  // the scatter is that of the passes
+    line.visits = s.visits;
     for (const double x : s.position) line.length.push_back(x - s.position.front());
     const double whole = 1.0;
     put_expansion(line, campaign, {&p.axes[s.axis], 1}, {&whole, 1});

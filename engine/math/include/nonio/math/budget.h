@@ -24,13 +24,19 @@
 ///     one for the instrument    u_f^2 = u^2 (sum_i J_i)^2,            or with J_i d_i
 ///
 /// d_i: distance of reading i from the zero of its line, where the error grows with the length; m:
-/// readings of a line. This is J V J' with the covariance V of the readings; what one instrument
-/// has in common for all of them (its scale) drops out of what does not depend on the scale.
+/// readings of a line (a mean of several visits: the walk goes through the visits). This is J V J'
+/// with the covariance V of the readings; what one instrument has in common for all of them (its
+/// scale) drops out of what does not depend on the scale. Where nobody knows whether lines share an
+/// error (a sensor that stays, a shop that is as warm for all lines) the larger one counts: one for
+/// each line, or one for all.
 ///
-/// Expanded: U = k u, k of Student's t at 95.45 % for the effective degrees of freedom
+/// Expanded: U = k u. k: the factor of 95.45 % of a normal and one rectangular part that have the
+/// excess -1.2 sum c^4/u^4 of all rectangular parts c (2 without them, 1.65 of one alone), times
+/// what Student's t needs more than 2 for the effective degrees of freedom
 /// nu = u^4/sum(u_k^4/nu_k); only the repetition has finite ones.
 ///
-/// Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (Welch-Satterthwaite); the inputs are
+/// Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (Welch-Satterthwaite); the excess: the
+/// fourth cumulants of independent parts add (derived); the inputs are
 /// those of uncertainty.h; their correlations are ours (docs/formulas.md), checked by Monte Carlo
 /// after JCGM 101 (bench/coverage.cpp).
 namespace nonio::math {
@@ -53,12 +59,26 @@ struct BudgetLine {
   bool in_residuals = true;
   /// Repetition of one reading, and its degrees of freedom, where lines differ in them.
   double u = 0.0, dof = INFINITY;
+  /// Where readings are means: when the machine stood there, and what counts of it.
+  struct Visit {
+    double time = 0.0;        ///< 0 at the first reading of the line, 1 at the last
+    std::size_t reading = 0;  ///< of this line
+    double weight = 1.0;      ///< in its mean
+  };
+  std::vector<Visit> visits{};  ///< by time; none: each reading once, one after the other
+  /// Variance of one reading that a walk of variance 1 along the line shows in what the repetition
+  /// was taken from.
+  double walk_seen = 0.0;
 };
 
 /// Standard uncertainty in a result, of each input in the order of `inputs`.
 struct Shares {
   std::vector<double> u;
-  std::vector<double> in_residuals;  ///< the part of it from lines that are in the residuals
+  /// What the repetition shows of it: where each reading has its own, the part of it from lines
+  /// that are in the residuals.
+  std::vector<double> in_residuals;
+  /// Fourth root of the sum of c^4 over its independent rectangular parts; none where normal.
+  std::vector<double> rectangular{};
   double dof = 0.0;  ///< of the repetition, where the lines have one each; 0: as the budget says
 };
 
@@ -67,6 +87,11 @@ struct ReadingModel {
   struct Input {
     Contribution is;
     std::vector<double> of_line;  ///< standard uncertainty by line: m or rad, or for each m
+    /// Of what is one for a line: the share of its variance that all lines have together; absent
+    /// if nobody knows.
+    std::optional<double> together = 0.0;
+    /// Standard uncertainty of one reading that shows in the residuals of a fit (see_residuals).
+    double seen = 0.0;
     /// In place of these: independent errors of all readings, each a row of standard uncertainties.
     std::vector<std::vector<double>> patterns{};
   };
@@ -77,7 +102,13 @@ struct ReadingModel {
   std::size_t readings() const;
   /// row: derivative of a result by each reading, in the order of the lines.
   Shares shares(std::span<const double> row) const;
+  /// Derivatives of the residuals of a fit by the readings, and their degrees of freedom: what the
+  /// inputs make there is in the repetition that is taken from them.
+  void see_residuals(std::span<const std::vector<double>> rows, double dof);
 };
+
+/// When each reading was taken, 0 to 1 over all of them: by their times, or else by their order.
+std::vector<double> reading_times(const Observations&);
 
 /// The inputs as the manifest states them. Nothing is assumed for what it does not say.
 ReadingModel reading_model(const Campaign&, const Environment&, std::vector<BudgetLine>);
@@ -102,7 +133,8 @@ class BudgetOf {
   /// source: "readings", or the option that states it. Where it comes from the residuals of a fit
   /// (finite dof, and no line has a repetition of its own), they show what each reading has for
   /// itself: of inputs of that kind only the rest counts that the residuals do not show, the root
-  /// of u^2 - repetition^2 of all of them.
+  /// of u^2 - repetition^2 of all of them. What else the scatter shows (drift, shapes that the fit
+  /// does not take) counts once too: of these inputs only what is more than it.
   BudgetOf(const ReadingModel&, double repetition, double dof, Quantity quantity,
            std::string source = "readings");
 
@@ -117,11 +149,13 @@ class BudgetOf {
 
  private:
   /// Of the inputs that count, in the order of the budget.
-  std::vector<double> counted(const Shares&) const;
+  std::vector<double> counted(double u_repetition, const Shares&) const;
 
   UncertaintyBudget budget_;
   std::vector<double> factor_;  ///< of each input, as far as it is in the residuals
   std::vector<bool> counts_;    ///< of each input: whether something of it is left
+  std::vector<bool> each_;      ///< of each input: whether each reading has its own
+  double unexplained_ = 0.0;    ///< of the variance of the repetition: not of such inputs
 };
 
 /// What the readings themselves say of limits that the manifest states: the larger one counts.

@@ -77,6 +77,7 @@ struct AxisSeries {
   std::size_t axis = 0;
   std::vector<double> position, deviation;  ///< m
   double u = 0.0;  ///< standard uncertainty of one deviation; 0: as readings
+  std::vector<BudgetLine::Visit> visits{};  ///< what the deviations were made of, by time; or none
 };
 
 struct StepChoices {
