@@ -220,9 +220,9 @@ class PdfCheck {
                                 std::vector<std::vector<CertificatePtr>>& chains) {
     if (!out_.holds()) return fail("are not read: the signature does not hold");
     X509* signer = data.certificate();
-    const Time until = time_of(X509_get0_notAfter(signer));
+    const Time last = time_of(X509_get0_notAfter(signer)) - 1;
     if (known.roots.empty() ||
-        !chain_of(signer, data.certificates(), known, std::min(verifier_.now, until)))
+        !chain_of(signer, data.certificates(), known, std::min(verifier_.now, last)))
       return fail("are not read: nobody who is trusted signed what stands before");
     if (!file()) return fail(file().error());
     auto updater = Updater::of(*file());
