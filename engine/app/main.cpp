@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   add("Campaigns", {new_verb(common), import_verb(common), show_verb(common), open_verb(common),
                     schema_verb(common)});
   add("Certificates", {release_verb(common), certificates_verb(common), verify_verb(common),
-                       template_verb(common)});
+                       restamp_verb(common), template_verb(common)});
   add("The error model",
       {compare_verb(common), explain_verb(common), model_verb(common), simulate_verb(common)});
   add("At the machine",

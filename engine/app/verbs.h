@@ -20,6 +20,7 @@ Verb plan_verb(Common& common);
 Verb plugin_verb(Common& common);
 Verb plugins_verb(Common& common);
 Verb release_verb(Common& common);
+Verb restamp_verb(Common& common);
 Verb run_verb(Common& common);
 Verb schema_verb(Common& common);
 Verb show_verb(Common& common);

@@ -2,6 +2,7 @@
 #include "authority.h"
 
 #include <gtest/gtest.h>
+#include <openssl/ocsp.h>
 #include <openssl/pem.h>
 #include <openssl/pkcs12.h>
 #include <openssl/rsa.h>
@@ -147,6 +148,26 @@ std::string revocation_list(const Holder& issuer, const Holder* revoked, const L
   ASN1_TIME_free(time);
   X509_CRL_free(list);
   return text;
+}
+
+std::string ocsp_answer(const Holder& issuer, const Holder& about, const ListWish& wish) {
+  OCSP_BASICRESP* basic = OCSP_BASICRESP_new();
+  OCSP_CERTID* id =
+      OCSP_cert_to_id(EVP_sha1(), about.certificate.get(), issuer.certificate.get());
+  ASN1_TIME* when = ASN1_TIME_adj(nullptr, wish.when, 0, 0);
+  ASN1_TIME* made = ASN1_GENERALIZEDTIME_adj(nullptr, wish.made, 0, 0);
+  ASN1_TIME* next = ASN1_GENERALIZEDTIME_adj(nullptr, wish.next, 0, 0);
+  OCSP_basic_add1_status(basic, id,
+                         wish.when == 0 ? V_OCSP_CERTSTATUS_GOOD : V_OCSP_CERTSTATUS_REVOKED,
+                         wish.reason, when, made, wish.next == 0 ? nullptr : next);
+  OCSP_basic_sign(basic, issuer.certificate.get(), issuer.key.get(), EVP_sha256(), nullptr, 0);
+  OCSP_RESPONSE* response = OCSP_response_create(OCSP_RESPONSE_STATUS_SUCCESSFUL, basic);
+  std::string out = written([&](BIO* to) { i2d_OCSP_RESPONSE_bio(to, response); });
+  OCSP_RESPONSE_free(response);
+  OCSP_BASICRESP_free(basic);
+  OCSP_CERTID_free(id);
+  for (ASN1_TIME* t : {when, made, next}) ASN1_TIME_free(t);
+  return out;
 }
 
 Folder::Folder() {

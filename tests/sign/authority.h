@@ -54,6 +54,9 @@ inline std::string revocation_list(const Holder& issuer, const Holder* revoked, 
   return revocation_list(issuer, revoked, wish);
 }
 
+/// An answer by OCSP (DER) of the issuer about one of his certificates; `when` 0: it is good.
+std::string ocsp_answer(const Holder& issuer, const Holder& about, const ListWish& wish);
+
 /// A folder that goes away with the object.
 class Folder {
  public:

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "authority.h"
+#include "nonio/sign/prolong.h"
 #include "nonio/sign/verify.h"
 #include "time_server.h"
 
@@ -61,12 +62,14 @@ std::string with(std::string text, const std::string& from, const std::string& t
   return text.replace(at, from.size(), to);
 }
 
-void flip_every_byte(const std::string& good) {
+/// From `from` on; of a long row of zeros every 97th.
+void flip_every_byte(const std::string& good, std::size_t from = 0) {
   const Scene& s = scene();
   ASSERT_TRUE(s.holds(good));
   std::string bytes = good;
   std::size_t accepted = 0;
-  for (std::size_t i = 0; i < good.size(); ++i)
+  for (std::size_t i = from; i < good.size(); ++i) {
+    if (from != 0 && i % 97 != 0 && good.compare(i, 64, std::string(64, '0')) == 0) continue;
     for (const char mask : {'\x01', '\x20', '\xFF'}) {
       bytes[i] = static_cast<char>(bytes[i] ^ mask);
       const std::string check = s.fails(bytes);
@@ -75,7 +78,32 @@ void flip_every_byte(const std::string& good) {
                       << " is accepted";
       bytes[i] = good[i];
     }
+  }
   EXPECT_EQ(accepted, 0U);
+}
+
+std::string prolonged() {
+  const Scene& s = scene();
+  sign::Prolonging how;
+  how.verifier = s.verifier;
+  how.verifier.revocation = revocation_list(s.root, nullptr, 0);
+  how.stamping = s.server.stamping(pem(s.root));
+  how.fetch = false;
+  const auto done = sign::prolong(s.plain, how);
+  EXPECT_TRUE(done) << done.error().message;
+  return done ? done->bytes : "";
+}
+
+TEST(Tamper, EveryByteFlippedOfAProlongedFile) {
+  flip_every_byte(prolonged(), scene().plain.size());
+}
+
+/// A file that is cut short holds only where an update ends: that is an earlier file.
+TEST(Tamper, AProlongedFileCutShort) {
+  const Scene& s = scene();
+  const std::string good = prolonged();
+  for (std::size_t n = s.plain.size(); n < good.size(); n += n < s.plain.size() + 3000 ? 1 : 37)
+    EXPECT_EQ(s.holds(good.substr(0, n)), n == s.plain.size()) << n;
 }
 
 TEST(Tamper, EveryByteFlipped) { flip_every_byte(scene().plain); }
@@ -115,13 +143,13 @@ TEST(Tamper, WhatIsAppended) {
   update += "xref\n5 1\n" + std::string(offset) +
             " 00000 n\r\ntrailer\n<<\n/Root 1 0 R\n/Size 10\n/Prev " + old + "\n>>\nstartxref\n" +
             std::to_string(at) + "\n%%EOF\n";
-  EXPECT_EQ(s.fails(update), "signature.range");
+  EXPECT_EQ(s.fails(update), "file.updates");
   // And the signed range made longer.
   const std::size_t range = update.find("/ByteRange [0 ") + 36;
   std::snprintf(offset, sizeof offset, "%010zu",
                 std::stoul(update.substr(range, 10)) + update.size() - s.plain.size());
   update.replace(range, 10, offset);
-  EXPECT_EQ(s.fails(update), "signature.content");
+  EXPECT_EQ(s.fails(update), "signature.range");
 }
 
 TEST(Tamper, WhatIsPutIntoThePadding) {

@@ -44,11 +44,9 @@ Stated stated_in_pdf(const sign::Verified& v) {
   return {issue.number, issue.register_id, true};
 }
 
-/// As it was issued; what was appended to a PDF later (time stamps) is signed by itself.
 bool is_issued_file(std::string_view bytes, const std::vector<IssuedFile>& files) {
-  return std::any_of(files.begin(), files.end(), [&](const IssuedFile& f) {
-    return f.bytes.starts_with("%PDF-") ? bytes.starts_with(f.bytes) : bytes == f.bytes;
-  });
+  return std::any_of(files.begin(), files.end(),
+                     [&](const IssuedFile& f) { return bytes == f.bytes; });
 }
 
 std::string words_of(const RegisterEntry& e) {

@@ -21,10 +21,12 @@ using State = sign::Check::State;
 
 void check_documents(sign::Verified& v, const sign::Verifier& verifier) {
   bool any = false;
+  sign::Verifier inside = verifier;
+  inside.existed = v.existed;
   for (const sign::Attachment& a : v.attachments) {
     if (!is_document(a)) continue;
     any = true;
-    for (sign::Check& c : sign::verify_xml(a.bytes, verifier, v.certificate).checks) {
+    for (sign::Check& c : sign::verify_xml(a.bytes, inside, v.certificate).checks) {
       c.id = "dcc." + c.id.substr(c.id.find('.') + 1);
       c.says = a.name + ": " + c.says;
       v.checks.push_back(std::move(c));
@@ -84,9 +86,6 @@ Expected<std::unique_ptr<Workplace>> open_to_verify(const std::vector<fs::path>&
   return place;
 }
 
-namespace {
-
-/// Refused by its size where the system tells it, else when more comes than may; never read whole.
 Expected<std::string> read_bounded(const fs::path& path) {
   const auto refuse = [&](const std::string& size) {
     return fail("is larger than " + std::to_string(sign::max_bytes / 1'000'000) + " MB" + size +
@@ -110,8 +109,6 @@ Expected<std::string> read_bounded(const fs::path& path) {
   return bytes;
 }
 
-}  // namespace
-
 sign::Verified verify_file(const fs::path& path, const sign::Verifier& verifier,
                            const Context& context, const fs::path& site) {
   const auto bytes = read_bounded(path);
@@ -130,9 +127,11 @@ sign::Verified verify_file(const fs::path& path, const sign::Verifier& verifier,
       v.checks.push_back({check, State::not_checked, "the signature does not hold"});
     return v;
   }
-  if (auto state = check_register(v, *bytes, site)) v.checks.push_back(std::move(*state));
+  // What was added later is looked at by `verify_pdf`; the rest is about what was issued.
+  const std::string_view issued = std::string_view(*bytes).substr(0, v.issued);
+  if (auto state = check_register(v, issued, site)) v.checks.push_back(std::move(*state));
   check_documents(v, verifier);
-  for (sign::Check& c : check_content(v, *bytes, context)) v.checks.push_back(std::move(c));
+  for (sign::Check& c : check_content(v, issued, context)) v.checks.push_back(std::move(c));
   return v;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "openssl.h"
+#include "revocation.h"
 
 namespace nonio::sign {
 
@@ -11,6 +12,7 @@ namespace nonio::sign {
 struct Trusted {
   std::vector<CertificatePtr> roots;
   std::vector<RevocationPtr> lists;
+  std::vector<Statement> kept{};  ///< what travels in the file
 };
 Expected<Trusted> trusted(const std::string& roots_pem, const std::string& lists_pem);
 
@@ -69,22 +71,5 @@ Expected<void> check_only(const std::vector<CertificatePtr>& certificates,
                           const std::vector<CertificatePtr>& chain);
 /// Those of `others` that lead from the certificate upwards, in their order.
 std::vector<CertificatePtr> way_up(X509* certificate, std::vector<CertificatePtr> others);
-
-/// What a revocation is held against.
-struct Revocation {
-  enum class Of { signer, time_server };
-  Time at;   ///< when the certificates were used
-  Time now;  ///< when they are checked: lists must be of use now
-  Of of;
-};
-/// How far two clocks may differ.
-inline constexpr Time clock_tolerance = 60;
-/// An error if a certificate of the chain was revoked before `at`, or if the newest list of an
-/// issuer is of no use: past its nextUpdate, from the future, or a part of a list only. Of a time
-/// server (RFC 3161, 4): revoked later counts too, unless the reason leaves its key unharmed.
-/// Else what was and was not looked at.
-Expected<std::string> check_revocation(const std::vector<CertificatePtr>& chain,
-                                       const Trusted& trusted, const Revocation& revocation,
-                                       bool& looked);
 
 }  // namespace nonio::sign

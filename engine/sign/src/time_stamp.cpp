@@ -2,7 +2,6 @@
 #include "time_stamp.h"
 
 #include <openssl/err.h>
-#include <openssl/http.h>
 #include <openssl/rand.h>
 #include <openssl/ts.h>
 #include <openssl/x509v3.h>
@@ -10,6 +9,7 @@
 #include <array>
 
 #include "der.h"
+#include "http.h"
 #include "verify_parts.h"
 
 namespace nonio::sign {
@@ -23,19 +23,11 @@ using ImprintPtr = std::unique_ptr<TS_MSG_IMPRINT, Freed<TS_MSG_IMPRINT_free>>;
 using IntegerPtr = std::unique_ptr<ASN1_INTEGER, Freed<ASN1_INTEGER_free>>;
 using AlgorithmPtr = std::unique_ptr<X509_ALGOR, Freed<X509_ALGOR_free>>;
 
-struct OpensslText {
-  char* text = nullptr;
-  OpensslText() = default;
-  OpensslText(const OpensslText&) = delete;
-  OpensslText& operator=(const OpensslText&) = delete;
-  ~OpensslText() { OPENSSL_free(text); }
-};
-
 struct Request {
   std::string der, nonce;
 };
 
-Expected<Request> request_for(std::string_view signature) {
+Expected<Request> request_for(std::string_view imprint_wanted) {
   std::array<unsigned char, 8> random{};
   if (RAND_bytes(random.data(), random.size()) != 1) return fail("no random number: " + reason());
   random[0] = static_cast<unsigned char>((random[0] & 0x3F) | 0x40);  // positive, full length
@@ -43,7 +35,7 @@ Expected<Request> request_for(std::string_view signature) {
   ASN1_STRING_set(nonce.get(), random.data(), random.size());
   const AlgorithmPtr algorithm(X509_ALGOR_new());
   X509_ALGOR_set0(algorithm.get(), OBJ_nid2obj(NID_sha256), V_ASN1_NULL, nullptr);
-  std::string imprinted = sha256(signature);
+  std::string imprinted(imprint_wanted);
   const ImprintPtr imprint(TS_MSG_IMPRINT_new());
   const RequestPtr request(TS_REQ_new());
   if (TS_MSG_IMPRINT_set_algo(imprint.get(), algorithm.get()) != 1 ||
@@ -56,32 +48,6 @@ Expected<Request> request_for(std::string_view signature) {
     return fail("no request: " + reason());
   return Request{der_of(request.get(), &i2d_TS_REQ),
                  {reinterpret_cast<const char*>(random.data()), random.size()}};
-}
-
-/// The answer's bytes.
-Expected<std::string> post(const TimeStamping& stamping, const std::string& request) {
-  OpensslText host, port, path, query;
-  int secure = 0;
-  if (OSSL_HTTP_parse_url(stamping.url.c_str(), &secure, nullptr, &host.text, &port.text, nullptr,
-                          &path.text, &query.text, nullptr) != 1 ||
-      secure != 0) {
-    ERR_clear_error();
-    return fail(stamping.url + " is no address of the form http://host/path");
-  }
-  std::string full_path = path.text;
-  if (query.text != nullptr && *query.text != '\0') full_path += std::string("?") + query.text;
-  const BioPtr body(BIO_new_mem_buf(request.data(), static_cast<int>(request.size())));
-  constexpr std::size_t longest = 60000;
-  const BioPtr answer(OSSL_HTTP_transfer(
-      nullptr, host.text, port.text, full_path.c_str(), 0, nullptr, nullptr, nullptr, nullptr,
-      nullptr, nullptr, 0, nullptr, "application/timestamp-query", body.get(),
-      "application/timestamp-reply", 1, longest, stamping.seconds, 0));
-  if (!answer) return fail(stamping.url + " does not answer: " + reason());
-  std::string bytes;
-  std::array<char, 4096> part{};
-  for (int n; (n = BIO_read(answer.get(), part.data(), part.size())) > 0;)
-    bytes.append(part.data(), static_cast<std::size_t>(n));
-  return bytes;
 }
 
 /// TimeStampResp ::= SEQUENCE { status, token }: the token as it stands there.
@@ -112,25 +78,30 @@ std::string nonce_of(const TS_TST_INFO* info) {
 
 }  // namespace
 
-Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::string_view signature,
+Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::string_view imprint,
                                          Time now) {
-  const auto request = request_for(signature);
+  const auto request = request_for(imprint);
   if (!request) return fail(request.error());
-  const auto answer = post(stamping, request->der);
+  const auto answer = ask_server(stamping.url,
+                                 {.query = "application/timestamp-query",
+                                  .reply = "application/timestamp-reply",
+                                  .body = request->der,
+                                  .longest = 60000,
+                                  .seconds = stamping.seconds});
   if (!answer) return fail(answer.error());
   auto token = token_of(*answer);
   if (!token) return fail(stamping.url + ": " + token.error().message);
   const auto roots = trusted(stamping.trust, {});
   if (!roots) return fail(roots.error());
-  const auto stamp = check_time_stamp(*token, signature, *roots, now);
+  const auto stamp = check_time_stamp(*token, imprint, *roots, now);
   if (!stamp) return fail(stamping.url + ": the time stamp " + stamp.error().message);
   if (stamp->nonce != request->nonce)
     return fail(stamping.url + ": the answer is not to this question");
   return token;
 }
 
-Expected<Stamp> check_time_stamp(std::string_view token, std::string_view signature,
-                                 const Trusted& known, Time now) {
+Expected<Stamp> check_time_stamp(std::string_view token, std::string_view stamped,
+                                 const Trusted& known, Time now, Time until) {
   const auto data = SignedData::parse(token, SignedData::Content::time_stamp);
   if (!data) return fail(data.error());
   if (auto holds = data->check_signature(data->content(), {}); !holds) return fail(holds.error());
@@ -143,7 +114,7 @@ Expected<Stamp> check_time_stamp(std::string_view token, std::string_view signat
   const ASN1_OBJECT* kind = nullptr;
   X509_ALGOR_get0(&kind, nullptr, nullptr, algorithm);
   if (OBJ_obj2nid(kind) != NID_sha256 ||
-      bytes_of(TS_MSG_IMPRINT_get_msg(imprint)) != sha256(signature))
+      bytes_of(TS_MSG_IMPRINT_get_msg(imprint)) != stamped)
     return fail("belongs to another signature");
   Stamp stamp{time_of(TS_TST_INFO_get_time(info.get())), subject_of(data->certificate()),
               nonce_of(info.get())};
@@ -155,16 +126,17 @@ Expected<Stamp> check_time_stamp(std::string_view token, std::string_view signat
     return fail("was made by " + quoted(stamp.by) + ", whose certificate is not for time stamps");
   // At the time of the stamp: that the server's certificate has run out since does not make it
   // less true that it was given.
-  const auto chain = chain_of(data->certificate(), data->certificates(), known, stamp.time);
+  auto chain = chain_of(data->certificate(), data->certificates(), known, stamp.time);
   if (!chain)
     return fail("was made by " + quoted(stamp.by) +
                 ", who is not trusted: " + chain.error().message);
   if (auto sound = check_issued(data->certificates(), known); !sound) return fail(sound.error());
   bool looked = false;
-  const auto revocation =
-      check_revocation(*chain, known, {stamp.time, now, Revocation::Of::time_server}, looked);
+  const auto revocation = check_revocation(
+      *chain, known, {stamp.time, now, Revocation::Of::time_server, until}, looked);
   if (!revocation)
     return fail("was made by " + quoted(stamp.by) + ": " + revocation.error().message);
+  stamp.chain = std::move(*chain);
   return stamp;
 }
 

@@ -6,19 +6,22 @@
 
 namespace nonio::sign {
 
-/// A token (RFC 3161) over a signature value, from the configured server and checked as `verify`
-/// will check it.
-Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::string_view signature,
+/// A token (RFC 3161) over what has this SHA-256, from the configured server and checked as
+/// `verify` will check it.
+Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::string_view imprint,
                                          Time now);
 
 struct Stamp {
   Time time = 0;
   std::string by;
   std::string nonce;  ///< as in the token; empty if it has none
+  std::vector<CertificatePtr> chain{};
 };
-/// Over this signature value, by somebody who may, whom the verifier trusts, and whose certificate
-/// was not revoked; not later than `now`, give or take a minute.
-Expected<Stamp> check_time_stamp(std::string_view token, std::string_view signature,
-                                 const Trusted& trusted, Time now);
+/// Over what has this SHA-256, by somebody who may, whom the verifier trusts, and whose certificate
+/// was not revoked; not later than `now`, give or take a minute. `until`: when the stamp is proved
+/// to have existed; what became of its server later is of no account.
+Expected<Stamp> check_time_stamp(std::string_view token, std::string_view imprint,
+                                 const Trusted& trusted, Time now,
+                                 Time until = std::numeric_limits<Time>::max());
 
 }  // namespace nonio::sign

@@ -2,12 +2,14 @@
 #include "nonio/sign/verify.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "certificate_use.h"
 #include "pdf_signature.h"
 #include "signed_data.h"
 #include "time_stamp.h"
 #include "verify_parts.h"
+#include "verify_updates.h"
 
 namespace nonio::sign {
 
@@ -47,38 +49,63 @@ void Report::check_signer(X509* certificate, const Verifier& verifier) {
       {});
 }
 
-void Report::check_stamp(const char* id, std::string_view token, std::string_view stamped,
-                         const std::string& said, const Trusted& known, const Verifier& verifier) {
-  if (token.empty()) return skip(id, "no time stamp: the signer says " + said, false);
-  const auto stamp = check_time_stamp(token, stamped, known, verifier.now);
-  if (!stamp) return add(id, fail("the time stamp " + stamp.error().message), {});
+std::vector<CertificatePtr> Report::check_stamp(const char* id, std::string_view token,
+                                                std::string_view stamped, const std::string& said,
+                                                const Trusted& known, const Verifier& verifier,
+                                                Time existed) {
+  if (token.empty()) {
+    if (existed == 0)
+      skip(id, "no time stamp: the signer says " + said, false);
+    else
+      add(id, {}, "signed before " + text_of(existed) + ", says a time stamp of the document");
+    if (existed != 0) out_.at = existed;
+    return {};
+  }
+  auto stamp = check_time_stamp(token, sha256(stamped), known, verifier.now,
+                                existed == 0 ? std::numeric_limits<Time>::max() : existed);
+  if (stamp && existed != 0 && stamp->time > existed + clock_tolerance)
+    stamp = fail("is of " + text_of(stamp->time) + ", later than one that covers it");
+  if (!stamp) {
+    add(id, fail("the time stamp " + stamp.error().message), {});
+    return {};
+  }
   out_.at = stamp->time;
   add(id, {}, "signed before " + text_of(stamp->time) + ", says " + quoted(stamp->by));
+  return std::move(stamp->chain);
 }
 
-void Report::check_chain(X509* certificate, const std::vector<CertificatePtr>& others,
-                         const Trusted& known, const Verifier& verifier) {
+std::vector<CertificatePtr> Report::check_chain(X509* certificate,
+                                                const std::vector<CertificatePtr>& others,
+                                                const Trusted& known, const Verifier& verifier) {
   add("certificate.use", check_signer_use(certificate),
       "the certificate is for signatures on documents");
   if (known.roots.empty()) {
     skip("certificate.chain", "nobody said whom to trust");
-    return skip("certificate.revocation", "needs the chain", false);
+    skip("certificate.revocation", "needs the chain", false);
+    return {};
   }
-  const auto chain = chain_of(certificate, others, known, out_.at);
+  auto chain = chain_of(certificate, others, known, out_.at);
   if (!chain) {
     add("certificate.chain",
         fail("not trusted at " + text_of(out_.at) + ": " + chain.error().message), {});
-    return skip("certificate.revocation", "needs the chain", false);
+    skip("certificate.revocation", "needs the chain", false);
+    return {};
   }
   add("certificate.chain", check_only(others, *chain),
       "leads to " + quoted(subject_of(chain->back().get())) + ", valid at " + text_of(out_.at));
-  if (verifier.revocation.empty())
-    return skip("certificate.revocation", "no revocation list was given", false);
+  if (known.lists.empty() && known.kept.empty()) {
+    skip("certificate.revocation", "no revocation list was given", false);
+    return std::move(*chain);
+  }
   bool looked = false;
   const auto revocation =
       check_revocation(*chain, known, {out_.at, verifier.now, Revocation::Of::signer}, looked);
-  if (revocation && !looked) return skip("certificate.revocation", *revocation);
-  add("certificate.revocation", to_void(revocation), revocation ? *revocation : "");
+  // Statements in the file that are about other certificates only take nothing away.
+  if (revocation && !looked)
+    skip("certificate.revocation", *revocation, !known.lists.empty());
+  else
+    add("certificate.revocation", to_void(revocation), revocation ? *revocation : "");
+  return std::move(*chain);
 }
 
 std::string quoted(std::string_view text) {
@@ -104,8 +131,13 @@ class PdfCheck {
           fail(bytes_.size() > max_file ? too_large : "is neither a PDF nor an XML document"), {});
       return std::move(out_);
     }
-    const auto place = signature_at_end(bytes_);
-    report_.add("signature.range", to_void(place), "covers the whole file but for itself");
+    ends_ = ends_of_parts(bytes_);
+    signed_ = bytes_.substr(0, ends_.front());
+    out_.issued = signed_.size();
+    const auto place = signature_at_end(signed_);
+    report_.add("signature.range", to_void(place),
+                ends_.size() == 1 ? "covers the whole file but for itself"
+                                  : "covers the file as it was signed but for itself");
     if (place) check_cms(*place);
     if (out_.holds()) return read(*place);
     for (const char* id : {"file.structure", "signature.one", "attachments"})
@@ -114,14 +146,18 @@ class PdfCheck {
   }
 
  private:
+  const Expected<pdf::File>& file() {
+    if (!file_) file_ = pdf::parse(signed_);
+    return *file_;
+  }
+
   Verified read(const PdfSignature& found) {
-    const auto file = pdf::parse(bytes_);
-    report_.add("file.structure", to_void(file),
+    report_.add("file.structure", to_void(file()),
                 "a PDF of one revision, every byte of it accounted for");
-    if (!file) return std::move(out_);
-    report_.add("signature.one", check_only(*file, found),
+    if (!file()) return std::move(out_);
+    report_.add("signature.one", check_only(*file(), found),
                 "one signature, " + std::string(sub_filter));
-    read_attachments(*file);
+    read_attachments(*file());
     return std::move(out_);
   }
 
@@ -138,19 +174,10 @@ class PdfCheck {
   }
 
   void check_cms(const PdfSignature& place) {
-    std::string contents;
-    for (std::size_t i = 0; i < place.contents.size(); i += 2)
-      contents += static_cast<char>(digit(place.contents[i]) * 16 + digit(place.contents[i + 1]));
-    std::string_view rest = contents;
-    const auto der = Der::take(rest);
-    Expected<void> padded;
-    if (!der)
-      padded = fail("holds no signature");
-    else if (rest.find_first_not_of('\0') != std::string_view::npos)
-      padded = fail("holds something behind the signature");
-    report_.add("signature.padding", padded, "nothing but zeros behind the signature");
-    if (!padded) return;
-    auto data = SignedData::parse(der->whole, SignedData::Content::detached);
+    const auto der = der_in(place.contents);
+    report_.add("signature.padding", to_void(der), "nothing but zeros behind the signature");
+    if (!der) return;
+    auto data = SignedData::parse(*der, SignedData::Content::detached);
     report_.add(
         "signature.form", to_void(data),
         data ? *algorithm_of(X509_get0_pubkey(data->certificate()), true) + " over SHA-2" : "");
@@ -160,18 +187,68 @@ class PdfCheck {
     report_.add("signature.certificate", data->check_certificate_named(),
                 "the certificate is the one that was signed with");
     out_.certificate = data->certificate_der();
-    const auto known = trusted(verifier_.trust, verifier_.revocation);
+    auto known = trusted(verifier_.trust, verifier_.revocation);
     if (!known) {
       report_.add("certificate.chain", fail(known.error()), {});
       return;
     }
-    report_.check_stamp("signature.time", data->time_stamp(), data->signature(),
-                        text_of(place.time), *known, verifier_);
-    report_.check_signer(data->certificate(), verifier_);
-    report_.check_chain(data->certificate(), data->certificates(), *known, verifier_);
+    check_people(place, *data, *known);
   }
 
-  static int digit(char c) { return c <= '9' ? c - '0' : c - 'a' + 10; }
+  void check_people(const PdfSignature& place, const SignedData& data, Trusted& known) {
+    std::vector<std::vector<CertificatePtr>> chains;
+    std::optional<Added> added;
+    if (ends_.size() > 1) {
+      auto updates = check_updates(data, known, chains);
+      report_.add("file.updates", to_void(updates), updates ? words_of(*updates, chains.size()) : "");
+      if (!updates) return;
+      added = std::move(*updates);
+    }
+    chains.push_back(report_.check_stamp("signature.time", data.time_stamp(), data.signature(),
+                                         text_of(place.time), known, verifier_, out_.existed));
+    report_.check_signer(data.certificate(), verifier_);
+    chains.push_back(
+        report_.check_chain(data.certificate(), data.certificates(), known, verifier_));
+    if (added)
+      report_.add("updates.needed", check_needed(*added, known, chains),
+                  "all of it is about these signatures");
+  }
+
+  /// Only in a file that somebody signed who is trusted: anybody may add to it what is signed by
+  /// itself, and nothing else.
+  Expected<Added> check_updates(const SignedData& data, Trusted& known,
+                                std::vector<std::vector<CertificatePtr>>& chains) {
+    if (!out_.holds()) return fail("are not read: the signature does not hold");
+    X509* signer = data.certificate();
+    const Time last = time_of(X509_get0_notAfter(signer)) - 1;
+    if (known.roots.empty() ||
+        !chain_of(signer, data.certificates(), known, std::min(verifier_.now, last)))
+      return fail("are not read: nobody who is trusted signed what stands before");
+    if (!file()) return fail(file().error());
+    auto updater = Updater::of(*file());
+    if (!updater) return fail(updater.error());
+    auto added = read_updates(bytes_, ends_, *updater);
+    if (!added) return fail(added.error());
+    auto stamps = check_document_stamps(*added, known, verifier_.now);
+    if (!stamps) return fail(stamps.error());
+    if (!stamps->empty()) out_.existed = stamps->front().time;
+    for (Stamp& stamp : *stamps) {
+      stamped_ += (stamped_.empty() ? "" : ", ") + text_of(stamp.time) + " by " + quoted(stamp.by);
+      chains.push_back(std::move(stamp.chain));
+    }
+    return added;
+  }
+
+  std::string words_of(const Added& added, std::size_t stamps) const {
+    const auto number = [](std::size_t n, const char* one, const char* more) {
+      return std::to_string(n) + " " + (n == 1 ? one : more);
+    };
+    return number(ends_.size() - 1, "update", "updates") + ", nothing in them but " +
+           number(added.covered.size(), "revocation list or answer", "revocation lists and answers") +
+           ", " + number(added.certificates.size(), "certificate", "certificates") + ", " +
+           number(stamps, "time stamp", "time stamps") +
+           (stamped_.empty() ? "" : ": " + stamped_);
+  }
 
   void read_attachments(const pdf::File& file) {
     auto attachments = attachments_of(file);
@@ -181,8 +258,11 @@ class PdfCheck {
                 n == 0 ? "none" : std::to_string(n) + (n == 1 ? " file" : " files"));
   }
 
-  std::string_view bytes_;
+  std::string_view bytes_, signed_;
   const Verifier& verifier_;
+  std::vector<std::size_t> ends_;
+  std::optional<Expected<pdf::File>> file_;
+  std::string stamped_;
   Verified out_;
   Report report_;
 };

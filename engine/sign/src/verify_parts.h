@@ -26,11 +26,16 @@ class Report {
   void skip(const char* id, const std::string& why, bool essential = true);
   void check_signer(X509* certificate, const Verifier& verifier);
   /// Sets `Verified::at` to what a time stamp over `stamped` proves; `said` is the signer's time.
-  void check_stamp(const char* id, std::string_view token, std::string_view stamped,
-                   const std::string& said, const Trusted& known, const Verifier& verifier);
+  /// `existed`: when all of it is proved to have existed; 0 if nothing proves it. The chain of the
+  /// stamp.
+  std::vector<CertificatePtr> check_stamp(const char* id, std::string_view token,
+                                          std::string_view stamped, const std::string& said,
+                                          const Trusted& known, const Verifier& verifier,
+                                          Time existed);
   /// At `Verified::at`.
-  void check_chain(X509* certificate, const std::vector<CertificatePtr>& others,
-                   const Trusted& known, const Verifier& verifier);
+  std::vector<CertificatePtr> check_chain(X509* certificate,
+                                          const std::vector<CertificatePtr>& others,
+                                          const Trusted& known, const Verifier& verifier);
 
  private:
   Verified& out_;

@@ -132,7 +132,7 @@ std::string xml_time(Time time) {
 Expected<void> add_time_stamp(XmlSignature& signature, Time now, const TimeStamping& stamping,
                               std::string& no_time_stamp) {
   if (stamping.url.empty()) return {};
-  auto token = ask_for_time_stamp(stamping, signature.value_element(), now);
+  auto token = ask_for_time_stamp(stamping, sha256(signature.value_element()), now);
   if (token) {
     signature.token = std::move(*token);
     return {};
@@ -317,10 +317,12 @@ class XmlCheck {
                     const std::vector<CertificatePtr>& all) {
     const auto known = trusted(verifier_.trust, verifier_.revocation);
     if (!known) return report_.add("certificate.chain", fail(known.error()), {});
-    report_.check_stamp("xml.time", s.token, s.value_element(), s.time, *known, verifier_);
+    report_.check_stamp("xml.time", s.token, s.value_element(), s.time, *known, verifier_,
+                        verifier_.existed);
     if (wanted_.empty()) {
       report_.check_signer(certificate, verifier_);
-      return report_.check_chain(certificate, all, *known, verifier_);
+      report_.check_chain(certificate, all, *known, verifier_);
+      return;
     }
     report_.add("xml.signer",
                 wanted_ == out_.certificate ? Expected<void>{}

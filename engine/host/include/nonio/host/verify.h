@@ -28,6 +28,10 @@ Expected<std::unique_ptr<Workplace>> open_to_verify(
     std::vector<std::filesystem::path> template_folders, const std::filesystem::path& site,
     const std::string& version);
 
+/// A file that may be a certificate. Refused by its size where the system tells it, else when more
+/// comes than may; never read whole.
+Expected<std::string> read_bounded(const std::filesystem::path& path);
+
 /// A certificate (PDF) or a DCC (XML): its signature first, then, where that holds, its content:
 /// every attached DCC, and the attached readings evaluated again by the plugins of `context`, up to
 /// the printed pages. The register of `site` (may be empty) is asked whether a number is in force.

@@ -29,6 +29,8 @@ struct Verifier {
   /// Who should have signed: the subject of the certificate, or its SHA-256.
   std::string signer{};
   Time now = 0;
+  /// Of what is inside a file with time stamps of its own: `Verified::existed` of that file.
+  Time existed = 0;
 };
 
 struct Verified {
@@ -37,6 +39,10 @@ struct Verified {
   std::string subject;
   /// When it was signed, as a time stamp proves; else `Verifier::now`.
   Time at = 0;
+  /// When a time stamp over the whole file proves it to have existed; 0 without one.
+  Time existed = 0;
+  /// Bytes of a PDF as it was signed; behind them stands what was added for long-term validation.
+  std::size_t issued = 0;
   std::vector<Attachment> attachments;  ///< of a PDF, if it could be read
 
   bool holds() const;  ///< every check, and no essential one was left out
