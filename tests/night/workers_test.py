@@ -46,13 +46,13 @@ class Workers(NightTest):
                                    stderr=subprocess.PIPE, text=True)
             while run.poll() is None and not any(out.glob("*/run.json")):
                 pass
-            killed = children(run.pid)  # one evaluates, one stores
+            killed = children(run.pid)  # plugins are loaded, evaluate; one has the files, one stores
             for process in killed:
                 os.kill(process, signal.SIGKILL)
             _, errors = run.communicate(timeout=120)
-            if len(killed) == 2:
+            if len(killed) == 4:
                 break
-        self.assertEqual(len(killed), 2)
+        self.assertEqual(len(killed), 4)
         self.assertEqual(run.returncode, 0, errors)
         self.assertTrue(tree(reference) == tree(out))
 

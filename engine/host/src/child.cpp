@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "child.h"
 
+#include <malloc.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -17,6 +18,10 @@ ChildEnd child_end(int status) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {true, {}};
   if (WIFEXITED(status)) return {false, "exit status " + std::to_string(WEXITSTATUS(status))};
   const int number = WTERMSIG(status);
+  if (number == SIGSYS)
+    return {false,
+            "tried what no plugin may do (start a program or a process, open a connection, signal "
+            "another process, memory beyond the limit): ended by the kernel"};
   return {false, "signal " + std::to_string(number) + " (" + ::strsignal(number) + ")"};
 }
 
@@ -46,6 +51,23 @@ void settle_child() {
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
+}
+
+std::size_t memory_held() {
+  const auto info = ::mallinfo2();
+  return info.arena + info.hblkhd;
+}
+
+void keep_freed_memory() {
+  constexpr int megabyte = 1 << 20;
+  ::mallopt(M_MMAP_THRESHOLD, 32 * megabyte);
+  ::mallopt(M_TRIM_THRESHOLD, 64 * megabyte);
+  ::mallopt(M_TOP_PAD, megabyte);
+}
+
+bool has_grown(std::size_t at_start) {
+  constexpr std::size_t allowed = 64 << 20;
+  return memory_held() > at_start + allowed;
 }
 
 void limit_memory(double megabytes) {

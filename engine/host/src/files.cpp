@@ -33,6 +33,17 @@ class Descriptor {
   int fd_;
 };
 
+std::function<int(const fs::path&)>& opener() {
+  static std::function<int(const fs::path&)> set;
+  return set;
+}
+
+/// Without waiting: a named pipe must not stop the night.
+Descriptor open_to_read(const fs::path& path) {
+  if (opener()) return Descriptor(opener()(path));
+  return Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+}
+
 tl::unexpected<Error> system_error(std::string_view what, const fs::path& path) {
   const int code = errno;
   return fail(std::string(what) + " " + path.string() + ": " + std::strerror(code));
@@ -61,9 +72,10 @@ Expected<void> flush_folder(const fs::path& folder) {
 
 }  // namespace
 
+void open_files_with(std::function<int(const fs::path&)> how) { opener() = std::move(how); }
+
 Expected<MappedFile> MappedFile::open(const fs::path& path) {
-  // Without waiting: a named pipe must not stop the night.
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  const Descriptor file = open_to_read(path);
   struct stat info {};
   if (!file || ::fstat(file.get(), &info) != 0) return system_error("cannot read", path);
   if (!S_ISREG(info.st_mode)) return fail("cannot read " + path.string() + ": not a file");
@@ -89,7 +101,7 @@ void MappedFile::release(std::size_t offset) const {
 }
 
 Expected<void> read_parts(const fs::path& path, const std::function<void(std::string_view)>& take) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  const Descriptor file = open_to_read(path);
   struct stat info {};
   if (!file || ::fstat(file.get(), &info) != 0) return system_error("cannot read", path);
   if (!S_ISREG(info.st_mode)) return fail("cannot read " + path.string() + ": not a file");

@@ -112,7 +112,46 @@ std::vector<std::string> probe(std::span<const fs::path> paths) {
 
 }  // namespace
 
-void Plugins::load(const std::vector<fs::path>& folders) {
+namespace {
+
+template <class Plugin>
+std::vector<Catalogue::Described> described(const std::vector<Plugin>& all) {
+  std::vector<Catalogue::Described> out;
+  for (const Plugin& plugin : all) {
+    out.push_back({plugin.info});
+    if constexpr (std::is_same_v<Plugin, Output>) out.back().stage = plugin.stage;
+  }
+  return out;
+}
+
+template <class Plugin>
+std::vector<Plugin> named(std::vector<Catalogue::Described> all) {
+  std::vector<Plugin> out;
+  for (Catalogue::Described& one : all) {
+    Plugin& plugin = out.emplace_back();
+    plugin.info = std::move(one.info);
+    if constexpr (std::is_same_v<Plugin, Output>) plugin.stage = one.stage;
+  }
+  return out;
+}
+
+}  // namespace
+
+Plugins::Plugins(Catalogue c)
+    : files_(std::move(c.files)),
+      conflicts_(std::move(c.conflicts)),
+      names_(std::move(c.names)),
+      readers_(named<Reader>(std::move(c.readers))),
+      effects_(named<Effect>(std::move(c.effects))),
+      analyses_(named<Analysis>(std::move(c.analyses))),
+      outputs_(named<Output>(std::move(c.outputs))) {}
+
+Catalogue Plugins::catalogue() const {
+  return {files_,           conflicts_,          names_, described(readers_), described(effects_),
+          described(analyses_), described(outputs_)};
+}
+
+std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
   std::vector<fs::path> paths;
   for (const fs::path& folder : folders) {
     std::vector<fs::path> here;
@@ -126,6 +165,11 @@ void Plugins::load(const std::vector<fs::path>& folders) {
     std::sort(here.begin(), here.end());
     paths.insert(paths.end(), here.begin(), here.end());
   }
+  return paths;
+}
+
+void Plugins::load(const std::vector<fs::path>& folders) {
+  const std::vector<fs::path> paths = files_in(folders);
   const std::vector<std::string> refusals = probe(paths);
   for (std::size_t i = 0; i < paths.size(); ++i) load_file(paths[i], refusals[i]);
 }
@@ -134,11 +178,17 @@ void Plugins::load_file(const fs::path& path, const std::string& refusal) {
   files_.push_back(PluginFile{.path = path, .refused = refusal, .brought = {}});
   PluginFile& file = files_.back();
   if (!file.refused.empty()) return;
-  const auto entry = open_entry(path);
-  if (entry)
-    (*entry)->add_to(*this);
-  else
-    file.refused = entry.error().message;
+  try {
+    const auto entry = open_entry(path);
+    if (entry)
+      (*entry)->add_to(*this);
+    else
+      file.refused = entry.error().message;
+  } catch (const std::exception& e) {
+    file.refused = std::string("threw while registering: ") + e.what();
+  } catch (...) {
+    file.refused = "threw while registering";
+  }
 }
 
 bool Plugins::all_from(const fs::path& folder) const {

@@ -189,7 +189,7 @@ class Releaser {
     if (!(*place)->signer) return refuse("site.toml says nothing of a key; wanted [signing]");
     if (!(*place)->no_key.empty()) return refuse((*place)->no_key);
     const Releasing releasing{*out_.draft, approval};
-    const ReleaseDesk desk{&*(*place)->signer, &releasing, {}};
+    const ReleaseDesk desk{&*(*place)->signer, &releasing, {}, &*(*place)->host};
     CampaignState campaign;
     campaign.id = id_;
     campaign.folder = out_.draft->folder;

@@ -180,6 +180,7 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   ReleaseDesk desk;
   auto& signer = (*place)->signer;
   desk.signer = signer ? &*signer : nullptr;
+  desk.plugins = &*(*place)->host;
   if (!*known)
     desk.recheck = [&](const std::vector<RegisterEntry>& numbers) {
       if (!state->issued_before) state->issued_before = issued_so_far(numbers);

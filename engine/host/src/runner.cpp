@@ -2,7 +2,6 @@
 #include "runner.h"
 
 #include <Poco/Environment.h>
-#include <malloc.h>
 #include <unistd.h>
 
 #include <array>
@@ -11,7 +10,9 @@
 #include <ctime>
 
 #include "certificates.h"
+#include "child.h"
 #include "committer.h"
+#include "computing.h"
 #include "database.h"
 #include "nonio/host/files.h"
 #include "store.h"
@@ -26,14 +27,6 @@ using Action = CampaignState::Action;
 
 std::atomic<bool> stop_requested = false;  // set by a signal
 static_assert(std::atomic<bool>::is_always_lock_free);
-
-/// Memory that a worker gives back to the system is only faulted in again for the next campaign.
-void keep_freed_memory() {
-  constexpr int megabyte = 1 << 20;
-  ::mallopt(M_MMAP_THRESHOLD, 32 * megabyte);
-  ::mallopt(M_TRIM_THRESHOLD, 64 * megabyte);
-  ::mallopt(M_TOP_PAD, megabyte);
-}
 
 /// A worker is replaced after so many campaigns: starting one is then cheap, and what plugins may
 /// leave behind in it does not grow old. Plugins from elsewhere than beside the program were not
@@ -59,6 +52,9 @@ class Runner {
         context_(context),
         night_(night),
         signer_(desk.signer),
+        plugins_(*desk.plugins),
+        secrets_(context.site.signing ? secret_files(*context.site.signing, options.site)
+                                      : std::vector<fs::path>()),
         numbers_({options.site, options.out, day_of(std::time(nullptr)), signer_ != nullptr},
                  context, desk.releasing),
         releasing_(desk.releasing != nullptr),
@@ -75,7 +71,6 @@ class Runner {
   /// False if it was interrupted.
   bool run() {
     keep_freed_memory();
-    prepare_outputs();
     const std::size_t jobs =
         options_.jobs != 0 ? options_.jobs : Poco::Environment::processorCount();
     while (!stop_requested) {
@@ -96,25 +91,6 @@ class Runner {
   }
 
  private:
-  /// In a child first: what does not come back there is not called here.
-  void prepare_outputs() const {
-    for (const Output& output : context_.plugins->outputs()) {
-      if (output.prepare == nullptr) continue;
-      const pid_t child = ::fork();
-      if (child == 0) {
-        settle_child();
-        limit_memory(context_.site.limits.memory_MB);
-        output.prepare(context_.templates);
-        ::_exit(0);
-      }
-      const ChildEnd end = child < 0 ? ChildEnd{false, "no process"} : wait_for_child(child, 30.0);
-      if (end.well)
-        output.prepare(context_.templates);
-      else
-        events_.note("output " + output.info.name + " could not prepare: " + end.words);
-    }
-  }
-
   /// The next campaign to do; those that get a second trial first.
   std::optional<std::size_t> next() {
     if (!again_.empty()) {
@@ -127,9 +103,14 @@ class Runner {
   }
 
   void start(std::size_t campaign) {
-    auto worker = Worker::start(
-        [this](std::size_t c, bool first, SharedWords& stage) { return work(c, first, stage); },
-        context_.site.limits.memory_MB);
+    const auto task = [this](int stream) {
+      return [this, stream](std::size_t c, bool first, SharedWords& stage) {
+        Evaluator evaluator(stream, secrets_);
+        const Answer answer = work(c, first, stage, evaluator);
+        return Outcome(answer, evaluator.grown());
+      };
+    };
+    auto worker = Worker::start(plugins_, task, context_.site.limits.memory_MB);
     if (!worker) return lost(campaign, worker.error().message);
     workers_.push_back(std::move(*worker));
     give(workers_.back(), campaign);
@@ -179,12 +160,12 @@ class Runner {
 
   /// Evaluated and, where it is to be, signed and entered. `locked`: not yet, since the register
   /// is.
-  Evaluated certified(const CampaignState& c, SharedWords& stage, bool& locked) const {
+  Expected<Evaluated> certified(const CampaignState& c, SharedWords& stage, bool& locked,
+                                Evaluator& evaluator) const {
     const fs::path folder = options_.site / c.folder;
     const auto try_it = [&](bool as_draft) {
-      return evaluate(
-          folder, c.id, context_, [&](const std::string& s) { stage.set(s); },
-          [&](const Evaluated& e, std::vector<std::string>& missing) {
+      return evaluator.evaluate(
+          folder, c.id, [&](const Evaluated& e, std::vector<std::string>& missing) {
             if (!unsound_.empty()) return Expected<Certificate>(fail(unsound_));
             locked = locked || recheck_ != nullptr;
             if (recheck_) return Expected<Certificate>(fail(register_locked));
@@ -193,22 +174,30 @@ class Runner {
             return drawn;
           });
     };
-    Evaluated evaluated = try_it(false);
-    if (numbers_.held_up(evaluated)) evaluated = try_it(true);
+    auto evaluation = try_it(false);
+    if (evaluation && numbers_.held_up(*evaluation)) evaluation = try_it(true);
+    if (!evaluation) return evaluation;
+    Evaluated& evaluated = *evaluation;
     stage.set("signing");
     auto done = sign_artifacts(evaluated, folder, context_, signer_, std::time(nullptr));
     if (done) done = numbers_.issue(evaluated, c.folder);
     locked = locked || (!done && is_locked(done.error()));
     if (!done) fail_certificate(evaluated, done.error());
-    return evaluated;
+    return evaluation;
   }
 
-  /// In the worker's process.
-  Answer work(std::size_t index, bool first, SharedWords& stage) const {
+  /// In the worker's process, which has no plugin code: that runs at the other end of the stream.
+  Answer work(std::size_t index, bool first, SharedWords& stage,
+              Evaluator& evaluator) const {
     if (first && signer_ != nullptr) signer_->leave_to_worker();
     const CampaignState& c = campaigns_[index];
     bool locked = false;
-    const Evaluated evaluated = certified(c, stage, locked);
+    const auto evaluation = certified(c, stage, locked, evaluator);
+    if (!evaluation) {
+      stage.set(evaluation.error().message);
+      return Answer::not_stored;
+    }
+    const Evaluated& evaluated = *evaluation;
     if (locked && !last_trial_) return Answer::waits;
     if (evaluated.status == "failed" && !first) return Answer::again;
     if (evaluated.status == "failed" && !locked && !evaluated.results.errors.empty())
@@ -240,6 +229,7 @@ class Runner {
   void wait() {
     if (signer_ != nullptr) signer_->revive();
     wait_for_answer(workers_, committer_.channel());
+    plugins_.pass_on_prints();
     take_stored();
     for (std::size_t i = workers_.size(); i-- > 0;) {
       Worker& worker = workers_[i];
@@ -360,6 +350,8 @@ class Runner {
   const Context& context_;
   const NightState& night_;
   Signer* signer_;  ///< null: nobody signs
+  PluginHost& plugins_;
+  const std::vector<fs::path> secrets_;
   const Numbers numbers_;
   const bool releasing_;  ///< what is not issued leaves everything as it was
   NumbersCheck recheck_;

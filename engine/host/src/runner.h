@@ -7,6 +7,7 @@
 #include "night_state.h"
 #include "nonio/host/run.h"
 #include "numbering.h"
+#include "plugin_host.h"
 #include "signer.h"
 
 namespace nonio::host {
@@ -19,6 +20,7 @@ struct ReleaseDesk {
   Signer* signer = nullptr;              ///< null: nobody signs
   const Releasing* releasing = nullptr;  ///< null: it is a night
   NumbersCheck recheck{};                ///< empty: the register was read before
+  PluginHost* plugins = nullptr;         ///< makes the processes that evaluate
 };
 
 /// Does every campaign that is to do, in workers of its own. False if it was interrupted.

@@ -4,6 +4,7 @@
 #include <ctime>
 
 #include "context.h"
+#include "runner.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -38,6 +39,20 @@ void note_key(SetUp& place, bool is_stamped) {
         who->subject + " runs out on " + sign::text_of(who->not_after) + ", and no longer";
 }
 
+/// In a process of their own.
+Expected<void> load_plugins(SetUp& place, const RunOptions& options) {
+  const auto& signing = place.context.site.signing;
+  PluginHost& host = place.host.emplace(PluginHost::Wish{
+      options.plugin_folders, library_folders(options.own_plugins),
+      signing ? secret_files(*signing, options.site) : std::vector<fs::path>(), place.context,
+      is_stop_requested, options.confine});
+  auto catalogue = host.start();
+  if (!catalogue) return fail(catalogue.error());
+  place.plugins = Plugins(std::move(*catalogue));
+  place.notes.insert(place.notes.end(), host.notes().begin(), host.notes().end());
+  return {};
+}
+
 }  // namespace
 
 Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
@@ -59,8 +74,8 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
       read_templates(template_folders, context.templates_sha256, &context.templates_json);
   if (!templates) return fail(all_of({templates.error()}));
   context.templates = std::move(*templates);
-  Plugins& plugins = place->plugins;
-  plugins.load(options.plugin_folders);
+  if (auto loaded = load_plugins(*place, options); !loaded) return fail(loaded.error());
+  const Plugins& plugins = place->plugins;
   if (!plugins.conflicts().empty()) return fail(plugins.conflicts().front());
   for (std::string& note : plugins.refusal_notes()) place->notes.push_back(std::move(note));
   context.plugins = &plugins;

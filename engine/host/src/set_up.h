@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "nonio/host/run.h"
+#include "plugin_host.h"
 #include "signer.h"
 
 namespace nonio::host {
@@ -15,7 +16,8 @@ namespace nonio::host {
 struct SetUp {
   Context context;
   std::optional<Signer> signer;
-  Plugins plugins;
+  Plugins plugins;  ///< what they say of themselves: this process has none of their code
+  std::optional<PluginHost> host;
   std::vector<std::string> notes;  ///< for the morning's reader
   std::string unstamped;           ///< for the summary alone: it is the same every night
   std::string no_key;              ///< why nothing can be signed; empty: it can

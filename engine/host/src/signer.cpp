@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -18,6 +17,7 @@
 #include <iostream>
 #include <utility>
 
+#include "channel.h"
 #include "child.h"
 #include "guarded.h"
 #include "nonio/host/files.h"
@@ -26,93 +26,6 @@ namespace nonio::host {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// One request and its answer go over a stream of their own, whose end the signer is sent.
-class Conversation {
- public:
-  explicit Conversation(int fd) : fd_(fd) {}
-  Conversation(const Conversation&) = delete;
-  Conversation& operator=(const Conversation&) = delete;
-  ~Conversation() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int get() const { return fd_; }
-
-  bool write(std::string_view bytes) const {
-    const std::uint64_t size = bytes.size();
-    return write_all({reinterpret_cast<const char*>(&size), sizeof size}) && write_all(bytes);
-  }
-  /// False if the other side has gone, or says more than anybody has to say.
-  bool read(std::string& bytes) const {
-    std::uint64_t size = 0;
-    if (!read_all(reinterpret_cast<char*>(&size), sizeof size) || size > longest) return false;
-    bytes.resize(size);
-    return read_all(bytes.data(), size);
-  }
-
- private:
-  static constexpr std::uint64_t longest = std::uint64_t{1} << 30;
-
-  bool write_all(std::string_view bytes) const {
-    while (!bytes.empty()) {
-      const ssize_t n = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-      if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) return false;
-      bytes.remove_prefix(static_cast<std::size_t>(n));
-    }
-    return true;
-  }
-  bool read_all(char* to, std::size_t size) const {
-    while (size != 0) {
-      const ssize_t n = ::recv(fd_, to, size, 0);
-      if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) return false;
-      to += n;
-      size -= static_cast<std::size_t>(n);
-    }
-    return true;
-  }
-
-  int fd_;
-};
-
-struct DescriptorMessage {
-  char byte = 0;
-  iovec part{&byte, 1};
-  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
-  msghdr header{};
-  DescriptorMessage() {
-    header.msg_iov = &part;
-    header.msg_iovlen = 1;
-    header.msg_control = control.data();
-    header.msg_controllen = control.size();
-  }
-};
-
-bool send_descriptor(int channel, int fd) {
-  DescriptorMessage message;
-  cmsghdr* head = CMSG_FIRSTHDR(&message.header);
-  head->cmsg_level = SOL_SOCKET;
-  head->cmsg_type = SCM_RIGHTS;
-  head->cmsg_len = CMSG_LEN(sizeof fd);
-  std::memcpy(CMSG_DATA(head), &fd, sizeof fd);
-  return ::sendmsg(channel, &message.header, MSG_NOSIGNAL) == 1;
-}
-
-/// -1 if nobody is left who could ask.
-int receive_descriptor(int channel) {
-  for (;;) {
-    DescriptorMessage message;
-    const ssize_t n = ::recvmsg(channel, &message.header, MSG_CMSG_CLOEXEC);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return -1;
-    const cmsghdr* head = CMSG_FIRSTHDR(&message.header);
-    if (head == nullptr || head->cmsg_type != SCM_RIGHTS) continue;
-    int fd = -1;
-    std::memcpy(&fd, CMSG_DATA(head), sizeof fd);
-    return fd;
-  }
-}
 
 Expected<std::string> password_of(const Signing& signing, const fs::path& site) {
   if (!signing.password_env.empty()) {
@@ -165,16 +78,20 @@ Expected<sign::TimeStamping> stamping_of(const Signing& s, const fs::path& site)
   return stamping;
 }
 
+constexpr const char* signing_process = "the process that signs";
+
+/// One request and its answer go over a stream of their own, whose end the signer is sent.
 /// Waits for whoever asks: one that hangs is ended by the main process, and its stream with it.
 /// An empty request asks who signs. The answer: "" or what went wrong; what there is to say of a
 /// missing time stamp; the bytes.
-void answer(const Conversation& stream, const Expected<sign::Key>& key,
+void answer(int stream, const Expected<sign::Key>& key,
             const Expected<sign::TimeStamping>& stamping) {
   std::string request;
-  if (!stream.read(request)) return;
+  if (!read_text(stream, request)) return;
   const auto reply = [&](const std::string& why, const sign::Signed& done) {
     [[maybe_unused]] const bool heard =
-        stream.write(why) && stream.write(done.no_time_stamp) && stream.write(done.bytes);
+        write_text(stream, why) && write_text(stream, done.no_time_stamp) &&
+        write_text(stream, done.bytes);
   };
   if (!key) return reply(key.error().message, {});
   if (!stamping) return reply(stamping.error().message, {});
@@ -191,21 +108,21 @@ void answer(const Conversation& stream, const Expected<sign::Key>& key,
 /// `while_waiting`: called now and then until the answer begins; may be empty.
 Expected<sign::Signed> ask(int channel, std::string_view bytes,
                            const std::function<void()>& while_waiting = {}) {
-  int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-    return fail(std::string("no channel to the process that signs: ") + std::strerror(errno));
-  const Conversation own(ends[0]);
+  auto ends = channel_pair(SOCK_STREAM, signing_process);
+  if (!ends) return fail(ends.error());
+  const Handle own = std::move((*ends)[0]);
   bool asked = false;
   {
-    const Conversation theirs(ends[1]);
-    asked = send_descriptor(channel, theirs.get());
+    const Handle theirs = std::move((*ends)[1]);
+    asked = send_descriptors(channel, 's', {theirs.get()});
   }
-  asked = asked && own.write(bytes);
+  asked = asked && write_text(own.get(), bytes);
   pollfd answered{own.get(), POLLIN, 0};
   while (asked && while_waiting && ::poll(&answered, 1, 100) <= 0) while_waiting();
   std::string why;
   sign::Signed done;
-  if (!asked || !own.read(why) || !own.read(done.no_time_stamp) || !own.read(done.bytes))
+  if (!asked || !read_text(own.get(), why) || !read_text(own.get(), done.no_time_stamp) ||
+      !read_text(own.get(), done.bytes))
     return fail("the process that signs died");
   if (!why.empty()) return fail(why);
   return done;
@@ -242,16 +159,16 @@ void Signer::serve() const noexcept {
     return open_key(signing_, site_);
   });
   const auto stamping = stamping_of(signing_, site_);
-  for (int fd; (fd = receive_descriptor(from_)) >= 0;) answer(Conversation(fd), key, stamping);
+  while (const auto asked = receive_descriptors(from_))
+    for (const Handle& stream : asked->descriptors) answer(stream.get(), key, stamping);
   ::_exit(0);
 }
 
 Expected<sign::Identity> Signer::start() {
-  int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
-    return fail(std::string("no channel to the process that signs: ") + std::strerror(errno));
-  to_ = ends[0];
-  from_ = ends[1];
+  auto ends = channel_pair(SOCK_SEQPACKET, signing_process);
+  if (!ends) return fail(ends.error());
+  to_ = (*ends)[0].release();
+  from_ = (*ends)[1].release();
   if (auto made = fork_process(); !made) return fail(made.error());
   const auto hello = ask(to_, {}, [this] { revive(); });
   if (!hello) return fail(hello.error());
@@ -273,6 +190,16 @@ void Signer::revive() {
 void Signer::leave_to_worker() const {
   ::close(from_);
   if (!signing_.password_env.empty()) ::unsetenv(signing_.password_env.c_str());
+}
+
+std::vector<fs::path> secret_files(const Signing& s, const fs::path& site) {
+  std::vector<fs::path> files;
+  for (const std::string& file : {s.pkcs12, s.password_file})
+    if (!file.empty()) files.push_back(site / file);
+  const char* folder = std::getenv("CREDENTIALS_DIRECTORY");
+  if (!s.password_credential.empty() && folder != nullptr)
+    files.push_back(fs::path(folder) / s.password_credential);
+  return files;
 }
 
 Expected<sign::Signed> Signer::sign(const std::string& bytes) const { return ask(to_, bytes); }

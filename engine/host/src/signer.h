@@ -6,11 +6,16 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "nonio/host/manifest.h"
 #include "nonio/sign/sign.h"
 
 namespace nonio::host {
+
+/// The files in which key and password lie, wherever they are.
+std::vector<std::filesystem::path> secret_files(const Signing& signing,
+                                                const std::filesystem::path& site);
 
 /// The one process that holds the key of a night. Workers send it finished bytes and get them back
 /// signed. It is made before plugins are loaded, so that nothing of theirs is in it, and opens the
@@ -26,7 +31,7 @@ class Signer {
   Expected<sign::Identity> start();
   /// Starts it again if it has died; what was asked meanwhile is not lost.
   void revive();
-  /// To be called first in a worker: it cannot listen to others, nor read the password.
+  /// To be called first in a worker: it cannot listen to others.
   void leave_to_worker() const;
   Expected<sign::Signed> sign(const std::string& bytes) const;
 

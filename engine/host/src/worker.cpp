@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "worker.h"
 
-#include <malloc.h>
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
@@ -15,6 +14,9 @@
 #include <iostream>
 #include <utility>
 
+#include "channel.h"
+#include "plugin_host.h"
+
 namespace nonio::host {
 
 namespace {
@@ -24,15 +26,6 @@ struct Message {
   bool grown;
 };
 
-/// More than the tables and reports of a campaign need, far less than would hurt the next one.
-constexpr std::size_t growth_allowed = 64 << 20;
-
-/// Bytes that the process has from the system for its data.
-std::size_t memory_held() {
-  const auto info = ::mallinfo2();
-  return info.arena + info.hblkhd;
-}
-
 [[noreturn]] void serve(const Worker::Task& task, int channel, double memory_MB,
                         SharedWords& stage) noexcept {
   settle_child();
@@ -40,8 +33,8 @@ std::size_t memory_held() {
   const std::size_t at_start = memory_held();
   bool first = true;
   for (std::size_t campaign; ::read(channel, &campaign, sizeof campaign) == sizeof campaign;) {
-    Message message{task(campaign, first, stage), false};
-    message.grown = memory_held() > at_start + growth_allowed;
+    const Outcome outcome = task(campaign, first, stage);
+    const Message message{outcome.answer, outcome.grown || has_grown(at_start)};
     if (::write(channel, &message, sizeof message) != sizeof message) break;
     first = false;
   }
@@ -50,18 +43,23 @@ std::size_t memory_held() {
 
 }  // namespace
 
-SharedWords::SharedWords() {
-  void* data = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+SharedWords::SharedWords() : SharedWords(::memfd_create("words", MFD_CLOEXEC)) {}
+SharedWords::SharedWords(int descriptor) : descriptor_(descriptor) {
+  if (descriptor_ < 0 || ::ftruncate(descriptor_, size) != 0) return;
+  void* data = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor_, 0);
   data_ = data == MAP_FAILED ? nullptr : static_cast<char*>(data);
 }
 SharedWords::SharedWords(SharedWords&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr)) {}
+    : descriptor_(std::exchange(other.descriptor_, -1)),
+      data_(std::exchange(other.data_, nullptr)) {}
 SharedWords& SharedWords::operator=(SharedWords&& other) noexcept {
+  std::swap(descriptor_, other.descriptor_);
   std::swap(data_, other.data_);
   return *this;
 }
 SharedWords::~SharedWords() {
   if (data_ != nullptr) ::munmap(data_, size);
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 void SharedWords::set(const std::string& words_now) {
   const std::size_t n = std::min(words_now.size(), size - 1);
@@ -70,34 +68,64 @@ void SharedWords::set(const std::string& words_now) {
 }
 std::string SharedWords::get() const { return {data_, ::strnlen(data_, size)}; }
 
-Expected<Worker> Worker::start(const Task& task, double memory_MB) {
+Expected<Worker> Worker::prepare(int& theirs) {
   SharedWords stage;
   if (!stage.valid()) return fail("no memory for a worker");
-  int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
-    return fail(std::string("no channel to a worker: ") + std::strerror(errno));
-  std::cout.flush();
-  std::cerr.flush();
-  const pid_t pid = ::fork();
-  if (pid == 0) {
-    ::close(ends[0]);
-    serve(task, ends[1], memory_MB, stage);
-  }
-  const int code = errno;
-  ::close(ends[1]);
-  if (pid < 0) {
-    ::close(ends[0]);
-    return fail(std::string("no worker process: ") + std::strerror(code));
-  }
-  ::setpgid(pid, pid);
-  return Worker(pid, ends[0], std::move(stage));
+  auto ends = channel_pair(SOCK_SEQPACKET, "a worker");
+  if (!ends) return fail(ends.error());
+  theirs = (*ends)[1].release();
+  return Worker((*ends)[0].release(), std::move(stage));
 }
 
-Worker::Worker(pid_t pid, int channel, SharedWords stage)
-    : pid_(pid), channel_(channel), stage_(std::move(stage)) {}
+Expected<void> Worker::fork_with(const Task& task, double memory_MB, int theirs) {
+  std::cout.flush();
+  std::cerr.flush();
+  pid_ = ::fork();
+  if (pid_ == 0) {
+    ::close(channel_);
+    serve(task, theirs, memory_MB, stage_);
+  }
+  const int code = errno;
+  ::close(theirs);
+  if (pid_ < 0) return fail(std::string("no worker process: ") + std::strerror(code));
+  ::setpgid(pid_, pid_);
+  return {};
+}
+
+Expected<Worker> Worker::start(const Task& task, double memory_MB) {
+  int theirs = -1;
+  auto worker = prepare(theirs);
+  if (!worker) return worker;
+  if (auto forked = worker->fork_with(task, memory_MB, theirs); !forked)
+    return fail(forked.error());
+  return worker;
+}
+
+Expected<Worker> Worker::start(PluginHost& plugins, const std::function<Task(int)>& task,
+                               double memory_MB) {
+  int theirs = -1;
+  auto streams = channel_pair(SOCK_STREAM, "a process that evaluates");
+  if (!streams) return fail(streams.error());
+  auto worker = prepare(theirs);
+  if (!worker) return worker;
+  const auto pid = plugins.make_process(std::move((*streams)[1]), worker->stage_);
+  if (pid) {
+    worker->plugins_ = *pid;
+    ::setpgid(*pid, *pid);
+  } else {
+    ::close(theirs);
+    return fail(pid.error());
+  }
+  if (auto forked = worker->fork_with(task((*streams)[0].get()), memory_MB, theirs); !forked)
+    return fail(forked.error());
+  return worker;
+}
+
+Worker::Worker(int channel, SharedWords stage) : channel_(channel), stage_(std::move(stage)) {}
 
 Worker::Worker(Worker&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)),
+      plugins_(std::exchange(other.plugins_, -1)),
       channel_(std::exchange(other.channel_, -1)),
       stage_(std::move(other.stage_)),
       campaign_(other.campaign_),
@@ -107,8 +135,9 @@ Worker::Worker(Worker&& other) noexcept
 
 Worker& Worker::operator=(Worker&& other) noexcept {
   std::swap(pid_, other.pid_);
+  std::swap(plugins_, other.plugins_);
   std::swap(channel_, other.channel_);
-  std::swap(stage_, other.stage_);
+  stage_ = std::move(other.stage_);
   campaign_ = other.campaign_;
   given_ = other.given_;
   deadline_ = other.deadline_;
@@ -148,13 +177,24 @@ std::optional<Answer> Worker::answer() {
   }
 }
 
-ChildEnd Worker::end() {
-  if (pid_ < 0) return {};
-  // A process that closed its channel by ending keeps the status it ended with.
+namespace {
+
+/// A process that closed its channel by ending keeps the status it ended with.
+ChildEnd end_group(pid_t& pid) {
+  if (pid < 0) return {true, {}};
   int status = 0;
-  ::kill(-pid_, SIGKILL);
-  ::waitpid(std::exchange(pid_, -1), &status, 0);
+  ::kill(-pid, SIGKILL);
+  ::kill(pid, SIGKILL);
+  ::waitpid(std::exchange(pid, -1), &status, 0);
   return child_end(status);
+}
+
+}  // namespace
+
+ChildEnd Worker::end() {
+  const ChildEnd own = end_group(pid_);
+  const ChildEnd with_plugins = end_group(plugins_);
+  return own.well ? with_plugins : own;
 }
 
 void wait_for_answer(const std::vector<Worker>& workers, int other) {

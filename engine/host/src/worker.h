@@ -19,16 +19,21 @@ namespace nonio::host {
 class SharedWords {
  public:
   SharedWords();
+  /// Those behind the descriptor of others.
+  explicit SharedWords(int descriptor);
+  SharedWords(const SharedWords&) = delete;
   SharedWords(SharedWords&& other) noexcept;
   SharedWords& operator=(SharedWords&& other) noexcept;
   ~SharedWords();
   bool valid() const { return data_ != nullptr; }
   void set(const std::string& words_now);
   std::string get() const;
+  int descriptor() const { return descriptor_; }
 
  private:
   static constexpr std::size_t size = 4096;
-  char* data_;
+  int descriptor_;
+  char* data_ = nullptr;
 };
 
 /// What a worker says when it is through with a campaign.
@@ -42,17 +47,29 @@ enum class Answer : char {
   none,        ///< the process ended without a word
 };
 
-/// A process that does campaigns one after the other, as its parent names them. Moved, not copied.
+class PluginHost;
+
+struct Outcome {
+  Outcome(Answer a, bool has_grown = false) : answer(a), grown(has_grown) {}  // NOLINT: an answer is one
+  Answer answer;
+  bool grown;  ///< the memory of a process that works for this one
+};
+
+/// A process that does campaigns one after the other, as its parent names them; with another one for
+/// what plugins do. Moved, not copied.
 class Worker {
  public:
   using Clock = std::chrono::steady_clock;
   /// Run in the process; `first`: no campaign was done in it before.
-  using Task = std::function<Answer(std::size_t campaign, bool first, SharedWords& stage)>;
+  using Task = std::function<Outcome(std::size_t campaign, bool first, SharedWords& stage)>;
 
   static Expected<Worker> start(const Task& task, double memory_MB);
+  /// With a process that has the plugins at the other end of the stream that the task is made with.
+  static Expected<Worker> start(PluginHost& plugins, const std::function<Task(int stream)>& task,
+                                double memory_MB);
   Worker(Worker&& other) noexcept;
   Worker& operator=(Worker&& other) noexcept;
-  ~Worker();  ///< kills the process and everything that it left running
+  ~Worker();  ///< kills the processes and everything that they left running
 
   void give(std::size_t campaign, Clock::duration limit);
   std::size_t campaign() const { return campaign_; }
@@ -65,13 +82,15 @@ class Worker {
   bool grown() const { return grown_; }
   /// The answer to the campaign that was given last, if there is one yet.
   std::optional<Answer> answer();
-  /// After Answer::none: what became of the process.
+  /// After Answer::none: what became of the process, or of the one with the plugins.
   ChildEnd end();
 
  private:
-  Worker(pid_t pid, int channel, SharedWords stage);
+  Worker(int channel, SharedWords stage);
+  static Expected<Worker> prepare(int& theirs);
+  Expected<void> fork_with(const Task& task, double memory_MB, int theirs);
 
-  pid_t pid_;
+  pid_t pid_ = -1, plugins_ = -1;  ///< -1: there is none
   int channel_;
   SharedWords stage_;
   std::size_t campaign_ = 0, given_ = 0;

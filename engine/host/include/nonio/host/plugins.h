@@ -17,9 +17,33 @@ struct PluginFile {
   std::vector<std::string> brought;  ///< "analysis iso230-2 1.0.0", ...
 };
 
+/// What plugins say of themselves, as data: how a process knows them that has none of their code.
+struct Catalogue {
+  struct Described {
+    Info info;
+    Output::Stage stage = Output::Stage::document;  ///< of an output
+  };
+  std::vector<PluginFile> files;
+  std::vector<std::string> conflicts;
+  std::vector<std::pair<std::string, std::filesystem::path>> names;
+  std::vector<Described> readers, effects, analyses, outputs;
+};
+
 /// All plugins of this process. Loaded once, never unloaded.
 class Plugins final : public Registry {
  public:
+  Plugins() = default;
+  /// Their descriptions; nothing of them can be called.
+  explicit Plugins(Catalogue catalogue);
+  Catalogue catalogue() const;
+
+  /// The shared libraries of the folders, in their order.
+  static std::vector<std::filesystem::path> files_in(
+      const std::vector<std::filesystem::path>& folders);
+  /// Loads and registers one; where `refusal` says something, it only remembers that. To be called
+  /// in a process that may come to harm.
+  void load_file(const std::filesystem::path& path, const std::string& refusal);
+
   /// Loads every shared library of the folders, in their order. They are first loaded and
   /// registered in a child process, so that one which crashes or hangs there is refused instead of
   /// loaded; the ABI tag is compared before anything in it is called.
@@ -51,7 +75,6 @@ class Plugins final : public Registry {
   void add(Output) override;
 
  private:
-  void load_file(const std::filesystem::path& path, const std::string& refusal);
   bool accept(std::string_view kind, const Info& info);
 
   std::vector<PluginFile> files_;

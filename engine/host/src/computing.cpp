@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "computing.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <set>
+
+#include "channel.h"
+#include "child.h"
+#include "nonio/host/files.h"
+#include "wire.h"
+
+namespace nonio::host {
+namespace fs = std::filesystem;
+
+namespace {
+
+// What the process with the plugins says, first byte.
+constexpr char wants_file = 'f', wants_draw = 'd', has_done = 'e';
+
+/// What the other side asks for, and what it gets.
+struct Drawn {
+  bool well = false;
+  Certificate certificate;
+  Error error;
+  std::vector<std::string> missing;
+};
+
+int ask_for_file(int stream, const fs::path& path) {
+  if (!write_text(stream, wants_file + path.string())) ::_exit(0);
+  auto handed = receive_descriptors(stream);
+  if (!handed) ::_exit(0);
+  if (!handed->descriptors.empty()) return handed->descriptors.front().release();
+  errno = static_cast<unsigned char>(handed->word);
+  return -1;
+}
+
+Expected<Certificate> ask_for_draw(int stream, const Evaluated& evaluated,
+                                   std::vector<std::string>& missing) {
+  std::string reply;
+  if (!write_text(stream, wants_draw + wire::pack(evaluated, missing)) || !read_text(stream, reply))
+    ::_exit(0);
+  Drawn drawn;
+  if (!wire::unpack(reply, drawn.well, drawn.certificate, drawn.error, drawn.missing)) ::_exit(0);
+  missing = std::move(drawn.missing);
+  if (!drawn.well) return fail(std::move(drawn.error));
+  return std::move(drawn.certificate);
+}
+
+/// What no honest process says: these values decide which files are written.
+std::string unsound_answer(const Evaluated& e, const std::string& id) {
+  if (e.campaign.id != id) return "another campaign's results";
+  if (e.status != "ok" && e.status != "attention" && e.status != "failed") return "no status";
+  if ((e.status == "failed") == e.results.errors.empty()) return "a status against its errors";
+  std::set<std::string> names;
+  for (const Results::Written& w : e.results.outputs)
+    for (const Artifact& a : w.result.artifacts)
+      if (!is_artifact_name(a.name) || !names.insert(a.name).second)
+        return "an artifact that cannot be called \"" + a.name + "\"";
+  return {};
+}
+
+}  // namespace
+
+void evaluate_for(int stream, const Context& context, SharedWords& stage) {
+  open_files_with([stream](const fs::path& path) { return ask_for_file(stream, path); });
+  keep_freed_memory();
+  const std::size_t at_start = memory_held();
+  const Stage tell = [&stage](const std::string& words) { stage.set(words); };
+  for (std::string request; read_text(stream, request);) {
+    fs::path folder;
+    std::string id;
+    bool draws = false;
+    if (!wire::unpack(request, folder, id, draws)) return;
+    Draw draw;
+    if (draws)
+      draw = [stream](const Evaluated& e, std::vector<std::string>& missing) {
+        return ask_for_draw(stream, e, missing);
+      };
+    const Evaluated evaluated = evaluate(folder, id, context, tell, draw);
+    const bool grown = has_grown(at_start);
+    if (!write_text(stream, has_done + wire::pack(evaluated, grown))) return;
+  }
+}
+
+/// Files of the campaign, and nothing else that this user could read.
+bool Evaluator::hand_out(const fs::path& folder, const std::string& path) const {
+  std::error_code error;
+  const fs::path root = fs::path(path).is_absolute() ? fs::canonical(folder, error) : folder;
+  const std::string inside = fs::path(path).lexically_relative(root).string();
+  // A manifest may be a link to anywhere, as for the survey.
+  const auto full = inside == manifest_name ? Expected<fs::path>(folder / manifest_name)
+                                            : path_inside(folder, inside);
+  const bool secret = full && std::any_of(secrets_.begin(), secrets_.end(), [&](const fs::path& s) {
+                        return fs::equivalent(*full, s, error);
+                      });
+  if (!full || secret) return send_descriptors(stream_, static_cast<char>(EACCES), {});
+  const Handle file(::open(full->c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  const int code = errno;
+  return file ? send_descriptors(stream_, 0, {file.get()})
+              : send_descriptors(stream_, static_cast<char>(code), {});
+}
+
+Expected<Evaluated> Evaluator::evaluate(const fs::path& folder, const std::string& id,
+                                        const Draw& draw) {
+  std::optional<Certificate> drawn;
+  if (!write_text(stream_, wire::pack(folder, id, draw != nullptr))) ::_exit(0);
+  for (std::string said;;) {
+    if (!read_text(stream_, said)) ::_exit(0);
+    if (said.empty()) break;
+    const std::string_view rest = std::string_view(said).substr(1);
+    Evaluated evaluated;
+    if (said[0] == wants_file) {
+      if (!hand_out(folder, std::string(rest))) ::_exit(0);
+    } else if (said[0] == wants_draw) {
+      Drawn reply;
+      if (!draw || !wire::unpack(rest, evaluated, reply.missing) || evaluated.campaign.id != id)
+        break;
+      auto certificate = draw(evaluated, reply.missing);
+      reply.well = certificate.has_value();
+      if (certificate)
+        reply.certificate = *(drawn = std::move(*certificate));
+      else
+        reply.error = certificate.error();
+      if (!write_text(stream_,
+                      wire::pack(reply.well, reply.certificate, reply.error, reply.missing)))
+        ::_exit(0);
+    } else if (said[0] == has_done) {
+      if (!wire::unpack(rest, evaluated, grown_)) break;
+      if (const std::string why = unsound_answer(evaluated, id); !why.empty())
+        return fail("the process that evaluates gave " + why);
+      // A certificate is what was drawn here; of it the other side says only whose it is.
+      if (evaluated.certificate) {
+        if (!drawn) break;
+        drawn->output = evaluated.certificate->output;
+        evaluated.certificate = std::move(drawn);
+      }
+      return evaluated;
+    } else {
+      break;
+    }
+  }
+  return fail("the process that evaluates says what no process of ours says");
+}
+
+}  // namespace nonio::host

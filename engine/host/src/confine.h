@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace nonio::host {
+
+/// What a process with plugin code may still do. Everything here only takes away, for good, and
+/// holds for all processes that the process makes.
+
+/// What this kernel lacks of it, in words for the morning's reader; empty: nothing.
+std::vector<std::string> lacking_confinement();
+
+/// Before plugins are loaded: no new rights, no capability; below `readable` files can be read and
+/// nowhere else, nothing can be written; no program can be started, nobody be spoken to or
+/// signalled. An error if the kernel has such a thing and refuses it.
+std::string confine_loading(const std::vector<std::filesystem::path>& readable);
+
+/// When plugins are loaded: no file can be opened at all. An error as above.
+std::string confine_files();
+
+/// In a process that evaluates: besides, no process and no thread; only what computing needs.
+std::string confine_computing();
+
+/// Whether `confine_computing` has taken away what would change working directory and mode mask.
+bool is_computing_confined();
+
+/// Closes every descriptor but these (ascending) and 0, 1, 2.
+void close_others(const std::vector<int>& kept);
+
+/// Overwrites the environment but for locale and time zone: it may hold a password.
+void forget_environment();
+
+}  // namespace nonio::host
