@@ -45,7 +45,8 @@ Campaigns axis(const Scenario& s, unsigned seed, double size) {
   return out;
 }
 
-void compare(const Analysis& analysis, const Scenario& s, unsigned seed, double size, Tally& tally) {
+void compare(const Analysis& analysis, const Scenario& s, unsigned seed, double size,
+             Tally& tally) {
   const Campaigns c = axis(s, seed, size);
   const Settings settings = defaults(analysis);
   const Evaluation seen = evaluated(analysis, c.campaign, 0, c.seen, settings),

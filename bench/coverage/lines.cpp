@@ -66,10 +66,9 @@ class Curves {
       const std::size_t j = r_.n - i;
       out.push_back(name == "EYX_even"   ? (f_[i] + f_[j]) / 2.0
                     : name == "EXY_even" ? (g_[i] + g_[j]) / 2.0
-                    : name == "q_odd"
-                        ? (r_.Ly * (f_[i] - f_[j]) + r_.Lx * (g_[i] - g_[j])) / 2.0 /
-                              std::hypot(r_.Lx, r_.Ly)
-                        : NAN);
+                    : name == "q_odd" ? (r_.Ly * (f_[i] - f_[j]) + r_.Lx * (g_[i] - g_[j])) / 2.0 /
+                                            std::hypot(r_.Lx, r_.Ly)
+                                      : NAN);
     }
     return out;
   }
@@ -177,18 +176,35 @@ Observations passes(Day& day, const steps::Volume& volume, const steps::StepDiag
   return o;
 }
 
-void step_diagonals(const Scenario& s, unsigned seed, double size, Tally& tally, bool averaging) {
+/// Yaw and pitch of each axis, a mixture of a line and a parabola over its travel.
+void turn_axes(machine::Errors& e, Day& day, const steps::Volume& v, double bound) {
+  e.y_ref = v.travel.y() / 2.0;
+  e.z_ref = v.travel.z() / 2.0;
+  for (const char* name : {"EBX", "ECX", "EAY", "ECY", "EAZ", "EBZ"}) {
+    const double size = day.uniform(bound), mixture = day.uniform(std::numbers::pi),
+                 travel = v.travel[name[2] - 'X'];
+    e[name] = [=](double p) {
+      const double t = 2.0 * p / travel - 1.0;
+      return size * (std::cos(mixture) * t + std::sin(mixture) * (2.0 * t * t - 1.0));
+    };
+  }
+}
+
+void step_diagonals(const Scenario& s, unsigned seed, double size, Tally& tally, bool averaging,
+                    double angle = 0.0) {
   static const Analysis analysis = load(NONIO_STEP_PLUGIN);
   const steps::Volume volume{{s.size, 0.75 * s.size, 0.75 * s.size}, 7};
   std::mt19937 rng(20261122);
-  const machine::Errors errors = steps::random_errors(rng, volume, 3 * um * s.size);
+  Day day(s, seed, size);
+  machine::Errors errors = steps::random_errors(rng, volume, 3 * um * s.size);
+  if (angle > 0.0) turn_axes(errors, day, volume, angle);
   const steps::StepDiagonals exact = steps::measured(errors, volume);
   Settings settings = defaults(analysis);
   if (averaging) {
     settings.values["method"] = std::string("averaging");
     settings.values["set_up_square"] = true;
   }
-  Day day(s, seed, size);
+  settings.values["angle_urad"] = angle / urad;
   Measured c{stated(s), {}};
   Measurement m = named("SD", "step-diagonal", {});
   for (std::size_t k = 0; k < 3; ++k) {
@@ -231,12 +247,21 @@ void least_squares(const Scenario& s, unsigned seed, double size, Tally& t) {
 void averaging(const Scenario& s, unsigned seed, double size, Tally& t) {
   step_diagonals(s, seed, size, t, true);
 }
+void with_angles(const Scenario& s, unsigned seed, double size, Tally& t) {
+  step_diagonals(s, seed, size, t, false, 10.0 * urad);
+}
+void averaging_with_angles(const Scenario& s, unsigned seed, double size, Tally& t) {
+  step_diagonals(s, seed, size, t, true, 10.0 * urad);
+}
 
 }  // namespace
 
-const std::vector<Method> line_methods{{"diagonals, two lines of X", two_lines},
-                                       {"diagonals, third diagonal", third_diagonal},
-                                       {"step diagonals, least squares", least_squares},
-                                       {"step diagonals, averaging", averaging}};
+const std::vector<Method> line_methods{
+    {"diagonals, two lines of X", two_lines},
+    {"diagonals, third diagonal", third_diagonal},
+    {"step diagonals, least squares", least_squares, 4},
+    {"step diagonals, averaging", averaging},
+    {"step diagonals, least squares, yaw and pitch", with_angles, 4},
+    {"step diagonals, averaging, yaw and pitch", averaging_with_angles}};
 
 }  // namespace nonio::coverage

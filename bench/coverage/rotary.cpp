@@ -65,7 +65,7 @@ Table table_of(const Scenario& s, std::mt19937& rng) {
   return table;
 }
 
-void put(const Evaluation& e, const Table& table, const Scenario& s, Tally& tally) {
+void put(const Evaluation& e, const Table& table, Tally& tally) {
   for (const Value& v : e.values) {
     if (!v.U) continue;
     const auto k = static_cast<Eigen::Index>(v.name.back() - 'x'),
@@ -74,26 +74,25 @@ void put(const Evaluation& e, const Table& table, const Scenario& s, Tally& tall
     if (v.name.starts_with("direction") && d < 2)
       tally.put("direction", v.value - table.direction[d], *v.U);
     if (v.name == "radius") tally.put("radius", v.value - table.radius, *v.U);
-    // Scatter of one coordinate: of the machine and of the ball's form.
-    if (v.name == "s")
-      tally.put("s", v.value - um * std::hypot(s.repeatability, s.sphere / std::sqrt(12.0)), *v.U);
   }
   for (const Series& curve : e.series)
-    for (std::size_t i = 0; i < curve.U.size(); ++i) tally.put(curve.name, curve.value[i], curve.U[i]);
+    for (std::size_t i = 0; i < curve.U.size(); ++i)
+      tally.put(curve.name, curve.value[i], curve.U[i]);
 }
 
 void circle(const Scenario& s, unsigned seed, double size, Tally& tally, int points, double arc,
             bool told) {
   std::mt19937 rng(seed);
   const Table table = table_of(s, rng);
-  auto centres = table.at(arc > 0.0 ? turntable::arc(0.0, arc, points) : turntable::full_turn(points));
+  auto centres =
+      table.at(arc > 0.0 ? turntable::arc(0.0, arc, points) : turntable::full_turn(points));
   Day day(s, seed, size);
   Reader(s, day, centres.size()).read(centres, table.centre);
   Campaign c = stated(s);
   c.measurements.push_back(named("C", "ball-centres", "C"));
   Settings settings = settings_of(rotary());
   if (told) settings.values["sigma_um"] = s.repeatability;
-  put(evaluated(rotary(), c, 0, {turntable::observed(centres)}, settings), table, s, tally);
+  put(evaluated(rotary(), c, 0, {turntable::observed(centres)}, settings), table, tally);
 }
 
 void eight(const Scenario& s, unsigned seed, double size, Tally& t) {
@@ -126,7 +125,8 @@ void two_axes(const Scenario& s, unsigned seed, double size, Tally& tally) {
   Settings settings = settings_of(rotary());
   settings.values["same_reference"] = std::vector<std::string>{"A", "C"};
   const Evaluation e =
-      evaluated(rotary(), campaign, 1, {turntable::observed(on_a, "A"), turntable::observed(on_c, "C")}, settings);
+      evaluated(rotary(), campaign, 1,
+                {turntable::observed(on_a, "A"), turntable::observed(on_c, "C")}, settings);
   const Eigen::Vector3d across = a.direction.cross(c.direction);
   const double distance = std::fabs((c.centre - a.centre).dot(across)) / across.norm(),
                angle = std::atan2(across.norm(), a.direction.dot(c.direction));

@@ -64,8 +64,7 @@ std::vector<Visit> there_and_back(std::size_t n, int runs) {
   for (int run = 1; run <= runs; ++run)
     for (const int direction : {1, -1})
       for (std::size_t i = 0; i < n; ++i)
-        out.push_back(
-            {direction > 0 ? i : n - 1 - i, direction, static_cast<std::uint32_t>(run)});
+        out.push_back({direction > 0 ? i : n - 1 - i, direction, static_cast<std::uint32_t>(run)});
   return out;
 }
 
@@ -76,8 +75,8 @@ std::vector<Visit> once(std::size_t n) {
 }
 
 Day::Day(const Scenario& s, unsigned seed, double size) : s_(s), rng_(seed), size_(size) {
-  laser_ = normal(s.U_per_length * um / 2.0);      // its wavelength, or its scale
-  material_ = uniform(s.expansion * um / 2.0);     // one material
+  laser_ = normal(s.U_per_length * um / 2.0);   // its wavelength, or its scale
+  material_ = uniform(s.expansion * um / 2.0);  // one material
   sensor_ = uniform(s.sensor / 2.0);
 }
 
@@ -126,7 +125,8 @@ std::vector<double> Day::drift(std::size_t n) {
 std::vector<Reading> Day::measured(const Line& line, const std::vector<Visit>& visits) {
   // Cyclic and fixed errors of the instrument belong to the place; a further run has them again.
   std::vector<double> cyclic;
-  for (std::size_t i = 0; i < line.mean.size(); ++i) cyclic.push_back(normal(s_.U_fixed * um / 2.0));
+  for (std::size_t i = 0; i < line.mean.size(); ++i)
+    cyclic.push_back(normal(s_.U_fixed * um / 2.0));
   const double growth = laser_ + strain() + shortening(line.distance.back());
   const std::vector<double> moved = drift(visits.size() + 1);
   const double real_0 = line.mean[0] + line.reversal / 2.0 + normal(s_.repeatability * um),

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The shop floor of the coverage bench: readings come about from physical causes, one after the other
-// in time, as they would on a machine. Nothing of the engine's budget is used: what hangs together
-// does so because one thing causes it (one laser, one material, one sensor, one temperature).
+// The shop floor of the coverage bench: readings come about from physical causes, one after the
+// other in time, as they would on a machine. Nothing of the engine's budget is used: what hangs
+// together does so because one thing causes it (one laser, one material, one sensor, one
+// temperature).
 #pragma once
 
 #include <cstdint>
@@ -33,13 +34,13 @@ enum class Course { walk, linear, settling };
 /// What the manifest states, and what then happens.
 struct Scenario {
   const char* name;
-  double size;                          ///< longest travel, m
-  double U_fixed, U_per_length;         ///< um, um/m: expanded
-  double misalignment;                  ///< mm: the beam ends on a disc of this radius
-  double sensor, from_20, expansion;    ///< K range, K, um/(m K) range
-  double drift;                         ///< um
-  double repeatability;                 ///< um, standard deviation of an approach
-  double sphere = 1.0, probe = 1.0;     ///< um ranges
+  double size;                        ///< longest travel, m
+  double U_fixed, U_per_length;       ///< um, um/m: expanded
+  double misalignment;                ///< mm: the beam ends on a disc of this radius
+  double sensor, from_20, expansion;  ///< K range, K, um/(m K) range
+  double drift;                       ///< um
+  double repeatability;               ///< um, standard deviation of an approach
+  double sphere = 1.0, probe = 1.0;   ///< um ranges
   Warmth warmth = Warmth::steady;
   Sensors sensors = Sensors::stay;
   Course course = Course::walk;

@@ -5,7 +5,8 @@
 // a beam beside the axis) and that nobody corrects has the root mean square r/sqrt 3.
 //   device-fixed      U_fixed/2                    each reading (coordinates: one for a line)
 //   device-length     U_per_length/2 d             one for the instrument (coordinates: for a line)
-//   misalignment      R_mis^2/(2 L^2)/sqrt 3 d     one for a line of length L; its mean, half of the
+//   misalignment      R_mis^2/(2 L^2)/sqrt 3 d     one for a line of length L; its mean, half of
+//   the
 //                     limit, is in all lines: 3/4 of the variance
 //   temperature       alpha R(theta)/(2 sqrt 3) d  one for a line if the sensor lies anew, one for
 //                     all if it stays: the larger
@@ -335,10 +336,11 @@ Shares ReadingModel::shares(std::span<const double> row) const {
     const Variance of(*this, input, row);
     const Parts all = of.all();
     out.u.push_back(std::sqrt(all.variance));
-    out.in_residuals.push_back(std::sqrt(of_each_reading(input) ? of.all(true).variance
-                                                                : of.seen_elsewhere()));
-    out.rectangular.push_back(
-        input.is.distribution == Distribution::rectangular ? std::sqrt(std::sqrt(all.fourth)) : 0.0);
+    out.in_residuals.push_back(
+        std::sqrt(of_each_reading(input) ? of.all(true).variance : of.seen_elsewhere()));
+    out.rectangular.push_back(input.is.distribution == Distribution::rectangular
+                                  ? std::sqrt(std::sqrt(all.fourth))
+                                  : 0.0);
   }
   double variance = 0.0, fourth = 0.0;
   std::size_t i = 0;
@@ -366,8 +368,9 @@ void ReadingModel::see_residuals(std::span<const std::vector<double>> rows, doub
 }
 
 std::vector<double> reading_times(const Observations& o) {
-  const bool timed = o.time.size() == o.size() &&
-                     std::all_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); });
+  const bool timed =
+      o.time.size() == o.size() &&
+      std::all_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); });
   std::vector<double> out(o.size(), 0.0);
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = timed ? o.time[i] : static_cast<double>(i);
   if (out.empty()) return out;

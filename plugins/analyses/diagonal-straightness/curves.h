@@ -22,7 +22,7 @@ struct Curve {
     double plus = 0.0, minus = 0.0;       ///< means
     std::size_t n_plus = 0, n_minus = 0;
     std::vector<double> at_plus, at_minus;  ///< time of each reading, 0 to 1 over the file
-    std::uint32_t source_line = 0;  ///< of the file, of one reading; 0: not known
+    std::uint32_t source_line = 0;          ///< of the file, of one reading; 0: not known
     /// Of the readings from one direction, or (0) of both.
     double mean(int direction = 0) const {
       return direction > 0 ? plus : direction < 0 ? minus : (plus + minus) / 2.0;

@@ -80,6 +80,8 @@ void add_values(Work& w) {
     value(std::string("direction_") + "ijk"[i], fit.direction[i], Quantity::number,
           w.own.u_direction(i), w.by.direction[i]);
   if (fit.dof == 0) return;
+  // What they are: of the centres as read. Drift and shapes are in them, which no U of theirs
+  // knows.
   w.out.values.push_back({"s", fit.s, Quantity::deviation});
   w.out.values.push_back({"run_out_radial", range(fit.radial), Quantity::deviation});
   w.out.values.push_back({"run_out_axial", range(fit.axial), Quantity::deviation});
@@ -240,6 +242,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
                          {{"sigma", w.own.sigma, Quantity::deviation},
                           {"k", w.own.k, Quantity::ratio},
                           {"dof", static_cast<double>(w.own.fit.dof), Quantity::count}}});
+  if (w.own.fit.dof > 0) w.out.notes.push_back({"rotary.as-read"});
   return std::move(w.out);
 }
 

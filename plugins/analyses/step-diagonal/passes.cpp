@@ -281,8 +281,7 @@ Lengths lengths_of(const AnalysisInput& in, const Passes& passes) {
                                      {{"axis", passes.axes[k]}}));
     if (candidates.size() != 1) continue;
     const Observations& o = (*in.all)[candidates[0]];
-    math::AxisSeries series =
-        series_of(math::AxisTest::arrange(o), math::reading_times(o), k);
+    math::AxisSeries series = series_of(math::AxisTest::arrange(o), math::reading_times(o), k);
     if (series.position.size() < 2) continue;
     out.series.push_back(std::move(series));
     out.ids.push_back(in.campaign.measurements[candidates[0]].id);
@@ -324,6 +323,73 @@ std::vector<math::BudgetLine> budget_lines(const Passes& p, const Lengths& lengt
     lines.push_back(std::move(line));
   }
   return lines;
+}
+
+namespace {
+
+using Vector3 = std::array<double, 3>;
+
+double triple(const Vector3& a, const Vector3& b, const Vector3& c) {
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+         a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+/// Readings of a pass by a turn about e_w of the carriage of `axis`, by a = shape(-1..1) over its
+/// travel. The beam starts at P and goes along u; the carriage turns about R, in its own place of
+/// the axes that carry it and in the middle of those that it carries: a w.(u x (R - P)), less the
+/// zero.
+std::vector<double> turned(const math::StepDiagonals& d, const math::StepDiagonals::Pass& pass,
+                           std::size_t axis, std::size_t w, double (*shape)(double)) {
+  Vector3 u{}, start{}, about{};
+  about[w] = 1.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    u[k] = pass.sign[k] * d.travel[k] / d.diagonal();
+    start[k] = pass.sign[k] > 0 ? 0.0 : d.travel[k];
+  }
+  std::vector<double> out;
+  for (std::size_t t = 0; t <= 3 * d.n; ++t) {
+    const auto moves = d.counts(t);
+    Vector3 arm{};
+    double part = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double way = static_cast<double>(moves[k]) / static_cast<double>(d.n),
+                   at = pass.sign[k] > 0 ? way : 1.0 - way;
+      arm[k] = (k > axis ? d.travel[k] / 2.0 : at * d.travel[k]) - start[k];
+      if (k == axis) part = 2.0 * at - 1.0;
+    }
+    out.push_back(shape(part) * triple(about, u, arm));
+  }
+  const double zero = out.front();
+  for (double& reading : out) reading -= zero;
+  return out;
+}
+
+}  // namespace
+
+math::ReadingModel::Input angles_input(const Passes& p, const math::ReadingModel& model,
+                                       double angle) {
+  const double u = angle / std::sqrt(6.0);
+  math::ReadingModel::Input input;
+  input.is = {.id = "angles",
+              .with_length = true,
+              .distribution = Distribution::normal,  // a mixture of shapes
+              .correlation = Correlation::device,
+              .source = "options.step-diagonal.angle_urad"};
+  input.of_line.assign(model.lines.size(), u);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const std::size_t w : {(axis + 1) % 3, (axis + 2) % 3})
+      for (double (*shape)(double) :
+           {+[](double a) { return a; }, +[](double a) { return 2.0 * a * a - 1.0; }}) {
+        std::vector<double> pattern;
+        for (const auto& pass : p.readings.passes)
+          for (const double one : turned(p.readings, pass, axis, w, shape)) {
+            pattern.push_back(u * one);
+            input.is.u = std::max(input.is.u, std::fabs(pattern.back()));
+          }
+        pattern.resize(model.readings(), 0.0);  // the lengths go through the middle
+        input.patterns.push_back(std::move(pattern));
+      }
+  return input;
 }
 
 std::vector<const Observations*> observations_of(const AnalysisInput& in, const Lengths& lengths) {

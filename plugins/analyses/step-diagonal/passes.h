@@ -29,6 +29,9 @@ Lengths lengths_of(const AnalysisInput& in, const Passes& passes);
 
 /// Passes and series as their budget needs them, in the order of solve_step_diagonals.
 std::vector<math::BudgetLine> budget_lines(const Passes&, const Lengths&, const Campaign&);
+/// What yaw and pitch of each axis, within +-angle (rad), make in the readings of the passes:
+/// shapes that are linear and quadratic over the travel, half of the variance each.
+math::ReadingModel::Input angles_input(const Passes&, const math::ReadingModel&, double angle);
 /// The measurement and those of its lengths.
 std::vector<const Observations*> observations_of(const AnalysisInput&, const Lengths&);
 

@@ -224,8 +224,10 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   w.checks = check_step_diagonals(passes->readings);
   judge_checks(w);
   const HeldLimits limits = limits_of(w);
-  const ReadingModel model =
+  ReadingModel model =
       reading_model(in.campaign, limits.environment, budget_lines(*passes, w.lengths, in.campaign));
+  if (const double angle = in.options.number("angle_urad"); angle > 0.0)
+    model.inputs.push_back(angles_input(*passes, model, angle * urad));
   const auto solution =
       w.averaging ? average_step_diagonals(passes->readings, w.choices, &model)
                   : solve_step_diagonals(passes->readings, w.lengths.series, w.choices, &model);

@@ -39,9 +39,9 @@ struct MeanCurve {
   /// The first stop was not read, or the instrument was set to zero there each time: 0 by
   /// definition.
   bool zeroed = true;
-  int direction = 0;  ///< of approach: +1, -1; 0: mean of both
+  int direction = 0;                        ///< of approach: +1, -1; 0: mean of both
   std::vector<BudgetLine::Visit> visits{};  ///< what the means were made of, by time; or none
-  double walk_seen = 0.0;  ///< of u^2, by a walk of variance 1 along the line
+  double walk_seen = 0.0;                   ///< of u^2, by a walk of variance 1 along the line
 };
 
 struct PitchLine : MeanCurve {
