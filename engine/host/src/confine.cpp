@@ -251,7 +251,7 @@ void close_others(const std::vector<int>& kept) {
 }
 
 void forget_environment() {
-  constexpr std::string_view kept[] = {"LC_", "LANG", "TZ=", "ASAN_", "UBSAN_", "TSAN_", "LSAN_"};
+  constexpr std::string_view kept[] = {"LC_", "LANG", "TZ=", "NONIO_TEST_", "ASAN_", "UBSAN_", "TSAN_", "LSAN_"};
   for (char** one = environ; one != nullptr && *one != nullptr; ++one) {
     const std::string_view entry = *one;
     const bool keep = std::any_of(std::begin(kept), std::end(kept),

@@ -36,7 +36,7 @@ using Clock = std::chrono::steady_clock;
 constexpr const char* loading_process = "the process that loads plugins";
 constexpr double load_seconds = 10.0, prepare_seconds = 30.0, answer_seconds = 30.0;
 constexpr std::string_view preparing = "prepare ";
-constexpr std::size_t most_prints = 64 << 10;  // bytes
+constexpr std::size_t most_prints = 16 << 10;  // bytes
 
 /// What the process that loads plugins says when it is ready.
 struct Ready {

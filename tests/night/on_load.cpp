@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Does harm before anything in it is called: what, says NONIO_TEST_HOW.
+#include <unistd.h>
+
+#include <cfenv>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "nonio/sdk/plugin.h"
+
+namespace {
+
+int harm() {
+  constexpr std::string_view how = NONIO_TEST_HOW;
+  if (how == "quits") std::exit(0);
+  if (how == "hangs")
+    for (;;) ::pause();
+  if (how == "kills") ::kill(::getppid(), SIGKILL);
+  if (how == "prints") std::puts("{\"event\":\"forged\"}"), std::fflush(stdout);
+  if (how == "rounds") std::fesetround(FE_UPWARD);
+  if (how == "starts") ::execl("/bin/sh", "sh", "-c", "kill -9 $PPID", nullptr);
+  return 0;
+}
+
+const int done = harm();
+
+}  // namespace
+
+NONIO_PLUGIN(registry) { (void)registry, (void)done; }
