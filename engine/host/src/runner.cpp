@@ -195,6 +195,7 @@ class Runner {
     };
     Evaluated evaluated = try_it(false);
     if (numbers_.held_up(evaluated)) evaluated = try_it(true);
+    if (evaluated.status != "failed") numbers_.hold_unreleased(evaluated);
     stage.set("signing");
     auto done = sign_artifacts(evaluated, folder, context_, signer_, std::time(nullptr));
     if (done) done = numbers_.issue(evaluated, c.folder);
