@@ -185,9 +185,16 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
   const auto foot = lay_first_foot(document, width, context);
   if (!foot) return fail(foot.error());
   Pages pages(style, !document.head.empty(), *foot);
+  std::optional<Laid> before_last;  // the last block does not stand on a page by itself
   for (const Block& block : document.blocks) {
     auto laid = lay_block(block, width, context);
     if (!laid) return fail(laid.error());
+    const auto left = &document.blocks.back() - &block;
+    if (before_last && !laid->pieces.empty()) {
+      before_last->pieces.back().with_next = !laid->pieces.front().new_page;
+      std::move(laid->pieces.begin(), laid->pieces.end(), std::back_inserter(before_last->pieces));
+      laid = std::move(*before_last);
+    }
     if (!waiting.pieces.empty()) {
       laid->pieces.insert(laid->pieces.begin(), waiting.pieces.begin(), waiting.pieces.end());
       laid->rows_from += waiting.pieces.size();
@@ -195,6 +202,8 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
     }
     if (!laid->pieces.empty() && laid->pieces.back().with_next)
       waiting = std::move(*laid);
+    else if (left == 1 && !laid->pieces.empty())
+      before_last = std::move(*laid);
     else
       pages.add(*laid);
   }
