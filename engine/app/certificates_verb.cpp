@@ -24,7 +24,22 @@ Json to_json(const RegisterEntry& e) {
   if (!e.replaces.empty()) json["replaces"] = e.replaces;
   if (!e.replaced_by.empty()) json["replaced_by"] = e.replaced_by;
   if (!e.reason.empty()) json["reason"] = e.reason;
+  const auto add = [&](const char* key, const std::string& text) {
+    if (!text.empty()) json[key] = text;
+  };
+  add("released_by", e.released_by);
+  add("released_account", e.released_account);
+  add("withdrawn_by", e.withdrawn_by);
+  add("withdrawn_account", e.withdrawn_account);
   return json;
+}
+
+/// "  released by B. Sample (account lab@room-3)": the name as it was said, the account as the
+/// operating system knows it.
+std::string person_text(const char* what, const std::string& by, const std::string& account) {
+  if (by.empty() && account.empty()) return {};
+  return std::string("  ") + what + (by.empty() ? "" : " by " + by) +
+         (account.empty() ? "" : " (account " + account + ")");
 }
 
 void print(const RegisterEntry& e) {
@@ -32,7 +47,8 @@ void print(const RegisterEntry& e) {
   if (!e.replaced_by.empty())
     std::cout << (e.state == "amended" ? " by " : ", replaced by ") << e.replaced_by;
   std::cout << "  " << e.campaign << "  " << e.date << (e.reason.empty() ? "" : "  " + e.reason)
-            << "\n";
+            << person_text("released", e.released_by, e.released_account)
+            << person_text("withdrawn", e.withdrawn_by, e.withdrawn_account) << "\n";
 }
 
 int refuse(const Error& error) {
@@ -76,7 +92,7 @@ int certificates(const CertificateWish& wanted, const Common& common) {
         host::withdraw(wanted.site, *numbering, wanted.withdraw, wanted.why, wanted.by);
     if (!done) return refuse(done.error());
   }
-  const auto entries = host::Register::entries(wanted.site, *numbering);
+  const auto entries = host::certificates_of(wanted.site, *numbering);
   if (!entries) return refuse(entries.error());
   if (!wanted.out.empty())
     if (auto written = host::export_certificates(wanted.site, *numbering, wanted.out); !written)
@@ -118,7 +134,9 @@ Verb certificates_verb(Common& common) {
             "digests, every file, and what signed certificates say of it. Status 1 if not"}},
           common_arguments(common)),
       .footer =
-          "A line for each number that was ever drawn: number, state, campaign, date, reason.\n"
+          "A line for each number that was ever drawn: number, state, campaign, date, reason, who\n"
+          "released or withdrew it. The name is what that person stated, the account is the operating\n"
+          "system's (user@host): a record, not a proof of the person.\n"
           "  issued     in force\n"
           "  amended    replaced by another number, because the data changed\n"
           "  withdrawn  taken back, with the reason\n"

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "nonio/host/schema.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::app {
@@ -34,6 +35,34 @@ std::string text_line(const std::string& key, const std::string& text, const std
     line += "# " + comment;
   }
   return line + "\n";
+}
+
+/// A key as a comment with an example, and what it means in the words of the table of keys.
+std::string offered(const std::string& table, const std::string& key, const std::string& example) {
+  std::string help = host::campaign_key_help(table + "." + key);
+  if (help.empty()) help = host::site_key_help(table + "." + key);
+  return "# " + key + " = " + example + "  # " + help + "\n";
+}
+
+/// How a measurement was made: what its certificate says.
+std::string test_text(const NewAxis& a) {
+  const bool rotary = a.axis.rotary;
+  const auto line = [](const char* key, const char* example) {
+    return offered("measurement", key, example);
+  };
+  return line(rotary ? "feed_deg_per_min" : "feed_mm_per_min", "2000.0") + line("dwell_s", "3.0") +
+         line(rotary ? "over_travel_deg" : "over_travel_mm", "1.0") +
+         line("tool_offset", "{ Z = -120.0 }") + line("workpiece_offset", "{ Z = 200.0 }") +
+         line("compensation", "\"off\"");
+}
+
+/// What else a certificate wants of a campaign.
+std::string certificate_text() {
+  return "\n# What its certificate says, beside what is above: docs/howto-certificate.md\n"
+         "# [certificate]\n" +
+         offered("certificate", "conditions", "\"No cutting for four hours before the test.\"") +
+         offered("certificate", "customer_data", "[\"machine.serial\"]") +
+         offered("certificate", "nothing_else_by", "\"B. Sample\"");
 }
 
 /// The field's text, marked where readings are examples.
@@ -81,7 +110,16 @@ std::string instrument_text(const NewCampaign& c) {
       "# calibrated = 2026-01-12\n# certificate = \"...\"  # of its calibration\n"
       "# U_fixed_um = 0.1  # expanded uncertainty, k = 2: fixed part\n"
       "# U_per_m_um = 0.5  # and for each metre\n"
-      "# U_arcsec = 0.5  # of an angle\n"
+      "# U_arcsec = 0.5  # of an angle\n";
+  text += offered("instrument", "issuer", "\"LAT 000\"") +
+          offered("instrument", "valid_until", "2027-01-12") +
+          offered("instrument", "sphere_um", "0.5") + offered("instrument", "probe_um", "1.0");
+  text += "\n# " + host::campaign_key_help("sensor") + "\n# [[sensor]]\n" +
+          offered("sensor", "measures", "\"material\"") +
+          offered("sensor", "serial", "\"T-001\"") +
+          offered("sensor", "calibrated", "2026-01-12") +
+          offered("sensor", "certificate", "\"SO-2026-0009\"");
+  text +=
       "\n# The surroundings: the other parts of the uncertainty.\n"
       "# [environment]\n"
       "# misalignment_mm = 1.0  # largest distance of beam and axis over the travel\n"
@@ -89,7 +127,8 @@ std::string instrument_text(const NewCampaign& c) {
       "# temperature_difference_K = 1.5  # largest distance from 20 degC\n"
       "# expansion_range_um_per_m_K = 1.0  # range of the coefficient of expansion\n"
       "# drift_um = 1.0  # range of the drift test, axis at rest\n";
-  return text;
+  return text + offered("environment", "warm_up", "\"30 min at half feed\"") +
+         offered("environment", "sensors", "\"on the table and on the column\"");
 }
 
 /// Even, and the same on every machine: 53 bits of a splitmix64.
@@ -142,7 +181,9 @@ std::string site_text(const NewSite& site) {
          "\n# What certificates say and how they are numbered: docs/howto-certificate.md\n"
          "# [certificate]\n"
          "# languages = [\"it\", \"en\"]\n"
-         "# numbering = \"{year}-{number:4}\"\n"
+         "# numbering = \"{year}-{number:4}\"\n" +
+         offered("certificate", "release", "\"by-hand\"") +
+         offered("certificate", "two_persons", "false") +
          "\n# The key that signs certificates: docs/howto-sign.md\n"
          "# [signing]\n"
          "# pkcs12 = \"key.p12\"\n"
@@ -174,6 +215,7 @@ std::string campaign_text(const NewCampaign& c) {
     text += "\n[[measurement]]\nid = " + quoted(a.axis.name) +
             "\nkind = \"axis\"\naxis = " + quoted(a.axis.name) + "\nfile = " + quoted(a.file);
     text += a.example() ? "  # EXAMPLE readings\n" : "\n";
+    text += test_text(a);
   }
   return text +
          "# exclude = [57]  # lines of the file whose readings do not count\n"
@@ -186,7 +228,8 @@ std::string campaign_text(const NewCampaign& c) {
          "\n# Analyses and outputs of this campaign, if others than those of the site.\n"
          "# [run]\n"
          "# analyses = [\"iso230-2\"]\n"
-         "# outputs = [\"pdf-report\", \"certificate\"]\n"
+         "# outputs = [\"pdf-report\", \"certificate\"]\n" +
+         certificate_text() +
          "\n# Options of one plugin, for this campaign.\n"
          "# [options.iso230-2]\n"
          "# edition = 2014\n";

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nonio/sdk/format.h"
 #include "pdf_file.h"
 #include "pieces.h"
 
@@ -13,11 +14,14 @@ constexpr double head_room = 16, foot_room = 16;
 /// Puts strips on pages, from top to bottom.
 class Pages {
  public:
-  Pages(const Style& style, bool head)
+  /// `foot`: stands at the foot of the first page, where its place is kept free.
+  Pages(const Style& style, bool head, const Laid& foot)
       : style_(style),
         room_(style.page_height - style.top - style.bottom - foot_room),
-        head_(head ? head_room : 0) {
+        head_(head ? head_room : 0),
+        foot_(foot) {
     pages_.emplace_back();
+    for (const Piece& piece : foot.pieces) kept_ += piece.height + piece.gap;
   }
 
   void add(const Laid& laid) {
@@ -30,7 +34,8 @@ class Pages {
         ++end;
       }
       if (height > room_ - head_) end = i + 1, height = pieces[i].height;  // longer than a page
-      if ((y_ + height > room_ + 0.01 || pieces[i].new_page) && y_ > top_of_page()) {
+      if ((y_ + height > room() + 0.01 || pieces[i].new_page) &&
+          (y_ > top_of_page() || room() < room_)) {
         next_page();
         if (i > laid.rows_from)
           for (const Piece& piece : laid.repeated) put(piece);
@@ -39,12 +44,21 @@ class Pages {
     }
   }
 
-  std::vector<Canvas> take() { return std::move(pages_); }
+  std::vector<Canvas> take() {
+    if (pages_.size() == 1) end_first_page();
+    return std::move(pages_);
+  }
   const std::optional<SignaturePlace>& signature() const { return signature_; }
 
  private:
+  double room() const { return pages_.size() > 1 ? room_ : room_ - kept_; }
   double top_of_page() const { return pages_.size() > 1 ? head_ : 0.0; }
+  void end_first_page() {
+    y_ = room_ - kept_;
+    for (const Piece& piece : foot_.pieces) put(piece);
+  }
   void next_page() {
+    if (pages_.size() == 1) end_first_page();
     pages_.emplace_back();
     y_ = top_of_page();
   }
@@ -59,10 +73,30 @@ class Pages {
 
   const Style& style_;
   double room_, head_;
+  const Laid& foot_;
   std::vector<Canvas> pages_;
-  double y_ = 0.0;
+  double y_ = 0.0, kept_ = 0.0;
   std::optional<SignaturePlace> signature_;
 };
+
+/// What stands at the foot of the first page.
+Expected<Laid> lay_first_foot(const Document& document, double width, const Context& context) {
+  Laid foot;
+  double height = 0.0;
+  for (const Block& block : document.first_foot) {
+    auto laid = lay_block(block, width, context);
+    if (!laid) return laid;
+    for (Piece& piece : laid->pieces) {
+      height += piece.height + piece.gap;
+      foot.pieces.push_back(std::move(piece));
+    }
+  }
+  if (height > context.page_room / 2)
+    return fail("the foot of the first page takes " + fixed_text(height, 0) + " pt, wanted up to " +
+                fixed_text(context.page_room / 2, 0) + " pt: shorter texts in " +
+                document.first_foot.front().field);
+  return foot;
+}
 
 std::string numbered(std::string text, std::string_view place, std::size_t number) {
   for (std::size_t at; (at = text.find(place)) != std::string::npos;)
@@ -148,10 +182,19 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
         std::pair(&document.subject, "subject")})
     if (auto glyphs = shape(*text, fonts, false, field); !glyphs) return fail(glyphs.error());
   Laid waiting;  // headings wait for what follows them
-  Pages pages(style, !document.head.empty());
+  const auto foot = lay_first_foot(document, width, context);
+  if (!foot) return fail(foot.error());
+  Pages pages(style, !document.head.empty(), *foot);
+  std::optional<Laid> before_last;  // the last block does not stand on a page by itself
   for (const Block& block : document.blocks) {
     auto laid = lay_block(block, width, context);
     if (!laid) return fail(laid.error());
+    const auto left = &document.blocks.back() - &block;
+    if (before_last && !laid->pieces.empty()) {
+      before_last->pieces.back().with_next = !laid->pieces.front().new_page;
+      std::move(laid->pieces.begin(), laid->pieces.end(), std::back_inserter(before_last->pieces));
+      laid = std::move(*before_last);
+    }
     if (!waiting.pieces.empty()) {
       laid->pieces.insert(laid->pieces.begin(), waiting.pieces.begin(), waiting.pieces.end());
       laid->rows_from += waiting.pieces.size();
@@ -159,6 +202,8 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
     }
     if (!laid->pieces.empty() && laid->pieces.back().with_next)
       waiting = std::move(*laid);
+    else if (left == 1 && !laid->pieces.empty())
+      before_last = std::move(*laid);
     else
       pages.add(*laid);
   }

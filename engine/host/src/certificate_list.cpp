@@ -17,6 +17,16 @@ Expected<Numbering> numbering_of(const fs::path& site) {
   return std::move(read->numbering);
 }
 
+Expected<std::vector<RegisterEntry>> certificates_of(const fs::path& site,
+                                                     const Numbering& numbering) {
+  auto entries = Register::entries(site, numbering);
+  if (!entries || entries->empty()) return entries;
+  auto opened = Register::open(site, numbering);
+  if (!opened) return fail(opened.error());
+  if (auto noted = opened->note_persons(*entries); !noted) return fail(noted.error());
+  return entries;
+}
+
 Expected<void> withdraw(const fs::path& site, const Numbering& numbering, const std::string& number,
                         const std::string& why, const std::string& by) {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "journal.h"
 
+#include <pwd.h>
+#include <unistd.h>
+
 #include <array>
 #include <cstdlib>
 #include <ctime>
+#include <vector>
 
 #include "nonio/host/digest.h"
 
@@ -27,6 +31,19 @@ std::string utc_now() {
   ::gmtime_r(&now, &utc);
   std::array<char, 24> text{};
   return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc)};
+}
+
+std::string own_account() {
+  const uid_t uid = ::getuid();
+  passwd entry{};
+  passwd* found = nullptr;
+  std::vector<char> buffer(16384);
+  std::string name = "uid " + std::to_string(uid);
+  if (::getpwuid_r(uid, &entry, buffer.data(), buffer.size(), &found) == 0 && found != nullptr)
+    name = found->pw_name;
+  std::array<char, 256> host{};
+  if (::gethostname(host.data(), host.size() - 1) != 0) return name;
+  return name + "@" + host.data();
 }
 
 std::string Journal::digest(const Entry& e, const std::string& before) {
@@ -56,7 +73,8 @@ std::optional<Journal::Entry> Journal::first(const char* sql,
   return entry_of(rows.front());
 }
 
-Journal::Entry Journal::add(const char* what, const std::string& number, const Json& says) {
+Journal::Entry Journal::add(const char* what, const std::string& number, Json says) {
+  says["account"] = own_account();
   const auto before = last();
   Entry e{before ? before->place + 1 : 1,
           utc_now(),

@@ -28,8 +28,8 @@ class Journal {
 
   explicit Journal(Database& database) : database_(database) {}
 
-  /// In a transaction, with what it tells of.
-  Entry add(const char* what, const std::string& number, const Json& says);
+  /// In a transaction, with what it tells of. Every entry says under which account it was written.
+  Entry add(const char* what, const std::string& number, Json says);
   std::vector<Entry> all();
   std::optional<Entry> last();
   /// The last of a kind that is about a number.
@@ -42,6 +42,9 @@ class Journal {
   Database& database_;
 };
 
+/// Of the real user of this process, as the operating system knows him, and the host:
+/// "lab@measuring-room".
+std::string own_account();
 /// Now, as the journal writes it.
 std::string utc_now();
 

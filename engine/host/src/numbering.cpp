@@ -168,6 +168,22 @@ bool Numbers::may_issue(const Evaluated& evaluated) const {
          !any_unruled(known_findings(evaluated.results, context_.templates), numbering);
 }
 
+void Numbers::hold_unreleased(Evaluated& evaluated) const {
+  if (evaluated.certificate || may_issue(evaluated)) return;
+  for (Results::Written& w : evaluated.results.outputs) {
+    std::string files;
+    for (const Artifact& a : w.result.artifacts)
+      if (a.sign) files += (files.empty() ? "" : ", ") + a.name;
+    if (files.empty()) continue;
+    std::erase_if(w.result.artifacts, [](const Artifact& a) { return a.sign; });
+    note_finding(evaluated, w.plugin,
+                 {.id = "signature.not-released",
+                  .attention = true,
+                  .texts = {{"file", files}, {"output", w.plugin}}},
+                 context_.templates);
+  }
+}
+
 bool Numbers::held_up(const Evaluated& evaluated) const {
   const auto& certificate = evaluated.certificate;
   return certificate && !certificate->issued && !certificate->draft && !may_issue(evaluated);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <utility>
 
 #include "issue_json.h"
@@ -132,6 +133,29 @@ Expected<std::vector<RegisterEntry>> Register::all() {
                        static_cast<std::uint64_t>(integer(row[5]))});
   if (auto well = database_->take_error(); !well) return fail(well.error());
   return entries;
+}
+
+Expected<void> Register::note_persons(std::vector<RegisterEntry>& entries) {
+  std::map<std::string, RegisterEntry*> by_number;
+  for (RegisterEntry& e : entries) by_number[e.number] = &e;
+  const auto text = [](const Json& json, const char* key) {
+    return json.is_object() && json.contains(key) && json[key].is_string()
+               ? json[key].get<std::string>()
+               : "";
+  };
+  for (const Journal::Entry& noted : Journal(*database_).all()) {
+    const auto found = by_number.find(noted.number);
+    const bool issued = noted.what == "issued", withdrawn = noted.what == "withdrawn";
+    if (found == by_number.end() || !(issued || withdrawn)) continue;
+    const Json says = Json::parse(noted.says, nullptr, false);
+    RegisterEntry& e = *found->second;
+    (issued ? e.released_account : e.withdrawn_account) = text(says, "account");
+    if (withdrawn) e.withdrawn_by = text(says, "by");
+    if (const Json& released = says.is_object() && says.contains("released") ? says["released"] : says;
+        issued && released.is_object() && released.contains("released"))
+      e.released_by = text(released["released"], "by");
+  }
+  return database_->take_error();
 }
 
 Inputs Register::inputs_of(std::int64_t id) {

@@ -178,6 +178,7 @@ class Runner {
     if (evaluation && numbers_.held_up(*evaluation)) evaluation = try_it(true);
     if (!evaluation) return evaluation;
     Evaluated& evaluated = *evaluation;
+    if (evaluated.status != "failed") numbers_.hold_unreleased(evaluated);
     stage.set("signing");
     auto done = sign_artifacts(evaluated, folder, context_, signer_, std::time(nullptr));
     if (done) done = numbers_.issue(evaluated, c.folder);

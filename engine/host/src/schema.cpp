@@ -514,4 +514,23 @@ std::string campaign_schema(const Plugins& plugins) {
 
 std::string site_schema(const Plugins& plugins) { return SchemaWriter(plugins).write(site_file()); }
 
+namespace {
+
+std::string help_of(const Key& file, std::string_view path) {
+  const Key* key = &file;
+  while (key != nullptr && !path.empty()) {
+    const std::size_t end = std::min(path.find('.'), path.size());
+    key = find_key(key->keys, path.substr(0, end));
+    path.remove_prefix(std::min(end + 1, path.size()));
+  }
+  if (key == nullptr) return {};
+  const std::string help(key->help);
+  return key->unit.empty() ? help : std::string(key->unit) + ": " + help;
+}
+
+}  // namespace
+
+std::string campaign_key_help(std::string_view path) { return help_of(campaign_file(), path); }
+std::string site_key_help(std::string_view path) { return help_of(site_file(), path); }
+
 }  // namespace nonio::host

@@ -79,7 +79,7 @@ class Judge {
   Judge(const Observations& o, const Wish& wish) : o_(o), wish_(wish) {}
 
   Judged done() {
-    if (!fitted() || !with_sigma() || !a_circle() || !squareness_known() || !long_enough())
+    if (!fitted() || !with_sigma() || !at_least_as_stated() || !a_circle() || !squareness_known() || !long_enough())
       return std::move(out_);
     out_.given = true;
     tell_points();
@@ -129,6 +129,24 @@ class Judge {
     if (!wish_.U_instrument)
       return refuse(finding("rotary.sigma-needed", true, {count("points", points())}));
     out_.sigma = 0.5 * *wish_.U_instrument;
+    return true;
+  }
+
+  /// What centres state of themselves (a probing that fitted each of them) is the least that one of
+  /// them is worth, however well they lie on the circle. All weigh alike.
+  bool at_least_as_stated() {
+    double sum = 0.0, n = 0.0;
+    for (const double u : o_.u)
+      if (std::isfinite(u) && u > 0.0) sum += u * u, n += 1.0;
+    if (n == 0.0) return true;
+    const double stated = std::sqrt(sum / n);
+    out_.findings.push_back(finding("rotary.stated-uncertainty", false,
+                                    {um("u", stated), um("sigma", out_.sigma)}));
+    if (stated <= out_.sigma) return true;
+    out_.sigma = stated;
+    out_.dof = std::numeric_limits<double>::infinity();
+    out_.k = 2.0;
+    out_.sigma_of_centres = true;
     return true;
   }
 

@@ -28,7 +28,8 @@ struct Judged {
   math::RotaryFit fit;
   double sigma = 0.0;     ///< standard uncertainty that the covariance is scaled with
   double dof = INFINITY;  ///< of sigma; infinite if it is stated
-  double k = 2.0;         ///< expands it to 95 %
+  bool sigma_of_centres = false;  ///< it is what the centres state of themselves
+  double k = 2.0;                 ///< expands it to 95 %
   double U_shear = 0.0;   ///< in the plane, from the bound of the linear axes
   std::vector<Finding> findings;
 

@@ -62,7 +62,7 @@ struct Work {
 };
 
 std::string source_of(const Wish& wish, const Judged& j) {
-  if (std::isfinite(j.dof)) return "readings";
+  if (std::isfinite(j.dof) || j.sigma_of_centres) return "readings";
   return wish.sigma ? "options.rotary-kinematics.sigma_um" : "instrument.U_fixed_um";
 }
 

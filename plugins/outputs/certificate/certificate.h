@@ -62,7 +62,10 @@ void add_conformity(const Source&, Blocks&);
 void add_overview(const Source&, Blocks&);
 void add_opinions(const Source&, Blocks&);
 void add_statements(const Source&, Blocks&);
+/// How to verify it.
 void add_authority(const Source&, Blocks&);
+/// Who released it, the frame of the signature and the code: at the foot of the first page.
+void add_signature(const Source&, Blocks&);
 
 /// What it says of the certificate that it replaces, with every change; empty if there is none.
 std::string amendment_text(const Source&);

@@ -96,6 +96,7 @@ Document compose(const Source& source) {
   for (const std::string& name : source.look.blocks)
     for (const Part& part : parts)
       if (name == part.name) part.add(source, document.blocks);
+  add_signature(source, document.first_foot);
   document.blocks.push_back(
       {Paragraph{source.words.get("title.end", {{"number", number}}), Paragraph::Look::small},
        "end"});

@@ -187,6 +187,10 @@ dcc::About about_of(const std::vector<Source>& sources, const char* release) {
     return joined({labelled(s, "instrument.calibrated", c.instrument.calibrated),
                    labelled(s, "instrument.uncertainty", pages::instrument_U(s))});
   });
+  about.register_name = word(sources, "authority.register");
+  about.released = in_all(sources, [&](const Source& s) {
+    return s.words.get("authority.rules", {{"name", c.laboratory.authoriser}});
+  });
   add_decided(sources, about);
   add_statements(sources, about);
   return about;

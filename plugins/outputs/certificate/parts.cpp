@@ -436,39 +436,47 @@ std::string released_by(const Source& source) {
 
 }  // namespace
 
-/// Beside who authorised it: where the electronic signature is shown, and number and digest for who
-/// holds a print in his hands. A draft has neither.
+/// For who holds a print in his hands: how to verify, and the digest of the readings.
 void add_authority(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
   const Issue& issue = *source.in.issue;
+  blocks.push_back({Spacer{4}});
+  blocks.push_back(
+      {Grid{"",
+            {{w.get("authority.verify"), issue.is_draft() ? "" : w.get("authority.how"),
+              "authority.how"},
+             {w.get("authority.readings"), issue.readings_sha256, "readings"},
+             {w.get("authority.register"), issue.register_id, "register"}}},
+       "authority"});
+}
+
+/// A draft has neither frame nor code.
+void add_signature(const Source& source, Blocks& foot) {
+  const Wording& w = source.words;
+  const Issue& issue = *source.in.issue;
   const bool draft = issue.is_draft();
-  const std::string& responsible = source.in.campaign.laboratory.authoriser;
   Grid grid{w.get("authority.title"),
             {{w.get("authority.by"), released_by(source), "laboratory.authoriser"},
              {w.get("authority.author"), issue.author, "authority.author"},
              {w.get("authority.signed"), w.get(draft ? "draft.says" : "authority.electronic"),
               "authority.electronic"}}};
-  Grid check{"",
-             {{w.get("authority.verify"), draft ? "" : w.get("authority.how"), "authority.how"},
-              {w.get("authority.readings"), issue.readings_sha256, "readings"},
-              {w.get("authority.register"), issue.register_id, "register"}}};
-  blocks.push_back({Spacer{4}});
+  foot.push_back({Spacer{4}});
   if (draft) {
-    blocks.push_back({std::move(grid), "authority"});
-  } else {
-    SignatureBox box{w.get("authority.box"),
-                     {issue.released_by.empty() ? responsible : issue.released_by,
-                      source.in.campaign.laboratory.name,
-                      w.get("title.number", {{"number", issue.number}}), issue.date}};
-    Code code{issue.number + "\n" + issue.date + "\nSHA-256 " + issue.readings_sha256,
-              w.get("authority.code")};
-    blocks.push_back({Columns{{{{std::move(grid), "authority"}},
-                               {{std::move(box), "authority.box"}},
-                               {{std::move(code), "authority.code"}}},
-                              {0.5, 0.33, 0.17}},
-                      "authority"});
+    foot.push_back({std::move(grid), "authority"});
+    return;
   }
-  blocks.push_back({std::move(check), "authority"});
+  SignatureBox box{
+      w.get("authority.box"),
+      {issue.released_by.empty() ? source.in.campaign.laboratory.authoriser : issue.released_by,
+       source.in.campaign.laboratory.name, w.get("title.number", {{"number", issue.number}}),
+       issue.date}};
+  Code code{issue.number + "\n" + issue.date + "\nSHA-256 " + issue.readings_sha256,
+            w.get("authority.code")};
+  foot.push_back({Columns{{{{std::move(grid), "authority"}},
+                           {{std::move(box), "authority.box"}},
+                           {{std::move(code), "authority.code"}}},
+                          {0.5, 0.33, 0.17}},
+                  "authority"});
 }
 
 }  // namespace nonio::certificate

@@ -51,6 +51,7 @@ void mark(Blocks& blocks, std::vector<std::string>& keys) {
 Expected<void> mark_customer_data(const OutputInput& in, Document& document) {
   std::vector<std::string> keys = in.campaign.certificate.customer_data;
   mark(document.blocks, keys);
+  mark(document.first_foot, keys);
   if (keys.empty()) return {};
   Error error{
       "certificate.customer_data: wanted keys whose values are printed, such as "

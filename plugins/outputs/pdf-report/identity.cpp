@@ -51,8 +51,7 @@ void add_identity(const Source& source, Blocks& blocks) {
                  {label("date"), c.date, "campaign.date"},
                  {label("customer"), c.customer, "campaign.customer"},
                  {label("site"), c.site, "campaign.site"},
-                 {label("operator"), c.operator_name, "campaign.operator"},
-                 {label("authoriser"), c.laboratory.authoriser, "laboratory.authoriser"}}};
+                 {label("operator"), c.operator_name, "campaign.operator"}}};
   Grid machine{label("machine"),
                {{label("maker"), c.machine.maker, "machine.maker"},
                 {label("model"), c.machine.model, "machine.model"},
@@ -113,7 +112,7 @@ bool has_results(const Evaluation& e) {
 
 /// Nothing asks for attention. Green only where there was something that could have: what was not
 /// evaluated, or held against no tolerance, is not good for that.
-void say_what_was_looked_at(const Source& source, Status& status) {
+void say_what_was_looked_at(const Source& source, Status& status, bool of_laboratory) {
   const Results& results = source.in.results;
   const Wording& w = source.words;
   std::string not_evaluated;
@@ -131,7 +130,7 @@ void say_what_was_looked_at(const Source& source, Status& status) {
   else if (results.conformity.empty())
     status.text = w.get("status.not_judged");
   else
-    status.level = Level::good, status.text = w.get("status.ok");
+    status.level = Level::good, status.text = w.get(of_laboratory ? "status.ok_results" : "status.ok");
 }
 
 }  // namespace
@@ -152,9 +151,12 @@ void add_status(const Source& source, Blocks& blocks) {
     status = {};
   }
   add_conformity(source, status.lines);
+  bool of_laboratory = false;  // what stands in the part for the laboratory alone
   for (const Measured& m : measured(source.in)) {
     for (const Finding* f : m.findings)
-      if (f->attention)
+      if (f->attention && is_for_laboratory(source, *f))
+        of_laboratory = true;
+      else if (f->attention)
         status.lines.push_back(
             w.get("status.of_measurement",
                   {{"measurement", m.measurement.id},
@@ -173,10 +175,13 @@ void add_status(const Source& source, Blocks& blocks) {
             {{"measurement", w.get_or("analysis." + a.plugin, a.plugin)},
              {"what", typeset(finding_text(source.in.templates, source.language(), f, "title"))}}));
   for (const TableFinding& f : table_findings(source))
-    if (f.finding->attention) status.lines.push_back(title_of(source, f));
+    if (f.finding->attention && has_laboratory_part(source))
+      of_laboratory = true;
+    else if (f.finding->attention)
+      status.lines.push_back(title_of(source, f));
   if (status.lines.empty() && !results.errors.empty()) return;
   if (status.lines.empty())
-    say_what_was_looked_at(source, status);
+    say_what_was_looked_at(source, status, of_laboratory);
   else
     status.level = Level::attention, status.text = w.get("status.attention");
   blocks.push_back({std::move(status), "status"});

@@ -35,6 +35,8 @@ void add_status(const Source&, Blocks&);
 void add_plans(const Source&, Blocks&);
 /// Whether advice stands in a part of its own, block "laboratory".
 bool has_laboratory_part(const Source&);
+/// What a model says is no result: it stands in that part alone.
+bool is_for_laboratory(const Source&, const Finding&);
 void add_laboratory(const Source&, Blocks&);
 void add_findings(const Source&, const Measured&, Blocks&);
 /// What controllers' tables have to say; what several of them say alike once, with all their names.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "nonio/reports/number.h"
 #include "nonio/reports/text.h"
@@ -28,17 +29,27 @@ bool speaks(const OutputResult& r) {
   return !r.predictions.empty() || !r.findings.empty() || !r.notes.empty();
 }
 
+/// Where there is a part for the laboratory, advice stands in it alone.
+Block without_advice(const Source& source, const Finding& f) {
+  Block block = note_of(source, f);
+  if (has_laboratory_part(source)) std::get<Note>(block.what).advice.clear();
+  return block;
+}
+
 }  // namespace
 
 void add_findings(const Source& source, const Measured& m, Blocks& blocks) {
-  if (m.findings.empty()) return;
-  blocks.push_back({Heading{source.words.get("findings.title"), 2}, "findings.title"});
-  const bool apart = has_laboratory_part(source);
+  bool any = false;
   for (const Finding* f : m.findings) {
-    Block block = note_of(source, *f);
-    if (apart) std::get<Note>(block.what).advice.clear();
-    blocks.push_back(std::move(block));
+    if (is_for_laboratory(source, *f)) continue;
+    if (!std::exchange(any, true))
+      blocks.push_back({Heading{source.words.get("findings.title"), 2}, "findings.title"});
+    blocks.push_back(without_advice(source, *f));
   }
+}
+
+bool is_for_laboratory(const Source& source, const Finding& f) {
+  return has_laboratory_part(source) && f.id.starts_with("model.");
 }
 
 bool has_laboratory_part(const Source& source) {
@@ -55,8 +66,19 @@ void add_laboratory(const Source& source, Blocks& blocks) {
     for (const Finding* f : m.findings) {
       Block block = note_of(source, *f);
       Note& note = std::get<Note>(block.what);
-      if (note.advice.empty() || !told.insert(m.measurement.id + note.title).second) continue;
+      const bool whole = is_for_laboratory(source, *f);  // its words stand nowhere else
+      if ((note.advice.empty() && !whole) || !told.insert(m.measurement.id + note.title).second)
+        continue;
       note.title = m.measurement.id + ": " + note.title;
+      if (!whole) note.says.clear();
+      advice.push_back(std::move(block));
+    }
+  for (const Results::Analysed& a : source.in.results.analyses)
+    for (const Finding& f : a.evaluation.findings) {
+      Block block = note_of(source, f);
+      Note& note = std::get<Note>(block.what);
+      if (!a.measurement.empty() || note.advice.empty()) continue;
+      note.title = analysis_title(source, a) + ": " + note.title;
       note.says.clear();
       advice.push_back(std::move(block));
     }
@@ -247,7 +269,7 @@ void add_plans(const Source& source, Blocks& blocks) {
       table.rows.push_back(std::move(row));
     }
     if (!table.rows.empty()) blocks.push_back({std::move(table), "rows of " + a.plugin});
-    for (const Finding& f : a.evaluation.findings) blocks.push_back(note_of(source, f));
+    for (const Finding& f : a.evaluation.findings) blocks.push_back(without_advice(source, f));
   }
 }
 

@@ -15,6 +15,9 @@ if shutil.which("openssl") is None:
     sys.exit(77)
 
 PASSWORD = "correct horse"
+# The campaigns here have one finding that asks for attention.
+AUTOMATIC = ('[certificate]\nrelease = "automatic"\n'
+             'may_stand = [{ finding = "reversal.lost-motion", reason = "it is what was ordered" }]\n')
 SIGNER = "CN=Ada Bianchi,O=Laboratorio di Prova"
 CNF = """[req]
 distinguished_name = dn
@@ -127,6 +130,8 @@ class SigningTest(NightTest):
     def site_toml(self, keys, key=None, password=None, extra=""):
         key = key or f'pkcs12 = "{keys.p12}"'
         password = password or f'password_file = "{keys.folder}/password"'
+        if "[certificate]" not in extra:  # nobody releases what these nights sign
+            extra += AUTOMATIC
         (self.site / "site.toml").write_text(
             '[laboratory]\nname = "Laboratorio di Prova"\ncountry = "IT"\nauthoriser = "A. Bianchi"\n'
             '[run]\nanalyses = ["iso230-2"]\noutputs = ["pdf-report", "dcc"]\n[options.pdf-report]\nsign = true\n'

@@ -98,10 +98,8 @@ class Writer {
         issue == nullptr ? about_.number : identifier_of(issue->number, issue->readings_sha256));
     if (issue != nullptr) {
       xml_.open("dcc:identifications");
-      xml_.open("dcc:identification");
-      xml_.element("dcc:issuer", "calibrationLaboratory");
-      xml_.element("dcc:value", issue->number);
-      xml_.close();
+      identification(issue->number, {});
+      if (!issue->register_id.empty()) identification(issue->register_id, about_.register_name);
       xml_.close();
     }
     if (!c.received.empty()) xml_.element("dcc:receiptDate", c.received);
@@ -112,6 +110,14 @@ class Writer {
       xml_.element("dcc:issueDate", issue->date);
       replaced(*issue);
     }
+    xml_.close();
+  }
+
+  void identification(const std::string& value, const Text& name) {
+    xml_.open("dcc:identification");
+    xml_.element("dcc:issuer", "calibrationLaboratory");
+    xml_.element("dcc:value", value);
+    text("dcc:name", name);
     xml_.close();
   }
 
@@ -173,18 +179,21 @@ class Writer {
     xml_.close();
     xml_.open("dcc:respPersons");
     const bool by_a_person = in_.issue != nullptr && !in_.issue->released_by.empty();
-    person(by_a_person ? in_.issue->released_by : l.authoriser, "authoriser", true);
-    if (!c.operator_name.empty()) person(c.operator_name, "operator", false);
+    person(by_a_person ? in_.issue->released_by : l.authoriser, "authoriser", true,
+           by_a_person ? Text{} : about_.released);
+    if (by_a_person && !in_.issue->author.empty()) person(in_.issue->author, "author", false, {});
+    if (!c.operator_name.empty()) person(c.operator_name, "operator", false, {});
     xml_.close();
     contact("dcc:customer", c.customer, c.customer_address.empty() ? c.site : c.customer_address,
             {});
   }
 
-  void person(const std::string& name, const char* role, bool signer) {
+  void person(const std::string& name, const char* role, bool signer, const Text& description) {
     xml_.open("dcc:respPerson");
     xml_.open("dcc:person");
     text("dcc:name", name);
     xml_.close();
+    text("dcc:description", description);
     xml_.element("dcc:role", role);
     xml_.element("dcc:mainSigner", signer ? "true" : "false");
     xml_.close();

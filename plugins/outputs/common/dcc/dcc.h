@@ -53,6 +53,8 @@ struct About {
   std::map<std::string, Text> meaning{};          ///< of values and curves, by their names
   Text lowest{}, highest{}, equipment{}, item{};  ///< what else is said of instrument and item
   Text uncertainty{};                             ///< how it was determined
+  Text register_name{};                           ///< what the register's identity is called
+  Text released{};  ///< how it was released, where no person did
   std::vector<Statement> statements{};
   Text rule{};         ///< by which was decided
   std::string norm{};  ///< its name

@@ -14,10 +14,32 @@ using namespace reports;
 
 namespace {
 
-/// Two significant digits; 0 where it is nothing beside the others.
+/// Two significant digits.
 std::string small(const Source& source, double u, Quantity q) {
   if (!(u > 0.0)) return "0";
   return printed_result(u, u, q, source.language()).U;
+}
+
+/// Uncertainties in a unit in which they are short: that of the deviations, of a pure number its
+/// millionth part.
+struct ShortUnit {
+  Quantity quantity;
+  double factor = 1.0;
+  std::string text;
+};
+ShortUnit short_unit(Quantity q) {
+  if (q == Quantity::length) return {Quantity::deviation, 1.0, unit_text(Quantity::deviation)};
+  if (q == Quantity::angle)
+    return {Quantity::angular_deviation, 1.0, unit_text(Quantity::angular_deviation)};
+  if (q == Quantity::number) return {q, 1e6, "10⁻⁶"};
+  return {q, 1.0, unit_text(q)};
+}
+
+/// What makes less than a millionth of the variance is nothing beside the others.
+std::string part(const Source& source, double u, double whole, const ShortUnit& unit) {
+  constexpr double nothing = 1e-3;
+  if (!(u > nothing * whole)) return "0";
+  return small(source, unit.factor * u, unit.quantity);
 }
 
 std::string source_text(const Source& source, const Contribution& c) {
@@ -95,12 +117,15 @@ Table results(const Source& source, const Results::Analysed& a, const Uncertaint
   table.columns.push_back({w.get("results.uncertainty"), "", true});
   for (const Row& row : rows_of(budget)) {
     const UncertaintyBudget::Result& r = *row.result;
-    std::vector<Table::Cell> cells = {{row.names, true}, {unit_text(r.quantity)}};
-    for (const double u : r.u) cells.push_back({small(source, u, r.quantity)});
+    const ShortUnit unit = short_unit(r.quantity);
+    double variance = 0.0;
+    for (const double u : r.u) variance += u * u;
+    std::vector<Table::Cell> cells = {{row.names, true}, {unit.text}};
+    for (const double u : r.u) cells.push_back({part(source, u, std::sqrt(variance), unit)});
     cells.push_back({printed_number(r.k, Quantity::number, 2, source.language())});
     std::string U;
     for (const Value& v : a.evaluation.values)
-      if (v.name == r.name && v.U) U = small(source, *v.U, v.quantity);
+      if (v.name == r.name && v.U) U = small(source, unit.factor * *v.U, unit.quantity);
     cells.push_back({U, true});
     table.rows.push_back(std::move(cells));
   }

@@ -295,6 +295,8 @@ namespace {
 void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
   const Wording& w = source.words;
   Blocks tables;
+  constexpr double nothing = 1e-12;  // m or rad
+  bool by_definition = false;
   for (const Results::Analysed* a : m.analyses) {
     if (a->plugin == model_analysis) continue;
     for (const Series& s : a->evaluation.series) {
@@ -310,6 +312,9 @@ void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
         if (!std::isfinite(s.value[i])) continue;
         const std::optional<double> U =
             i < s.U.size() && std::isfinite(s.U[i]) ? std::optional(s.U[i]) : std::nullopt;
+        const bool none = !U || !(*U > 0.0);
+        if (none && source.certificate && std::fabs(s.value[i]) > nothing) continue;  // without its U
+        by_definition |= none;
         const Printed shown = printed_result(s.value[i], U, s.quantity, source.language());
         table.rows.push_back(
             {{printed_number(s.position[i], s.position_quantity, decimals, source.language())},
@@ -329,6 +334,9 @@ void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
     }
     blocks.push_back({std::move(row), "curves of " + m.measurement.id});
   }
+  if (by_definition)
+    blocks.push_back({Paragraph{w.get("targets.by_definition"), Paragraph::Look::small},
+                      "curves of " + m.measurement.id});
 }
 
 }  // namespace

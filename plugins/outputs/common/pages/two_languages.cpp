@@ -94,6 +94,7 @@ Document side_by_side(Document first, const Document& second) {
   join(first.page_of, second.page_of);
   join(first.mark, second.mark);
   first.blocks = joined(std::move(first.blocks), second.blocks);
+  first.first_foot = joined(std::move(first.first_foot), second.first_foot);
   return first;
 }
 

@@ -200,16 +200,17 @@ Plot volume_plot(const Source& source, const Volume& v) {
   Plot plot;
   plot.title = source.words.get("plot.volume", {{"factor", times}});
   const std::string missing = v.left_out();
-  plot.x_title =
-      extent(source, v) + " " +
-      source.words.get(
-          "plot.volume_caption",
-          {{"factor", times},
-           {"largest", printed_number(most.size, Quantity::deviation, 1, source.language())},
-           {"unit", unit_text(Quantity::deviation)},
-           {"x", millimetres(source, v.position(0, most.at[0]))},
-           {"y", millimetres(source, v.position(1, most.at[1]))},
-           {"z", millimetres(source, v.position(2, most.at[2]))}});
+  plot.x_title = extent(source, v) + " " + source.words.get("plot.volume_scale", {{"factor", times}});
+  if (!source.certificate)  // it has no U
+    plot.x_title +=
+        " " +
+        source.words.get(
+            "plot.volume_largest",
+            {{"largest", printed_number(most.size, Quantity::deviation, 1, source.language())},
+             {"unit", unit_text(Quantity::deviation)},
+             {"x", millimetres(source, v.position(0, most.at[0]))},
+             {"y", millimetres(source, v.position(1, most.at[1]))},
+             {"z", millimetres(source, v.position(2, most.at[2]))}});
   if (!missing.empty())
     plot.x_title += " " + source.words.get("plot.volume_without", {{"curves", missing}});
   plot.language = source.language();

@@ -219,6 +219,9 @@ struct Document {
   std::string profile{};
   Style style;
   std::vector<Block> blocks;
+  /// At the foot of the first page, whatever stands above: its place is kept free. It takes up to
+  /// half of a page.
+  std::vector<Block> first_foot{};
 };
 
 /// The height that blocks can have on one page.

@@ -11,6 +11,10 @@ namespace nonio::host {
 /// `[certificate]` of a site's site.toml.
 Expected<Numbering> numbering_of(const std::filesystem::path& site);
 
+/// All numbers of the site's register, with who released and withdrew them.
+Expected<std::vector<RegisterEntry>> certificates_of(const std::filesystem::path& site,
+                                                     const Numbering& numbering);
+
 /// Takes a number back; `why` stays in the register, and `by` (may be empty).
 Expected<void> withdraw(const std::filesystem::path& site, const Numbering& numbering,
                         const std::string& number, const std::string& why,

@@ -24,6 +24,10 @@ struct RegisterEntry {
   std::string replaces, replaced_by;
   std::string reason;       ///< why it was withdrawn; why it is not issued yet
   std::uint64_t order = 0;  ///< in which numbers were issued, from 1; 0: not issued
+  /// Who released it and who withdrew it, as they said. Empty: the rules; nobody said.
+  std::string released_by{}, withdrawn_by{};
+  /// Under which accounts of the operating system, "user@host"; empty before version 2026-12.
+  std::string released_account{}, withdrawn_account{};
   bool in_force() const { return state == "issued"; }
 };
 
@@ -80,6 +84,8 @@ class Register {
   ~Register();
 
   Expected<std::vector<RegisterEntry>> all();
+  /// Who released and withdrew them, as the journal has it.
+  Expected<void> note_persons(std::vector<RegisterEntry>& entries);
   /// No two registers have the same; a copy has that of the one it was copied from.
   std::string id();
   /// Under which number a file with this SHA-256 was issued; empty: none.

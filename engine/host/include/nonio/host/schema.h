@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace nonio::host {
 
@@ -13,5 +14,10 @@ class Plugins;
 /// among those of the machine), that a date has no quotes, and that 3.0 is no whole number.
 std::string campaign_schema(const Plugins& plugins);
 std::string site_schema(const Plugins& plugins);
+
+/// What a key of campaign.toml or site.toml means, with its unit: "measurement.dwell_s",
+/// "environment.warm_up". Of a key that does not exist: empty.
+std::string campaign_key_help(std::string_view path);
+std::string site_key_help(std::string_view path);
 
 }  // namespace nonio::host
