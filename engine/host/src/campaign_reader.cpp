@@ -12,7 +12,9 @@
 #include "nonio/host/formula.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
+#include "plausibility.h"
 #include "targets.h"
+#include "unknown_format.h"
 #include "unsound.h"
 
 namespace nonio::host {
@@ -106,7 +108,12 @@ class CampaignReader {
     }
     if (const std::string why = unsound(*observations); !why.empty())
       return fail(who + " gave " + why);
+    if (auto possible = possible_air(*observations, m.file); !possible) return possible;
     if (auto excluded = exclude(m, *observations); !excluded) return excluded;
+    for (Finding& doubt : implausible_end(file->bytes(), m.file)) {
+      doubt.measurement = m.id;
+      out_.doubts.push_back(std::move(doubt));
+    }
     if (observations->missing > 0 && m.kind != "axis")  // of an axis its analyses say it
       observations->notes.push_back(
           {"readings.not-taken",
@@ -149,11 +156,10 @@ class CampaignReader {
     }
     const std::string refused = context_.plugins->refusals();
     if (any)
-      return fail(
-          Error{"no reader knows the format of this file; wanted a CSV with a header row, or "
-                "the format of an installed reader (`nonio plugins`)" +
-                    (refused.empty() ? "" : "; of the plugins " + refused),
-                m.file});
+      return fail(Error{what_is_wrong(bytes) +
+                            "; or the format of an installed reader (`nonio plugins`)" +
+                            (refused.empty() ? "" : "; of the plugins " + refused),
+                        m.file, first_content_line(bytes)});
     if (!refused.empty())
       return fail(at("measurement." + m.id + ".kind", "no reader takes measurements of kind \"" +
                                                           m.kind + "\", and of the plugins " +

@@ -15,6 +15,7 @@
 #include "nonio/host/nearest.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/statement.h"
+#include "plausibility.h"
 #include "traceability.h"
 
 namespace nonio::host {
@@ -24,14 +25,16 @@ namespace {
 
 class CampaignRun {
  public:
-  CampaignRun(const fs::path& folder, const Context& context, const Stage& stage, const Draw& draw)
-      : folder_(folder), context_(context), stage_(stage), draw_(draw) {}
+  CampaignRun(const fs::path& folder, const Context& context, const Stage& stage, const Draw& draw,
+              const Twins& twins)
+      : folder_(folder), context_(context), stage_(stage), draw_(draw), twins_(twins) {}
 
   Evaluated run(const std::string& id) {
     id_ = out_.campaign.id = id;
     if (read()) {
       analyse();
       fit_model();
+      doubt();
       note_unevaluated();
       if (!failed()) hold_against_tolerances();
       fill_advice();
@@ -59,6 +62,7 @@ class CampaignRun {
   bool read() {
     read_ = read_campaign(folder_, context_, stage_);
     out_.inputs = std::move(read_.inputs);
+    note_shared(twins_, out_.inputs);
     out_.results.errors = std::move(read_.errors);
     out_.results.notes = std::move(read_.notes);
     if (!read_.manifest) return false;
@@ -219,6 +223,26 @@ class CampaignRun {
         if (r.u.size() != e.budget->contributions.size())
           return fail("a budget of " + r.name + " with other contributions than it lists");
     return {};
+  }
+
+  /// What looks like a mistake in the files, beside what was evaluated from them.
+  void doubt() {
+    if (failed()) return;
+    stage_("analysis " + std::string(plausibility_name));
+    for (auto& one : implausible(read_, context_, out_.inputs))
+      out_.results.analyses.push_back(std::move(one));
+    for (const Results::Analysed& a : out_.results.analyses)
+      if (a.plugin == plausibility_name)
+        for (const Finding& f : a.evaluation.findings) doubts_.insert(f.id);
+    std::set<std::string> known = doubts_;
+    for (const StandingFinding& standing : read_.manifest->tables_may_stand) {
+      if (!known.contains(standing.finding))
+        report(Error{"tables.may_stand: the readings have no finding " + standing.finding +
+                         "; they have " +
+                         (known.empty() ? "none" : list({known.begin(), known.end()})),
+                     manifest_name, standing.line});
+      doubts_.erase(standing.finding);
+    }
   }
 
   /// No analysis and no model has looked at it: said, so that nobody takes silence for a result.
@@ -420,6 +444,16 @@ class CampaignRun {
     return nothing;
   }
 
+  /// Nobody has said why the readings are right all the same.
+  OutputResult withheld(const Output& output) const {
+    OutputResult nothing;
+    nothing.findings.push_back({.id = "table.withheld",
+                                .attention = true,
+                                .texts = {{"output", output.info.name},
+                                          {"findings", list({doubts_.begin(), doubts_.end()})}}});
+    return nothing;
+  }
+
   void write_output(const Wanted& w) {
     const Output& output = w.output;
     if (output.lacks != nullptr && !out_.certificate) return;
@@ -427,6 +461,7 @@ class CampaignRun {
     const std::string who = "output " + output.info.name;
     stage_(who);
     auto result = guarded(who, [&]() -> Expected<OutputResult> {
+      if (output.stage == Output::Stage::table && !doubts_.empty()) return withheld(output);
       if (output.stage == Output::Stage::table && for_tables_ && !*for_tables_)
         return without_model(output, for_tables_->error().message);
       auto written = output.write(input(w));
@@ -443,10 +478,29 @@ class CampaignRun {
       if (auto sound = check(*result); !sound)
         result = fail(who + " gave " + sound.error().message);
     if (!result) {
-      locate(result.error(), output.info.name);
+      place_at_output(result.error(), w);
       return report(std::move(result.error()));
     }
     keep(output.info, std::move(*result));
+  }
+
+  /// Where the manifest asks for the output, if the error does not know better.
+  void place_at_output(Error& error, const Wanted& w) const {
+    const std::string& name = w.output.info.name;
+    locate(error, name);
+    if (!error.file.empty()) return;
+    const auto& own = read_.manifest->lines;
+    const std::string asked = read_.manifest->run.outputs             ? "run.outputs"
+                              : out_.campaign.machine.control == name ? "machine.control"
+                                                                      : "campaign.id";
+    for (const std::string& key : {"options." + name, asked, std::string("campaign")}) {
+      const auto found = own.find(key);
+      if (found == own.end()) continue;
+      error.file = manifest_name;
+      error.line = found->second;
+      return;
+    }
+    error.file = manifest_name;
   }
 
   /// What was issued is not written again.
@@ -502,6 +556,7 @@ class CampaignRun {
   const Context& context_;
   const Stage& stage_;
   const Draw& draw_;
+  const Twins& twins_;
   std::string id_;
   Evaluated out_;
   ReadCampaign read_;
@@ -509,6 +564,7 @@ class CampaignRun {
   /// none.
   std::optional<Expected<std::vector<Observations>>> for_tables_;
   std::set<std::string> names_;
+  std::set<std::string> doubts_;  ///< ids of the findings for which no table is written
 };
 
 }  // namespace
@@ -525,6 +581,7 @@ Decision decide(double value, double U, double tolerance, std::string_view rule)
 }
 
 std::string input_name(const std::string& file) { return "file " + file; }
+std::string shared_name(const std::string& file) { return "shared " + file; }
 
 Inputs shared_inputs(const Context& context) {
   return {{"site.toml", context.site_sha256},
@@ -534,8 +591,8 @@ Inputs shared_inputs(const Context& context) {
 }
 
 Evaluated evaluate(const fs::path& folder, const std::string& id, const Context& context,
-                   const Stage& stage, const Draw& draw) {
-  return CampaignRun(folder, context, stage, draw).run(id);
+                   const Stage& stage, const Draw& draw, const Twins& twins) {
+  return CampaignRun(folder, context, stage, draw, twins).run(id);
 }
 
 }  // namespace nonio::host

@@ -2,12 +2,15 @@
 #include "nonio/host/manifest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <sstream>
 
 #include "certificate_reader.h"
 #include "formula_reader.h"
+#include "nonio/sdk/format.h"
+#include "nonio/sdk/statement.h"
 #include "toml_reader.h"
 
 namespace nonio::host {
@@ -55,6 +58,17 @@ RawOptions read_options(TableReader& top, std::vector<Error>& errors) {
   return options;
 }
 
+/// A coefficient in 1/K under the key for um/(m K) would leave the length as it is, in silence.
+std::optional<double> expansion_of(TableReader& reader) {
+  constexpr const char* key = "expansion_um_per_m_K";
+  constexpr double least = 1e-3;
+  const auto value = reader.number(key, um);
+  if (value && *value != 0.0 && std::fabs(*value) < least * um)
+    reader.error(key, "wanted um/(m K), 11.5 for steel, 0 for none; found " +
+                          short_text(*value / um, 4) + ", which looks like 1/K");
+  return value;
+}
+
 Axis read_axis(const std::string& name, TableReader& reader) {
   Axis axis{.name = name, .rotary = rotary_by_name(name)};
   const std::string kind = reader.text("kind");
@@ -65,7 +79,7 @@ Axis read_axis(const std::string& name, TableReader& reader) {
     axis.teeth = reader.whole("teeth");
   } else {
     axis.screw_pitch = reader.number("screw_pitch_mm", mm);
-    axis.expansion = reader.number("expansion_um_per_m_K", um);
+    axis.expansion = expansion_of(reader);
     axis.slave = reader.text("slave");
     if (axis.slave == axis.name && !axis.slave.empty())
       reader.error("slave", "wanted another axis than " + axis.name + ", which is the master");
@@ -110,7 +124,7 @@ Instrument read_instrument(TableReader& top) {
   instrument.U_angle = reader->number("U_arcsec", arcsec);
   instrument.sphere = reader->number("sphere_um", um);
   instrument.probe = reader->number("probe_um", um);
-  instrument.expansion = reader->number("expansion_um_per_m_K", um);
+  instrument.expansion = expansion_of(*reader);
   instrument.temperature_range = reader->number("temperature_range_K");
   instrument.expansion_range = reader->number("expansion_range_um_per_m_K", um);
   reader->finish();
@@ -235,7 +249,16 @@ Measurement read_measurement(TableReader& reader) {
   return m;
 }
 
-void read_measurements(TableReader& top, Campaign& campaign, bool plans) {
+/// Where the machine's axes are named, a measured one that is not among them is worth a finding.
+void add_axis(const std::string& name, bool any_named, Manifest& manifest) {
+  manifest.campaign.machine.axes.push_back(Axis{.name = name, .rotary = rotary_by_name(name)});
+  if (any_named) manifest.undeclared_axes.push_back(name);
+}
+
+void read_measurements(TableReader& top, Manifest& manifest, bool plans) {
+  Campaign& campaign = manifest.campaign;
+  const bool any_named = !campaign.machine.axes.empty();
+
   auto list = top.tables("measurement");
   if (list.empty() && !plans)
     top.error("measurement",
@@ -247,13 +270,27 @@ void read_measurements(TableReader& top, Campaign& campaign, bool plans) {
     if (!m.id.empty() && !ids.insert(m.id).second)
       reader.error("id", "\"" + m.id + "\" is there twice");
     if (!m.axis.empty() && campaign.machine.axis(m.axis) == nullptr)
-      campaign.machine.axes.push_back(Axis{.name = m.axis, .rotary = rotary_by_name(m.axis)});
+      add_axis(m.axis, any_named, manifest);
     if (const Axis* axis = campaign.machine.axis(m.axis);
         m.side == "slave" && axis != nullptr && axis->slave.empty())
       reader.error("side", "wanted [machine.axes." + m.axis +
                                "] slave, the name of the control's axis on that side");
     campaign.measurements.push_back(std::move(m));
   }
+}
+
+void read_tables(TableReader& top, Manifest& manifest) {
+  auto reader = top.table("tables");
+  if (!reader) return;
+  for (TableReader& one : reader->tables("may_stand")) {
+    StandingFinding standing{one.text("finding"), one.text("reason"), one.line_of("finding")};
+    if (!standing.reason.empty() && !says_something(standing.reason))
+      one.error("reason", "wanted why a table may be written all the same, found \"" +
+                              standing.reason + "\"");
+    one.finish();
+    manifest.tables_may_stand.push_back(std::move(standing));
+  }
+  reader->finish();
 }
 
 void read_campaign(TableReader& top, Campaign& campaign) {
@@ -325,13 +362,14 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
     reader->finish();
   }
   manifest.run = read_run(top);
-  read_measurements(top, campaign, manifest.run.analyses && manifest.run.outputs);
+  read_measurements(top, manifest, manifest.run.analyses && manifest.run.outputs);
   if (auto reader = top.table("model")) {
     if (auto effects = reader->texts("effects")) campaign.model = std::move(*effects);
     campaign.compensate_model = reader->text("compensate") == "model";
     campaign.formulas = read_formulas(*reader, campaign.machine);
     reader->finish();
   }
+  read_tables(top, manifest);
   manifest.options = read_options(top, errors);
   top.finish();
   if (!errors.empty()) return tl::unexpected(std::move(errors));

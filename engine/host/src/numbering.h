@@ -19,6 +19,7 @@ const StandingRule* rule_for(const Numbering& numbering, const KnownFinding& fin
 struct Releasing {
   WaitingDraft draft;
   Approval by;
+  Twins twins{};  ///< what the night knew of other campaigns
 };
 
 /// What a night, or the release of one campaign, does with the site's register. Every call opens it

@@ -11,6 +11,7 @@
 #include "nonio/sdk/statement.h"
 #include "runner.h"
 #include "set_up.h"
+#include "twins.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -171,6 +172,7 @@ class Releaser {
     auto record = read_record(options_.out / id_);
     if (!record) return fail("no result of a night in " + (options_.out / id_).string());
     night_.number = record->night;
+    twins_ = twins_of(record->inputs);
     return {};
   }
 
@@ -188,7 +190,7 @@ class Releaser {
     out_.notes = (*place)->notes;
     if (!(*place)->signer) return refuse("site.toml says nothing of a key; wanted [signing]");
     if (!(*place)->no_key.empty()) return refuse((*place)->no_key);
-    const Releasing releasing{*out_.draft, approval};
+    const Releasing releasing{*out_.draft, approval, twins_};
     const ReleaseDesk desk{&*(*place)->signer, &releasing, {}, &*(*place)->host};
     CampaignState campaign;
     campaign.id = id_;
@@ -224,6 +226,7 @@ class Releaser {
   NightState night_;
   std::optional<OutputLock> lock_;
   std::string id_, role_, last_number_;
+  Twins twins_;  ///< what the night knew of other campaigns
   Released out_;
 };
 

@@ -16,6 +16,7 @@
 #include "database.h"
 #include "nonio/host/files.h"
 #include "store.h"
+#include "twins.h"
 #include "worker.h"
 
 namespace nonio::host {
@@ -58,6 +59,7 @@ class Runner {
         numbers_({options.site, options.out, day_of(std::time(nullptr)), signer_ != nullptr},
                  context, desk.releasing),
         releasing_(desk.releasing != nullptr),
+        twins_(releasing_ ? &desk.releasing->twins : nullptr),
         recheck_(desk.recheck),
         campaigns_(campaigns),
         committer_([this](const std::vector<std::size_t>& batch) {
@@ -172,7 +174,8 @@ class Runner {
             auto drawn = numbers_.draw(e, folder, missing, as_draft);
             locked = locked || (!drawn && is_locked(drawn.error()));
             return drawn;
-          });
+          },
+          releasing_ ? *twins_ : twins_of(c, campaigns_));
     };
     auto evaluation = try_it(false);
     if (evaluation && numbers_.held_up(*evaluation)) evaluation = try_it(true);
@@ -355,6 +358,7 @@ class Runner {
   const std::vector<fs::path> secrets_;
   const Numbers numbers_;
   const bool releasing_;  ///< what is not issued leaves everything as it was
+  const Twins* twins_;    ///< of the one campaign that is released
   NumbersCheck recheck_;
   std::string unsound_;  ///< why no number is drawn
   std::vector<CampaignState>& campaigns_;

@@ -4,6 +4,7 @@
 #include <ctime>
 
 #include "context.h"
+#include "plausibility.h"
 #include "runner.h"
 
 namespace nonio::host {
@@ -59,6 +60,7 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
   auto place = std::make_unique<SetUp>();
   Context& context = place->context;
   context.version = options.version;
+  context.today = day_of_clock();
   auto site = read_site(options.site, context.site_sha256);
   if (!site) return fail(all_of(site.error()));
   context.site = std::move(*site);

@@ -14,6 +14,7 @@
 
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
+#include "twins.h"
 #include "worker.h"
 
 namespace nonio::host {
@@ -91,15 +92,44 @@ class Look {
   /// With the id that a full reading gave; if it gave none, what the first look saw stays.
   void again(CampaignState& state, const std::string& id,
              const std::string& manifest_digest) const {
-    if (!id.empty()) state.id = id;
+    read_words(state, id);
     if (state.id.empty()) name_by_folder(state);
     judge(state, record_of(state.id), manifest_digest);
+  }
+
+  /// Whether other campaigns share readings as they did when the record was written.
+  void shared_again(CampaignState& state, const std::vector<CampaignState>& all) const {
+    if (state.action == CampaignState::Action::todo) return;
+    const auto then = twins_then_.find(state.folder);
+    const Twins now = twins_of(state, all);
+    if (then == twins_then_.end() ? now.empty() : then->second == now) return;
+    state.action = CampaignState::Action::todo;
+    state.status.clear();
+    state.errors.clear();
+    state.reason = now.empty() ? "no other campaign has its readings any more"
+                               : "campaign " + now.front().second + " has the same readings";
   }
 
   /// A number that was issued and that the register does not know; empty if all is well.
   const std::string& unknown_number() const { return unknown_; }
 
  private:
+  void note_twins(const std::string& folder, Twins twins) const {
+    const std::lock_guard guard(twins_guard_);
+    twins_then_[folder] = std::move(twins);
+  }
+
+  /// What `read_ids` said: the id, then the digests of the files.
+  static void read_words(CampaignState& state, const std::string& words) {
+    std::size_t at = std::min(words.find(' '), words.size());
+    if (at > 0) state.id = words.substr(0, at);
+    while (at < words.size()) {
+      const std::size_t next = std::min(words.find(' ', at + 1), words.size());
+      state.readings.push_back(short_digest(std::string_view(words).substr(at + 1)));
+      at = next;
+    }
+  }
+
   static void name_by_folder(CampaignState& state) {
     state.id = folder_id(state.folder);
     state.named_by_folder = true;
@@ -129,15 +159,17 @@ class Look {
       return;
     }
     const bool tonight = record->night == in_.night;
-    state.reason = in_.force && !tonight ? "--force" : changes(state, *record, manifest_digest);
+    state.reason = changes(state, *record, manifest_digest);
     if (!state.reason.empty()) return;
+    if (Twins then = twins_of(record->inputs); !then.empty())
+      note_twins(state.folder, std::move(then));
     state.action = tonight ? CampaignState::Action::done : CampaignState::Action::unchanged;
     state.reason = tonight ? record->reason : "nothing changed";
     state.status = record->status;
     state.errors = record->errors;
   }
 
-  std::string changes(const CampaignState& state, const Record& record,
+  std::string changes(CampaignState& state, const Record& record,
                       const std::string& manifest_digest) const {
     std::vector<std::string> why;
     if (record.retry && record.night != in_.night)
@@ -150,6 +182,7 @@ class Look {
     const std::string prefix = input_name("");
     for (const auto& [name, digest] : record.inputs)
       if (name.starts_with(prefix)) look_at_file(state, name.substr(prefix.size()), digest, why);
+    if (in_.force && record.night != in_.night) return "--force";
     look_at_outputs(state, record, why);
     look_at_number(state, record, why);
     std::string words;
@@ -157,10 +190,11 @@ class Look {
     return words;
   }
 
-  void look_at_file(const CampaignState& state, const std::string& name, const std::string& digest,
+  void look_at_file(CampaignState& state, const std::string& name, const std::string& digest,
                     std::vector<std::string>& why) const {
     const auto path = path_inside(in_.site / state.folder, name);
     const auto now = path ? sha256_of_file(*path) : fail(path.error());
+    if (now) state.readings.push_back(short_digest(*now));
     if (now.value_or(absent) != digest)
       why.push_back("file " + name + (now ? " changed" : " is gone"));
   }
@@ -202,19 +236,31 @@ class Look {
   std::map<std::string, const RegisterEntry*> numbers_;
   mutable std::mutex unknown_guard_;
   mutable std::string unknown_;
+  mutable std::mutex twins_guard_;
+  mutable std::map<std::string, Twins> twins_then_;  ///< by folder, of the records that have any
 };
 
-/// The ids that manifests give, each read in full in a process that a parser may bring down or hold
-/// up without harm to the night; empty where there is none, or where the process did not come back.
-/// Such a campaign is tried again in its worker, which says what happened.
+/// The ids that manifests give, and the digests of their files, with blanks between; each read in
+/// full in a process that a parser may bring down or hold up without harm to the night; empty where
+/// there is none, or where the process did not come back. Such a campaign is tried again in its
+/// worker, which says what happened.
 std::vector<std::string> read_ids(std::size_t count,
                                   const std::function<fs::path(std::size_t)>& manifest_of,
                                   const Limits& limits, bool (*stopped)()) {
+  constexpr std::size_t most_words = 4000;  // of SharedWords: some sixty files
+  static const std::vector<Measurement> no_measurements;
   std::vector<std::string> ids(count);
   const auto read = [&](std::size_t i, bool, SharedWords& words) {
     const auto text = read_file(manifest_of(i));
     const auto manifest = parse_manifest(text.value_or(""), manifest_name);
-    words.set(manifest ? manifest->campaign.id : "");
+    std::string said = manifest ? manifest->campaign.id : "";
+    std::set<std::string> files;
+    for (const Measurement& m : manifest ? manifest->campaign.measurements : no_measurements)
+      if (const auto path = path_inside(manifest_of(i).parent_path(), m.file);
+          path && files.insert(m.file).second)
+        if (const auto digest = sha256_of_file(*path); digest && said.size() < most_words)
+          said += " " + *digest;
+    words.set(said);
     return Answer::ok;
   };
   const auto limit = std::chrono::duration_cast<Worker::Clock::duration>(
@@ -336,6 +382,8 @@ Expected<std::vector<CampaignState>> survey(const SurveyInput& input) {
   std::stable_sort(states.begin(), states.end(),
                    [](const CampaignState& a, const CampaignState& b) { return a.id < b.id; });
   fail_collisions(states);
+  find_twins(states);
+  for (CampaignState& state : states) look.shared_again(state, states);
   return states;
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "nonio/host/nearest.h"
+#include "nonio/sdk/format.h"
 
 namespace nonio::host {
 
@@ -241,7 +242,8 @@ void TableReader::missing(const Key& key) {
 }
 
 void TableReader::refuse(const Key& key, const std::string& found) {
-  error(key.name, filled(key.wanted, found));
+  const bool says = found.empty() || key.wanted.find("{}") != std::string_view::npos;
+  error(key.name, filled(key.wanted, found) + (says ? "" : "; found " + found));
 }
 
 void TableReader::wrong_type(std::string_view key, const toml::node& found,
@@ -307,7 +309,7 @@ std::optional<double> TableReader::number(std::string_view name, double scale) {
   const auto value = finite(name, *found.node);
   if (!value) return std::nullopt;
   if (!in_range(*value, found.key)) {
-    refuse(found.key);
+    refuse(found.key, short_text(*value, 6));
     return std::nullopt;
   }
   return *value * scale;
@@ -405,7 +407,9 @@ std::optional<std::pair<double, double>> TableReader::span(std::string_view name
   const Found found = find(name, {Key::Holds::span});
   const auto ends = number_list(found);
   if (!ends) return std::nullopt;
-  const auto is_finite = [](double value) { return std::isfinite(value); };
+  const auto is_finite = [&](double value) {
+    return std::isfinite(value) && in_range(value, found.key);
+  };
   if (ends->size() == 2 && (*ends)[0] < (*ends)[1] &&
       std::all_of(ends->begin(), ends->end(), is_finite))
     return std::pair{(*ends)[0] * scale, (*ends)[1] * scale};

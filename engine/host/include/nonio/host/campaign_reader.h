@@ -17,6 +17,7 @@ struct ReadCampaign {
   std::optional<Manifest> manifest;        ///< none if it cannot be read; then nothing else is
   std::vector<Observations> observations;  ///< of each measurement; empty where none could be read
   std::vector<Effect> effects;             ///< of the plugins and of the campaign
+  std::vector<Finding> doubts{};           ///< what makes the files themselves implausible
   std::vector<Remark> notes;
   std::vector<std::string> unread;  ///< measurements of a kind that no plugin reads
   std::vector<Error> errors;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -21,6 +22,7 @@ struct Context {
   std::string site_sha256;  ///< of site.toml; of nothing if there is none
   const Plugins* plugins = nullptr;
   std::string plugins_sha256;  ///< empty where no results are recorded
+  std::string today{};         ///< YYYY-MM-DD; empty where no day is too late
   Templates templates;
   std::string templates_sha256;
   std::string templates_json{};  ///< see `read_templates`; travels in what is signed
@@ -33,6 +35,10 @@ inline constexpr const char* manifest_name = "campaign.toml";
 inline constexpr const char* site_name = "site.toml";
 /// How a measurement file is called in `Inputs`.
 std::string input_name(const std::string& file);
+
+/// How it is called in `Inputs` that another campaign has the same file; its value is that
+/// campaign's id.
+std::string shared_name(const std::string& file);
 
 /// Stands for the SHA-256 of a file that cannot be read.
 inline constexpr const char* absent = "absent";
@@ -76,10 +82,15 @@ using Stage = std::function<void(const std::string&)>;
 using Draw =
     std::function<Expected<Certificate>(const Evaluated&, std::vector<std::string>& missing)>;
 
+/// Files of readings (the first 64 bits of their SHA-256) that another campaign has too, and its
+/// id.
+using Twins = std::vector<std::pair<std::uint64_t, std::string>>;
+
 /// One campaign from its folder to its artifacts; writes nothing. Without `draw` there is no
 /// certificate.
 Evaluated evaluate(const std::filesystem::path& folder, const std::string& id,
-                   const Context& context, const Stage& stage, const Draw& draw = {});
+                   const Context& context, const Stage& stage, const Draw& draw = {},
+                   const Twins& twins = {});
 
 /// What is wrong with the names and options of site.toml: it would be wrong in every campaign.
 std::vector<Error> site_mistakes(const Context& context);

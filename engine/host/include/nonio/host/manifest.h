@@ -30,8 +30,17 @@ struct RunChoice {
   std::optional<std::vector<std::string>> analyses, outputs;  ///< absent: all that apply
 };
 
+/// `[[tables.may_stand]]`: a finding that makes readings implausible, and why a table may be
+/// written from them all the same.
+struct StandingFinding {
+  std::string finding, reason;
+  std::uint64_t line = 0;
+};
+
 struct Manifest {
   Campaign campaign;
+  std::vector<std::string> undeclared_axes{};  ///< measured, and not among [machine.axes]
+  std::vector<StandingFinding> tables_may_stand{};
   RunChoice run;
   RawOptions options;
   KeyLines lines;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -34,6 +35,9 @@ struct CampaignState {
   std::string reason;  ///< why it is to do, or why not
   std::string status;  ///< ok, attention, failed; empty while it is to do
   std::vector<Error> errors;
+  std::vector<std::uint64_t> readings{};  ///< of its files' SHA-256 the begin, until compared
+  /// Of those that another campaign has too, and where that one stands in the list of campaigns.
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> twins{};
 };
 
 /// What the run tells while it goes on.

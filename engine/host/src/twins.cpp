@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "twins.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace nonio::host {
+namespace {
+
+constexpr std::size_t digits = 16;
+
+}  // namespace
+
+std::uint64_t short_digest(std::string_view sha256) {
+  std::uint64_t value = 0;
+  std::from_chars(sha256.data(), sha256.data() + std::min(sha256.size(), digits), value, 16);
+  return value;
+}
+
+void find_twins(std::vector<CampaignState>& campaigns) {
+  using File = std::pair<std::uint64_t, std::uint32_t>;  // digest, campaign
+  std::vector<File> files;
+  for (std::size_t i = 0; i < campaigns.size(); ++i) {
+    for (const std::uint64_t digest : campaigns[i].readings)
+      files.emplace_back(digest, static_cast<std::uint32_t>(i));
+    std::vector<std::uint64_t>().swap(campaigns[i].readings);
+  }
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  for (std::size_t i = 0, end = 0; i < files.size(); i = end) {
+    for (end = i + 1; end < files.size() && files[end].first == files[i].first;) ++end;
+    for (std::size_t k = i; end - i > 1 && k < end; ++k)
+      campaigns[files[k].second].twins.emplace_back(files[k].first,
+                                                    files[k == i ? i + 1 : i].second);
+  }
+}
+
+Twins twins_of(const CampaignState& campaign, const std::vector<CampaignState>& all) {
+  Twins twins;
+  for (const auto& [digest, other] : campaign.twins) twins.emplace_back(digest, all[other].id);
+  std::sort(twins.begin(), twins.end());
+  return twins;
+}
+
+Twins twins_of(const Inputs& inputs) {
+  Twins twins;
+  const std::string shared = shared_name(""), file = input_name("");
+  for (const auto& [name, other] : inputs)
+    if (name.starts_with(shared))
+      for (const auto& [input, digest] : inputs)
+        if (input == file + name.substr(shared.size()))
+          twins.emplace_back(short_digest(digest), other);
+  std::sort(twins.begin(), twins.end());
+  twins.erase(std::unique(twins.begin(), twins.end()), twins.end());
+  return twins;
+}
+
+}  // namespace nonio::host

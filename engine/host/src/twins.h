@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "nonio/host/run.h"
+
+namespace nonio::host {
+
+/// The first 64 bits of a SHA-256 in hexadecimal digits: there may be very many.
+std::uint64_t short_digest(std::string_view sha256);
+
+/// Files of readings that several campaigns have: each campaign gets the one with the smallest id
+/// that is not its own. Campaigns are in the order of their ids; takes their `readings`. One sort,
+/// whatever is shared.
+void find_twins(std::vector<CampaignState>& campaigns);
+
+/// As the evaluation wants them, in order.
+Twins twins_of(const CampaignState& campaign, const std::vector<CampaignState>& all);
+
+/// Of a record: what the night knew when it was written.
+Twins twins_of(const Inputs& inputs);
+
+}  // namespace nonio::host

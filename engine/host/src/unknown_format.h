@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace nonio::host {
+
+/// Line of the first content of a text, from 1; 1 if it has none.
+std::uint64_t first_content_line(std::string_view bytes);
+
+/// What a file of readings that no reader knows has in its first line, and what was expected there.
+std::string what_is_wrong(std::string_view bytes);
+
+}  // namespace nonio::host
