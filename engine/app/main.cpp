@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
       program.verbs.push_back(std::move(verb));
     }
   };
-  add("Every night", {run_verb(common)});
+  add("Every night", {run_verb(common), status_verb(common)});
   add("Campaigns", {new_verb(common), import_verb(common), show_verb(common), open_verb(common),
                     schema_verb(common)});
   add("Certificates", {release_verb(common), certificates_verb(common), verify_verb(common),

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -71,20 +73,48 @@ struct RunWish {
   host::RunOptions options;
 };
 
+/// Whoever ends the run, or the terminal that it was started from, leaves a night that the next run
+/// goes on with. Under nohup a lost terminal is nothing to stop for. A reader of the output that
+/// went away, or a limit for the size of files, is no reason to die but an error like others.
+void catch_signals() {
+  struct sigaction stop {};
+  stop.sa_handler = [](int) { host::request_stop(); };
+  sigaction(SIGINT, &stop, nullptr);
+  sigaction(SIGTERM, &stop, nullptr);
+  struct sigaction hang_up {};
+  sigaction(SIGHUP, nullptr, &hang_up);
+  if (hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &stop, nullptr);
+  struct sigaction ignore {};
+  ignore.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &ignore, nullptr);
+  sigaction(SIGXFSZ, &ignore, nullptr);
+}
+
+/// YYYY-MM-DD, a day that is in the calendar.
+bool is_date(const std::string& text) {
+  int year = 0, month = 0, day = 0, end = 0;
+  if (std::sscanf(text.c_str(), "%4d-%2d-%2d%n", &year, &month, &day, &end) != 3 || end != 10 ||
+      text.size() != 10)
+    return false;
+  return std::chrono::year_month_day{std::chrono::year(year),
+                                     std::chrono::month(static_cast<unsigned>(month)),
+                                     std::chrono::day(static_cast<unsigned>(day))}
+      .ok();
+}
+
 int run_night(RunWish& wish, const Common& common) {
   const char* const verb = "nonio run";
   if (wish.out.empty()) return complain(verb, "--out is empty; wanted a folder");
   host::RunOptions& options = wish.options;
+  if (!options.date.empty() && !is_date(options.date))
+    return complain(verb, "--date: wanted a day as YYYY-MM-DD, found \"" + options.date + "\"");
   options.site = wish.site;
   options.out = fs::absolute(wish.out);
   options.plugin_folders = common.plugin_folders();
   options.own_plugins = Common::own_plugins();
   options.template_folders = common.template_folders();
   options.version = NONIO_VERSION;
-  struct sigaction action {};
-  action.sa_handler = [](int) { host::request_stop(); };
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  catch_signals();
   Progress progress(common.quiet, common.json);
   const host::Night night = host::run_site(options, progress.events());
   progress.end();
@@ -99,7 +129,7 @@ int run_night(RunWish& wish, const Common& common) {
     print_night_plan(night, common.json);
   else if (!common.quiet || common.json)
     print_summary(night, options.out, common.json);
-  return night.any_failed() ? exit_failed : exit_done;
+  return night.failed() > 0 ? exit_failed : exit_done;
 }
 
 }  // namespace
@@ -121,6 +151,12 @@ Verb run_verb(Common& common) {
            within(1, 1024,
                   {"--jobs", &options.jobs, "Campaigns at a time (default: one for each core)"}),
            {"--force", &options.force, "Do every campaign again, changed or not"},
+           {"--verify-results", &options.verify_results,
+            "Compare the digests of all files given out, not only of those that look touched;\n"
+            "a campaign with a file that was changed is done again"},
+           {"--date", &options.date,
+            "Date of the night, YYYY-MM-DD, for the summary (default: today; a run that goes on\n"
+            "where another stopped keeps its date)"},
            {"--dry-run", &options.dry_run, "Say what would be done and why; do nothing"},
            templates_argument(common)},
           common_arguments(common)),

@@ -25,6 +25,7 @@ Verb run_verb(Common& common);
 Verb schema_verb(Common& common);
 Verb show_verb(Common& common);
 Verb simulate_verb(Common& common);
+Verb status_verb(Common& common);
 Verb template_verb(Common& common);
 Verb verify_verb(Common& common);
 Verb version_verb(Common& common);

@@ -85,7 +85,7 @@ class CampaignReader {
 
   Expected<void> read_measurement(const Measurement& m, Observations& into) {
     const auto path = path_inside(folder_, m.file);
-    const auto file = path ? MappedFile::open(*path) : fail(path.error());
+    auto file = path ? ReadFile::open(*path) : fail(path.error());
     note_input(m.file, file ? sha256(file->bytes()) : absent);
     if (!path) return fail(at("measurement." + m.id + ".file", path.error().message));
     if (!file) return fail(at("measurement." + m.id + ".file", file.error().message));

@@ -36,14 +36,14 @@ Message message_of(std::size_t campaign, const Expected<void>& result) {
 
 [[noreturn]] void serve(const Committer::Task& task, int channel) noexcept {
   settle_child();
-  for (std::size_t campaign; ::read(channel, &campaign, sizeof campaign) == sizeof campaign;) {
-    std::vector<std::size_t> batch{campaign};
+  for (Committer::Given given; ::read(channel, &given, sizeof given) == sizeof given;) {
+    std::vector<Committer::Given> batch{given};
     while (batch.size() < largest_batch &&
-           ::recv(channel, &campaign, sizeof campaign, MSG_DONTWAIT) == sizeof campaign)
-      batch.push_back(campaign);
+           ::recv(channel, &given, sizeof given, MSG_DONTWAIT) == sizeof given)
+      batch.push_back(given);
     const auto results = task(batch);
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      const Message message = message_of(batch[i], results[i]);
+      const Message message = message_of(batch[i].campaign, results[i]);
       if (::write(channel, &message, sizeof message) != sizeof message) ::_exit(0);
     }
   }
@@ -80,7 +80,7 @@ void Committer::end() {
   ::waitpid(std::exchange(pid_, -1), nullptr, 0);
 }
 
-Expected<void> Committer::give(std::size_t campaign) {
+Expected<void> Committer::give(Given campaign) {
   if (channel_ < 0)
     if (auto started = start(); !started) return started;
   pending_.push_back(campaign);
@@ -95,14 +95,18 @@ std::vector<Committer::Done> Committer::done() {
     Message message;
     const ssize_t n = ::recv(channel_, &message, sizeof message, MSG_DONTWAIT);
     if (n == sizeof message) {
-      std::erase(pending_, message.campaign);
-      out.push_back({message.campaign, message.stored ? "" : message.why.data()});
+      const auto it = std::find_if(pending_.begin(), pending_.end(), [&](const Given& g) {
+        return g.campaign == message.campaign;
+      });
+      if (it == pending_.end()) continue;
+      out.push_back({*it, message.stored ? "" : message.why.data()});
+      pending_.erase(it);
       continue;
     }
     if (n < 0 && (errno == EAGAIN || errno == EINTR)) break;
     end();
-    for (const std::size_t campaign : std::exchange(pending_, {}))
-      out.push_back({campaign, "the process that stores died", true});
+    for (const Given& given : std::exchange(pending_, {}))
+      out.push_back({given, "the process that stores died", true});
   }
   return out;
 }

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -18,13 +19,17 @@ namespace nonio::host {
 /// one waits for none.
 class Committer {
  public:
-  struct Done {
+  struct Given {
     std::size_t campaign = 0;
+    std::uint32_t losses = 0;  ///< of the disk, before its results were written
+  };
+  struct Done {
+    Given given;
     std::string error;   ///< empty: stored
     bool again = false;  ///< the process died over it; its parent may store it
   };
   /// Run in the process: stores these campaigns and tells what became of each.
-  using Task = std::function<std::vector<Expected<void>>(const std::vector<std::size_t>&)>;
+  using Task = std::function<std::vector<Expected<void>>(const std::vector<Given>&)>;
 
   explicit Committer(Task task) : task_(std::move(task)) {}
   Committer(const Committer&) = delete;
@@ -32,21 +37,22 @@ class Committer {
   ~Committer();
 
   /// An error if there is no process for it.
-  Expected<void> give(std::size_t campaign);
+  Expected<void> give(Given campaign);
   /// Those that were given and not answered yet.
-  const std::vector<std::size_t>& pending() const { return pending_; }
+  const std::vector<Given>& pending() const { return pending_; }
+  /// Ends the process, whatever it is doing.
+  void end();
   /// What is done by now. If the process died: all that was pending.
   std::vector<Done> done();
   int channel() const { return channel_; }  ///< readable when something is done; -1: no process
 
  private:
   Expected<void> start();
-  void end();
 
   Task task_;
   pid_t pid_ = -1;
   int channel_ = -1;
-  std::vector<std::size_t> pending_;
+  std::vector<Given> pending_;
 };
 
 }  // namespace nonio::host

@@ -100,6 +100,72 @@ void MappedFile::release(std::size_t offset) const {
   if (whole != 0) ::madvise(const_cast<char*>(data_), whole, MADV_DONTNEED);
 }
 
+namespace {
+
+/// Whether nobody wrote between the two.
+bool same_state(const struct stat& a, const struct stat& b) {
+  const auto same = [](const timespec& x, const timespec& y) {
+    return x.tv_sec == y.tv_sec && x.tv_nsec == y.tv_nsec;
+  };
+  return a.st_size == b.st_size && same(a.st_mtim, b.st_mtim) && same(a.st_ctim, b.st_ctim);
+}
+
+/// Up to the end of the file or of the memory, whichever comes first.
+Expected<std::size_t> read_into(int file, char* to, std::size_t room, const fs::path& path) {
+  std::size_t size = 0;
+  while (size < room) {
+    const ssize_t n = ::read(file, to + size, room - size);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return system_error("cannot read", path);
+    if (n == 0) break;
+    size += static_cast<std::size_t>(n);
+  }
+  return size;
+}
+
+}  // namespace
+
+Expected<ReadFile> ReadFile::open(const fs::path& path) {
+  constexpr int tries = 5;
+  for (int i = 0; i < tries; ++i) {
+    // Without waiting: a named pipe must not stop the night.
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+    struct stat before {};
+    if (!file || ::fstat(file.get(), &before) != 0) return system_error("cannot read", path);
+    if (!S_ISREG(before.st_mode)) return fail("cannot read " + path.string() + ": not a file");
+    const std::size_t room = static_cast<std::size_t>(before.st_size) + 1;
+    void* data =
+        ::mmap(nullptr, room, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (data == MAP_FAILED) return system_error("cannot read", path);
+    ReadFile read(static_cast<char*>(data), 0, room);
+    const auto size = read_into(file.get(), read.data_, room, path);
+    if (!size) return fail(size.error());
+    read.size_ = *size;
+    struct stat after {};
+    if (::fstat(file.get(), &after) != 0) return system_error("cannot read", path);
+    if (same_state(before, after) && *size + 1 == room) return read;
+    ::usleep(100'000);
+  }
+  return fail("cannot read " + path.string() +
+              ": somebody writes into it; wanted a file that stays as it is while it is read");
+}
+
+ReadFile::ReadFile(ReadFile&& other) noexcept
+    : data_(other.data_),
+      size_(other.size_),
+      mapped_(std::exchange(other.mapped_, 0)),
+      released_(other.released_) {}
+
+ReadFile::~ReadFile() {
+  if (mapped_ > released_) ::munmap(data_ + released_, mapped_ - released_);
+}
+
+void ReadFile::release(std::size_t offset) {
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t whole = std::min(offset, size_) / page * page;
+  if (whole > released_ && ::munmap(data_ + released_, whole - released_) == 0) released_ = whole;
+}
+
 Expected<void> read_parts(const fs::path& path, const std::function<void(std::string_view)>& take) {
   const Descriptor file = open_to_read(path);
   struct stat info {};
@@ -231,10 +297,9 @@ std::vector<std::string> temporaries(const fs::path& folder) {
   return names;
 }
 
-Expected<void> flush_file_system(const fs::path& folder) {
-  const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!fd || ::syncfs(fd.get()) != 0) return system_error("cannot flush the disk of", folder);
-  return {};
+void drop_cached(const fs::path& path) {
+  const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  if (fd) ::posix_fadvise(fd.get(), 0, 0, POSIX_FADV_DONTNEED);
 }
 
 void remove_leftovers(const fs::path& folder) {

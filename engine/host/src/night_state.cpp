@@ -3,11 +3,14 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <ctime>
 #include <thread>
 #include <utility>
 
@@ -19,15 +22,59 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* state_folder = ".nonio";
 constexpr const char* state_name = "night.json";
 
-Expected<void> write_state(const fs::path& out, const NightState& night, bool running) {
+Json to_json(const NightEnd& end) {
+  return {{"night", end.night.number},
+          {"date", end.night.date},
+          {"seen", end.seen},
+          {"failed", end.failed}};
+}
+
+std::optional<std::uint64_t> count_in(const Json& json, const char* key) {
+  const auto it = json.find(key);
+  if (it == json.end() || !it->is_number_unsigned()) return std::nullopt;
+  return it->get<std::uint64_t>();
+}
+
+std::string text_in(const Json& json, const char* key) {
+  const auto it = json.find(key);
+  return it != json.end() && it->is_string() ? it->get<std::string>() : "";
+}
+
+std::optional<NightEnd> end_in(const Json& json, const char* key) {
+  const auto it = json.find(key);
+  if (it == json.end() || !it->is_object()) return std::nullopt;
+  const auto number = count_in(*it, "night");
+  const auto seen = count_in(*it, "seen");
+  if (!number || !seen) return std::nullopt;
+  return NightEnd{{*number, text_in(*it, "date")}, *seen, count_in(*it, "failed").value_or(0)};
+}
+
+/// None if there is no such file; an error if it cannot be read or is something else.
+Expected<std::optional<Json>> read_state(const fs::path& out) {
+  const fs::path path = out / state_folder / state_name;
+  std::error_code error;
+  if (fs::symlink_status(path, error).type() == fs::file_type::not_found) return std::nullopt;
+  const auto file = read_file(path);
+  if (!file) return fail(file.error());
+  Json json = Json::parse(*file, nullptr, false);
+  if (json.is_discarded() || !json.is_object() || !count_in(json, "night"))
+    return fail(path.string() + " is damaged; remove it to do every campaign anew");
+  return json;
+}
+
+/// `end`: of a night that is complete; none while it is running.
+Expected<void> write_state(const fs::path& out, const NightState& night,
+                           const std::optional<NightEnd>& end) {
   Json json = {{"schema", "nonio-night/1"},
                {"night", night.number},
-               {"state", running ? "running" : "complete"},
+               {"date", night.date},
+               {"state", end ? "complete" : "running"},
                {"force", night.force},
                {"site", night.site}};
+  if (end) json["end"] = to_json(*end);
+  if (night.last) json["last"] = to_json(*night.last);
   if (night.issued_before) json["issued_before"] = *night.issued_before;
   return publish(out / state_folder, {{state_name, dump(json)}});
 }
@@ -45,36 +92,86 @@ std::string other_site(const std::string& other, const std::string& site, const 
 
 }  // namespace
 
-Expected<NightState> begin_night(const fs::path& out, const fs::path& site, bool force,
-                                 bool dry_run, std::optional<std::uint64_t> issued_so_far) {
+namespace {
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  ::localtime_r(&now, &local);
+  std::array<char, 16> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d", &local)};
+}
+
+}  // namespace
+
+Expected<NightState> begin_night(const RunOptions& options,
+                                 std::optional<std::uint64_t> issued_so_far) {
   NightState night;
+  const fs::path& out = options.out;
   std::error_code error;
-  night.site = fs::weakly_canonical(site, error).string();
-  night.force = force;
+  night.site = fs::weakly_canonical(options.site, error).string();
+  night.force = options.force;
+  night.date = options.date.empty() ? today() : options.date;
   night.issued_before = issued_so_far;
-  if (const auto file = MappedFile::open(out / state_folder / state_name)) {
-    const Json json = Json::parse(file->bytes(), nullptr, false);
-    if (json.is_discarded() || !json.is_object() || !json.contains("night") ||
-        !json["night"].is_number_unsigned())
-      return fail((out / state_folder / state_name).string() +
-                  " is damaged; remove it to do every campaign anew");
-    if (const auto other = json.find("site"); other != json.end() && other->is_string())
-      if (std::string why = other_site(other->get<std::string>(), night.site, out); !why.empty())
-        return fail(std::move(why));
-    night.resumed = json.value("state", "") == "running";
+  const auto state = read_state(out);
+  if (!state) return fail(state.error());
+  if (*state) {
+    const Json& json = **state;
+    if (std::string why = other_site(text_in(json, "site"), night.site, out); !why.empty())
+      return fail(std::move(why));
+    night.resumed = text_in(json, "state") == "running";
     night.number = json["night"].get<std::uint64_t>() + (night.resumed ? 0 : 1);
     // A forced run that was interrupted is finished as what it was.
-    if (night.resumed) night.force = force || json.value("force", false);
-    if (json.contains("issued_before") && json["issued_before"].is_number_unsigned())
-      night.issued_before = json["issued_before"].get<std::uint64_t>();
+    if (night.resumed) night.force = options.force || json.value("force", false);
+    if (night.resumed && options.date.empty() && json.contains("date"))
+      night.date = text_in(json, "date");
+    if (const auto issued = count_in(json, "issued_before")) night.issued_before = issued;
+    night.last = end_in(json, night.resumed ? "last" : "end");
   }
-  if (dry_run) return night;
-  if (auto written = write_state(out, night, true); !written) return fail(written.error());
+  if (options.dry_run) return night;
+  if (auto written = write_state(out, night, {}); !written) return fail(written.error());
   return night;
 }
 
-Expected<void> end_night(const fs::path& out, const NightState& night) {
-  return write_state(out, night, false);
+Expected<void> end_night(const fs::path& out, const NightState& night, const NightEnd& end) {
+  return write_state(out, night, end);
+}
+
+namespace {
+
+/// Whether a run holds the folder's lock now.
+bool is_running(const fs::path& out) {
+  const int fd = ::open((out / state_folder / "lock").c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return false;
+  const bool held = ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(fd);
+  return held;
+}
+
+}  // namespace
+
+Expected<NightStatus> night_status(const fs::path& out) {
+  const auto state = read_state(out);
+  if (!state) return fail(state.error());
+  if (!*state)
+    return fail("no night was begun in " + out.string() +
+                "; wanted the output folder of `nonio run`");
+  const Json& json = **state;
+  NightStatus status;
+  status.night = {*count_in(json, "night"), text_in(json, "date")};
+  if (text_in(json, "state") == "complete") {
+    status.last = end_in(json, "end");
+    if (!status.last) status.last = NightEnd{status.night, 0, 0};
+  } else {
+    status.state = is_running(out) ? NightStatus::State::running : NightStatus::State::cut_short;
+    status.last = end_in(json, "last");
+  }
+  struct stat summary {};
+  const fs::path path = out / "summary.json";
+  if (status.last && ::stat(path.c_str(), &summary) != 0)
+    return fail("cannot read " + path.string() + ": " + std::strerror(errno));
+  status.age = std::difftime(std::time(nullptr), summary.st_mtim.tv_sec);
+  return status;
 }
 
 Expected<OutputLock> OutputLock::take(const fs::path& out) {
@@ -87,12 +184,18 @@ Expected<OutputLock> OutputLock::take(const fs::path& out) {
     return fail("cannot use the output folder " + out.string() + ": " + std::strerror(errno));
   // What was killed has processes that end a moment later, as soon as the disk lets them.
   constexpr int tries = 50;
+  int code = 0;
   for (int i = 0; i < tries; ++i) {
     if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return OutputLock(fd);
+    code = errno;
+    if (code != EWOULDBLOCK && code != EINTR) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   ::close(fd);
-  return fail("another run is using the output folder " + out.string());
+  if (code == EWOULDBLOCK || code == EINTR)
+    return fail("another run is using the output folder " + out.string());
+  return fail("cannot lock " + path.string() + ": " + std::strerror(code) +
+              "; wanted an output folder on a file system with locks (flock)");
 }
 
 OutputLock::OutputLock(OutputLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}

@@ -6,29 +6,37 @@
 #include <optional>
 #include <string>
 
+#include "nonio/host/night_status.h"
+#include "nonio/host/run.h"
 #include "nonio/sdk/error.h"
 
 namespace nonio::host {
+
+/// Of an output folder, for what is not a result.
+inline constexpr const char* state_folder = ".nonio";
 
 /// Which night it is. A run that was killed or interrupted is the same night when it is resumed, so
 /// that it ends with the same summary as an undisturbed one. Kept in OUT/.nonio.
 struct NightState {
   std::uint64_t number = 1;
+  std::string date{};  ///< YYYY-MM-DD, as it was given
+  std::optional<NightEnd> last{};  ///< the night before; none before the first
   bool force = false;
   bool resumed = false;
   /// Certificates in the register when the night before ended, or when the first one began; none
   /// if the register could not be read.
   std::optional<std::uint64_t> issued_before{};
   std::string site{};  ///< whose results they are, its folder
+  NightOf of() const { return {number, date}; }
 };
 
 /// An error if the folder holds the results of another site that is still there: campaigns of both
 /// would be taken for one another's, and the summary would tell of one of them only.
-Expected<NightState> begin_night(const std::filesystem::path& out,
-                                 const std::filesystem::path& site, bool force, bool dry_run,
+Expected<NightState> begin_night(const RunOptions& options,
                                  std::optional<std::uint64_t> issued_so_far);
 /// `night.issued_before` is then what the next one begins with.
-Expected<void> end_night(const std::filesystem::path& out, const NightState& night);
+Expected<void> end_night(const std::filesystem::path& out, const NightState& night,
+                         const NightEnd& end);
 
 /// Held while a run uses an output folder; an error names the trouble if another run does.
 class OutputLock {

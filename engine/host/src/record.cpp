@@ -3,9 +3,13 @@
 
 #include <simdjson.h>
 
+#include <new>
+
 #include "json_writer.h"
+#include "nonio/host/files.h"
 
 namespace nonio::host {
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -60,9 +64,12 @@ Record record_of(dom::object json) {
   Record r;
   r.folder = text(json["folder"]);
   r.night = json["night"];
+  if (dom::element e; json["date"].get(e) == simdjson::SUCCESS) r.date = text(e);
   r.reason = text(json["reason"]);
   r.status = text(json["status"]);
   r.retry = json["retry"];
+  if (dom::object since; json["failed_since"].get(since) == simdjson::SUCCESS)
+    r.failed_since = NightOf{since["night"], text(since["date"])};
   for (const auto [name, digest] : dom::object(json["inputs"]))
     r.inputs.emplace_back(name, text(digest));
   if (dom::element e; json["certificate"].get(e) == simdjson::SUCCESS) r.certificate = text(e);
@@ -83,9 +90,17 @@ std::string to_json(const Record& r) {
   json.member("schema", "nonio-run/2");
   json.member("folder", r.folder);
   json.member("night", r.night);
+  if (!r.date.empty()) json.member("date", r.date);
   json.member("reason", r.reason);
   json.member("status", r.status);
   json.member("retry", r.retry);
+  if (r.failed_since) {
+    json.key("failed_since");
+    json.begin_object();
+    json.member("night", r.failed_since->number);
+    json.member("date", r.failed_since->date);
+    json.end_object();
+  }
   json.key("inputs");
   json.begin_object();
   for (const auto& [name, digest] : r.inputs) json.member(name, digest);
@@ -103,15 +118,51 @@ std::string to_json(const Record& r) {
   return json.take();
 }
 
-Expected<Record> read_record(const std::filesystem::path& campaign_output) {
+namespace {
+
+/// None if this is not a record, or one of another version.
+std::optional<Record> record_in(const std::string& bytes) {
   try {
     dom::parser parser;
-    const dom::object json = parser.load((campaign_output / record_name).string());
-    if (std::string_view(json["schema"]) != "nonio-run/2") return fail("is of another version");
+    const dom::object json = parser.parse(bytes);
+    if (std::string_view(json["schema"]) != "nonio-run/2") return std::nullopt;
     return record_of(json);
   } catch (const simdjson::simdjson_error& e) {
-    return fail(std::string("is not a record: ") + e.what());
+    if (e.error() == simdjson::MEMALLOC) throw std::bad_alloc();
+    return std::nullopt;
   }
+}
+
+/// None if there is no such file, or if it is not a record.
+Expected<std::optional<Record>> record_at(const fs::path& path) {
+  std::error_code error;
+  if (fs::symlink_status(path, error).type() == fs::file_type::not_found) return std::nullopt;
+  if (error) return fail("cannot read " + path.string() + ": " + error.message());
+  const auto bytes = read_file(path);
+  if (!bytes) return fail(bytes.error());
+  return record_in(*bytes);
+}
+
+}  // namespace
+
+Expected<Record> read_record(const fs::path& campaign_output) {
+  auto record = record_at(campaign_output / record_name);
+  if (!record) return fail(record.error());
+  if (!*record) return fail((campaign_output / record_name).string() + " is not a record");
+  return std::move(**record);
+}
+
+Expected<std::optional<LastRecord>> last_record(const fs::path& campaign_output) {
+  for (const char* name : {record_name, record_before_name}) {
+    auto record = record_at(campaign_output / name);
+    if (!record) return fail(record.error());
+    if (*record) return LastRecord{std::move(**record), name == record_name};
+  }
+  return std::nullopt;
+}
+
+Expected<std::optional<Record>> staged_record(const fs::path& campaign_output) {
+  return record_at(temporary_path(campaign_output, record_name));
 }
 
 }  // namespace nonio::host

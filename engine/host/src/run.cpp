@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "database.h"
+#include "disk.h"
 #include "night_state.h"
 #include "nonio/host/files.h"
 #include "runner.h"
@@ -35,6 +36,7 @@ std::string unfit_output(const fs::path& site, const fs::path& out) {
 /// Campaigns whose ids collide get a failed result in the one folder that they all claim.
 void store_collisions(const RunOptions& options, const Context& context, const NightState& night,
                       std::vector<CampaignState>& campaigns) {
+  const Disk disk(options.out);
   for (CampaignState& c : campaigns) {
     if (c.action != Action::todo || c.status != "failed") continue;
     Evaluated evaluated;
@@ -42,7 +44,7 @@ void store_collisions(const RunOptions& options, const Context& context, const N
     evaluated.status = "failed";
     evaluated.results.errors = c.errors;
     if (const auto stored =
-            store(options.out, evaluated, context, {c.folder, night.number, c.reason, true});
+            store(options.out, evaluated, context, {c.folder, night.of(), c.reason, true}, disk);
         !stored)
       c.errors.push_back(stored.error());
     c.action = Action::done;
@@ -115,6 +117,36 @@ void note_certificates(Night& night, const RunOptions& options, const Context& c
   }
 }
 
+void tidy_root(const fs::path& out) {
+  remove_leftovers(out);
+  remove_leftovers(out / state_folder);
+}
+
+/// Nothing half-done is left in a folder that somebody reads. Where a run was cut short, it may lie
+/// in folders of campaigns that are not in the site any more.
+Expected<void> tidy_all(const Night& night, const fs::path& out, bool resumed) {
+  tidy_root(out);
+  if (!resumed) {
+    for (const CampaignState& c : night.campaigns)
+      if (c.action == Action::done)
+        if (auto tidied = tidy(out / c.id); !tidied) return tidied;
+    return {};
+  }
+  std::error_code error;
+  for (fs::directory_iterator it(out, error), end; !error && it != end; it.increment(error))
+    if (std::error_code ignored; it->is_directory(ignored) && !it->is_symlink(ignored))
+      if (auto tidied = tidy(it->path()); !tidied) return tidied;
+  if (error) return fail("cannot read the output folder " + out.string() + ": " + error.message());
+  return {};
+}
+
+Expected<void> close_night(const Night& night, const RunOptions& options, const NightState& state) {
+  if (auto tidied = tidy_all(night, options.out, state.resumed); !tidied) return tidied;
+  if (auto written = write_summary(night, options.out, options.version); !written) return written;
+  return end_night(options.out, state,
+                   {state.of(), night.campaigns.size(), night.failed()});
+}
+
 }  // namespace
 
 Night run_site(const RunOptions& options, const RunEvents& events) {
@@ -150,12 +182,15 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
         "wait for it");
   for (const std::string& note : night.notes) events.note(note);
   if (!(*place)->unstamped.empty()) night.notes.push_back((*place)->unstamped);
-  auto state = begin_night(options.out, options.site, options.force, options.dry_run,
+  auto state = begin_night(options,
                            *known ? std::optional(issued_so_far((*known)->numbers)) : std::nullopt);
   if (!state) return refuse(state.error().message);
+  night.night = state->of();
+  if (state->last) night.seen_before = state->last->seen;
   const std::size_t notes_so_far = night.notes.size();
   SurveyInput input{options.site, options.out, context,     state->number,    state->force,
-                    std::nullopt, {},          night.notes, is_stop_requested};
+                    std::nullopt, {},          night.notes, is_stop_requested,
+                    options.verify_results};
   if (*known) {
     input.numbers = (*known)->numbers;
     for (const WaitingDraft& draft : (*known)->drafts) input.drafts.insert(draft.campaign);
@@ -188,15 +223,13 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
     };
   if (!do_campaigns(options, events, context, *state, desk, night.campaigns)) {
     night.end = Night::End::interrupted;
+    tidy_root(options.out);
     return night;
   }
   note_certificates(night, options, context, *state);
-  const auto written = write_summary(night, options.out, options.version);
-  // The campaigns are safe; the night stays open, and the next run ends it.
-  if (!written)
-    night.error = written.error().message;
-  else if (const auto ended = end_night(options.out, *state); !ended)
-    night.error = ended.error().message;
+  // The campaigns are safe; if this fails the night stays open, and the next run ends it.
+  if (const auto closed = close_night(night, options, *state); !closed)
+    night.error = closed.error().message;
   return night;
 }
 

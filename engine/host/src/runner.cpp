@@ -8,12 +8,14 @@
 #include <atomic>
 #include <chrono>
 #include <ctime>
+#include <thread>
 
 #include "certificates.h"
 #include "child.h"
 #include "committer.h"
 #include "computing.h"
 #include "database.h"
+#include "disk.h"
 #include "nonio/host/files.h"
 #include "store.h"
 #include "twins.h"
@@ -62,10 +64,12 @@ class Runner {
         twins_(releasing_ ? &desk.releasing->twins : nullptr),
         recheck_(desk.recheck),
         campaigns_(campaigns),
-        committer_([this](const std::vector<std::size_t>& batch) {
-          std::vector<std::string> ids;
-          for (const std::size_t c : batch) ids.push_back(campaigns_[c].id);
-          return commit(options_.out, ids, night_.number);
+        disk_(options.out),
+        losses_(campaigns.size()),
+        committer_([this](const std::vector<Committer::Given>& batch) {
+          std::vector<Staged> staged;
+          for (const Committer::Given& g : batch) staged.push_back(staged_of(g));
+          return commit(options_.out, staged, night_.number, disk_);
         }),
         campaigns_per_worker_(context.plugins->all_from(options.own_plugins) ? campaigns_per_worker
                                                                              : 1) {}
@@ -113,12 +117,27 @@ class Runner {
       };
     };
     auto worker = Worker::start(plugins_, task, context_.site.limits.memory_MB);
-    if (!worker) return lost(campaign, worker.error().message);
+    if (!worker) return not_started(campaign, worker.error().message);
+    starts_failed_ = 0;
     workers_.push_back(std::move(*worker));
     give(workers_.back(), campaign);
   }
 
-  void give(Worker& worker, std::size_t campaign) const {
+  /// What the system refuses now it may give in a moment; the others go on meanwhile.
+  void not_started(std::size_t campaign, const std::string& why) {
+    constexpr int most = 20;
+    if (++starts_failed_ >= most) {
+      starts_failed_ = 0;
+      return lost(campaign, why);
+    }
+    again_.push_back(campaign);
+    if (!workers_.empty()) return wait();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    take_stored();
+  }
+
+  void give(Worker& worker, std::size_t campaign) {
+    losses_[campaign] = disk_.losses();
     worker.give(campaign, std::chrono::duration_cast<Worker::Clock::duration>(
                               std::chrono::duration<double>(context_.site.limits.seconds)));
   }
@@ -136,8 +155,9 @@ class Runner {
       wait_for_answer(workers_, committer_.channel());
       take_stored();
     }
-    for (const std::size_t c : committer_.pending())
-      remove_leftovers(options_.out / campaigns_[c].id);
+    committer_.end();
+    for (const Committer::Given& g : committer_.pending())
+      remove_leftovers(options_.out / campaigns_[g.campaign].id);
   }
 
   /// What needs the register that another process keeps to itself is done when all else is, or by
@@ -213,7 +233,7 @@ class Runner {
     }
     stage.set("writing the results");
     const auto staged = host::stage(options_.out, evaluated, context_,
-                                    {c.folder, night_.number, c.reason, evaluated.retry});
+                                    {c.folder, night_.of(), c.reason, evaluated.retry});
     if (!staged) {
       stage.set(staged.error().message);
       return Answer::not_stored;
@@ -262,8 +282,7 @@ class Runner {
       case Answer::attention:
       case Answer::failed:
         campaigns_[worker.campaign()].status = to_text(answer);
-        if (const auto given = committer_.give(worker.campaign()); !given)
-          lost(worker.campaign(), given.error().message);
+        store_staged(worker.campaign());
         return answer != Answer::failed && worker.given() < campaigns_per_worker_ &&
                !worker.grown() && again_.empty();
       case Answer::again:
@@ -293,19 +312,37 @@ class Runner {
       lost(worker.campaign(), why);
   }
 
+  Staged staged_of(const Committer::Given& g) const {
+    return {campaigns_[g.campaign].id, g.losses};
+  }
+
+  /// The error, empty if there is none.
+  std::string commit_here(const Committer::Given& given) const {
+    const auto stored =
+        commit(options_.out, {staged_of(given)}, night_.number, disk_).front();
+    return stored ? "" : stored.error().message;
+  }
+
+  void store_staged(std::size_t campaign) {
+    const Committer::Given given{campaign, losses_[campaign]};
+    if (committer_.give(given)) return;
+    // Without a process of its own it takes a little longer.
+    settle(campaign, commit_here(given));
+  }
+
+  void settle(std::size_t campaign, const std::string& error) {
+    if (!error.empty())
+      lost(campaign, error);
+    else if (campaigns_[campaign].status == "failed")
+      take_failed(campaign);
+    else
+      finish(campaign, campaigns_[campaign].status, {});
+  }
+
   void take_stored() {
     for (Committer::Done& done : committer_.done()) {
-      const CampaignState& c = campaigns_[done.campaign];
-      if (done.again) {
-        const auto stored = commit(options_.out, {c.id}, night_.number).front();
-        done.error = stored ? "" : stored.error().message;
-      }
-      if (!done.error.empty())
-        lost(done.campaign, done.error);
-      else if (c.status == "failed")
-        take_failed(done.campaign);
-      else
-        finish(done.campaign, c.status, {});
+      if (done.again) done.error = commit_here(done.given);
+      settle(done.given.campaign, done.error);
     }
   }
 
@@ -336,8 +373,10 @@ class Runner {
     evaluated.status = "failed";
     evaluated.results.errors = {Error{why}};
     const auto stored =
-        store(options_.out, evaluated, context_, {c.folder, night_.number, c.reason, true});
-    if (!stored) remove_leftovers(options_.out / c.id);
+        store(options_.out, evaluated, context_, {c.folder, night_.of(), c.reason, true}, disk_);
+    if (!stored)
+      evaluated.results.errors.push_back(
+          Error{"and this could not be stored: " + stored.error().message});
     finish(index, "failed", std::move(evaluated.results.errors));
   }
 
@@ -362,9 +401,12 @@ class Runner {
   NumbersCheck recheck_;
   std::string unsound_;  ///< why no number is drawn
   std::vector<CampaignState>& campaigns_;
+  const Disk disk_;                    ///< before the first process that writes
+  std::vector<std::uint32_t> losses_;  ///< of the disk, when each campaign was begun
   Committer committer_;
   const std::size_t campaigns_per_worker_;
   std::size_t next_ = 0;
+  int starts_failed_ = 0;  ///< one after the other
   std::vector<std::size_t> again_;    ///< get a second trial
   std::vector<std::size_t> waiting_;  ///< need the register, which is locked
   std::optional<Worker::Clock::time_point> give_up_;

@@ -26,7 +26,7 @@ class Spool {
   Expected<void> flush();
 
  private:
-  explicit Spool(std::FILE* file);
+  explicit Spool(int file);
   void check(bool well);
 
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;

@@ -2,6 +2,8 @@
 #include "store.h"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
@@ -38,6 +40,32 @@ namespace {
 
 RecordedFile recorded(const Artifact& a) { return {a.name, a.bytes.size(), sha256(a.bytes)}; }
 
+/// Under a temporary name, whole or not at all: until tonight's record has its name, this is what
+/// tells a night that is resumed why the campaign is done.
+Expected<void> write_record(const fs::path& folder, const Record& record) {
+  const std::string unfinished = std::string(".") + record_name;
+  if (auto written = write_temporaries(folder, {{unfinished, to_json(record)}}); !written)
+    return written;
+  std::error_code error;
+  const fs::path path = temporary_path(folder, record_name);
+  fs::rename(temporary_path(folder, unfinished), path, error);
+  if (error) return fail("cannot write " + path.string() + ": " + error.message());
+  return {};
+}
+
+/// What the record says of the nights before.
+Expected<void> look_back(const fs::path& folder, Record& record) {
+  const auto last = last_record(folder);
+  if (!last) return fail(last.error());
+  if (record.status == "failed") record.failed_since = NightOf{record.night, record.date};
+  if (!*last) return {};
+  const Record& old = (*last)->record;
+  record.previous = old.night < record.night ? old.findings : old.previous;
+  if (record.status == "failed" && old.status == "failed")
+    record.failed_since = old.failed_since.value_or(NightOf{old.night, old.date});
+  return {};
+}
+
 }  // namespace
 
 Expected<void> stage(const fs::path& out, const Evaluated& e, const Context& context,
@@ -48,7 +76,8 @@ Expected<void> stage(const fs::path& out, const Evaluated& e, const Context& con
                 " is itself a campaign; nothing was written");
   Record record;
   record.folder = note.folder;
-  record.night = note.night;
+  record.night = note.night.number;
+  record.date = note.night.date;
   record.reason = note.reason;
   record.status = e.status;
   record.retry = note.retry;
@@ -70,91 +99,185 @@ Expected<void> stage(const fs::path& out, const Evaluated& e, const Context& con
   files.push_back({results_name, results_json(e, context, record.files)});
   record.files.push_back(recorded(files.back()));
 
-  if (const auto old = read_record(folder))
-    record.previous = old->night < note.night ? old->findings : old->previous;
-  files.push_back({record_name, to_json(record)});
-  remove_leftovers(folder);
+  if (auto looked = look_back(folder, record); !looked) return looked;
+  if (auto written = write_record(folder, record); !written) return written;
+  for (const std::string& name : temporaries(folder))
+    if (std::error_code ignored; name != record_name)
+      fs::remove(temporary_path(folder, name), ignored);
   return write_temporaries(folder, files);
 }
 
 namespace {
 
 /// The results of one campaign on their way from temporary names to their own.
-struct Move {
-  fs::path folder;
-  std::vector<std::string> names{};
-  bool moved = false;  ///< already
-  Expected<void> done{};
+class Move {
+ public:
+  /// What a commit that was cut short has done already is not staged any more.
+  Move(fs::path to, std::uint64_t night, const Expected<void>& sound) : folder_(std::move(to)) {
+    auto staged = staged_record(folder_);
+    if (!staged) {
+      done_ = fail(staged.error());
+    } else if (*staged && (*staged)->night == night) {
+      record_ = std::move(**staged);
+      for (const RecordedFile& f : record_.files) names_.insert(f.name);
+      done_ = sound;
+    } else {
+      const auto record = read_record(folder_);
+      moved_ = record && record->night == night;  // an older one would pass for tonight's
+      if (!moved_) done_ = fail("nothing is staged in " + folder_.string());
+    }
+  }
 
-  void remove(const std::string& name) {
-    if (std::error_code error; done && !fs::remove(folder / name, error) && error)
-      done = fail("cannot remove " + (folder / name).string() + ": " + error.message());
+  /// An error if what is on the disk is not what was written.
+  void read_back() {
+    for (const RecordedFile& f : record_.files) {
+      const fs::path path = temporary_path(folder_, f.name);
+      drop_cached(path);
+      const auto now = sha256_of_file(path);
+      if (!now || *now != f.sha256)
+        return give_up("the disk does not give back what was written to it: " +
+                       (folder_ / f.name).string() + (now ? "" : ": " + now.error().message));
+    }
+    drop_cached(temporary_path(folder_, record_name));
+    const auto record = staged_record(folder_);
+    if (!record || !*record || to_json(**record) != to_json(record_))
+      give_up("the disk does not give back what was written to it: " +
+              (folder_ / record_name).string());
   }
-  void rename(const std::string& name) {
-    std::error_code error;
-    if (done) fs::rename(temporary_path(folder, name), folder / name, error);
-    if (error) done = fail("cannot write " + (folder / name).string() + ": " + error.message());
-  }
+
   /// The old record, and files of it that the new results do not have.
-  void take_old_away() {
-    const auto old = read_record(folder);
-    remove(record_name);
-    if (!old) return;
-    for (const RecordedFile& f : old->files)
-      if (is_artifact_name(f.name) && !std::binary_search(names.begin(), names.end(), f.name))
-        remove(f.name);
+  void put_old_aside() {
+    std::error_code error;
+    if (fs::exists(fs::symlink_status(folder_ / record_name, error)))
+      rename(folder_ / record_name, folder_ / record_before_name);
+    const auto old = last_record(folder_);
+    if (!old) return give_up(old.error().message);
+    const bool may_pass = record_.status == "failed" && record_.retry;
+    const bool was_good = *old && (*old)->record.status != "failed";
+    if (may_pass && was_good) keep((*old)->record);
+    if (!may_pass) remove_all(folder_ / last_good_name);
+    if (!*old) return;
+    for (const RecordedFile& f : (*old)->record.files)
+      if (is_result(f.name) && !names_.contains(f.name)) remove(folder_ / f.name);
   }
   void rename_files() {
-    for (const std::string& name : names)
-      if (name != record_name) rename(name);
+    for (const std::string& name : names_) rename(temporary_path(folder_, name), folder_ / name);
   }
-  void rename_record() { rename(record_name); }
-};
+  void rename_record() {
+    rename(temporary_path(folder_, record_name), folder_ / record_name);
+    if (!done_) return;
+    // The new results are complete; what is left of the old ones may as well go later.
+    [[maybe_unused]] const auto gone = put_away_record_before(folder_);
+  }
 
-/// What a commit that was cut short has done already is not staged any more.
-Move move_of(const fs::path& folder, std::uint64_t night) {
-  Move move{folder, temporaries(folder)};
-  const bool staged = std::binary_search(move.names.begin(), move.names.end(), record_name);
-  if (!staged) {
-    move.names.clear();
-    const auto record = read_record(folder);
-    move.moved = record && record->night == night;  // an older one would pass for tonight's
-    if (!move.moved) move.done = fail("nothing is staged in " + folder.string());
+  static Expected<void> put_away_record_before(const fs::path& folder) {
+    std::error_code error;
+    const fs::path before = folder / record_before_name;
+    const fs::path last_good = folder / last_good_name;
+    if (!fs::exists(fs::symlink_status(before, error))) return {};
+    if (fs::is_directory(last_good, error) && !fs::exists(last_good / record_name, error))
+      fs::rename(before, last_good / record_name, error);
+    else
+      fs::remove(before, error);
+    if (error) return fail("cannot remove " + before.string() + ": " + error.message());
+    return {};
   }
-  return move;
-}
+
+  bool moved() const { return moved_; }
+  const Expected<void>& done() const { return done_; }
+  void give_up(const std::string& why) {
+    if (done_) done_ = fail(why);
+  }
+  void remove_staged() const { remove_leftovers(folder_); }
+
+ private:
+  static bool is_result(const std::string& name) {
+    return is_artifact_name(name) || name == results_name;
+  }
+  void remove(const fs::path& path) {
+    if (std::error_code error; done_ && !fs::remove(path, error) && error)
+      give_up("cannot remove " + path.string() + ": " + error.message());
+  }
+  void remove_all(const fs::path& path) {
+    std::error_code error;
+    if (done_) fs::remove_all(path, error);
+    if (error) give_up("cannot remove " + path.string() + ": " + error.message());
+  }
+  void rename(const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    if (done_) fs::rename(from, to, error);
+    if (error) give_up("cannot write " + to.string() + ": " + error.message());
+  }
+  /// The old results as they are, or nothing of them: some may be there already, and where storing
+  /// others was cut short some may be gone.
+  void keep(const Record& old) {
+    if (!done_) return;
+    const fs::path to = folder_ / last_good_name;
+    std::error_code error;
+    fs::create_directory(to, error);
+    if (error) return give_up("cannot make the folder " + to.string() + ": " + error.message());
+    for (const RecordedFile& f : old.files) {
+      if (!is_result(f.name) || sha256_of_file(to / f.name).value_or("") == f.sha256) continue;
+      if (sha256_of_file(folder_ / f.name).value_or("") != f.sha256) return remove_all(to);
+      rename(folder_ / f.name, to / f.name);
+    }
+  }
+
+  fs::path folder_;
+  Record record_{};
+  std::set<std::string> names_{};
+  bool moved_ = false;  ///< already
+  Expected<void> done_{};
+};
 
 }  // namespace
 
-std::vector<Expected<void>> commit(const fs::path& out, const std::vector<std::string>& ids,
-                                   std::uint64_t night) {
+std::vector<Expected<void>> commit(const fs::path& out, const std::vector<Staged>& campaigns,
+                                   std::uint64_t night, const Disk& disk) {
   std::vector<Move> moves;
-  for (const std::string& id : ids) moves.push_back(move_of(out / id, night));
+  const auto sound = [&](const Staged& c) -> Expected<void> {
+    if (c.losses == disk.losses()) return {};
+    return fail("the disk lost writes while the results were written");
+  };
   const auto flush = [&] {
-    const auto flushed = flush_file_system(out);
-    for (Move& m : moves)
-      if (m.done && !flushed) m.done = flushed;
+    if (const auto flushed = disk.flush(); !flushed)
+      for (Move& m : moves) m.give_up(flushed.error().message);
   };
   const auto each = [&](void (Move::*step)()) {
     for (Move& m : moves)
-      if (!m.moved) (m.*step)();
-    flush();
+      if (!m.moved() && m.done()) (m.*step)();
   };
-  each(&Move::take_old_away);
+  for (const Staged& c : campaigns) moves.emplace_back(out / c.id, night, sound(c));
+  flush();
+  each(&Move::read_back);
+  each(&Move::put_old_aside);
+  flush();
   each(&Move::rename_files);
+  flush();
   each(&Move::rename_record);
+  flush();
   std::vector<Expected<void>> done;
-  for (Move& m : moves) {
-    if (!m.done) remove_leftovers(m.folder);
-    done.push_back(std::move(m.done));
+  for (const Move& m : moves) {
+    if (!m.done()) m.remove_staged();
+    done.push_back(m.done());
   }
   return done;
 }
 
 Expected<void> store(const fs::path& out, const Evaluated& evaluated, const Context& context,
-                     const StoreNote& note) {
+                     const StoreNote& note, const Disk& disk) {
+  const std::uint32_t losses = disk.losses();
   if (auto staged = stage(out, evaluated, context, note); !staged) return staged;
-  return commit(out, {evaluated.campaign.id}, note.night).front();
+  return commit(out, {{evaluated.campaign.id, losses}}, note.night.number, disk).front();
+}
+
+Expected<void> tidy(const fs::path& folder) {
+  remove_leftovers(folder);
+  if (const auto left = temporaries(folder); !left.empty())
+    return fail("cannot remove " + temporary_path(folder, left.front()).string());
+  std::error_code error;
+  if (!fs::exists(folder / record_name, error)) return {};
+  return Move::put_away_record_before(folder);
 }
 
 }  // namespace nonio::host

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "disk.h"
 #include "nonio/host/evaluate.h"
 #include "nonio/host/record.h"
 
@@ -12,7 +13,7 @@ namespace nonio::host {
 /// What the record of a campaign says beside its results.
 struct StoreNote {
   std::string folder;
-  std::uint64_t night = 0;
+  NightOf night{};
   std::string reason;
   bool retry = false;
 };
@@ -22,15 +23,28 @@ struct StoreNote {
 Expected<void> stage(const std::filesystem::path& out, const Evaluated& evaluated,
                      const Context& context, const StoreNote& note);
 
+/// A campaign whose files are staged.
+struct Staged {
+  std::string id;
+  std::uint32_t losses = 0;  ///< of the disk, before its first file was written
+};
+
 /// Makes the staged files of these campaigns their results, durably: one flush of the disk serves
-/// all of them. The old record is taken away first and the new one gets its name last: whenever a
-/// record is there, all the files it lists belong together. One entry for each id.
+/// all of them. They are read back from the disk first. Then the old record is put aside, and the
+/// new one gets its name last: whenever a record is there, all the files it lists belong together.
+/// Results that a failure replaces which may pass go into the folder `last-good`. One entry for
+/// each campaign.
 std::vector<Expected<void>> commit(const std::filesystem::path& out,
-                                   const std::vector<std::string>& ids, std::uint64_t night);
+                                   const std::vector<Staged>& campaigns, std::uint64_t night,
+                                   const Disk& disk);
 
 /// Both, for one campaign.
 Expected<void> store(const std::filesystem::path& out, const Evaluated& evaluated,
-                     const Context& context, const StoreNote& note);
+                     const Context& context, const StoreNote& note, const Disk& disk);
+
+/// Removes what is left in a campaign's output folder of results that were not stored, or of
+/// storing them. An error names what cannot be removed.
+Expected<void> tidy(const std::filesystem::path& folder);
 
 /// The findings of all analyses and outputs, each once, with their English titles.
 std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates);

@@ -53,6 +53,22 @@ Json entry_json(const CampaignState& c, const std::string& reason) {
   return json;
 }
 
+std::string night_words(const NightOf& night) {
+  return "night " + std::to_string(night.number) + (night.date.empty() ? "" : " of " + night.date);
+}
+
+Json night_json(const NightOf& night) { return {{"night", night.number}, {"date", night.date}}; }
+
+/// Which night this is, and whether campaigns are missing: first of all, so that nobody takes an
+/// old summary for tonight's.
+std::string night_line(const Night& night) {
+  std::string line = night_words(night.night) + "; " + std::to_string(night.campaigns.size()) +
+                     (night.campaigns.size() == 1 ? " campaign seen, " : " campaigns seen, ");
+  line[0] = 'N';
+  return line + (night.seen_before ? std::to_string(*night.seen_before) + " the night before\n"
+                                   : "none before: it is the first night\n");
+}
+
 struct Lists {
   explicit Lists(const fs::path& folder)
       : done("done", folder),
@@ -64,15 +80,18 @@ struct Lists {
   List done, unchanged, attention, failed, fresh;
   Spool fresh_text;  // of those that ask for attention
 
-  void add(const CampaignState& c, const fs::path& out) {
-    if (c.status == "failed")
-      return failed.add(c.id + ": " + first_error(c), entry_json(c, first_error(c)));
+  /// An error if what the campaign's record says cannot be read.
+  Expected<void> add(const CampaignState& c, const fs::path& out) {
+    if (c.status == "failed") {
+      add_failed(c, out);
+      return {};
+    }
     const bool is_done = c.action == Action::done;
     (is_done ? done : unchanged)
         .add(is_done ? c.id + ": " + c.reason : c.id, entry_json(c, c.reason));
-    if (!is_done && c.status == "ok") return;
+    if (!is_done && c.status == "ok") return {};
     const auto record = read_record(out / c.id);
-    if (!record) return;
+    if (!record) return fail(record.error());
     if (c.status == "attention") {
       std::string words;
       for (const KnownFinding& f : record->findings)
@@ -82,14 +101,36 @@ struct Lists {
       if (words.empty()) words = "see the notes in its results.json";
       attention.add(c.id + ": " + words, entry_json(c, words));
     }
-    if (!is_done) return;
+    if (!is_done) return {};
     for (const KnownFinding& f : record->findings)
       if (std::none_of(record->previous.begin(), record->previous.end(),
                        [&](const KnownFinding& p) { return p.same(f); }))
         add_fresh(c, f);
+    return {};
   }
 
  private:
+  /// With how long it has been so, and where results are that still stand.
+  void add_failed(const CampaignState& c, const fs::path& out) {
+    std::string line = c.id + ": " + first_error(c);
+    Json entry = entry_json(c, first_error(c));
+    const auto record = read_record(out / c.id);
+    if (record && record->failed_since) {
+      const NightOf& since = *record->failed_since;
+      entry["failed_since"] = night_json(since);
+      if (since.number != record->night) line += "; failed since " + night_words(since);
+    }
+    const std::string folder = c.id + "/" + last_good_name;
+    if (const auto good = read_record(out / folder)) {
+      const NightOf night{good->night, good->date};
+      entry["last_good"] = night_json(night);
+      entry["last_good"]["status"] = good->status;
+      entry["last_good"]["folder"] = folder;
+      line += "; the last good result is that of " + night_words(night) + ", in " + folder;
+    }
+    failed.add(line, entry);
+  }
+
   void add_fresh(const CampaignState& c, const KnownFinding& f) {
     const std::string line =
         c.id + (f.measurement.empty() ? "" : ", " + f.measurement) + ": " + f.title;
@@ -132,6 +173,7 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
           " done, " + n(lists.unchanged.count) + " unchanged, " + n(lists.failed.count) +
           " failed; " + n(lists.attention.count) + (lists.attention.count == 1 ? " asks" : " ask") +
           " for attention\n");
+  out.add(night_line(night));
   if (!night.issued.empty()) out.add(issued_line(night.issued));
   if (!night.waiting.empty()) out.add(waiting_line(night.waiting));
   // What somebody must act on comes first.
@@ -152,10 +194,14 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
 void write_json(Spool& out, const Night& night, Lists& lists, const std::string& version) {
   const std::initializer_list<List*> all{&lists.done, &lists.unchanged, &lists.attention,
                                          &lists.failed, &lists.fresh};
+  Json seen = {{"tonight", night.campaigns.size()}, {"night_before", nullptr}};
+  if (night.seen_before) seen["night_before"] = *night.seen_before;
   Json counts = {{"campaigns", night.campaigns.size()}};
   for (const List* l : all)
     if (l != &lists.fresh) counts[l->name] = l->count;
   out.add("{\n \"schema\": \"nonio-summary/1\",\n \"nonio\": " + Json(version).dump() +
+          ",\n \"night\": " + std::to_string(night.night.number) +
+          ",\n \"date\": " + Json(night.night.date).dump() + ",\n \"seen\": " + seen.dump() +
           ",\n \"counts\": " + counts.dump());
   for (List* l : all) {
     out.add(std::string(",\n \"") + l->name + "\": [");
@@ -182,22 +228,29 @@ void write_json(Spool& out, const Night& night, Lists& lists, const std::string&
 
 }  // namespace
 
-bool Night::any_failed() const {
-  return std::any_of(campaigns.begin(), campaigns.end(),
-                     [](const CampaignState& c) { return c.status == "failed"; });
+std::size_t Night::failed() const {
+  return static_cast<std::size_t>(
+      std::count_if(campaigns.begin(), campaigns.end(),
+                    [](const CampaignState& c) { return c.status == "failed"; }));
 }
 
 Expected<void> write_summary(const Night& night, const fs::path& out, const std::string& version) {
   const std::vector<std::string> names{"summary.txt", "summary.json"};
+  remove_leftovers(out);
   Spool text = Spool::at(temporary_path(out, names[0]));
   Spool json = Spool::at(temporary_path(out, names[1]));
   Lists lists(out);
-  for (const CampaignState& c : night.campaigns) lists.add(c, out);
+  for (const CampaignState& c : night.campaigns)
+    if (const auto added = lists.add(c, out); !added) {
+      remove_leftovers(out);
+      return fail("cannot write the summary in " + out.string() + ": " + added.error().message);
+    }
   write_text(text, night, lists, version);
   write_json(json, night, lists, version);
   auto written = text.flush();
   if (written) written = json.flush();
-  if (written) return rename_temporaries(out, names);
+  if (written) written = rename_temporaries(out, names);
+  if (written) return written;
   remove_leftovers(out);
   return fail("cannot write the summary in " + out.string() + ": " + written.error().message);
 }

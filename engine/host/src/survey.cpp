@@ -81,11 +81,11 @@ class Look {
     }
     manifest_digest = sha256(*text);
     state.id = salvage_id(*text);
-    const auto record = record_of(state.id);
-    if (!record || record->folder != state.folder ||
-        digest_of(*record, manifest_name) != manifest_digest)
+    const auto last = last_of(state.id);
+    if (!last || !*last || (*last)->record.folder != state.folder ||
+        digest_of((*last)->record, manifest_name) != manifest_digest)
       return false;
-    judge(state, record, manifest_digest);
+    judge(state, last, manifest_digest);
     return true;
   }
 
@@ -94,7 +94,7 @@ class Look {
              const std::string& manifest_digest) const {
     read_words(state, id);
     if (state.id.empty()) name_by_folder(state);
-    judge(state, record_of(state.id), manifest_digest);
+    judge(state, last_of(state.id), manifest_digest);
   }
 
   /// Whether other campaigns share readings as they did when the record was written.
@@ -135,15 +135,23 @@ class Look {
     state.named_by_folder = true;
   }
 
-  std::optional<Record> record_of(const std::string& id) const {
+  Expected<std::optional<LastRecord>> last_of(const std::string& id) const {
     if (id.empty()) return std::nullopt;
-    auto record = read_record(in_.out / id);
-    if (!record) return std::nullopt;
-    if (in_.numbers && !record->certificate.empty() && !numbers_.contains(record->certificate)) {
+    auto last = last_record(in_.out / id);
+    if (!last || !*last) return last;
+    const std::string& number = (*last)->record.certificate;
+    if (in_.numbers && !number.empty() && !numbers_.contains(number)) {
       const std::lock_guard guard(unknown_guard_);
-      unknown_ = record->certificate;
+      unknown_ = number;
     }
-    return std::move(*record);
+    return last;
+  }
+
+  /// Where storing tonight's results was cut short: why the campaign was done. The files that would
+  /// tell are no longer those of the night before.
+  std::string staged_reason(const CampaignState& state) const {
+    const auto staged = staged_record(in_.out / state.id);
+    return staged && *staged && (*staged)->night == in_.night ? (*staged)->reason : "";
   }
 
   static std::string digest_of(const Record& record, const std::string& name) {
@@ -152,14 +160,19 @@ class Look {
     return {};
   }
 
-  void judge(CampaignState& state, const std::optional<Record>& record,
+  void judge(CampaignState& state, const Expected<std::optional<LastRecord>>& last,
              const std::string& manifest_digest) const {
-    if (!record) {
+    if (!last)
+      state.reason = last.error().message;
+    else if (!*last)
       state.reason = "no earlier result";
-      return;
-    }
+    else if (!(*last)->whole)
+      state.reason = staged_reason(state);
+    if (!state.reason.empty()) return;
+    const Record* record = &(*last)->record;
     const bool tonight = record->night == in_.night;
     state.reason = changes(state, *record, manifest_digest);
+    if (state.reason.empty() && !(*last)->whole) state.reason = "its last results are not whole";
     if (!state.reason.empty()) return;
     if (Twins then = twins_of(record->inputs); !then.empty())
       note_twins(state.folder, std::move(then));
@@ -212,7 +225,8 @@ class Look {
       if (::stat(path.c_str(), &now) != 0)
         why.push_back(f.name + " is missing from the output");
       else if (static_cast<std::uint64_t>(now.st_size) != f.size ||
-               (younger(now, written) && sha256_of_file(path).value_or(absent) != f.sha256))
+               ((in_.verify_results || younger(now, written)) &&
+                sha256_of_file(path).value_or(absent) != f.sha256))
         why.push_back(f.name + " was changed in the output");
     }
   }

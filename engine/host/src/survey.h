@@ -23,6 +23,7 @@ struct SurveyInput {
   std::set<std::string> drafts;
   std::vector<std::string>& notes;  ///< what was passed over, for the summary
   bool (*stopped)();                ///< asked now and then; what is returned then is not whole
+  bool verify_results = false;      ///< digests decide of all files given out
 };
 
 /// All campaigns of a site, by id, each with what is to be done with it and why. Campaigns whose

@@ -34,6 +34,29 @@ class MappedFile {
   std::size_t size_;
 };
 
+/// A file as it was at one moment, read once into memory of its own: what is hashed is what is
+/// evaluated, whatever somebody writes into the file meanwhile. Not copyable.
+class ReadFile {
+ public:
+  /// An error if the file changes while it is read, several times in a row.
+  static Expected<ReadFile> open(const std::filesystem::path& path);
+  ReadFile(ReadFile&& other) noexcept;
+  ReadFile& operator=(ReadFile&&) = delete;
+  ~ReadFile();
+
+  std::string_view bytes() const { return {data_, size_}; }
+  /// Gives the pages before `offset` back to the system; nobody may read them any more.
+  void release(std::size_t offset);
+
+ private:
+  ReadFile(char* data, std::size_t size, std::size_t mapped)
+      : data_(data), size_(size), mapped_(mapped) {}
+  char* data_;
+  std::size_t size_;
+  std::size_t mapped_;        ///< 0: nothing is
+  std::size_t released_ = 0;  ///< whole pages at the front
+};
+
 /// A file in parts of up to a megabyte. Unlike a mapping it bears that the file is cut short by
 /// somebody else meanwhile, so the main process reads in this way only.
 Expected<void> read_parts(const std::filesystem::path& path,
@@ -59,8 +82,8 @@ Expected<void> write_temporaries(const std::filesystem::path& folder,
                                  const std::vector<Artifact>& files);
 /// The names that files under temporary names in a folder are to get, in order.
 std::vector<std::string> temporaries(const std::filesystem::path& folder);
-/// Returns when everything that was written to the file system of this folder is on disk.
-Expected<void> flush_file_system(const std::filesystem::path& folder);
+/// What was flushed of this file is read from the disk the next time.
+void drop_cached(const std::filesystem::path& path);
 
 /// `publish` in two steps, for what is written elsewhere: the name to write and flush it under, and
 /// the renaming of such files.

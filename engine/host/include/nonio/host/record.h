@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,14 +28,22 @@ struct RecordedFile {
   std::string sha256;
 };
 
+/// A night, by its number and the date it was given.
+struct NightOf {
+  std::uint64_t number = 0;
+  std::string date;  ///< YYYY-MM-DD; empty: of a version that did not note it
+};
+
 /// `run.json` beside a campaign's results: from what they were made, when (which night) and why.
 /// It holds no time, so that equal runs leave equal bytes.
 struct Record {
   std::string folder;  ///< of the campaign, relative to the site
   std::uint64_t night = 0;
+  std::string date;  ///< of that night
   std::string reason;
   std::string status;
   bool retry = false;  ///< it failed for a reason that does not lie in its content
+  std::optional<NightOf> failed_since{};  ///< the first of the nights in which it failed
   Inputs inputs;
   std::string certificate;  ///< its number; empty: none
   bool draft = false;       ///< of a certificate that waits for its release
@@ -45,9 +54,24 @@ struct Record {
 
 inline constexpr const char* record_name = "run.json";
 inline constexpr const char* results_name = "results.json";
+/// The old record while new results take the place of its files.
+inline constexpr const char* record_before_name = ".run.json.before";
+/// The folder, in that of a campaign which failed for a reason that may pass, with its last results.
+inline constexpr const char* last_good_name = "last-good";
 
 std::string to_json(const Record& record);
 /// An error if the file is not a record; no distinction why, since it is then simply made anew.
 Expected<Record> read_record(const std::filesystem::path& campaign_output);
+
+/// The record of the last results: `run.json`, or, where storing others was cut short, the one that
+/// was put aside for it (then `whole` is false: its files need not be there any more).
+struct LastRecord {
+  Record record;
+  bool whole = true;
+};
+/// None if there is none, or none that this version reads; an error if the disk does not give it.
+Expected<std::optional<LastRecord>> last_record(const std::filesystem::path& campaign_output);
+/// Of results that are written under temporary names.
+Expected<std::optional<Record>> staged_record(const std::filesystem::path& campaign_output);
 
 }  // namespace nonio::host

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct RunOptions {
   std::size_t jobs = 0;               ///< 0: one for each core
   bool force = false;
   bool dry_run = false;
+  bool verify_results = false;  ///< compare the digests of all files given out, touched or not
+  std::string date{};           ///< of the night, YYYY-MM-DD; empty: today's
   std::string version;
   bool confine = true;  ///< false: only to measure what confining plugins costs
 };
@@ -50,12 +53,14 @@ struct RunEvents {
 
 struct Night {
   enum class End { complete, interrupted, refused } end = End::complete;
+  NightOf night{};
+  std::optional<std::uint64_t> seen_before{};  ///< campaigns that the night before saw
   std::string error;                     ///< of a refused run: usage or configuration
   std::vector<CampaignState> campaigns;  ///< ordered by id
   std::vector<std::string> notes;
   std::vector<RegisterEntry> issued;  ///< certificates that are new since the night before
   std::vector<WaitingDraft> waiting;  ///< for their release
-  bool any_failed() const;
+  std::size_t failed() const;
 };
 
 /// The nightly run over a site. Returns when every campaign is done, or after a call of

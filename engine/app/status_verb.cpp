@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "nonio/host/night_status.h"
+#include "verbs.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+using host::NightStatus;
+
+namespace {
+
+constexpr const char* status_name = "nonio status";
+
+struct StatusWish {
+  std::string out;
+  double max_age = 36.0;  ///< h; 0: any
+};
+
+const char* to_text(NightStatus::State state) {
+  return state == NightStatus::State::complete  ? "complete"
+         : state == NightStatus::State::running ? "running"
+                                                : "cut-short";
+}
+
+std::string night_text(const host::NightOf& night) {
+  return "night " + std::to_string(night.number) + (night.date.empty() ? "" : " of " + night.date);
+}
+
+std::string hours_text(double hours) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f h", hours);
+  return text.data();
+}
+
+/// What is wrong; empty if all is well.
+std::string trouble(const NightStatus& s, const StatusWish& wish) {
+  if (s.state == NightStatus::State::cut_short)
+    return night_text(s.night) + " began and did not end";
+  if (!s.last)
+    return s.state == NightStatus::State::running ? "" : "no night is complete";
+  if (s.age < -60.0) return "summary.json is from the future; wanted a clock that is right";
+  if (wish.max_age > 0.0 && s.age > wish.max_age * 3600.0)
+    return "older than " + hours_text(wish.max_age);
+  return {};
+}
+
+std::string line_of(const NightStatus& s, const std::string& wrong) {
+  std::string line;
+  if (s.state == NightStatus::State::running) line = night_text(s.night) + " is running; ";
+  if (s.last)
+    line += night_text(s.last->night) + " is complete, " + hours_text(s.age / 3600.0) +
+            " ago: " + std::to_string(s.last->seen) +
+            (s.last->seen == 1 ? " campaign, " : " campaigns, ") +
+            std::to_string(s.last->failed) + " failed";
+  else
+    line += "no night is complete yet";
+  return line + (wrong.empty() ? "" : "; WRONG: " + wrong);
+}
+
+int status(const StatusWish& wish, const Common& common) {
+  const auto found = host::night_status(wish.out);
+  if (!found) return complain(status_name, found.error().message);
+  const std::string wrong = trouble(*found, wish);
+  const int exit = wrong.empty() ? exit_done : exit_failed;
+  if (common.json) {
+    Json json = {{"schema", "nonio-status/1"},
+                 {"well", wrong.empty()},
+                 {"state", to_text(found->state)},
+                 {"night", found->night.number},
+                 {"date", found->night.date}};
+    if (found->last)
+      json["last_complete"] = {{"night", found->last->night.number},
+                               {"date", found->last->night.date},
+                               {"age_s", found->age},
+                               {"campaigns", found->last->seen},
+                               {"failed", found->last->failed}};
+    if (!wrong.empty()) json["wrong"] = wrong;
+    std::cout << json.dump(1, ' ', false, Json::error_handler_t::replace) << "\n";
+  } else if (!common.quiet || !wrong.empty()) {
+    std::cout << line_of(*found, wrong) << "\n";
+  }
+  return exit;
+}
+
+}  // namespace
+
+Verb status_verb(Common& common) {
+  auto wish = std::make_shared<StatusWish>();
+  using Takes = Argument::Takes;
+  Argument age = within(0, 1e6,
+                        {"--max-age", &wish->max_age,
+                         "Greatest age of the last complete night, in hours; 0: any"});
+  age.shows_default = true;
+  return {.name = "status",
+          .summary = "Whether the last night was done: a dead man's switch for another machine's cron",
+          .arguments = {required(existing(
+                            Takes::folder, {"OUT", &wish->out, "Output folder of `nonio run`"})),
+                        age,
+                        {"--json", &common.json, "Machine-readable output on stdout"},
+                        {"--quiet", &common.quiet, "Nothing unless something is wrong"}},
+          .footer =
+              "One line: the last night's number, date, age, campaigns. Exit status: 0 the last night\n"
+              "is complete and young enough, or one is running and the last is; 1 a night began and\n"
+              "did not end, or the last one is too old; 2 there was none, or it cannot be read.\n"
+              "The age is that of OUT/summary.json.\n\n"
+              "Example: nonio status out --max-age 26",
+          .run = [wish, &common] { return status(*wish, common); }};
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Faults at random places of first, changed and forced nights: a call of the system fails, or the night is killed.
+Never status 0 with a missing, old or wrong byte, never a temporary file left, always a next night with the same bytes.
+
+NONIO_FAULTS=1000 NONIO_SEED=7 NONIO=... NONIO_FAULT_SHIM=... python3 -B tests/night/faults_test.py
+NONIO_FAULT=FUNCTION:N:ERRNO NONIO_FAULT_NIGHT=changed repeats one of them."""
+import collections
+import errno
+import json
+import os
+import random
+import shutil
+import subprocess
+import sys
+import unittest
+
+from nightly import NightTest, readings, tree
+
+FAULTS = int(os.environ.get("NONIO_FAULTS", "40"))
+SEED = int(os.environ.get("NONIO_SEED", "20261122"))
+SHIM = os.environ["NONIO_FAULT_SHIM"]
+# What each may fail with, and how often it is drawn.
+CALLS = {
+    "open": (6, ["EIO", "EMFILE", "ENOSPC", "EACCES"]), "read": (4, ["EIO", "ESTALE"]),
+    "write": (8, ["ENOSPC", "EIO", "EDQUOT"]), "fsync": (4, ["EIO", "ENOSPC"]), "syncfs": (8, ["EIO", "ENOSPC"]),
+    "rename": (12, ["EIO", "ENOSPC", "EACCES"]), "unlink": (8, ["EPERM", "EIO"]), "mkdir": (3, ["ENOSPC"]),
+    "mmap": (2, ["ENOMEM"]), "malloc": (20, ["ENOMEM"]), "fork": (6, ["EAGAIN", "ENOMEM"]),
+    "flock": (1, ["ENOLCK"]), "stat": (6, ["EIO", "ESTALE"]), "fflush": (3, ["ENOSPC"]),
+    "socketpair": (2, ["EMFILE"]), "opendir": (2, ["EMFILE"]), "readdir": (0, ["EIO"]),
+}
+KILLED = ["rename", "unlink", "write", "syncfs", "open", "malloc", "fsync"]
+NIGHTS = ["first", "changed", "forced"]
+RUN = '[run]\nanalyses = ["iso230-2"]\noutputs = ["json", "csv", "pdf-report"]\n'
+
+
+class Faults(NightTest):
+    def setUp(self):
+        super().setUp()
+        for name in "abc":
+            self.campaign(name, run=RUN)
+        self.before = self.root / "before"
+        self.references = {}
+        self.counts = {}
+        self.run_nonio("--date", "2026-11-03", out=self.before, expect=0)
+        for night in NIGHTS:
+            out = self.begin(night, "reference-" + night)
+            counts = self.root / "counts"
+            self.night(night, out, {"NONIO_FAULT_COUNTS": str(counts)}, expect=0)
+            self.references[night] = tree(out)
+            self.counts[night] = {k: int(n) for k, n in (line.split() for line in counts.read_text().splitlines())}
+
+    def begin(self, night, name):
+        """The site and the output folder as this night finds them."""
+        for i, campaign in enumerate("abc"):
+            new = night == "changed" and i < 2
+            path = self.site / campaign / "x.csv"
+            text = readings(campaign + "2") if new else readings(campaign)
+            if path.read_text() != text:
+                path.write_text(text)
+        out = self.root / name
+        shutil.rmtree(out, ignore_errors=True)
+        if night != "first":
+            subprocess.run(["cp", "-a", str(self.before), str(out)], check=True)
+        return out
+
+    def night(self, night, out, fault, expect=None):
+        args = ["--date", "2026-11-03" if night == "first" else "2026-11-04", "--jobs", "2"]
+        if night == "forced":
+            args.append("--force")
+        return self.run_nonio(*args, out=out, expect=expect,
+                              env={**os.environ, **fault, **({"LD_PRELOAD": SHIM} if fault else {})})
+
+    def draw(self, rng):
+        night = rng.choice(NIGHTS)
+        kill = rng.random() < 0.2
+        if kill:
+            call = rng.choice(KILLED)
+        else:
+            call = rng.choices(list(CALLS), [weight for weight, _ in CALLS.values()])[0]
+        n = rng.randint(1, max(1, self.counts[night][call]))
+        if kill:
+            return night, f"{call}:{n}:KILL"
+        times = rng.choice([1, 1, 1, 2, 10]) if call != "malloc" else rng.choice([1, 1, 1, 1000])
+        return night, f"{call}:{n}:{getattr(errno, rng.choice(CALLS[call][1]))}:{times}"
+
+    @staticmethod
+    def differences(a, b):
+        return sorted(k for k in a.keys() | b.keys() if a.get(k) != b.get(k))
+
+    @staticmethod
+    def results(files):
+        """What the campaigns' files say, without which night it was."""
+        return {k: v for k, v in files.items() if "/" in k and not k.startswith(".nonio") and not k.endswith("run.json")}
+
+    def wrong(self, night, fault):
+        """What the fault brought about that must not be; and what became of the night."""
+        out = self.begin(night, "out")
+        where = {"NONIO_FAULT": fault}
+        if fault.startswith("malloc") and random.Random(fault).random() < 0.5:
+            where["NONIO_FAULT_IN"] = "main"
+        done = self.night(night, out, where)
+        status = done.returncode
+        reference = self.references[night]
+        told = f"status {status}: {done.stderr.strip()[-300:]}"
+        if "KILL" in fault:
+            ends = "killed" if status == -9 else "not reached"
+        else:
+            ends = f"status {status}"
+            if status not in (0, 1, 2):
+                return f"the main process ended by {told}", ends
+            left = [str(p) for p in out.rglob("*") if "nonio-tmp" in p.name or p.name.endswith(".before")]
+            if left:
+                return f"left {left}, {told}", ends
+            if status != 0 and not done.stderr.strip():
+                return f"nothing was said, {told}", ends
+        if status == 0 and tree(out) != reference:
+            return f"status 0, but other: {self.differences(tree(out), reference)}, {told}", ends
+        broken = status not in (0, -9) and (out / "summary.json").exists()
+        if broken:
+            json.loads((out / "summary.json").read_text())
+        again = self.night(night, out, {})
+        if again.returncode != 0:
+            return f"the next night: status {again.returncode}, {again.stderr.strip()[-300:]}; before: {told}", ends
+        files = tree(out)
+        if status == -9 and files != reference:
+            return f"after kill other: {self.differences(files, reference)}", ends
+        if self.results(files) != self.results(reference):
+            return f"the next night is other: {self.differences(self.results(files), self.results(reference))}; {told}", ends
+        left = [str(p) for p in out.rglob("*") if "nonio-tmp" in p.name or p.name.endswith(".before")]
+        return (f"the next night left {left}, {told}" if left else ""), ends
+
+    def test_random_faults(self):
+        rng = random.Random(SEED)
+        print(f"seed {SEED}, {FAULTS} faults", flush=True)
+        one = os.environ.get("NONIO_FAULT_REPEAT")  # NIGHT/FAULT
+        ends = collections.Counter()
+        bad = []
+        for i in range(1 if one else FAULTS):
+            night, fault = one.split("/") if one else self.draw(rng)
+            try:
+                why, end = self.wrong(night, fault)
+            except (subprocess.TimeoutExpired, ValueError) as e:
+                why, end = repr(e), "broken"
+            ends[f"{fault.split(':')[0]}: {end}"] += 1
+            if why:
+                bad.append(f"{night}/{fault}: {why}")
+                print(bad[-1], flush=True)
+        for what, n in sorted(ends.items()):
+            print(f"{n:5} {what}", file=sys.stderr)
+        self.assertFalse(bad, f"{len(bad)} of {FAULTS} faults, seed {SEED}")
+
+
+if __name__ == "__main__":
+    unittest.main()
