@@ -42,10 +42,6 @@ const std::vector<Exception>& exceptions() {
        "   U_per_length are added, a rectangle has k = 2, and drift counts in two means as if it\n"
        "   did not cancel between neighbouring runs",
        "ISO 230-2;VDI/DGQ", "*", "*"},
-      {'b',
-       "covers less, prescribed form: U_MIS takes a beam for as often too long as too short, but\n"
-       "   it is always too short; a mean at a target shows it",
-       "ISO 230-2;VDI/DGQ", "misalignment dominates", "mean+_i;mean-_i;mean_i", true},
       {'c',
        "covers less, prescribed form: U_EVE takes drift for scatter of single readings within the\n"
        "   range of the drift test; a walk, or settling, moves whole runs",
