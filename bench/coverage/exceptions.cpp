@@ -43,48 +43,48 @@ const std::vector<Exception>& exceptions() {
        "   did not cancel between neighbouring runs",
        "ISO 230-2;VDI/DGQ", "*", "*"},
       {'b',
-       "covers less, prescribed form: U_MIS takes a beam for as often too long as too short, but\n"
-       "   it is always too short; a mean at a target shows it",
-       "ISO 230-2;VDI/DGQ", "misalignment dominates", "mean+_i;mean-_i;mean_i", true},
-      {'c',
        "covers less, prescribed form: U_EVE takes drift for scatter of single readings within the\n"
        "   range of the drift test; a walk, or settling, moves whole runs",
        "ISO 230-2;VDI/DGQ", "drift dominates", "*", true},
-      {'d',
+      {'c',
        "lines share sensor and temperature, and nobody states it: the larger counts, which is one\n"
        "   for each line in what differs between lines",
        "diagonals;two rotary;rotary axis",
        "small machine;short artefact;sensors stay;ball and probe", contrasts},
-      {'e',
+      {'d',
        "lines have a sensor and a temperature each, and nobody states it: the larger counts, "
        "which\n"
        "   is one for all in what is a mean of lines",
        "diagonals;two rotary;rotary axis", "line by line;large machine", sums},
-      {'f', "the temperatures stay within their limits; they are counted as if they reached them",
+      {'e', "the temperatures stay within their limits; they are counted as if they reached them",
        "diagonals;rotary", "anywhere within", "*"},
-      {'g',
+      {'f',
        "E_VE is counted as a walk; a slope or settling of that range is mostly in zeros, slopes "
        "and\n"
        "   means over both directions, which drop out",
        "diagonals;rotary", "drift dominates, linear;drift dominates, settling", "*"},
-      {'h', "the scatter of a walk counts as that of single readings, though neighbours share it",
+      {'g', "the scatter of a walk counts as that of single readings, though neighbours share it",
        "diagonals;rotary", "drift dominates, random walk", "*"},
-      {'i', "cosine errors are one-sided: their mean, which nobody corrects, counts as uncertainty",
+      {'h', "cosine errors are one-sided: their mean, which nobody corrects, counts as uncertainty",
        "diagonals", "misalignment dominates", "positioning;straightness"},
-      {'j', "of what each reading has for itself the larger of stated and found counts",
+      {'i', "of what each reading has for itself the larger of stated and found counts",
        "step diagonals;rotary", "instrument dominates;ball and probe dominate;short artefact",
        "positioning;squareness;straightness;direction;radius;centre"},
-      {'k',
+      {'j',
        "the table has no run-out, and its residuals are held against the scatter that they are\n"
        "   themselves (Thompson's tau is less than Student's t); one k for the curve",
        "rotary axis", "*", "axial;radial"},
-      {'l',
+      {'k',
        "the bound of the linear axes, and their scales, show in the residuals too; no more than\n"
        "   the scatter that was found is taken off",
        "rotary",
        "misalignment dominates;instrument dominates;small machine;large machine;line by line;"
        "sensors stay",
        rotary},
+      {'l',
+       "the readings at the ends of a diagonal are in the squareness and in the check sums that\n"
+       "   give its scatter",
+       "step diagonals, averaging", "repeatability dominates", "squareness"},
       {'m', "yaw and pitch show in the residuals too, and count there as scatter", "yaw and pitch",
        "*", "positioning;squareness;straightness"},
   };

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "nonio/math/distributions.h"
+
 namespace nonio::math {
 namespace {
 
@@ -72,10 +74,23 @@ TEST(Budget, WhatOneInstrumentHasInCommonDropsOutOfADifference) {
   EXPECT_NEAR(share(m, "device-length", difference), 0.0, 1e-18);
   EXPECT_NEAR(share(m, "device-length", sum), 2 * um * 4.0, 1e-15);
   // What each line has for itself does not, whatever the sign.
-  for (const char* id : {"device-fixed", "misalignment", "temperature", "expansion", "drift"}) {
+  for (const char* id : {"device-fixed", "drift"}) {
     EXPECT_GT(share(m, id, difference), 0.1 * um) << id;
     EXPECT_NEAR(share(m, id, difference), share(m, id, sum), 1e-15) << id;
   }
+  // Nobody says whether lines share a sensor and a temperature: each its own in a difference, one
+  // for both in a sum.
+  const std::vector<double> one_line{0, 0, 1, 0, 0, 0};
+  for (const char* id : {"temperature", "expansion"}) {
+    const double each = share(m, id, one_line);
+    EXPECT_NEAR(share(m, id, difference), std::sqrt(2.0) * each, 1e-15) << id;
+    EXPECT_NEAR(share(m, id, sum), 2.0 * each, 1e-15) << id;
+  }
+  // Cosine errors are between 0 and a limit in all lines: a difference has a sixth of its square,
+  // a sum their mean (the limit) and the same.
+  const double limit = 2.0 * 0.5e-6;  // of one line: 2 m, 2 mm
+  EXPECT_NEAR(share(m, "misalignment", difference), limit / std::sqrt(6.0), 1e-15);
+  EXPECT_NEAR(share(m, "misalignment", sum), limit * std::sqrt(1.0 + 1.0 / 6.0), 1e-15);
   // Lines of one measurement have it together.
   const ReadingModel one = reading_model(c, c.environment, {line(c, 7), line(c, 7)});
   EXPECT_NEAR(share(one, "temperature", difference), 0.0, 1e-18);
@@ -148,6 +163,63 @@ TEST(Budget, CoverageFactorOfTheEffectiveDegreesOfFreedom) {
   EXPECT_NEAR(*e.U, e.k * 5 * um, 1e-15);
   shares.u = {0.0, 300 * um};
   EXPECT_EQ(budget.expand(3 * um, shares).k, 2.0);
+}
+
+/// P within U of a rectangle, of two alike (a triangle), and of a rectangle beside a normal part.
+TEST(Budget, CoverageFactorOfRectangles) {
+  EXPECT_EQ(shape_factor(0.0), 1.0);
+  EXPECT_NEAR(2.0 * shape_factor(-1.2), 0.9545 * std::sqrt(3.0), 1e-4);
+  // A triangle of variance 1 is within x in 1 - (1 - x/sqrt 6)^2: the factor is near enough.
+  const double x = 2.0 * shape_factor(-0.6);
+  EXPECT_NEAR(1.0 - std::pow(1.0 - x / std::sqrt(6.0), 2), 0.952, 0.008);
+  EXPECT_NEAR(shape_factor(-1e-3), 1.0, 2e-3);
+  const Campaign c = stated();
+  const ReadingModel m = reading_model(c, c.environment, {line(c)});
+  BudgetOf budget(m, 1 * um, INFINITY, Quantity::deviation);
+  Shares shares;
+  for (const auto& input : m.inputs) {
+    const bool warm = input.is.id == "temperature";
+    shares.u.push_back(warm ? 100 * um : 0.0);
+    shares.rectangular.push_back(warm ? 100 * um : 0.0);
+  }
+  EXPECT_NEAR(budget.expand(0.0, shares).k, 1.653, 0.001);
+  EXPECT_NEAR(budget.expand(1000 * um, shares).k, 2.0, 0.001);
+}
+
+/// A walk goes through the visits: there and back, a slope of it is gone from the means.
+TEST(Budget, DriftGoesThroughTheVisits) {
+  const Campaign c = stated();
+  BudgetLine there = line(c, 0, BudgetLine::Kind::length);
+  there.zeroed = false;
+  for (const auto& [time, reading] :
+       {std::pair{0.0, 0U}, {0.2, 1U}, {0.4, 2U}, {0.6, 2U}, {0.8, 1U}, {1.0, 0U}})
+    there.visits.push_back({time, reading, 0.5});
+  const ReadingModel m = reading_model(c, c.environment, {there});
+  // By hand: what comes after each step of 1/5 counts: 2 - 0 is 1/2 (0 0 1 1 0 -1), by its rests
+  // 1/2, 1/2, 0, -1/2, -1/2.
+  const double u = 6 * um / std::sqrt(3.0);
+  EXPECT_NEAR(share(m, "drift", {-1, 0, 1}), u * std::sqrt(4 * 0.25 / 5.0), 1e-15);
+}
+
+/// A scatter that a drift has made counts once; the drift never for less than the scatter.
+TEST(Budget, DriftInTheScatterCountsOnce) {
+  const Campaign c = stated();
+  BudgetLine l = line(c);
+  l.walk_seen = 0.25;
+  const ReadingModel m = reading_model(c, c.environment, {l});
+  const double u = 6 * um / std::sqrt(3.0);
+  const auto drift = [&](double scatter, const std::string& source) {
+    BudgetOf budget(m, scatter, 20.0, Quantity::deviation, source);
+    budget.value("f", 0.0, Quantity::deviation, scatter, m.shares(std::vector{0.0, 0.0, 1.0}));
+    const UncertaintyBudget& b = budget.budget();
+    for (std::size_t i = 0; i < b.contributions.size(); ++i)
+      if (b.contributions[i].id == "drift") return b.results.at(0).u.at(i);
+    return -1.0;
+  };
+  EXPECT_NEAR(drift(100 * um, "readings"), u * std::sqrt(0.75), 1e-15);
+  EXPECT_NEAR(drift(100 * um, "options.x.u_um"), u, 1e-15);  // stated: nothing of it is drift
+  // Of 1.2 um of scatter, 1 um is the instrument's own: the drift cannot have made more than 0.44.
+  EXPECT_NEAR(drift(1.2 * um, "readings"), std::sqrt(u * u - 0.44 * um * um), 1e-15);
 }
 
 /// Residuals of 0.6 um hold what each reading has for itself, 1 um of it or less: only the rest

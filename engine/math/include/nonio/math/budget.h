@@ -92,6 +92,8 @@ struct ReadingModel {
     std::optional<double> together = 0.0;
     /// Standard uncertainty of one reading that shows in the residuals of a fit (see_residuals).
     double seen = 0.0;
+    /// A length or coordinate that each reading has an error of its own of.
+    bool of_each_reading() const;
     /// In place of these: independent errors of all readings, each a row of standard uncertainties.
     std::vector<std::vector<double>> patterns{};
   };
