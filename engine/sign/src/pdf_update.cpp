@@ -38,8 +38,8 @@ std::optional<std::size_t> table_before(std::string_view bytes, std::size_t end)
   const std::string_view tail = part.substr(end - std::min(end, std::size_t{60}));
   const std::size_t at = tail.rfind(word);
   if (at == std::string_view::npos) return std::nullopt;
-  const auto table = number_in(
-      tail.substr(at + word.size(), tail.size() - at - word.size() - end_of_part.size()));
+  const auto table =
+      number_in(tail.substr(at + word.size(), tail.size() - at - word.size() - end_of_part.size()));
   if (!table || *table >= end || end - *table > longest) return std::nullopt;
   const std::string_view trailer = part.substr(*table);
   const std::size_t found = trailer.find(previous);
@@ -170,7 +170,8 @@ std::string Updater::table(const std::vector<std::pair<std::size_t, std::size_t>
       out += std::string("/") + key + " " + text_of_value(*value) + "\n";
   return out + "/Size " + std::to_string(size_) + "\n/Prev " + std::to_string(last_table_) +
          "\n/ID [ " + text_of_value(trailer.find("ID")->items.front()) + " <" +
-         hex(sha256(body).substr(0, 16)) + "> ]\n>>\nstartxref\n" + std::to_string(at) + "\n%%EOF\n";
+         hex(sha256(body).substr(0, 16)) + "> ]\n>>\nstartxref\n" + std::to_string(at) +
+         "\n%%EOF\n";
 }
 
 Expected<Update> Updater::write(const Store& more, bool has_stamp) {
@@ -198,20 +199,20 @@ Expected<Update> Updater::write(const Store& more, bool has_stamp) {
   if (certificates_.size() + answers_.size() + lists_.size() > most_stored)
     return fail("more than " + std::to_string(most_stored) + " certificates, lists and answers");
   if (!more.empty())
-    store_ = add("<<\n/Type /DSS\n" + list_of("Certs", certificates_) +
-                 list_of("OCSPs", answers_) + list_of("CRLs", lists_) + ">>");
+    store_ = add("<<\n/Type /DSS\n" + list_of("Certs", certificates_) + list_of("OCSPs", answers_) +
+                 list_of("CRLs", lists_) + ">>");
   std::size_t range = 0;
   if (has_stamp) {
-    const std::string head = "<<\n/Type /DocTimeStamp\n/Filter /Adobe.PPKLite\n/SubFilter "
-                             "/ETSI.RFC3161\n/ByteRange ",
-                      empty_range = "[0 0000000000 0000000000 0000000000]",
-                      then = "\n/Contents ";
+    const std::string head =
+                          "<<\n/Type /DocTimeStamp\n/Filter /Adobe.PPKLite\n/SubFilter "
+                          "/ETSI.RFC3161\n/ByteRange ",
+                      empty_range = "[0 0000000000 0000000000 0000000000]", then = "\n/Contents ";
     range = out.bytes.size() + std::to_string(size_).size() + 7 + head.size();
     const std::size_t gap = range + empty_range.size() + then.size();
     out.gap = end_ + gap;
     out.behind = out.gap + 2 * usual_room + 2;
-    const std::size_t signature = add(head + empty_range + then + "<" +
-                                      std::string(2 * usual_room, '0') + ">\n>>");
+    const std::size_t signature =
+        add(head + empty_range + then + "<" + std::string(2 * usual_room, '0') + ">\n>>");
     fields_.push_back(size_);
     add("<<\n/Type /Annot\n/Subtype /Widget\n/FT /Sig\n/T (TimeStamp" +
         std::to_string(fields_.size()) + ")\n/F 132\n/Rect [0 0 0 0]\n/P " + reference_to(page_) +
@@ -296,11 +297,13 @@ Expected<Update> Updater::read(std::string_view bytes, std::size_t end) {
   std::size_t at = begin;
   const auto store = read_store(part, at);
   if (!store) return strange(store.error().message);
-  const std::string number = std::to_string(size_ + store->certificates.size() +
-                                            store->answers.size() + store->lists.size() +
-                                            (store->empty() ? 0 : 1));
-  const bool has_stamp =
-      part.substr(at).starts_with(number + " 0 obj\n<<\n/Type /DocTimeStamp\n");
+  const std::string number =
+      std::to_string(size_ + store->certificates.size() + store->answers.size() +
+                     store->lists.size() + (store->empty() ? 0 : 1));
+  const bool has_stamp = part.substr(at).starts_with(number + " 0 obj\n<<\n/Type /DocTimeStamp\n");
+  constexpr const char* what =
+      "something else than revocation data and a time stamp as Nonio writes them";
+  if (store->empty() && !has_stamp) return strange(what);
   auto again = write(*store, has_stamp);
   if (!again) return strange(again.error().message);
   const std::string_view found = part.substr(begin), wanted = again->bytes;
@@ -308,7 +311,7 @@ Expected<Update> Updater::read(std::string_view bytes, std::size_t end) {
                     behind = has_stamp ? again->behind - 1 - begin : wanted.size();
   if (found.size() != wanted.size() || found.substr(0, gap) != wanted.substr(0, gap) ||
       found.substr(behind) != wanted.substr(behind))
-    return strange("something else than revocation data and a time stamp as Nonio writes them");
+    return strange(what);
   again->bytes = found;
   return again;
 }

@@ -23,8 +23,9 @@ struct Store {
 struct Update {
   Store store;  ///< what is new in it
   bool has_stamp = false;
-  std::string bytes;           ///< of a time stamp, zeros
-  std::size_t gap = 0, behind = 0;  ///< in the file: where the stamp's "<" stands, what follows its ">"
+  std::string bytes;  ///< of a time stamp, zeros
+  std::size_t gap = 0,
+              behind = 0;  ///< in the file: where the stamp's "<" stands, what follows its ">"
 };
 
 inline constexpr std::size_t most_updates = 20, most_stored = 100;
@@ -52,8 +53,8 @@ class Updater {
   Expected<Store> read_store(std::string_view bytes, std::size_t& at) const;
   std::string object_of_catalogue() const;
   std::string object_of_page() const;
-  std::string table(const std::vector<std::pair<std::size_t, std::size_t>>& places,
-                    std::size_t at, const std::string& body) const;
+  std::string table(const std::vector<std::pair<std::size_t, std::size_t>>& places, std::size_t at,
+                    const std::string& body) const;
 
   const pdf::File* file_;
   std::size_t catalogue_ = 0, page_ = 0;
