@@ -30,7 +30,7 @@ struct Update {
 
 inline constexpr std::size_t most_updates = 20, most_stored = 100;
 /// Of all updates of a file together.
-inline constexpr std::size_t most_update_bytes = 20'000'000;
+inline constexpr std::size_t most_update_bytes = 10'000'000;
 
 /// Where the file as it was signed ends, then each update. By the tables at the end of each;
 /// nothing else is read. What cannot be taken apart is one part.
@@ -49,6 +49,7 @@ class Updater {
   Expected<Update> read(std::string_view bytes, std::size_t end);
 
  private:
+  class Objects;
   explicit Updater(const pdf::File& file);
   Expected<Store> read_store(std::string_view bytes, std::size_t& at) const;
   std::string object_of_catalogue() const;

@@ -72,7 +72,7 @@ std::string question_about(X509* certificate, X509* issuer) {
   return der_of(request.get(), &i2d_OCSP_REQUEST);
 }
 
-constexpr std::size_t longest_answer = 100'000, longest_list = 10'000'000;
+constexpr std::size_t longest_answer = 100'000, longest_list = 9'000'000;
 
 class Prolongation {
  public:
