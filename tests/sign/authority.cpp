@@ -152,8 +152,7 @@ std::string revocation_list(const Holder& issuer, const Holder* revoked, const L
 
 std::string ocsp_answer(const Holder& issuer, const Holder& about, const ListWish& wish) {
   OCSP_BASICRESP* basic = OCSP_BASICRESP_new();
-  OCSP_CERTID* id =
-      OCSP_cert_to_id(EVP_sha1(), about.certificate.get(), issuer.certificate.get());
+  OCSP_CERTID* id = OCSP_cert_to_id(EVP_sha1(), about.certificate.get(), issuer.certificate.get());
   ASN1_TIME* when = ASN1_TIME_adj(nullptr, wish.when, 0, 0);
   ASN1_TIME* made = ASN1_GENERALIZEDTIME_adj(nullptr, wish.made, 0, 0);
   ASN1_TIME* next = ASN1_GENERALIZEDTIME_adj(nullptr, wish.next, 0, 0);

@@ -211,9 +211,9 @@ TEST_F(LongTerm, ALaterStampProtectsAnEarlierOne) {
   verified = sign::verify_pdf(twice, verifier(long_after, list(long_after - day)));
   EXPECT_TRUE(verified.holds()) << all_of(verified);
   // And with the later one's key lost instead.
-  EXPECT_FALSE(sign::verify_pdf(
-                   twice, verifier(then, list(now + 250 * day, &later, now + 210 * day, 1)))
-                   .holds());
+  EXPECT_FALSE(
+      sign::verify_pdf(twice, verifier(then, list(now + 250 * day, &later, now + 210 * day, 1)))
+          .holds());
 }
 
 TEST_F(LongTerm, AnswersByOcspServeAsLists) {

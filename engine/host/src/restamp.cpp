@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-tl::unexpected<std::vector<Error>> refused(const Error& error) {
+tl::unexpected<std::vector<Error>> as_errors(const Error& error) {
   return tl::unexpected(std::vector<Error>{error});
 }
 
@@ -34,13 +34,13 @@ Checked<sign::Prolonging> prolonging_of(const RestampOptions& options) {
   }
   if (!options.with_time_stamp) how.stamping.url.clear();
   if (options.with_time_stamp && how.stamping.url.empty())
-    return refused(
+    return as_errors(
         Error{"no time-stamp server: wanted --time-stamp URL, time_stamp in [signing] of site.toml "
               "(--site), or --no-time-stamp for the revocation data alone"});
   how.stamping.trust = how.verifier.trust;
   for (const fs::path& path : options.answers) {
     auto answer = read_file(path);
-    if (!answer) return refused(answer.error());
+    if (!answer) return as_errors(answer.error());
     how.answers.push_back(std::move(*answer));
   }
   return how;
@@ -48,14 +48,15 @@ Checked<sign::Prolonging> prolonging_of(const RestampOptions& options) {
 
 Expected<Restamped> restamp(const fs::path& file, const sign::Prolonging& how,
                             const fs::path& out) {
-  const fs::path folder = !out.empty()                ? out
+  const fs::path folder = !out.empty()             ? out
                           : file.has_parent_path() ? file.parent_path()
-                                                      : fs::path(".");
+                                                   : fs::path(".");
   std::error_code error;
   if (fs::exists(folder / record_name, error))
-    return fail("lies in the output of a night, which writes it again as it was issued: wanted "
-                "another folder (--out), found " +
-                (folder / record_name).string());
+    return fail(
+        "lies in the output of a night, which writes it again as it was issued: wanted "
+        "another folder (--out), found " +
+        (folder / record_name).string());
   const auto bytes = read_bounded(file);
   if (!bytes) return fail(bytes.error());
   if (bytes->starts_with("<?xml"))

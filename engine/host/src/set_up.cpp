@@ -37,7 +37,8 @@ void note_key(SetUp& place, bool is_stamped) {
     place.unstamped =
         "no time-stamp server is named (time_stamp in [signing] of site.toml): what is signed "
         "holds until the certificate of " +
-        who->subject + " runs out on " + sign::text_of(who->not_after) + ", and no longer";
+        who->subject + " runs out on " + sign::text_of(who->not_after) +
+        ", and no longer (`nonio restamp` can still give it a time stamp until then)";
 }
 
 /// In a process of their own.

@@ -57,8 +57,8 @@ Expected<void> sign_attributes(const Key::Impl& key, CMS_SignerInfo* signer,
 }
 
 Expected<void> add_time_stamp(CMS_SignerInfo* signer, const TimeStamping& stamping, Time now) {
-  const auto token = ask_for_time_stamp(
-      stamping, sha256(bytes_of(CMS_SignerInfo_get0_signature(signer))), now);
+  const auto token =
+      ask_for_time_stamp(stamping, sha256(bytes_of(CMS_SignerInfo_get0_signature(signer))), now);
   if (!token) return fail(token.error());
   if (CMS_unsigned_add1_attr_by_NID(signer, NID_id_smime_aa_timeStampToken, V_ASN1_SEQUENCE,
                                     token->data(), static_cast<int>(token->size())) != 1)

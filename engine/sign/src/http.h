@@ -17,7 +17,7 @@ struct Question {
   int seconds = 10;
 };
 
-/// The answer's bytes. `url`: http://host[:port]/path
+/// The answer's bytes, one element of ASN.1. `url`: http://host[:port]/path
 Expected<std::string> ask_server(const std::string& url, const Question& question);
 
 }  // namespace nonio::sign

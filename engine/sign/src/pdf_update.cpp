@@ -38,8 +38,8 @@ std::optional<std::size_t> table_before(std::string_view bytes, std::size_t end)
   const std::string_view tail = part.substr(end - std::min(end, std::size_t{60}));
   const std::size_t at = tail.rfind(word);
   if (at == std::string_view::npos) return std::nullopt;
-  const auto table = number_in(
-      tail.substr(at + word.size(), tail.size() - at - word.size() - end_of_part.size()));
+  const auto table =
+      number_in(tail.substr(at + word.size(), tail.size() - at - word.size() - end_of_part.size()));
   if (!table || *table >= end || end - *table > longest) return std::nullopt;
   const std::string_view trailer = part.substr(*table);
   const std::size_t found = trailer.find(previous);
@@ -170,66 +170,85 @@ std::string Updater::table(const std::vector<std::pair<std::size_t, std::size_t>
       out += std::string("/") + key + " " + text_of_value(*value) + "\n";
   return out + "/Size " + std::to_string(size_) + "\n/Prev " + std::to_string(last_table_) +
          "\n/ID [ " + text_of_value(trailer.find("ID")->items.front()) + " <" +
-         hex(sha256(body).substr(0, 16)) + "> ]\n>>\nstartxref\n" + std::to_string(at) + "\n%%EOF\n";
+         hex(sha256(body).substr(0, 16)) + "> ]\n>>\nstartxref\n" + std::to_string(at) +
+         "\n%%EOF\n";
 }
+
+/// The objects of one update as they are put behind the file.
+class Updater::Objects {
+ public:
+  explicit Objects(Updater& to) : to_(to) {}
+
+  void put(std::size_t number, const std::string& object) {
+    places_.emplace_back(number, to_.end_ + bytes_.size());
+    bytes_ += object;
+  }
+  std::size_t add(const std::string& object) {
+    put(to_.size_, std::to_string(to_.size_) + " 0 obj\n" + object + "\nendobj\n");
+    return to_.size_++;
+  }
+  void add_streams(const std::vector<std::string>& all, std::vector<std::size_t>& numbers) {
+    for (const std::string& der : all)
+      numbers.push_back(add("<<\n/Length " + std::to_string(der.size()) + "\n>>\nstream\n" + der +
+                            "\nendstream"));
+  }
+  void add_stamp() {
+    const std::string head =
+                          "<<\n/Type /DocTimeStamp\n/Filter /Adobe.PPKLite\n/SubFilter "
+                          "/ETSI.RFC3161\n/ByteRange ",
+                      empty_range = "[0 0000000000 0000000000 0000000000]", then = "\n/Contents ";
+    range_ = bytes_.size() + std::to_string(to_.size_).size() + 7 + head.size();
+    gap_ = to_.end_ + range_ + empty_range.size() + then.size();
+    const std::size_t signature =
+        add(head + empty_range + then + "<" + std::string(2 * usual_room, '0') + ">\n>>");
+    to_.fields_.push_back(to_.size_);
+    add("<<\n/Type /Annot\n/Subtype /Widget\n/FT /Sig\n/T (TimeStamp" +
+        std::to_string(to_.fields_.size()) + ")\n/F 132\n/Rect [0 0 0 0]\n/P " +
+        reference_to(to_.page_) + "\n/V " + reference_to(signature) + "\n>>");
+    put(to_.page_, to_.object_of_page());
+  }
+  /// With the table, and the range of the time stamp filled in.
+  void finish(Update& out) {
+    std::sort(places_.begin(), places_.end());
+    const std::size_t at = to_.end_ + bytes_.size();
+    bytes_ += to_.table(places_, at, bytes_);
+    if (out.has_stamp) {
+      out.gap = gap_;
+      out.behind = gap_ + 2 * usual_room + 2;
+      std::array<char, 64> text{};
+      std::snprintf(text.data(), text.size(), "[0 %010zu %010zu %010zu]", out.gap, out.behind,
+                    to_.end_ + bytes_.size() - out.behind);
+      bytes_.replace(range_, 36, text.data());
+    }
+    to_.end_ += bytes_.size();
+    to_.last_table_ = at;
+    out.bytes = std::move(bytes_);
+  }
+
+ private:
+  Updater& to_;
+  std::vector<std::pair<std::size_t, std::size_t>> places_;  ///< number, where it stands
+  std::string bytes_;
+  std::size_t range_ = 0, gap_ = 0;
+};
 
 Expected<Update> Updater::write(const Store& more, bool has_stamp) {
   if (more.empty() && !has_stamp) return fail("there is nothing to add");
-  Update out;
-  out.store = more;
-  out.has_stamp = has_stamp;
-  std::vector<std::pair<std::size_t, std::size_t>> places;
-  const auto put = [&](std::size_t number, const std::string& object) {
-    places.emplace_back(number, end_ + out.bytes.size());
-    out.bytes += object;
-  };
-  const auto add = [&](const std::string& object) {
-    put(size_, std::to_string(size_) + " 0 obj\n" + object + "\nendobj\n");
-    return size_++;
-  };
-  const auto add_all = [&](const std::vector<std::string>& all, std::vector<std::size_t>& to) {
-    for (const std::string& der : all)
-      to.push_back(add("<<\n/Length " + std::to_string(der.size()) + "\n>>\nstream\n" + der +
-                       "\nendstream"));
-  };
-  add_all(more.certificates, certificates_);
-  add_all(more.answers, answers_);
-  add_all(more.lists, lists_);
+  Objects objects(*this);
+  objects.add_streams(more.certificates, certificates_);
+  objects.add_streams(more.answers, answers_);
+  objects.add_streams(more.lists, lists_);
   if (certificates_.size() + answers_.size() + lists_.size() > most_stored)
     return fail("more than " + std::to_string(most_stored) + " certificates, lists and answers");
   if (!more.empty())
-    store_ = add("<<\n/Type /DSS\n" + list_of("Certs", certificates_) +
-                 list_of("OCSPs", answers_) + list_of("CRLs", lists_) + ">>");
-  std::size_t range = 0;
-  if (has_stamp) {
-    const std::string head = "<<\n/Type /DocTimeStamp\n/Filter /Adobe.PPKLite\n/SubFilter "
-                             "/ETSI.RFC3161\n/ByteRange ",
-                      empty_range = "[0 0000000000 0000000000 0000000000]",
-                      then = "\n/Contents ";
-    range = out.bytes.size() + std::to_string(size_).size() + 7 + head.size();
-    const std::size_t gap = range + empty_range.size() + then.size();
-    out.gap = end_ + gap;
-    out.behind = out.gap + 2 * usual_room + 2;
-    const std::size_t signature = add(head + empty_range + then + "<" +
-                                      std::string(2 * usual_room, '0') + ">\n>>");
-    fields_.push_back(size_);
-    add("<<\n/Type /Annot\n/Subtype /Widget\n/FT /Sig\n/T (TimeStamp" +
-        std::to_string(fields_.size()) + ")\n/F 132\n/Rect [0 0 0 0]\n/P " + reference_to(page_) +
-        "\n/V " + reference_to(signature) + "\n>>");
-    put(page_, object_of_page());
-  }
-  put(catalogue_, object_of_catalogue());
-  std::sort(places.begin(), places.end());
-  const std::size_t at = end_ + out.bytes.size();
-  out.bytes += table(places, at, out.bytes);
-  if (has_stamp) {
-    std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), "[0 %010zu %010zu %010zu]", out.gap, out.behind,
-                  end_ + out.bytes.size() - out.behind);
-    out.bytes.replace(range, 36, text.data());
-  }
-  end_ += out.bytes.size();
-  last_table_ = at;
+    store_ = objects.add("<<\n/Type /DSS\n" + list_of("Certs", certificates_) +
+                         list_of("OCSPs", answers_) + list_of("CRLs", lists_) + ">>");
+  if (has_stamp) objects.add_stamp();
+  objects.put(catalogue_, object_of_catalogue());
+  Update out;
+  out.store = more;
+  out.has_stamp = has_stamp;
+  objects.finish(out);
   return out;
 }
 
@@ -296,11 +315,13 @@ Expected<Update> Updater::read(std::string_view bytes, std::size_t end) {
   std::size_t at = begin;
   const auto store = read_store(part, at);
   if (!store) return strange(store.error().message);
-  const std::string number = std::to_string(size_ + store->certificates.size() +
-                                            store->answers.size() + store->lists.size() +
-                                            (store->empty() ? 0 : 1));
-  const bool has_stamp =
-      part.substr(at).starts_with(number + " 0 obj\n<<\n/Type /DocTimeStamp\n");
+  const std::string number =
+      std::to_string(size_ + store->certificates.size() + store->answers.size() +
+                     store->lists.size() + (store->empty() ? 0 : 1));
+  const bool has_stamp = part.substr(at).starts_with(number + " 0 obj\n<<\n/Type /DocTimeStamp\n");
+  constexpr const char* what =
+      "something else than revocation data and a time stamp as Nonio writes them";
+  if (store->empty() && !has_stamp) return strange(what);
   auto again = write(*store, has_stamp);
   if (!again) return strange(again.error().message);
   const std::string_view found = part.substr(begin), wanted = again->bytes;
@@ -308,7 +329,7 @@ Expected<Update> Updater::read(std::string_view bytes, std::size_t end) {
                     behind = has_stamp ? again->behind - 1 - begin : wanted.size();
   if (found.size() != wanted.size() || found.substr(0, gap) != wanted.substr(0, gap) ||
       found.substr(behind) != wanted.substr(behind))
-    return strange("something else than revocation data and a time stamp as Nonio writes them");
+    return strange(what);
   again->bytes = found;
   return again;
 }

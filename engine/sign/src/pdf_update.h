@@ -23,13 +23,14 @@ struct Store {
 struct Update {
   Store store;  ///< what is new in it
   bool has_stamp = false;
-  std::string bytes;           ///< of a time stamp, zeros
-  std::size_t gap = 0, behind = 0;  ///< in the file: where the stamp's "<" stands, what follows its ">"
+  std::string bytes;  ///< of a time stamp, zeros
+  std::size_t gap = 0,
+              behind = 0;  ///< in the file: where the stamp's "<" stands, what follows its ">"
 };
 
 inline constexpr std::size_t most_updates = 20, most_stored = 100;
 /// Of all updates of a file together.
-inline constexpr std::size_t most_update_bytes = 20'000'000;
+inline constexpr std::size_t most_update_bytes = 10'000'000;
 
 /// Where the file as it was signed ends, then each update. By the tables at the end of each;
 /// nothing else is read. What cannot be taken apart is one part.
@@ -48,12 +49,13 @@ class Updater {
   Expected<Update> read(std::string_view bytes, std::size_t end);
 
  private:
+  class Objects;
   explicit Updater(const pdf::File& file);
   Expected<Store> read_store(std::string_view bytes, std::size_t& at) const;
   std::string object_of_catalogue() const;
   std::string object_of_page() const;
-  std::string table(const std::vector<std::pair<std::size_t, std::size_t>>& places,
-                    std::size_t at, const std::string& body) const;
+  std::string table(const std::vector<std::pair<std::size_t, std::size_t>>& places, std::size_t at,
+                    const std::string& body) const;
 
   const pdf::File* file_;
   std::size_t catalogue_ = 0, page_ = 0;

@@ -72,7 +72,7 @@ std::string question_about(X509* certificate, X509* issuer) {
   return der_of(request.get(), &i2d_OCSP_REQUEST);
 }
 
-constexpr std::size_t longest_answer = 100'000, longest_list = 10'000'000;
+constexpr std::size_t longest_answer = 100'000, longest_list = 9'000'000;
 
 class Prolongation {
  public:
@@ -142,12 +142,11 @@ class Prolongation {
     if (!data) return fail(data.error());
     Time at = existed == 0 ? now : existed;
     if (!data->time_stamp().empty()) {
-      auto stamp = check_time_stamp(data->time_stamp(), sha256(data->signature()), known_, now,
-                                    until(0));
+      auto stamp =
+          check_time_stamp(data->time_stamp(), sha256(data->signature()), known_, now, until(0));
       if (!stamp) return fail(stamp.error());
       at = stamp->time;
-      used_.push_back(
-          {std::move(stamp->chain), {at, now, Revocation::Of::time_server, until(0)}});
+      used_.push_back({std::move(stamp->chain), {at, now, Revocation::Of::time_server, until(0)}});
     }
     auto chain = chain_of(data->certificate(), data->certificates(), known_, at);
     if (!chain) return fail(chain.error());
@@ -225,7 +224,8 @@ class Prolongation {
       if (!good) return fail(url + ": " + good.error().message);
       if (*good) keep(*statement);
       if (!*good)
-        why += (why.empty() ? "" : "; ") + url + " says nothing about it that is of use at the time";
+        why +=
+            (why.empty() ? "" : "; ") + url + " says nothing about it that is of use at the time";
       at_hand_.push_back(std::move(*statement));
       return *good;
     };

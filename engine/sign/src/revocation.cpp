@@ -15,7 +15,7 @@ namespace nonio::sign {
 
 namespace {
 
-using ResponsePtr = std::unique_ptr<OCSP_RESPONSE, Freed<OCSP_RESPONSE_free>>;
+using OcspResponsePtr = std::unique_ptr<OCSP_RESPONSE, Freed<OCSP_RESPONSE_free>>;
 using CertIdPtr = std::unique_ptr<OCSP_CERTID, Freed<OCSP_CERTID_free>>;
 
 bool is_by(X509_CRL* list, X509* issuer) {
@@ -33,8 +33,8 @@ X509_CRL* newest_list(const Trusted& known, X509* issuer) {
   X509_CRL* newest = nullptr;
   for (const RevocationPtr& l : known.lists)
     if (is_signed_by(l.get(), issuer) &&
-        (newest == nullptr || time_of(X509_CRL_get0_lastUpdate(newest)) <
-                                  time_of(X509_CRL_get0_lastUpdate(l.get()))))
+        (newest == nullptr ||
+         time_of(X509_CRL_get0_lastUpdate(newest)) < time_of(X509_CRL_get0_lastUpdate(l.get()))))
       newest = l.get();
   return newest;
 }
@@ -56,8 +56,7 @@ Expected<void> check_list(const X509_CRL* list, X509* issuer, Time now) {
   const Time next = time_of(X509_CRL_get0_nextUpdate(list));
   if (made > now + clock_tolerance)
     return refuse_list(issuer, "is of " + text_of(made) + ", yet to come");
-  if (next == 0)
-    return refuse_list(issuer, "does not say how long it is good for (nextUpdate)");
+  if (next == 0) return refuse_list(issuer, "does not say how long it is good for (nextUpdate)");
   if (next < now)
     return refuse_list(issuer, "was good until " + text_of(next) + ": wanted a newer one");
   return {};
@@ -92,8 +91,7 @@ struct Said {
 
 Expected<void> check_not_revoked(const Said& said, X509* one, const Revocation& revocation) {
   if (said.revoked == 0) return {};
-  const bool good_before =
-      revocation.of == Revocation::Of::signer || said.leaves_stamps_good;
+  const bool good_before = revocation.of == Revocation::Of::signer || said.leaves_stamps_good;
   if (said.revoked <= revocation.at || (!good_before && said.revoked <= revocation.until))
     return fail("the certificate of " + quoted(subject_of(one)) + " was revoked on " +
                 text_of(said.revoked));
@@ -215,7 +213,7 @@ Expected<Statement> Statement::of_answer(std::string_view der) {
   const unsigned char* at = data_of(der);
   Statement out;
   out.der = der;
-  const ResponsePtr response(d2i_OCSP_RESPONSE(nullptr, &at, static_cast<long>(der.size())));
+  const OcspResponsePtr response(d2i_OCSP_RESPONSE(nullptr, &at, static_cast<long>(der.size())));
   if (response && Der::only(der, Der::sequence) &&
       der_of(response.get(), &i2d_OCSP_RESPONSE) == der &&
       OCSP_response_status(response.get()) == OCSP_RESPONSE_STATUS_SUCCESSFUL)

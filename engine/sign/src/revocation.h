@@ -18,7 +18,7 @@ struct Statement {
   std::string der;
   RevocationPtr list;  ///< or else
   OcspPtr answer;
-  Time seen = 0;     ///< when it is proved to have existed
+  Time seen = 0;  ///< when it is proved to have existed
   mutable bool used = false;
 
   static Expected<Statement> of_list(std::string_view der);
@@ -31,7 +31,8 @@ struct Revocation {
   Time at;   ///< when the certificates were used
   Time now;  ///< when they are checked: lists that are given must be of use now
   Of of;
-  /// When what was made with them is proved to have existed: what was revoked later is of no account.
+  /// When what was made with them is proved to have existed: what was revoked later is of no
+  /// account.
   Time until = std::numeric_limits<Time>::max();
 };
 /// How far two clocks may differ.

@@ -82,12 +82,11 @@ Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::stri
                                          Time now) {
   const auto request = request_for(imprint);
   if (!request) return fail(request.error());
-  const auto answer = ask_server(stamping.url,
-                                 {.query = "application/timestamp-query",
-                                  .reply = "application/timestamp-reply",
-                                  .body = request->der,
-                                  .longest = 60000,
-                                  .seconds = stamping.seconds});
+  const auto answer = ask_server(stamping.url, {.query = "application/timestamp-query",
+                                                .reply = "application/timestamp-reply",
+                                                .body = request->der,
+                                                .longest = 60000,
+                                                .seconds = stamping.seconds});
   if (!answer) return fail(answer.error());
   auto token = token_of(*answer);
   if (!token) return fail(stamping.url + ": " + token.error().message);
@@ -113,8 +112,7 @@ Expected<Stamp> check_time_stamp(std::string_view token, std::string_view stampe
   const X509_ALGOR* algorithm = TS_MSG_IMPRINT_get_algo(imprint);
   const ASN1_OBJECT* kind = nullptr;
   X509_ALGOR_get0(&kind, nullptr, nullptr, algorithm);
-  if (OBJ_obj2nid(kind) != NID_sha256 ||
-      bytes_of(TS_MSG_IMPRINT_get_msg(imprint)) != stamped)
+  if (OBJ_obj2nid(kind) != NID_sha256 || bytes_of(TS_MSG_IMPRINT_get_msg(imprint)) != stamped)
     return fail("belongs to another signature");
   Stamp stamp{time_of(TS_TST_INFO_get_time(info.get())), subject_of(data->certificate()),
               nonce_of(info.get())};

@@ -200,7 +200,8 @@ class PdfCheck {
     std::optional<Added> added;
     if (ends_.size() > 1) {
       auto updates = check_updates(data, known, chains);
-      report_.add("file.updates", to_void(updates), updates ? words_of(*updates, chains.size()) : "");
+      report_.add("file.updates", to_void(updates),
+                  updates ? words_of(*updates, chains.size()) : "");
       if (!updates) return;
       added = std::move(*updates);
     }
@@ -244,10 +245,10 @@ class PdfCheck {
       return std::to_string(n) + " " + (n == 1 ? one : more);
     };
     return number(ends_.size() - 1, "update", "updates") + ", nothing in them but " +
-           number(added.covered.size(), "revocation list or answer", "revocation lists and answers") +
+           number(added.covered.size(), "revocation list or answer",
+                  "revocation lists and answers") +
            ", " + number(added.certificates.size(), "certificate", "certificates") + ", " +
-           number(stamps, "time stamp", "time stamps") +
-           (stamped_.empty() ? "" : ": " + stamped_);
+           number(stamps, "time stamp", "time stamps") + (stamped_.empty() ? "" : ": " + stamped_);
   }
 
   void read_attachments(const pdf::File& file) {

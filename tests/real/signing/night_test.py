@@ -109,6 +109,29 @@ class SignedNight(SigningTest):
         self.run_nonio(expect=0)
         self.assertEqual(before, (self.out / "c1" / "report.pdf").read_bytes())
 
+    def test_what_a_night_stamped_is_restamped(self):
+        keys = self.keys()
+        server = keys.time_server()
+        self.site_toml(keys, extra=f'time_stamp = "{server.url}"\n')
+        self.signed_campaign("c1")
+        self.run_nonio(expect=0)
+        issued = self.out / "c1" / "report.pdf"
+        archive = self.root / "archive"
+        restamp = [NONIO, "restamp", "--site", str(self.site), "--no-fetch", "--revoked", str(keys.revocation_list())]
+        done = subprocess.run([*restamp, str(issued)], capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("as it was issued", done.stderr)
+        done = subprocess.run([*restamp, str(issued), "--out", str(archive), "--json"], capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        answer = json.loads(done.stdout)
+        self.assertEqual((answer["schema"], answer["written"]), ("nonio-restamp/1", str(archive / "report.pdf")))
+        self.assertEqual(len(answer["added"]), 4, answer)  # two certificates, one list for both, the time stamp
+        self.assertTrue((archive / "report.pdf").read_bytes().startswith(issued.read_bytes()))
+        answer = self.assert_holds(archive / "report.pdf")[0]
+        for check in ("file.updates", "updates.needed", "signature.time", "certificate.revocation", "content.printed", "dcc.time"):
+            self.assertEqual(self.state(answer, check), "holds", check)
+        server.close()
+
     def test_time_stamps(self):
         keys = self.keys()
         server = keys.time_server()

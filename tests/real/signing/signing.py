@@ -89,6 +89,16 @@ class Keys:
         run("openssl", "x509", "-req", "-in", self.folder / f"{name}.csr", *how, "-days", days, "-extfile", self.config,
             "-extensions", section, "-out", self.folder / f"{name}.pem")
 
+    def revocation_list(self):
+        """One that names nobody."""
+        (self.folder / "index").write_text("")
+        (self.folder / "number").write_text("01\n")
+        (self.folder / "list.cnf").write_text(f"[ca]\ndefault_ca = own\n[own]\ndatabase = {self.folder}/index\ndefault_md = sha256\n"
+                                              f"crlnumber = {self.folder}/number\ndefault_crl_days = 30\n")
+        out = self.folder / "list.pem"
+        run("openssl", "ca", "-gencrl", "-config", self.folder / "list.cnf", "-keyfile", self.folder / "ca.key", "-cert", self.ca, "-out", out)
+        return out
+
     def time_server(self):
         self.new("time", "Test Time", "P-256")
         self.sign("time", "time", "ca", 3000)

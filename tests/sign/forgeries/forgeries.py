@@ -19,6 +19,7 @@ import subprocess
 import sys
 import tempfile
 
+import long_term
 from pdf_file import Pdf, openssl
 
 NONIO = os.environ["NONIO"]
@@ -35,7 +36,6 @@ class Keys:
     def __init__(self, folder):
         self.folder = folder
         folder.mkdir()
-        (folder / "leaf").write_text(LEAF)
         (folder / "password").write_text("correct horse\n")
         for root in ("root", "strange-root"):
             openssl("req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "3650", "-keyout",
@@ -44,8 +44,11 @@ class Keys:
         self.issue("lab", "B. Sample", "root")
         self.issue("colleague", "C. Sample", "root")
         self.issue("namesake", "B. Sample", "strange-root")
-        openssl("pkcs12", "-export", "-in", self.pem("lab"), "-inkey", self.key("lab"), "-out", folder / "lab.p12", "-passout",
-                f"file:{folder}/password")
+        self.export()
+
+    def export(self):
+        openssl("pkcs12", "-export", "-in", self.pem("lab"), "-inkey", self.key("lab"), "-out", self.folder / "lab.p12", "-passout",
+                f"file:{self.folder}/password")
 
     def key(self, name):
         return self.folder / f"{name}.key"
@@ -56,7 +59,8 @@ class Keys:
     def der(self, name):
         return openssl("x509", "-in", self.pem(name), "-outform", "DER")
 
-    def issue(self, name, subject, by):
+    def issue(self, name, subject, by, extensions=LEAF):
+        (self.folder / "leaf").write_text(extensions)
         openssl("req", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-keyout", self.key(name), "-out",
                 self.folder / "csr", "-utf8", "-subj", f"/O=Sample Calibration Laboratory/CN={subject}")
         openssl("x509", "-req", "-in", self.folder / "csr", "-CA", self.pem(by), "-CAkey", self.key(by), "-CAcreateserial",
@@ -563,6 +567,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="nonio-forgeries-") as folder:
         root = pathlib.Path(folder)
         keys = Keys(root / "keys")
+        authority = long_term.Authority(keys, LEAF)
         site, pdf, xml = issue(root, keys)
         made = wanted.keep or root / "forgeries"
         made.mkdir(exist_ok=True)
@@ -583,7 +588,12 @@ def main():
             honest.append(made / file)
         (made / "resigned.xml").write_text(resign(xml, keys))
         honest.append(made / "resigned.xml")
+        restamped = long_term.honest(root, pdf, authority, whom(site))
+        long_term.check_refusals(root, pdf, xml, authority, whom(site))
+        long_term.check_register(root, site, pdf, restamped["stamped twice"], authority)
+        honest += [put("honest", *f) for f in restamped.items()]
         asked = others_accept(root, keys, pdf, xml)
+        long_term.others_accept(root, keys, pdf, restamped)
         for name, answer in verify(site, honest).items():
             if answer["verdict"] != "HOLDS":
                 sys.exit(f"{name} is honest, and {answer['verdict']}: {json.dumps(answer['checks'], indent=1)}")
@@ -592,14 +602,16 @@ def main():
         forged.append(put("PDF by a stranger", "signed by a colleague", Pdf(pdf).write(keys.key("colleague"), keys.pem("colleague"))))
         forged.append(put("PDF by a stranger", "signed by a namesake", Pdf(pdf).write(keys.key("namesake"), keys.pem("namesake"))))
         forged += [put("PDF by the signer", *f) for f in pdf_by_signer(pdf, xml, keys)]
+        forged += [put("update by a stranger", *f) for f in long_term.forgeries(pdf, restamped, authority)]
+        authority.close()
         check_terminal(root, site, keys, pdf, xml)
         answers = verify(site, forged)
         accepted = [names[f.name] + f" ({f.name})" for f in forged if answers[f.name]["holds"]]
         print(f"{len(forged)} forgeries, {len(forged) - len(accepted)} refused; honest files accepted by nonio, {', '.join(asked)}")
         for line in accepted:
             print("ACCEPTED  " + line)
-        if len(forged) < 150:
-            sys.exit("wanted 150 forgeries at least")
+        if len(forged) < 400:
+            sys.exit("wanted 400 forgeries at least")
         sys.exit(1 if accepted else 0)
 
 

@@ -5,6 +5,7 @@
 
 Exit status 0 only if each is refused within 1 s of processor time and 200 MB of memory. --measure: figures only."""
 import argparse
+import itertools
 import os
 import pathlib
 import re
@@ -13,7 +14,8 @@ import sys
 import tempfile
 import zlib
 
-from forgeries import Keys, issue, whom
+import long_term
+from forgeries import LEAF, Keys, issue, whom
 from pdf_file import Pdf, openssl
 
 NONIO = os.environ.get("NONIO_MEASURED", os.environ["NONIO"])  # another build of it, to be compared
@@ -80,6 +82,44 @@ def files(honest, xml, keys):
         f'<!ENTITY b{i} "{("&a;" if i == 0 else f"&b{i - 1};") * 10}">' for i in range(9)) + "]>\n<dcc:digital", 1).encode()
 
 
+def content(der):
+    """Of the first element, and what follows it."""
+    more = der[1] & 0x7F if der[1] & 0x80 else 0
+    size = int.from_bytes(der[2:2 + more], "big") if more else der[1]
+    return der[2 + more:2 + more + size], der[2 + more + size:]
+
+
+def updated(honest, authority, site, folder):
+    """Updates that a stranger puts behind an honest file: they are read, since the signature before them holds."""
+    file = folder / "updated.pdf"
+    file.write_bytes(honest)
+    lists = folder / "lists.pem"
+    lists.write_bytes(authority.list("root"))
+    long_term.restamp([file], *whom(site), "--revoked", lists, "--no-fetch", "--no-time-stamp")
+    update = long_term.Update(file.read_bytes(), authority)
+    n = update.stored(b"CRLs")[0]
+    der = update.stream(n)
+    yield "a list of 9 MB of nothing.pdf", update.copy().set_stream(n, b"\x30\x83" + (9_000_000).to_bytes(3, "big") + bytes(9_000_000)).write()
+    # A true list made long, with entries that its signature does not cover.
+    whole, _ = content(der)
+    inside, behind = content(whole)
+    entries = b"".join(b"\x30\x15\x02\x04" + (0x10000000 + i).to_bytes(4, "big") + b"\x17\x0d260101000000Z" for i in range(400_000))
+    dates = [m.end() for m in re.finditer(rb"\x17\x0d\d{12}Z", inside)]
+    inside = inside[:dates[1]] + b"\x30\x83" + len(entries).to_bytes(3, "big") + entries + inside[dates[1]:]
+    tbs = b"\x30\x83" + len(inside).to_bytes(3, "big") + inside
+    long_list = b"\x30\x83" + (len(tbs) + len(behind)).to_bytes(3, "big") + tbs + behind
+    yield "a list with 400,000 entries.pdf", update.copy().set_stream(n, long_list).write()
+    data = honest
+    for i in range(25):
+        table = int(re.search(rb"startxref\n(\d+)\n%%EOF\n$", data)[1])
+        data += b"xref\n0 1\n0000000000 65535 f\r\ntrailer\n<<\n/Prev %d\n>>\nstartxref\n%d\n%%%%EOF\n" % (table, len(data))
+    yield "25 empty updates.pdf", data
+    junk = b"0" * 9_900_000
+    table = int(re.search(rb"startxref\n(\d+)\n%%EOF\n$", honest)[1])
+    yield "9.9 MB of nothing in an update.pdf", honest + junk + b"\nxref\ntrailer\n<<\n/Prev %d\n>>\nstartxref\n%d\n%%%%EOF\n" % (
+        table, len(honest) + len(junk) + 1)
+
+
 def spent(site, file):
     """Exit status, seconds of processor time (children included), megabytes at the most."""
     child = os.fork()
@@ -101,6 +141,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="nonio-hostile-") as folder:
         root = pathlib.Path(folder)
         keys = Keys(root / "keys")
+        authority = long_term.Authority(keys, LEAF)
         site, honest, xml = issue(root, keys)
         sparse = root / "20 GB, all of it holes.pdf"
         with open(sparse, "wb") as file:
@@ -108,7 +149,7 @@ def main():
         folder = root / "hostile"
         folder.mkdir()
         made = [sparse]
-        for name, data in files(honest, xml, keys):
+        for name, data in itertools.chain(files(honest, xml, keys), updated(honest, authority, site, root)):
             assert len(data) <= LARGEST, (name, len(data))
             (folder / name).write_bytes(data)
             made.append(folder / name)
