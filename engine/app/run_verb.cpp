@@ -122,6 +122,8 @@ Verb run_verb(Common& common) {
                   {"--jobs", &options.jobs, "Campaigns at a time (default: one for each core)"}),
            {"--force", &options.force, "Do every campaign again, changed or not"},
            {"--dry-run", &options.dry_run, "Say what would be done and why; do nothing"},
+           {"--root", &options.as_root,
+            "Root may run it, even with plugins that other users can change"},
            templates_argument(common)},
           common_arguments(common)),
       .footer =

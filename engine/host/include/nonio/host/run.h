@@ -21,7 +21,8 @@ struct RunOptions {
   bool force = false;
   bool dry_run = false;
   std::string version;
-  bool confine = true;  ///< false: only to measure what confining plugins costs
+  bool as_root = false;  ///< root may run it, whoever can write the plugins
+  bool confine = true;   ///< false: only to measure what confining plugins costs
 };
 
 /// One campaign of the night, as it is known so far. Small: there may be very many. What its record
