@@ -1,7 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <utility>
 
+#include "nonio/host/apart.h"
 #include "verbs.h"
+
+namespace {
+
+/// The process that the user starts has no plugin code, whatever the verb does.
+nonio::app::Verb apart(nonio::app::Verb verb) {
+  for (nonio::app::Verb& part : verb.verbs) part = apart(std::move(part));
+  if (verb.run)
+    verb.run = [run = std::move(verb.run)] {
+      nonio::host::keep_plugins_apart();
+      return run();
+    };
+  return verb;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace nonio::app;
@@ -24,15 +40,15 @@ int main(int argc, char** argv) {
     }
   };
   add("Every night", {run_verb(common), status_verb(common)});
-  add("Campaigns", {new_verb(common), import_verb(common), show_verb(common), open_verb(common),
-                    schema_verb(common)});
-  add("Certificates", {release_verb(common), certificates_verb(common), verify_verb(common),
-                       restamp_verb(common), template_verb(common)});
-  add("The error model",
-      {compare_verb(common), explain_verb(common), model_verb(common), simulate_verb(common)});
-  add("At the machine",
-      {plan_verb(common), controllers_verb(common), diff_verb(common), apply_verb(common)});
-  add("Plugins", {plugins_verb(common), plugin_verb(common)});
+  add("Campaigns", {apart(new_verb(common)), apart(import_verb(common)), apart(show_verb(common)),
+                    open_verb(common), apart(schema_verb(common))});
+  add("Certificates", {release_verb(common), certificates_verb(common), apart(verify_verb(common)),
+                       restamp_verb(common), apart(template_verb(common))});
+  add("The error model", {apart(compare_verb(common)), apart(explain_verb(common)),
+                          apart(model_verb(common)), apart(simulate_verb(common))});
+  add("At the machine", {apart(plan_verb(common)), apart(controllers_verb(common)),
+                         apart(diff_verb(common)), apart(apply_verb(common))});
+  add("Plugins", {apart(plugins_verb(common)), apart(plugin_verb(common))});
   add("This program", {help_verb(program), version_verb(common), completion_verb(program)});
   return run(program, argc, argv);
 }

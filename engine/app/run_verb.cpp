@@ -158,6 +158,8 @@ Verb run_verb(Common& common) {
             "Date of the night, YYYY-MM-DD, for the summary (default: today; a run that goes on\n"
             "where another stopped keeps its date)"},
            {"--dry-run", &options.dry_run, "Say what would be done and why; do nothing"},
+           {"--root", &options.as_root,
+            "Root may run it, even with plugins that other users can change"},
            templates_argument(common)},
           common_arguments(common)),
       .footer =

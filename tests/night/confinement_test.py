@@ -152,6 +152,19 @@ class Confinement(NightTest):
         self.assertIn("did not survive loading: no answer within 10 s", done.stderr)
         self.assertLess(seconds, 18.0)
 
+    @unittest.skipUnless(os.geteuid() == 0, "only root is refused")
+    def test_root_loads_no_plugin_that_others_can_change(self):
+        self.campaign("a")
+        plugins = self.root / "plugins"
+        shutil.copytree(PLUGINS / "hostile", plugins)
+        plugins.chmod(0o777)
+        args = ("--plugin-path", str(plugins))
+        done = self.run_nonio(*args, expect=2)
+        self.assertIn(f"root would run code that other users can change: {plugins}", done.stderr)
+        self.run_nonio(*args, "--root", expect=0)
+        plugins.chmod(0o755)
+        self.assertIn("this runs as root", self.run_nonio(*args, "--force", expect=0).stderr)
+
     def test_no_plugin_code_in_the_main_process(self):
         """Nor in those that have files and register."""
         self.campaign("a", run=RUN, extra='[options.hostile]\nhow = "well"\n')

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An analysis that does what no plugin may do: what, says its option `how`; with which file, `path`.
-// What it got hold of it says in its error; if it got nothing, it gives a result.
+// An analysis that does what no plugin may do: what, says its option `how`; with which file,
+// `path`. What it got hold of it says in its error; if it got nothing, it gives a result.
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <sys/mman.h>
@@ -109,19 +109,35 @@ void print() {
   [[maybe_unused]] const ssize_t n = ::write(1, "{\"event\":\"forged\"}\n", 19);
 }
 void print_much() {
-  for (int i = 0; i < 10'000; ++i) std::cerr << "a line that nobody wants to read, again and again\n";
+  for (int i = 0; i < 10'000; ++i)
+    std::cerr << "a line that nobody wants to read, again and again\n";
 }
 
 Expected<Evaluation> analyse(const AnalysisInput& in) {
-  static const std::map<std::string, void (*)()> all = {
-      {"program", start_program}, {"process", leave_process}, {"connect", connect_somewhere},
-      {"read", read_file}, {"append", append}, {"make", make}, {"kill-parent", kill_parent},
-      {"kill-thread", kill_thread}, {"kill-all", kill_all}, {"descriptors", descriptors},
-      {"environment", environment}, {"parent-environment", parent_environment}, {"thread", thread},
-      {"shared-memory", shared_memory}, {"memory-file", memory_file},
-      {"growing-memory", growing_memory}, {"rounding", rounding}, {"locale", locale},
-      {"signal-mask", signal_mask}, {"umask", mode_mask}, {"folder", folder}, {"quit", quit},
-      {"print", print}, {"print-much", print_much}};
+  static const std::map<std::string, void (*)()> all = {{"program", start_program},
+                                                        {"process", leave_process},
+                                                        {"connect", connect_somewhere},
+                                                        {"read", read_file},
+                                                        {"append", append},
+                                                        {"make", make},
+                                                        {"kill-parent", kill_parent},
+                                                        {"kill-thread", kill_thread},
+                                                        {"kill-all", kill_all},
+                                                        {"descriptors", descriptors},
+                                                        {"environment", environment},
+                                                        {"parent-environment", parent_environment},
+                                                        {"thread", thread},
+                                                        {"shared-memory", shared_memory},
+                                                        {"memory-file", memory_file},
+                                                        {"growing-memory", growing_memory},
+                                                        {"rounding", rounding},
+                                                        {"locale", locale},
+                                                        {"signal-mask", signal_mask},
+                                                        {"umask", mode_mask},
+                                                        {"folder", folder},
+                                                        {"quit", quit},
+                                                        {"print", print},
+                                                        {"print-much", print_much}};
   const std::string how = in.options.text("how"), where = in.options.text("path");
   path = where.c_str();
   if (const auto found = all.find(how); found != all.end()) found->second();

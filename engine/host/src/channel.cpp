@@ -39,8 +39,8 @@ bool read_all(int fd, char* to, std::size_t size) {
 struct Parcel {
   char byte = 0;
   iovec part{&byte, 1};
-  alignas(cmsghdr) std::array<
-      char, CMSG_SPACE(sizeof(int) * most_descriptors) + CMSG_SPACE(sizeof(ucred))> control{};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int) * most_descriptors) +
+                                        CMSG_SPACE(sizeof(ucred))> control{};
   msghdr header{};
   Parcel() {
     header.msg_iov = &part;

@@ -32,8 +32,8 @@ void limit_memory(double megabytes);
 void keep_freed_memory();
 /// Bytes that the process has from the system for its data.
 std::size_t memory_held();
-/// Whether that has become noticeably more: more than the tables and reports of a campaign need, far
-/// less than would hurt the next one.
+/// Whether that has become noticeably more: more than the tables and reports of a campaign need,
+/// far less than would hurt the next one.
 bool has_grown(std::size_t at_start);
 
 }  // namespace nonio::host

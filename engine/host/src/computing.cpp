@@ -74,13 +74,14 @@ void evaluate_for(int stream, const Context& context, SharedWords& stage) {
     fs::path folder;
     std::string id;
     bool draws = false;
-    if (!wire::unpack(request, folder, id, draws)) return;
+    Twins twins;
+    if (!wire::unpack(request, folder, id, draws, twins)) return;
     Draw draw;
     if (draws)
       draw = [stream](const Evaluated& e, std::vector<std::string>& missing) {
         return ask_for_draw(stream, e, missing);
       };
-    const Evaluated evaluated = evaluate(folder, id, context, tell, draw);
+    const Evaluated evaluated = evaluate(folder, id, context, tell, draw, twins);
     const bool grown = has_grown(at_start);
     if (!write_text(stream, has_done + wire::pack(evaluated, grown))) return;
   }
@@ -105,9 +106,9 @@ bool Evaluator::hand_out(const fs::path& folder, const std::string& path) const 
 }
 
 Expected<Evaluated> Evaluator::evaluate(const fs::path& folder, const std::string& id,
-                                        const Draw& draw) {
+                                        const Draw& draw, const Twins& twins) {
   std::optional<Certificate> drawn;
-  if (!write_text(stream_, wire::pack(folder, id, draw != nullptr))) ::_exit(0);
+  if (!write_text(stream_, wire::pack(folder, id, draw != nullptr, twins))) ::_exit(0);
   for (std::string said;;) {
     if (!read_text(stream_, said)) ::_exit(0);
     if (said.empty()) break;

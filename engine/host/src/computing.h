@@ -20,10 +20,10 @@ class Evaluator {
   Evaluator(int stream, std::vector<std::filesystem::path> secrets)
       : stream_(stream), secrets_(std::move(secrets)) {}
 
-  /// As `evaluate`, done by the other side. Where it is gone, this process ends too: its parent knows
-  /// why. An error: it says what no process of ours says.
+  /// As `evaluate`, done by the other side. Where it is gone, this process ends too: its parent
+  /// knows why. An error: it says what no process of ours says.
   Expected<Evaluated> evaluate(const std::filesystem::path& folder, const std::string& id,
-                               const Draw& draw);
+                               const Draw& draw, const Twins& twins);
   /// Whether the memory of the other side has grown noticeably.
   bool grown() const { return grown_; }
 

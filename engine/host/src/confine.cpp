@@ -69,8 +69,7 @@ std::string restrict_files(const std::vector<fs::path>& readable) {
   const int abi = landlock_abi();
   if (abi < 1) return {};  // said by lacking_confinement
   const Ruleset all = everything(abi);
-  const auto fd =
-      static_cast<int>(::syscall(SYS_landlock_create_ruleset, &all, sizeof all, 0));
+  const auto fd = static_cast<int>(::syscall(SYS_landlock_create_ruleset, &all, sizeof all, 0));
   if (fd < 0) return why_not("Landlock");
   for (const fs::path& path : readable) allow_reading(fd, path);
   const long done = ::syscall(SYS_landlock_restrict_self, fd, 0);
@@ -87,33 +86,176 @@ struct Release {
 using Filter = std::unique_ptr<void, Release>;
 
 /// Nothing of this belongs into a computation: whoever tries is ended, with its name.
-constexpr std::string_view hostile[] = {
-    "execve", "execveat", "fork", "vfork", "socket", "socketpair", "connect", "bind", "listen",
-    "accept", "accept4", "ptrace", "process_vm_readv", "process_vm_writev", "kill", "tkill",
-    "pidfd_open", "pidfd_send_signal", "pidfd_getfd", "rt_sigqueueinfo", "rt_tgsigqueueinfo",
-    "memfd_create", "memfd_secret", "shmget", "shmat", "shmctl", "msgget", "msgsnd", "msgrcv",
-    "semget", "semop", "mq_open", "bpf", "keyctl", "add_key", "request_key", "perf_event_open",
-    "userfaultfd", "io_uring_setup", "mount", "umount2", "move_mount", "open_tree", "fsopen",
-    "pivot_root", "chroot", "unshare", "setns", "reboot", "kexec_load", "init_module",
-    "finit_module", "delete_module", "swapon", "swapoff", "sethostname", "setdomainname",
-    "settimeofday", "clock_settime", "clock_adjtime", "adjtimex", "setuid", "setgid", "setreuid",
-    "setregid", "setresuid", "setresgid", "setgroups", "capset", "personality", "quotactl",
-    "open_by_handle_at", "name_to_handle_at", "fanotify_init", "chmod", "fchmod", "fchmodat",
-    "chown", "fchown", "lchown", "fchownat", "utimensat", "setxattr", "lsetxattr", "fsetxattr",
-    "removexattr", "lremovexattr", "fremovexattr", "setpriority", "sched_setaffinity",
-    "sched_setscheduler", "sched_setparam", "sched_setattr", "ioprio_set", "syslog", "acct"};
+constexpr std::string_view hostile[] = {"execve",
+                                        "execveat",
+                                        "fork",
+                                        "vfork",
+                                        "socket",
+                                        "socketpair",
+                                        "connect",
+                                        "bind",
+                                        "listen",
+                                        "accept",
+                                        "accept4",
+                                        "ptrace",
+                                        "process_vm_readv",
+                                        "process_vm_writev",
+                                        "kill",
+                                        "tkill",
+                                        "pidfd_open",
+                                        "pidfd_send_signal",
+                                        "pidfd_getfd",
+                                        "rt_sigqueueinfo",
+                                        "rt_tgsigqueueinfo",
+                                        "memfd_create",
+                                        "memfd_secret",
+                                        "shmget",
+                                        "shmat",
+                                        "shmctl",
+                                        "msgget",
+                                        "msgsnd",
+                                        "msgrcv",
+                                        "semget",
+                                        "semop",
+                                        "mq_open",
+                                        "bpf",
+                                        "keyctl",
+                                        "add_key",
+                                        "request_key",
+                                        "perf_event_open",
+                                        "userfaultfd",
+                                        "io_uring_setup",
+                                        "mount",
+                                        "umount2",
+                                        "move_mount",
+                                        "open_tree",
+                                        "fsopen",
+                                        "pivot_root",
+                                        "chroot",
+                                        "unshare",
+                                        "setns",
+                                        "reboot",
+                                        "kexec_load",
+                                        "init_module",
+                                        "finit_module",
+                                        "delete_module",
+                                        "swapon",
+                                        "swapoff",
+                                        "sethostname",
+                                        "setdomainname",
+                                        "settimeofday",
+                                        "clock_settime",
+                                        "clock_adjtime",
+                                        "adjtimex",
+                                        "setuid",
+                                        "setgid",
+                                        "setreuid",
+                                        "setregid",
+                                        "setresuid",
+                                        "setresgid",
+                                        "setgroups",
+                                        "capset",
+                                        "personality",
+                                        "quotactl",
+                                        "open_by_handle_at",
+                                        "name_to_handle_at",
+                                        "fanotify_init",
+                                        "chmod",
+                                        "fchmod",
+                                        "fchmodat",
+                                        "chown",
+                                        "fchown",
+                                        "lchown",
+                                        "fchownat",
+                                        "utimensat",
+                                        "setxattr",
+                                        "lsetxattr",
+                                        "fsetxattr",
+                                        "removexattr",
+                                        "lremovexattr",
+                                        "fremovexattr",
+                                        "setpriority",
+                                        "sched_setaffinity",
+                                        "sched_setscheduler",
+                                        "sched_setparam",
+                                        "sched_setattr",
+                                        "ioprio_set",
+                                        "syslog",
+                                        "acct"};
 
 /// What a computation does, and how it looks at files that it may not open.
-constexpr std::string_view computing[] = {
-    "read", "readv", "pread64", "write", "writev", "close", "fstat", "newfstatat", "stat", "lstat",
-    "statx", "lseek", "munmap", "mremap", "madvise", "brk", "mprotect", "mincore", "futex", "sendto",
-    "sendmsg", "recvfrom", "recvmsg", "poll", "ppoll", "rt_sigaction", "rt_sigprocmask",
-    "rt_sigreturn", "sigaltstack", "getpid", "gettid", "getppid", "getuid", "geteuid", "getgid",
-    "getegid", "getpgrp", "getrandom", "clock_gettime", "clock_getres", "clock_nanosleep",
-    "nanosleep", "gettimeofday", "time", "sched_yield", "sched_getaffinity", "getcpu", "getrusage",
-    "times", "sysinfo", "uname", "exit", "exit_group", "restart_syscall", "set_robust_list", "rseq",
-    "getcwd", "readlink", "readlinkat", "access", "faccessat", "faccessat2", "open", "openat",
-    "getdents64", "fcntl", "dup", "dup2", "dup3", "getrlimit", "membarrier", "fadvise64"};
+constexpr std::string_view computing[] = {"read",
+                                          "readv",
+                                          "pread64",
+                                          "write",
+                                          "writev",
+                                          "close",
+                                          "fstat",
+                                          "newfstatat",
+                                          "stat",
+                                          "lstat",
+                                          "statx",
+                                          "lseek",
+                                          "munmap",
+                                          "mremap",
+                                          "madvise",
+                                          "brk",
+                                          "mprotect",
+                                          "mincore",
+                                          "futex",
+                                          "sendto",
+                                          "sendmsg",
+                                          "recvfrom",
+                                          "recvmsg",
+                                          "poll",
+                                          "ppoll",
+                                          "rt_sigaction",
+                                          "rt_sigprocmask",
+                                          "rt_sigreturn",
+                                          "sigaltstack",
+                                          "getpid",
+                                          "gettid",
+                                          "getppid",
+                                          "getuid",
+                                          "geteuid",
+                                          "getgid",
+                                          "getegid",
+                                          "getpgrp",
+                                          "getrandom",
+                                          "clock_gettime",
+                                          "clock_getres",
+                                          "clock_nanosleep",
+                                          "nanosleep",
+                                          "gettimeofday",
+                                          "time",
+                                          "sched_yield",
+                                          "sched_getaffinity",
+                                          "getcpu",
+                                          "getrusage",
+                                          "times",
+                                          "sysinfo",
+                                          "uname",
+                                          "exit",
+                                          "exit_group",
+                                          "restart_syscall",
+                                          "set_robust_list",
+                                          "rseq",
+                                          "getcwd",
+                                          "readlink",
+                                          "readlinkat",
+                                          "access",
+                                          "faccessat",
+                                          "faccessat2",
+                                          "open",
+                                          "openat",
+                                          "getdents64",
+                                          "fcntl",
+                                          "dup",
+                                          "dup2",
+                                          "dup3",
+                                          "getrlimit",
+                                          "membarrier",
+                                          "fadvise64"};
 
 void add(const Filter& filter, std::uint32_t action, std::string_view call) {
   const int number = ::seccomp_syscall_resolve_name(std::string(call).c_str());
@@ -139,7 +281,8 @@ scmp_arg_cmp masked(unsigned argument, scmp_datum_t mask, scmp_datum_t value) {
 /// Memory that no limit counts: shared without a file, or growing like a stack.
 void forbid_uncounted_memory(const Filter& filter, std::uint32_t action) {
   constexpr unsigned flags = 3;  // argument of mmap
-  add_if(filter, action, "mmap", masked(flags, MAP_SHARED | MAP_ANONYMOUS, MAP_SHARED | MAP_ANONYMOUS));
+  add_if(filter, action, "mmap",
+         masked(flags, MAP_SHARED | MAP_ANONYMOUS, MAP_SHARED | MAP_ANONYMOUS));
   add_if(filter, action, "mmap", masked(flags, MAP_GROWSDOWN, MAP_GROWSDOWN));
 }
 
@@ -162,6 +305,34 @@ std::string forbid_hostile() {
   add_if(filter, SCMP_ACT_KILL_PROCESS, "ioctl",
          scmp_arg_cmp{1, SCMP_CMP_EQ, 0x5412 /* TIOCSTI */, 0});
   forbid_uncounted_memory(filter, SCMP_ACT_KILL_PROCESS);
+  return load(filter);
+}
+
+std::string forbid_talking() {
+  const Filter filter(::seccomp_init(SCMP_ACT_ALLOW));
+  if (!filter) return "seccomp: no memory";
+  for (const char* call : {"execve",
+                           "execveat",
+                           "socket",
+                           "connect",
+                           "bind",
+                           "listen",
+                           "accept",
+                           "accept4",
+                           "ptrace",
+                           "process_vm_readv",
+                           "process_vm_writev",
+                           "bpf",
+                           "keyctl",
+                           "add_key",
+                           "request_key",
+                           "mount",
+                           "unshare",
+                           "setns",
+                           "io_uring_setup",
+                           "userfaultfd",
+                           "perf_event_open"})
+    add(filter, SCMP_ACT_KILL_PROCESS, call);
   return load(filter);
 }
 
@@ -228,6 +399,12 @@ std::string confine_loading(const std::vector<fs::path>& readable) {
   return has_seccomp() ? forbid_hostile() : "";
 }
 
+std::string confine_visit() {
+  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return why_not("no_new_privs");
+  set_limit(RLIMIT_CORE, 0);
+  return has_seccomp() ? forbid_talking() : "";
+}
+
 std::string confine_files() { return restrict_files({}); }
 
 std::string confine_computing() {
@@ -251,7 +428,10 @@ void close_others(const std::vector<int>& kept) {
 }
 
 void forget_environment() {
-  constexpr std::string_view kept[] = {"LC_", "LANG", "TZ=", "NONIO_TEST_", "ASAN_", "UBSAN_", "TSAN_", "LSAN_"};
+  constexpr std::string_view kept[] = {
+      "LC_",      "LANG",  "TZ=",     "NONIO_TEST_", "NONIO_PLUGIN_PATH=",
+      "PATH=",    "HOME=", "TMPDIR=", "TERM=",       "NO_COLOR=",
+      "COLUMNS=", "ASAN_", "UBSAN_",  "TSAN_",       "LSAN_"};
   for (char** one = environ; one != nullptr && *one != nullptr; ++one) {
     const std::string_view entry = *one;
     const bool keep = std::any_of(std::begin(kept), std::end(kept),

@@ -24,13 +24,18 @@ std::string confine_files();
 /// In a process that evaluates: besides, no process and no thread; only what computing needs.
 std::string confine_computing();
 
+/// For the work of one command, which reads and writes files and makes processes: no new rights, no
+/// program started, nobody spoken to.
+std::string confine_visit();
+
 /// Whether `confine_computing` has taken away what would change working directory and mode mask.
 bool is_computing_confined();
 
 /// Closes every descriptor but these (ascending) and 0, 1, 2.
 void close_others(const std::vector<int>& kept);
 
-/// Overwrites the environment but for locale and time zone: it may hold a password.
+/// Overwrites the environment but for locale, time zone, terminal and folders: it may hold a
+/// password.
 void forget_environment();
 
 }  // namespace nonio::host

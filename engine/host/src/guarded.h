@@ -5,6 +5,7 @@
 #include <new>
 #include <string>
 
+#include "apart.h"
 #include "nonio/sdk/error.h"
 #include "process_state.h"
 
@@ -13,7 +14,10 @@ namespace nonio::host {
 /// What `call` gives; where it changed what all that follows depends on, an error.
 template <class Call>
 auto leaving_all_as_it_is(const std::string& who, const Call& call) -> decltype(call()) {
-  auto result = call();
+  auto result = [&]() -> decltype(call()) {
+    const Muted muted;
+    return call();
+  }();
   const std::string changed = restore_process_state();
   if (!changed.empty()) return fail(who + " changed " + changed + " of the process; refused");
   return result;

@@ -194,13 +194,13 @@ Expected<pid_t> PluginHost::make_process(Handle stream, const SharedWords& stage
       if (const auto again = start(); !again) return fail(again.error());
     const bool sent = send_descriptors(control_.get(), 'w', {stream.get(), stage.descriptor()});
     pollfd one{control_.get(), POLLIN, 0};
-    const bool heard =
-        sent && ::poll(&one, 1, static_cast<int>(1000 * answer_seconds)) > 0;
+    const bool heard = sent && ::poll(&one, 1, static_cast<int>(1000 * answer_seconds)) > 0;
     const auto hello = heard ? receive_descriptors(control_.get()) : fail("no answer");
     // The kernel says who it is: a child of ours, and not the one that loads.
     if (hello && hello->word == 'h' && hello->sender > 0 && hello->sender != pid_) {
       siginfo_t info{};
-      if (::waitid(P_PID, static_cast<id_t>(hello->sender), &info, WEXITED | WNOHANG | WNOWAIT) == 0)
+      if (::waitid(P_PID, static_cast<id_t>(hello->sender), &info, WEXITED | WNOHANG | WNOWAIT) ==
+          0)
         return hello->sender;
     }
     end();

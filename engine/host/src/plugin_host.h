@@ -29,8 +29,8 @@ class PluginHost {
     std::vector<std::filesystem::path> readable;
     /// Files that plugins must not read: the signing key and its password.
     std::vector<std::filesystem::path> secrets;
-    Context& context;    ///< its `plugins` are set in the process that loads them
-    bool (*stopped)();   ///< may be null
+    Context& context;   ///< its `plugins` are set in the process that loads them
+    bool (*stopped)();  ///< may be null
     bool confine = true;
   };
   explicit PluginHost(Wish wish);

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <span>
 
+#include "apart.h"
 #include "child.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
@@ -147,8 +148,13 @@ Plugins::Plugins(Catalogue c)
       outputs_(named<Output>(std::move(c.outputs))) {}
 
 Catalogue Plugins::catalogue() const {
-  return {files_,           conflicts_,          names_, described(readers_), described(effects_),
-          described(analyses_), described(outputs_)};
+  return {files_,
+          conflicts_,
+          names_,
+          described(readers_),
+          described(effects_),
+          described(analyses_),
+          described(outputs_)};
 }
 
 std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
@@ -169,6 +175,7 @@ std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
 }
 
 void Plugins::load(const std::vector<fs::path>& folders) {
+  step_aside();
   const std::vector<fs::path> paths = files_in(folders);
   const std::vector<std::string> refusals = probe(paths);
   for (std::size_t i = 0; i < paths.size(); ++i) load_file(paths[i], refusals[i]);
@@ -178,6 +185,7 @@ void Plugins::load_file(const fs::path& path, const std::string& refusal) {
   files_.push_back(PluginFile{.path = path, .refused = refusal, .brought = {}});
   PluginFile& file = files_.back();
   if (!file.refused.empty()) return;
+  const Muted muted;
   try {
     const auto entry = open_entry(path);
     if (entry)

@@ -61,7 +61,9 @@ bool same_signals(const sigset_t& a, const sigset_t& b) {
   return true;
 }
 
-void say(std::string& words, const char* what) { words += (words.empty() ? "" : ", ") + std::string(what); }
+void say(std::string& words, const char* what) {
+  words += (words.empty() ? "" : ", ") + std::string(what);
+}
 
 }  // namespace
 
@@ -83,8 +85,8 @@ std::string restore_process_state() {
     say(words, "the rounding mode");
     std::fesetenv(&kept->environment);
   }
-  if (kept->c_locale != std::setlocale(LC_ALL, nullptr) || ::uselocale(nullptr) != LC_GLOBAL_LOCALE ||
-      std::locale() != kept->cpp_locale) {
+  if (kept->c_locale != std::setlocale(LC_ALL, nullptr) ||
+      ::uselocale(nullptr) != LC_GLOBAL_LOCALE || std::locale() != kept->cpp_locale) {
     say(words, "the locale");
     ::uselocale(LC_GLOBAL_LOCALE);
     std::locale::global(kept->cpp_locale);

@@ -181,6 +181,7 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
         "another process keeps the register of certificates locked: campaigns that need a number "
         "wait for it");
   for (const std::string& note : night.notes) events.note(note);
+  if (!(*place)->as_root.empty()) events.note((*place)->as_root);
   if (!(*place)->unstamped.empty()) night.notes.push_back((*place)->unstamped);
   auto state = begin_night(options,
                            *known ? std::optional(issued_so_far((*known)->numbers)) : std::nullopt);

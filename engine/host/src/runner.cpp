@@ -187,7 +187,8 @@ class Runner {
     const fs::path folder = options_.site / c.folder;
     const auto try_it = [&](bool as_draft) {
       return evaluator.evaluate(
-          folder, c.id, [&](const Evaluated& e, std::vector<std::string>& missing) {
+          folder, c.id,
+          [&](const Evaluated& e, std::vector<std::string>& missing) {
             if (!unsound_.empty()) return Expected<Certificate>(fail(unsound_));
             locked = locked || recheck_ != nullptr;
             if (recheck_) return Expected<Certificate>(fail(register_locked));
@@ -211,8 +212,7 @@ class Runner {
   }
 
   /// In the worker's process, which has no plugin code: that runs at the other end of the stream.
-  Answer work(std::size_t index, bool first, SharedWords& stage,
-              Evaluator& evaluator) const {
+  Answer work(std::size_t index, bool first, SharedWords& stage, Evaluator& evaluator) const {
     if (first && signer_ != nullptr) signer_->leave_to_worker();
     const CampaignState& c = campaigns_[index];
     bool locked = false;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "set_up.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <ctime>
 
 #include "context.h"
@@ -41,13 +44,45 @@ void note_key(SetUp& place, bool is_stamped) {
         ", and no longer (`nonio restamp` can still give it a time stamp until then)";
 }
 
+/// A folder, or a plugin in it, that others than root and the owner of the program can change;
+/// empty: there is none. Who can change the plugins beside the program can change that too.
+std::string changeable_by_others(const RunOptions& options) {
+  struct stat own {};
+  ::stat(options.own_plugins.c_str(), &own);
+  const auto others_can = [&](const fs::path& path) {
+    struct stat info {};
+    return ::stat(path.c_str(), &info) == 0 &&
+           ((info.st_uid != 0 && info.st_uid != own.st_uid) || (info.st_mode & S_IWOTH) != 0);
+  };
+  std::vector<fs::path> folders = options.plugin_folders;
+  std::erase(folders, options.own_plugins);
+  for (const fs::path& folder : folders)
+    if (others_can(folder)) return folder.string();
+  for (const fs::path& file : Plugins::files_in(folders))
+    if (others_can(file)) return file.string();
+  return {};
+}
+
+/// What root does with a plugin is not undone by any confinement that has a gap.
+Expected<void> check_user(SetUp& place, const RunOptions& options) {
+  if (::geteuid() != 0 || options.as_root) return {};
+  if (const std::string path = changeable_by_others(options); !path.empty())
+    return fail("root would run code that other users can change: " + path +
+                "; wanted another user (the package's service runs as nonio), or --root");
+  place.as_root =
+      "this runs as root, for whom nothing needs it: wanted a user of its own (the package's "
+      "service "
+      "runs as nonio), or --root to say that it is meant";
+  return {};
+}
+
 /// In a process of their own.
 Expected<void> load_plugins(SetUp& place, const RunOptions& options) {
   const auto& signing = place.context.site.signing;
-  PluginHost& host = place.host.emplace(PluginHost::Wish{
-      options.plugin_folders, library_folders(options.own_plugins),
-      signing ? secret_files(*signing, options.site) : std::vector<fs::path>(), place.context,
-      is_stop_requested, options.confine});
+  PluginHost& host = place.host.emplace(
+      PluginHost::Wish{options.plugin_folders, library_folders(options.own_plugins),
+                       signing ? secret_files(*signing, options.site) : std::vector<fs::path>(),
+                       place.context, is_stop_requested, options.confine});
   auto catalogue = host.start();
   if (!catalogue) return fail(catalogue.error());
   place.plugins = Plugins(std::move(*catalogue));
@@ -77,6 +112,7 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
       read_templates(template_folders, context.templates_sha256, &context.templates_json);
   if (!templates) return fail(all_of({templates.error()}));
   context.templates = std::move(*templates);
+  if (auto allowed = check_user(*place, options); !allowed) return fail(allowed.error());
   if (auto loaded = load_plugins(*place, options); !loaded) return fail(loaded.error());
   const Plugins& plugins = place->plugins;
   if (!plugins.conflicts().empty()) return fail(plugins.conflicts().front());

@@ -89,9 +89,9 @@ void answer(int stream, const Expected<sign::Key>& key,
   std::string request;
   if (!read_text(stream, request)) return;
   const auto reply = [&](const std::string& why, const sign::Signed& done) {
-    [[maybe_unused]] const bool heard =
-        write_text(stream, why) && write_text(stream, done.no_time_stamp) &&
-        write_text(stream, done.bytes);
+    [[maybe_unused]] const bool heard = write_text(stream, why) &&
+                                        write_text(stream, done.no_time_stamp) &&
+                                        write_text(stream, done.bytes);
   };
   if (!key) return reply(key.error().message, {});
   if (!stamping) return reply(stamping.error().message, {});

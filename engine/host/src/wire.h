@@ -78,10 +78,8 @@ class Writer {
     std::visit([this](const auto& one) { put(one); }, value);
   }
   template <class T>
-    requires std::is_aggregate_v<T>
-  void put(const T& value) {
-    members(*this, value);
-  }
+  requires std::is_aggregate_v<T>
+  void put(const T& value) { members(*this, value); }
 
   std::string out_;
 };
@@ -177,22 +175,20 @@ class Reader {
     }
   }
   template <class T>
-    requires std::is_aggregate_v<T>
-  void get(T& value) {
-    members(*this, value);
-  }
+  requires std::is_aggregate_v<T>
+  void get(T& value) { members(*this, value); }
 
   std::string_view rest_;
   bool well_ = true;
 };
 
 /// All members of a type, in its order: the compiler finds one that is missing here.
-#define NONIO_ON_THE_WIRE(Type, ...)                          \
-  template <class Archive, class T>                           \
-    requires std::same_as<std::remove_const_t<T>, Type>       \
-  void members(Archive& archive, T& value) {                  \
+#define NONIO_ON_THE_WIRE(Type, ...)                                      \
+  template <class Archive, class T>                                       \
+  requires std::same_as<std::remove_const_t<T>, Type>                     \
+  void members(Archive& archive, T& value) {                              \
     auto& [__VA_ARGS__] = value; /* NOLINT(bugprone-macro-parentheses) */ \
-    archive(__VA_ARGS__);                                     \
+    archive(__VA_ARGS__);                                                 \
   }
 
 NONIO_ON_THE_WIRE(Error, a, b, c, d, e)

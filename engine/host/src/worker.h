@@ -50,13 +50,14 @@ enum class Answer : char {
 class PluginHost;
 
 struct Outcome {
-  Outcome(Answer a, bool has_grown = false) : answer(a), grown(has_grown) {}  // NOLINT: an answer is one
+  Outcome(Answer a, bool has_grown = false)
+      : answer(a), grown(has_grown) {}  // NOLINT: an answer is one
   Answer answer;
   bool grown;  ///< the memory of a process that works for this one
 };
 
-/// A process that does campaigns one after the other, as its parent names them; with another one for
-/// what plugins do. Moved, not copied.
+/// A process that does campaigns one after the other, as its parent names them; with another one
+/// for what plugins do. Moved, not copied.
 class Worker {
  public:
   using Clock = std::chrono::steady_clock;

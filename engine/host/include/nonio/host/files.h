@@ -12,8 +12,8 @@
 
 namespace nonio::host {
 
-/// For a process that may open no file: who opens them for reading in its place. Gives a descriptor,
-/// or -1 and errno.
+/// For a process that may open no file: who opens them for reading in its place. Gives a
+/// descriptor, or -1 and errno.
 void open_files_with(std::function<int(const std::filesystem::path&)> opener);
 
 /// A file mapped into memory for reading from front to back. Not copyable; unmapped at the end.

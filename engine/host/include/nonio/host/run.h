@@ -25,7 +25,8 @@ struct RunOptions {
   bool verify_results = false;  ///< compare the digests of all files given out, touched or not
   std::string date{};           ///< of the night, YYYY-MM-DD; empty: today's
   std::string version;
-  bool confine = true;  ///< false: only to measure what confining plugins costs
+  bool as_root = false;  ///< root may run it, whoever can write the plugins
+  bool confine = true;   ///< false: only to measure what confining plugins costs
 };
 
 /// One campaign of the night, as it is known so far. Small: there may be very many. What its record

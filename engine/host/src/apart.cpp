@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apart.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+
+#include "child.h"
+#include "confine.h"
+#include "nonio/host/apart.h"
+#include "process_state.h"
+
+namespace nonio::host {
+
+namespace {
+
+enum class Place { anywhere, wanted_apart, apart };
+Place place = Place::anywhere;
+bool is_muted = false;
+
+void flush_output() {
+  std::cout.flush();
+  std::fflush(stdout);
+}
+
+/// What the shell would do with a program that ended so.
+[[noreturn]] void end_as(pid_t child) {
+  ::signal(SIGINT, SIG_IGN);  // the child gets it too, and says how it ends
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
+    ;
+  if (WIFEXITED(status)) ::_exit(WEXITSTATUS(status));
+  if (WTERMSIG(status) == SIGINT) ::_exit(130);
+  std::cerr << "nonio: a plugin brought the process down in which it ran: "
+            << child_end(status).words << "\n";
+  ::_exit(2);
+}
+
+}  // namespace
+
+void keep_plugins_apart() {
+  if (place == Place::anywhere) place = Place::wanted_apart;
+}
+
+void step_aside() {
+  if (place != Place::wanted_apart) return;
+  place = Place::apart;
+  flush_output();
+  std::cerr.flush();
+  const pid_t parent = ::getpid();
+  const pid_t child = ::fork();
+  if (child > 0) end_as(child);
+  if (child < 0) {
+    std::cerr << "nonio: no process for the plugins: " << std::strerror(errno) << "\n";
+    ::_exit(2);
+  }
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(2);
+  forget_environment();
+  if (const std::string why = confine_visit(); !why.empty()) {
+    std::cerr << "nonio: the plugins cannot be confined: " << why << "\n";
+    ::_exit(2);
+  }
+  keep_process_state();
+}
+
+Muted::Muted() {
+  if (place != Place::apart || is_muted) return;
+  flush_output();
+  output_ = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+  if (output_ < 0) return;
+  is_muted = true;
+  ::dup2(STDERR_FILENO, STDOUT_FILENO);
+}
+
+Muted::~Muted() {
+  if (output_ < 0) return;
+  flush_output();
+  ::dup2(output_, STDOUT_FILENO);
+  ::close(output_);
+  is_muted = false;
+}
+
+}  // namespace nonio::host

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace nonio::host {
+
+/// Goes on in a child if `keep_plugins_apart` was asked for; the first time only.
+void step_aside();
+
+/// While it lives, standard output is standard error, where plugins are kept apart.
+class Muted {
+ public:
+  Muted();
+  Muted(const Muted&) = delete;
+  Muted& operator=(const Muted&) = delete;
+  ~Muted();
+
+ private:
+  int output_ = -1;  ///< -1: nothing to put back
+};
+
+}  // namespace nonio::host
