@@ -51,6 +51,17 @@ class New(VerbTest):
         results = json.loads((self.here("out") / "first-campaign" / "results.json").read_text())
         self.assertEqual(results["errors"], [])
 
+    def test_what_a_certificate_wants_is_offered_with_its_meaning(self):
+        lab = self.here("lab")
+        self.nonio("new", "site", lab)
+        texts = [path.read_text() for path in (lab / "first-campaign" / "campaign.toml", lab / "site.toml")]
+        for key in ("feed_mm_per_min", "dwell_s", "over_travel_mm", "tool_offset", "workpiece_offset", "compensation",
+                    "sphere_um", "probe_um", "issuer", "valid_until", "measures", "warm_up", "sensors", "conditions",
+                    "nothing_else_by", "release", "two_persons"):
+            with self.subTest(key):
+                line, = (row for text in texts for row in text.splitlines() if row.startswith(f"# {key} = "))
+                self.assertRegex(line, r"  # .{15}")
+
     def test_an_example_says_so_everywhere(self):
         folder = self.here("made", "rossi")
         self.nonio("new", "campaign", folder, "--customer", "Rossi", "--machine", "FP 12")

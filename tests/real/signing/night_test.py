@@ -8,7 +8,7 @@ import subprocess
 import time
 import unittest
 
-from signing import NONIO, PASSWORD, SigningTest, readings
+from signing import AUTOMATIC, NONIO, PASSWORD, SigningTest, readings
 
 TEMPLATES = pathlib.Path(__file__).resolve().parents[3] / "templates"
 KILLS = int(os.environ.get("NONIO_KILLS", "6"))
@@ -59,6 +59,17 @@ class SignedNight(SigningTest):
         self.run_nonio(expect=0, env={**os.environ, "NONIO_TEST_KEY": PASSWORD})
         self.assert_holds(self.out / "c1" / "report.pdf")
 
+    def test_a_night_signs_nothing_that_nobody_has_released(self):
+        keys = self.keys()
+        for extra in ("[certificate]\nrelease = \"by-hand\"\n", '[certificate]\nrelease = "automatic"\nmay_stand = []\n'):
+            with self.subTest(extra):
+                self.site_toml(keys, extra=extra)
+                self.signed_campaign("c1")
+                self.run_nonio("--force", expect=0)
+                self.assertEqual([p.name for p in (self.out / "c1").iterdir() if p.suffix in (".pdf", ".xml")], [])
+                self.assertIn("signature.not-released", (self.out / "c1" / "results.json").read_text())
+                self.assertEqual(self.results("c1")["status"], "attention")
+
     def test_the_password_may_come_from_systemd(self):
         keys = self.keys()
         self.site_toml(keys, password='password_credential = "password"')
@@ -68,7 +79,7 @@ class SignedNight(SigningTest):
 
     def test_without_a_key_nothing_unsigned_is_left(self):
         self.signed_campaign("c1")
-        (self.site / "site.toml").write_text("[options.pdf-report]\nsign = true\n")
+        (self.site / "site.toml").write_text("[options.pdf-report]\nsign = true\n" + AUTOMATIC)
         self.run_nonio(expect=1)
         self.assertIn("[signing]", json.dumps(self.results("c1")["errors"]))
         self.assertFalse((self.out / "c1" / "report.pdf").exists())

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <pwd.h>
+#include <unistd.h>
+
 #include "nonio/host/register.h"
 
 #include <gtest/gtest.h>
@@ -103,6 +106,27 @@ TEST_F(RegisterTest, WhatWasIssuedComesBackAsItWas) {
   EXPECT_EQ(again.files[1].no_time_stamp, "no answer");
   EXPECT_EQ(entries().size(), 1U);
   EXPECT_EQ(entry("2026-0001").state, "issued");
+}
+
+/// The name is stated; the account is the operating system's.
+TEST_F(RegisterTest, TheAccountIsNotedBesideTheName) {
+  Register r = open();
+  Certificate c = drawn(r, "c1", first_data);
+  c.output = "certificate", c.results = "{}";
+  c.released = R"({"released": {"by": "B. Sample"}})";
+  ASSERT_TRUE(r.issue(c, "c1", first_data));
+  ASSERT_TRUE(r.withdraw(c.issue.number, "wrong", "C. Other"));
+  auto all = entries();
+  ASSERT_TRUE(r.note_persons(all));
+  const passwd* user = ::getpwuid(::getuid());
+  char host[256] = {};
+  ASSERT_EQ(::gethostname(host, sizeof host - 1), 0);
+  const std::string account =
+      (user != nullptr ? user->pw_name : "uid " + std::to_string(::getuid())) + "@" + host;
+  EXPECT_EQ(all.front().released_by, "B. Sample");
+  EXPECT_EQ(all.front().withdrawn_by, "C. Other");
+  EXPECT_EQ(all.front().released_account, account);
+  EXPECT_EQ(all.front().withdrawn_account, account);
 }
 
 TEST_F(RegisterTest, ANumberThatWasNotIssuedIsUsedAgainAndSaysWhy) {

@@ -323,6 +323,83 @@ TEST_F(Truth, TheFirstPageSaysItAll) {
     EXPECT_TRUE(has(first, what)) << what;
 }
 
+/// The frame's page is the first one, however long names, tables and changes are.
+TEST_F(Truth, TheSignatureStandsOnTheFirstPageWhateverIsAboveIt) {
+  const std::string name(90, 'N');
+  for (const std::vector<std::string>& languages :
+       {std::vector<std::string>{"en"}, {"de", "en"}, {"it", "en"}, {"es", "zh"}}) {
+    Case c = whole_case(plugins);
+    c.campaign.certificate.languages = languages;
+    c.campaign.customer = c.campaign.customer_address = c.campaign.machine.maker = name + " " + name;
+    c.campaign.laboratory.name = name;
+    for (int i = 0; i < 8; ++i)
+      c.campaign.sensors.push_back({"air", name, name, "1", "2026-01-01", "", "C-1", name});
+    for (const char* result : {"A", "A+", "A-", "E", "E+", "E-", "R", "R+", "R-", "B"})
+      decide(c, "iso230-2", result, 25e-6, Decision::conforms);
+    issue.replaces = "2026-0003", issue.replaces_date = "2026-10-01", issue.why = name;
+    issue.changes = {{"x.csv", {}, 40}};
+    for (std::uint64_t i = 1; i <= 40; ++i) issue.changes[0].changes.push_back({"", i, "1", "2"});
+    const std::string bytes = files(c)[0];
+    const auto pages = read_pdf(bytes).pages;
+    ASSERT_GT(pages.size(), 2U);
+    const std::size_t frame = bytes.find("/NonioSignature"), first = bytes.find("/Type /Page\n");
+    ASSERT_NE(frame, std::string::npos);
+    ASSERT_NE(first, std::string::npos);
+    EXPECT_LT(frame, bytes.find("/Type /Page\n", first + 1)) << languages.front();
+    EXPECT_TRUE(has(pages[0], "B. Verdi")) << languages.front();
+  }
+}
+
+TEST_F(Truth, TheRegistersIdentityStandsInBothWithTheSameWords) {
+  Case c = whole_case(plugins);
+  c.campaign.certificate.languages = {"it", "en"};
+  issue.register_id = "0f0e0d0c-1111-2222-3333-444455556666";
+  issue.released_by = "B. Verdi", issue.author = "C. Neri";
+  std::string xml = dcc(c);
+  std::erase_if(xml, [](char x) { return x == '\n'; });
+  for (std::size_t at; (at = xml.find("> ")) != std::string::npos;) xml.erase(at + 1, 1);
+  const std::string pages = page(c);
+  EXPECT_TRUE(has(xml, "<dcc:value>" + issue.register_id + "</dcc:value><dcc:name>"
+                       "<dcc:content lang=\"it\">Registro")) << xml;
+  EXPECT_TRUE(has(xml, "lang=\"en\">Register of certificates<"));
+  EXPECT_TRUE(has(pages, issue.register_id));
+  EXPECT_TRUE(has(pages, "Register of certificates"));
+  EXPECT_TRUE(has(xml, "C. Neri")) << "who prepared it stands on the page";
+  EXPECT_FALSE(has(xml, "automatic release"));
+  issue.released_by.clear();
+  EXPECT_TRUE(has(dcc(c), "B. Verdi (by the rules of the laboratory for automatic release)"));
+}
+
+TEST_F(Truth, TheFactorOfACurveIsTheSameOnPaperAndInTheDcc) {
+  Case c = whole_case(plugins);
+  Series s{"radial", "X", Quantity::length, Quantity::deviation, {0, 1}, {0, 2e-6}, {0, 4e-7}};
+  s.k = 2.23;
+  c.results.analyses.front().evaluation.series = {s};
+  EXPECT_TRUE(has(dcc(c), "<si:coverageFactorXMLList>2.23 2.23<"));
+  EXPECT_TRUE(has(page(c), "U (k = 2.2)"));
+  EXPECT_TRUE(has(page(c), "zero by the definition of the curve"));
+}
+
+/// Contributions to a centre in mm and to a direction are short, and nothing is 0.00000000.
+TEST_F(Truth, BudgetsAreReadable) {
+  Case c = whole_case(plugins);
+  auto& e = c.results.analyses.front().evaluation;
+  e.values = {{"centre_x", 0.4123013, Quantity::length, 2.5e-6},
+              {"direction_i", 1.197e-4, Quantity::number, 5.3e-6}};
+  e.budget->results.clear();
+  const std::size_t n = e.budget->contributions.size();
+  for (const auto& [name, q, u] : {std::tuple("centre_x", Quantity::length, 1.25e-6),
+                                   std::tuple("direction_i", Quantity::number, 2.65e-6)}) {
+    UncertaintyBudget::Result r{name, q, std::vector<double>(n, 1e-15)};
+    r.u[0] = u;
+    e.budget->results.push_back(std::move(r));
+  }
+  const std::string text = page(c);
+  for (const char* what : {" 1.3 ", " 2.5 ", " 10^-6 ", " 2.7 ", " 5.3 "})
+    EXPECT_TRUE(has(text, what)) << what;
+  EXPECT_FALSE(has(text, "0.00000000"));
+}
+
 TEST_F(Truth, WithoutRoomForTwoThingsCalledU) {
   const std::string text = page(whole_case(plugins));
   EXPECT_TRUE(has(text, "U(VDI) max"));

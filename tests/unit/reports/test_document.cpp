@@ -297,6 +297,30 @@ TEST(Layout, APageBreakBeginsAPageAndMakesNoEmptyOne) {
   EXPECT_EQ(pages_of(of({{one}, {PageBreak{}}})).pages.size(), 1U);
 }
 
+TEST(Layout, TheLastBlockHasCompany) {
+  for (int rows = 1; rows < 90; ++rows) {
+    Table table;
+    table.columns = {{"A", "", false}};
+    for (int i = 0; i < rows; ++i) table.rows.push_back({{"row"}});
+    const auto text = pages_of(of({{table}, {Paragraph{"finis"}}}));
+    EXPECT_TRUE(count(text.pages.back(), "row") > 0) << rows;
+    EXPECT_EQ(count(text.all(), "row"), static_cast<std::size_t>(rows));
+  }
+}
+
+TEST(Layout, TheFootOfTheFirstPageHasItsPlace) {
+  for (int lines = 1; lines < 130; lines += 3) {
+    std::vector<Block> blocks;
+    for (int i = 0; i < lines; ++i) blocks.push_back({Paragraph{"line"}});
+    Document document = of(std::move(blocks));
+    document.first_foot = {{Paragraph{"below"}}, {SignatureBox{"frame", {"name"}}}};
+    const auto text = pages_of(document);
+    EXPECT_EQ(count(text.pages.front(), "frame"), 1U) << lines;
+    EXPECT_EQ(count(text.all(), "frame"), 1U) << lines;
+    EXPECT_EQ(count(text.all(), "line"), static_cast<std::size_t>(lines));
+  }
+}
+
 TEST(Pdf, TheSameBytesTwice) {
   const auto f = fonts();
   Document document = of({{Heading{"Heading"}}, {Paragraph{"text"}}});

@@ -70,6 +70,34 @@ TEST_F(PdfReport, AnOrdinaryAxisTakesTwoPages) {
   }
 }
 
+/// Tables that were refused, models and advice are no business of a customer.
+TEST_F(PdfReport, WhatIsForTheLaboratoryStandsInItsPartAlone) {
+  Case c = usual();
+  for (auto& a : c.results.analyses) a.evaluation.findings.clear();
+  decide(c, "iso230-2", "A", 50e-6, Decision::conforms);
+  c.results.analyses.front().evaluation.findings = {
+      {.id = "model.unrepeatable", .attention = true, .evidence = {}, .texts = {{"part", "Axis"}, {"axis", "X"}}}};
+  Results::Written table{"fanuc", "1", {}};
+  Finding refused{.id = "table.refused-reversal", .attention = true};
+  refused.measurement = "X";
+  refused.evidence = {{"mean", 1e-6, Quantity::deviation}, {"max", 5e-6, Quantity::deviation}};
+  refused.texts = {{"axis", "X"}};
+  table.result.findings = {refused};
+  c.results.outputs.push_back(table);
+  const std::string all = text(c);
+  const std::size_t part = all.find("For the laboratory");
+  ASSERT_NE(part, std::string::npos);
+  const std::string customer = all.substr(0, part), laboratory = all.substr(part);
+  EXPECT_TRUE(has(customer, "Nothing in the results needs attention.")) << customer;
+  for (const char* what : {"fanuc", "no table", "contradict each other", "Look at the machine"}) {
+    EXPECT_FALSE(has(customer, what)) << what;
+    if (what != std::string("Look at the machine")) {
+      EXPECT_TRUE(has(laboratory, what)) << what;
+    }
+  }
+  EXPECT_FALSE(has(all, "Authorised by")) << "nobody has authorised a report";
+}
+
 TEST_F(PdfReport, SaysWhatTheResultsSay) {
   Case c = usual();
   decide(c, "iso230-2", "A", 1e-6, Decision::does_not_conform);
@@ -457,7 +485,7 @@ TEST_F(PdfReport, PlansAndTheirFindingsAreShown) {
   for (const char* what :
        {"Plans: stops for the diagonals", "step X", "448", "0.9956", "Flat diagonals"})
     EXPECT_TRUE(has(en, what)) << what;
-  EXPECT_EQ(occurrences(en, "Flat diagonals"), 2U) << "at the top, and beside the plans";
+  EXPECT_EQ(occurrences(en, "Flat diagonals"), 3U) << "at the top, beside the plans, with its advice";
   for (const char* what : {"Piani: fermate", "passo X", "0,9956"})
     EXPECT_TRUE(has(it, what)) << what;
 }

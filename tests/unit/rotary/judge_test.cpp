@@ -345,6 +345,25 @@ TEST(RotaryJudge, ScatterBeyondTheStatedSigma) {
   EXPECT_EQ(*value(e, "centre_x")->repeatability, *value(own, "centre_x")->repeatability);
 }
 
+/// What centres state of themselves is not lost: U is never less than it makes.
+TEST(RotaryJudge, TheUncertaintyOfTheCentresCounts) {
+  Table t;
+  const auto centres = noisy(t, full_turn(8), 1 * um);
+  const auto with = [&](double u) {
+    Workshop w = Workshop().measured("C", centres);
+    w.all.back().u.assign(w.all.back().deviation.size(), u);
+    return w.last();
+  };
+  const auto of = [](const Evaluation& e) { return *value(e, "centre_x")->repeatability; };
+  const double alone = of(Workshop().measured("C", centres).last());
+  const Evaluation small = with(0.01 * um), large = with(20 * um);
+  EXPECT_EQ(of(small), alone);
+  EXPECT_GT(of(large), 5 * alone);
+  EXPECT_NEAR(of(with(40 * um)) / of(large), 2.0, 1e-9);
+  EXPECT_NE(found(large, "rotary.stated-uncertainty"), nullptr) << ids(large);
+  EXPECT_EQ(found(Workshop().measured("C", centres).last(), "rotary.stated-uncertainty"), nullptr);
+}
+
 TEST(RotaryJudge, AnglesThatDoNotDeserveTrust) {
   Table t;
   auto centres = noisy(t, full_turn(12), 1 * um);

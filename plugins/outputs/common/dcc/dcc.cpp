@@ -366,6 +366,7 @@ class Writer {
     Quantity quantity;
     std::vector<double> values;
     std::vector<double> U;  ///< of each; empty: none
+    double k = 2.0;
   };
 
   void column(const Column& c) {
@@ -378,7 +379,7 @@ class Writer {
           result_text(c.values[i], c.U.empty() ? std::nullopt : std::optional(c.U[i]), c.quantity);
       add(values, said.value);
       if (c.U.empty()) continue;
-      add(Us, said.U.empty() ? "0" : said.U), add(ks, "2"), add(ps, "0.95");
+      add(Us, said.U.empty() ? "0" : said.U), add(ks, number_text(c.k, Quantity::number)), add(ps, "0.95");
     }
     xml_.open("dcc:quantity", c.ref_type.empty() ? "" : "refType=\"" + c.ref_type + "\"");
     text("dcc:name", c.name);
@@ -421,7 +422,8 @@ class Writer {
                          : "basic_measuredValue",
                  c.quantity,
                  c.values,
-                 {}};
+                 {},
+                 2.0};
       if (c.U) out.U.assign(c.values.size(), *c.U);
       if (n == static_cast<std::ptrdiff_t>(c.values.size()) && n > 0)
         whole.push_back(std::move(out));
@@ -448,8 +450,8 @@ class Writer {
   /// A curve over an axis, with U at each place.
   void series(const Series& s) {
     if (about_.only_with_U && s.U.size() != s.value.size()) return;
-    Column place{s.over, "basic_nominalValue", s.position_quantity, s.position, {}};
-    Column curve{s.name, "basic_measuredValue", s.quantity, s.value, s.U};
+    Column place{s.over, "basic_nominalValue", s.position_quantity, s.position, {}, 2.0};
+    Column curve{s.name, "basic_measuredValue", s.quantity, s.value, s.U, s.k};
     const auto columns = without_gaps({std::move(place), std::move(curve)});
     if (!columns.back().values.empty()) list("curve " + s.name, columns);
   }

@@ -31,7 +31,7 @@ ShortUnit short_unit(Quantity q) {
   if (q == Quantity::length) return {Quantity::deviation, 1.0, unit_text(Quantity::deviation)};
   if (q == Quantity::angle)
     return {Quantity::angular_deviation, 1.0, unit_text(Quantity::angular_deviation)};
-  if (q == Quantity::number) return {q, 1e6, "10⁻⁶"};
+  if (q == Quantity::number) return {q, 1e6, "10^\u22126"};
   return {q, 1.0, unit_text(q)};
 }
 
