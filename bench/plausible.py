@@ -8,6 +8,7 @@ is wanted; status 1 if there is one."""
 import argparse
 import collections
 import json
+import math
 import pathlib
 import random
 import shutil
@@ -16,18 +17,19 @@ import sys
 import tempfile
 
 
-def machine(rng, rotary):
-    """Deviation of a target (0 to 1 of the travel) from a direction in a run; um or arcsec."""
+def machine(rng, rotary, travel):
+    """Deviation of a target (0 to 1 of the travel) from a direction in a run, and its size; um or arcsec."""
     quality = rng.choice(["fine", "good", "ordinary", "ordinary", "worn", "bad"])
-    size = {"fine": 0.5, "good": 2.0, "ordinary": 8.0, "worn": 40.0, "bad": 150.0}[quality] * rng.uniform(0.6, 1.6)
+    size = {"fine": 0.5, "good": 2.0, "ordinary": 8.0, "worn": 40.0, "bad": 120.0}[quality] * rng.uniform(0.6, 1.6)
+    if not rotary:
+        size *= math.sqrt(travel / 1000)
     noise = size * rng.choice([0.02, 0.05, 0.1, 0.3])
     lost = -size * rng.choice([0.0, 0.1, 0.5, 1.0, 2.0]) * rng.random() * rng.choice([1, 1, 1, -1])
     slope = size * rng.gauss(0, 1.0)
     waves = [(size * rng.gauss(0, 0.3), rng.uniform(0.5, 12), rng.uniform(0, 6.3)) for _ in range(3)]
-    drift = size * rng.choice([0, 0, 0.05, 0.3]) * rng.gauss(0, 1)
+    drift = size * rng.choice([0, 0, 0.05, 0.1]) * rng.gauss(0, 1)
     wedge = size * rng.choice([0, 0, 0.2]) * rng.gauss(0, 1)
     tilt = rng.choice([0, 0, 0.5]) * lost
-    import math
 
     def deviation(x, direction, run):
         value = slope * x + drift * run + wedge * run * x + rng.gauss(0, noise)
@@ -37,7 +39,7 @@ def machine(rng, rotary):
         if rng.random() < 0.0005:  # a misreading now and then
             value += size * rng.choice([-8, 8])
         return value
-    return deviation
+    return deviation, size
 
 
 def campaign(folder, index, seed):
@@ -53,8 +55,9 @@ def campaign(folder, index, seed):
     offset = rng.choice([0.0, 0.0, 0.3])
     targets = [round(margin + i * step + rng.uniform(-offset, offset) * step, 3) for i in range(count)]
     targets = [min(max(t, 0.0), travel) for t in targets]
-    deviation = machine(rng, rotary)
-    digits = rng.choice([0, 1, 1, 2, 3, 4, 6])
+    deviation, size = machine(rng, rotary, travel)
+    # An instrument that cannot resolve the machine shows zeros, and that is worth a finding.
+    digits = rng.choice([0, 1, 1, 2, 3, 4, 6]) if size > 5 else rng.choice([1, 1, 2, 3, 4, 6]) if size > 0.5 else 3
     both = rng.choice(["both", "both", "both", "both", "+", "-"])
     layout = rng.choice(["bidirectional", "bidirectional", "sorted", "by-direction", "pendulum"])
     as_position = kind == "axis" and rng.random() < 0.3

@@ -266,7 +266,7 @@ def of_manifests():
     values("temperature_range_K", "0.2", "unit", "refused", "293", "-0.2", "inf")
     values("expansion_range_um_per_m_K", "1.0", "unit", "refused", "1000", "-1", "1e308")
     values("U_fixed_um", "0.1", "range", "refused", "1e308", "100000", "-0.1", "nan", "true", '"0.1"')
-    values("U_fixed_um", "0.1", "unit", "remarked", "100", "5000")
+    values("U_fixed_um", "0.1", "unit", "remarked", "1000", "5000")
     values("U_fixed_um", "0.1", "decimal", "accepted", "1.0", "0.01")
     values("U_per_m_um", "0.5", "range", "refused", "1e308", "500000", "-0.5")
     values("U_per_m_um", "0.5", "unit", "remarked", "500")

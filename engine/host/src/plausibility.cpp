@@ -15,20 +15,20 @@ namespace {
 
 /// Beyond these a machine tool is no machine tool, or its readings are in another unit.
 struct Bounds {
-  double slope = 0.01;        ///< of the deviation over the travel
-  double share = 0.002;       ///< of the travel, if it is also more than `size`
-  double size, most;          ///< of the range of the deviations
-  double small_share = 0.01;  ///< of a short stretch, if it is also more than `small_size`
-  double small_size;          ///< below it a short stretch says nothing
-  double scatter;             ///< standard deviation of repeated readings
-  double least;               ///< range that no machine keeps over a travel of `least_travel`
+  double slope = 0.01;         ///< of the deviation over the travel
+  double share = 0.002;        ///< of the travel, if it is also more than `size`
+  double size, most;           ///< of the range of the deviations
+  double small_share = 0.025;  ///< of a short stretch, if it is also more than `small_size`
+  double small_size;           ///< below it a short stretch says nothing
+  double scatter;              ///< standard deviation of repeated readings
+  double least;                ///< range that no machine keeps over a travel of `least_travel`
   double least_travel;
 };
 constexpr double um = 1e-6, arcsec = 1.0 / arcsec_per_rad;
 constexpr Bounds of_lengths{.size = 300 * um,
                             .most = 20000 * um,
                             .small_size = 2 * um,
-                            .scatter = 200 * um,
+                            .scatter = 500 * um,
                             .least = 0.1 * um,
                             .least_travel = 0.02};
 constexpr Bounds of_angles{.size = 600 * arcsec,
@@ -48,6 +48,12 @@ double range_of(const std::vector<double>& values) {
   if (values.empty()) return 0.0;
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   return *high - *low;
+}
+
+std::string shortest(double value) {
+  std::string text;
+  append_shortest(text, value);
+  return text;
 }
 
 double median(std::vector<double> values) {
@@ -154,7 +160,8 @@ class Size {
       out.push_back({.id = "plausibility.deviation-below-uncertainty",
                      .attention = true,
                      .evidence = {{"range", range, deviation_}, {"U", U, deviation_}}});
-    else if (range < bounds_.least && travel_ >= bounds_.least_travel)
+    else if (range < bounds_.least && travel_ >= bounds_.least_travel &&
+             (o_.angular || range < 1e-6 * travel_))
       out.push_back({.id = "plausibility.deviation-too-small",
                      .attention = true,
                      .evidence = {{"range", range, deviation_}, {"travel", travel_, position_}}});
@@ -363,8 +370,8 @@ Expected<void> possible_air(const Observations& o, const std::string& file) {
     for (std::size_t i = 0; i < c.values.size(); ++i) {
       const double v = c.values[i];
       if (!std::isfinite(v) || (v >= c.least && v <= c.most)) continue;
-      Error error{"expected " + short_text(c.least, 3) + " to " + short_text(c.most, 4) + " " +
-                  c.unit + ", or nothing where it was not measured; found " + short_text(v, 6)};
+      Error error{"expected " + shortest(c.least) + " to " + shortest(c.most) + " " +
+                  c.unit + ", or nothing where it was not measured; found " + shortest(v)};
       error.file = file;
       error.line = o.source_line_of(i);
       error.column = c.name;

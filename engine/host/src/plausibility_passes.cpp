@@ -86,27 +86,41 @@ std::string name_of(const Stroke& s) {
   return name;
 }
 
+/// The smallest difference of two readings that are not the same; 0 if all are.
+double step_of(const std::vector<Stroke>& strokes) {
+  std::vector<double> all;
+  for (const Stroke& s : strokes) all.insert(all.end(), s.deviation.begin(), s.deviation.end());
+  std::sort(all.begin(), all.end());
+  double step = 0.0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const double d = all[i] - all[i - 1];
+    if (d > 1e-12 && (step == 0.0 || d < step)) step = d;
+  }
+  return step;
+}
+
 /// Passes that agree to the last digit. How likely that is by chance: each reading agrees with
 /// q / (s sqrt(4 pi)), q the step of the digits and s the scatter of the other passes (at least
 /// what no machine goes below).
 class Copies {
  public:
   Copies(const std::vector<Stroke>& strokes, bool angular)
-      : strokes_(strokes), least_scatter_(angular ? 0.05 * arcsec : 0.1 * um) {
+      : strokes_(strokes), least_scatter_(angular ? 0.01 * arcsec : 0.03 * um) {
     for (const Stroke& s : strokes) groups_[{s.line, s.target, s.deviation}].push_back(&s);
-    digits();
+    step_ = step_of(strokes);
     scatter();
   }
 
   void find(Quantity deviation, std::vector<Finding>& out) const {
-    constexpr double chance = 1e-4;
+    constexpr double chance = 1e-7;
     for (const auto& [what, same] : groups_) {
       if (same.size() < 2) continue;
       const auto n = static_cast<double>(std::get<2>(what).size());
       const auto [low, high] =
           std::minmax_element(std::get<2>(what).begin(), std::get<2>(what).end());
       if (*low == *high) continue;  // nothing was read at all: said elsewhere
-      const double one = step_ / (std::max(scatter_, least_scatter_) * 3.5449);
+      const double least = scatter_known_ ? least_scatter_ / 3.0 : least_scatter_;
+      const double one = step_ / (std::max(scatter_, least) * 3.5449);
       const auto pairs = static_cast<double>(strokes_.size() * strokes_.size()) / 2.0;
       if (pairs * std::pow(std::min(one, 1.0), n) > chance) continue;
       std::string names;
@@ -127,55 +141,59 @@ class Copies {
   static constexpr double um = 1e-6, arcsec = 1.0 / arcsec_per_rad;
   static constexpr std::size_t most_named = 6;
 
-  /// The smallest difference of two readings that are not the same.
-  void digits() {
-    std::vector<double> all;
-    for (const Stroke& s : strokes_) all.insert(all.end(), s.deviation.begin(), s.deviation.end());
-    std::sort(all.begin(), all.end());
-    for (std::size_t i = 1; i < all.size(); ++i) {
-      const double d = all[i] - all[i - 1];
-      if (d > 1e-12 && (step_ == 0.0 || d < step_)) step_ = d;
-    }
-  }
-
-  /// Of the passes that are no copies, by target and direction.
+  /// Of the passes that are no copies, by target and direction, less the shift of each pass: two
+  /// passes that follow one another share what drifts.
   void scatter() {
-    std::map<std::tuple<std::uint32_t, int, double>, std::vector<double>> cells;
+    std::map<std::tuple<std::uint32_t, int, double>, std::pair<double, double>>
+        cells;  // sum, count
     for (const auto& one : groups_) {
       const Stroke& s = *one.second.front();
-      for (std::size_t i = 0; i < s.target.size(); ++i)
-        cells[{s.line, s.direction, s.target[i]}].push_back(s.deviation[i]);
+      for (std::size_t i = 0; i < s.target.size(); ++i) {
+        auto& cell = cells[{s.line, s.direction, s.target[i]}];
+        cell.first += s.deviation[i];
+        cell.second += 1.0;
+      }
     }
     double sum = 0.0, freedom = 0.0;
-    for (const auto& one : cells) {
-      double mean = 0.0;
-      for (const double d : one.second) mean += d / static_cast<double>(one.second.size());
-      for (const double d : one.second) sum += (d - mean) * (d - mean);
-      freedom += static_cast<double>(one.second.size()) - 1.0;
+    for (const auto& one : groups_) {
+      const Stroke& s = *one.second.front();
+      std::vector<double> left;
+      double shift = 0.0;
+      for (std::size_t i = 0; i < s.target.size(); ++i) {
+        const auto& cell = cells.at({s.line, s.direction, s.target[i]});
+        if (cell.second > 1.0) left.push_back(s.deviation[i] - cell.first / cell.second);
+      }
+      for (const double d : left) shift += d / static_cast<double>(left.size());
+      for (const double d : left) sum += (d - shift) * (d - shift);
+      if (left.size() > 1) freedom += static_cast<double>(left.size()) - 1.0;
     }
-    if (freedom > 0.0) scatter_ = std::sqrt(sum / freedom);
+    scatter_known_ = freedom > 0.0;
+    if (scatter_known_) scatter_ = std::sqrt(sum / freedom);
   }
 
   const std::vector<Stroke>& strokes_;
   double least_scatter_, step_ = 0.0, scatter_ = 0.0;
+  bool scatter_known_ = false;
   std::map<std::tuple<std::uint32_t, std::vector<double>, std::vector<double>>,
            std::vector<const Stroke*>>
       groups_;
 };
 
 /// Strokes that go up and are called -, or down and are called +. A file that is sorted by target,
-/// with strokes mixed or all going one way, says nothing of it.
+/// with strokes mixed or all going one way, says nothing of it; nor do targets that all were
+/// approached from one side, whichever came first.
 void against_order(const std::vector<Stroke>& strokes, std::vector<Finding>& out) {
-  bool up = false, down = false;
+  bool up = false, down = false, plus = false, minus = false;
   std::size_t judged = 0;
   std::vector<const Stroke*> wrong;
   for (const Stroke& s : strokes) {
     if (!s.alone || s.sense == 0 || s.direction == 0) continue;
     (s.sense > 0 ? up : down) = true;
+    (s.direction > 0 ? plus : minus) = true;
     ++judged;
     if (s.sense != s.direction) wrong.push_back(&s);
   }
-  if (!up || !down || wrong.empty()) return;
+  if (!up || !down || !plus || !minus || wrong.empty()) return;
   out.push_back({.id = "plausibility.direction-against-order",
                  .attention = true,
                  .evidence = {{"passes", static_cast<double>(wrong.size()), Quantity::count},
@@ -204,6 +222,7 @@ Reversals reversals_of(const std::vector<Stroke>& strokes) {
 /// A run whose reversal is that of the others with the other sign, and not a little.
 void swapped(const std::vector<Stroke>& strokes, Quantity deviation, std::vector<Finding>& out) {
   const Reversals all = reversals_of(strokes);
+  const double step = step_of(strokes);
   for (const auto& [run, own] : all) {
     std::map<double, std::vector<double>> others;
     for (const auto& [other, by_target] : all)
@@ -227,9 +246,9 @@ void swapped(const std::vector<Stroke>& strokes, Quantity deviation, std::vector
     if (n < 3.0) continue;
     mean /= n;
     own_mean /= n;
-    const double s = std::sqrt(freedom > 0.0 ? scatter / freedom : turned / n);
+    const double s = std::max(std::sqrt(freedom > 0.0 ? scatter / freedom : turned / n), step);
     // The whole run turned round agrees with the others as they agree among themselves.
-    if (kept < 25.0 * turned || turned / n > 9.0 * s * s ||
+    if (step <= 0.0 || kept < 25.0 * turned || turned / n > 9.0 * s * s ||
         std::fabs(mean) < 5.0 * s / std::sqrt(n))
       continue;
     out.push_back({.id = "plausibility.directions-swapped",

@@ -309,7 +309,9 @@ std::optional<double> TableReader::number(std::string_view name, double scale) {
   const auto value = finite(name, *found.node);
   if (!value) return std::nullopt;
   if (!in_range(*value, found.key)) {
-    refuse(found.key, short_text(*value, 6));
+    std::string shown;
+    append_shortest(shown, *value);
+    refuse(found.key, shown);
     return std::nullopt;
   }
   return *value * scale;
@@ -348,6 +350,12 @@ std::string TableReader::date(std::string_view name) {
   const auto value = found.node->value_exact<toml::date>();
   if (!value) {
     wrong_type(name, *found.node, "a date without quotes, 2026-11-03");
+    return {};
+  }
+  constexpr int first_year = 1950, last_year = 2100;
+  if (value->year < first_year || value->year > last_year) {
+    error(name,
+          "wanted a day from 1950 to 2100; found one of the year " + std::to_string(value->year));
     return {};
   }
   const auto digits = [](unsigned n, std::size_t width) {
