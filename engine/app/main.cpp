@@ -1,10 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <exception>
+#include <iostream>
+#include <string_view>
 #include <utility>
 
 #include "verbs.h"
 
-int main(int argc, char** argv) {
+namespace {
+
+/// What cannot be thrown further, out of a destructor or a library: with a word and a status.
+[[noreturn]] void give_up() noexcept {
+  constexpr std::string_view words = "nonio: out of memory, or an error that nobody caught\n";
+  [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, words.data(), words.size());
+  ::_exit(nonio::app::exit_failed);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
   using namespace nonio::app;
+  std::set_terminate(give_up);
   Common common;
   Program program{
       .name = "nonio",
@@ -35,4 +52,7 @@ int main(int argc, char** argv) {
   add("Plugins", {plugins_verb(common), plugin_verb(common)});
   add("This program", {help_verb(program), version_verb(common), completion_verb(program)});
   return run(program, argc, argv);
+} catch (const std::exception& e) {
+  std::cerr << "nonio: " << e.what() << "\n";
+  return nonio::app::exit_failed;
 }

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <ctime>
+#include <new>
 #include <thread>
 
 #include "certificates.h"
@@ -132,7 +133,9 @@ class Runner {
 
   void start(std::size_t campaign) {
     auto worker = Worker::start(
-        [this](std::size_t c, bool first, SharedWords& stage) { return work(c, first, stage); },
+        [this](std::size_t c, bool first, SharedWords& stage) {
+          return work_guarded(c, first, stage);
+        },
         context_.site.limits.memory_MB);
     if (!worker) return not_started(campaign, worker.error().message);
     starts_failed_ = 0;
@@ -221,6 +224,20 @@ class Runner {
     locked = locked || (!done && is_locked(done.error()));
     if (!done) fail_certificate(evaluated, done.error());
     return evaluated;
+  }
+
+  /// What plugins throw is caught where they are called.
+  Answer work_guarded(std::size_t index, bool first, SharedWords& stage) const {
+    try {
+      return work(index, first, stage);
+    } catch (const std::bad_alloc&) {
+      stage.set(stage.get() +
+                ": out of memory (the limit for one campaign is in site.toml, [limits])");
+    } catch (const std::exception& e) {
+      stage.set(stage.get() + ": " + e.what());
+    }
+    remove_leftovers(options_.out / campaigns_[index].id);
+    return Answer::not_stored;
   }
 
   /// In the worker's process.

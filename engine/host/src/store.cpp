@@ -272,8 +272,11 @@ Expected<void> store(const fs::path& out, const Evaluated& evaluated, const Cont
 }
 
 Expected<void> tidy(const fs::path& folder) {
-  remove_leftovers(folder);
-  if (const auto left = temporaries(folder); !left.empty())
+  constexpr int tries = 3;  // a refusal may pass
+  auto left = temporaries(folder);
+  for (int i = 0; i < tries && !left.empty(); ++i, left = temporaries(folder))
+    remove_leftovers(folder);
+  if (!left.empty())
     return fail("cannot remove " + temporary_path(folder, left.front()).string());
   std::error_code error;
   if (!fs::exists(folder / record_name, error)) return {};

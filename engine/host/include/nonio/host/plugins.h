@@ -31,7 +31,7 @@ class Plugins final : public Registry {
   /// Whether every plugin that was loaded lies in this folder.
   bool all_from(const std::filesystem::path& folder) const;
   /// One digest over the files of all that was loaded; reads them.
-  std::string digest() const;
+  Expected<std::string> digest() const;
 
   const std::vector<Reader>& readers() const { return readers_; }
   const std::vector<Effect>& effects() const { return effects_; }
