@@ -122,8 +122,8 @@ void Plugins::load(const std::vector<fs::path>& folders) {
     std::error_code error;
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
       if (it->path().extension() == ".so" && it->is_regular_file()) {
-        std::error_code ignored;
-        const fs::path path = fs::canonical(it->path(), ignored);
+        const fs::path path = fs::canonical(it->path(), error);
+        if (error) break;
         if (std::find(paths.begin(), paths.end(), path) == paths.end()) here.push_back(path);
       }
     if (error && error != std::errc::no_such_file_or_directory)
