@@ -241,7 +241,14 @@ int run(const Program& program, int argc, const char* const* argv) {
               << " --help` says what it takes.\n";
     return exit_usage;
   }
-  return bound.chosen();
+  try {
+    return bound.chosen();
+  } catch (const std::bad_alloc&) {
+    std::cerr << found.path << ": out of memory\n";
+  } catch (const std::exception& e) {
+    std::cerr << found.path << ": " << e.what() << "\n";
+  }
+  return exit_failed;
 }
 
 }  // namespace nonio::app

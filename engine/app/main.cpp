@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <exception>
+#include <iostream>
+#include <string_view>
 #include <utility>
 
 #include "nonio/host/apart.h"
@@ -17,10 +22,18 @@ nonio::app::Verb apart(nonio::app::Verb verb) {
   return verb;
 }
 
+/// What cannot be thrown further, out of a destructor or a library: with a word and a status.
+[[noreturn]] void give_up() noexcept {
+  constexpr std::string_view words = "nonio: out of memory, or an error that nobody caught\n";
+  [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, words.data(), words.size());
+  ::_exit(nonio::app::exit_failed);
+}
+
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   using namespace nonio::app;
+  std::set_terminate(give_up);
   Common common;
   Program program{
       .name = "nonio",
@@ -51,4 +64,7 @@ int main(int argc, char** argv) {
   add("Plugins", {apart(plugins_verb(common)), apart(plugin_verb(common))});
   add("This program", {help_verb(program), version_verb(common), completion_verb(program)});
   return run(program, argc, argv);
+} catch (const std::exception& e) {
+  std::cerr << "nonio: " << e.what() << "\n";
+  return nonio::app::exit_failed;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loaded before the C library (LD_PRELOAD): the n-th call of one of its functions fails, counted over all processes of
-// a night. NONIO_FAULT = FUNCTION:N:ERRNO[:TIMES], or FUNCTION:N:KILL, which ends the main process by SIGKILL instead.
+// a night. NONIO_FAULT = FUNCTION:N:ERRNO[:TIMES], or FUNCTION:N:KILL, which ends the main process by SIGKILL instead,
+// or write:N:LOST, which says that it was written.
 // NONIO_FAULT_IN = main: only the calls of the main process count. NONIO_FAULT_COUNTS = FILE gets how often each was called.
 #include <dirent.h>
 #include <dlfcn.h>
@@ -37,6 +38,7 @@ enum Function { Open, Read, Write, Fsync, Syncfs, Rename, Unlink, Mkdir, Mmap, M
 std::atomic<long>* counts = nullptr;  // shared by the processes
 int wanted = -1;
 long from = 0, times = 1;
+constexpr int lost = 0x10000;  // of a disk that says it has what it has not
 int code = 0;  // 0: kill
 bool main_only = false;
 pid_t main_pid = 0;
@@ -67,7 +69,7 @@ __attribute__((constructor)) void begin() {
     return;
   for (int i = 0; i < functions; ++i)
     if (std::strcmp(names[i], name) == 0) wanted = i;
-  code = std::strcmp(what, "KILL") == 0 ? 0 : std::atoi(what);
+  code = std::strcmp(what, "KILL") == 0 ? 0 : std::strcmp(what, "LOST") == 0 ? lost : std::atoi(what);
   const char* const in = std::getenv("NONIO_FAULT_IN");
   main_only = in != nullptr && std::strcmp(in, "main") == 0;
   main_pid = ::getpid();
@@ -123,7 +125,10 @@ ssize_t read(int fd, void* to, size_t n) {
   return fails(Read) ? -1 : real<ssize_t (*)(int, void*, size_t)>("read")(fd, to, n);
 }
 ssize_t write(int fd, const void* from_, size_t n) {
-  return fails(Write) ? -1 : real<ssize_t (*)(int, const void*, size_t)>("write")(fd, from_, n);
+  struct stat file {};
+  const bool is_file = real<int (*)(int, struct stat*)>("fstat")(fd, &file) == 0 && S_ISREG(file.st_mode);
+  if (fails(Write) && (code != lost || is_file)) return code == lost ? static_cast<ssize_t>(n) : -1;
+  return real<ssize_t (*)(int, const void*, size_t)>("write")(fd, from_, n);
 }
 int fsync(int fd) { return fails(Fsync) ? -1 : real<int (*)(int)>("fsync")(fd); }
 int fdatasync(int fd) { return fails(Fsync) ? -1 : real<int (*)(int)>("fdatasync")(fd); }

@@ -236,7 +236,7 @@ std::string PluginHost::check_secrets() const {
 
 Plugins& PluginHost::load_all(SharedWords& progress, std::vector<std::string>& said) const {
   auto* plugins = new Plugins;  // never unloaded
-  for (const fs::path& path : Plugins::files_in(wish_.folders)) {
+  for (const fs::path& path : plugins->files_in(wish_.folders)) {
     progress.set(path.string());
     const auto known = refused_.find(path);
     plugins->load_file(path, known == refused_.end() ? "" : known->second);

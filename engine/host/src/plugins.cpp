@@ -24,6 +24,7 @@ namespace dll = boost::dll;
 namespace {
 
 constexpr double probe_seconds = 10.0;
+constexpr const char* out_of_memory = "could not be loaded: out of memory";
 
 /// The libraries of all plugins, for the life of the process: never unloaded.
 std::vector<dll::shared_library>& libraries() {
@@ -61,6 +62,8 @@ std::string try_registering(const fs::path& path) {
     const auto entry = open_entry(path);
     if (!entry) return entry.error().message;
     (*entry)->add_to(nobody);
+  } catch (const std::bad_alloc&) {
+    return out_of_memory;
   } catch (const std::exception& e) {
     return std::string("threw while registering: ") + e.what();
   } catch (...) {
@@ -164,10 +167,13 @@ std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
     std::error_code error;
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
       if (it->path().extension() == ".so" && it->is_regular_file()) {
-        std::error_code ignored;
-        const fs::path path = fs::canonical(it->path(), ignored);
+        const fs::path path = fs::canonical(it->path(), error);
+        if (error) break;
         if (std::find(paths.begin(), paths.end(), path) == paths.end()) here.push_back(path);
       }
+    if (error && error != std::errc::no_such_file_or_directory)
+      conflicts_.push_back("cannot read the folder of plugins " + folder.string() + ": " +
+                           error.message());
     std::sort(here.begin(), here.end());
     paths.insert(paths.end(), here.begin(), here.end());
   }
@@ -177,26 +183,33 @@ std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
 void Plugins::load(const std::vector<fs::path>& folders) {
   step_aside();
   const std::vector<fs::path> paths = files_in(folders);
-  const std::vector<std::string> refusals = probe(paths);
+  std::vector<std::string> refusals = probe(paths);
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    if (!refusals[i].empty()) refusals[i] = probe(std::span(paths).subspan(i, 1)).front();
   for (std::size_t i = 0; i < paths.size(); ++i) load_file(paths[i], refusals[i]);
 }
 
 void Plugins::load_file(const fs::path& path, const std::string& refusal) {
   files_.push_back(PluginFile{.path = path, .refused = refusal, .brought = {}});
   PluginFile& file = files_.back();
+  if (refusal == out_of_memory) conflicts_.push_back(path.string() + " " + refusal);
   if (!file.refused.empty()) return;
   const Muted muted;
   try {
-    const auto entry = open_entry(path);
+    auto entry = open_entry(path);
+    if (!entry) entry = open_entry(path);  // what fails for a moment only would make another night
     if (entry)
       (*entry)->add_to(*this);
     else
       file.refused = entry.error().message;
+  } catch (const std::bad_alloc&) {
+    file.refused = out_of_memory;
   } catch (const std::exception& e) {
     file.refused = std::string("threw while registering: ") + e.what();
   } catch (...) {
     file.refused = "threw while registering";
   }
+  if (file.refused == out_of_memory) conflicts_.push_back(path.string() + " " + file.refused);
 }
 
 bool Plugins::all_from(const fs::path& folder) const {
@@ -207,12 +220,13 @@ bool Plugins::all_from(const fs::path& folder) const {
   });
 }
 
-std::string Plugins::digest() const {
+Expected<std::string> Plugins::digest() const {
   std::string all;
   for (const PluginFile& file : files_) {
     if (!file.refused.empty()) continue;
     const auto bytes = MappedFile::open(file.path);
-    all += file.path.filename().string() + " " + (bytes ? sha256(bytes->bytes()) : "") + "\n";
+    if (!bytes) return fail(bytes.error());
+    all += file.path.filename().string() + " " + sha256(bytes->bytes()) + "\n";
   }
   return host::sha256(all);
 }

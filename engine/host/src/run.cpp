@@ -2,6 +2,9 @@
 #include "nonio/host/run.h"
 
 #include <algorithm>
+#include <array>
+#include <memory>
+#include <new>
 
 #include "database.h"
 #include "disk.h"
@@ -147,6 +150,64 @@ Expected<void> close_night(const Night& night, const RunOptions& options, const 
                    {state.of(), night.campaigns.size(), night.failed()});
 }
 
+/// The night itself, in an output folder that nobody else uses.
+void do_night(const RunOptions& options, const RunEvents& events, SetUp& place,
+              const std::optional<Known>& known, Night& night) {
+  const Context& context = place.context;
+  const auto refuse = [&](std::string why) {
+    night.end = Night::End::refused;
+    night.error = std::move(why);
+  };
+  auto state = begin_night(options,
+                           known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
+  if (!state) return refuse(state.error().message);
+  night.night = state->of();
+  if (state->last) night.seen_before = state->last->seen;
+  const std::size_t notes_so_far = night.notes.size();
+  SurveyInput input{options.site, options.out, context,     state->number,    state->force,
+                    std::nullopt, {},          night.notes, is_stop_requested,
+                    options.verify_results};
+  if (known) {
+    input.numbers = known->numbers;
+    for (const WaitingDraft& draft : known->drafts) input.drafts.insert(draft.campaign);
+  }
+  auto campaigns = survey(input);
+  if (is_stop_requested()) {
+    night.end = Night::End::interrupted;
+    return;
+  }
+  if (!campaigns) return refuse(campaigns.error().message);
+  night.campaigns = std::move(*campaigns);
+  for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);
+  const auto is_todo = [](const CampaignState& c) {
+    return c.action == Action::todo && c.status.empty();
+  };
+  events.planned(night.campaigns.size(),
+                 static_cast<std::size_t>(
+                     std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));
+  if (options.dry_run) return;
+
+  store_collisions(options, context, *state, night.campaigns);
+  ReleaseDesk desk;
+  auto& signer = place.signer;
+  desk.signer = signer ? &*signer : nullptr;
+  desk.plugins = &*place.host;
+  if (!known)
+    desk.recheck = [&](const std::vector<RegisterEntry>& numbers) {
+      if (!state->issued_before) state->issued_before = issued_so_far(numbers);
+      return check_numbers(options.out, night.campaigns, numbers);
+    };
+  if (!do_campaigns(options, events, context, *state, desk, night.campaigns)) {
+    night.end = Night::End::interrupted;
+    tidy_root(options.out);
+    return;
+  }
+  note_certificates(night, options, context, *state);
+  // The campaigns are safe; if this fails the night stays open, and the next run ends it.
+  if (const auto closed = close_night(night, options, *state); !closed)
+    night.error = closed.error().message;
+}
+
 }  // namespace
 
 Night run_site(const RunOptions& options, const RunEvents& events) {
@@ -183,54 +244,18 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   for (const std::string& note : night.notes) events.note(note);
   if (!(*place)->as_root.empty()) events.note((*place)->as_root);
   if (!(*place)->unstamped.empty()) night.notes.push_back((*place)->unstamped);
-  auto state = begin_night(options,
-                           *known ? std::optional(issued_so_far((*known)->numbers)) : std::nullopt);
-  if (!state) return refuse(state.error().message);
-  night.night = state->of();
-  if (state->last) night.seen_before = state->last->seen;
-  const std::size_t notes_so_far = night.notes.size();
-  SurveyInput input{options.site, options.out, context,     state->number,    state->force,
-                    std::nullopt, {},          night.notes, is_stop_requested,
-                    options.verify_results};
-  if (*known) {
-    input.numbers = (*known)->numbers;
-    for (const WaitingDraft& draft : (*known)->drafts) input.drafts.insert(draft.campaign);
+  // What takes the memory goes first, then there is enough to tell of it.
+  auto reserve = std::make_unique<std::array<char, 1 << 18>>();
+  try {
+    do_night(options, events, **place, *known, night);
+  } catch (const std::exception& e) {
+    reserve.reset();
+    night.error = dynamic_cast<const std::bad_alloc*>(&e) != nullptr
+                      ? "out of memory; the same command goes on where it stopped"
+                      : e.what();
+    if (lock) [[maybe_unused]]
+      const auto tidied = tidy_all(night, options.out, true);
   }
-  auto campaigns = survey(input);
-  if (is_stop_requested()) {
-    night.end = Night::End::interrupted;
-    return night;
-  }
-  if (!campaigns) return refuse(campaigns.error().message);
-  night.campaigns = std::move(*campaigns);
-  for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);
-  const auto is_todo = [](const CampaignState& c) {
-    return c.action == Action::todo && c.status.empty();
-  };
-  events.planned(night.campaigns.size(),
-                 static_cast<std::size_t>(
-                     std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));
-  if (options.dry_run) return night;
-
-  store_collisions(options, context, *state, night.campaigns);
-  ReleaseDesk desk;
-  auto& signer = (*place)->signer;
-  desk.signer = signer ? &*signer : nullptr;
-  desk.plugins = &*(*place)->host;
-  if (!*known)
-    desk.recheck = [&](const std::vector<RegisterEntry>& numbers) {
-      if (!state->issued_before) state->issued_before = issued_so_far(numbers);
-      return check_numbers(options.out, night.campaigns, numbers);
-    };
-  if (!do_campaigns(options, events, context, *state, desk, night.campaigns)) {
-    night.end = Night::End::interrupted;
-    tidy_root(options.out);
-    return night;
-  }
-  note_certificates(night, options, context, *state);
-  // The campaigns are safe; if this fails the night stays open, and the next run ends it.
-  if (const auto closed = close_night(night, options, *state); !closed)
-    night.error = closed.error().message;
   return night;
 }
 

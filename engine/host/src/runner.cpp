@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <ctime>
+#include <new>
 #include <thread>
 
 #include "certificates.h"
@@ -112,7 +113,7 @@ class Runner {
     const auto task = [this](int stream) {
       return [this, stream](std::size_t c, bool first, SharedWords& stage) {
         Evaluator evaluator(stream, secrets_);
-        const Answer answer = work(c, first, stage, evaluator);
+        const Answer answer = work_guarded(c, first, stage, evaluator);
         return Outcome(answer, evaluator.grown());
       };
     };
@@ -209,6 +210,21 @@ class Runner {
     locked = locked || (!done && is_locked(done.error()));
     if (!done) fail_certificate(evaluated, done.error());
     return evaluation;
+  }
+
+  /// What plugins throw is caught where they are called.
+  Answer work_guarded(std::size_t index, bool first, SharedWords& stage,
+                      Evaluator& evaluator) const {
+    try {
+      return work(index, first, stage, evaluator);
+    } catch (const std::bad_alloc&) {
+      stage.set(stage.get() +
+                ": out of memory (the limit for one campaign is in site.toml, [limits])");
+    } catch (const std::exception& e) {
+      stage.set(stage.get() + ": " + e.what());
+    }
+    remove_leftovers(options_.out / campaigns_[index].id);
+    return Answer::not_stored;
   }
 
   /// In the worker's process, which has no plugin code: that runs at the other end of the stream.

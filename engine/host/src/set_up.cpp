@@ -58,7 +58,8 @@ std::string changeable_by_others(const RunOptions& options) {
   std::erase(folders, options.own_plugins);
   for (const fs::path& folder : folders)
     if (others_can(folder)) return folder.string();
-  for (const fs::path& file : Plugins::files_in(folders))
+  Plugins none;
+  for (const fs::path& file : none.files_in(folders))
     if (others_can(file)) return file.string();
   return {};
 }
@@ -118,7 +119,9 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
   if (!plugins.conflicts().empty()) return fail(plugins.conflicts().front());
   for (std::string& note : plugins.refusal_notes()) place->notes.push_back(std::move(note));
   context.plugins = &plugins;
-  context.plugins_sha256 = plugins.digest();
+  auto digest = plugins.digest();
+  if (!digest) return fail(digest.error());
+  context.plugins_sha256 = std::move(*digest);
   if (const auto mistakes = site_mistakes(context); !mistakes.empty())
     return fail(all_of(mistakes));
   return place;

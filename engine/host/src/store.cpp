@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "store.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -164,6 +167,8 @@ class Move {
     for (const std::string& name : names_) rename(temporary_path(folder_, name), folder_ / name);
   }
   void rename_record() {
+    // The survey takes a file that is younger than the record for one that was touched.
+    ::utimensat(AT_FDCWD, temporary_path(folder_, record_name).c_str(), nullptr, 0);
     rename(temporary_path(folder_, record_name), folder_ / record_name);
     if (!done_) return;
     // The new results are complete; what is left of the old ones may as well go later.
@@ -272,8 +277,11 @@ Expected<void> store(const fs::path& out, const Evaluated& evaluated, const Cont
 }
 
 Expected<void> tidy(const fs::path& folder) {
-  remove_leftovers(folder);
-  if (const auto left = temporaries(folder); !left.empty())
+  constexpr int tries = 3;  // a refusal may pass
+  auto left = temporaries(folder);
+  for (int i = 0; i < tries && !left.empty(); ++i, left = temporaries(folder))
+    remove_leftovers(folder);
+  if (!left.empty())
     return fail("cannot remove " + temporary_path(folder, left.front()).string());
   std::error_code error;
   if (!fs::exists(folder / record_name, error)) return {};

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -208,7 +209,11 @@ class Look {
     const auto path = path_inside(in_.site / state.folder, name);
     const auto now = path ? sha256_of_file(*path) : fail(path.error());
     if (now) state.readings.push_back(short_digest(*now));
-    if (now.value_or(absent) != digest)
+    std::error_code error;
+    if (now.value_or(absent) == digest) return;
+    if (!now && path && fs::exists(*path, error))
+      why.push_back(now.error().message);
+    else
       why.push_back("file " + name + (now ? " changed" : " is gone"));
   }
 
@@ -306,12 +311,23 @@ std::vector<std::string> read_ids(std::size_t count,
 /// the return, so that processes may be forked again.
 void for_all(std::size_t count, bool (*stopped)(), const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next{0};
+  std::mutex guard;
+  std::exception_ptr thrown;  // out of memory
   const auto run = [&] {
-    for (std::size_t i; !stopped() && (i = next.fetch_add(1)) < count;) work(i);
+    try {
+      for (std::size_t i; !stopped() && (i = next.fetch_add(1)) < count;) work(i);
+    } catch (...) {
+      const std::lock_guard one(guard);
+      thrown = std::current_exception();
+      next = count;
+    }
   };
-  std::vector<std::jthread> helpers;
-  for (unsigned i = 1; i < Poco::Environment::processorCount(); ++i) helpers.emplace_back(run);
-  run();
+  {
+    std::vector<std::jthread> helpers;
+    for (unsigned i = 1; i < Poco::Environment::processorCount(); ++i) helpers.emplace_back(run);
+    run();
+  }
+  if (thrown) std::rethrow_exception(thrown);
 }
 
 /// A name taken from a folder gives way to an id that a manifest claims, and to another such name.

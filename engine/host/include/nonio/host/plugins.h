@@ -37,8 +37,8 @@ class Plugins final : public Registry {
   explicit Plugins(Catalogue catalogue);
   Catalogue catalogue() const;
 
-  /// The shared libraries of the folders, in their order.
-  static std::vector<std::filesystem::path> files_in(
+  /// The shared libraries of the folders, in their order; a folder that cannot be read is a conflict.
+  std::vector<std::filesystem::path> files_in(
       const std::vector<std::filesystem::path>& folders);
   /// Loads and registers one; where `refusal` says something, it only remembers that. To be called
   /// in a process that may come to harm.
@@ -55,7 +55,7 @@ class Plugins final : public Registry {
   /// Whether every plugin that was loaded lies in this folder.
   bool all_from(const std::filesystem::path& folder) const;
   /// One digest over the files of all that was loaded; reads them.
-  std::string digest() const;
+  Expected<std::string> digest() const;
 
   const std::vector<Reader>& readers() const { return readers_; }
   const std::vector<Effect>& effects() const { return effects_; }
