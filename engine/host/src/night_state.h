@@ -10,6 +10,9 @@
 
 namespace nonio::host {
 
+/// What a night keeps for itself in the output folder; no campaign can have its name.
+inline constexpr const char* state_folder = ".nonio";
+
 /// Which night it is. A run that was killed or interrupted is the same night when it is resumed, so
 /// that it ends with the same summary as an undisturbed one. Kept in OUT/.nonio.
 struct NightState {
@@ -29,6 +32,10 @@ Expected<NightState> begin_night(const std::filesystem::path& out,
                                  std::optional<std::uint64_t> issued_so_far);
 /// `night.issued_before` is then what the next one begins with.
 Expected<void> end_night(const std::filesystem::path& out, const NightState& night);
+
+/// Holds the layout that site.toml wants (`hashed`: OUT/ab/<id>) against that of the results that are
+/// there, and marks a new output folder. Results are never moved: another layout is an error.
+Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, bool dry_run);
 
 /// Held while a run uses an output folder; an error names the trouble if another run does.
 class OutputLock {

@@ -145,7 +145,7 @@ class Runner {
   void stop() {
     for (Worker& w : workers_) {
       w.end();
-      remove_leftovers(options_.out / campaigns_[w.campaign()].id);
+      remove_leftovers(results_folder(options_.out, campaigns_[w.campaign()].id));
     }
     workers_.clear();
     const auto deadline = Worker::Clock::now() + std::chrono::seconds(10);
@@ -154,7 +154,7 @@ class Runner {
       take_stored();
     }
     for (const std::size_t c : committer_.pending())
-      remove_leftovers(options_.out / campaigns_[c].id);
+      remove_leftovers(results_folder(options_.out, campaigns_[c].id));
   }
 
   /// What needs the register that another process keeps to itself is done when all else is, or by
@@ -316,7 +316,7 @@ class Runner {
   }
 
   void take_failed(std::size_t index) {
-    const auto record = read_record(options_.out / campaigns_[index].id);
+    const auto record = read_record(results_folder(options_.out, campaigns_[index].id));
     if (!record) return lost(index, "its record cannot be read: " + record.error().message);
     finish(index, record->status, record->errors);
   }
@@ -343,7 +343,7 @@ class Runner {
     evaluated.results.errors = {Error{why}};
     const auto stored =
         store(options_.out, evaluated, context_, {c.folder, night_.number, c.reason, true});
-    if (!stored) remove_leftovers(options_.out / c.id);
+    if (!stored) remove_leftovers(results_folder(options_.out, c.id));
     finish(index, "failed", std::move(evaluated.results.errors));
   }
 

@@ -42,12 +42,12 @@ RecordedFile recorded(const Artifact& a) { return {a.name, a.bytes.size(), sha25
 
 Expected<void> stage(const fs::path& out, const Evaluated& e, const Context& context,
                      const StoreNote& note) {
-  const fs::path folder = out / e.campaign.id;
+  const fs::path folder = results_folder(out, e.campaign.id);
   if (std::error_code error; fs::exists(folder / manifest_name, error))
     return fail("the output folder " + folder.string() +
                 " is itself a campaign; nothing was written");
   Record record;
-  record.folder = note.folder;
+  record.folder = path_text(note.folder);
   record.night = note.night;
   record.reason = note.reason;
   record.status = e.status;
@@ -129,7 +129,7 @@ Move move_of(const fs::path& folder, std::uint64_t night) {
 std::vector<Expected<void>> commit(const fs::path& out, const std::vector<std::string>& ids,
                                    std::uint64_t night) {
   std::vector<Move> moves;
-  for (const std::string& id : ids) moves.push_back(move_of(out / id, night));
+  for (const std::string& id : ids) moves.push_back(move_of(results_folder(out, id), night));
   const auto flush = [&] {
     const auto flushed = flush_file_system(out);
     for (Move& m : moves)

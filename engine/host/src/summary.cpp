@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "json_values.h"
+#include "night_state.h"
 #include "nonio/host/files.h"
 #include "spool.h"
 
@@ -44,7 +45,10 @@ struct List {
 };
 
 Json entry_json(const CampaignState& c, const std::string& reason) {
-  Json json = {{"id", c.id}, {"folder", c.folder}, {"status", c.status}, {"reason", reason}};
+  Json json = {{"id", c.id},
+               {"folder", path_text(c.folder)},
+               {"status", c.status},
+               {"reason", reason}};
   if (!c.errors.empty()) {
     Json errors = Json::array();
     for (const Error& e : c.errors) errors.push_back(to_json(e));
@@ -59,10 +63,18 @@ struct Lists {
         unchanged("unchanged", folder),
         attention("attention", folder),
         failed("failed", folder),
+        vanished("vanished", folder),
         fresh("new_findings", folder),
         fresh_text(Spool::in(folder)) {}
-  List done, unchanged, attention, failed, fresh;
+  List done, unchanged, attention, failed, vanished, fresh;
   Spool fresh_text;  // of those that ask for attention
+
+  void add(const Vanished& v) {
+    vanished.add(v.id + ": " + v.why, {{"campaign", v.id},
+                                       {"folder", v.folder},
+                                       {"last_done_night", v.night},
+                                       {"message", v.why}});
+  }
 
   void add(const CampaignState& c, const fs::path& out) {
     if (c.status == "failed")
@@ -71,7 +83,7 @@ struct Lists {
     (is_done ? done : unchanged)
         .add(is_done ? c.id + ": " + c.reason : c.id, entry_json(c, c.reason));
     if (!is_done && c.status == "ok") return;
-    const auto record = read_record(out / c.id);
+    const auto record = read_record(results_folder(out, c.id));
     if (!record) return;
     if (c.status == "attention") {
       std::string words;
@@ -130,7 +142,9 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
   out.add("Nonio " + version + ": " + n(night.campaigns.size()) +
           (night.campaigns.size() == 1 ? " campaign: " : " campaigns: ") + n(lists.done.count) +
           " done, " + n(lists.unchanged.count) + " unchanged, " + n(lists.failed.count) +
-          " failed; " + n(lists.attention.count) + (lists.attention.count == 1 ? " asks" : " ask") +
+          " failed; " +
+          (lists.vanished.count == 0 ? "" : n(lists.vanished.count) + " vanished; ") +
+          n(lists.attention.count) + (lists.attention.count == 1 ? " asks" : " ask") +
           " for attention\n");
   if (!night.issued.empty()) out.add(issued_line(night.issued));
   if (!night.waiting.empty()) out.add(waiting_line(night.waiting));
@@ -141,6 +155,7 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
     out.add(body);
   };
   section("FAILED", lists.failed.text);
+  section("VANISHED SINCE AN EARLIER NIGHT", lists.vanished.text);
   section("ATTENTION", lists.attention.text);
   section("NEW SINCE THE LAST RUN", lists.fresh_text);
   section("DONE, AND WHY", lists.done.text);
@@ -149,9 +164,10 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
   for (const std::string& note : night.notes) out.add("  " + note + "\n");
 }
 
-void write_json(Spool& out, const Night& night, Lists& lists, const std::string& version) {
+void write_json(Spool& out, const Night& night, Lists& lists, const std::string& version,
+                const fs::path& out_folder) {
   const std::initializer_list<List*> all{&lists.done, &lists.unchanged, &lists.attention,
-                                         &lists.failed, &lists.fresh};
+                                         &lists.failed, &lists.vanished, &lists.fresh};
   Json counts = {{"campaigns", night.campaigns.size()}};
   for (const List* l : all)
     if (l != &lists.fresh) counts[l->name] = l->count;
@@ -171,7 +187,7 @@ void write_json(Spool& out, const Night& night, Lists& lists, const std::string&
   out.add(",\n \"issued\": " + issued.dump());
   Json waiting = Json::array();
   for (const WaitingDraft& d : night.waiting) {
-    Json one = {{"campaign", d.campaign}, {"file", d.campaign + "/" + d.file}};
+    Json one = {{"campaign", d.campaign}, {"file", (results_folder(out_folder, d.campaign).lexically_relative(out_folder) / d.file).generic_string()}};
     if (!d.replaces.empty()) one["replaces"] = d.replaces;
     waiting.push_back(std::move(one));
   }
@@ -183,7 +199,7 @@ void write_json(Spool& out, const Night& night, Lists& lists, const std::string&
 }  // namespace
 
 bool Night::any_failed() const {
-  return std::any_of(campaigns.begin(), campaigns.end(),
+  return !vanished.empty() || std::any_of(campaigns.begin(), campaigns.end(),
                      [](const CampaignState& c) { return c.status == "failed"; });
 }
 
@@ -191,10 +207,11 @@ Expected<void> write_summary(const Night& night, const fs::path& out, const std:
   const std::vector<std::string> names{"summary.txt", "summary.json"};
   Spool text = Spool::at(temporary_path(out, names[0]));
   Spool json = Spool::at(temporary_path(out, names[1]));
-  Lists lists(out);
+  Lists lists(out / state_folder);
   for (const CampaignState& c : night.campaigns) lists.add(c, out);
+  for (const Vanished& v : night.vanished) lists.add(v);
   write_text(text, night, lists, version);
-  write_json(json, night, lists, version);
+  write_json(json, night, lists, version, out);
   auto written = text.flush();
   if (written) written = json.flush();
   if (written) return rename_temporaries(out, names);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -27,12 +28,21 @@ struct RunOptions {
 /// holds (findings) is read again for the summary.
 struct CampaignState {
   std::string id;
-  std::string folder;            ///< relative to the site
+  std::string folder;            ///< relative to the site, in the bytes of the file system
   bool named_by_folder = false;  ///< its manifest gives no id
+  bool is_campaign = true;       ///< false: a folder of which nobody knows what lies in it
   enum class Action { todo, done, unchanged } action = Action::todo;
   std::string reason;  ///< why it is to do, or why not
   std::string status;  ///< ok, attention, failed; empty while it is to do
   std::vector<Error> errors;
+};
+
+/// A campaign that has results and is not in the site any more. Its results stay until a person
+/// removes them, which says that this was meant.
+struct Vanished {
+  std::string id, folder;   ///< folder: where it was, as text
+  std::uint64_t night = 0;  ///< in which it was done last
+  std::string why;          ///< what is there instead, and what to do
 };
 
 /// What the run tells while it goes on.
@@ -50,6 +60,8 @@ struct Night {
   std::vector<std::string> notes;
   std::vector<RegisterEntry> issued;  ///< certificates that are new since the night before
   std::vector<WaitingDraft> waiting;  ///< for their release
+  std::vector<Vanished> vanished;     ///< ordered by id
+  /// A campaign failed or vanished, or a folder could not be listed.
   bool any_failed() const;
 };
 
