@@ -67,7 +67,7 @@ Expected<fs::path> document_of_night(const fs::path& out, const Common& common) 
       if (!common.quiet) std::cerr << status_word(list, STDERR_FILENO) << " " << id << "\n";
       if (first.empty()) first = id;
     }
-  return first.empty() ? out / "summary.txt" : document_of(out / first);
+  return first.empty() ? out / "summary.txt" : document_of(host::results_folder(out, first));
 }
 
 Expected<fs::path> document(const OpenWish& wish, const Common& common) {
@@ -80,7 +80,7 @@ Expected<fs::path> document(const OpenWish& wish, const Common& common) {
     case Holds::night:
       return document_of_night(folder, common);
     case Holds::campaign: {
-      const fs::path results = fs::path(wish.out) / id_of_campaign(folder);
+      const fs::path results = host::results_folder(wish.out, id_of_campaign(folder));
       if (what_holds(results) == Holds::results) return document_of(results);
       return fail("there are no results of " + folder.string() + " in " + wish.out +
                   "; wanted --out OUT, the folder that `nonio run` wrote them to");

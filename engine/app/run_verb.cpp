@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "nonio/host/files.h"
 #include "nonio/host/run.h"
 #include "progress.h"
 #include "verbs.h"
@@ -34,10 +35,10 @@ void print_night_plan(const host::Night& night, bool json) {
     const std::string reason = collides ? c.errors.front().message : c.reason;
     if (json)
       std::cout << Json{{"id", c.id},
-                        {"folder", c.folder},
+                        {"folder", host::path_text(c.folder)},
                         {"action", collides ? "refused" : to_text(c.action)},
                         {"reason", reason}}
-                       .dump()
+                       .dump(-1, ' ', false, Json::error_handler_t::replace)
                 << "\n";
     else
       std::cout << (collides ? "refused" : to_text(c.action)) << "  " << c.id << ": " << reason
@@ -59,11 +60,14 @@ void print_summary(const host::Night& night, const fs::path& out, bool json) {
   if (json)
     std::cout << Json{{"event", "end"},         {"done", done},
                       {"unchanged", unchanged}, {"attention", attention},
-                      {"failed", failed},       {"summary", (out / "summary.json").string()}}
-                     .dump()
+                      {"failed", failed},       {"vanished", night.vanished.size()},
+                      {"summary", (out / "summary.json").string()}}
+                     .dump(-1, ' ', false, Json::error_handler_t::replace)
               << "\n";
   else
     std::cout << done << " done, " << unchanged << " unchanged, " << failed << " failed; "
+              << (night.vanished.empty() ? ""
+                                         : std::to_string(night.vanished.size()) + " vanished; ")
               << attention << (attention == 1 ? " asks" : " ask")
               << " for attention: " << (out / "summary.txt").string() << "\n";
 }
@@ -129,7 +133,7 @@ int run_night(RunWish& wish, const Common& common) {
     print_night_plan(night, common.json);
   else if (!common.quiet || common.json)
     print_summary(night, options.out, common.json);
-  return night.failed() > 0 ? exit_failed : exit_done;
+  return night.any_failed() ? exit_failed : exit_done;
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ class CampaignReader {
 
   bool read_manifest() {
     stage_("reading campaign.toml");
-    const auto text = read_file(folder_ / manifest_name);
+    const auto text = read_small_file(folder_ / manifest_name);
     if (!text) {
       report(Error{text.error().message, manifest_name});
       return false;

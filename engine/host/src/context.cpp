@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "context.h"
 
+#include <algorithm>
+
 #include "json_values.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
@@ -9,16 +11,28 @@ namespace nonio::host {
 namespace fs = std::filesystem;
 
 Checked<SiteFile> read_site(const fs::path& site, std::string& digest) {
-  const fs::path path = site / site_name;
-  std::error_code error;
-  if (!fs::exists(path, error)) {
+  const auto there = is_there(site / site_name);
+  if (!there) return tl::unexpected(std::vector<Error>{there.error()});
+  if (!*there) {
     digest = sha256("");
     return SiteFile{};
   }
-  const auto text = read_file(path);
-  if (!text) return tl::unexpected(std::vector<Error>{text.error()});
+  const auto text = read_small_file(site / site_name);
+  if (!text) return tl::unexpected(std::vector<Error>{Error{text.error().message, site_name}});
   digest = sha256(*text);
   return parse_site(*text, site_name);
+}
+
+Expected<std::vector<fs::path>> with_site_templates(std::vector<fs::path> folders,
+                                                    const fs::path& site) {
+  const fs::path own = site / "templates";
+  const auto there = is_there(own);
+  if (!there) return fail(there.error());
+  std::error_code error;
+  const auto kind = fs::status(own, error).type();
+  if (*there && error) return fail("cannot read " + own.string() + ": " + error.message());
+  if (*there && kind == fs::file_type::directory) folders.push_back(own);
+  return folders;
 }
 
 namespace {
@@ -27,11 +41,24 @@ namespace {
 Expected<std::map<std::string, fs::path>> files_below(const fs::path& folder) {
   std::map<std::string, fs::path> files;
   std::error_code error;
+  std::vector<fs::path> above{fs::canonical(folder, error)};  // the folders that the walk is in
   fs::recursive_directory_iterator it(folder, fs::directory_options::follow_directory_symlink,
                                       error);
-  for (; !error && it != fs::recursive_directory_iterator(); it.increment(error))
-    if (it->is_regular_file())
+  for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
+    const auto kind = fs::status(it->path(), error).type();
+    if (kind == fs::file_type::not_found) error.clear();
+    if (kind == fs::file_type::regular)
       files[it->path().lexically_relative(folder).generic_string()] = it->path();
+    if (error) break;
+    if (kind != fs::file_type::directory) continue;
+    above.resize(static_cast<std::size_t>(it.depth()) + 1);
+    const fs::path real = fs::canonical(it->path(), error);
+    if (!error && std::find(above.begin(), above.end(), real) != above.end())
+      return fail("the template folder " + it->path().string() +
+                  " is a link back to a folder that it lies in; wanted files");
+    if (error) break;
+    above.push_back(real);
+  }
   if (error)
     return fail("cannot read the templates in " + folder.string() + ": " + error.message());
   return files;

@@ -11,6 +11,10 @@ namespace nonio::host {
 /// site.toml of a site, if there is one; every error with its line.
 Checked<SiteFile> read_site(const std::filesystem::path& site, std::string& digest);
 
+/// `folders` and, behind them, the site's own templates if it has some.
+Expected<std::vector<std::filesystem::path>> with_site_templates(
+    std::vector<std::filesystem::path> folders, const std::filesystem::path& site);
+
 /// The nearest folder at or above the campaign that holds a site.toml; else the campaign's own.
 std::filesystem::path site_of(const std::filesystem::path& campaign);
 

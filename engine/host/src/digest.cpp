@@ -39,9 +39,13 @@ std::string sha256(std::string_view bytes) {
   return digest.hex();
 }
 
-Expected<std::string> sha256_of_file(const std::filesystem::path& path) {
+Expected<std::string> sha256_of_file(const std::filesystem::path& path,
+                                     const std::function<void()>& after_each_part) {
   Sha256 digest;
-  const auto read = read_parts(path, [&](std::string_view part) { digest.add(part); });
+  const auto read = read_parts(path, [&](std::string_view part) {
+    digest.add(part);
+    if (after_each_part) after_each_part();
+  });
   if (!read) return fail(read.error());
   return digest.hex();
 }

@@ -11,6 +11,8 @@
 #include <cstring>
 #include <utility>
 
+#include "nonio/host/digest.h"
+
 namespace nonio::host {
 namespace fs = std::filesystem;
 
@@ -187,6 +189,68 @@ Expected<std::string> read_file(const fs::path& path) {
   const auto read = read_parts(path, [&](std::string_view part) { bytes += part; });
   if (!read) return fail(read.error());
   return bytes;
+}
+
+fs::path results_folder(const fs::path& out, const std::string& id) {
+  if (::access((out / hashed_mark).c_str(), F_OK) != 0) return out / id;
+  return out / sha256(id).substr(0, 2) / id;
+}
+
+Expected<bool> is_there(const fs::path& path) {
+  struct stat info {};
+  if (::lstat(path.c_str(), &info) == 0) return true;
+  if (errno == ENOENT || errno == ENOTDIR) return false;
+  return system_error("cannot look at", path);
+}
+
+Expected<std::string> read_small_file(const fs::path& path) {
+  constexpr off_t most = 1'000'000;
+  struct stat info {};
+  if (::stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode) && info.st_size > most)
+    return fail("has " + std::to_string(info.st_size) +
+                " bytes and is not read; wanted at most 1 MB (1000000 bytes)");
+  std::string bytes;
+  bool too_long = false;
+  const auto read = read_parts(path, [&](std::string_view part) {
+    too_long = too_long || bytes.size() + part.size() > static_cast<std::size_t>(most);
+    if (!too_long) bytes += part;
+  });
+  if (!read) return fail(read.error());
+  if (too_long) return fail("grew while it was read; wanted at most 1 MB (1000000 bytes)");
+  return bytes;
+}
+
+namespace {
+
+/// Bytes of the character that the text begins with (RFC 3629); 0 if it is none.
+std::size_t size_of_character(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return 1;
+  const std::size_t size = byte(0) >= 0xF0 ? 4 : byte(0) >= 0xE0 ? 3 : byte(0) >= 0xC2 ? 2 : 0;
+  if (size == 0 || byte(0) > 0xF4 || text.size() < size) return 0;
+  for (std::size_t i = 1; i < size; ++i)
+    if ((byte(i) & 0xC0U) != 0x80) return 0;
+  const bool too_long = (byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xF0 && byte(1) < 0x90);
+  const bool none = (byte(0) == 0xED && byte(1) > 0x9F) || (byte(0) == 0xF4 && byte(1) > 0x8F);
+  return too_long || none ? 0 : size;
+}
+
+}  // namespace
+
+std::string path_text(std::string_view path) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string out;
+  while (!path.empty()) {
+    const std::size_t size = size_of_character(path);
+    if (size == 0) {
+      const auto byte = static_cast<unsigned char>(path.front());
+      out += {'\\', 'x', digits[byte >> 4U], digits[byte & 15U]};
+    } else {
+      out += path.substr(0, size);
+    }
+    path.remove_prefix(std::max<std::size_t>(size, 1));
+  }
+  return out;
 }
 
 Expected<fs::path> path_inside(const fs::path& base, const std::string& relative) {

@@ -809,6 +809,27 @@ constexpr Key limits_keys[] = {
      .wanted = "wanted 64 or more, and at most 1000000000",
      .least = 64.0,
      .most = 1e9},
+    {.name = "disk_seconds",
+     .holds = number,
+     .help = "Time that a folder or file of the site may give no sign of life while the night looks "
+             "what there is to do; after that it is a failed one.",
+     .unit = "s",
+     .otherwise = "60",
+     .wanted = "wanted a number above 0 and at most 1000000",
+     .least = 0.0,
+     .most = 1e6,
+     .above = true},
+};
+
+constexpr Choice result_folders[] = {{"flat", "OUT/<id>"}, {"hashed", "OUT/ab/<id>"}};
+
+constexpr Key results_keys[] = {
+    {.name = "folders",
+     .holds = text,
+     .help = "How the results lie in the output folder: each campaign in OUT/<id>, or in OUT/ab/<id>, "
+             "ab the first two digits of the SHA-256 of the id, for sites of a million.",
+     .otherwise = "flat",
+     .choices = result_folders},
 };
 
 constexpr Choice fail_or_sign[] = {{"fail"}, {"sign"}};
@@ -873,6 +894,10 @@ constexpr Key site_file_keys[] = {
      .holds = table,
      .help = "What one campaign may take of the computer.",
      .keys = limits_keys},
+    {.name = "results",
+     .holds = table,
+     .help = "How results lie in the output folder.",
+     .keys = results_keys},
     run_key,
     options_key,
     {.name = "signing",

@@ -419,6 +419,11 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   if (auto reader = top.table("limits")) {
     site.limits.seconds = reader->number("seconds").value_or(site.limits.seconds);
     site.limits.memory_MB = reader->number("memory_MB").value_or(site.limits.memory_MB);
+    site.limits.disk_seconds = reader->number("disk_seconds").value_or(site.limits.disk_seconds);
+    reader->finish();
+  }
+  if (auto reader = top.table("results")) {
+    site.hashed_folders = reader->text("folders") == "hashed";
     reader->finish();
   }
   site.run = read_run(top);

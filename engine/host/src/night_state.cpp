@@ -16,6 +16,7 @@
 
 #include "json_values.h"
 #include "nonio/host/files.h"
+#include "nonio/host/record.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -88,6 +89,22 @@ std::string other_site(const std::string& other, const std::string& site, const 
     return {};
   return "the output folder " + out.string() + " holds the results of the site " + other +
          "; wanted a folder of its own for " + site;
+}
+
+/// How the first results that are met in an output folder lie; nothing if there are none.
+std::optional<bool> lie_hashed(const fs::path& out) {
+  std::error_code error;
+  const auto has_results = [&](const fs::path& folder) {
+    return fs::exists(folder / record_name, error);
+  };
+  for (fs::directory_iterator it(out, error), end; !error && it != end; it.increment(error)) {
+    if (has_results(it->path())) return false;
+    if (it->path().filename().string().size() != 2) continue;
+    std::error_code ignored;
+    for (const auto& inner : fs::directory_iterator(it->path(), ignored))
+      if (has_results(inner.path())) return true;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -172,6 +189,24 @@ Expected<NightStatus> night_status(const fs::path& out) {
     return fail("cannot read " + path.string() + ": " + std::strerror(errno));
   status.age = std::difftime(std::time(nullptr), summary.st_mtim.tv_sec);
   return status;
+}
+
+Expected<void> settle_folders(const fs::path& out, bool hashed, bool dry_run) {
+  const auto marked = is_there(out / hashed_mark);
+  if (!marked) return fail(marked.error());
+  if (*marked && hashed) return {};
+  const auto begun = is_there(out / state_folder / state_name);
+  if (!begun) return fail(begun.error());
+  const bool are_hashed = *marked || (!*begun && lie_hashed(out) == true);
+  const bool are_flat = !are_hashed && (*begun || lie_hashed(out) == false);
+  if (hashed ? are_flat : are_hashed)
+    return fail("the output folder " + out.string() + " has its results in OUT/" +
+                (hashed ? "<id>" : "ab/<id>") + ", and site.toml wants them in OUT/" +
+                (hashed ? "ab/<id> ([results] folders = \"hashed\")" : "<id>") +
+                "; wanted a new output folder, or the layout that is there");
+  if (dry_run || !hashed) return {};
+  return publish((out / hashed_mark).parent_path(),
+                 {{(out / hashed_mark).filename().string(), "OUT/ab/<id>\n"}});
 }
 
 Expected<OutputLock> OutputLock::take(const fs::path& out) {

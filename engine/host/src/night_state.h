@@ -12,7 +12,7 @@
 
 namespace nonio::host {
 
-/// Of an output folder, for what is not a result.
+/// What a night keeps for itself in the output folder; no campaign can have its name.
 inline constexpr const char* state_folder = ".nonio";
 
 /// Which night it is. A run that was killed or interrupted is the same night when it is resumed, so
@@ -37,6 +37,10 @@ Expected<NightState> begin_night(const RunOptions& options,
 /// `night.issued_before` is then what the next one begins with.
 Expected<void> end_night(const std::filesystem::path& out, const NightState& night,
                          const NightEnd& end);
+
+/// Holds the layout that site.toml wants (`hashed`: OUT/ab/<id>) against that of the results that are
+/// there, and marks a new output folder. Results are never moved: another layout is an error.
+Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, bool dry_run);
 
 /// Held while a run uses an output folder; an error names the trouble if another run does.
 class OutputLock {

@@ -169,8 +169,9 @@ class Releaser {
     auto taken = OutputLock::take(options_.out);
     if (!taken) return fail(taken.error());
     lock_.emplace(std::move(*taken));
-    auto record = read_record(options_.out / id_);
-    if (!record) return fail("no result of a night in " + (options_.out / id_).string());
+    const fs::path results = results_folder(options_.out, id_);
+    auto record = read_record(results);
+    if (!record) return fail("no result of a night in " + results.string());
     night_.number = record->night;
     twins_ = twins_of(record->inputs);
     return {};
@@ -208,7 +209,7 @@ class Releaser {
     out_.entry = std::move(**last);
     out_.state = Released::State::issued;
     if (const auto files = opened->files(out_.entry.number))
-      for (const IssuedFile& f : *files) out_.files.push_back(options_.out / id_ / f.name);
+      for (const IssuedFile& f : *files) out_.files.push_back(results_folder(options_.out, id_) / f.name);
     if (!campaigns.front().errors.empty()) out_.why = campaigns.front().errors.front().message;
     return std::move(out_);
   }

@@ -15,6 +15,7 @@
 #include "store.h"
 #include "summary.h"
 #include "survey.h"
+#include "watched.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -36,22 +37,55 @@ std::string unfit_output(const fs::path& site, const fs::path& out) {
   return {};
 }
 
-/// Campaigns whose ids collide get a failed result in the one folder that they all claim.
-void store_collisions(const RunOptions& options, const Context& context, const NightState& night,
-                      std::vector<CampaignState>& campaigns) {
+/// What the survey has failed: a good result of a night before stays, else there is one that says
+/// what is wrong. Several campaigns with one id claim one folder.
+void store_refused(const RunOptions& options, const Context& context, const NightState& night,
+                   const RunEvents& events, std::vector<CampaignState>& campaigns) {
   const Disk disk(options.out);
+  const CampaignState* before = nullptr;
   for (CampaignState& c : campaigns) {
     if (c.action != Action::todo || c.status != "failed") continue;
-    Evaluated evaluated;
-    evaluated.campaign.id = c.id;
-    evaluated.status = "failed";
-    evaluated.results.errors = c.errors;
-    if (const auto stored =
-            store(options.out, evaluated, context, {c.folder, night.of(), c.reason, true}, disk);
-        !stored)
-      c.errors.push_back(stored.error());
+    const auto record = read_record(results_folder(options.out, c.id));
+    const bool stays = c.is_campaign && record && record->status != "failed";
+    if (stays)
+      c.errors.front().message +=
+          "; the results of night " + std::to_string(record->night) + " stay as they are";
+    if (c.is_campaign && !stays && (before == nullptr || before->id != c.id)) {
+      Evaluated evaluated;
+      evaluated.campaign.id = c.id;
+      evaluated.status = "failed";
+      evaluated.results.errors = c.errors;
+      if (const auto stored =
+              store(options.out, evaluated, context, {c.folder, night.of(), c.reason, true}, disk);
+          !stored)
+        c.errors.push_back(stored.error());
+    }
+    before = &c;
     c.action = Action::done;
+    events.finished(c);
   }
+}
+
+/// The first look at the site, in a child: a share that hangs must not hold up this process, which
+/// could then not even be stopped.
+std::string no_site(const fs::path& site) {
+  constexpr double patience = Limits{}.disk_seconds;
+  auto child = Watched::start([&](SignsOfLife&, const Watched::Send&) {
+    std::error_code error;
+    if (!fs::is_directory(site, error)) return;
+    for (fs::directory_iterator it(site, error), end; !error && it != end; it.increment(error)) {}
+    if (read_small_file(site / site_name) && is_there(site / "templates")) return;
+  });
+  if (!child) return child.error().message;
+  std::vector<Watched> children;
+  children.push_back(std::move(*child));
+  while (!children.front().ended() && !is_stop_requested()) {
+    if (children.front().is_silent(patience))
+      return "cannot read the site " + site.string() + ": " + no_answer(patience);
+    wait_for_parcels(children);
+    children.front().take();
+  }
+  return {};
 }
 
 /// A register in an output folder below the site would be lost with it.
@@ -125,21 +159,28 @@ void tidy_root(const fs::path& out) {
   remove_leftovers(out / state_folder);
 }
 
+/// The folders of results in an output folder, whatever their layout.
+Expected<void> tidy_below(const fs::path& out, bool hashed) {
+  std::error_code error;
+  for (fs::directory_iterator it(out, error), end; !error && it != end; it.increment(error)) {
+    std::error_code ignored;
+    if (!it->is_directory(ignored) || it->is_symlink(ignored)) continue;
+    if (hashed && it->path().filename().string().size() != 2) continue;
+    if (auto tidied = hashed ? tidy_below(it->path(), false) : tidy(it->path()); !tidied)
+      return tidied;
+  }
+  if (error) return fail("cannot read the output folder " + out.string() + ": " + error.message());
+  return {};
+}
+
 /// Nothing half-done is left in a folder that somebody reads. Where a run was cut short, it may lie
 /// in folders of campaigns that are not in the site any more.
 Expected<void> tidy_all(const Night& night, const fs::path& out, bool resumed) {
   tidy_root(out);
-  if (!resumed) {
-    for (const CampaignState& c : night.campaigns)
-      if (c.action == Action::done)
-        if (auto tidied = tidy(out / c.id); !tidied) return tidied;
-    return {};
-  }
-  std::error_code error;
-  for (fs::directory_iterator it(out, error), end; !error && it != end; it.increment(error))
-    if (std::error_code ignored; it->is_directory(ignored) && !it->is_symlink(ignored))
-      if (auto tidied = tidy(it->path()); !tidied) return tidied;
-  if (error) return fail("cannot read the output folder " + out.string() + ": " + error.message());
+  if (resumed) return tidy_below(out, results_folder(out, "a") != out / "a");
+  for (const CampaignState& c : night.campaigns)
+    if (c.action == Action::done && c.is_campaign)
+      if (auto tidied = tidy(results_folder(out, c.id)); !tidied) return tidied;
   return {};
 }
 
@@ -150,6 +191,16 @@ Expected<void> close_night(const Night& night, const RunOptions& options, const 
                    {state.of(), night.campaigns.size(), night.failed()});
 }
 
+/// All of them stand in the summary; of very many the messages name the first.
+void tell_vanished(const Night& night, const RunEvents& events) {
+  constexpr std::size_t most = 100;
+  for (std::size_t i = 0; i < std::min(most, night.vanished.size()); ++i)
+    events.note("campaign " + night.vanished[i].id + " has vanished: " + night.vanished[i].why);
+  if (night.vanished.size() > most)
+    events.note("and " + std::to_string(night.vanished.size() - most) +
+                " more campaigns have vanished: see the summary");
+}
+
 /// The night itself, in an output folder that nobody else uses.
 void do_night(const RunOptions& options, const RunEvents& events, SetUp& place,
               const std::optional<Known>& known, Night& night) {
@@ -158,6 +209,10 @@ void do_night(const RunOptions& options, const RunEvents& events, SetUp& place,
     night.end = Night::End::refused;
     night.error = std::move(why);
   };
+  if (const auto settled =
+          settle_folders(options.out, context.site.hashed_folders, options.dry_run);
+      !settled)
+    return refuse(settled.error().message);
   auto state = begin_night(options,
                            known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
   if (!state) return refuse(state.error().message);
@@ -171,23 +226,23 @@ void do_night(const RunOptions& options, const RunEvents& events, SetUp& place,
     input.numbers = known->numbers;
     for (const WaitingDraft& draft : known->drafts) input.drafts.insert(draft.campaign);
   }
-  auto campaigns = survey(input);
+  auto surveyed = survey(input);
   if (is_stop_requested()) {
     night.end = Night::End::interrupted;
     return;
   }
-  if (!campaigns) return refuse(campaigns.error().message);
-  night.campaigns = std::move(*campaigns);
+  if (!surveyed) return refuse(surveyed.error().message);
+  night.campaigns = std::move(surveyed->campaigns);
+  night.vanished = std::move(surveyed->vanished);
   for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);
-  const auto is_todo = [](const CampaignState& c) {
-    return c.action == Action::todo && c.status.empty();
-  };
+  tell_vanished(night, events);
+  const auto is_todo = [](const CampaignState& c) { return c.action == Action::todo; };
   events.planned(night.campaigns.size(),
                  static_cast<std::size_t>(
                      std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));
   if (options.dry_run) return;
 
-  store_collisions(options, context, *state, night.campaigns);
+  store_refused(options, context, *state, events, night.campaigns);
   ReleaseDesk desk;
   auto& signer = place.signer;
   desk.signer = signer ? &*signer : nullptr;
@@ -217,6 +272,11 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
     night.error = std::move(why);
     return std::move(night);
   };
+  if (const std::string why = no_site(options.site); !why.empty()) return refuse(why);
+  if (is_stop_requested()) {
+    night.end = Night::End::interrupted;
+    return night;
+  }
   std::error_code error;
   if (!fs::is_directory(options.site, error))
     return refuse("there is no site folder " + options.site.string());

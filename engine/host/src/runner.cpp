@@ -148,7 +148,7 @@ class Runner {
   void stop() {
     for (Worker& w : workers_) {
       w.end();
-      remove_leftovers(options_.out / campaigns_[w.campaign()].id);
+      remove_leftovers(results_folder(options_.out, campaigns_[w.campaign()].id));
     }
     workers_.clear();
     const auto deadline = Worker::Clock::now() + std::chrono::seconds(10);
@@ -158,7 +158,7 @@ class Runner {
     }
     committer_.end();
     for (const Committer::Given& g : committer_.pending())
-      remove_leftovers(options_.out / campaigns_[g.campaign].id);
+      remove_leftovers(results_folder(options_.out, campaigns_[g.campaign].id));
   }
 
   /// What needs the register that another process keeps to itself is done when all else is, or by
@@ -223,7 +223,7 @@ class Runner {
     } catch (const std::exception& e) {
       stage.set(stage.get() + ": " + e.what());
     }
-    remove_leftovers(options_.out / campaigns_[index].id);
+    remove_leftovers(results_folder(options_.out, campaigns_[index].id));
     return Answer::not_stored;
   }
 
@@ -363,7 +363,7 @@ class Runner {
   }
 
   void take_failed(std::size_t index) {
-    const auto record = read_record(options_.out / campaigns_[index].id);
+    const auto record = read_record(results_folder(options_.out, campaigns_[index].id));
     if (!record) return lost(index, "its record cannot be read: " + record.error().message);
     finish(index, record->status, record->errors);
   }

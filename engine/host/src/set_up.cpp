@@ -106,11 +106,10 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
     place->signer.emplace(*context.site.signing, options.site);
     note_key(*place, !context.site.signing->time_stamp.empty());
   }
-  std::vector<fs::path> template_folders = options.template_folders;
-  if (std::error_code error; fs::is_directory(options.site / "templates", error))
-    template_folders.push_back(options.site / "templates");
+  const auto template_folders = with_site_templates(options.template_folders, options.site);
+  if (!template_folders) return fail(template_folders.error());
   auto templates =
-      read_templates(template_folders, context.templates_sha256, &context.templates_json);
+      read_templates(*template_folders, context.templates_sha256, &context.templates_json);
   if (!templates) return fail(all_of({templates.error()}));
   context.templates = std::move(*templates);
   if (auto allowed = check_user(*place, options); !allowed) return fail(allowed.error());

@@ -16,7 +16,7 @@ class Spool {
  public:
   /// Of a path that is to stay.
   static Spool at(const std::filesystem::path& path);
-  /// Of a file without a name in this folder.
+  /// Of a file without a name, in a folder that nobody else writes to.
   static Spool in(const std::filesystem::path& folder);
 
   void add(std::string_view text);

@@ -73,12 +73,12 @@ Expected<void> look_back(const fs::path& folder, Record& record) {
 
 Expected<void> stage(const fs::path& out, const Evaluated& e, const Context& context,
                      const StoreNote& note) {
-  const fs::path folder = out / e.campaign.id;
+  const fs::path folder = results_folder(out, e.campaign.id);
   if (std::error_code error; fs::exists(folder / manifest_name, error))
     return fail("the output folder " + folder.string() +
                 " is itself a campaign; nothing was written");
   Record record;
-  record.folder = note.folder;
+  record.folder = path_text(note.folder);
   record.night = note.night.number;
   record.date = note.night.date;
   record.reason = note.reason;
@@ -252,7 +252,7 @@ std::vector<Expected<void>> commit(const fs::path& out, const std::vector<Staged
     for (Move& m : moves)
       if (!m.moved() && m.done()) (m.*step)();
   };
-  for (const Staged& c : campaigns) moves.emplace_back(out / c.id, night, sound(c));
+  for (const Staged& c : campaigns) moves.emplace_back(results_folder(out, c.id), night, sound(c));
   flush();
   each(&Move::read_back);
   each(&Move::put_old_aside);

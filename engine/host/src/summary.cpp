@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "json_values.h"
+#include "night_state.h"
 #include "nonio/host/files.h"
 #include "spool.h"
 
@@ -44,7 +45,10 @@ struct List {
 };
 
 Json entry_json(const CampaignState& c, const std::string& reason) {
-  Json json = {{"id", c.id}, {"folder", c.folder}, {"status", c.status}, {"reason", reason}};
+  Json json = {{"id", c.id},
+               {"folder", path_text(c.folder)},
+               {"status", c.status},
+               {"reason", reason}};
   if (!c.errors.empty()) {
     Json errors = Json::array();
     for (const Error& e : c.errors) errors.push_back(to_json(e));
@@ -75,10 +79,18 @@ struct Lists {
         unchanged("unchanged", folder),
         attention("attention", folder),
         failed("failed", folder),
+        vanished("vanished", folder),
         fresh("new_findings", folder),
         fresh_text(Spool::in(folder)) {}
-  List done, unchanged, attention, failed, fresh;
+  List done, unchanged, attention, failed, vanished, fresh;
   Spool fresh_text;  // of those that ask for attention
+
+  void add(const Vanished& v) {
+    vanished.add(v.id + ": " + v.why, {{"campaign", v.id},
+                                       {"folder", v.folder},
+                                       {"last_done_night", v.night},
+                                       {"message", v.why}});
+  }
 
   /// An error if what the campaign's record says cannot be read.
   Expected<void> add(const CampaignState& c, const fs::path& out) {
@@ -90,7 +102,7 @@ struct Lists {
     (is_done ? done : unchanged)
         .add(is_done ? c.id + ": " + c.reason : c.id, entry_json(c, c.reason));
     if (!is_done && c.status == "ok") return {};
-    const auto record = read_record(out / c.id);
+    const auto record = read_record(results_folder(out, c.id));
     if (!record) return fail(record.error());
     if (c.status == "attention") {
       std::string words;
@@ -114,13 +126,15 @@ struct Lists {
   void add_failed(const CampaignState& c, const fs::path& out) {
     std::string line = c.id + ": " + first_error(c);
     Json entry = entry_json(c, first_error(c));
-    const auto record = read_record(out / c.id);
+    const fs::path results = results_folder(out, c.id);
+    const auto record = read_record(results);
     if (record && record->failed_since) {
       const NightOf& since = *record->failed_since;
       entry["failed_since"] = night_json(since);
       if (since.number != record->night) line += "; failed since " + night_words(since);
     }
-    const std::string folder = c.id + "/" + last_good_name;
+    const std::string folder =
+        (results / last_good_name).lexically_relative(out).generic_string();
     if (const auto good = read_record(out / folder)) {
       const NightOf night{good->night, good->date};
       entry["last_good"] = night_json(night);
@@ -171,7 +185,9 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
   out.add("Nonio " + version + ": " + n(night.campaigns.size()) +
           (night.campaigns.size() == 1 ? " campaign: " : " campaigns: ") + n(lists.done.count) +
           " done, " + n(lists.unchanged.count) + " unchanged, " + n(lists.failed.count) +
-          " failed; " + n(lists.attention.count) + (lists.attention.count == 1 ? " asks" : " ask") +
+          " failed; " +
+          (lists.vanished.count == 0 ? "" : n(lists.vanished.count) + " vanished; ") +
+          n(lists.attention.count) + (lists.attention.count == 1 ? " asks" : " ask") +
           " for attention\n");
   out.add(night_line(night));
   if (!night.issued.empty()) out.add(issued_line(night.issued));
@@ -183,6 +199,7 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
     out.add(body);
   };
   section("FAILED", lists.failed.text);
+  section("VANISHED SINCE AN EARLIER NIGHT", lists.vanished.text);
   section("ATTENTION", lists.attention.text);
   section("NEW SINCE THE LAST RUN", lists.fresh_text);
   section("DONE, AND WHY", lists.done.text);
@@ -191,9 +208,10 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
   for (const std::string& note : night.notes) out.add("  " + note + "\n");
 }
 
-void write_json(Spool& out, const Night& night, Lists& lists, const std::string& version) {
+void write_json(Spool& out, const Night& night, Lists& lists, const std::string& version,
+                const fs::path& out_folder) {
   const std::initializer_list<List*> all{&lists.done, &lists.unchanged, &lists.attention,
-                                         &lists.failed, &lists.fresh};
+                                         &lists.failed, &lists.vanished, &lists.fresh};
   Json seen = {{"tonight", night.campaigns.size()}, {"night_before", nullptr}};
   if (night.seen_before) seen["night_before"] = *night.seen_before;
   Json counts = {{"campaigns", night.campaigns.size()}};
@@ -217,7 +235,7 @@ void write_json(Spool& out, const Night& night, Lists& lists, const std::string&
   out.add(",\n \"issued\": " + issued.dump());
   Json waiting = Json::array();
   for (const WaitingDraft& d : night.waiting) {
-    Json one = {{"campaign", d.campaign}, {"file", d.campaign + "/" + d.file}};
+    Json one = {{"campaign", d.campaign}, {"file", (results_folder(out_folder, d.campaign).lexically_relative(out_folder) / d.file).generic_string()}};
     if (!d.replaces.empty()) one["replaces"] = d.replaces;
     waiting.push_back(std::move(one));
   }
@@ -239,14 +257,15 @@ Expected<void> write_summary(const Night& night, const fs::path& out, const std:
   remove_leftovers(out);
   Spool text = Spool::at(temporary_path(out, names[0]));
   Spool json = Spool::at(temporary_path(out, names[1]));
-  Lists lists(out);
+  Lists lists(out / state_folder);
   for (const CampaignState& c : night.campaigns)
     if (const auto added = lists.add(c, out); !added) {
       remove_leftovers(out);
       return fail("cannot write the summary in " + out.string() + ": " + added.error().message);
     }
+  for (const Vanished& v : night.vanished) lists.add(v);
   write_text(text, night, lists, version);
-  write_json(json, night, lists, version);
+  write_json(json, night, lists, version, out);
   auto written = text.flush();
   if (written) written = json.flush();
   if (written) written = rename_temporaries(out, names);

@@ -26,9 +26,15 @@ struct SurveyInput {
   bool verify_results = false;      ///< digests decide of all files given out
 };
 
-/// All campaigns of a site, by id, each with what is to be done with it and why. Campaigns whose
-/// ids collide come out failed, with an error that names all their folders.
-Expected<std::vector<CampaignState>> survey(const SurveyInput& input);
+struct Surveyed {
+  std::vector<CampaignState> campaigns;  ///< by id
+  std::vector<Vanished> vanished;        ///< by id
+};
+
+/// All campaigns of a site, each with what is to be done with it and why. Failed, and not to be
+/// evaluated, are: campaigns whose ids collide, campaigns whose files give no answer, and, as
+/// entries of their own, folders that cannot be listed. The site is read in child processes.
+Expected<Surveyed> survey(const SurveyInput& input);
 
 /// An error if the output folder has a number that the register does not know: numbers would be
 /// used twice. For a night whose survey could not ask.

@@ -55,6 +55,7 @@ class Precheck {
         if (closing_.size() == 1) closing_ = {};
         if (open_.empty()) wants_value_ = false;
         in_word_ = false;
+        dots_ = 0;
         continue;
       }
       const bool header = line_begins && c == '[' && open_.empty() && closing_.empty();
@@ -65,6 +66,8 @@ class Precheck {
         return "after \\ and blanks a text in \"\"\" cannot go on with a letter outside ASCII "
                "here: "
                "leave the \\ out, or break the line elsewhere";
+      if (dots_ > most_dots || open_.size() > most_open)
+        return "tables within tables, more than 32 with dots or 64 with brackets; wanted few";
       if (!step(c)) return "a letter outside a-z 0-9 _ - needs quotes around it";
     }
     return {};
@@ -120,6 +123,8 @@ class Precheck {
 
   /// Outside strings and comments: keys or values, and whether a value without quotes has begun.
   void step_outside(char c) {
+    if (c == '.' && !wants_value_) ++dots_;
+    if (std::string_view("=,{").find(c) != std::string_view::npos) dots_ = 0;
     if (std::string_view(" \t\r,]}").find(c) != std::string_view::npos) {
       in_word_ = false;
       if (c == ',') wants_value_ = !open_.empty() && open_.back() == '[';
@@ -142,6 +147,10 @@ class Precheck {
   std::string_view closing_;  // of the string or comment that is open
   std::string open_;          // brackets: [ holds values, { keys
   bool wants_value_ = false, in_word_ = false;
+  /// Of the key. Tables are read, copied and freed by functions that call themselves: hundreds of
+  /// thousands of them, one within the other, would end the process.
+  static constexpr std::size_t most_dots = 31, most_open = 64;
+  std::size_t dots_ = 0;
 };
 
 }  // namespace

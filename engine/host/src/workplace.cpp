@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "context.h"
 #include "nonio/host/campaign_reader.h"
+#include "nonio/host/files.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -9,7 +10,8 @@ fs::path site_of(const fs::path& campaign) {
   std::error_code error;
   const fs::path start = fs::canonical(campaign, error);
   for (fs::path folder = start; !error && !folder.empty(); folder = folder.parent_path()) {
-    if (fs::exists(folder / site_name, error)) return folder;
+    // One that cannot be looked at is not none: reading it says what is wrong.
+    if (is_there(folder / site_name).value_or(true)) return folder;
     if (folder == folder.parent_path()) break;
   }
   return campaign;
@@ -32,9 +34,9 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   auto read = read_site(site, context.site_sha256);
   if (!read) return fail(read.error().front());
   context.site = std::move(*read);
-  auto folders = template_folders;
-  if (fs::is_directory(site / "templates", error)) folders.push_back(site / "templates");
-  auto templates = read_templates(folders, context.templates_sha256);
+  const auto folders = with_site_templates(template_folders, site);
+  if (!folders) return fail(folders.error());
+  auto templates = read_templates(*folders, context.templates_sha256);
   if (!templates) return fail(templates.error());
   context.templates = std::move(*templates);
   place->plugins.load(plugin_folders);

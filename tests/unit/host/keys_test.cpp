@@ -122,6 +122,7 @@ TEST(Keys, DefaultsAreThoseOfAnEmptyFile) {
   };
   EXPECT_EQ(std::stod(otherwise(site_file(), "limits", "seconds")), site->limits.seconds);
   EXPECT_EQ(std::stod(otherwise(site_file(), "limits", "memory_MB")), site->limits.memory_MB);
+  EXPECT_EQ(std::stod(otherwise(site_file(), "limits", "disk_seconds")), site->limits.disk_seconds);
   EXPECT_EQ(otherwise(site_file(), "certificate", "numbering"), site->numbering.pattern);
   EXPECT_EQ(otherwise(site_file(), "certificate", "register"), site->numbering.register_file);
   EXPECT_EQ(std::stoi(otherwise(site_file(), "signing", "time_stamp_seconds")),

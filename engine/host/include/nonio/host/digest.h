@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,8 @@ namespace nonio::host {
 
 /// SHA-256 in lower-case hexadecimal.
 std::string sha256(std::string_view bytes);
-Expected<std::string> sha256_of_file(const std::filesystem::path& path);
+/// `after_each_part`: called while a long file is read, for who waits for signs of life.
+Expected<std::string> sha256_of_file(const std::filesystem::path& path,
+                                     const std::function<void()>& after_each_part = {});
 
 }  // namespace nonio::host

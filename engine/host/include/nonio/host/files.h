@@ -62,6 +62,20 @@ class ReadFile {
 Expected<void> read_parts(const std::filesystem::path& path,
                           const std::function<void(std::string_view)>& take);
 Expected<std::string> read_file(const std::filesystem::path& path);
+/// A file that people write (campaign.toml, site.toml): refused above 1 MB, by its size and unread.
+Expected<std::string> read_small_file(const std::filesystem::path& path);
+
+/// Where the results of a campaign are: OUT/<id>, or OUT/ab/<id> in an output folder whose campaigns
+/// lie by the first two digits of the SHA-256 of their ids.
+std::filesystem::path results_folder(const std::filesystem::path& out, const std::string& id);
+/// Beside the night's own files; there in such an output folder.
+inline constexpr const char* hashed_mark = ".nonio/hashed";
+
+/// Whether there is something, a link that leads nowhere included; an error if that cannot be told.
+Expected<bool> is_there(const std::filesystem::path& path);
+
+/// A path as text: bytes that are not UTF-8 (a name in Latin-1) become \\xe9.
+std::string path_text(std::string_view path);
 
 /// `relative` below `base`, with every link resolved; an error if it would lead outside.
 Expected<std::filesystem::path> path_inside(const std::filesystem::path& base,

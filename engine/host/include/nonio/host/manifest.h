@@ -49,6 +49,7 @@ struct Manifest {
 struct Limits {
   double seconds = 600.0;
   double memory_MB = 4096.0;
+  double disk_seconds = 60.0;  ///< without a sign of life, in the survey
 };
 
 /// `[signing]` of site.toml: where the key is, where its password comes from, time stamps, and whom
@@ -87,6 +88,7 @@ struct SiteFile {
   RawOptions options;
   Limits limits;
   KeyLines lines;
+  bool hashed_folders = false;     ///< results in OUT/ab/<id>
   std::string settings;            ///< TOML: what of the file has a say in a certificate
   std::string evaluation;          ///< TOML: what of it has a say in results
   std::vector<std::string> notes;  ///< sections that this version does not use yet

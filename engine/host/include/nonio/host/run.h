@@ -33,8 +33,9 @@ struct RunOptions {
 /// holds (findings) is read again for the summary.
 struct CampaignState {
   std::string id;
-  std::string folder;            ///< relative to the site
+  std::string folder;            ///< relative to the site, in the bytes of the file system
   bool named_by_folder = false;  ///< its manifest gives no id
+  bool is_campaign = true;       ///< false: a folder of which nobody knows what lies in it
   enum class Action { todo, done, unchanged } action = Action::todo;
   std::string reason;  ///< why it is to do, or why not
   std::string status;  ///< ok, attention, failed; empty while it is to do
@@ -42,6 +43,16 @@ struct CampaignState {
   std::vector<std::uint64_t> readings{};  ///< of its files' SHA-256 the begin, until compared
   /// Of those that another campaign has too, and where that one stands in the list of campaigns.
   std::vector<std::pair<std::uint64_t, std::uint32_t>> twins{};
+  /// The same as its record knew it, with the other one's id.
+  std::vector<std::pair<std::uint64_t, std::string>> twins_before{};
+};
+
+/// A campaign that has results and is not in the site any more. Its results stay until a person
+/// removes them, which says that this was meant.
+struct Vanished {
+  std::string id, folder;   ///< folder: where it was, as text
+  std::uint64_t night = 0;  ///< in which it was done last
+  std::string why;          ///< what is there instead, and what to do
 };
 
 /// What the run tells while it goes on.
@@ -61,7 +72,10 @@ struct Night {
   std::vector<std::string> notes;
   std::vector<RegisterEntry> issued;  ///< certificates that are new since the night before
   std::vector<WaitingDraft> waiting;  ///< for their release
-  std::size_t failed() const;
+  std::vector<Vanished> vanished;     ///< ordered by id
+  std::size_t failed() const;         ///< campaigns, and folders that could not be listed
+  /// Whether anything failed or vanished.
+  bool any_failed() const { return failed() > 0 || !vanished.empty(); }
 };
 
 /// The nightly run over a site. Returns when every campaign is done, or after a call of

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "earlier_results.h"
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+
+#include "nonio/host/files.h"
+#include "nonio/host/manifest.h"
+#include "nonio/host/record.h"
+
+namespace nonio::host {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Of the folders in a folder; none if it is not there.
+std::vector<std::string> names_in(const fs::path& folder, std::error_code& error) {
+  std::vector<std::string> names;
+  std::error_code here;
+  fs::directory_iterator it(folder, here);
+  if (here == std::errc::no_such_file_or_directory) return names;
+  for (; !here && it != fs::directory_iterator(); it.increment(here))
+    if (it->is_directory(here)) names.push_back(it->path().filename().string());
+  if (here) error = here;
+  return names;
+}
+
+}  // namespace
+
+Expected<std::vector<EarlierResult>> unclaimed_results(
+    const fs::path& out, const std::vector<CampaignState>& campaigns) {
+  std::vector<std::string_view> claimed;
+  for (const CampaignState& c : campaigns)
+    if (!c.named_by_folder) claimed.push_back(c.id);
+  std::sort(claimed.begin(), claimed.end());
+  std::vector<EarlierResult> found;
+  std::error_code error;
+  const auto take = [&](const fs::path& folder) {
+    std::string id = folder.filename().string();
+    if (!is_campaign_id(id) || std::binary_search(claimed.begin(), claimed.end(), id)) return;
+    if (const auto record = read_record(folder))
+      found.push_back({std::move(id), record->folder, record->night, record->status == "failed"});
+  };
+  const bool hashed = results_folder(out, "a") != out / "a";
+  for (const std::string& name : names_in(out, error)) {
+    if (!hashed) take(out / name);
+    if (hashed && name.size() == 2)
+      for (const std::string& id : names_in(out / name, error)) take(out / name / id);
+  }
+  if (error)
+    return fail("cannot list the output folder " + out.string() + ": " + error.message());
+  std::sort(found.begin(), found.end(),
+            [](const EarlierResult& a, const EarlierResult& b) { return a.id < b.id; });
+  return found;
+}
+
+std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
+                                  const std::vector<CampaignState>& campaigns,
+                                  const std::vector<SiteWalk::Unlisted>& unlisted,
+                                  const fs::path& out, std::vector<std::string>& notes) {
+  std::vector<Vanished> vanished;
+  if (earlier.empty()) return vanished;
+  std::map<std::string, std::string_view> id_of;  // by folder
+  for (const CampaignState& c : campaigns) id_of.emplace(path_text(c.folder), c.id);
+  for (const EarlierResult& e : earlier) {
+    const auto now = id_of.find(e.folder);
+    const std::string meant =
+        "if that is meant, remove " + results_folder(out, e.id).string() + ", else bring it back";
+    const auto above = std::find_if(unlisted.begin(), unlisted.end(), [&](const auto& u) {
+      const std::string folder = path_text(u.folder);
+      return e.folder == folder || e.folder.starts_with(folder + "/");
+    });
+    if (now != id_of.end() && now->second == e.id) continue;
+    if (now != id_of.end() && e.failed)
+      notes.push_back(results_folder(out, e.id).string() + " is left over: it says that " + e.folder +
+                      " failed, which is the campaign " + std::string(now->second) + " now");
+    else if (now != id_of.end())
+      vanished.push_back({e.id, e.folder, e.night,
+                          "its folder " + e.folder + " is the campaign " +
+                              std::string(now->second) + " now; " + meant});
+    else if (above != unlisted.end())
+      vanished.push_back({e.id, e.folder, e.night,
+                          "it was not seen: the folder " + path_text(above->folder) +
+                              " could not be listed"});
+    else
+      vanished.push_back({e.id, e.folder, e.night,
+                          "its folder " + e.folder + " is gone, or has no " +
+                              std::string(manifest_name) + " any more; " + meant});
+  }
+  return vanished;
+}
+
+}  // namespace nonio::host

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Loaded before the C library (LD_PRELOAD): calls on paths that end as NONIO_FAULTS says fail, or never
+// return. NONIO_FAULTS is "CALL:END:ERRNO" or "CALL:END:hang", several with a space between; CALL is
+// open or stat.
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdarg>
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+
+bool ends_with(const char* text, const char* end, std::size_t size) {
+  const std::size_t length = std::strlen(text);
+  return length >= size && std::strncmp(text + length - size, end, size) == 0;
+}
+
+/// errno of the fault, or 0.
+int fault(const char* call, const char* path) {
+  const char* rule = std::getenv("NONIO_FAULTS");
+  while (rule != nullptr && *rule != '\0') {
+    const char* const end = std::strchr(rule, ':');
+    const char* const what = end == nullptr ? nullptr : std::strchr(end + 1, ':');
+    if (what == nullptr) return 0;
+    if (std::strncmp(rule, call, static_cast<std::size_t>(end - rule)) == 0 &&
+        ends_with(path, end + 1, static_cast<std::size_t>(what - end - 1))) {
+      while (std::strncmp(what + 1, "hang", 4) == 0) ::pause();
+      return std::atoi(what + 1);
+    }
+    rule = std::strchr(what, ' ');
+    if (rule != nullptr) ++rule;
+  }
+  return 0;
+}
+
+template <class Call, class... Arguments>
+int pass_on(const char* name, const char* kind, const char* path, Arguments... arguments) {
+  if (const int code = fault(kind, path); code != 0) {
+    errno = code;
+    return -1;
+  }
+  return reinterpret_cast<Call>(::dlsym(RTLD_NEXT, name))(arguments...);
+}
+
+using Open = int (*)(const char*, int, mode_t);
+using OpenAt = int (*)(int, const char*, int, mode_t);
+using Stat = int (*)(const char*, struct stat*);
+using StatAt = int (*)(int, const char*, struct stat*, int);
+
+mode_t mode_of(int flags, va_list list) {
+  return (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(list, mode_t) : 0;
+}
+
+}  // namespace
+
+#define NONIO_OPEN(name)                                            \
+  extern "C" int name(const char* path, int flags, ...) {           \
+    va_list list;                                                   \
+    va_start(list, flags);                                          \
+    const mode_t mode = mode_of(flags, list);                       \
+    va_end(list);                                                   \
+    return pass_on<Open>(#name, "open", path, path, flags, mode);   \
+  }
+#define NONIO_OPEN_AT(name)                                                   \
+  extern "C" int name(int folder, const char* path, int flags, ...) {         \
+    va_list list;                                                             \
+    va_start(list, flags);                                                    \
+    const mode_t mode = mode_of(flags, list);                                 \
+    va_end(list);                                                             \
+    return pass_on<OpenAt>(#name, "open", path, folder, path, flags, mode);   \
+  }
+#define NONIO_STAT(name)                                             \
+  extern "C" int name(const char* path, struct stat* info) {         \
+    return pass_on<Stat>(#name, "stat", path, path, info);           \
+  }
+
+NONIO_OPEN(open)
+NONIO_OPEN(open64)
+NONIO_OPEN_AT(openat)
+NONIO_OPEN_AT(openat64)
+#undef stat64
+#undef lstat64
+NONIO_STAT(stat)
+NONIO_STAT(lstat)
+extern "C" int stat64(const char* path, struct stat64* info) {
+  return pass_on<int (*)(const char*, struct stat64*)>("stat64", "stat", path, path, info);
+}
+extern "C" int lstat64(const char* path, struct stat64* info) {
+  return pass_on<int (*)(const char*, struct stat64*)>("lstat64", "stat", path, path, info);
+}
