@@ -166,6 +166,20 @@ TEST_F(LongTerm, ListsFromBeforeTheSignatureOnlyWhileTheyAreOfUse) {
   EXPECT_EQ(check_of(verified, "updates.needed").state, Check::State::fails) << all_of(verified);
 }
 
+/// Whoever has the key of an authority of long ago can make lists of that time.
+TEST_F(LongTerm, ListsCountOnlyIfTheyAreOlderThanTheEndOfTheirAuthority) {
+  const sign::Time root_has_run_out = now + 3100 * day;
+  const std::string before = issued(), good = list(now + day);
+  const auto data = sign::prolong(before, how(now + 2 * day, good));
+  ASSERT_TRUE(data) << data.error().message;
+  EXPECT_TRUE(sign::verify_pdf(data->bytes, verifier(long_after)).holds());
+  EXPECT_FALSE(sign::verify_pdf(data->bytes, verifier(root_has_run_out)).holds());
+  EXPECT_FALSE(sign::verify_pdf(before, verifier(root_has_run_out, good)).holds());
+  const auto verified =
+      sign::verify_pdf(prolonged(before, now + 2 * day, good, time), verifier(root_has_run_out));
+  EXPECT_TRUE(verified.holds()) << all_of(verified);
+}
+
 TEST_F(LongTerm, ARevokedKeyIsNotProlonged) {
   const std::string before = issued();
   const auto done = prolong(before, now + 2 * day, list(now + day, &ada, now - day), time);

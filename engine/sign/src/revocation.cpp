@@ -183,13 +183,16 @@ Expected<std::optional<Said>> heard(const Statement& s, X509* one, X509* issuer)
 std::string kind_of(const Statement& s) { return s.answer ? "answer (OCSP)" : "list"; }
 
 /// Empty if it counts.
-std::string why_not(const Said& said, X509* one, Time at, Time seen) {
+std::string why_not(const Said& said, X509* one, X509* issuer, Time at, Time seen) {
   const std::string whose = " for " + quoted(subject_of(one));
   if (said.made > seen + clock_tolerance)
     return "is of " + text_of(said.made) + ", later than it was seen";
   if (said.next == 0) return "does not say how long it is good for (nextUpdate)";
   if (said.next < seen && said.made < at)
     return "was good until " + text_of(said.next) + " only, which is too early" + whose;
+  if (seen > time_of(X509_get0_notAfter(issuer)))
+    return "is not proved to be older than " + text_of(time_of(X509_get0_notAfter(issuer))) +
+           ", when the certificate of " + quoted(subject_of(issuer)) + " ran out";
   if (said.made > time_of(X509_get0_notAfter(one)))
     return "was made when the certificate of " + quoted(subject_of(one)) +
            " had run out, and need not name it any more";
@@ -229,7 +232,7 @@ Expected<bool> vouches(const Statement& s, X509* one, X509* issuer, const Revoca
   if (!said) return fail(said.error());
   if (!*said) return false;
   if (auto good = check_not_revoked(**said, one, revocation); !good) return fail(good.error());
-  return why_not(**said, one, revocation.at, s.seen).empty();
+  return why_not(**said, one, issuer, revocation.at, s.seen).empty();
 }
 
 namespace {
@@ -263,7 +266,7 @@ class Line {
       if (auto whole = check_whole(list, issuer_); !whole) return whole;
       const Said said = said_by(list, one_);
       if (auto good = check_not_revoked(said, one_, revocation_); !good) return good;
-      note(why_not(said, one_, revocation_.at, revocation_.now), "list", said.made, "");
+      note(why_not(said, one_, issuer_, revocation_.at, revocation_.now), "list", said.made, "");
     }
     return {};
   }
@@ -274,7 +277,7 @@ class Line {
       if (!said) return fail("in the file: " + said.error().message);
       if (!*said) continue;
       if (auto good = check_not_revoked(**said, one_, revocation_); !good) return good;
-      const std::string why = why_not(**said, one_, revocation_.at, s.seen);
+      const std::string why = why_not(**said, one_, issuer_, revocation_.at, s.seen);
       if (why.empty()) s.used = true;
       note(why, kind_of(s), (*said)->made, " in the file");
     }

@@ -48,7 +48,8 @@ Expected<std::string> check_revocation(const std::vector<CertificatePtr>& chain,
                                        bool& looked);
 /// Whether the statement is of `issuer`, about that certificate, and proves that it was good at
 /// `at`: it was of use when it was seen, or made after the certificate was used, and in any case
-/// before the certificate ran out. An error if it says that the certificate was revoked.
+/// before the certificate ran out, and seen before that of the issuer did. An error if it says that
+/// the certificate was revoked.
 Expected<bool> vouches(const Statement& statement, X509* certificate, X509* issuer,
                        const Revocation& revocation);
 
