@@ -111,7 +111,7 @@ def campaigns():
             tail = re.search(r"(?ms)^\[options\..*", text)
             options = tail[0] if tail else ""
             text = with_limits(complete(text[:tail.start()] if tail else text, languages, analyses)) + "\n" + options
-            if "nonio" not in kind and len(languages) == 2:
+            if languages == ["de", "en"]:
                 text = long_names(text)
             yield f"{kind}-{end}", text, {p.name: p.read_bytes() for p in (SITE / sample).glob("*.csv")}
         text, files = six_axes()

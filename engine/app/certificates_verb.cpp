@@ -135,7 +135,8 @@ Verb certificates_verb(Common& common) {
           common_arguments(common)),
       .footer =
           "A line for each number that was ever drawn: number, state, campaign, date, reason, who\n"
-          "released or withdrew it. The name is what that person stated, the account is the operating\n"
+          "released or withdrew it. The name is what that person stated, the account is the "
+          "operating\n"
           "system's (user@host): a record, not a proof of the person.\n"
           "  issued     in force\n"
           "  amended    replaced by another number, because the data changed\n"

@@ -115,8 +115,7 @@ std::string instrument_text(const NewCampaign& c) {
           offered("instrument", "valid_until", "2027-01-12") +
           offered("instrument", "sphere_um", "0.5") + offered("instrument", "probe_um", "1.0");
   text += "\n# " + host::campaign_key_help("sensor") + "\n# [[sensor]]\n" +
-          offered("sensor", "measures", "\"material\"") +
-          offered("sensor", "serial", "\"T-001\"") +
+          offered("sensor", "measures", "\"material\"") + offered("sensor", "serial", "\"T-001\"") +
           offered("sensor", "calibrated", "2026-01-12") +
           offered("sensor", "certificate", "\"SO-2026-0009\"");
   text +=

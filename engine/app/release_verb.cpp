@@ -171,7 +171,8 @@ Verb release_verb(Common& common) {
       .arguments = joined(
           {required(existing(Takes::folder, {"CAMPAIGN", &wanted->folder,
                                              "Folder of the campaign; with --list also a site"})),
-           {"--by", &wanted->by, "Who releases it: this name stands on the certificate. It is a statement, not an\n"
+           {"--by", &wanted->by,
+            "Who releases it: this name stands on the certificate. It is a statement, not an\n"
             "authentication; the register also keeps the account (user@host)"},
            one_of({"author", "authoriser"},
                   {"--as", &wanted->role,

@@ -44,8 +44,8 @@ class Numbers {
   /// register holds. Of what was issued before it is said if its numbers are others now. A draft is
   /// entered as one that waits for `folder`'s release (relative to the site).
   Expected<void> issue(Evaluated& evaluated, const std::string& folder) const;
-  /// Nothing is signed that neither a person nor the site's rules have released. What is not part of
-  /// a certificate nobody releases: by the rules it is signed, else it is left out and a finding
+  /// Nothing is signed that neither a person nor the site's rules have released. What is not part
+  /// of a certificate nobody releases: by the rules it is signed, else it is left out and a finding
   /// says so.
   void hold_unreleased(Evaluated& evaluated) const;
   /// A number that was drawn for a campaign keeps the reason why it is not issued. Silent: there is

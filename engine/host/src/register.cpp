@@ -151,7 +151,8 @@ Expected<void> Register::note_persons(std::vector<RegisterEntry>& entries) {
     RegisterEntry& e = *found->second;
     (issued ? e.released_account : e.withdrawn_account) = text(says, "account");
     if (withdrawn) e.withdrawn_by = text(says, "by");
-    if (const Json& released = says.is_object() && says.contains("released") ? says["released"] : says;
+    if (const Json& released =
+            says.is_object() && says.contains("released") ? says["released"] : says;
         issued && released.is_object() && released.contains("released"))
       e.released_by = text(released["released"], "by");
   }

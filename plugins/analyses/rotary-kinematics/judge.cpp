@@ -79,7 +79,8 @@ class Judge {
   Judge(const Observations& o, const Wish& wish) : o_(o), wish_(wish) {}
 
   Judged done() {
-    if (!fitted() || !with_sigma() || !at_least_as_stated() || !a_circle() || !squareness_known() || !long_enough())
+    if (!fitted() || !with_sigma() || !at_least_as_stated() || !a_circle() || !squareness_known() ||
+        !long_enough())
       return std::move(out_);
     out_.given = true;
     tell_points();
@@ -140,8 +141,8 @@ class Judge {
       if (std::isfinite(u) && u > 0.0) sum += u * u, n += 1.0;
     if (n == 0.0) return true;
     const double stated = std::sqrt(sum / n);
-    out_.findings.push_back(finding("rotary.stated-uncertainty", false,
-                                    {um("u", stated), um("sigma", out_.sigma)}));
+    out_.findings.push_back(
+        finding("rotary.stated-uncertainty", false, {um("u", stated), um("sigma", out_.sigma)}));
     if (stated <= out_.sigma) return true;
     out_.sigma = stated;
     out_.dof = std::numeric_limits<double>::infinity();

@@ -26,11 +26,11 @@ struct Judged {
   std::vector<math::BallCentre> centres;
   bool given = false;  ///< else refused, and the findings say why
   math::RotaryFit fit;
-  double sigma = 0.0;     ///< standard uncertainty that the covariance is scaled with
-  double dof = INFINITY;  ///< of sigma; infinite if it is stated
+  double sigma = 0.0;             ///< standard uncertainty that the covariance is scaled with
+  double dof = INFINITY;          ///< of sigma; infinite if it is stated
   bool sigma_of_centres = false;  ///< it is what the centres state of themselves
   double k = 2.0;                 ///< expands it to 95 %
-  double U_shear = 0.0;   ///< in the plane, from the bound of the linear axes
+  double U_shear = 0.0;           ///< in the plane, from the bound of the linear axes
   std::vector<Finding> findings;
 
   /// Standard uncertainties that the repetition makes.

@@ -137,6 +137,12 @@ Grid changes_of(const Source& source) {
   return changes;
 }
 
+/// So long that the results would not stand on the first page: it stands before the method.
+bool is_long(const Grid& changes) {
+  constexpr std::size_t few = 6;
+  return changes.rows.size() > few;
+}
+
 }  // namespace
 
 std::string amendment_text(const Source& source) {
@@ -155,7 +161,8 @@ void add_amendment(const Source& source, Blocks& blocks) {
       {Note{Level::attention, source.words.get("amendment.title"), replaced_text(source), ""},
        "certificate.amendment"});
   Grid changes = changes_of(source);
-  if (!changes.rows.empty()) blocks.push_back({std::move(changes), "amendment.changes"});
+  if (!changes.rows.empty() && !is_long(changes))
+    blocks.push_back({std::move(changes), "amendment.changes"});
 }
 
 void add_parties(const Source& source, Blocks& blocks) {
@@ -273,6 +280,9 @@ void add_departures(const Source& source, Blocks& blocks) {
 
 void add_method(const Source& source, Blocks& blocks) {
   const CertificateTexts& texts = source.in.campaign.certificate;
+  if (!source.in.issue->replaces.empty())
+    if (Grid changes = changes_of(source); is_long(changes))
+      blocks.push_back({std::move(changes), "amendment.changes"});
   blocks.push_back({Heading{label(source, "method_heading.title"), 2}, "method_heading.title"});
   std::vector<std::string> methods;
   for (const Results::Analysed& a : source.in.results.analyses) {
@@ -441,13 +451,12 @@ void add_authority(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
   const Issue& issue = *source.in.issue;
   blocks.push_back({Spacer{4}});
-  blocks.push_back(
-      {Grid{"",
-            {{w.get("authority.verify"), issue.is_draft() ? "" : w.get("authority.how"),
-              "authority.how"},
-             {w.get("authority.readings"), issue.readings_sha256, "readings"},
-             {w.get("authority.register"), issue.register_id, "register"}}},
-       "authority"});
+  blocks.push_back({Grid{"",
+                         {{w.get("authority.verify"),
+                           issue.is_draft() ? "" : w.get("authority.how"), "authority.how"},
+                          {w.get("authority.readings"), issue.readings_sha256, "readings"},
+                          {w.get("authority.register"), issue.register_id, "register"}}},
+                    "authority"});
 }
 
 /// A draft has neither frame nor code.

@@ -130,7 +130,8 @@ void say_what_was_looked_at(const Source& source, Status& status, bool of_labora
   else if (results.conformity.empty())
     status.text = w.get("status.not_judged");
   else
-    status.level = Level::good, status.text = w.get(of_laboratory ? "status.ok_results" : "status.ok");
+    status.level = Level::good,
+    status.text = w.get(of_laboratory ? "status.ok_results" : "status.ok");
 }
 
 }  // namespace

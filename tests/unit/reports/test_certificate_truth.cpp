@@ -330,7 +330,8 @@ TEST_F(Truth, TheSignatureStandsOnTheFirstPageWhateverIsAboveIt) {
        {std::vector<std::string>{"en"}, {"de", "en"}, {"it", "en"}, {"es", "zh"}}) {
     Case c = whole_case(plugins);
     c.campaign.certificate.languages = languages;
-    c.campaign.customer = c.campaign.customer_address = c.campaign.machine.maker = name + " " + name;
+    c.campaign.customer = c.campaign.customer_address = c.campaign.machine.maker =
+        name + " " + name;
     c.campaign.laboratory.name = name;
     for (int i = 0; i < 8; ++i)
       c.campaign.sensors.push_back({"air", name, name, "1", "2026-01-01", "", "C-1", name});
@@ -347,6 +348,8 @@ TEST_F(Truth, TheSignatureStandsOnTheFirstPageWhateverIsAboveIt) {
     ASSERT_NE(first, std::string::npos);
     EXPECT_LT(frame, bytes.find("/Type /Page\n", first + 1)) << languages.front();
     EXPECT_TRUE(has(pages[0], "B. Verdi")) << languages.front();
+    EXPECT_TRUE(has(pages[0], "18.8")) << "the results begin there too";
+    EXPECT_TRUE(has(read_pdf(bytes).all(), "1 → 2"));
   }
 }
 
@@ -359,8 +362,10 @@ TEST_F(Truth, TheRegistersIdentityStandsInBothWithTheSameWords) {
   std::erase_if(xml, [](char x) { return x == '\n'; });
   for (std::size_t at; (at = xml.find("> ")) != std::string::npos;) xml.erase(at + 1, 1);
   const std::string pages = page(c);
-  EXPECT_TRUE(has(xml, "<dcc:value>" + issue.register_id + "</dcc:value><dcc:name>"
-                       "<dcc:content lang=\"it\">Registro")) << xml;
+  EXPECT_TRUE(has(xml, "<dcc:value>" + issue.register_id +
+                           "</dcc:value><dcc:name>"
+                           "<dcc:content lang=\"it\">Registro"))
+      << xml;
   EXPECT_TRUE(has(xml, "lang=\"en\">Register of certificates<"));
   EXPECT_TRUE(has(pages, issue.register_id));
   EXPECT_TRUE(has(pages, "Register of certificates"));

@@ -75,8 +75,10 @@ TEST_F(PdfReport, WhatIsForTheLaboratoryStandsInItsPartAlone) {
   Case c = usual();
   for (auto& a : c.results.analyses) a.evaluation.findings.clear();
   decide(c, "iso230-2", "A", 50e-6, Decision::conforms);
-  c.results.analyses.front().evaluation.findings = {
-      {.id = "model.unrepeatable", .attention = true, .evidence = {}, .texts = {{"part", "Axis"}, {"axis", "X"}}}};
+  c.results.analyses.front().evaluation.findings = {{.id = "model.unrepeatable",
+                                                     .attention = true,
+                                                     .evidence = {},
+                                                     .texts = {{"part", "Axis"}, {"axis", "X"}}}};
   Results::Written table{"fanuc", "1", {}};
   Finding refused{.id = "table.refused-reversal", .attention = true};
   refused.measurement = "X";
@@ -485,7 +487,8 @@ TEST_F(PdfReport, PlansAndTheirFindingsAreShown) {
   for (const char* what :
        {"Plans: stops for the diagonals", "step X", "448", "0.9956", "Flat diagonals"})
     EXPECT_TRUE(has(en, what)) << what;
-  EXPECT_EQ(occurrences(en, "Flat diagonals"), 3U) << "at the top, beside the plans, with its advice";
+  EXPECT_EQ(occurrences(en, "Flat diagonals"), 3U)
+      << "at the top, beside the plans, with its advice";
   for (const char* what : {"Piani: fermate", "passo X", "0,9956"})
     EXPECT_TRUE(has(it, what)) << what;
 }

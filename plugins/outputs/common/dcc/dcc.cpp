@@ -379,7 +379,8 @@ class Writer {
           result_text(c.values[i], c.U.empty() ? std::nullopt : std::optional(c.U[i]), c.quantity);
       add(values, said.value);
       if (c.U.empty()) continue;
-      add(Us, said.U.empty() ? "0" : said.U), add(ks, number_text(c.k, Quantity::number)), add(ps, "0.95");
+      add(Us, said.U.empty() ? "0" : said.U), add(ks, number_text(c.k, Quantity::number)),
+          add(ps, "0.95");
     }
     xml_.open("dcc:quantity", c.ref_type.empty() ? "" : "refType=\"" + c.ref_type + "\"");
     text("dcc:name", c.name);
@@ -416,14 +417,9 @@ class Writer {
       if (about_.only_with_U && !first && !count && !c.U) continue;
       const auto finite = [](double x) { return std::isfinite(x); };
       const auto n = std::count_if(c.values.begin(), c.values.end(), finite);
-      Column out{c.name,
-                 first   ? "basic_nominalValue"
-                 : count ? ""
-                         : "basic_measuredValue",
-                 c.quantity,
-                 c.values,
-                 {},
-                 2.0};
+      Column out{c.name,     first ? "basic_nominalValue" : count ? "" : "basic_measuredValue",
+                 c.quantity, c.values,
+                 {},         2.0};
       if (c.U) out.U.assign(c.values.size(), *c.U);
       if (n == static_cast<std::ptrdiff_t>(c.values.size()) && n > 0)
         whole.push_back(std::move(out));

@@ -54,7 +54,7 @@ struct About {
   Text lowest{}, highest{}, equipment{}, item{};  ///< what else is said of instrument and item
   Text uncertainty{};                             ///< how it was determined
   Text register_name{};                           ///< what the register's identity is called
-  Text released{};  ///< how it was released, where no person did
+  Text released{};                                ///< how it was released, where no person did
   std::vector<Statement> statements{};
   Text rule{};         ///< by which was decided
   std::string norm{};  ///< its name

@@ -313,7 +313,8 @@ void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
         const std::optional<double> U =
             i < s.U.size() && std::isfinite(s.U[i]) ? std::optional(s.U[i]) : std::nullopt;
         const bool none = !U || !(*U > 0.0);
-        if (none && source.certificate && std::fabs(s.value[i]) > nothing) continue;  // without its U
+        if (none && source.certificate && std::fabs(s.value[i]) > nothing)
+          continue;  // without its U
         by_definition |= none;
         const Printed shown = printed_result(s.value[i], U, s.quantity, source.language());
         table.rows.push_back(

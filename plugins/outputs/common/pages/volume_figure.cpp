@@ -200,7 +200,8 @@ Plot volume_plot(const Source& source, const Volume& v) {
   Plot plot;
   plot.title = source.words.get("plot.volume", {{"factor", times}});
   const std::string missing = v.left_out();
-  plot.x_title = extent(source, v) + " " + source.words.get("plot.volume_scale", {{"factor", times}});
+  plot.x_title =
+      extent(source, v) + " " + source.words.get("plot.volume_scale", {{"factor", times}});
   if (!source.certificate)  // it has no U
     plot.x_title +=
         " " +
