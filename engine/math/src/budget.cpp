@@ -22,6 +22,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <tuple>
 
 #include "finding_builder.h"
 #include "nonio/math/distributions.h"
@@ -215,12 +217,25 @@ std::vector<double> reading_times(const Observations& o) {
   const bool timed =
       o.time.size() == o.size() &&
       std::all_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); });
+  // The order of rows says nothing: run by run, up and then down.
+  const auto when = [&](std::size_t i) {
+    if (timed) return std::tuple(o.time[i], 0, 0.0);
+    const bool down =
+        !o.axes.empty() && !o.axes.front().approach.empty() && o.axes.front().approach[i] < 0;
+    const double at = o.axes.empty() ? 0.0 : o.axes.front().position[i];
+    return std::tuple(static_cast<double>(o.run_of(i)), down ? 1 : 0, down ? -at : at);
+  };
+  std::vector<std::size_t> order(o.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return when(a) < when(b); });
   std::vector<double> out(o.size(), 0.0);
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = timed ? o.time[i] : static_cast<double>(i);
-  if (out.empty()) return out;
-  const auto [first, last] = std::minmax_element(out.begin(), out.end());
-  const double from = *first, whole = *last - *first;
-  for (double& t : out) t = whole > 0.0 ? (t - from) / whole : 0.0;
+  if (out.size() < 2) return out;
+  const double first = timed ? o.time[order.front()] : 0.0,
+               whole = timed ? o.time[order.back()] - first : static_cast<double>(out.size() - 1);
+  for (std::size_t k = 0; k < order.size(); ++k)
+    out[order[k]] =
+        whole > 0.0 ? ((timed ? o.time[order[k]] : static_cast<double>(k)) - first) / whole : 0.0;
   return out;
 }
 

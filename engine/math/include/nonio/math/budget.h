@@ -109,7 +109,8 @@ struct ReadingModel {
   void see_residuals(std::span<const std::vector<double>> rows, double dof);
 };
 
-/// When each reading was taken, 0 to 1 over all of them: by their times, or else by their order.
+/// When each reading was taken, 0 to 1 over all of them: by their times, or else run by run, up and
+/// then down. The order of the rows does not matter.
 std::vector<double> reading_times(const Observations&);
 
 /// The inputs as the manifest states them. Nothing is assumed for what it does not say.
