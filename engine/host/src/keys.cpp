@@ -17,11 +17,11 @@ using Words = std::string_view;
 constexpr Words not_negative = "wanted a number that is not negative";
 constexpr Words above_0 = "wanted a number above 0";
 // Beyond these nobody measures: a slip of the unit or of the keyboard.
-constexpr Words some_um = "wanted um, from 0 to 10000";
-constexpr Words some_arcsec = "wanted arcsec, from 0 to 36000";
-constexpr Words some_K = "wanted a difference of temperatures in K, from 0 to 60";
+constexpr Words some_um = "wanted a number that is not negative, at most 10000 um";
+constexpr Words some_arcsec = "wanted a number that is not negative, at most 36000 arcsec";
+constexpr Words some_K = "wanted a number that is not negative, a difference of at most 60 K";
 constexpr Words an_expansion = "wanted um/(m K) from -5 to 200, 11.5 for steel";
-constexpr Words an_expansion_range = "wanted um/(m K), from 0 to 100";
+constexpr Words an_expansion_range = "wanted a number that is not negative, at most 100 um/(m K)";
 constexpr double most_um = 1e4, most_arcsec = 36000.0, most_K = 60.0, most_mm = 1e6;
 constexpr double least_expansion = -5.0, most_expansion = 200.0, most_expansion_range = 100.0;
 constexpr Words two_numbers =
@@ -248,7 +248,7 @@ constexpr Key environment_keys[] = {
      .holds = number,
      .help = "Largest distance of beam and axis over the travel.",
      .unit = "mm",
-     .wanted = "wanted mm, from 0 to 10000",
+     .wanted = "wanted a number that is not negative, at most 10000 mm",
      .least = 0.0,
      .most = 1e4},
     {.name = "temperature_range_K",
