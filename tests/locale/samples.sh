@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# samples.sh PROGRAM SITE PLUGIN-FOLDER LOCALE-FOLDER
+# samples.sh PROGRAM SITE PLUGIN-FOLDER LOCALE-FOLDER TAKER
 set -euo pipefail
-program=$1 site=$2 plugins=$3 locales=$4
+program=$1 site=$2 plugins=$3 locales=$4 taker=$5
 if ! command -v localedef > /dev/null || [ ! -f /usr/share/i18n/locales/de_DE ]; then
   echo "skipped: no localedef or no source of de_DE (Debian package locales)"
   exit 77
@@ -15,7 +15,7 @@ trap 'rm -rf "$work"' EXIT
 
 night() {  # LOCALE FOLDER
   local status=0
-  LC_ALL=$1 "$program" run "$site" --out "$work/$2" --plugin-path "$plugins" > "$work/$2.log" 2>&1 || status=$?
+  LC_ALL=$1 LD_PRELOAD=$taker ASAN_OPTIONS=verify_asan_link_order=0 "$program" run "$site" --out "$work/$2" --plugin-path "$plugins" > "$work/$2.log" 2>&1 || status=$?
   # One sample is broken on purpose: status 1.
   [ "$status" -eq 1 ] || { cat "$work/$2.log"; echo "status $status under $1, wanted 1"; exit 1; }
 }

@@ -152,6 +152,69 @@ class Confinement(NightTest):
         self.assertIn("did not survive loading: no answer within 10 s", done.stderr)
         self.assertLess(seconds, 18.0)
 
+    def verb(self, *args, plugins="hostile", expect=None):
+        done = subprocess.run([NONIO, *map(str, args), "--plugin-path", str(PLUGINS / plugins)],
+                              capture_output=True, text=True, timeout=120)
+        if expect is not None:
+            self.assertEqual(done.returncode, expect, done.stderr + done.stdout)
+        return done
+
+    def test_a_verb_prints_its_own_results_only(self):
+        self.campaign("a")
+        for args in (("plugins", "--json"), ("compare", self.site / "a", "--json")):
+            done = self.verb(*args, plugins="on_load_prints", expect=0)
+            self.assertNotIn("forged", json.dumps(json.loads(done.stdout)))
+            self.assertIn("forged", done.stderr)
+
+    def test_a_verb_outlives_what_plugins_do_while_they_are_loaded(self):
+        self.campaign("a")
+        for how, words in {"quits": "ended the process", "starts": "tried what no plugin may do",
+                           "kills": "tried what no plugin may do"}.items():
+            done = self.verb("compare", self.site / "a", plugins=f"on_load_{how}", expect=0)
+            self.assertIn("did not survive loading: " + words, done.stderr, how)
+
+    def test_the_key_is_hidden_from_plugins_in_nights_and_verbs(self):
+        self.campaign("a", run=GOOD)
+        folder = self.site / "keys"
+        folder.mkdir()
+        key = folder / "lab.p12"
+        key.write_bytes(b"secret")
+        (folder / "password").write_text("secret\n")
+        reads = PLUGINS / "on_load_reads"
+        for secret in (key, folder / "password"):
+            environment = {**os.environ, "NONIO_TEST_KEY": str(secret)}
+            (self.site / "site.toml").write_text("")
+            said = lambda *args: subprocess.run([NONIO, *map(str, args), "--plugin-path", reads], env=environment,
+                                                capture_output=True, text=True, timeout=120).stderr
+            compare = ("compare", self.site / "a")
+            self.assertIn("it has the key", said(*compare))  # nobody has said that it is one
+            (self.site / "site.toml").write_text(
+                '[signing]\npkcs12 = "keys/lab.p12"\npassword_file = "keys/password"\n')
+            self.assertNotIn("it has the key", said(*compare))
+            self.assertNotIn("it has the key", said("run", self.site, "--out", self.out))
+
+    def test_a_verb_loads_what_hangs_once(self):
+        start = time.monotonic()
+        self.verb("plugins", plugins="on_load_hangs")
+        self.assertLess(time.monotonic() - start, 18.0)
+
+    def test_no_plugin_code_in_the_process_of_a_verb(self):
+        run = subprocess.Popen([NONIO, "plugins", "--plugin-path", str(PLUGINS / "on_load_hangs")],
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        with_plugins = set()
+        for _ in range(30):
+            for pid in [run.pid, *processes_below(run.pid)]:
+                try:
+                    if "test_on_load_hangs.so" in pathlib.Path(f"/proc/{pid}/maps").read_text():
+                        with_plugins.add(pid)
+                except OSError:
+                    pass
+            time.sleep(0.05)
+        run.kill()
+        run.wait()
+        self.assertTrue(with_plugins)
+        self.assertNotIn(run.pid, with_plugins)
+
     @unittest.skipUnless(os.geteuid() == 0, "only root is refused")
     def test_root_loads_no_plugin_that_others_can_change(self):
         self.campaign("a")

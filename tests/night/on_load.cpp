@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Does harm before anything in it is called: what, says NONIO_TEST_HOW.
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cfenv>
@@ -20,6 +21,8 @@ int harm() {
   if (how == "kills") ::kill(::getppid(), SIGKILL);
   if (how == "prints") std::puts("{\"event\":\"forged\"}"), std::fflush(stdout);
   if (how == "rounds") std::fesetround(FE_UPWARD);
+  if (how == "reads" && ::open(std::getenv("NONIO_TEST_KEY"), O_RDONLY) >= 0)
+    std::puts("it has the key"), std::fflush(stdout);
   if (how == "starts") ::execl("/bin/sh", "sh", "-c", "kill -9 $PPID", nullptr);
   return 0;
 }

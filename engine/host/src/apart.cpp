@@ -24,6 +24,10 @@ namespace {
 enum class Place { anywhere, wanted_apart, apart };
 Place place = Place::anywhere;
 bool is_muted = false;
+std::vector<std::filesystem::path>& hidden() {
+  static std::vector<std::filesystem::path> files;
+  return files;
+}
 
 void flush_output() {
   std::cout.flush();
@@ -49,6 +53,10 @@ void keep_plugins_apart() {
   if (place == Place::anywhere) place = Place::wanted_apart;
 }
 
+void hide_from_plugins(std::vector<std::filesystem::path> secrets) {
+  hidden() = std::move(secrets);
+}
+
 void step_aside() {
   if (place != Place::wanted_apart) return;
   place = Place::apart;
@@ -64,12 +72,16 @@ void step_aside() {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(2);
   forget_environment();
-  if (const std::string why = confine_visit(); !why.empty()) {
+  std::string why = confine_visit();
+  if (why.empty()) why = hide_files(hidden());
+  if (!why.empty()) {
     std::cerr << "nonio: the plugins cannot be confined: " << why << "\n";
     ::_exit(2);
   }
   keep_process_state();
 }
+
+bool is_apart() { return place == Place::apart; }
 
 Muted::Muted() {
   if (place != Place::apart || is_muted) return;

@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <vector>
+
 namespace nonio::host {
 
 /// Goes on in a child if `keep_plugins_apart` was asked for; the first time only.
 void step_aside();
+
+/// Whether this is such a child, or one of its own.
+bool is_apart();
+
+/// Where plugins are kept apart: they cannot read these files. Before they are loaded.
+void hide_from_plugins(std::vector<std::filesystem::path> secrets);
 
 /// While it lives, standard output is standard error, where plugins are kept apart.
 class Muted {

@@ -35,7 +35,7 @@ ChildEnd wait_for_child(pid_t child, double seconds) {
       ::kill(-child, SIGKILL);
       ::kill(child, SIGKILL);
       ::waitpid(child, &status, 0);
-      return {false, "no answer within " + std::to_string(static_cast<int>(seconds)) + " s"};
+      return {false, "no answer within " + std::to_string(static_cast<int>(seconds)) + " s", true};
     }
     std::this_thread::sleep_for(pause);
     pause = std::min(pause * 2, std::chrono::microseconds(5000));

@@ -11,6 +11,7 @@ namespace nonio::host {
 struct ChildEnd {
   bool well = false;  ///< it exited with 0
   std::string words;  ///< else: "signal 11 (Segmentation fault)", "exit status 3"
+  bool overdue = false;
 };
 
 /// From the status of waitpid.

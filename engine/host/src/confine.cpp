@@ -17,6 +17,7 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <set>
 #include <string_view>
 
 namespace nonio::host {
@@ -54,15 +55,24 @@ Ruleset everything(int abi) {
 
 std::string why_not(const char* what) { return std::string(what) + ": " + std::strerror(errno); }
 
-void allow_reading(int ruleset, const fs::path& path) {
+void allow_reading(int ruleset, const fs::path& path,
+                   std::uint64_t rights = LANDLOCK_ACCESS_FS_READ_FILE |
+                                          LANDLOCK_ACCESS_FS_READ_DIR) {
   landlock_path_beneath_attr rule{};
   rule.parent_fd = ::open(path.c_str(), O_PATH | O_CLOEXEC);
   if (rule.parent_fd < 0) return;  // what is not there need not be read
   std::error_code error;
-  rule.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE;
-  if (fs::is_directory(path, error)) rule.allowed_access |= LANDLOCK_ACCESS_FS_READ_DIR;
+  rule.allowed_access = rights;
+  if (!fs::is_directory(path, error)) rule.allowed_access &= LANDLOCK_ACCESS_FS_READ_FILE;
   ::syscall(SYS_landlock_add_rule, ruleset, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
   ::close(rule.parent_fd);
+}
+
+std::string apply(int ruleset) {
+  const long done = ::syscall(SYS_landlock_restrict_self, ruleset, 0);
+  const std::string why = done != 0 ? why_not("Landlock") : "";
+  ::close(ruleset);
+  return why;
 }
 
 std::string restrict_files(const std::vector<fs::path>& readable) {
@@ -72,10 +82,23 @@ std::string restrict_files(const std::vector<fs::path>& readable) {
   const auto fd = static_cast<int>(::syscall(SYS_landlock_create_ruleset, &all, sizeof all, 0));
   if (fd < 0) return why_not("Landlock");
   for (const fs::path& path : readable) allow_reading(fd, path);
-  const long done = ::syscall(SYS_landlock_restrict_self, fd, 0);
-  const std::string why = done != 0 ? why_not("Landlock") : "";
-  ::close(fd);
-  return why;
+  return apply(fd);
+}
+
+/// Everything below a folder but the secrets: Landlock says what is allowed, not what is not.
+void allow_all_but(int ruleset, const fs::path& folder, const std::set<fs::path>& above,
+                   const std::set<fs::path>& secrets) {
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const fs::path& path = it->path();
+    std::error_code ignored;
+    // What a link leads to is allowed where it lies.
+    if (it->is_symlink(ignored) || secrets.contains(path)) continue;
+    if (above.contains(path))
+      allow_all_but(ruleset, path, above, secrets);
+    else
+      allow_reading(ruleset, path, LANDLOCK_ACCESS_FS_READ_FILE);
+  }
 }
 
 // ---- system calls: seccomp
@@ -403,6 +426,24 @@ std::string confine_visit() {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return why_not("no_new_privs");
   set_limit(RLIMIT_CORE, 0);
   return has_seccomp() ? forbid_talking() : "";
+}
+
+std::string hide_files(const std::vector<fs::path>& files) {
+  std::set<fs::path> secrets, above;
+  for (const fs::path& file : files) {
+    std::error_code error;
+    const fs::path path = fs::canonical(file, error);
+    if (error) continue;  // there is none to hide
+    secrets.insert(path);
+    for (fs::path p = path.parent_path(); above.insert(p).second;) p = p.parent_path();
+  }
+  if (secrets.empty() || landlock_abi() < 1) return {};
+  const Ruleset reading{LANDLOCK_ACCESS_FS_READ_FILE, 0, 0};
+  const auto fd =
+      static_cast<int>(::syscall(SYS_landlock_create_ruleset, &reading, sizeof reading, 0));
+  if (fd < 0) return why_not("Landlock");
+  allow_all_but(fd, "/", above, secrets);
+  return apply(fd);
 }
 
 std::string confine_files() { return restrict_files({}); }

@@ -28,6 +28,9 @@ std::string confine_computing();
 /// program started, nobody spoken to.
 std::string confine_visit();
 
+/// These files can be read no more; nor what is made from now on in the folders above them.
+std::string hide_files(const std::vector<std::filesystem::path>& secrets);
+
 /// Whether `confine_computing` has taken away what would change working directory and mode mask.
 bool is_computing_confined();
 

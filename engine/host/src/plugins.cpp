@@ -11,6 +11,7 @@
 
 #include "apart.h"
 #include "child.h"
+#include "confine.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
@@ -86,6 +87,9 @@ Probed probe_in_child(std::span<const fs::path> paths) {
   const pid_t child = ::fork();
   if (child == 0) {
     settle_child();
+    if (is_apart()) {
+      if (const std::string why = confine_loading({"/"}); !why.empty()) ::_exit(1);
+    }
     for (std::size_t i = 0; i < paths.size(); ++i) said[i].set("." + try_registering(paths[i]));
     ::_exit(0);
   }
@@ -104,11 +108,16 @@ Probed probe_in_child(std::span<const fs::path> paths) {
 std::vector<std::string> probe(std::span<const fs::path> paths) {
   std::vector<std::string> refusals;
   while (refusals.size() < paths.size()) {
-    for (std::string& r : probe_in_child(paths.subspan(refusals.size())).refusals)
-      refusals.push_back(std::move(r));
+    Probed together = probe_in_child(paths.subspan(refusals.size()));
+    for (std::string& r : together.refusals) refusals.push_back(std::move(r));
     if (refusals.size() == paths.size()) break;
+    if (together.end.overdue) {  // its limit is spent
+      refusals.push_back("did not survive loading: " + together.end.words);
+      continue;
+    }
     const Probed alone = probe_in_child(paths.subspan(refusals.size(), 1));
-    refusals.push_back(alone.refusals.empty() ? "did not survive loading: " + alone.end.words
+    const std::string end = alone.end.well ? "ended the process" : alone.end.words;
+    refusals.push_back(alone.refusals.empty() ? "did not survive loading: " + end
                                               : alone.refusals.front());
   }
   return refusals;

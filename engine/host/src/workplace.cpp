@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "apart.h"
 #include "context.h"
 #include "nonio/host/campaign_reader.h"
 #include "nonio/host/files.h"
+#include "signer.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -39,6 +41,7 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   auto templates = read_templates(*folders, context.templates_sha256);
   if (!templates) return fail(templates.error());
   context.templates = std::move(*templates);
+  if (context.site.signing) hide_from_plugins(secret_files(*context.site.signing, site));
   place->plugins.load(plugin_folders);
   if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
   place->notes = place->plugins.refusal_notes();
