@@ -322,6 +322,15 @@ Expected<void> fill_and_flush(const fs::path& folder, const std::vector<Artifact
   if (!open) return fail(open.error());
   for (std::size_t i = 0; i < open->size(); ++i)
     if (::fsync((*open)[i].get()) != 0) return system_error("cannot flush", folder / files[i].name);
+  for (const Artifact& file : files) {
+    const fs::path path = temporary_path(folder, file.name);
+    drop_cached(path);
+    const auto now = read_file(path);
+    if (!now) return fail(now.error());
+    if (*now != file.bytes)
+      return fail("the disk does not give back what was written to it: " +
+                  (folder / file.name).string());
+  }
   return {};
 }
 
