@@ -308,9 +308,8 @@ Workbench::Directions Workbench::directions(const std::vector<std::size_t>& bloc
     MatrixXd fresh = -out.of_columns * inside;
     fresh.middleRows(first, k) += MatrixXd::Identity(k, k);
     out.of_columns.conservativeResize(Eigen::NoChange, had + rank);
-    out.of_columns.rightCols(rank) =
-        fresh * own.vectors.rightCols(rank) *
-        own.values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+    out.of_columns.rightCols(rank) = fresh * own.vectors.rightCols(rank) *
+                                     own.values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
     out.rank.push_back(rank);
     first += k;
   }
