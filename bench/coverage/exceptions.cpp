@@ -38,12 +38,14 @@ const std::vector<Exception>& exceptions() {
   static const char* const rotary = "direction;centre;radius;angle;distance";
   static const std::vector<Exception> all{
       {'a',
-       "prescribed form: the device and the temperatures count for the whole length, U_fixed and\n"
+       "form attributed to the standards: the device and the temperatures count for the whole "
+       "length, U_fixed and\n"
        "   U_per_length are added, a rectangle has k = 2, and drift counts in two means as if it\n"
        "   did not cancel between neighbouring runs",
        "ISO 230-2;VDI/DGQ", "*", "*"},
       {'b',
-       "covers less, prescribed form: U_EVE takes drift for scatter of single readings within the\n"
+       "covers less, form attributed to the standards: U_EVE takes drift for scatter of single "
+       "readings within the\n"
        "   range of the drift test; a walk, or settling, moves whole runs",
        "ISO 230-2;VDI/DGQ", "drift dominates", "*", true},
       {'c',
