@@ -24,7 +24,7 @@ namespace {
 
 using kit::Bench;
 using kit::Verdict;
-using State = PluginCheck::State;
+using CheckState = PluginCheck::State;
 
 constexpr double scan_seconds = 1.0;
 constexpr const char* of_files[][2] = {
@@ -173,7 +173,7 @@ class Checker {
     const bool asked = request_.only.empty() || request_.only == name;
     if (!asked && !always) return true;
     PluginCheck result = in_child(plugin, name, work);
-    const bool well = result.state == State::passed || result.state == State::skipped;
+    const bool well = result.state == CheckState::passed || result.state == CheckState::skipped;
     if (list != nullptr && well) *list = std::exchange(result.says, {});
     if (asked || !well) tell_(result);
     return well;
@@ -181,10 +181,10 @@ class Checker {
 
   PluginCheck in_child(const std::string& plugin, const std::string& name,
                        const std::function<Verdict(Bench&)>& work) {
-    PluginCheck result{path_.string(), plugin, name, State::passed, {}};
+    PluginCheck result{path_.string(), plugin, name, CheckState::passed, {}};
     SharedWords stage, answer;
     if (!stage.valid() || !answer.valid()) {
-      result.state = State::crashed;
+      result.state = CheckState::crashed;
       result.says = "no memory to share with a child process";
       return result;
     }
@@ -201,13 +201,13 @@ class Checker {
         child < 0 ? ChildEnd{false, "no process"} : wait_for_child(child, 10.0 * request_.seconds);
     const std::string words = answer.get();
     if (!end.well || words.empty()) {
-      result.state = State::crashed;
+      result.state = CheckState::crashed;
       result.says = end.words + (stage.get().empty() ? "" : " in: " + stage.get());
       return result;
     }
-    result.state = words[0] == 'p'   ? State::passed
-                   : words[0] == 'f' ? State::failed
-                                     : State::skipped;
+    result.state = words[0] == 'p'   ? CheckState::passed
+                   : words[0] == 'f' ? CheckState::failed
+                                     : CheckState::skipped;
     result.says = words.substr(1);
     return result;
   }
@@ -233,8 +233,8 @@ class Checker {
     } catch (...) {
       v = kit::failed("threw something in: " + stage.get());
     }
-    const char letter = v.state == Verdict::State::passed   ? 'p'
-                        : v.state == Verdict::State::failed ? 'f'
+    const char letter = v.state == Verdict::CheckState::passed   ? 'p'
+                        : v.state == Verdict::CheckState::failed ? 'f'
                                                             : 's';
     return letter + v.says;
   }
@@ -273,7 +273,7 @@ class Checker {
     for (const auto& p : brought_.outputs)
       list += (p.control ? "controller " : "output ") + p.info.name + "\n";
     return list.empty() ? kit::failed("it registers nothing")
-                        : Verdict{Verdict::State::passed, list};
+                        : Verdict{Verdict::CheckState::passed, list};
   }
 
   Verdict symbols() const {
@@ -313,13 +313,13 @@ void add_names(const Checks& checks, std::vector<std::pair<std::string, std::str
 
 const char* to_text(PluginCheck::State state) {
   switch (state) {
-    case State::passed:
+    case CheckState::passed:
       return "passed";
-    case State::failed:
+    case CheckState::failed:
       return "failed";
-    case State::crashed:
+    case CheckState::crashed:
       return "crashed";
-    case State::skipped:
+    case CheckState::skipped:
       break;
   }
   return "skipped";

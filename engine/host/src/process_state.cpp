@@ -32,7 +32,7 @@ unsigned processor_mode() {
   return mode;
 }
 
-struct State {
+struct Kept {
   unsigned mode = 0;
   std::fenv_t environment{};
   std::string c_locale;
@@ -42,7 +42,7 @@ struct State {
   std::string folder;
 };
 
-std::optional<State> kept;
+std::optional<Kept> kept;
 
 mode_t mode_mask() {
   const mode_t mask = ::umask(0);
@@ -68,7 +68,7 @@ void say(std::string& words, const char* what) {
 }  // namespace
 
 void keep_process_state() {
-  State now;
+  Kept now;
   now.mode = processor_mode();
   std::fegetenv(&now.environment);
   now.c_locale = std::setlocale(LC_ALL, nullptr);
