@@ -86,7 +86,7 @@ class Cases(unittest.TestCase):
                     self.assertNotIn("{", found["advice"])
                     self.assertEqual(self.results[name]["status"], "attention")
                     self.assertEqual(self.tables(name), [])
-                    self.assertIn("table.withheld", json.dumps(self.results[name]["outputs"]))
+                    self.assertIn("table.withheld", json.dumps(self.results[name]))
 
     def test_manifest(self):
         swap = lambda old, new: lambda text: text.replace(old, new, 1)

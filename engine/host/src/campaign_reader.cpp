@@ -156,7 +156,7 @@ class CampaignReader {
     }
     const std::string refused = context_.plugins->refusals();
     if (any)
-      return fail(Error{what_is_wrong(bytes) +
+      return fail(Error{"no reader knows the format of this file: " + what_is_wrong(bytes) +
                             "; or the format of an installed reader (`nonio plugins`)" +
                             (refused.empty() ? "" : "; of the plugins " + refused),
                         m.file, first_content_line(bytes)});

@@ -96,6 +96,12 @@ double step_of(const std::vector<Stroke>& strokes) {
     const double d = all[i] - all[i - 1];
     if (d > 1e-12 && (step == 0.0 || d < step)) step = d;
   }
+  // Few readings may all lie far apart: then the decimals say what the digits are.
+  constexpr double finest = 1e-10;
+  for (double grid = 1e-6; grid > finest; grid /= 10.0)
+    if (std::all_of(all.begin(), all.end(),
+                    [&](double d) { return std::fabs(d / grid - std::round(d / grid)) < 1e-4; }))
+      return step > 0.0 ? std::min(step, grid) : 0.0;
   return step;
 }
 
