@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <csignal>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -81,6 +82,7 @@ int run_night(RunWish& wish, const Common& common) {
   options.own_plugins = Common::own_plugins();
   options.template_folders = common.template_folders();
   options.version = NONIO_VERSION;
+  options.as_root = options.as_root || std::getenv("NONIO_ALLOW_ROOT") != nullptr;
   struct sigaction action {};
   action.sa_handler = [](int) { host::request_stop(); };
   sigaction(SIGINT, &action, nullptr);
@@ -123,7 +125,8 @@ Verb run_verb(Common& common) {
            {"--force", &options.force, "Do every campaign again, changed or not"},
            {"--dry-run", &options.dry_run, "Say what would be done and why; do nothing"},
            {"--root", &options.as_root,
-            "Root may run it, even with plugins that other users can change"},
+            "Root may run it, even with plugins that other users can change; or set "
+            "NONIO_ALLOW_ROOT"},
            templates_argument(common)},
           common_arguments(common)),
       .footer =
