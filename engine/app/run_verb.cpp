@@ -2,6 +2,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -118,6 +119,7 @@ int run_night(RunWish& wish, const Common& common) {
   options.own_plugins = Common::own_plugins();
   options.template_folders = common.template_folders();
   options.version = NONIO_VERSION;
+  options.as_root = options.as_root || std::getenv("NONIO_ALLOW_ROOT") != nullptr;
   catch_signals();
   Progress progress(common.quiet, common.json);
   const host::Night night = host::run_site(options, progress.events());
@@ -163,7 +165,8 @@ Verb run_verb(Common& common) {
             "where another stopped keeps its date)"},
            {"--dry-run", &options.dry_run, "Say what would be done and why; do nothing"},
            {"--root", &options.as_root,
-            "Root may run it, even with plugins that other users can change"},
+            "Root may run it, even with plugins that other users can change; or set "
+            "NONIO_ALLOW_ROOT"},
            templates_argument(common)},
           common_arguments(common)),
       .footer =

@@ -40,7 +40,7 @@ class Terminal:
     def __init__(self, folder, programs):
         self.folder = folder
         self.state = folder.parent / "state"
-        self.environment = {"PATH": f"{programs}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C",
+        self.environment = {"PATH": f"{programs}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C", "NONIO_ALLOW_ROOT": "1",
                             "TMPDIR": str(folder.parent), "CMAKE_GENERATOR": "Ninja"}
         for name in ("CXX", "CMAKE_CXX_COMPILER_LAUNCHER"):
             if os.environ.get(name):
