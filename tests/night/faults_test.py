@@ -2,8 +2,7 @@
 """Faults at random places of first, changed and forced nights: a call of the system fails, or the night is killed.
 Never status 0 with a missing, old or wrong byte, never a temporary file left, always a next night with the same bytes.
 
-NONIO_FAULTS=1000 NONIO_SEED=7 NONIO=... NONIO_FAULT_SHIM=... python3 -B tests/night/faults_test.py
-NONIO_FAULT=FUNCTION:N:ERRNO NONIO_FAULT_NIGHT=changed repeats one of them."""
+NONIO_FAULTS and NONIO_SEED choose how many and which; NONIO_FAULT_REPEAT=NIGHT/FAULT (as they are printed) repeats one."""
 import collections
 import errno
 import json

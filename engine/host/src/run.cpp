@@ -146,8 +146,7 @@ Expected<void> tidy_all(const Night& night, const fs::path& out, bool resumed) {
 Expected<void> close_night(const Night& night, const RunOptions& options, const NightState& state) {
   if (auto tidied = tidy_all(night, options.out, state.resumed); !tidied) return tidied;
   if (auto written = write_summary(night, options.out, options.version); !written) return written;
-  return end_night(options.out, state,
-                   {state.of(), night.campaigns.size(), night.failed()});
+  return end_night(options.out, state, {state.of(), night.campaigns.size(), night.failed()});
 }
 
 /// The night itself, in an output folder that nobody else uses.
@@ -158,15 +157,15 @@ void do_night(const RunOptions& options, const RunEvents& events, SetUp& place,
     night.end = Night::End::refused;
     night.error = std::move(why);
   };
-  auto state = begin_night(options,
-                           known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
+  auto state =
+      begin_night(options, known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
   if (!state) return refuse(state.error().message);
   night.night = state->of();
   if (state->last) night.seen_before = state->last->seen;
   const std::size_t notes_so_far = night.notes.size();
-  SurveyInput input{options.site, options.out, context,     state->number,    state->force,
-                    std::nullopt, {},          night.notes, is_stop_requested,
-                    options.verify_results};
+  SurveyInput input{options.site,      options.out,           context, state->number,
+                    state->force,      std::nullopt,          {},      night.notes,
+                    is_stop_requested, options.verify_results};
   if (known) {
     input.numbers = known->numbers;
     for (const WaitingDraft& draft : known->drafts) input.drafts.insert(draft.campaign);

@@ -132,11 +132,10 @@ class Runner {
   }
 
   void start(std::size_t campaign) {
-    auto worker = Worker::start(
-        [this](std::size_t c, bool first, SharedWords& stage) {
-          return work_guarded(c, first, stage);
-        },
-        context_.site.limits.memory_MB);
+    auto worker =
+        Worker::start([this](std::size_t c, bool first,
+                             SharedWords& stage) { return work_guarded(c, first, stage); },
+                      context_.site.limits.memory_MB);
     if (!worker) return not_started(campaign, worker.error().message);
     starts_failed_ = 0;
     workers_.push_back(std::move(*worker));
@@ -341,8 +340,7 @@ class Runner {
 
   /// The error, empty if there is none.
   std::string commit_here(const Committer::Given& given) const {
-    const auto stored =
-        commit(options_.out, {staged_of(given)}, night_.number, disk_).front();
+    const auto stored = commit(options_.out, {staged_of(given)}, night_.number, disk_).front();
     return stored ? "" : stored.error().message;
   }
 
@@ -426,7 +424,7 @@ class Runner {
   Committer committer_;
   const std::size_t campaigns_per_worker_;
   std::size_t next_ = 0;
-  int starts_failed_ = 0;  ///< one after the other
+  int starts_failed_ = 0;             ///< one after the other
   std::vector<std::size_t> again_;    ///< get a second trial
   std::vector<std::size_t> waiting_;  ///< need the register, which is locked
   std::optional<Worker::Clock::time_point> give_up_;
