@@ -5,6 +5,7 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -247,6 +248,7 @@ class Runner {
     const Evaluated evaluated = certified(c, stage, locked);
     if (locked && !last_trial_) return Answer::waits;
     if (evaluated.status == "failed" && !first) return Answer::again;
+    const bool may_pass = evaluated.retry || is_out_of_memory(evaluated);
     if (evaluated.status == "failed" && !locked && !evaluated.results.errors.empty())
       numbers_.note_failure(c.id, evaluated.results.errors.front().message);
     if (releasing_ && !(evaluated.certificate && evaluated.certificate->issued)) {
@@ -255,8 +257,8 @@ class Runner {
       return Answer::not_stored;
     }
     stage.set("writing the results");
-    const auto staged = host::stage(options_.out, evaluated, context_,
-                                    {c.folder, night_.of(), c.reason, evaluated.retry});
+    const auto staged =
+        host::stage(options_.out, evaluated, context_, {c.folder, night_.of(), c.reason, may_pass});
     if (!staged) {
       stage.set(staged.error().message);
       return Answer::not_stored;
@@ -264,6 +266,13 @@ class Runner {
     return evaluated.status == "failed"      ? Answer::failed
            : evaluated.status == "attention" ? Answer::attention
                                              : Answer::ok;
+  }
+
+  /// Memory that was refused says nothing about the readings.
+  static bool is_out_of_memory(const Evaluated& evaluated) {
+    return std::any_of(
+        evaluated.results.errors.begin(), evaluated.results.errors.end(),
+        [](const Error& e) { return e.message.find("out of memory") != e.message.npos; });
   }
 
   static void fail_certificate(Evaluated& evaluated, const Error& why) {
