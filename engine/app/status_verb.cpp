@@ -41,8 +41,7 @@ std::string hours_text(double hours) {
 std::string trouble(const NightStatus& s, const StatusWish& wish) {
   if (s.state == NightStatus::State::cut_short)
     return night_text(s.night) + " began and did not end";
-  if (!s.last)
-    return s.state == NightStatus::State::running ? "" : "no night is complete";
+  if (!s.last) return s.state == NightStatus::State::running ? "" : "no night is complete";
   if (s.age < -60.0) return "summary.json is from the future; wanted a clock that is right";
   if (wish.max_age > 0.0 && s.age > wish.max_age * 3600.0)
     return "older than " + hours_text(wish.max_age);
@@ -55,8 +54,8 @@ std::string line_of(const NightStatus& s, const std::string& wrong) {
   if (s.last)
     line += night_text(s.last->night) + " is complete, " + hours_text(s.age / 3600.0) +
             " ago: " + std::to_string(s.last->seen) +
-            (s.last->seen == 1 ? " campaign, " : " campaigns, ") +
-            std::to_string(s.last->failed) + " failed";
+            (s.last->seen == 1 ? " campaign, " : " campaigns, ") + std::to_string(s.last->failed) +
+            " failed";
   else
     line += "no night is complete yet";
   return line + (wrong.empty() ? "" : "; WRONG: " + wrong);
@@ -92,24 +91,25 @@ int status(const StatusWish& wish, const Common& common) {
 Verb status_verb(Common& common) {
   auto wish = std::make_shared<StatusWish>();
   using Takes = Argument::Takes;
-  Argument age = within(0, 1e6,
-                        {"--max-age", &wish->max_age,
-                         "Greatest age of the last complete night, in hours; 0: any"});
+  Argument age = within(
+      0, 1e6,
+      {"--max-age", &wish->max_age, "Greatest age of the last complete night, in hours; 0: any"});
   age.shows_default = true;
-  return {.name = "status",
-          .summary = "Whether the last night was done: a dead man's switch for another machine's cron",
-          .arguments = {required(existing(
-                            Takes::folder, {"OUT", &wish->out, "Output folder of `nonio run`"})),
-                        age,
-                        {"--json", &common.json, "Machine-readable output on stdout"},
-                        {"--quiet", &common.quiet, "Nothing unless something is wrong"}},
-          .footer =
-              "One line: the last night's number, date, age, campaigns. Exit status: 0 the last night\n"
-              "is complete and young enough, or one is running and the last is; 1 a night began and\n"
-              "did not end, or the last one is too old; 2 there was none, or it cannot be read.\n"
-              "The age is that of OUT/summary.json.\n\n"
-              "Example: nonio status out --max-age 26",
-          .run = [wish, &common] { return status(*wish, common); }};
+  return {
+      .name = "status",
+      .summary = "Whether the last night was done: a dead man's switch for another machine's cron",
+      .arguments = {required(existing(Takes::folder,
+                                      {"OUT", &wish->out, "Output folder of `nonio run`"})),
+                    age,
+                    {"--json", &common.json, "Machine-readable output on stdout"},
+                    {"--quiet", &common.quiet, "Nothing unless something is wrong"}},
+      .footer =
+          "One line: the last night's number, date, age, campaigns. Exit status: 0 the last night\n"
+          "is complete and young enough, or one is running and the last is; 1 a night began and\n"
+          "did not end, or the last one is too old; 2 there was none, or it cannot be read.\n"
+          "The age is that of OUT/summary.json.\n\n"
+          "Example: nonio status out --max-age 26",
+      .run = [wish, &common] { return status(*wish, common); }};
 }
 
 }  // namespace nonio::app

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loaded before the C library (LD_PRELOAD): the n-th call of one of its functions fails, counted over all processes of
-// a night. NONIO_FAULT = FUNCTION:N:ERRNO[:TIMES], or FUNCTION:N:KILL, which ends the main process by SIGKILL instead,
-// or write:N:LOST, which says that it was written.
-// NONIO_FAULT_IN = main: only the calls of the main process count. NONIO_FAULT_COUNTS = FILE gets how often each was called.
+// Loaded before the C library (LD_PRELOAD): the n-th call of one of its functions fails, counted
+// over all processes of a night. NONIO_FAULT = FUNCTION:N:ERRNO[:TIMES], or FUNCTION:N:KILL, which
+// ends the main process by SIGKILL instead, or write:N:LOST, which says that it was written.
+// NONIO_FAULT_IN = main: only the calls of the main process count. NONIO_FAULT_COUNTS = FILE gets
+// how often each was called.
 #include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -29,17 +30,35 @@ void* __libc_memalign(size_t, size_t);
 
 namespace {
 
-constexpr const char* names[] = {"open",   "read",  "write", "fsync",  "syncfs", "rename",
-                                 "unlink", "mkdir", "mmap",  "malloc", "fork",   "flock",
+constexpr const char* names[] = {"open",   "read",   "write",      "fsync",   "syncfs", "rename",
+                                 "unlink", "mkdir",  "mmap",       "malloc",  "fork",   "flock",
                                  "stat",   "fflush", "socketpair", "opendir", "readdir"};
-enum Function { Open, Read, Write, Fsync, Syncfs, Rename, Unlink, Mkdir, Mmap, Malloc, Fork, Flock,
-                Stat, Fflush, Socketpair, Opendir, Readdir, functions };
+enum Function {
+  Open,
+  Read,
+  Write,
+  Fsync,
+  Syncfs,
+  Rename,
+  Unlink,
+  Mkdir,
+  Mmap,
+  Malloc,
+  Fork,
+  Flock,
+  Stat,
+  Fflush,
+  Socketpair,
+  Opendir,
+  Readdir,
+  functions
+};
 
 std::atomic<long>* counts = nullptr;  // shared by the processes
 int wanted = -1;
 long from = 0, times = 1;
 constexpr int lost = 0x10000;  // of a disk that says it has what it has not
-int code = 0;  // 0: kill
+int code = 0;                  // 0: kill
 bool main_only = false;
 pid_t main_pid = 0;
 
@@ -65,16 +84,20 @@ __attribute__((constructor)) void begin() {
   const char* const text = std::getenv("NONIO_FAULT");
   if (text == nullptr && counted == nullptr) return;
   char name[32] = "", what[32] = "";
-  if (text != nullptr && std::sscanf(text, "%31[^:]:%ld:%31[^:]:%ld", name, &from, what, &times) < 3)
+  if (text != nullptr &&
+      std::sscanf(text, "%31[^:]:%ld:%31[^:]:%ld", name, &from, what, &times) < 3)
     return;
   for (int i = 0; i < functions; ++i)
     if (std::strcmp(names[i], name) == 0) wanted = i;
-  code = std::strcmp(what, "KILL") == 0 ? 0 : std::strcmp(what, "LOST") == 0 ? lost : std::atoi(what);
+  code = std::strcmp(what, "KILL") == 0   ? 0
+         : std::strcmp(what, "LOST") == 0 ? lost
+                                          : std::atoi(what);
   const char* const in = std::getenv("NONIO_FAULT_IN");
   main_only = in != nullptr && std::strcmp(in, "main") == 0;
   main_pid = ::getpid();
   using Map = void* (*)(void*, size_t, int, int, int, off_t);
-  void* shared = real<Map>("mmap")(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  void* shared =
+      real<Map>("mmap")(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (shared != MAP_FAILED) counts = static_cast<std::atomic<long>*>(shared);
 }
 
@@ -126,7 +149,8 @@ ssize_t read(int fd, void* to, size_t n) {
 }
 ssize_t write(int fd, const void* from_, size_t n) {
   struct stat file {};
-  const bool is_file = real<int (*)(int, struct stat*)>("fstat")(fd, &file) == 0 && S_ISREG(file.st_mode);
+  const bool is_file =
+      real<int (*)(int, struct stat*)>("fstat")(fd, &file) == 0 && S_ISREG(file.st_mode);
   if (fails(Write) && (code != lost || is_file)) return code == lost ? static_cast<ssize_t>(n) : -1;
   return real<ssize_t (*)(int, const void*, size_t)>("write")(fd, from_, n);
 }
@@ -154,7 +178,9 @@ void* mmap(void* at, size_t n, int protection, int flags, int fd, off_t offset) 
   return real<Map>("mmap")(at, n, protection, flags, fd, offset);
 }
 void* malloc(size_t n) noexcept { return fails(Malloc) ? nullptr : __libc_malloc(n); }
-void* calloc(size_t n, size_t of) noexcept { return fails(Malloc) ? nullptr : __libc_calloc(n, of); }
+void* calloc(size_t n, size_t of) noexcept {
+  return fails(Malloc) ? nullptr : __libc_calloc(n, of);
+}
 void* realloc(void* p, size_t n) noexcept { return fails(Malloc) ? nullptr : __libc_realloc(p, n); }
 void* aligned_alloc(size_t to, size_t n) noexcept {
   return fails(Malloc) ? nullptr : __libc_memalign(to, n);
@@ -165,7 +191,9 @@ int posix_memalign(void** p, size_t to, size_t n) noexcept {
   return *p == nullptr ? ENOMEM : 0;
 }
 pid_t fork() noexcept { return fails(Fork) ? -1 : real<pid_t (*)()>("fork")(); }
-int flock(int fd, int how) noexcept { return fails(Flock) ? -1 : real<int (*)(int, int)>("flock")(fd, how); }
+int flock(int fd, int how) noexcept {
+  return fails(Flock) ? -1 : real<int (*)(int, int)>("flock")(fd, how);
+}
 int stat(const char* path, struct stat* to) noexcept {
   return fails(Stat) ? -1 : real<int (*)(const char*, struct stat*)>("stat")(path, to);
 }
@@ -177,9 +205,13 @@ int fstat(int fd, struct stat* to) noexcept {
 }
 int fflush(FILE* file) { return fails(Fflush) ? EOF : real<int (*)(FILE*)>("fflush")(file); }
 int socketpair(int domain, int type, int protocol, int* ends) noexcept {
-  return fails(Socketpair) ? -1 : real<int (*)(int, int, int, int*)>("socketpair")(domain, type, protocol, ends);
+  return fails(Socketpair)
+             ? -1
+             : real<int (*)(int, int, int, int*)>("socketpair")(domain, type, protocol, ends);
 }
-DIR* opendir(const char* path) { return fails(Opendir) ? nullptr : real<DIR* (*)(const char*)>("opendir")(path); }
+DIR* opendir(const char* path) {
+  return fails(Opendir) ? nullptr : real<DIR* (*)(const char*)>("opendir")(path);
+}
 DIR* fdopendir(int fd) { return fails(Opendir) ? nullptr : real<DIR* (*)(int)>("fdopendir")(fd); }
 struct dirent* readdir(DIR* folder) {
   return fails(Readdir) ? nullptr : real<struct dirent* (*)(DIR*)>("readdir")(folder);

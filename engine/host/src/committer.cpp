@@ -95,9 +95,8 @@ std::vector<Committer::Done> Committer::done() {
     Message message;
     const ssize_t n = ::recv(channel_, &message, sizeof message, MSG_DONTWAIT);
     if (n == sizeof message) {
-      const auto it = std::find_if(pending_.begin(), pending_.end(), [&](const Given& g) {
-        return g.campaign == message.campaign;
-      });
+      const auto it = std::find_if(pending_.begin(), pending_.end(),
+                                   [&](const Given& g) { return g.campaign == message.campaign; });
       if (it == pending_.end()) continue;
       out.push_back({*it, message.stored ? "" : message.why.data()});
       pending_.erase(it);

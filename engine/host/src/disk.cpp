@@ -12,8 +12,8 @@
 namespace nonio::host {
 
 Disk::Disk(const std::filesystem::path& folder) : folder_(folder) {
-  void* shared = ::mmap(nullptr, sizeof *losses_, PROT_READ | PROT_WRITE,
-                        MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  void* shared =
+      ::mmap(nullptr, sizeof *losses_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (shared == MAP_FAILED) {
     trouble_ = errno;
     return;

@@ -136,8 +136,7 @@ Expected<ReadFile> ReadFile::open(const fs::path& path) {
     if (!file || ::fstat(file.get(), &before) != 0) return system_error("cannot read", path);
     if (!S_ISREG(before.st_mode)) return fail("cannot read " + path.string() + ": not a file");
     const std::size_t room = static_cast<std::size_t>(before.st_size) + 1;
-    void* data =
-        ::mmap(nullptr, room, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    void* data = ::mmap(nullptr, room, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (data == MAP_FAILED) return system_error("cannot read", path);
     ReadFile read(static_cast<char*>(data), 0, room);
     const auto size = read_into(file.get(), read.data_, room, path);

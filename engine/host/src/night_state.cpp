@@ -68,12 +68,9 @@ Expected<std::optional<Json>> read_state(const fs::path& out) {
 /// `end`: of a night that is complete; none while it is running.
 Expected<void> write_state(const fs::path& out, const NightState& night,
                            const std::optional<NightEnd>& end) {
-  Json json = {{"schema", "nonio-night/1"},
-               {"night", night.number},
-               {"date", night.date},
-               {"state", end ? "complete" : "running"},
-               {"force", night.force},
-               {"site", night.site}};
+  Json json = {{"schema", "nonio-night/1"}, {"night", night.number},
+               {"date", night.date},        {"state", end ? "complete" : "running"},
+               {"force", night.force},      {"site", night.site}};
   if (end) json["end"] = to_json(*end);
   if (night.last) json["last"] = to_json(*night.last);
   if (night.issued_before) json["issued_before"] = *night.issued_before;

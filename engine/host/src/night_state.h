@@ -19,7 +19,7 @@ inline constexpr const char* state_folder = ".nonio";
 /// that it ends with the same summary as an undisturbed one. Kept in OUT/.nonio.
 struct NightState {
   std::uint64_t number = 1;
-  std::string date{};  ///< YYYY-MM-DD, as it was given
+  std::string date{};              ///< YYYY-MM-DD, as it was given
   std::optional<NightEnd> last{};  ///< the night before; none before the first
   bool force = false;
   bool resumed = false;

@@ -187,8 +187,7 @@ Expected<void> tidy_all(const Night& night, const fs::path& out, bool resumed) {
 Expected<void> close_night(const Night& night, const RunOptions& options, const NightState& state) {
   if (auto tidied = tidy_all(night, options.out, state.resumed); !tidied) return tidied;
   if (auto written = write_summary(night, options.out, options.version); !written) return written;
-  return end_night(options.out, state,
-                   {state.of(), night.campaigns.size(), night.failed()});
+  return end_night(options.out, state, {state.of(), night.campaigns.size(), night.failed()});
 }
 
 /// All of them stand in the summary; of very many the messages name the first.
@@ -213,15 +212,15 @@ void do_night(const RunOptions& options, const RunEvents& events, SetUp& place,
           settle_folders(options.out, context.site.hashed_folders, options.dry_run);
       !settled)
     return refuse(settled.error().message);
-  auto state = begin_night(options,
-                           known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
+  auto state =
+      begin_night(options, known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
   if (!state) return refuse(state.error().message);
   night.night = state->of();
   if (state->last) night.seen_before = state->last->seen;
   const std::size_t notes_so_far = night.notes.size();
-  SurveyInput input{options.site, options.out, context,     state->number,    state->force,
-                    std::nullopt, {},          night.notes, is_stop_requested,
-                    options.verify_results};
+  SurveyInput input{options.site,      options.out,           context, state->number,
+                    state->force,      std::nullopt,          {},      night.notes,
+                    is_stop_requested, options.verify_results};
   if (known) {
     input.numbers = known->numbers;
     for (const WaitingDraft& draft : known->drafts) input.drafts.insert(draft.campaign);

@@ -4,6 +4,7 @@
 #include <Poco/Environment.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -240,6 +241,7 @@ class Runner {
     const Evaluated& evaluated = *evaluation;
     if (locked && !last_trial_) return Answer::waits;
     if (evaluated.status == "failed" && !first) return Answer::again;
+    const bool may_pass = evaluated.retry || is_out_of_memory(evaluated);
     if (evaluated.status == "failed" && !locked && !evaluated.results.errors.empty())
       numbers_.note_failure(c.id, evaluated.results.errors.front().message);
     if (releasing_ && !(evaluated.certificate && evaluated.certificate->issued)) {
@@ -248,8 +250,8 @@ class Runner {
       return Answer::not_stored;
     }
     stage.set("writing the results");
-    const auto staged = host::stage(options_.out, evaluated, context_,
-                                    {c.folder, night_.of(), c.reason, evaluated.retry});
+    const auto staged =
+        host::stage(options_.out, evaluated, context_, {c.folder, night_.of(), c.reason, may_pass});
     if (!staged) {
       stage.set(staged.error().message);
       return Answer::not_stored;
@@ -257,6 +259,13 @@ class Runner {
     return evaluated.status == "failed"      ? Answer::failed
            : evaluated.status == "attention" ? Answer::attention
                                              : Answer::ok;
+  }
+
+  /// Memory that was refused says nothing about the readings.
+  static bool is_out_of_memory(const Evaluated& evaluated) {
+    return std::any_of(
+        evaluated.results.errors.begin(), evaluated.results.errors.end(),
+        [](const Error& e) { return e.message.find("out of memory") != e.message.npos; });
   }
 
   static void fail_certificate(Evaluated& evaluated, const Error& why) {
@@ -334,8 +343,7 @@ class Runner {
 
   /// The error, empty if there is none.
   std::string commit_here(const Committer::Given& given) const {
-    const auto stored =
-        commit(options_.out, {staged_of(given)}, night_.number, disk_).front();
+    const auto stored = commit(options_.out, {staged_of(given)}, night_.number, disk_).front();
     return stored ? "" : stored.error().message;
   }
 
@@ -422,7 +430,7 @@ class Runner {
   Committer committer_;
   const std::size_t campaigns_per_worker_;
   std::size_t next_ = 0;
-  int starts_failed_ = 0;  ///< one after the other
+  int starts_failed_ = 0;             ///< one after the other
   std::vector<std::size_t> again_;    ///< get a second trial
   std::vector<std::size_t> waiting_;  ///< need the register, which is locked
   std::optional<Worker::Clock::time_point> give_up_;

@@ -281,8 +281,7 @@ Expected<void> tidy(const fs::path& folder) {
   auto left = temporaries(folder);
   for (int i = 0; i < tries && !left.empty(); ++i, left = temporaries(folder))
     remove_leftovers(folder);
-  if (!left.empty())
-    return fail("cannot remove " + temporary_path(folder, left.front()).string());
+  if (!left.empty()) return fail("cannot remove " + temporary_path(folder, left.front()).string());
   std::error_code error;
   if (!fs::exists(folder / record_name, error)) return {};
   return Move::put_away_record_before(folder);

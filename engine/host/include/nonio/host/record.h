@@ -56,7 +56,8 @@ inline constexpr const char* record_name = "run.json";
 inline constexpr const char* results_name = "results.json";
 /// The old record while new results take the place of its files.
 inline constexpr const char* record_before_name = ".run.json.before";
-/// The folder, in that of a campaign which failed for a reason that may pass, with its last results.
+/// The folder, in that of a campaign which failed for a reason that may pass, with its last
+/// results.
 inline constexpr const char* last_good_name = "last-good";
 
 std::string to_json(const Record& record);

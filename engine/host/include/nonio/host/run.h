@@ -67,8 +67,8 @@ struct Night {
   enum class End { complete, interrupted, refused } end = End::complete;
   NightOf night{};
   std::optional<std::uint64_t> seen_before{};  ///< campaigns that the night before saw
-  std::string error;                     ///< of a refused run: usage or configuration
-  std::vector<CampaignState> campaigns;  ///< ordered by id
+  std::string error;                           ///< of a refused run: usage or configuration
+  std::vector<CampaignState> campaigns;        ///< ordered by id
   std::vector<std::string> notes;
   std::vector<RegisterEntry> issued;  ///< certificates that are new since the night before
   std::vector<WaitingDraft> waiting;  ///< for their release
