@@ -33,8 +33,8 @@ Expected<NightState> begin_night(const std::filesystem::path& out,
 /// `night.issued_before` is then what the next one begins with.
 Expected<void> end_night(const std::filesystem::path& out, const NightState& night);
 
-/// Holds the layout that site.toml wants (`hashed`: OUT/ab/<id>) against that of the results that are
-/// there, and marks a new output folder. Results are never moved: another layout is an error.
+/// Holds the layout that site.toml wants (`hashed`: OUT/ab/<id>) against that of the results that
+/// are there, and marks a new output folder. Results are never moved: another layout is an error.
 Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, bool dry_run);
 
 /// Held while a run uses an output folder; an error names the trouble if another run does.

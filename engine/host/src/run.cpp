@@ -68,7 +68,8 @@ std::string no_site(const fs::path& site) {
   auto child = Watched::start([&](SignsOfLife&, const Watched::Send&) {
     std::error_code error;
     if (!fs::is_directory(site, error)) return;
-    for (fs::directory_iterator it(site, error), end; !error && it != end; it.increment(error)) {}
+    for (fs::directory_iterator it(site, error), end; !error && it != end; it.increment(error)) {
+    }
     if (read_small_file(site / site_name) && is_there(site / "templates")) return;
   });
   if (!child) return child.error().message;
@@ -199,7 +200,8 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
         "wait for it");
   for (const std::string& note : night.notes) events.note(note);
   if (!(*place)->unstamped.empty()) night.notes.push_back((*place)->unstamped);
-  if (const auto settled = settle_folders(options.out, context.site.hashed_folders, options.dry_run);
+  if (const auto settled =
+          settle_folders(options.out, context.site.hashed_folders, options.dry_run);
       !settled)
     return refuse(settled.error().message);
   auto state = begin_night(options.out, options.site, options.force, options.dry_run,

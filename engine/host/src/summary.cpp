@@ -45,10 +45,8 @@ struct List {
 };
 
 Json entry_json(const CampaignState& c, const std::string& reason) {
-  Json json = {{"id", c.id},
-               {"folder", path_text(c.folder)},
-               {"status", c.status},
-               {"reason", reason}};
+  Json json = {
+      {"id", c.id}, {"folder", path_text(c.folder)}, {"status", c.status}, {"reason", reason}};
   if (!c.errors.empty()) {
     Json errors = Json::array();
     for (const Error& e : c.errors) errors.push_back(to_json(e));
@@ -142,8 +140,7 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
   out.add("Nonio " + version + ": " + n(night.campaigns.size()) +
           (night.campaigns.size() == 1 ? " campaign: " : " campaigns: ") + n(lists.done.count) +
           " done, " + n(lists.unchanged.count) + " unchanged, " + n(lists.failed.count) +
-          " failed; " +
-          (lists.vanished.count == 0 ? "" : n(lists.vanished.count) + " vanished; ") +
+          " failed; " + (lists.vanished.count == 0 ? "" : n(lists.vanished.count) + " vanished; ") +
           n(lists.attention.count) + (lists.attention.count == 1 ? " asks" : " ask") +
           " for attention\n");
   if (!night.issued.empty()) out.add(issued_line(night.issued));
@@ -166,8 +163,8 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
 
 void write_json(Spool& out, const Night& night, Lists& lists, const std::string& version,
                 const fs::path& out_folder) {
-  const std::initializer_list<List*> all{&lists.done, &lists.unchanged, &lists.attention,
-                                         &lists.failed, &lists.vanished, &lists.fresh};
+  const std::initializer_list<List*> all{&lists.done,   &lists.unchanged, &lists.attention,
+                                         &lists.failed, &lists.vanished,  &lists.fresh};
   Json counts = {{"campaigns", night.campaigns.size()}};
   for (const List* l : all)
     if (l != &lists.fresh) counts[l->name] = l->count;
@@ -187,7 +184,10 @@ void write_json(Spool& out, const Night& night, Lists& lists, const std::string&
   out.add(",\n \"issued\": " + issued.dump());
   Json waiting = Json::array();
   for (const WaitingDraft& d : night.waiting) {
-    Json one = {{"campaign", d.campaign}, {"file", (results_folder(out_folder, d.campaign).lexically_relative(out_folder) / d.file).generic_string()}};
+    Json one = {
+        {"campaign", d.campaign},
+        {"file", (results_folder(out_folder, d.campaign).lexically_relative(out_folder) / d.file)
+                     .generic_string()}};
     if (!d.replaces.empty()) one["replaces"] = d.replaces;
     waiting.push_back(std::move(one));
   }
@@ -199,7 +199,8 @@ void write_json(Spool& out, const Night& night, Lists& lists, const std::string&
 }  // namespace
 
 bool Night::any_failed() const {
-  return !vanished.empty() || std::any_of(campaigns.begin(), campaigns.end(),
+  return !vanished.empty() ||
+         std::any_of(campaigns.begin(), campaigns.end(),
                      [](const CampaignState& c) { return c.status == "failed"; });
 }
 

@@ -63,8 +63,8 @@ class Pool {
     const std::size_t size = std::clamp(which.size() / (4 * cores), std::size_t{1}, largest_batch);
     for (std::size_t i = 0; i < which.size(); i += size) {
       const auto from = which.begin() + static_cast<std::ptrdiff_t>(i);
-      todo_.push_back({{from, from + static_cast<std::ptrdiff_t>(
-                                         std::min(size, which.size() - i))}});
+      todo_.push_back(
+          {{from, from + static_cast<std::ptrdiff_t>(std::min(size, which.size() - i))}});
     }
     std::reverse(todo_.begin(), todo_.end());
     while ((!todo_.empty() || !children_.empty()) && !in_.stopped()) {
