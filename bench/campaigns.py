@@ -108,6 +108,7 @@ def main():
     try:
         site, out = root / "site", root / "out"
         make(site, count)
+        os.sync()  # else the first flush of a night writes the whole site
         command = [program, "run", str(site), "--out", str(out)]
 
         def show(name, seconds, peak, status, after=None):
@@ -134,8 +135,8 @@ def main():
         unchanged = whole("unchanged night", 0)
         print(f"files in the output folder: {sum(len(files) for _, _, files in os.walk(out))}")
         for k in range(10):
-            path = site / f"{k * 17 % count // 1000:04}" / f"{k * 17 % count:07}" / "x.csv"
-            path.write_text(readings(k + count))
+            index = k * 17 % count
+            (site / f"{index // 1000:04}" / f"{index:07}" / "x.csv").write_text(readings(index + 1))
         whole("ten changed", min(10, count))
         for share in (0.2, 0.5, 0.8, 0.97):
             measured = night(command, ("seconds", unchanged[0] * share))

@@ -59,9 +59,12 @@ void print_summary(const host::Night& night, const fs::path& out, bool json) {
     if (c.status == "attention") ++attention;
   }
   if (json)
-    std::cout << Json{{"event", "end"},         {"done", done},
-                      {"unchanged", unchanged}, {"attention", attention},
-                      {"failed", failed},       {"vanished", night.vanished.size()},
+    std::cout << Json{{"event", "end"},
+                      {"done", done},
+                      {"unchanged", unchanged},
+                      {"attention", attention},
+                      {"failed", failed},
+                      {"vanished", night.vanished.size()},
                       {"summary", (out / "summary.json").string()}}
                      .dump(-1, ' ', false, Json::error_handler_t::replace)
               << "\n";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loaded before the C library (LD_PRELOAD): calls on paths that end as NONIO_FAULTS says fail, or never
-// return. NONIO_FAULTS is "CALL:END:ERRNO" or "CALL:END:hang", several with a space between; CALL is
-// open or stat.
+// Loaded before the C library (LD_PRELOAD): calls on paths that end as NONIO_FAULTS says fail, or
+// never return. NONIO_FAULTS is "CALL:END:ERRNO", "CALL:END:hang" or "CALL:END:slow" (5 ms),
+// several with a space between; CALL is open or stat.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -29,6 +29,7 @@ int fault(const char* call, const char* path) {
     if (std::strncmp(rule, call, static_cast<std::size_t>(end - rule)) == 0 &&
         ends_with(path, end + 1, static_cast<std::size_t>(what - end - 1))) {
       while (std::strncmp(what + 1, "hang", 4) == 0) ::pause();
+      if (std::strncmp(what + 1, "slow", 4) == 0) return ::usleep(5000);
       return std::atoi(what + 1);
     }
     rule = std::strchr(what, ' ');
@@ -57,25 +58,25 @@ mode_t mode_of(int flags, va_list list) {
 
 }  // namespace
 
-#define NONIO_OPEN(name)                                            \
-  extern "C" int name(const char* path, int flags, ...) {           \
-    va_list list;                                                   \
-    va_start(list, flags);                                          \
-    const mode_t mode = mode_of(flags, list);                       \
-    va_end(list);                                                   \
-    return pass_on<Open>(#name, "open", path, path, flags, mode);   \
+#define NONIO_OPEN(name)                                          \
+  extern "C" int name(const char* path, int flags, ...) {         \
+    va_list list;                                                 \
+    va_start(list, flags);                                        \
+    const mode_t mode = mode_of(flags, list);                     \
+    va_end(list);                                                 \
+    return pass_on<Open>(#name, "open", path, path, flags, mode); \
   }
-#define NONIO_OPEN_AT(name)                                                   \
-  extern "C" int name(int folder, const char* path, int flags, ...) {         \
-    va_list list;                                                             \
-    va_start(list, flags);                                                    \
-    const mode_t mode = mode_of(flags, list);                                 \
-    va_end(list);                                                             \
-    return pass_on<OpenAt>(#name, "open", path, folder, path, flags, mode);   \
+#define NONIO_OPEN_AT(name)                                                 \
+  extern "C" int name(int folder, const char* path, int flags, ...) {       \
+    va_list list;                                                           \
+    va_start(list, flags);                                                  \
+    const mode_t mode = mode_of(flags, list);                               \
+    va_end(list);                                                           \
+    return pass_on<OpenAt>(#name, "open", path, folder, path, flags, mode); \
   }
-#define NONIO_STAT(name)                                             \
-  extern "C" int name(const char* path, struct stat* info) {         \
-    return pass_on<Stat>(#name, "stat", path, path, info);           \
+#define NONIO_STAT(name)                                     \
+  extern "C" int name(const char* path, struct stat* info) { \
+    return pass_on<Stat>(#name, "stat", path, path, info);   \
   }
 
 NONIO_OPEN(open)

@@ -2,6 +2,7 @@
 #include "earlier_results.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <string_view>
 
@@ -14,16 +15,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Of the folders in a folder; none if it is not there.
-std::vector<std::string> names_in(const fs::path& folder, std::error_code& error) {
-  std::vector<std::string> names;
+/// `take` each folder in a folder, which may be missing.
+void each_folder_in(const fs::path& folder, std::error_code& error,
+                    const std::function<void(const fs::path&)>& take) {
   std::error_code here;
   fs::directory_iterator it(folder, here);
-  if (here == std::errc::no_such_file_or_directory) return names;
+  if (here == std::errc::no_such_file_or_directory) return;
   for (; !here && it != fs::directory_iterator(); it.increment(here))
-    if (it->is_directory(here)) names.push_back(it->path().filename().string());
+    if (it->is_directory(here)) take(it->path());
   if (here) error = here;
-  return names;
 }
 
 }  // namespace
@@ -43,13 +43,13 @@ Expected<std::vector<EarlierResult>> unclaimed_results(
       found.push_back({std::move(id), record->folder, record->night, record->status == "failed"});
   };
   const bool hashed = results_folder(out, "a") != out / "a";
-  for (const std::string& name : names_in(out, error)) {
-    if (!hashed) take(out / name);
-    if (hashed && name.size() == 2)
-      for (const std::string& id : names_in(out / name, error)) take(out / name / id);
-  }
-  if (error)
-    return fail("cannot list the output folder " + out.string() + ": " + error.message());
+  each_folder_in(out, error, [&](const fs::path& folder) {
+    if (!hashed)
+      take(folder);
+    else if (folder.filename().string().size() == 2)
+      each_folder_in(folder, error, take);
+  });
+  if (error) return fail("cannot list the output folder " + out.string() + ": " + error.message());
   std::sort(found.begin(), found.end(),
             [](const EarlierResult& a, const EarlierResult& b) { return a.id < b.id; });
   return found;
@@ -73,16 +73,17 @@ std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
     });
     if (now != id_of.end() && now->second == e.id) continue;
     if (now != id_of.end() && e.failed)
-      notes.push_back(results_folder(out, e.id).string() + " is left over: it says that " + e.folder +
-                      " failed, which is the campaign " + std::string(now->second) + " now");
+      notes.push_back(results_folder(out, e.id).string() + " is left over: it says that " +
+                      e.folder + " failed, which is the campaign " + std::string(now->second) +
+                      " now");
     else if (now != id_of.end())
       vanished.push_back({e.id, e.folder, e.night,
                           "its folder " + e.folder + " is the campaign " +
                               std::string(now->second) + " now; " + meant});
     else if (above != unlisted.end())
-      vanished.push_back({e.id, e.folder, e.night,
-                          "it was not seen: the folder " + path_text(above->folder) +
-                              " could not be listed"});
+      vanished.push_back(
+          {e.id, e.folder, e.night,
+           "it was not seen: the folder " + path_text(above->folder) + " could not be listed"});
     else
       vanished.push_back({e.id, e.folder, e.night,
                           "its folder " + e.folder + " is gone, or has no " +

@@ -811,8 +811,9 @@ constexpr Key limits_keys[] = {
      .most = 1e9},
     {.name = "disk_seconds",
      .holds = number,
-     .help = "Time that a folder or file of the site may give no sign of life while the night looks "
-             "what there is to do; after that it is a failed one.",
+     .help =
+         "Time that a folder or file of the site may give no sign of life while the night looks "
+         "what there is to do; after that it is a failed one.",
      .unit = "s",
      .otherwise = "60",
      .wanted = "wanted a number above 0 and at most 1000000",
@@ -826,8 +827,9 @@ constexpr Choice result_folders[] = {{"flat", "OUT/<id>"}, {"hashed", "OUT/ab/<i
 constexpr Key results_keys[] = {
     {.name = "folders",
      .holds = text,
-     .help = "How the results lie in the output folder: each campaign in OUT/<id>, or in OUT/ab/<id>, "
-             "ab the first two digits of the SHA-256 of the id, for sites of a million.",
+     .help =
+         "How the results lie in the output folder: each campaign in OUT/<id>, or in OUT/ab/<id>, "
+         "ab the first two digits of the SHA-256 of the id, for sites of a million.",
      .otherwise = "flat",
      .choices = result_folders},
 };

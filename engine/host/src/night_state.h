@@ -38,8 +38,8 @@ Expected<NightState> begin_night(const RunOptions& options,
 Expected<void> end_night(const std::filesystem::path& out, const NightState& night,
                          const NightEnd& end);
 
-/// Holds the layout that site.toml wants (`hashed`: OUT/ab/<id>) against that of the results that are
-/// there, and marks a new output folder. Results are never moved: another layout is an error.
+/// Holds the layout that site.toml wants (`hashed`: OUT/ab/<id>) against that of the results that
+/// are there, and marks a new output folder. Results are never moved: another layout is an error.
 Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, bool dry_run);
 
 /// Held while a run uses an output folder; an error names the trouble if another run does.

@@ -209,7 +209,8 @@ class Releaser {
     out_.entry = std::move(**last);
     out_.state = Released::State::issued;
     if (const auto files = opened->files(out_.entry.number))
-      for (const IssuedFile& f : *files) out_.files.push_back(results_folder(options_.out, id_) / f.name);
+      for (const IssuedFile& f : *files)
+        out_.files.push_back(results_folder(options_.out, id_) / f.name);
     if (!campaigns.front().errors.empty()) out_.why = campaigns.front().errors.front().message;
     return std::move(out_);
   }

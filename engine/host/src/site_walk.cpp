@@ -260,8 +260,9 @@ Expected<SiteWalk> walk_site(const fs::path& site, const fs::path& out, double s
     std::sort((*walk)->campaigns.begin(), (*walk)->campaigns.end());
     std::sort((*walk)->unlisted.begin(), (*walk)->unlisted.end(),
               [](const auto& a, const auto& b) { return a.folder < b.folder; });
-    const auto same = std::unique((*walk)->unlisted.begin(), (*walk)->unlisted.end(),
-                                  [](const auto& a, const auto& b) { return a.folder == b.folder; });
+    const auto same =
+        std::unique((*walk)->unlisted.begin(), (*walk)->unlisted.end(),
+                    [](const auto& a, const auto& b) { return a.folder == b.folder; });
     (*walk)->unlisted.erase(same, (*walk)->unlisted.end());
     return std::move(**walk);
   }

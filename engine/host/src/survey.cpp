@@ -124,8 +124,8 @@ Expected<void> check_numbers(const fs::path& out, const std::vector<CampaignStat
 Expected<Surveyed> survey(const SurveyInput& input) {
   Surveyed all;
   std::vector<CampaignState>& states = all.campaigns;
-  auto walk = walk_site(input.site, input.out, input.context.site.limits.disk_seconds,
-                        input.stopped);
+  auto walk =
+      walk_site(input.site, input.out, input.context.site.limits.disk_seconds, input.stopped);
   if (!walk) return fail(walk.error());
   for (std::string& note : walk->notes) input.notes.push_back(std::move(note));
   for (std::string& folder : walk->campaigns) {

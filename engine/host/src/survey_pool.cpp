@@ -15,7 +15,7 @@ namespace nonio::host {
 namespace {
 
 /// So many campaigns for one process: starting it is then cheap, and a crash costs little.
-constexpr std::size_t largest_batch = 2000;
+constexpr std::size_t campaigns_in_batch = 2000;
 /// After so many that hang, a disk gets no more time than a second.
 constexpr std::size_t most_patience = 8;
 
@@ -71,11 +71,12 @@ class Pool {
   Expected<void> run(const std::vector<std::size_t>& which) {
     const std::size_t cores = Poco::Environment::processorCount();
     // Several for each core, so that all end at about the same time.
-    const std::size_t size = std::clamp(which.size() / (4 * cores), std::size_t{1}, largest_batch);
+    const std::size_t size =
+        std::clamp(which.size() / (4 * cores), std::size_t{1}, campaigns_in_batch);
     for (std::size_t i = 0; i < which.size(); i += size) {
       const auto from = which.begin() + static_cast<std::ptrdiff_t>(i);
-      todo_.push_back({{from, from + static_cast<std::ptrdiff_t>(
-                                         std::min(size, which.size() - i))}});
+      todo_.push_back(
+          {{from, from + static_cast<std::ptrdiff_t>(std::min(size, which.size() - i))}});
     }
     std::reverse(todo_.begin(), todo_.end());
     while ((!todo_.empty() || !children_.empty()) && !in_.stopped()) {

@@ -48,8 +48,8 @@ struct SignsOfLife {
   std::string reads_from() const { return {place.data(), ::strnlen(place.data(), place.size())}; }
 };
 
-/// A child process for what may hang (a disk, a share) or crash (a parser). What it sends arrives as
-/// parcels; the parent waits for it no longer than it shows signs of life. Moved, not copied.
+/// A child process for what may hang (a disk, a share) or crash (a parser). What it sends arrives
+/// as parcels; the parent waits for it no longer than it shows signs of life. Moved, not copied.
 class Watched {
  public:
   /// Sends a parcel to the parent, not at once.

@@ -65,8 +65,8 @@ Expected<std::string> read_file(const std::filesystem::path& path);
 /// A file that people write (campaign.toml, site.toml): refused above 1 MB, by its size and unread.
 Expected<std::string> read_small_file(const std::filesystem::path& path);
 
-/// Where the results of a campaign are: OUT/<id>, or OUT/ab/<id> in an output folder whose campaigns
-/// lie by the first two digits of the SHA-256 of their ids.
+/// Where the results of a campaign are: OUT/<id>, or OUT/ab/<id> in an output folder whose
+/// campaigns lie by the first two digits of the SHA-256 of their ids.
 std::filesystem::path results_folder(const std::filesystem::path& out, const std::string& id);
 /// Beside the night's own files; there in such an output folder.
 inline constexpr const char* hashed_mark = ".nonio/hashed";
