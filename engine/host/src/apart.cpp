@@ -22,7 +22,7 @@ namespace nonio::host {
 namespace {
 
 enum class Place { anywhere, wanted_apart, apart };
-Place place = Place::anywhere;
+Place where_run = Place::anywhere;
 bool is_muted = false;
 std::vector<std::filesystem::path>& hidden() {
   static std::vector<std::filesystem::path> files;
@@ -50,7 +50,7 @@ void flush_output() {
 }  // namespace
 
 void keep_plugins_apart() {
-  if (place == Place::anywhere) place = Place::wanted_apart;
+  if (where_run == Place::anywhere) where_run = Place::wanted_apart;
 }
 
 void hide_from_plugins(std::vector<std::filesystem::path> secrets) {
@@ -58,8 +58,8 @@ void hide_from_plugins(std::vector<std::filesystem::path> secrets) {
 }
 
 void step_aside() {
-  if (place != Place::wanted_apart) return;
-  place = Place::apart;
+  if (where_run != Place::wanted_apart) return;
+  where_run = Place::apart;
   flush_output();
   std::cerr.flush();
   const pid_t parent = ::getpid();
@@ -81,10 +81,10 @@ void step_aside() {
   keep_process_state();
 }
 
-bool is_apart() { return place == Place::apart; }
+bool is_apart() { return where_run == Place::apart; }
 
 Muted::Muted() {
-  if (place != Place::apart || is_muted) return;
+  if (where_run != Place::apart || is_muted) return;
   flush_output();
   output_ = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
   if (output_ < 0) return;

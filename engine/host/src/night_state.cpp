@@ -25,20 +25,20 @@ namespace {
 
 constexpr const char* state_name = "night.json";
 
-Json to_json(const NightEnd& end) {
+Json json_of(const NightEnd& end) {
   return {{"night", end.night.number},
           {"date", end.night.date},
           {"seen", end.seen},
           {"failed", end.failed}};
 }
 
-std::optional<std::uint64_t> count_in(const Json& json, const char* key) {
+std::optional<std::uint64_t> known_count(const Json& json, const char* key) {
   const auto it = json.find(key);
   if (it == json.end() || !it->is_number_unsigned()) return std::nullopt;
   return it->get<std::uint64_t>();
 }
 
-std::string text_in(const Json& json, const char* key) {
+std::string known_text(const Json& json, const char* key) {
   const auto it = json.find(key);
   return it != json.end() && it->is_string() ? it->get<std::string>() : "";
 }
@@ -46,10 +46,11 @@ std::string text_in(const Json& json, const char* key) {
 std::optional<NightEnd> end_in(const Json& json, const char* key) {
   const auto it = json.find(key);
   if (it == json.end() || !it->is_object()) return std::nullopt;
-  const auto number = count_in(*it, "night");
-  const auto seen = count_in(*it, "seen");
+  const auto number = known_count(*it, "night");
+  const auto seen = known_count(*it, "seen");
   if (!number || !seen) return std::nullopt;
-  return NightEnd{{*number, text_in(*it, "date")}, *seen, count_in(*it, "failed").value_or(0)};
+  return NightEnd{
+      {*number, known_text(*it, "date")}, *seen, known_count(*it, "failed").value_or(0)};
 }
 
 /// None if there is no such file; an error if it cannot be read or is something else.
@@ -60,7 +61,7 @@ Expected<std::optional<Json>> read_state(const fs::path& out) {
   const auto file = read_file(path);
   if (!file) return fail(file.error());
   Json json = Json::parse(*file, nullptr, false);
-  if (json.is_discarded() || !json.is_object() || !count_in(json, "night"))
+  if (json.is_discarded() || !json.is_object() || !known_count(json, "night"))
     return fail(path.string() + " is damaged; remove it to do every campaign anew");
   return json;
 }
@@ -71,8 +72,8 @@ Expected<void> write_state(const fs::path& out, const NightState& night,
   Json json = {{"schema", "nonio-night/1"}, {"night", night.number},
                {"date", night.date},        {"state", end ? "complete" : "running"},
                {"force", night.force},      {"site", night.site}};
-  if (end) json["end"] = to_json(*end);
-  if (night.last) json["last"] = to_json(*night.last);
+  if (end) json["end"] = json_of(*end);
+  if (night.last) json["last"] = json_of(*night.last);
   if (night.issued_before) json["issued_before"] = *night.issued_before;
   return publish(out / state_folder, {{state_name, dump(json)}});
 }
@@ -131,15 +132,15 @@ Expected<NightState> begin_night(const RunOptions& options,
   if (!state) return fail(state.error());
   if (*state) {
     const Json& json = **state;
-    if (std::string why = other_site(text_in(json, "site"), night.site, out); !why.empty())
+    if (std::string why = other_site(known_text(json, "site"), night.site, out); !why.empty())
       return fail(std::move(why));
-    night.resumed = text_in(json, "state") == "running";
+    night.resumed = known_text(json, "state") == "running";
     night.number = json["night"].get<std::uint64_t>() + (night.resumed ? 0 : 1);
     // A forced run that was interrupted is finished as what it was.
     if (night.resumed) night.force = options.force || json.value("force", false);
     if (night.resumed && options.date.empty() && json.contains("date"))
-      night.date = text_in(json, "date");
-    if (const auto issued = count_in(json, "issued_before")) night.issued_before = issued;
+      night.date = known_text(json, "date");
+    if (const auto issued = known_count(json, "issued_before")) night.issued_before = issued;
     night.last = end_in(json, night.resumed ? "last" : "end");
   }
   if (options.dry_run) return night;
@@ -172,8 +173,8 @@ Expected<NightStatus> night_status(const fs::path& out) {
                 "; wanted the output folder of `nonio run`");
   const Json& json = **state;
   NightStatus status;
-  status.night = {*count_in(json, "night"), text_in(json, "date")};
-  if (text_in(json, "state") == "complete") {
+  status.night = {*known_count(json, "night"), known_text(json, "date")};
+  if (known_text(json, "state") == "complete") {
     status.last = end_in(json, "end");
     if (!status.last) status.last = NightEnd{status.night, 0, 0};
   } else {

@@ -233,8 +233,8 @@ class Checker {
     } catch (...) {
       v = kit::failed("threw something in: " + stage.get());
     }
-    const char letter = v.state == Verdict::CheckState::passed   ? 'p'
-                        : v.state == Verdict::CheckState::failed ? 'f'
+    const char letter = v.state == Verdict::State::passed   ? 'p'
+                        : v.state == Verdict::State::failed ? 'f'
                                                             : 's';
     return letter + v.says;
   }
@@ -273,7 +273,7 @@ class Checker {
     for (const auto& p : brought_.outputs)
       list += (p.control ? "controller " : "output ") + p.info.name + "\n";
     return list.empty() ? kit::failed("it registers nothing")
-                        : Verdict{Verdict::CheckState::passed, list};
+                        : Verdict{Verdict::State::passed, list};
   }
 
   Verdict symbols() const {

@@ -8,11 +8,11 @@ namespace nonio::host {
 
 namespace {
 
-Json to_json(const Approval& a) {
+Json draft_json(const Approval& a) {
   return {{"by", a.by}, {"role", a.role}, {"at", a.at}, {"reasons", a.reasons}};
 }
 
-Json to_json(const WaitingDraft& d) {
+Json draft_json(const WaitingDraft& d) {
   Json json = {{"folder", d.folder},       {"out", d.out},           {"file", d.file},
                {"sha256", d.sha256},       {"replaces", d.replaces}, {"made_from", d.made_from},
                {"findings", Json::array()}};
@@ -21,11 +21,11 @@ Json to_json(const WaitingDraft& d) {
                                 {"id", f.id},
                                 {"title", f.title},
                                 {"attention", f.attention}});
-  if (d.author) json["author"] = to_json(*d.author);
+  if (d.author) json["author"] = draft_json(*d.author);
   return json;
 }
 
-/// Throws what nlohmann::json throws where it is not what `to_json` has written.
+/// Throws what nlohmann::json throws where it is not what `draft_json` has written.
 WaitingDraft draft_of(const std::string& campaign, const Json& json) {
   WaitingDraft d;
   d.campaign = campaign;
@@ -91,7 +91,7 @@ namespace {
 void put_draft(Database& database, const WaitingDraft& draft) {
   database.rows(
       "INSERT OR REPLACE INTO drafts VALUES(?, ?)",
-      {draft.campaign, to_json(draft).dump(-1, ' ', false, Json::error_handler_t::replace)});
+      {draft.campaign, draft_json(draft).dump(-1, ' ', false, Json::error_handler_t::replace)});
 }
 
 }  // namespace
@@ -122,7 +122,7 @@ Expected<void> Register::approve(const std::string& campaign, const Approval& ap
   now.author = approval;
   now.author->at = utc_now();
   put_draft(*database_, now);
-  Json says = to_json(*now.author);
+  Json says = draft_json(*now.author);
   says["campaign"] = campaign;
   says["draft_sha256"] = now.sha256;
   Journal(*database_).add("approved", "", says);

@@ -73,7 +73,8 @@ std::string no_site(const fs::path& site) {
   auto child = Watched::start([&](SignsOfLife&, const Watched::Send&) {
     std::error_code error;
     if (!fs::is_directory(site, error)) return;
-    for (fs::directory_iterator it(site, error), end; !error && it != end; it.increment(error)) {}
+    for (fs::directory_iterator it(site, error), end; !error && it != end; it.increment(error)) {
+    }
     if (read_small_file(site / site_name) && is_there(site / "templates")) return;
   });
   if (!child) return child.error().message;

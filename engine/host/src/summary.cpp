@@ -45,10 +45,8 @@ struct List {
 };
 
 Json entry_json(const CampaignState& c, const std::string& reason) {
-  Json json = {{"id", c.id},
-               {"folder", path_text(c.folder)},
-               {"status", c.status},
-               {"reason", reason}};
+  Json json = {
+      {"id", c.id}, {"folder", path_text(c.folder)}, {"status", c.status}, {"reason", reason}};
   if (!c.errors.empty()) {
     Json errors = Json::array();
     for (const Error& e : c.errors) errors.push_back(to_json(e));
@@ -133,8 +131,7 @@ struct Lists {
       entry["failed_since"] = night_json(since);
       if (since.number != record->night) line += "; failed since " + night_words(since);
     }
-    const std::string folder =
-        (results / last_good_name).lexically_relative(out).generic_string();
+    const std::string folder = (results / last_good_name).lexically_relative(out).generic_string();
     if (const auto good = read_record(out / folder)) {
       const NightOf night{good->night, good->date};
       entry["last_good"] = night_json(night);
@@ -185,8 +182,7 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
   out.add("Nonio " + version + ": " + n(night.campaigns.size()) +
           (night.campaigns.size() == 1 ? " campaign: " : " campaigns: ") + n(lists.done.count) +
           " done, " + n(lists.unchanged.count) + " unchanged, " + n(lists.failed.count) +
-          " failed; " +
-          (lists.vanished.count == 0 ? "" : n(lists.vanished.count) + " vanished; ") +
+          " failed; " + (lists.vanished.count == 0 ? "" : n(lists.vanished.count) + " vanished; ") +
           n(lists.attention.count) + (lists.attention.count == 1 ? " asks" : " ask") +
           " for attention\n");
   out.add(night_line(night));
@@ -210,8 +206,8 @@ void write_text(Spool& out, const Night& night, Lists& lists, const std::string&
 
 void write_json(Spool& out, const Night& night, Lists& lists, const std::string& version,
                 const fs::path& out_folder) {
-  const std::initializer_list<List*> all{&lists.done, &lists.unchanged, &lists.attention,
-                                         &lists.failed, &lists.vanished, &lists.fresh};
+  const std::initializer_list<List*> all{&lists.done,   &lists.unchanged, &lists.attention,
+                                         &lists.failed, &lists.vanished,  &lists.fresh};
   Json seen = {{"tonight", night.campaigns.size()}, {"night_before", nullptr}};
   if (night.seen_before) seen["night_before"] = *night.seen_before;
   Json counts = {{"campaigns", night.campaigns.size()}};
@@ -235,7 +231,10 @@ void write_json(Spool& out, const Night& night, Lists& lists, const std::string&
   out.add(",\n \"issued\": " + issued.dump());
   Json waiting = Json::array();
   for (const WaitingDraft& d : night.waiting) {
-    Json one = {{"campaign", d.campaign}, {"file", (results_folder(out_folder, d.campaign).lexically_relative(out_folder) / d.file).generic_string()}};
+    Json one = {
+        {"campaign", d.campaign},
+        {"file", (results_folder(out_folder, d.campaign).lexically_relative(out_folder) / d.file)
+                     .generic_string()}};
     if (!d.replaces.empty()) one["replaces"] = d.replaces;
     waiting.push_back(std::move(one));
   }

@@ -37,9 +37,9 @@ class Plugins final : public Registry {
   explicit Plugins(Catalogue catalogue);
   Catalogue catalogue() const;
 
-  /// The shared libraries of the folders, in their order; a folder that cannot be read is a conflict.
-  std::vector<std::filesystem::path> files_in(
-      const std::vector<std::filesystem::path>& folders);
+  /// The shared libraries of the folders, in their order; a folder that cannot be read is a
+  /// conflict.
+  std::vector<std::filesystem::path> files_in(const std::vector<std::filesystem::path>& folders);
   /// Loads and registers one; where `refusal` says something, it only remembers that. To be called
   /// in a process that may come to harm.
   void load_file(const std::filesystem::path& path, const std::string& refusal);
