@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -124,6 +126,9 @@ int run_night(RunWish& wish, const Common& common) {
   options.version = NONIO_VERSION;
   options.as_root = options.as_root || std::getenv("NONIO_ALLOW_ROOT") != nullptr;
   catch_signals();
+  if (::geteuid() == 0 && !options.as_root && !common.quiet)
+    std::cerr << "nonio: this runs as root, for whom nothing needs it: wanted a user of its own "
+                 "(the package's service runs as nonio), or --root to say that it is meant\n";
   Progress progress(common.quiet, common.json);
   const host::Night night = host::run_site(options, progress.events());
   progress.end();

@@ -245,6 +245,8 @@ class Planes(BenchTest):
                         / length)
             files[name] = ("diagonal", axis_csv([length * i / n for i in range(n + 1)], along, along),
                            "from = { X = 0, Y = %d }\nto = { X = 1200, Y = %d }" % (start, end))
+        for finding in ("readings-all-equal", "file-twice"):
+            extra += '[[tables.may_stand]]\nfinding = "plausibility.%s"\nreason = "positioning is made perfect"\n' % finding
         self.campaign(files, extra, (("X", "linear"), ("Y", "linear")), control)
         return self.run_site()
 

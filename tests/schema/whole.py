@@ -47,6 +47,7 @@ def campaign():
                   "formula": [{"name": "sag", "axis": "X", "expression": "a*cos(2*_pi*p/P)",
                                "parameters": [{"name": "a", "unit": "um"},
                                               {"name": "P", "unit": "mm", "start": 800, "range": [500, 1500.5]}]}]},
+        "tables": {"may_stand": [{"finding": "plausibility.passes-identical", "reason": "R"}]},
         "options": {"iso230-2": {"edition": 2006}},
     }
 

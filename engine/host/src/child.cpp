@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -54,6 +55,15 @@ void settle_child() {
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
+}
+
+pid_t fork_patiently() {
+  constexpr int most = 20;
+  for (int i = 0;; ++i) {
+    const pid_t pid = ::fork();
+    if (pid >= 0 || i == most || (errno != EAGAIN && errno != ENOMEM)) return pid;
+    ::usleep(100'000);
+  }
 }
 
 std::size_t memory_held() {

@@ -31,6 +31,8 @@ void limit_memory(double megabytes);
 /// Memory that a worker gives back to the system would only be faulted in again for the next
 /// campaign.
 void keep_freed_memory();
+/// `fork`, tried again for two seconds where the system has no process to give just now.
+pid_t fork_patiently();
 /// Bytes that the process has from the system for its data.
 std::size_t memory_held();
 /// Whether that has become noticeably more: more than the tables and reports of a campaign need,

@@ -235,6 +235,7 @@ class CampaignRun {
       if (a.plugin == plausibility_name)
         for (const Finding& f : a.evaluation.findings) doubts_.insert(f.id);
     std::set<std::string> known = doubts_;
+    doubts_.erase(std::string(no_scatter));
     for (const StandingFinding& standing : read_.manifest->tables_may_stand) {
       if (!known.contains(standing.finding))
         report(Error{"tables.may_stand: the readings have no finding " + standing.finding +

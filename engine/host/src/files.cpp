@@ -130,8 +130,7 @@ Expected<std::size_t> read_into(int file, char* to, std::size_t room, const fs::
 Expected<ReadFile> ReadFile::open(const fs::path& path) {
   constexpr int tries = 5;
   for (int i = 0; i < tries; ++i) {
-    // Without waiting: a named pipe must not stop the night.
-    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+    const Descriptor file = open_to_read(path);
     struct stat before {};
     if (!file || ::fstat(file.get(), &before) != 0) return system_error("cannot read", path);
     if (!S_ISREG(before.st_mode)) return fail("cannot read " + path.string() + ": not a file");

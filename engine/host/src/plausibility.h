@@ -15,6 +15,8 @@ namespace nonio::host {
 
 inline constexpr std::string_view plausibility_name = "plausibility";
 inline constexpr std::string_view plausibility_prefix = "plausibility.";
+/// The one doubt that keeps no table: copies change no mean.
+inline constexpr std::string_view no_scatter = "plausibility.no-scatter";
 
 /// All of them, an entry for each measurement that has any, and one without for the campaign.
 std::vector<Results::Analysed> implausible(const ReadCampaign& read, const Context& context,

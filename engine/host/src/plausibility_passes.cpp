@@ -119,6 +119,13 @@ class Copies {
 
   void find(Quantity deviation, std::vector<Finding>& out) const {
     constexpr double chance = 1e-7;
+    if (nothing_scatters()) {
+      out.push_back({.id = std::string(no_scatter),
+                     .attention = true,
+                     .evidence = {{"passes", static_cast<double>(strokes_.size()), Quantity::count},
+                                  {"step", step_, deviation}}});
+      return;
+    }
     for (const auto& [what, same] : groups_) {
       if (same.size() < 2) continue;
       const auto n = static_cast<double>(std::get<2>(what).size());
@@ -146,6 +153,19 @@ class Copies {
  private:
   static constexpr double um = 1e-6, arcsec = 1.0 / arcsec_per_rad;
   static constexpr std::size_t most_named = 6;
+
+  /// Whether every pass agrees with all others of its direction, and the readings are not one.
+  bool nothing_scatters() const {
+    std::map<std::pair<std::uint32_t, int>, const Stroke*> first;
+    std::size_t repeated = 0;
+    for (const Stroke& s : strokes_) {
+      const auto [at, is_new] = first.emplace(std::pair(s.line, s.direction), &s);
+      if (is_new) continue;
+      if (at->second->target != s.target || at->second->deviation != s.deviation) return false;
+      ++repeated;
+    }
+    return repeated > 0 && step_ > 0.0;
+  }
 
   /// Of the passes that are no copies, by target and direction, less the shift of each pass: two
   /// passes that follow one another share what drifts.

@@ -127,7 +127,7 @@ Expected<Catalogue> PluginHost::load_once() {
   ::setsockopt((*control)[0].get(), SOL_SOCKET, SO_PASSCRED, &yes, sizeof yes);
   std::cout.flush();
   std::cerr.flush();
-  pid_ = ::fork();
+  pid_ = fork_patiently();
   if (pid_ == 0) serve((*control)[1].get(), (*answers)[1].get(), printing.get(), progress);
   if (pid_ < 0) return fail(std::string("no process to load plugins: ") + std::strerror(errno));
   ::setpgid(pid_, pid_);

@@ -84,7 +84,7 @@ Probed probe_in_child(std::span<const fs::path> paths) {
   for (const SharedWords& words : said)
     if (!words.valid()) return {{}, {false, "no memory"}};
   std::cout.flush();
-  const pid_t child = ::fork();
+  const pid_t child = fork_patiently();
   if (child == 0) {
     settle_child();
     if (is_apart()) {
@@ -194,7 +194,8 @@ void Plugins::load(const std::vector<fs::path>& folders) {
   const std::vector<fs::path> paths = files_in(folders);
   std::vector<std::string> refusals = probe(paths);
   for (std::size_t i = 0; i < paths.size(); ++i)
-    if (!refusals[i].empty()) refusals[i] = probe(std::span(paths).subspan(i, 1)).front();
+    if (!refusals[i].empty() && !refusals[i].starts_with("did not survive"))
+      refusals[i] = probe(std::span(paths).subspan(i, 1)).front();
   for (std::size_t i = 0; i < paths.size(); ++i) load_file(paths[i], refusals[i]);
 }
 

@@ -302,7 +302,6 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
         "another process keeps the register of certificates locked: campaigns that need a number "
         "wait for it");
   for (const std::string& note : night.notes) events.note(note);
-  if (!(*place)->as_root.empty()) events.note((*place)->as_root);
   if (!(*place)->unstamped.empty()) night.notes.push_back((*place)->unstamped);
   // What takes the memory goes first, then there is enough to tell of it.
   auto reserve = std::make_unique<std::array<char, 1 << 18>>();

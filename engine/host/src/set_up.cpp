@@ -65,15 +65,11 @@ std::string changeable_by_others(const RunOptions& options) {
 }
 
 /// What root does with a plugin is not undone by any confinement that has a gap.
-Expected<void> check_user(SetUp& place, const RunOptions& options) {
+Expected<void> check_user(const RunOptions& options) {
   if (::geteuid() != 0 || options.as_root) return {};
   if (const std::string path = changeable_by_others(options); !path.empty())
     return fail("root would run code that other users can change: " + path +
                 "; wanted another user (the package's service runs as nonio), or --root");
-  place.as_root =
-      "this runs as root, for whom nothing needs it: wanted a user of its own (the package's "
-      "service "
-      "runs as nonio), or --root to say that it is meant";
   return {};
 }
 
@@ -112,7 +108,7 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
       read_templates(*template_folders, context.templates_sha256, &context.templates_json);
   if (!templates) return fail(all_of({templates.error()}));
   context.templates = std::move(*templates);
-  if (auto allowed = check_user(*place, options); !allowed) return fail(allowed.error());
+  if (auto allowed = check_user(options); !allowed) return fail(allowed.error());
   if (auto loaded = load_plugins(*place, options); !loaded) return fail(loaded.error());
   const Plugins& plugins = place->plugins;
   if (!plugins.conflicts().empty()) return fail(plugins.conflicts().front());

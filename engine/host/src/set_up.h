@@ -20,7 +20,6 @@ struct SetUp {
   std::optional<PluginHost> host;
   std::vector<std::string> notes;  ///< for the morning's reader
   std::string unstamped;           ///< for the summary alone: it is the same every night
-  std::string as_root{};           ///< for the one who starts it
   std::string no_key;              ///< why nothing can be signed; empty: it can
 };
 

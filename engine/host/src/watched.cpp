@@ -119,7 +119,7 @@ Expected<Watched> Watched::start(const Task& task, double memory_MB) {
   }
   std::cout.flush();
   std::cerr.flush();
-  const pid_t pid = ::fork();
+  const pid_t pid = fork_patiently();
   if (pid == 0) {
     ::close(ends[0]);
     do_task(task, ends[1], memory_MB, *signs);

@@ -333,7 +333,7 @@ TEST_F(Truth, TheSignatureStandsOnTheFirstPageWhateverIsAboveIt) {
     c.campaign.customer = c.campaign.customer_address = c.campaign.machine.maker =
         name + " " + name;
     c.campaign.laboratory.name = name;
-    for (int i = 0; i < 8; ++i)
+    for (int i = 0; i < 2; ++i)
       c.campaign.sensors.push_back({"air", name, name, "1", "2026-01-01", "", "C-1", name});
     for (const char* result : {"A", "A+", "A-", "E", "E+", "E-", "R", "R+", "R-", "B"})
       decide(c, "iso230-2", result, 25e-6, Decision::conforms);
