@@ -124,6 +124,7 @@ class Desk {
     if (drafts_.empty() && !e_.certificate) return {};
     const std::string prefix = input_name("");
     for (const auto& [input, digest] : e_.inputs) {
+      if (input.starts_with(shared_name(""))) continue;  // what another campaign has
       const bool is_file = input.starts_with(prefix);
       const std::string name = is_file ? input.substr(prefix.size()) : input;
       const auto path = path_inside(folder_, name);

@@ -20,7 +20,9 @@
 #include "nonio/host/record.h"
 #include "nonio/host/results_json.h"
 #include "numbering.h"
+#include "plausibility.h"
 #include "recomputed.h"
+#include "twins.h"
 #include "worker.h"
 
 namespace nonio::host {
@@ -76,7 +78,22 @@ Expected<void> unpack(const sign::Verified& v, const fs::path& folder) {
 struct Stated {
   std::optional<Certificate> certificate;
   std::string nonio;
+  std::vector<std::pair<std::string, std::string>> shared;  ///< files, each with another campaign
 };
+
+/// Which files another campaign had too, which only the night could know, as the findings say.
+void put_shared(const Json& analyses, Stated& stated) {
+  const auto text = [](const Json& of, const char* key) {
+    return of.is_object() && of.contains(key) && of[key].is_string() ? of[key].get<std::string>()
+                                                                     : std::string();
+  };
+  for (const Json& analysis : analyses) {
+    if (text(analysis, "plugin") != plausibility_name || !analysis.contains("findings")) continue;
+    for (const Json& f : analysis["findings"])
+      if (text(f, "id") == file_of_another_campaign && f.contains("evidence"))
+        stated.shared.emplace_back(text(f["evidence"], "file"), text(f["evidence"], "campaign"));
+  }
+}
 
 Stated stated_in(std::string_view results) {
   const Json json = Json::parse(results, nullptr, false);
@@ -86,6 +103,7 @@ Stated stated_in(std::string_view results) {
     stated.nonio = json["nonio"].get<std::string>();
   if (json.contains("certificate") && json["certificate"].is_object())
     stated.certificate = certificate_of(json["certificate"]);
+  if (json.contains("analyses")) put_shared(json["analyses"], stated);
   return stated;
 }
 
@@ -128,7 +146,7 @@ class Again {
     const auto draw = [this](const Evaluated& e, std::vector<std::string>&) { return drawn(e); };
     Evaluated again = evaluate(
         folder_, manifest->campaign.id, context_, [](const std::string&) {},
-        stated_.certificate && why.empty() ? Draw(draw) : Draw());
+        stated_.certificate && why.empty() ? Draw(draw) : Draw(), shared());
     content.attachments = answered("content.attachments", check_names(again));
     Evaluated numbers = again;
     numbers.results.outputs.clear();
@@ -140,6 +158,14 @@ class Again {
   }
 
  private:
+  Twins shared() const {
+    Twins twins;
+    for (const auto& [file, campaign] : stated_.shared)
+      if (const sign::Attachment* a = find_attachment(v_, file))
+        twins.emplace_back(short_digest(sha256(a->bytes)), campaign);
+    return twins;
+  }
+
   /// Those that the file was made with, if this is its version. What is not whole, or not what
   /// results.json says of it, is no reason to look at less.
   sign::Check take_templates() {
@@ -187,7 +213,8 @@ class Again {
     std::vector<std::string> wanted = {results_name};
     const std::string prefix = input_name("");
     for (const auto& [input, digest] : again.inputs)
-      wanted.push_back(input.starts_with(prefix) ? input.substr(prefix.size()) : input);
+      if (!input.starts_with(shared_name("")))
+        wanted.push_back(input.starts_with(prefix) ? input.substr(prefix.size()) : input);
     for (const char* name : {settings_name, templates_name})
       if (find_attachment(v_, name) != nullptr) wanted.emplace_back(name);
     for (const sign::Attachment& a : v_.attachments)

@@ -331,7 +331,7 @@ std::vector<Results::Analysed> implausible(const ReadCampaign& read, const Conte
       if (f.measurement == m.id) findings.push_back(f);
     const std::string& digest = digest_of[input_name(m.file)];
     if (const auto shared = digest_of.find(shared_name(m.file)); shared != digest_of.end())
-      findings.push_back({.id = "plausibility.file-of-another-campaign",
+      findings.push_back({.id = std::string(file_of_another_campaign),
                           .attention = true,
                           .texts = {{"file", m.file}, {"campaign", shared->second}}});
     if (const auto [first, is_new] = first_with.try_emplace(digest, m.file);
@@ -370,8 +370,8 @@ Expected<void> possible_air(const Observations& o, const std::string& file) {
     for (std::size_t i = 0; i < c.values.size(); ++i) {
       const double v = c.values[i];
       if (!std::isfinite(v) || (v >= c.least && v <= c.most)) continue;
-      Error error{"expected " + shortest(c.least) + " to " + shortest(c.most) + " " +
-                  c.unit + ", or nothing where it was not measured; found " + shortest(v)};
+      Error error{"expected " + shortest(c.least) + " to " + shortest(c.most) + " " + c.unit +
+                  ", or nothing where it was not measured; found " + shortest(v)};
       error.file = file;
       error.line = o.source_line_of(i);
       error.column = c.name;

@@ -15,6 +15,8 @@ namespace nonio::host {
 
 inline constexpr std::string_view plausibility_name = "plausibility";
 inline constexpr std::string_view plausibility_prefix = "plausibility.";
+inline constexpr std::string_view file_of_another_campaign =
+    "plausibility.file-of-another-campaign";
 /// The one doubt that keeps no table: copies change no mean.
 inline constexpr std::string_view no_scatter = "plausibility.no-scatter";
 
