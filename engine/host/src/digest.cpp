@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/host/digest.h"
 
-#include <Poco/Crypto/DigestEngine.h>
-#include <Poco/Crypto/OpenSSLInitializer.h>
+#include <openssl/evp.h>
+
+#include <array>
+#include <memory>
+#include <new>
+#include <string_view>
 
 #include "nonio/host/files.h"
 
@@ -10,25 +14,30 @@ namespace nonio::host {
 
 namespace {
 
+/// Poco's engine goes on where OpenSSL has no memory, and then reads what is not there.
 class Sha256 {
  public:
-  void add(std::string_view bytes) {
-    // In parts: the engine takes an unsigned length.
-    constexpr std::size_t part = std::size_t{1} << 30;
-    for (std::size_t i = 0; i < bytes.size(); i += part) {
-      const std::string_view piece = bytes.substr(i, part);
-      engine_.update(piece.data(), static_cast<unsigned>(piece.size()));
-    }
+  Sha256() {
+    if (!context_ || ::EVP_DigestInit_ex(context_.get(), ::EVP_sha256(), nullptr) != 1)
+      throw std::bad_alloc();
   }
-  std::string hex() { return Poco::DigestEngine::digestToHex(engine_.digest()); }
+  void add(std::string_view bytes) {
+    if (::EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) != 1) throw std::bad_alloc();
+  }
+  std::string hex() {
+    constexpr std::string_view digits = "0123456789abcdef";
+    std::array<unsigned char, 32> digest{};
+    if (::EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr) != 1) throw std::bad_alloc();
+    std::string text;
+    for (const unsigned char byte : digest) text += {digits[byte >> 4U], digits[byte & 15U]};
+    return text;
+  }
 
  private:
-  static Poco::Crypto::DigestEngine make() {
-    // Kept, because the last engine to go would shut OpenSSL down and the next one seed it anew.
-    static const Poco::Crypto::OpenSSLInitializer open_ssl;
-    return Poco::Crypto::DigestEngine("SHA256");
-  }
-  Poco::Crypto::DigestEngine engine_ = make();
+  struct Free {
+    void operator()(EVP_MD_CTX* context) const { ::EVP_MD_CTX_free(context); }
+  };
+  std::unique_ptr<EVP_MD_CTX, Free> context_{::EVP_MD_CTX_new()};
 };
 
 }  // namespace

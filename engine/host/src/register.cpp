@@ -42,8 +42,9 @@ std::vector<FileChange> differences(const Inputs& before, const Inputs& now) {
 Expected<fs::path> register_path(const fs::path& site, const Numbering& numbering) {
   auto path = path_inside(site, numbering.register_file);
   if (!path)
-    return fail("[certificate] register = \"" + numbering.register_file +
-                "\" in site.toml is not the path of a file inside the site");
+    return fail(
+        "[certificate] register = \"" + numbering.register_file +
+        "\" in site.toml is not the path of a file inside the site: " + path.error().message);
   return path;
 }
 
