@@ -24,7 +24,7 @@ MAY = {
 HOMES = {
     "Poco/": {"engine/host"}, "boost/dll": {"engine/host"}, "boost/math": {"engine/math"},
     "boost/": {"engine/host", "engine/math"}, "toml++": {"engine/host"}, "muParser": {"engine/host"}, "hpdf": {"reports"}, "qrencode": {"reports"},
-    "libdeflate": {"reports", "engine/sign"}, "openssl/": {"engine/sign", "reports"}, "xmlsec/": {"engine/sign"},
+    "libdeflate": {"reports", "engine/sign"}, "openssl/": {"engine/sign", "engine/host", "reports"}, "xmlsec/": {"engine/sign"},
     "libxml/": {"engine/sign"}, "CLI/": {"engine/app"}, "nlohmann": {"engine/host", "engine/app", "plugins/outputs"},
     "Eigen": {"engine/math", "engine/model", "plugins/analyses", "plugins/effects"}, "tl/": {"engine/sdk"}, "sqlite3": {"engine/host"},
 }
