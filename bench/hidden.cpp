@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well `explain` finds what the second generator (tests/hidden) has hidden:
-//   bench_hidden one|several|complete|outside COUNT SEED [--verbose] [--plugins FOLDER]
+//   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve COUNT SEED [--verbose] [--plugins FOLDER]
 //                [--write FOLDER] [--right PERCENT] [--wrong PERCENT]
 // Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio explain --auto` does. Fails
 // if fewer are right, or more named wrongly, than --right and --wrong say.
@@ -201,6 +201,8 @@ void score_fit(Score& score, const Hidden& h, const model::Comparison& c) {
   score_values(score, h, c.fit);
 }
 
+bool of_one(Kind kind) { return kind == Kind::one || kind == Kind::wave_under_curve; }
+
 /// Whether the campaign was explained as it had to be.
 bool judge(Score& score, const Hidden& h, const Followed& f) {
   score.answered.add(f.error.empty());
@@ -208,21 +210,21 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
   const model::Explanation &first = f.steps.front().said, &last = f.steps.back().said;
   const bool named = first.verdict.kind == Verdict::Kind::missing;
   bool right = false, wrong = named;
-  if (h.scenario.kind == Kind::one || h.scenario.kind == Kind::several) {
+  if (h.scenario.kind != Kind::complete && h.scenario.kind != Kind::outside) {
     const bool by_name = named && holds(h.truth.hidden, first.verdict.effect);
     const bool by_alias = named && std::any_of(h.truth.hidden.begin(), h.truth.hidden.end(),
                                                [&](const std::string& name) {
                                                  return holds(f.steps[0].aliases, name);
                                                });
     const bool all = all_and_nothing_else(h, f);
-    right = h.scenario.kind == Kind::one ? by_name || by_alias : all;
+    right = of_one(h.scenario.kind) ? by_name || by_alias : all;
     wrong = named && !by_name && !by_alias;
     score.alias.add(!by_name && by_alias);
     score.place.add(all);
     score.ends.add(last.verdict.kind == Verdict::Kind::nothing);
     for (const std::string& name : h.truth.hidden)
       score.of_effect[name.substr(0, name.find(':'))].add(
-          h.scenario.kind == Kind::one ? right : holds(f.added, name));
+          of_one(h.scenario.kind) ? right : holds(f.added, name));
     std::vector<std::string> exact = f.added, wanted = h.truth.hidden;
     std::sort(exact.begin(), exact.end());
     std::sort(wanted.begin(), wanted.end());
@@ -287,8 +289,8 @@ void tell(const Hidden& h, const Followed& f, std::uint64_t seed) {
 
 void print_score(const Score& s, Kind kind) {
   print("answered without an error", s.answered);
-  if (kind == Kind::one) print("named first, or its alias group", s.right);
-  if (kind == Kind::one || kind == Kind::several) {
+  if (of_one(kind)) print("named first, or its alias group", s.right);
+  if (kind != Kind::complete && kind != Kind::outside) {
     print("  of these by an alias group", s.alias);
     print("all found and nothing else", s.place);
     print("first verdict: missing, with a wrong name", s.wrong_name);
@@ -343,7 +345,9 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
   const std::map<std::string, Kind> kinds = {{"one", Kind::one},
                                              {"several", Kind::several},
                                              {"complete", Kind::complete},
-                                             {"outside", Kind::outside}};
+                                             {"outside", Kind::outside},
+                                             {"wave-under-curve", Kind::wave_under_curve},
+                                             {"screw-and-curve", Kind::screw_and_curve}};
   if (words.size() < 3 || kinds.count(words[0]) == 0) return {};
   const auto count = whole(words[1]), seed = whole(words[2]);
   if (!count || !seed) return {};
@@ -375,8 +379,8 @@ int main(int argc, char** argv) {
   if (!a) {
     std::fprintf(
         stderr,
-        "bench_hidden one|several|complete|outside COUNT SEED [--verbose]\n"
-        "             [--plugins FOLDER] [--write FOLDER] [--right PERCENT] [--wrong PERCENT]\n");
+        "bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve COUNT SEED\n"
+        "             [--verbose] [--plugins FOLDER] [--write FOLDER] [--right PERCENT] [--wrong PERCENT]\n");
     return 2;
   }
   host::Plugins plugins;

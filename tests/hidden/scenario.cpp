@@ -65,6 +65,7 @@ void draw_pitch(Scenario& s, Random& random) {
 
 void draw_cycle(Scenario& s, Random& random) {
   s.rotary = random.flag(0.35);
+  if (s.kind == Kind::wave_under_curve || s.kind == Kind::screw_and_curve) s.rotary = false;
   s.targets = s.rotary ? random.whole(12, 36) : random.whole(11, 31);
   s.length = s.rotary ? 2.0 * pi : std::round(random.spread(300.0, 3000.0) / 10.0) / 100.0;
   s.even = random.flag(0.2);
@@ -98,6 +99,14 @@ void draw_causes(Scenario& s, Random& random) {
       s.model = pieces(random, s.rotary, random.below(3), 1.6, 6.0);
       s.hidden = {
           {outside_sources()[random.below(outside_sources().size())], random.uniform(2.5, 6.0)}};
+      break;
+    case Kind::wave_under_curve:
+      s.model = {{Source::ground_pitch, random.uniform(1.6, 6.0)}};
+      s.hidden = {{Source::lead_error, random.uniform(1.6, 6.0)}};
+      break;
+    case Kind::screw_and_curve:
+      s.hidden = {{Source::ground_pitch, random.uniform(1.6, 6.0)},
+                  {Source::lead_error, random.uniform(1.6, 6.0)}};
       break;
   }
 }

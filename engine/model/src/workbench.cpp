@@ -393,6 +393,31 @@ Workbench::State Workbench::with_curve(const State& state, const VectorXd& gains
   return best;
 }
 
+Workbench::State Workbench::joined(const State& state, const VectorXd& gains,
+                                   std::size_t effect) const {
+  State best = with(state, gains, effect);
+  const auto& own = instances_[effect].blocks;
+  if (several_axes_ ||
+      std::none_of(own.begin(), own.end(), [&](std::size_t b) { return blocks_[b].of_position; }))
+    return best;
+  for (std::size_t i = 0; i < state.blocks.size(); ++i) {
+    const Block& present = blocks_[state.blocks[i]];
+    const Instance& curve = instances_[present.effect];
+    if (!curve.term.effect->curve || present.effect == effect) continue;
+    for (const std::size_t fewer : curve.blocks) {
+      if (blocks_[fewer].count >= present.count) continue;
+      std::vector<std::size_t> blocks = state.blocks;
+      blocks[i] = fewer;
+      const State base = this->state(std::move(blocks));
+      State more = with(base, this->gains(base, effect), effect);
+      if (more.blocks.size() == base.blocks.size()) continue;
+      if (best.blocks.size() == state.blocks.size() || more.criterion < best.criterion)
+        best = std::move(more);
+    }
+  }
+  return best;
+}
+
 bool Workbench::holds(const State& state, std::size_t effect) const {
   return std::any_of(state.blocks.begin(), state.blocks.end(),
                      [&](std::size_t b) { return blocks_[b].effect == effect; });

@@ -68,6 +68,9 @@ class Workbench {
   /// The state with the best block of this effect added, or nothing that can be added (blocks as
   /// before).
   State with(const State& state, const VectorXd& gains, std::size_t effect) const;
+  /// The same, where it is better with curves of fewer knots: a curve that is there follows what
+  /// the new effect has to say, and takes the targets that it would need.
+  State joined(const State& state, const VectorXd& gains, std::size_t effect) const;
   /// Each effect's shapes looked for again while the others stay, until nothing improves.
   State settled(State state) const;
   bool holds(const State& state, std::size_t effect) const;

@@ -71,6 +71,8 @@ enum class Kind {
   several,   ///< two or three, 1.6 to 4 times the noise, 1 % misreadings
   complete,  ///< the model holds all that is there
   outside,   ///< something outside the catalogue, beside up to two effects of the model
+  wave_under_curve,  ///< a lead error; the model holds the screw's ground pitch
+  screw_and_curve,   ///< both hidden
 };
 
 struct Piece {
