@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well `explain` finds what the second generator (tests/hidden) has hidden:
-//   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve COUNT SEED [--verbose] [--plugins FOLDER]
+//   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped COUNT SEED [--verbose] [--plugins FOLDER]
 //                [--write FOLDER] [--right PERCENT] [--wrong PERCENT]
 // Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio explain --auto` does. Fails
 // if fewer are right, or more named wrongly, than --right and --wrong say.
@@ -201,7 +201,9 @@ void score_fit(Score& score, const Hidden& h, const model::Comparison& c) {
   score_values(score, h, c.fit);
 }
 
-bool of_one(Kind kind) { return kind == Kind::one || kind == Kind::wave_under_curve; }
+bool of_one(Kind kind) {
+  return kind == Kind::one || kind == Kind::wave_under_curve || kind == Kind::grouped;
+}
 
 /// Whether the campaign was explained as it had to be.
 bool judge(Score& score, const Hidden& h, const Followed& f) {
@@ -347,7 +349,8 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
                                              {"complete", Kind::complete},
                                              {"outside", Kind::outside},
                                              {"wave-under-curve", Kind::wave_under_curve},
-                                             {"screw-and-curve", Kind::screw_and_curve}};
+                                             {"screw-and-curve", Kind::screw_and_curve},
+                                             {"grouped", Kind::grouped}};
   if (words.size() < 3 || kinds.count(words[0]) == 0) return {};
   const auto count = whole(words[1]), seed = whole(words[2]);
   if (!count || !seed) return {};
@@ -379,7 +382,7 @@ int main(int argc, char** argv) {
   if (!a) {
     std::fprintf(
         stderr,
-        "bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve COUNT SEED\n"
+        "bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|\n             grouped COUNT SEED\n"
         "             [--verbose] [--plugins FOLDER] [--write FOLDER] [--right PERCENT] [--wrong PERCENT]\n");
     return 2;
   }

@@ -71,6 +71,7 @@ void draw_cycle(Scenario& s, Random& random) {
   s.even = random.flag(0.2);
   s.runs = static_cast<std::uint32_t>(random.whole(2, 5));
   s.timed = !random.flag(s.kind == Kind::several ? 1.0 / 3.0 : 0.2);
+  if (s.kind == Kind::grouped) s.timed = false;
   s.dwell = random.uniform(4.0, 10.0);
   s.feed = s.length / random.uniform(10.0, 40.0);
   s.pause = s.timed && random.flag(0.5) ? random.uniform(20.0, 180.0) : 0.0;
@@ -85,6 +86,7 @@ void draw_cycle(Scenario& s, Random& random) {
 void draw_causes(Scenario& s, Random& random) {
   switch (s.kind) {
     case Kind::one:
+    case Kind::grouped:
       s.hidden = pieces(random, s.rotary, 1, 3.5, 9.0);
       break;
     case Kind::several:

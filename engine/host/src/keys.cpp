@@ -307,6 +307,7 @@ constexpr Choice measurement_kinds[] = {{"axis"},         {"straightness"},  {"a
                                         {"observations"}, {"ballbar"}};
 constexpr Choice on_or_off[] = {{"on"}, {"off"}};
 constexpr Choice adjustments[] = {{"before"}, {"after"}};
+constexpr Choice listed_orders[] = {{"pendulum"}, {"as-listed"}, {"unknown"}};
 constexpr Choice linear_axes[] = {{"X"}, {"Y"}, {"Z"}};
 constexpr Words of_one_axis[] = {"axis", "straightness", "angle", "ball-centres"};
 constexpr Words straightness[] = {"straightness"}, angle[] = {"angle"};
@@ -349,6 +350,13 @@ constexpr Key measurement_keys[] = {
      .help = "Which of two tests was made before and which after the machine was adjusted, for "
              "the certificate.",
      .choices = adjustments},
+    {.name = "order",
+     .holds = text,
+     .help = "In which order the readings of a file without times were taken: there and back run "
+             "by run (pendulum), as its rows stand, or nobody knows: then nothing is concluded "
+             "from time.",
+     .only = {"kind", axis_runs},
+     .choices = listed_orders},
     {.name = "side",
      .holds = text,
      .help = "Of a gantry axis with a scale on each side: on which one this line lies. Each side "

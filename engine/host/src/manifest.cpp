@@ -232,6 +232,7 @@ Measurement read_measurement(TableReader& reader) {
   m.axis = reader.text("axis");
   m.lateral = reader.text("lateral");
   m.adjustment = reader.text("adjustment");
+  m.order = reader.text("order");
   if (m.kind == "axis") m.side = reader.text("side");
   if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
     reader.error("lateral", "wanted another axis than " + m.axis +

@@ -267,6 +267,9 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
     if (fit.lost[t] > 0) out.push_back(words.not_told(fit.terms[t].name(), fit.lost[t]));
   if (part.part.kind == model::Part::Kind::space && model::stood_somewhere(part.part))
     out.push_back(words.stood_somewhere());
+  for (const std::string& measurement : part.part.order_assumed)
+    out.push_back(words.order_assumed(measurement));
+  if (!part.part.table.order_known) out.push_back(words.order_unknown());
   return out;
 }
 

@@ -150,6 +150,12 @@ std::string ModelWords::not_told(const std::string& effect, std::size_t paramete
 
 std::string ModelWords::stood_somewhere() const { return says("stood-somewhere", {}, {}); }
 
+std::string ModelWords::order_assumed(const std::string& measurement) const {
+  return says("order-assumed", {}, {{"measurement", measurement}});
+}
+
+std::string ModelWords::order_unknown() const { return says("order-unknown", {}, {}); }
+
 std::string ModelWords::unmeasured(const std::string& effect) const {
   return says("unmeasured", {}, {{"effect", effect}});
 }

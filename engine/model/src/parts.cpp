@@ -83,7 +83,7 @@ class Parts {
       fresh.axes = {axis};
       part = parts_.insert(parts_.end(), std::move(fresh));
     }
-    append_run(*part, read_[m], measurement(m).id);
+    append_run(*part, read_[m], measurement(m));
   }
 
   void add_balls(std::size_t m) {

@@ -73,6 +73,7 @@ enum class Kind {
   outside,   ///< something outside the catalogue, beside up to two effects of the model
   wave_under_curve,  ///< a lead error; the model holds the screw's ground pitch
   screw_and_curve,   ///< both hidden
+  grouped,           ///< one; the file lists all runs towards + before those towards -, no times
 };
 
 struct Piece {

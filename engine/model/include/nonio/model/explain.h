@@ -30,6 +30,9 @@ struct Part {
   std::vector<std::uint32_t> row{};          ///< of each reading: row of its measurement's table
   std::vector<double> along{};               ///< of each reading: its place on its line, m or rad
   std::vector<std::int8_t> way{};            ///< of each reading: +1 or -1 along its line
+  /// Measurements of an axis whose file cannot be in the order in which it was measured: the cycle
+  /// of ISO 230-2 is assumed.
+  std::vector<std::string> order_assumed{};
 };
 
 /// A reading that was taken where the manifest does not say where the other axes stood.

@@ -114,6 +114,8 @@ struct Measurement {
   std::string exclude_reason{};            ///< why they do not; a certificate needs it
   std::map<std::string, double> at{};      ///< where the axes that stood still were, m
   std::string adjustment{};                ///< "before" or "after" one; empty: not said
+  /// Of the rows, where they have no times: "pendulum", "as-listed", "unknown"; empty: not said.
+  std::string order{};
 
   /// How the test was made, as ISO 230-2 wants it reported; what is empty was not said.
   std::optional<double> feed{};                      ///< m/s, rad/s
