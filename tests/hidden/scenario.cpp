@@ -102,6 +102,13 @@ void draw_causes(Scenario& s, Random& random) {
       s.hidden = {
           {outside_sources()[random.below(outside_sources().size())], random.uniform(2.5, 6.0)}};
       break;
+    case Kind::beside: {
+      const Source other[] = {Source::dent, Source::creeping_reversal, Source::zero_walk,
+                              Source::travel_hysteresis};
+      s.hidden = pieces(random, s.rotary, 1, 6.0, 9.0);
+      s.hidden.push_back({other[random.below(4)], random.uniform(2.5, 4.0)});
+      break;
+    }
     case Kind::wave_under_curve:
       s.model = {{Source::ground_pitch, random.uniform(1.6, 6.0)}};
       s.hidden = {{Source::lead_error, random.uniform(1.6, 6.0)}};

@@ -3,6 +3,7 @@
 
 #include "candidates.h"
 #include "compare.h"
+#include "describe.h"
 #include "finding.h"
 #include "thin.h"
 #include "verdict.h"
@@ -21,6 +22,7 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
     if (c.visible && finding->bench->holds(finding->best, finding->index_of(c.term.name())))
       out.together.push_back(c.term.name());
   judge(*finding, out);
+  if (out.verdict.kind == Verdict::Kind::unknown) out.descriptions = described(*finding);
   out.comparison = std::move(finding->of_model);
   return out;
 }

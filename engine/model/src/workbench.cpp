@@ -65,7 +65,8 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
   Made own;
   std::vector<MatrixXd> parts;
   for (const Term& term : terms) {
-    instances_.push_back({term, {}, {}, 0.0});
+    instances_.push_back({term, {}, {}, 0.0, may_lose(o, term)});
+    reducible_ = reducible_ || instances_.back().reducible;
     add(o, instances_.size() - 1, parts, made != nullptr ? *made : own);
   }
   Index columns = 0;
@@ -273,7 +274,7 @@ Workbench::Projection Workbench::projection(const State& state) const {
   if (state.blocks.empty()) return out;
   const MatrixXd own = gram(state.blocks);
   const Eigen::LLT<MatrixXd> llt(own);
-  if (!several_axes_ || (llt.info() == Eigen::Success &&
+  if (!reducible_ || (llt.info() == Eigen::Success &&
                          llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent))) {
     out.z = llt.matrixL().solve(xy_(columns_of_state(state)));
     llt.matrixU().solveInPlace<Eigen::OnTheRight>(out.products);
@@ -290,7 +291,7 @@ double Workbench::least_of(const Block& block) const {
 }
 
 bool Workbench::reducible(const Block& block) const {
-  return several_axes_ && instances_[block.effect].term.effect->curve;
+  return instances_[block.effect].reducible;
 }
 
 /// Gram and Schmidt block by block, on scalar products.
@@ -353,7 +354,7 @@ VectorXd Workbench::gains(const State& state, std::size_t effect) const {
 
 Workbench::State Workbench::with(const State& state, const VectorXd& gains,
                                  std::size_t effect) const {
-  if (several_axes_ && instances_[effect].term.effect->curve)
+  if (instances_[effect].reducible)
     return with_curve(state, gains, effect);
   std::size_t best = blocks_.size();
   double least = std::numeric_limits<double>::infinity();
@@ -475,7 +476,7 @@ Expected<std::vector<std::vector<double>>> Workbench::best_shapes() const {
 MatrixXd Workbench::basis(const State& state) const {
   const std::vector<Index> columns = columns_of_state(state);
   if (columns.empty()) return MatrixXd(y_.size(), 0);
-  if (!several_axes_) {
+  if (!reducible_) {
     const Eigen::HouseholderQR<MatrixXd> qr(x_(Eigen::all, columns));
     return qr.householderQ() * MatrixXd::Identity(y_.size(), static_cast<Index>(columns.size()));
   }

@@ -27,6 +27,7 @@ class Workbench {
     std::vector<std::size_t> blocks;  ///< none: the readings cannot show it
     std::string error;
     double cost_of_shape = 0.0;  ///< 2 ln of the number of independent values of its shapes
+    bool reducible = false;      ///< may_lose
   };
   /// Blocks in the order in which they came in, with what they leave.
   struct State {
@@ -132,7 +133,7 @@ class Workbench {
   // Columns and searched shapes of position: of a set, with stated terms, of a curve not stated.
   Index most_of_position_ = 0, most_stated_ = 0, most_of_curve_ = 0;
   Index zeros_ = 0;
-  bool several_axes_ = false;
+  bool several_axes_ = false, reducible_ = false;
 };
 
 }  // namespace nonio::model

@@ -73,6 +73,7 @@ enum class Kind {
   outside,   ///< something outside the catalogue, beside up to two effects of the model
   wave_under_curve,  ///< a lead error; the model holds the screw's ground pitch
   screw_and_curve,   ///< both hidden
+  beside,            ///< one of 6 to 9 times the noise, and something outside of 2.5 to 4
   grouped,           ///< one; the file lists all runs towards + before those towards -, no times
 };
 

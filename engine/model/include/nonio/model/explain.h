@@ -54,7 +54,7 @@ std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects
 /// The names that an effect has in this part: "backlash:X", "straightness:EYX".
 std::vector<std::string> names_of(const Part& part, const Effect& effect);
 
-/// The effects that a model names, then those that are always there; an unknown kind or axis is an
+/// The effects that a model names, then those that are always there, then its descriptions; an unknown kind or axis is an
 /// error with the nearest name. Effects of axes that other parts hold are left out.
 Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
                                      const std::vector<std::string>& names,
@@ -142,10 +142,19 @@ struct Verdict {
   double suspects_share = 0.0;  ///< of the readings
 };
 
+/// A description added to the best explanation and to those before it: what is left, not why.
+struct Description {
+  Term term;         ///< with the shapes found
+  double rms = 0.0;  ///< what is left with it, m or rad
+};
+
 struct Explanation {
   Comparison comparison;
   std::vector<Candidate> candidates;  ///< best first
   std::vector<std::string> together;  ///< what the best explanation adds to the model
+  /// Of these what is free of doubt, whatever the rest is; most evidence first.
+  std::vector<std::string> certain;
+  std::vector<Description> descriptions;  ///< unknown: of what the best explanation leaves
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
   std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
   Verdict verdict;

@@ -100,6 +100,9 @@ struct Effect {
   /// An unknown of the set-up (how a mirror stood): in every model that it applies to, never a
   /// candidate.
   bool always = false;
+  /// A curve that says what is left and not why ("a reversal for each target"): never a candidate,
+  /// offered where no effect explains. Beside other effects it is what they leave of it.
+  bool description = false;
 };
 
 struct AnalysisInput {
