@@ -197,6 +197,15 @@ void put_explained(Json& json, const Explained& e, const Campaign& campaign,
   json["candidates"] = std::move(candidates);
   json["unseen"] = std::move(unseen);
   json["together"] = x.together;
+  json["certain"] = x.certain;
+  Json descriptions = Json::array();
+  for (const model::Description& d : x.descriptions) {
+    Json one = {{"effect", d.term.name()}};
+    put(one, "rms", d.rms, q);
+    one["says"] = words.description(d, e.part);
+    descriptions.push_back(std::move(one));
+  }
+  json["descriptions"] = std::move(descriptions);
   json["verdict"] = verdict_json(e, words);
   json["plans"] = plans_json(x.plans, words);
   if (x.verdict.trials > 0) {

@@ -225,7 +225,7 @@ class Judge {
       out_.fails.insert(out_.fails.begin(), *run);
       return true;
     }
-    return out_.verdict.suspects_share > most_suspects ||
+    return too_many(f_.suspects.size(), f_.part.table.size()) ||
            two_valued(f_.repeats, f_.of_best.fit.residual, f_.weight);
   }
 

@@ -152,6 +152,7 @@ struct Explanation {
   Comparison comparison;
   std::vector<Candidate> candidates;  ///< best first
   std::vector<std::string> together;  ///< what the best explanation adds to the model
+  double best_rms = 0.0;              ///< what the best explanation leaves, m or rad
   /// Of these what is free of doubt, whatever the rest is; most evidence first.
   std::vector<std::string> certain;
   std::vector<Description> descriptions;  ///< unknown: of what the best explanation leaves
