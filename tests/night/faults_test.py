@@ -158,7 +158,7 @@ class Faults(NightTest):
         for night, call, code, times in (("first", "open", errno.EIO, 10), ("first", "stat", errno.ESTALE, 1),
                                          ("changed", "stat", errno.ESTALE, 1), ("first", "fork", errno.EAGAIN, 100000)):
             last = self.counts[night][call]
-            for n in range(max(1, last - 16), last + 1):
+            for n in range(max(1, last - (2 if call == "fork" else 8)), last + 1):
                 why, _ = self.wrong(night, f"{call}:{n}:{code}:{times}")
                 bad += [f"{night}/{call}:{n}:{code}:{times}: {why}"] if why else []
         self.assertFalse(bad, "\n".join(bad))

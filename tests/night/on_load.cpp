@@ -38,6 +38,7 @@ NONIO_PLUGIN(registry) {
   if (std::string_view(NONIO_TEST_HOW) != "prepares-twice") return;
   nonio::Output output;
   output.info = {"second-thoughts", "1", "has no memory the first time", {}};
+  output.applies = [](const nonio::Campaign&) { return false; };
   output.write = [](const nonio::OutputInput&) -> nonio::Expected<nonio::OutputResult> {
     return nonio::OutputResult{};
   };

@@ -156,9 +156,9 @@ class Survey(NightTest):
         (self.site / "key.p12").chmod(0o600)
         (self.site / "site.toml").write_text(self.SIGNING)
         end = self.out / "b" / "run.json"
-        for rule, after in (("stat:/site", None), ("open:site/site.toml", None), ("stat:site/site.toml", None),
+        for rule, after in (("open:site/site.toml", None), ("stat:site/site.toml", None),
                             ("open:templates/x.toml", None), ("stat:site/certificates.sqlite", None),
-                            ("open:key.p12", None), ("stat:site/certificates.sqlite", end)):
+                            ("stat:key.p12", None), ("stat:site/certificates.sqlite", end)):
             shutil.rmtree(self.out, ignore_errors=True)
             night = subprocess.Popen(self.command(), env=self.hanging(rule + ":hang", after),
                                      stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -194,7 +194,7 @@ class Survey(NightTest):
             self.assertFalse((self.out / "summary.json").exists())
             self.run_nonio(expect=0, env=self.hanging(""))
             self.assertEqual(tree(self.out), tree(reference))
-        self.run_nonio(expect=0, env=self.hanging("open:key.p12:hang"))
+        self.run_nonio(expect=0, env=self.hanging("stat:key.p12:hang"))
         self.assertIn("nothing can be signed: the signing key: no answer within 1 s", "".join(self.summary()["notes"]))
         self.assertLess(time.monotonic() - began, 40.0)
 

@@ -107,8 +107,7 @@ Expected<void> rename_temporaries(const std::filesystem::path& folder,
                                   const std::vector<std::string>& names);
 
 /// Removes files under temporary names whose names are known: the folder need not be listed.
-void remove_temporaries(const std::filesystem::path& folder,
-                        const std::vector<std::string>& names);
+void remove_temporaries(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
 /// Removes what a killed process left half-written in a folder.
 void remove_leftovers(const std::filesystem::path& folder);
