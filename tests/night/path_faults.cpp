@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loaded before the C library (LD_PRELOAD): calls on paths that end as NONIO_FAULTS says fail, or
 // never return. NONIO_FAULTS is "CALL:END:ERRNO", "CALL:END:hang" or "CALL:END:slow" (5 ms),
-// several with a space between; CALL is open or stat.
+// several with a space between; CALL is open or stat. NONIO_FAULTS_AFTER = PATH: only
+// once there is such a file.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -22,6 +23,8 @@ bool ends_with(const char* text, const char* end, std::size_t size) {
 /// errno of the fault, or 0.
 int fault(const char* call, const char* path) {
   const char* rule = std::getenv("NONIO_FAULTS");
+  const char* const after = std::getenv("NONIO_FAULTS_AFTER");
+  if (after != nullptr && ::access(after, F_OK) != 0) return 0;
   while (rule != nullptr && *rule != '\0') {
     const char* const end = std::strchr(rule, ':');
     const char* const what = end == nullptr ? nullptr : std::strchr(end + 1, ':');

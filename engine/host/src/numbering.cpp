@@ -135,10 +135,10 @@ const StandingRule* rule_for(const Numbering& numbering, const KnownFinding& fin
   return nullptr;
 }
 
-bool Numbers::has_register() const {
+Expected<bool> Numbers::has_register() const {
   const auto path = register_path(where_.site, context_.site.numbering);
-  std::error_code error;
-  return path && fs::exists(*path, error);
+  if (!path) return fail(path.error());
+  return is_there(*path);
 }
 
 Expected<Register> Numbers::open() const {
@@ -238,7 +238,11 @@ Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& 
                                     std::vector<std::string>& missing, bool as_draft) const {
   for (std::string& key : days_to_come(evaluated.campaign, where_.today))
     missing.push_back(std::move(key));
-  if (!missing.empty() && !has_register()) return Certificate{};
+  if (!missing.empty()) {
+    const auto there = has_register();
+    if (!there) return fail(there.error());
+    if (!*there) return Certificate{};
+  }
   auto opened = open();
   if (!opened) return fail(opened.error());
   const std::string& campaign = evaluated.campaign.id;
@@ -379,7 +383,7 @@ void Numbers::note_differences(Evaluated& evaluated) const {
 }
 
 void Numbers::note_failure(const std::string& campaign, const std::string& why) const {
-  if (!has_register()) return;
+  if (!has_register().value_or(false)) return;
   auto opened = open();
   if (!opened) return;
   [[maybe_unused]] const auto noted = opened->note_failure(campaign, why);

@@ -14,7 +14,9 @@
 #include <variant>
 #include <vector>
 
+#include "context.h"
 #include "nonio/host/evaluate.h"
+#include "nonio/host/register.h"
 #include "nonio/sdk/plugin.h"
 
 /// Values as bytes, between two processes of one program: numbers bit by bit. What comes from a
@@ -236,6 +238,13 @@ NONIO_ON_THE_WIRE(Campaign, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r
 NONIO_ON_THE_WIRE(IssuedFile, a, b, c, d)
 NONIO_ON_THE_WIRE(Certificate, a, b, c, d, e, f, g, h)
 NONIO_ON_THE_WIRE(Evaluated, a, b, c, d, e, f)
+
+NONIO_ON_THE_WIRE(TemplateFiles, a, b)
+NONIO_ON_THE_WIRE(SiteFiles, a, b)
+NONIO_ON_THE_WIRE(KnownFinding, a, b, c, d)
+NONIO_ON_THE_WIRE(Approval, a, b, c, d)
+NONIO_ON_THE_WIRE(RegisterEntry, a, b, c, d, e, f, g, h, i, j, k, l)
+NONIO_ON_THE_WIRE(WaitingDraft, a, b, c, d, e, f, g, h, i)
 
 NONIO_ON_THE_WIRE(Option, a, b, c, d, e, f, g)
 NONIO_ON_THE_WIRE(Info, a, b, c, d, e)

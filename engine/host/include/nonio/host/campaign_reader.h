@@ -30,10 +30,18 @@ ReadCampaign read_campaign(const std::filesystem::path& folder, const Context& c
 /// Takes away the rows whose flag is 0.
 void keep_rows(Observations& observations, const std::vector<char>& kept);
 
+/// Templates that were read already: names below the folder, and bytes.
+struct TemplateFiles {
+  std::filesystem::path folder{};
+  std::map<std::string, std::string> files{};
+};
+
 /// All template folders laid over each other, the later ones winning, and one digest of them.
 /// `json`, if wanted: all of them in one text, from which `templates_from` has them again.
+/// `own` wins over all folders.
 Expected<Templates> read_templates(const std::vector<std::filesystem::path>& folders,
-                                   std::string& digest, std::string* json = nullptr);
+                                   std::string& digest, std::string* json = nullptr,
+                                   const TemplateFiles& own = {});
 
 /// Templates that travelled in a signed file.
 struct CarriedTemplates {
