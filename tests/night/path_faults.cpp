@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <cstdarg>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
@@ -47,6 +48,16 @@ int pass_on(const char* name, const char* kind, const char* path, Arguments... a
   return reinterpret_cast<Call>(::dlsym(RTLD_NEXT, name))(arguments...);
 }
 
+/// The whole path of a name in an open folder, by which C++'s walks open what is in it.
+const char* below(int folder, const char* path, char* to, std::size_t size) {
+  char link[64];
+  std::snprintf(link, sizeof link, "/proc/self/fd/%d", folder);
+  const ssize_t length = path[0] == '/' ? -1 : ::readlink(link, to, size - 1);
+  if (length < 0 || static_cast<std::size_t>(length) + std::strlen(path) + 2 > size) return path;
+  std::snprintf(to + length, size - static_cast<std::size_t>(length), "/%s", path);
+  return to;
+}
+
 using Open = int (*)(const char*, int, mode_t);
 using OpenAt = int (*)(int, const char*, int, mode_t);
 using Stat = int (*)(const char*, struct stat*);
@@ -66,13 +77,15 @@ mode_t mode_of(int flags, va_list list) {
     va_end(list);                                                 \
     return pass_on<Open>(#name, "open", path, path, flags, mode); \
   }
-#define NONIO_OPEN_AT(name)                                                 \
-  extern "C" int name(int folder, const char* path, int flags, ...) {       \
-    va_list list;                                                           \
-    va_start(list, flags);                                                  \
-    const mode_t mode = mode_of(flags, list);                               \
-    va_end(list);                                                           \
-    return pass_on<OpenAt>(#name, "open", path, folder, path, flags, mode); \
+#define NONIO_OPEN_AT(name)                                                                       \
+  extern "C" int name(int folder, const char* path, int flags, ...) {                             \
+    va_list list;                                                                                 \
+    va_start(list, flags);                                                                        \
+    const mode_t mode = mode_of(flags, list);                                                     \
+    va_end(list);                                                                                 \
+    char whole[8192];                                                                             \
+    return pass_on<OpenAt>(#name, "open", below(folder, path, whole, sizeof whole), folder, path, \
+                           flags, mode);                                                          \
   }
 #define NONIO_STAT(name)                                     \
   extern "C" int name(const char* path, struct stat* info) { \
