@@ -2,6 +2,7 @@
 // Loaded before the C library (LD_PRELOAD): calls on paths that end as NONIO_FAULTS says fail, or
 // never return. NONIO_FAULTS is "CALL:END:ERRNO", "CALL:END:hang" or "CALL:END:slow" (5 ms),
 // several with a space between; CALL is open or stat.
+#include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -92,6 +93,20 @@ mode_t mode_of(int flags, va_list list) {
     return pass_on<Stat>(#name, "stat", path, path, info);   \
   }
 
+// The C library's own calls of open pass these by.
+#define NONIO_OPENER(type, name, ...)                                          \
+  extern "C" type* name(const char* path __VA_OPT__(, const char* mode)) {     \
+    if (const int code = fault("open", path); code != 0) {                     \
+      errno = code;                                                            \
+      return nullptr;                                                          \
+    }                                                                          \
+    return reinterpret_cast<type* (*)(const char* __VA_OPT__(, const char*))>( \
+        ::dlsym(RTLD_NEXT, #name))(path __VA_OPT__(, mode));                   \
+  }
+
+NONIO_OPENER(DIR, opendir)
+NONIO_OPENER(FILE, fopen, mode)
+NONIO_OPENER(FILE, fopen64, mode)
 NONIO_OPEN(open)
 NONIO_OPEN(open64)
 NONIO_OPEN_AT(openat)
