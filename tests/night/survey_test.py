@@ -72,9 +72,16 @@ class Survey(NightTest):
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (64, 64)))
         self.assertEqual(self.seen(done), {"a", deep})
 
+    @can_inject
     def test_a_folder_that_comes_and_goes_hides_no_other(self):
         names = [f"c{i:02}" for i in range(40)]
         self.campaigns(*names)
+        # At the worst moment: it was in the list, and is away when it is opened.
+        for i in (0, 19, 39):
+            done = self.run_nonio("--dry-run", "--json", env=with_faults(f"open:site/c{i:02}:{errno.ENOENT}"))
+            self.assertIn(done.returncode, (0, 1), done.stderr)
+            self.assertLessEqual(set(names) - {f"c{i:02}"}, self.seen(done))
+        # At any moment.
         stop = threading.Event()
 
         def restless():
