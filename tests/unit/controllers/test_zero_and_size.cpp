@@ -217,9 +217,10 @@ TEST(Reversal, ABacklashValueIsWrittenWithoutAPitchThatHelps) {
   ASSERT_TRUE(r) << r.error().message;
   const std::string prm = file(*r, "fanuc-X.prm");
   EXPECT_TRUE(contains(prm, "N1851A1P5\n")) << prm;
-  for (const std::string& line : lines(prm))
-    if (line.rfind("N1", 0) == 0 && line.size() > 6 && line[2] == '0')
-      EXPECT_EQ(line.substr(6), "P0");
+  for (const std::string& line : lines(prm)) {
+    const bool pitch = line.rfind("N1", 0) == 0 && line.size() > 6 && line[2] == '0';
+    EXPECT_TRUE(!pitch || line.substr(6) == "P0") << line;
+  }
   EXPECT_LT(prediction(*r, "E").after, 0.53 * um);
   EXPECT_NEAR(prediction(*r, "M").after, prediction(*r, "M").before, 1e-9);
   EXPECT_EQ(finding(*r, "table.no-gain"), nullptr);
