@@ -148,12 +148,26 @@ int machines() {
   return wish == nullptr ? 60 : std::atoi(wish);
 }
 
+/// What it makes that a table is looked up with the reading, which is c further on than the target:
+/// c times the slope, of the second order.
+double of_reading(const models::Control& control, const math::ErrorCurve& curve) {
+  double largest = 0.0, slope = 0.0;
+  for (std::size_t i = 0; control.of_reading && i < curve.position.size(); ++i) {
+    largest = std::max(largest, std::fabs(control.of_tables(curve.position[i], true)));
+    if (i > 0)
+      slope = std::max(slope, std::fabs(curve.mean[i] - curve.mean[i - 1]) /
+                                  (curve.position[i] - curve.position[i - 1]));
+  }
+  return 2.0 * largest * slope;
+}
+
 void judge(const Kind& k, const Blind& b, const Bench& bench, const OutputResult& r,
            const std::string& who) {
   const auto curve = curve_of(bench, bench.observations.size() - 1);
   const models::Control control = k.control(r.artifacts, b.axis);
   const auto truth = left(b, curve, control);
-  const double half = (b.axis.rotary ? k.step_deg : k.step) / 2 + 2e-10;
+  const double half =
+      (b.axis.rotary ? k.step_deg : k.step) / 2 + 2e-10 + of_reading(control, curve);
   const double found[] = {truth.E(), truth.B(), truth.M()};
   for (int i = 0; i < 3; ++i) {
     const char* name[] = {"E", "B", "M"};
