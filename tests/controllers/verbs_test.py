@@ -85,10 +85,12 @@ class Tables(BenchTest):
         found = self.json_of("apply", present, self.folder, "--was-on", "--out", new)
         self.assertLess(found["predictions"][0]["after"]["E_um"], 0.01)
         rows = [list(map(float, line.split())) for line in (new / "linuxcnc-X.comp").read_text().splitlines()]
+        whole = lambda x: wave(0.0) - wave(x)  # zero at the reference point
         for x, up, down in rows:  # all of it, not the rest
-            self.assertAlmostEqual(up * 1e3, -wave(x), places=3)
-            self.assertAlmostEqual(down * 1e3, -wave(x), places=3)
-        self.assertAlmostEqual(found["tables"][0]["largest_um"], max(abs(0.5 * wave(x)) for x in TARGETS), delta=0.01)
+            self.assertAlmostEqual(up * 1e3, whole(x), places=3)
+            self.assertAlmostEqual(down * 1e3, whole(x), places=3)
+        self.assertAlmostEqual(found["tables"][0]["largest_um"], max(abs(whole(x) + 0.5 * wave(x)) for x in TARGETS),
+                               delta=0.01)
         self.nonio("apply", present, self.folder, "--out", new, expect=2)
 
     def test_backlash_of_the_present_files_is_counted(self):
@@ -197,6 +199,40 @@ class Probe(BenchTest):
         self.assertTrue(all(w.endswith(" R0 F1000 M91") for w in moves), moves)
         stops = [i for i, w in enumerate(words) if w == "STOP"]
         self.assertEqual([words[i - 1] for i in stops], ["CYCL DEF 9.1 DWELL 5"] * 2)
+
+    def test_the_probe_moves_in_machine_coordinates_whatever_the_control(self):
+        for control, of_axis in (("linuxcnc", ""), ("fanuc", ""), ("twincat-cnc", ""), ("aerotech", ""),
+                                 ("mitsubishi", "")):
+            self.one_axis(TARGETS, wave, wave, of_axis, control=control)
+            self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
+            text = (self.site / "p" / "sign-probe-X.nc").read_text()
+            moves = [l for l in text.splitlines() if "G1 X" in l]
+            self.assertEqual(len(moves), 3)
+            self.assertTrue(all(m.startswith("G53 G1 X") for m in moves), text)
+            self.assertNotIn("G54", text)
+            for word in ("(machine: not named in the manifest)", "moves X, the other axes stay", "G21 G17 G90 G94 G40 G49 G80"):
+                self.assertIn(word, text)
+        self.one_axis(TARGETS, wave, wave, control="siemens-840d")
+        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
+        moves = [l for l in (self.site / "p" / "sign-probe-X.mpf").read_text().splitlines() if l.startswith("G1")]
+        self.assertEqual([m.split(" X")[0] for m in moves], ["G1 SUPA"] * 3)
+
+    def test_no_program_for_a_control_without_gcode(self):
+        for control in ("ecmc", "pmac", "twincat-nc-ptp"):
+            self.one_axis(TARGETS, wave, wave, control=control)
+            self.nonio("plan", "sign-probe", self.folder)  # the moves are told
+            done = self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", expect=2)
+            self.assertIn("runs no part programs in G-code", done.stderr)
+            self.assertFalse((self.site / "p").exists())
+
+    def test_the_probe_stays_within_the_travel(self):
+        said = '[options.linuxcnc]\naxes = ["X from_mm=0 to_mm=%d"]\n'
+        self.one_axis(TARGETS, wave, wave, said % 60, control="linuxcnc")
+        done = self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", expect=1)
+        self.assertIn("the travel is 0 mm to 60 mm", done.stderr.replace(".0 mm", " mm"))
+        self.assertFalse((self.site / "p").exists())
+        self.one_axis(TARGETS, wave, wave, said % 400, control="linuxcnc")
+        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
 
     def test_an_axis_that_is_too_good_shows_nothing(self):
         noise = iter([0.3, -0.4, 0.1, 0.5, -0.2] * 100)

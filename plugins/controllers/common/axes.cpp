@@ -8,9 +8,26 @@
 namespace nonio::controllers {
 namespace {
 
+// What every control's tables take: the machine is the same whoever compensates it.
 std::set<std::string> full_keys(const std::vector<std::string_view>& keys) {
   std::set<std::string> out;
-  if (!keys.empty()) out.emplace("drifted");
+  if (!keys.empty())
+    out = {"drifted",
+           "number",
+           "reference_mm",
+           "reference_deg",
+           "from_mm",
+           "from_deg",
+           "to_mm",
+           "to_deg",
+           "backlash_mm",
+           "backlash_deg",
+           "largest_um",
+           "largest_arcsec",
+           "resolution_um",
+           "slope_um_per_m",
+           "slope_arcsec_per_deg",
+           "resolution_arcsec"};
   for (const std::string_view k : keys) {
     if (k.back() == ':') {
       out.emplace(k.substr(0, k.size() - 1));

@@ -197,7 +197,7 @@ Remark remark(const AxisJob& job, std::string id) {
 }
 
 bool AxisJob::one_value_helps() const {
-  if (!curve.bidirectional()) return false;
+  if (!curve.bidirectional() || reversal.kind == math::Reversal::Kind::not_constant) return false;
   const double mean = curve.mean_reversal();
   double largest = 0.0, left = 0.0;
   for (std::size_t i = 0; i < curve.plus.size(); ++i) {
@@ -301,6 +301,8 @@ double wished_step(const AxisJob& job, const Settings& options) {
 
 bool refused(const AxisJob& job, bool directions, OutputResult& result) {
   if (job.reversal.kind != math::Reversal::Kind::not_constant || directions) return false;
+  const auto [low, high] = std::minmax_element(job.curve.mean.begin(), job.curve.mean.end());
+  if (low == job.curve.mean.end() || job.reversal.largest_left < *high - *low) return false;
   const Quantity q = deviation_of(job.rotary);
   result.findings.push_back(
       {"table.refused-reversal",
@@ -385,8 +387,18 @@ std::string reversal_words(const AxisJob& job, bool directions) {
 }
 
 void doubt_backlash(const AxisJob& job, OutputResult& result) {
+  const Quantity q = deviation_of(job.rotary);
+  if (job.reversal.kind == math::Reversal::Kind::not_constant) {
+    result.findings.push_back(
+        {"table.backlash-not-constant",
+         true,
+         {{"mean", job.reversal.mean, q}, {"left", job.reversal.largest_left, q}},
+         {{"axis", job.axis}},
+         job.measurement,
+         "The pitch table is right for itself; the backlash value stays as it was."});
+    return;
+  }
   if (!job.one_value_helps()) {
-    const Quantity q = deviation_of(job.rotary);
     result.findings.push_back({"table.backlash-no-gain",
                                false,
                                {{"mean", job.reversal.mean, q},

@@ -172,6 +172,7 @@ std::string words(const Sheet& s, const Parameters& p) {
        short_text(o.number(job.rotary ? "detection_unit_arcsec" : "detection_unit_um"), 4) +
        (job.rotary ? " arcsec" : " um"));
   line(controllers::reversal_words(job, s.directions));
+  for (const std::string& zero : s.zero_and_size()) line(zero);
   line("controlled axis number " + std::to_string(job.number) + "; reference position at " +
        controllers::with_unit(job, s.reference, 4));
   line(std::string("3605#0 (both directions) = ") + (s.directions ? "1" : "0") +

@@ -122,6 +122,7 @@ std::string words(const Sheet& s, const Layout& layout, const std::string& artif
       "sign: entries are the measured deviation (actual - nominal) with its own sign, "
       "in " +
       std::string(job.unit()));
+  for (std::string& line : s.zero_and_size()) lines.push_back(std::move(line));
   lines.push_back(controllers::reversal_words(job, s.directions));
   if (job.curve.bidirectional()) {
     lines.emplace_back(layout.listed ? "CfgAxisComp/backLash (401802), positive where the encoder "
@@ -253,7 +254,7 @@ Expected<OutputResult> write(const OutputInput& input) {
 std::vector<Option> options() {
   return controllers::table_options(
       declared(),
-      "step_mm, first_mm, reference_mm (where the table is made zero; else nowhere), backlash_mm "
+      "step_mm, first_mm, reference_mm (where the table is made zero; else at 0), backlash_mm "
       "(the parameter while measured), and the same with _deg",
       {{"layout",
         std::string("tnc640"),

@@ -59,7 +59,7 @@ std::string encoder_table(const Sheet& s) {
   out +=
       remarks(s, {sign_is, sign_does,
                   "zero at the reference position " + controllers::with_unit(s.job, s.reference, 4),
-                  controllers::reversal_words(s.job, false),
+                  s.zero_and_size().back(), controllers::reversal_words(s.job, false),
                   "MD38000[" + system + "] >= " + std::to_string(s.grid.points) +
                       "; load with MD32700[" + system + "] = 0, then 1, power on, reference"});
   for (std::size_t i = 0; i < s.plus.size(); ++i)
@@ -84,7 +84,7 @@ std::string direction_tables(const Sheet& s) {
   out += remarks(
       s, {sign_is, sign_does,
           "mean of both directions zero at " + controllers::with_unit(s.job, s.reference, 4),
-          controllers::reversal_words(s.job, true),
+          s.zero_and_size().back(), controllers::reversal_words(s.job, true),
           "MD18342[t] >= " + std::to_string(s.grid.points) +
               "; enable MD32710 of the axis and SD41300[t]"});
   std::int64_t number = s.input.options.integer("first_cec_table") +

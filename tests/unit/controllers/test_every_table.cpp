@@ -385,7 +385,7 @@ TEST(EveryTable, PresentBacklashIsCounted) {
   EXPECT_TRUE(contains(file(*h, "heidenhain-tnc-X.txt"), "backLash = +0.0130\n"));
   // LinuxCNC drops its BACKLASH beside a table: -5 um of it come into one column, +5 into the other
   const auto l = b.write(linuxcnc_plugin(), {{"axes", present}});
-  EXPECT_EQ(lines(file(*l, "linuxcnc-X.comp"))[0], "0.00000000 -0.00500000 0.00800000");
+  EXPECT_EQ(lines(file(*l, "linuxcnc-X.comp"))[0], "0.00000000 -0.00650000 0.00650000");
 }
 
 // Over-travel at reversal: nearly always a value that is too large already.

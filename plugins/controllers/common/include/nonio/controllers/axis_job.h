@@ -44,6 +44,7 @@ struct AxisJob {
   double backlash() const {
     return one_value_helps() ? present_backlash() - curve.mean_reversal() : present_backlash();
   }
+  /// Decided apart from the pitch: the reversal is constant enough that one value takes most of it.
   bool one_value_helps() const;
   /// The table of an axis that drifted was asked for: setting `drifted`.
   bool takes_drift() const { return setting("drifted").value_or(0.0) != 0.0; }
@@ -76,8 +77,8 @@ std::vector<Option> step_options();
 /// The step for this axis from its settings or the options; 0: not said.
 double wished_step(const AxisJob& job, const Settings& options);
 
-/// True, with a finding, where one value cannot compensate the reversal and no direction tables
-/// are asked for.
+/// True, with a finding, where the reversal changes along the axis by as much as the pitch table
+/// takes away, and no direction tables are asked for.
 bool refused(const AxisJob& job, bool directions, OutputResult& result);
 
 /// Lines for a table of an axis that was not stable while it was measured, or of readings that
