@@ -109,7 +109,9 @@ class Survey(NightTest):
         (self.site / "huge").mkdir()
         with open(self.site / "huge" / "campaign.toml", "wb") as file:
             file.truncate(64 << 30)
-        self.run_nonio(expect=1)
+        # A program that reads it does not take the machine with it.
+        bounded = lambda: resource.setrlimit(resource.RLIMIT_AS, (8 << 30, 8 << 30))
+        self.run_nonio(expect=1, preexec_fn=bounded)
         self.assertEqual(self.ids("done"), ["a"])
         self.assertIn("wanted at most 1 MB", self.failed()["huge"])
         os.truncate(self.site / "huge" / "campaign.toml", 0)
