@@ -12,6 +12,7 @@
 #include "nonio/host/formula.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/text.h"
 #include "plausibility.h"
 #include "targets.h"
 #include "unknown_format.h"
@@ -89,7 +90,10 @@ class CampaignReader {
     note_input(m.file, file ? sha256(file->bytes()) : absent);
     if (!path) return fail(at("measurement." + m.id + ".file", path.error().message));
     if (!file) return fail(at("measurement." + m.id + ".file", file.error().message));
-    const auto reader = choose_reader(m, file->bytes());
+    const auto converted = utf8_of_utf16(file->bytes());
+    if (!converted) return fail(converted.error());
+    const std::string_view bytes = *converted ? std::string_view(**converted) : file->bytes();
+    const auto reader = choose_reader(m, bytes);
     if (!reader) return fail(reader.error());
     if (*reader == nullptr) return {};
     const Info& info = (*reader)->info;
@@ -98,8 +102,9 @@ class CampaignReader {
     const std::string who = "reader " + info.name;
     stage_(who + " (measurement " + m.id + ")");
     auto observations = guarded(who, [&] {
-      return (*reader)->read({file->bytes(), campaign(), m, *options,
-                              [&](std::size_t offset) { file->release(offset); }});
+      return (*reader)->read({bytes, campaign(), m, *options, [&](std::size_t offset) {
+                                if (!*converted) file->release(offset);
+                              }});
     });
     if (!observations) {
       Error error = observations.error();
@@ -110,7 +115,7 @@ class CampaignReader {
       return fail(who + " gave " + why);
     if (auto possible = possible_air(*observations, m.file); !possible) return possible;
     if (auto excluded = exclude(m, *observations); !excluded) return excluded;
-    for (Finding& doubt : implausible_end(file->bytes(), m.file)) {
+    for (Finding& doubt : implausible_end(bytes, m.file)) {
       doubt.measurement = m.id;
       out_.doubts.push_back(std::move(doubt));
     }
@@ -156,7 +161,7 @@ class CampaignReader {
     }
     const std::string refused = context_.plugins->refusals();
     if (any)
-      return fail(Error{"no reader knows the format of this file: " + what_is_wrong(bytes) +
+      return fail(Error{"no reader knows the format of this file: " + what_is_wrong(bytes, m.file) +
                             "; or the format of an installed reader (`nonio plugins`)" +
                             (refused.empty() ? "" : "; of the plugins " + refused),
                         m.file, first_content_line(bytes)});

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 #include "vectors.h"
 
@@ -68,16 +69,6 @@ std::string json(const Campaign& campaign, const std::vector<Line>& lines) {
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// A field of text: quoted where RFC 4180 asks for it, and never a spreadsheet's formula.
-std::string field(std::string text) {
-  if (!text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos)
-    text.insert(0, 1, '\'');
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string csv(const std::vector<Line>& lines) {
   std::string out = "measurement,axis,name,value,unit,U\n";
   const auto digits = [](double si, Quantity q) {
@@ -89,7 +80,7 @@ std::string csv(const std::vector<Line>& lines) {
       for (const Value& v : *three) values.push_back(&v);
     values.push_back(&line.radius);
     for (const Value* v : values)
-      out += field(line.measurement) + "," + field(line.axis) + "," + v->name + "," +
+      out += csv_text(line.measurement) + "," + csv_text(line.axis) + "," + v->name + "," +
              digits(v->value, v->quantity) + "," + std::string(unit_of(v->quantity).symbol) + "," +
              (v->U ? digits(*v->U, v->quantity) : "") + "\n";
   }
