@@ -14,10 +14,10 @@ namespace {
 
 /// Beyond these a machine tool is no machine tool, or its readings are in another unit.
 struct Bounds {
-  double slope = 0.01;         ///< of the deviation over the travel
+  double slope = 0.02;         ///< of the deviation over the travel
   double share = 0.002;        ///< of the travel, if it is also more than `size`
   double size, most;           ///< of the range of the deviations
-  double small_share = 0.025;  ///< of a short stretch, if it is also more than `small_size`
+  double small_share = 0.05;  ///< of a short stretch, if it is also more than `small_size`
   double small_size;           ///< below it a short stretch says nothing
   double scatter;              ///< standard deviation of repeated readings
   double least;                ///< range that no machine keeps over a travel of `least_travel`
@@ -208,12 +208,12 @@ class Size {
   /// seen anything. Its part with the length is one line, which an axis that was set with the same
   /// instrument follows.
   std::pair<double, double> uncertainty() const {
-    constexpr double of_length = 0.2;
+    constexpr double of_fixed = 0.5, of_length = 0.2;
     const Instrument& i = campaign_.instrument;
-    if (o_.angular) return {i.U_angle.value_or(0.0), i.U_angle.value_or(0.0)};
+    if (o_.angular) return {i.U_angle.value_or(0.0), of_fixed * i.U_angle.value_or(0.0)};
     const double fixed = i.U_fixed.value_or(0.0);
     const double with_length = i.U_per_length.value_or(0.0) * travel_;
-    return {fixed + with_length, fixed + of_length * with_length};
+    return {fixed + with_length, of_fixed * fixed + of_length * with_length};
   }
 
   const Campaign& campaign_;

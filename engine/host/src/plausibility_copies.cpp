@@ -60,7 +60,7 @@ class Copies {
 
  private:
   static constexpr double um = 1e-6, arcsec = 1.0 / arcsec_per_rad;
-  static constexpr std::size_t most_named = 6;
+  static constexpr std::size_t most_named = 6, next = 40, fewest = 4;
 
   /// How many of the common readings differ by `shift`, and how many values these have.
   static std::pair<double, std::size_t> agreeing(const std::vector<std::pair<double, double>>& both,
@@ -85,13 +85,39 @@ class Copies {
     return both;
   }
 
+  static double middle_of(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  }
+
+  /// Standard deviation of a reading from the differences of pairs of passes, of the quarter that
+  /// differs least: neither a misreading nor what drifts makes it larger.
+  double scatter_of_pairs() const {
+    constexpr double sigma = 1.4826 / 1.4142;  // of the median of a normal distribution, for one
+    std::vector<double> all;
+    for (std::size_t i = 0; i < strokes_.size(); ++i)
+      for (std::size_t k = i + 1; k < strokes_.size() && k <= i + next; ++k) {
+        if (strokes_[i].line != strokes_[k].line) continue;
+        std::vector<double> apart;
+        for (const auto& [a, b] : common(strokes_[i], strokes_[k])) apart.push_back(b - a);
+        if (apart.size() < fewest) continue;
+        const double middle = middle_of(apart);
+        for (double& d : apart) d = std::fabs(d - middle);
+        all.push_back(sigma * middle_of(apart));
+      }
+    if (all.size() < 3) return scatter_;
+    const auto quarter = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 4);
+    std::nth_element(all.begin(), quarter, all.end());
+    return std::min(*quarter, scatter_);
+  }
+
   /// Two passes of which more readings agree than chance allows, as they stand or but for a shift.
   void in_part(Quantity deviation, std::vector<Finding>& out) const {
-    constexpr std::size_t next = 40, fewest = 4;
     constexpr double chance = 1e-7, most_likely = 0.3;
-    const double least = scatter_known_ ? least_scatter_ / 3.0 : least_scatter_;
-    const double one = step_ / (std::max(scatter_, least) * 3.5449);
-    if (step_ <= 0.0 || one > most_likely) return;
+    if (step_ <= 0.0 || !scatter_known_) return;
+    const double one = step_ / (std::max(scatter_of_pairs(), least_scatter_ / 3.0) * 3.5449);
+    if (one > most_likely) return;
     const double tolerance = 0.01 * step_, log_one = std::log(one);
     const auto pairs = static_cast<double>(strokes_.size() * std::min(strokes_.size(), next));
     const auto likely = [&](double n, double m) {
@@ -106,9 +132,7 @@ class Copies {
         const auto n = static_cast<double>(both.size());
         std::vector<double> apart;
         for (const auto& [a, b] : both) apart.push_back(b - a);
-        const auto middle = apart.begin() + static_cast<std::ptrdiff_t>(apart.size() / 2);
-        std::nth_element(apart.begin(), middle, apart.end());
-        for (const double shift : {0.0, *middle}) {
+        for (const double shift : {0.0, middle_of(apart)}) {
           const auto [m, values] = agreeing(both, shift, tolerance);
           const bool shifted = shift != 0.0;  // one of the readings has set the shift
           if (values < 3 || m < 4.0 ||
