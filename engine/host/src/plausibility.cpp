@@ -14,13 +14,13 @@ namespace {
 
 /// Beyond these a machine tool is no machine tool, or its readings are in another unit.
 struct Bounds {
-  double slope = 0.02;         ///< of the deviation over the travel
-  double share = 0.002;        ///< of the travel, if it is also more than `size`
-  double size, most;           ///< of the range of the deviations
+  double slope = 0.02;        ///< of the deviation over the travel
+  double share = 0.002;       ///< of the travel, if it is also more than `size`
+  double size, most;          ///< of the range of the deviations
   double small_share = 0.05;  ///< of a short stretch, if it is also more than `small_size`
-  double small_size;           ///< below it a short stretch says nothing
-  double scatter;              ///< standard deviation of repeated readings
-  double least;                ///< range that no machine keeps over a travel of `least_travel`
+  double small_size;          ///< below it a short stretch says nothing
+  double scatter;             ///< standard deviation of repeated readings
+  double least;               ///< range that no machine keeps over a travel of `least_travel`
   double least_travel;
 };
 constexpr double um = 1e-6, arcsec = 1.0 / arcsec_per_rad;
@@ -28,7 +28,7 @@ constexpr Bounds of_lengths{.size = 300 * um,
                             .most = 20000 * um,
                             .small_size = 2 * um,
                             .scatter = 500 * um,
-                            .least = 0.1 * um,
+                            .least = 0.05 * um,
                             .least_travel = 0.02};
 constexpr Bounds of_angles{.size = 600 * arcsec,
                            .most = 3600 * arcsec,
@@ -157,12 +157,12 @@ class Size {
                         {"value", o_.deviation.front(), deviation_}}});
     // The line goes out of a straightness; U of its optics is another one.
     const bool straightness = measurement_.kind == "straightness";
-    if (straightness && range_of_rest_ < 0.2 * bounds_.least && scatter_ < 0.2 * bounds_.least &&
+    if (straightness && range_of_rest_ < 0.4 * bounds_.least && scatter_ < 0.4 * bounds_.least &&
         travel_ >= bounds_.least_travel && means_.size() > 2)
-      return out.push_back({.id = "plausibility.deviation-too-small",
-                            .attention = true,
-                            .evidence = {{"range", range_of_rest_, deviation_},
-                                         {"travel", travel_, position_}}});
+      return out.push_back(
+          {.id = "plausibility.deviation-too-small",
+           .attention = true,
+           .evidence = {{"range", range_of_rest_, deviation_}, {"travel", travel_, position_}}});
     if (straightness) return;
     if (const auto [U, least] = uncertainty(); range < least)
       out.push_back({.id = "plausibility.deviation-below-uncertainty",
@@ -208,7 +208,7 @@ class Size {
   /// seen anything. Its part with the length is one line, which an axis that was set with the same
   /// instrument follows.
   std::pair<double, double> uncertainty() const {
-    constexpr double of_fixed = 0.5, of_length = 0.2;
+    constexpr double of_fixed = 0.5, of_length = 0.15;
     const Instrument& i = campaign_.instrument;
     if (o_.angular) return {i.U_angle.value_or(0.0), of_fixed * i.U_angle.value_or(0.0)};
     const double fixed = i.U_fixed.value_or(0.0);
@@ -273,11 +273,11 @@ void implausible_span(const Campaign& campaign, const Measurement& m, const Obse
         axis->travel ? axis->travel->second - axis->travel->first : 360.0 / deg_per_rad;
     if (!axis->travel && widest > 7.0 / deg_per_rad && span <= most_of_travel * travel) return;
     if (widest < least_of_travel * travel || span > most_of_travel * travel)
-      return out.push_back({.id = "plausibility.span-against-travel",
-                            .attention = true,
-                            .evidence = {{"span", span, position},
-                                         {"travel", travel, position},
-                                         {"share", span / travel, Quantity::ratio}}});
+      out.push_back({.id = "plausibility.span-against-travel",
+                     .attention = true,
+                     .evidence = {{"span", span, position},
+                                  {"travel", travel, position},
+                                  {"share", span / travel, Quantity::ratio}}});
   }
   if (axis->screw_pitch && *axis->screw_pitch >= least_pitch && widest < 0.5 * *axis->screw_pitch)
     out.push_back(

@@ -37,7 +37,8 @@ void implausible_air(const Observations& o, std::vector<Finding>& out) {
     double most;  ///< range within one measurement
   };
   for (const Column& c :
-       {Column{"material_c", o.material, Quantity::temperature, Quantity::temperature_difference, 10},
+       {Column{"material_c", o.material, Quantity::temperature, Quantity::temperature_difference,
+               10},
         Column{"air_c", o.air, Quantity::temperature, Quantity::temperature_difference, 15},
         Column{"pressure_hpa", o.pressure, Quantity::number, Quantity::number, 40},
         Column{"humidity_pct", o.humidity, Quantity::number, Quantity::number, 60}}) {
@@ -64,9 +65,9 @@ void implausible_air(const Observations& o, std::vector<Finding>& out) {
 
 /// Times against the ways that were gone, and against the order of the rows.
 void implausible_times(const Observations& o, std::vector<Finding>& out) {
-  constexpr double slowest = 3600.0;  // s for a reading
+  constexpr double slowest = 3600.0;                      // s for a reading
   constexpr double fastest = 5.0, fastest_angle = 600.0;  // m/s, rad/s
-  std::vector<std::pair<double, double>> taken;  // time, position
+  std::vector<std::pair<double, double>> taken;           // time, position
   const auto& axis = o.axes.front();
   for (std::size_t i = 0; i < o.time.size(); ++i)
     if (std::isfinite(o.time[i])) taken.emplace_back(o.time[i], axis.position[i]);
@@ -121,10 +122,9 @@ std::array<double, 3> normal_of(const std::vector<std::array<double, 3>>& centre
   for (std::size_t i = 1; i < centres.size(); ++i)
     for (std::size_t k = i + 1; k < centres.size(); ++k) {
       const auto &a = centres[i], &b = centres[k];
-      const std::array<double, 3> n{
-          (a[1] - o[1]) * (b[2] - o[2]) - (a[2] - o[2]) * (b[1] - o[1]),
-          (a[2] - o[2]) * (b[0] - o[0]) - (a[0] - o[0]) * (b[2] - o[2]),
-          (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])};
+      const std::array<double, 3> n{(a[1] - o[1]) * (b[2] - o[2]) - (a[2] - o[2]) * (b[1] - o[1]),
+                                    (a[2] - o[2]) * (b[0] - o[0]) - (a[0] - o[0]) * (b[2] - o[2]),
+                                    (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])};
       const double length = std::hypot(n[0], n[1], n[2]);
       if (length > size) size = length, best = n;
     }

@@ -32,6 +32,7 @@ class Copies {
                                   {"step", step_, deviation}}});
       return;
     }
+    const double pair_scatter = groups_.size() == strokes_.size() ? scatter_ : scatter_of_pairs();
     for (const auto& [what, same] : groups_) {
       if (same.size() < 2) continue;
       const auto n = static_cast<double>(std::get<2>(what).size());
@@ -39,7 +40,7 @@ class Copies {
           std::minmax_element(std::get<2>(what).begin(), std::get<2>(what).end());
       if (*low == *high) continue;  // nothing was read at all: said elsewhere
       const double least = scatter_known_ ? least_scatter_ / 3.0 : least_scatter_;
-      const double one = step_ / (std::max(scatter_, least) * 3.5449);
+      const double one = step_ / (std::max(pair_scatter, least) * 3.5449);
       const auto pairs = static_cast<double>(strokes_.size() * strokes_.size()) / 2.0;
       if (pairs * std::pow(std::min(one, 1.0), n) > chance) continue;
       std::string names;
@@ -78,9 +79,12 @@ class Copies {
   static std::vector<std::pair<double, double>> common(const Stroke& a, const Stroke& b) {
     std::vector<std::pair<double, double>> both;
     for (std::size_t i = 0, k = 0; i < a.target.size() && k < b.target.size();) {
-      if (a.target[i] == b.target[k]) both.emplace_back(a.deviation[i++], b.deviation[k++]);
-      else if (a.target[i] < b.target[k]) ++i;
-      else ++k;
+      if (a.target[i] == b.target[k])
+        both.emplace_back(a.deviation[i++], b.deviation[k++]);
+      else if (a.target[i] < b.target[k])
+        ++i;
+      else
+        ++k;
     }
     return both;
   }
@@ -91,8 +95,8 @@ class Copies {
     return *middle;
   }
 
-  /// Standard deviation of a reading from the differences of pairs of passes, of the quarter that
-  /// differs least: neither a misreading nor what drifts makes it larger.
+  /// Standard deviation of a reading from the differences of pairs of passes, of the two fifths
+  /// that differ least: neither a misreading nor what drifts makes it larger.
   double scatter_of_pairs() const {
     constexpr double sigma = 1.4826 / 1.4142;  // of the median of a normal distribution, for one
     std::vector<double> all;
@@ -107,9 +111,9 @@ class Copies {
         all.push_back(sigma * middle_of(apart));
       }
     if (all.size() < 3) return scatter_;
-    const auto quarter = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 4);
-    std::nth_element(all.begin(), quarter, all.end());
-    return std::min(*quarter, scatter_);
+    const auto calm = all.begin() + static_cast<std::ptrdiff_t>(all.size() * 2 / 5);
+    std::nth_element(all.begin(), calm, all.end());
+    return std::min(*calm, scatter_);
   }
 
   /// Two passes of which more readings agree than chance allows, as they stand or but for a shift.
@@ -138,14 +142,13 @@ class Copies {
           if (values < 3 || m < 4.0 ||
               pairs * (shifted ? n * likely(n - 1.0, m - 1.0) : likely(n, m)) > chance)
             continue;
-          out.push_back(
-              {.id = "plausibility.passes-identical",
-               .attention = true,
-               .evidence = {{"passes", 2.0, Quantity::count},
-                            {"readings", m, Quantity::count},
-                            {"step", step_, deviation},
-                            {"shift", shift, deviation}},
-               .texts = {{"which", name_of(strokes_[i]) + ", " + name_of(strokes_[k])}}});
+          out.push_back({.id = "plausibility.passes-identical",
+                         .attention = true,
+                         .evidence = {{"passes", 2.0, Quantity::count},
+                                      {"readings", m, Quantity::count},
+                                      {"step", step_, deviation},
+                                      {"shift", shift, deviation}},
+                         .texts = {{"which", name_of(strokes_[i]) + ", " + name_of(strokes_[k])}}});
           return;
         }
       }
@@ -154,14 +157,28 @@ class Copies {
   /// Whether every pass agrees with all others of its direction, and the readings are not one.
   bool nothing_scatters() const {
     std::map<std::pair<std::uint32_t, int>, const Stroke*> first;
-    std::size_t repeated = 0;
+    std::size_t repeated = 0, readings = 0;
     for (const Stroke& s : strokes_) {
       const auto [at, is_new] = first.emplace(std::pair(s.line, s.direction), &s);
       if (is_new) continue;
       if (at->second->target != s.target || at->second->deviation != s.deviation) return false;
       ++repeated;
+      readings += s.deviation.size();
     }
-    return repeated > 0 && step_ > 0.0;
+    if (repeated == 0 || step_ <= 0.0) return false;
+    // Digits that are coarser than the machine repeat by themselves.
+    constexpr double chance = 1e-7, least_of_range = 0.01;
+    double low = 0.0, high = 0.0;
+    bool any = false;
+    for (const Stroke& s : strokes_)
+      for (const double d : s.deviation) {
+        low = any ? std::min(low, d) : d;
+        high = any ? std::max(high, d) : d;
+        any = true;
+      }
+    const double least = std::max(least_scatter_, least_of_range * (high - low));
+    const double one = std::min(1.0, step_ / (least * 3.5449));
+    return std::pow(one, static_cast<double>(readings)) < chance;
   }
 
   /// Of the passes that are no copies, by target and direction, less the shift of each pass: two
@@ -249,8 +266,7 @@ std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
     std::map<std::size_t, double> shared;
     for (const Stroke& s : strokes) {
       const auto [at, is_new] = seen.try_emplace(s.as_taken, i);
-      if (!is_new && at->second != i && tells(s.as_taken, step))
-        shared[at->second] += 1.0;
+      if (!is_new && at->second != i && tells(s.as_taken, step)) shared[at->second] += 1.0;
     }
     for (const auto& [other, passes] : shared) {
       const Measurement &m = campaign.measurements[i], &first = campaign.measurements[other];
