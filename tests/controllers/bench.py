@@ -4,6 +4,7 @@ import json
 import math
 import os
 import pathlib
+import random
 import subprocess
 import tempfile
 import unittest
@@ -11,14 +12,24 @@ import unittest
 NONIO = os.environ["NONIO"]
 
 
+def noise(direction, x):
+    """Three numbers whose sum is 0."""
+    rng = random.Random("%s%.6f" % (direction, x))
+    one, two = rng.uniform(-0.03, 0.03), rng.uniform(-0.03, 0.03)
+    return one, two, -one - two
+
+
 def axis_csv(targets, plus, minus=None, unit="mm"):
-    """Three runs without scatter; deviations in um or arcsec."""
+    """Three runs whose means are the curves and which scatter by 0.03; deviations in um or arcsec. Zeros stay zeros."""
     of = "deviation_um" if unit == "mm" else "deviation_arcsec"
     rows = ["run,direction,target_%s,%s" % (unit, of)]
-    for run in (1, 2, 3):
-        rows += ["%d,+,%.6f,%.9f" % (run, x, plus(x)) for x in targets]
-        if minus:
-            rows += ["%d,-,%.6f,%.9f" % (run, x, minus(x)) for x in targets[::-1]]
+    zero = not any(plus(x) for x in targets)
+    for run, share in ((1, 0), (2, 1), (3, 2)):
+        for direction, curve in (("+", plus), ("-", minus)):
+            if curve:
+                rows += ["%d,%s,%.6f,%.9f" % (run, direction, x, curve(x) + (
+                    0.0 if zero else noise(direction, x)[share]))
+                         for x in (targets if direction == "+" else targets[::-1])]
     return "\n".join(rows) + "\n"
 
 

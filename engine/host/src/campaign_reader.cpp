@@ -41,7 +41,11 @@ class CampaignReader {
 
  private:
   const Campaign& campaign() const { return out_.manifest->campaign; }
-  void report(Error error) { out_.errors.push_back(std::move(error)); }
+  /// What is wrong with a file as a whole is wrong from its first line on.
+  void report(Error error) {
+    if (error.line == 0 && !error.file.empty()) error.line = 1;
+    out_.errors.push_back(std::move(error));
+  }
   void word(std::vector<Remark>& notes) const {
     for (Remark& note : notes) note.english = remark_text(context_.templates, "en", note);
   }
@@ -63,7 +67,7 @@ class CampaignReader {
     out_.inputs.emplace_back(manifest_name, sha256(*text));
     auto manifest = parse_manifest(*text, manifest_name);
     if (!manifest) {
-      out_.errors = std::move(manifest.error());
+      for (Error& error : manifest.error()) report(std::move(error));
       return false;
     }
     out_.manifest = std::move(*manifest);

@@ -229,21 +229,29 @@ class CampaignRun {
   void doubt() {
     if (failed()) return;
     stage_("analysis " + std::string(plausibility_name));
-    for (auto& one : implausible(read_, context_, out_.inputs))
+    for (auto& one : implausible(read_, context_, out_.inputs, out_.results.analyses))
       out_.results.analyses.push_back(std::move(one));
-    for (const Results::Analysed& a : out_.results.analyses)
-      if (a.plugin == plausibility_name)
-        for (const Finding& f : a.evaluation.findings) doubts_.insert(f.id);
-    std::set<std::string> known = doubts_;
-    doubts_.erase(std::string(no_scatter));
-    for (const StandingFinding& standing : read_.manifest->tables_may_stand) {
+    const auto& may_stand = read_.manifest->tables_may_stand;
+    std::set<std::string> known;
+    for (Results::Analysed& a : out_.results.analyses) {
+      if (a.plugin != plausibility_name) continue;
+      for (Finding& f : a.evaluation.findings) {
+        known.insert(f.id);
+        const auto standing =
+            std::find_if(may_stand.begin(), may_stand.end(),
+                         [&](const StandingFinding& one) { return one.finding == f.id; });
+        if (standing == may_stand.end())
+          doubts_.insert(f.id);
+        else
+          f.texts.emplace_back(stands_because, standing->reason);
+      }
+    }
+    for (const StandingFinding& standing : may_stand)
       if (!known.contains(standing.finding))
         report(Error{"tables.may_stand: the readings have no finding " + standing.finding +
                          "; they have " +
                          (known.empty() ? "none" : list({known.begin(), known.end()})),
                      manifest_name, standing.line});
-      doubts_.erase(standing.finding);
-    }
   }
 
   /// No analysis and no model has looked at it: said, so that nobody takes silence for a result.
