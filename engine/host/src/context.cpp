@@ -71,7 +71,9 @@ namespace {
 /// Fonts have megabytes, and every installation has them.
 bool travels(std::string_view name) { return !name.starts_with("fonts/"); }
 
-std::string hex(std::string_view bytes) {
+}  // namespace
+
+std::string to_hex(std::string_view bytes) {
   constexpr std::string_view digits = "0123456789abcdef";
   std::string out;
   for (const char c : bytes) {
@@ -93,6 +95,8 @@ Expected<std::string> from_hex(const std::string& text) {
   if (text.size() % 2 != 0) return fail("wanted hexadecimal digits");
   return out;
 }
+
+namespace {
 
 std::string line_of(const std::string& name, const std::string& digest) {
   return name + " " + digest + "\n";
@@ -131,7 +135,7 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
     if (json != nullptr)
       carried[name] = !travels(name)            ? Json{{"sha256", sum}}
                       : name.ends_with(".toml") ? Json{{"text", *bytes}}
-                                                : Json{{"hex", hex(*bytes)}};
+                                                : Json{{"hex", to_hex(*bytes)}};
     if (auto kept = keep(templates, name, std::move(*bytes), path.string()); !kept)
       return fail(kept.error());
   }

@@ -15,6 +15,9 @@ Checked<SiteFile> read_site(const std::filesystem::path& site, std::string& dige
 Expected<std::vector<std::filesystem::path>> with_site_templates(
     std::vector<std::filesystem::path> folders, const std::filesystem::path& site);
 
+std::string to_hex(std::string_view bytes);
+Expected<std::string> from_hex(const std::string& text);
+
 /// The nearest folder at or above the campaign that holds a site.toml; else the campaign's own.
 std::filesystem::path site_of(const std::filesystem::path& campaign);
 

@@ -75,7 +75,8 @@ std::string no_site(const fs::path& site) {
     if (!fs::is_directory(site, error)) return;
     for (fs::directory_iterator it(site, error), end; !error && it != end; it.increment(error)) {
     }
-    if (read_small_file(site / site_name) && is_there(site / "templates")) return;
+    if (read_small_file(site / site_name) && is_there(site / "templates") && read_machines(site))
+      return;
   });
   if (!child) return child.error().message;
   std::vector<Watched> children;

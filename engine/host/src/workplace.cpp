@@ -36,6 +36,9 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   auto read = read_site(site, context.site_sha256);
   if (!read) return fail(read.error().front());
   context.site = std::move(*read);
+  auto machines = read_machines(site);
+  if (!machines) return fail(machines.error());
+  context.machines = std::move(*machines);
   const auto folders = with_site_templates(template_folders, site);
   if (!folders) return fail(folders.error());
   auto templates = read_templates(*folders, context.templates_sha256);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "merge.h"
 #include "nonio/controllers/kit.h"
 #include "parse.h"
 
@@ -268,9 +269,11 @@ std::vector<Option> options() {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  registry.add(controllers::controller(
+  Output output = controllers::controller(
       {"heidenhain-tnc", "1.1.0",
        "Non-linear axis error tables (.COM, .CMA) and backlash for HEIDENHAIN TNC.",
        heidenhain::options()},
-      heidenhain::declared(), heidenhain::write, heidenhain::parse, false));
+      heidenhain::declared(), heidenhain::write, heidenhain::parse, false);
+  output.merge = heidenhain::merge;
+  registry.add(std::move(output));
 }
