@@ -327,7 +327,7 @@ STORIES = {
     **in_space.STORIES,
 }
 
-RECORDS = {"S-0109": """# What the house knows of this machine, whoever measures it. Constructed, as all samples are.
+RECORDS = {"S-0109": """# Constructed, as all samples are: what the house knows of this machine, whoever measures it.
 format = 1
 asset = "S-0109"
 maker = "Sample Machines"

@@ -53,7 +53,7 @@ std::string text_of_entry(const AxisEntry& entry) {
   return text;
 }
 
-std::string shortest(double value) {
+std::string in_digits(double value) {
   std::string text;
   append_shortest(text, value);
   return text;
@@ -117,7 +117,7 @@ class Layers {
     for (const auto& [name, axis] : record_->axes) {
       if (!known_.contains(name)) continue;
       AxisEntry entry{name, {}};
-      for (const auto& [key, value] : axis.settings) entry.put(key, "=" + shortest(value));
+      for (const auto& [key, value] : axis.settings) entry.put(key, "=" + in_digits(value));
       add(entry);
     }
   }
@@ -175,7 +175,7 @@ class Layers {
     if (std::fabs(*number - says->second) <= 1e-9 * std::max(1.0, std::fabs(says->second))) return;
     errors.push_back(at_axes("axis " + axis + ", " + key + value + " contradicts " +
                              place_in(*record_, key_of(axis, other)) + ", where it is " +
-                             shortest(says->second)));
+                             in_digits(says->second)));
   }
 
   /// What was in the parameter while measured, as these plugins take it.
@@ -188,7 +188,7 @@ class Layers {
         if (const auto number = number_of(*said); number && std::fabs(*number - on) > 1e-9)
           errors.push_back(at_axes("axis " + a.name + ", " + key + *said +
                                    " contradicts what was on while it was measured, " +
-                                   shortest(on)));
+                                   in_digits(on)));
         return;
       }
     add({a.name, {{key, "=" + fixed_text(on, 9)}}});
@@ -231,7 +231,7 @@ std::vector<Error> contradictions(const Manifest& manifest, const MachineRecord&
     if (!a.travel || from == r.settings.end() || a.rotary != r.rotary) continue;
     const double per = a.rotary ? deg_per_rad : 1e3;
     const auto span = [](double low, double high) {
-      return shortest(low) + " to " + shortest(high);
+      return in_digits(low) + " to " + in_digits(high);
     };
     const double low = std::round(a.travel->first * per * 1e6) / 1e6,
                  high = std::round(a.travel->second * per * 1e6) / 1e6;

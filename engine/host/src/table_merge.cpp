@@ -8,7 +8,7 @@
 namespace nonio::host {
 namespace {
 
-using Tables = std::vector<LoadedTable>;
+using ReadTables = std::vector<LoadedTable>;
 
 bool is_own(const TableDifference& d, const std::string& axis) {
   return d.output == axis && d.input == std::vector{axis};
@@ -47,8 +47,8 @@ Expected<OneAxis> one_axis(const ReadCampaign& read, const std::string& axis,
 }
 
 /// What the control would have after the merge, held against what it has and what is new.
-Expected<void> only_this_axis(const Tables& present, const Tables& fresh, const Tables& next,
-                              const std::string& axis) {
+Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh,
+                              const ReadTables& next, const std::string& axis) {
   constexpr double nothing = 1e-12;  // m, rad
   for (const TableDifference& d : differences(present, next)) {
     if (is_own(d, axis)) continue;
