@@ -144,6 +144,15 @@ void state_backlash_of(Settings& options, const Tables& tables) {
       state_backlash(options, t.output, t.rotary, *t.backlash);
 }
 
+/// In the words of the new table.
+void say_what_was_on(Campaign& campaign, const Settings& options, const Tables& present) {
+  for (Axis& axis : campaign.machine.axes) {
+    if (!corrects(present, axis.name)) continue;
+    axis.table_on = "nonio apply --was-on";
+    axis.backlash_on = present_backlash(options, axis.name, axis.rotary);
+  }
+}
+
 template <class Read>
 Expected<std::vector<Artifact>> read_list(const std::string& list, const Read& read) {
   std::vector<Artifact> files;
@@ -327,8 +336,9 @@ std::vector<TableForecast> forecast(const ReadCampaign& read, const Tables& tabl
 
 Expected<RenewedTables> renew(const ReadCampaign& read, const Output& output, Settings options,
                               const Templates& templates, const Tables& present) {
-  const Campaign& campaign = read.manifest->campaign;
+  Campaign campaign = read.manifest->campaign;
   state_backlash_of(options, present);
+  say_what_was_on(campaign, options, present);
   const std::vector<Observations> raw = without_tables(campaign, read.observations, present);
   const Results none;
   const auto write = [&](const Campaign& c, const std::vector<Observations>& o) {

@@ -97,6 +97,7 @@ struct Numbering {
   struct Range {
     std::string axis;
     std::int64_t low, high;
+    bool chosen = false;  ///< nobody asked for them
   };
   std::vector<Range> taken{};
 
@@ -135,7 +136,7 @@ struct Numbering {
                     std::to_string(std::max(r.low, p.low)) + " to " +
                     std::to_string(std::min(r.high, p.high)) + ": set axes = [\"" + s.job.axis +
                     " reference_number=...\"]");
-    taken.push_back({s.job.axis, p.low, p.high});
+    taken.push_back({s.job.axis, p.low, p.high, !asked && all < 0});
     next = std::max(next, p.high + 1);
     return {};
   }
@@ -227,7 +228,14 @@ Expected<OutputResult> write(const OutputInput& input) {
       .coarser = {
           "magnification", o.integer("magnification", 1), 100,
           o.flag("extended") ? "" : ", or set extended = true if the control takes -128..127"}};
-  return controllers::write_tables(input, writer);
+  auto result = controllers::write_tables(input, writer);
+  for (const Numbering::Range& r : numbering.taken)
+    if (result && r.chosen)
+      result->notes.push_back(
+          {"table.numbers-chosen",
+           {},
+           {{"axis", r.axis}, {"numbers", std::to_string(r.low) + "-" + std::to_string(r.high)}}});
+  return result;
 }
 
 Option whole(std::string name, std::int64_t otherwise, std::string help, double least,

@@ -131,6 +131,10 @@ std::string words(const Sheet& s, const Layout& layout, const std::string& artif
                                        "positive where the encoder leads the table:");
     lines.push_back("backLash = " + signed_decimal(s.backlash() * job.per_si(), 4));
   }
+  lines.emplace_back(
+      "CONFIG.CMA beside it names the tables of the measured axes only: loaded in place of the "
+      "control's own it takes the tables of all other axes away; let it into a backup with nonio "
+      "merge");
   lines.emplace_back("MP730 or the configuration must allow non-linear compensation for this axis");
   return controllers::comments(lines, "");
 }
@@ -247,6 +251,7 @@ Expected<OutputResult> write(const OutputInput& input) {
   result.artifacts.push_back(
       {"heidenhain-tnc-CONFIG.CMA",
        cma_table(written, axis_columns(input.campaign, *written.front()), layout)});
+  result.notes.push_back({"heidenhain.cma-alone"});
   controllers::note_facts(writer, result);
   return result;
 }

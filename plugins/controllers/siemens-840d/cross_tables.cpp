@@ -87,6 +87,15 @@ std::string chosen_words(std::int64_t first, std::size_t count) {
          "; where the control has others there, load a file of nonio merge instead";
 }
 
+void note_chosen(const std::string& axis, std::int64_t first, std::size_t count,
+                 OutputResult& result) {
+  const std::int64_t last = first + static_cast<std::int64_t>(count) - 1;
+  result.notes.push_back(
+      {"table.numbers-chosen",
+       {},
+       {{"axis", axis}, {"numbers", std::to_string(first) + "-" + std::to_string(last)}}});
+}
+
 Expected<void> write_cross_tables(const OutputInput& input,
                                   const std::vector<controllers::AxisJob>& pitch,
                                   OutputResult& result) {
@@ -110,6 +119,7 @@ Expected<void> write_cross_tables(const OutputInput& input,
     if (auto done = controllers::predict_cross(job, {file}, parse, pitch, input, result); !done)
       return done;
     result.artifacts.push_back(std::move(file));
+    note_chosen(job.axes(), first, job.curves.size(), result);
   }
   const bool volume = std::any_of(jobs.begin(), jobs.end(), [](const auto& j) { return j.volume; });
   if (!jobs.empty()) result.notes.push_back({volume ? "siemens.cross-volume" : "siemens.cross"});

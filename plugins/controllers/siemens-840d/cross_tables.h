@@ -13,6 +13,10 @@ Expected<void> free_tables(std::int64_t first, std::size_t count, const Settings
 /// That nobody has read these numbers from the control.
 std::string chosen_words(std::int64_t first, std::size_t count);
 
+/// A note that says so.
+void note_chosen(const std::string& axis, std::int64_t first, std::size_t count,
+                 OutputResult& result);
+
 Expected<void> write_cross_tables(const OutputInput&,
                                   const std::vector<controllers::AxisJob>& pitch, OutputResult&);
 

@@ -44,11 +44,12 @@ std::optional<std::string> replaced(const std::string& text, const IsOwn& is_own
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t next = std::min(text.find('\n', at), text.size() - 1) + 1;
     const std::string_view one = std::string_view(text).substr(at, next - at);
-    const auto line = line_of(one);
+    const std::string_view bare = one.substr(0, one.find_last_not_of("\r\n") + 1);
+    const auto line = line_of(bare);
     if (line && is_own(*line)) {
       if (!place) place = out.size();
     } else {
-      if (controllers::trimmed(one) == "M17") end = out.size();
+      if (controllers::trimmed(bare) == "M17") end = out.size();
       out += one;
     }
     at = next;

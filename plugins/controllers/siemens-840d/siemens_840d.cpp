@@ -125,6 +125,12 @@ Expected<OutputResult> write(const OutputInput& input) {
       "siemens-840d", *table, {"number:", "step", "first", "reference", "backlash"}, files, parse};
   const auto jobs = controllers::write_axes(input, writer, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
+  for (const AxisJob& job : *jobs)
+    if (job.loaded && input.options.flag("directions") && job.curve.bidirectional())
+      note_chosen(job.axis,
+                  input.options.integer("first_cec_table") +
+                      2 * (static_cast<std::int64_t>(job.number) - 1),
+                  2, result);
   if (auto done = write_cross_tables(input, *jobs, result); !done)
     return tl::unexpected<Error>(done.error());
   controllers::note_facts(writer, result);

@@ -70,8 +70,8 @@ inline void state_numbers(Settings& s, const Output& output, const std::vector<A
     const std::string begin = axes[i].name + " ";
     bool said = false;
     for (const std::string& e : entries)
-      said = said || (e.rfind(begin, 0) == 0 && (e.find("number=") != std::string::npos ||
-                                                 e.find("joint=") != std::string::npos));
+      said = said || (e.rfind(begin, 0) == 0 && (e.find(" number=") != std::string::npos ||
+                                                 e.find(" joint=") != std::string::npos));
     if (!said) entries.push_back(begin + "number=" + std::to_string(joints ? i : i + 1));
   }
   s.values["axes"] = entries;
