@@ -38,7 +38,7 @@ ONLY_PROGRAM = [
 ]
 # Where the schema refuses what parsing accepts, as these are names that only a run knows.
 ONLY_SCHEMA = [
-    (r"machine\.control", "an output"),
+    (r"(machine\.)?control", "an output"),
     (r"measurement\.\d+\.reader", "a reader"),
     (r"run\.(analyses|outputs)", "analyses, outputs"),
     (r"model\.effects", "an effect"),
