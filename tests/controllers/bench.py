@@ -48,12 +48,23 @@ class BenchTest(unittest.TestCase):
         text = 'format = 1\n[campaign]\nid = "c"\n[machine]\n'
         if control:
             text += 'control = "%s"\n' % control
+        if "number=" not in extra:
+            text += 'asset = "S-1"\n'
+            self.record([name for name, _ in axes], from_zero=control == "linuxcnc")
         for name, kind in axes:
             text += '[machine.axes.%s]\nkind = "%s"\n' % (name, kind)
         for name, (kind, data, more) in files.items():
             (self.folder / (name + ".csv")).write_text(data)
             text += '[[measurement]]\nid = "%s"\nkind = "%s"\nfile = "%s.csv"\n%s\n' % (name, kind, name, more)
         (self.folder / "campaign.toml").write_text(text + extra)
+
+    def record(self, axes, more="", from_zero=False, asset="S-1"):
+        """The machine as the site knows it: how its control counts the axes."""
+        folder = self.site / "machines"
+        folder.mkdir(exist_ok=True)
+        (folder / (asset + ".toml")).write_text('format = 1\nasset = "%s"\n%s' % (asset, more) + "".join(
+            '[axes.%s]\nkind = "%s"\nnumber = %d\n' % (a, "rotary" if a[0] in "ABC" else "linear", i + (not from_zero))
+            for i, a in enumerate(axes)))
 
     def one_axis(self, targets, plus, minus=None, extra="", control=None, unit="mm", axis="X"):
         self.campaign({axis: ("axis", axis_csv(targets, plus, minus, unit), 'axis = "%s"' % axis)}, extra,

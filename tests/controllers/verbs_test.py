@@ -247,7 +247,8 @@ class Gantry(BenchTest):
     """X has a scale on each side: master and slave are two axes of the control, and have a table each."""
 
     def gantry(self, axis="", sides=("", ""), extra="", control="siemens-840d", structure="gantry"):
-        text = ('format = 1\n[campaign]\nid = "c"\n[machine]\nstructure = "%s"\ncontrol = "%s"\n[machine.axes.X]\n'
+        self.record(["X", "Y"])
+        text = ('format = 1\n[campaign]\nid = "c"\n[machine]\nasset = "S-1"\nstructure = "%s"\ncontrol = "%s"\n[machine.axes.X]\n'
                 'kind = "linear"\n%s\n[machine.axes.Y]\nkind = "linear"\n' % (structure, control, axis))
         for name, side, at, size in (("X1", sides[0], 300, 1.0), ("X2", sides[1], 8700, -2.0)):
             error = lambda x, size=size: size * wave(x)
@@ -294,17 +295,19 @@ class Gantry(BenchTest):
     def test_a_slave_without_a_number_gets_no_table_under_a_guessed_one(self):
         self.gantry('slave = "X2"', ("master", "slave"))
         files, findings, _ = self.tables()
-        self.assertIn("table.slave-number", findings)
+        self.assertIn("table.axis-number", findings)
         self.assertIn("siemens-840d-X-EEC.ini", files)
         self.assertFalse([n for n in files if "X2" in n])
-        # Its place among the machine's axes says it too.
+        # The record of the machine says it too; its place among the machine's axes does not.
         self.gantry('slave = "X2"\n[machine.axes.Z]\nkind = "linear"\n[machine.axes.X2]\nkind = "linear"', ("master", "slave"))
+        self.assertIn("table.axis-number", self.tables()[1])
+        self.record(["X", "Y", "X2"])
         self.assertIn("%_N_AX3_EEC_INI", self.tables()[0]["siemens-840d-X2-EEC.ini"])
 
     def test_a_control_that_counts_no_axes_needs_the_name_only(self):
         self.gantry('slave = "X2"', ("master", "slave"), control="heidenhain-tnc")
         files, findings, _ = self.tables("heidenhain-tnc")
-        self.assertNotIn("table.slave-number", findings)
+        self.assertNotIn("table.axis-number", findings)
         self.assertIn("heidenhain-tnc-X2.COM", files)
 
     def test_a_side_wants_the_name_of_the_second_axis(self):

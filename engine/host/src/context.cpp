@@ -85,6 +85,9 @@ Expected<SiteFiles> read_site_files(const fs::path& site,
   auto settings = read_settings(site);
   if (!settings) return fail(settings.error());
   files.settings = std::move(*settings);
+  // Read again where they are used; here a share that hangs is noticed.
+  reading(site / machines_folder);
+  if (const auto machines = read_machines(site); !machines) return fail(machines.error());
   reading(site / "templates");
   const auto own = with_site_templates({}, site);
   if (!own) return fail(own.error());
@@ -106,7 +109,9 @@ namespace {
 /// Fonts have megabytes, and every installation has them.
 bool travels(std::string_view name) { return !name.starts_with("fonts/"); }
 
-std::string hex(std::string_view bytes) {
+}  // namespace
+
+std::string to_hex(std::string_view bytes) {
   constexpr std::string_view digits = "0123456789abcdef";
   std::string out;
   for (const char c : bytes) {
@@ -128,6 +133,8 @@ Expected<std::string> from_hex(const std::string& text) {
   if (text.size() % 2 != 0) return fail("wanted hexadecimal digits");
   return out;
 }
+
+namespace {
 
 std::string line_of(const std::string& name, const std::string& digest) {
   return name + " " + digest + "\n";
@@ -169,7 +176,7 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
     if (json != nullptr)
       carried[name] = !travels(name)            ? Json{{"sha256", sum}}
                       : name.ends_with(".toml") ? Json{{"text", *bytes}}
-                                                : Json{{"hex", hex(*bytes)}};
+                                                : Json{{"hex", to_hex(*bytes)}};
     if (auto kept = keep(templates, name, std::move(*bytes), path.string()); !kept)
       return fail(kept.error());
   }

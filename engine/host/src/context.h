@@ -32,7 +32,11 @@ Checked<SiteFile> site_in(const SiteFiles& files, std::string& digest);
 Expected<std::vector<std::filesystem::path>> with_site_templates(
     std::vector<std::filesystem::path> folders, const std::filesystem::path& site);
 
-/// The nearest folder at or above the campaign that holds a site.toml; else the campaign's own.
+std::string to_hex(std::string_view bytes);
+Expected<std::string> from_hex(const std::string& text);
+
+/// The nearest folder at or above the campaign that holds a site.toml, else one with records of
+/// machines; else the campaign's own.
 std::filesystem::path site_of(const std::filesystem::path& campaign);
 
 }  // namespace nonio::host

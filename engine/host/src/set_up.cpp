@@ -105,6 +105,9 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
   if (!site) return fail(all_of(site.error()));
   context.site = std::move(*site);
   place->notes = context.site.notes;
+  auto machines = read_machines(options.site);
+  if (!machines) return fail(all_of({machines.error()}));
+  context.machines = std::move(*machines);
   if (context.site.signing && !options.dry_run) {  // before any plugin is in the memory
     place->signer.emplace(*context.site.signing, options.site, context.site.limits.disk_seconds);
     note_key(*place, !context.site.signing->time_stamp.empty());

@@ -185,6 +185,7 @@ Expected<OutputResult> write(const OutputInput& in) {
   if (!axes) return tl::unexpected<Error>(axes.error());
   for (const CrossJob& set : controllers::cross_jobs(in)) {
     if (set.volume || set.curves.size() != 2) continue;
+    if (controllers::lacks_number(set.moving(), in, *axes, set.measurement, result)) continue;
     if (std::any_of(set.curves.begin(), set.curves.end(),
                     [](const CrossCurve& c) { return std::fabs(c.position.front()) > 1e-9; }))
       return fail("diagonals of " + set.measurement +

@@ -45,9 +45,21 @@ std::string comp_file(const Sheet& s) {
   return out;
 }
 
-std::string joint_of(const AxisJob& job) {
-  const auto joint = job.setting("joint");
-  return joint ? fixed_text(*joint, 0) : std::to_string(job.number - 1);
+/// As the machine counts them, from 0; nothing where nobody says it.
+std::optional<std::string> joint_of(const AxisJob& job) {
+  const auto joint = job.setting("joint"), number = job.setting("number");
+  if (!joint && !number) return std::nullopt;
+  return fixed_text(joint ? *joint : *number, 0);
+}
+
+/// No section that could be pasted where it does not belong.
+std::string section_of(const AxisJob& job) {
+  const auto joint = joint_of(job);
+  if (joint) return "[JOINT_" + *joint + "]\n";
+  const std::string axis = controllers::plain(job.axis);
+  return "# the joint of " + axis +
+         " is not stated: put these lines into its section; to have it\n" +
+         "# here say axes = [\"" + axis + " joint=...\"], or number in the machine's record\n";
 }
 
 /// The table itself has no end that shows: how long it is stands beside it.
@@ -59,9 +71,8 @@ std::string ini_snippet(const Sheet& s, const std::string& comp) {
   return controllers::comments(s.warning, "# ") + controllers::comments(s.job.about, "# ") +
          controllers::comments(s.zero_and_size(), "# ") + "# " + lines_said(comp, s) +
          "\n"
-         "# BACKLASH has no effect beside this table: the reversal is in its two columns\n"
-         "[JOINT_" +
-         joint_of(s.job) + "]\nCOMP_FILE = " + comp +
+         "# BACKLASH has no effect beside this table: the reversal is in its two columns\n" +
+         section_of(s.job) + "COMP_FILE = " + comp +
          "\nCOMP_FILE_TYPE = " + std::to_string(s.input.options.integer("type")) + "\n";
 }
 
@@ -72,7 +83,7 @@ std::string words(const Sheet& s, const std::string& comp) {
   lines.insert(lines.end(), job.about.begin(), job.about.end());
   for (std::string& line : s.zero_and_size()) lines.push_back(std::move(line));
   lines.push_back(lines_said(comp, s));
-  lines.push_back("file " + comp + ", joint " + joint_of(job) + ", in " +
+  lines.push_back("file " + comp + ", joint " + joint_of(job).value_or("not stated") + ", in " +
                   (inch ? "inch" : std::string(job.unit())) +
                   ": nominal, moving towards plus, moving towards minus");
   lines.emplace_back(
@@ -98,7 +109,7 @@ std::string words(const Sheet& s, const std::string& comp) {
 }
 
 Expected<std::vector<Artifact>> files(const Sheet& s) {
-  if (const double joint = s.job.setting("joint").value_or(0.0);
+  if (const double joint = s.job.setting("joint").value_or(s.job.setting("number").value_or(0.0));
       joint < 0.0 || joint > 15.0 || joint != std::floor(joint))
     return fail("option axes, axis " + s.job.axis + ": joint must be a whole number from 0 to 15");
   const std::string stem = "linuxcnc-" + s.job.stem, comp = stem + ".comp";
@@ -187,9 +198,9 @@ std::vector<Option> options() {
   t.points = 0;
   return controllers::table_options(
       t,
-      "joint (else the axis' place in the manifest, from 0), step_mm, first_mm, reference_mm "
-      "(where "
-      "the table is made zero), backlash_mm (BACKLASH while measured), and the same with _deg",
+      "joint (or number; not stated, the INI lines name none), step_mm, first_mm, reference_mm "
+      "(where the table is made zero), backlash_mm (BACKLASH while measured), and the same with "
+      "_deg",
       {{"type",
         std::int64_t{0},
         "",

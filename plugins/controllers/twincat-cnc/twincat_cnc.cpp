@@ -207,6 +207,7 @@ Expected<void> write_cross(const OutputInput& in, const std::vector<controllers:
   for (const CrossJob& job : jobs) {
     if (job.volume || said.empty()) continue;
     if (auto ok = controllers::fits(job, in.options); !ok) return ok;
+    if (controllers::lacks_number(job.moving(), in, *axes, job.measurement, result)) continue;
     std::vector<Artifact> files;
     for (const CrossCurve& c : job.curves)
       files.push_back({"twincat-cnc-cross-" + controllers::file_part(c.output) +

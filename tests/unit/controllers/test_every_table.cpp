@@ -267,6 +267,28 @@ TEST(EveryTable, WarnsOfSuspectReadings) {
   }
 }
 
+// A place in the manifest is no number of the control.
+TEST(EveryTable, NumberIsNeverGuessed) {
+  std::mt19937 random(11);
+  Bench b(random_axis(random, false));
+  b.numbered = false;
+  for (const Output& output : {siemens_plugin(), fanuc_plugin()}) {
+    const auto r = b.write(output);
+    ASSERT_TRUE(r) << output.info.name;
+    EXPECT_TRUE(r->artifacts.empty()) << output.info.name;
+    const Finding* f = finding(*r, "table.axis-number");
+    ASSERT_NE(f, nullptr) << output.info.name;
+    EXPECT_TRUE(f->attention);
+    EXPECT_TRUE(contains(f->advice, "[axes.X] of machines/<asset>.toml"));
+  }
+  for (const Output& output : {heidenhain_plugin(), linuxcnc_plugin()}) {
+    const auto r = b.write(output);
+    ASSERT_TRUE(r) << output.info.name;
+    EXPECT_FALSE(r->artifacts.empty()) << output.info.name;
+  }
+  EXPECT_FALSE(contains(file(*b.write(linuxcnc_plugin()), "linuxcnc-X.ini"), "[JOINT_"));
+}
+
 // A mistake in option `axes` names the option, of which the host knows the line.
 TEST(EveryTable, SaysThatOptionAxesIsToBlame) {
   for (const Kind& k : kinds())

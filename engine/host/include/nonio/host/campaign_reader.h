@@ -15,6 +15,9 @@ namespace nonio::host {
 /// One campaign folder: what its manifest says and what its measurements hold.
 struct ReadCampaign {
   std::optional<Manifest> manifest;        ///< none if it cannot be read; then nothing else is
+  std::optional<MachineRecord> machine{};  ///< what the site knows of the campaign's machine
+  /// Of each axis: files of the table that was on while it was measured, where it was one.
+  std::map<std::string, std::vector<Artifact>> tables_on{};
   std::vector<Observations> observations;  ///< of each measurement; empty where none could be read
   std::vector<Effect> effects;             ///< of the plugins and of the campaign
   std::vector<Finding> doubts{};           ///< what makes the files themselves implausible

@@ -21,7 +21,7 @@ namespace nonio::controllers {
 struct AxisJob {
   std::string axis, measurement;
   std::string stem;        ///< of file names; with the measurement where an axis has two of them
-  std::size_t number = 1;  ///< its place among the machine's axes, from 1
+  std::size_t number = 0;  ///< in the control; 0: nobody says it
   bool rotary = false;
   math::ErrorCurve curve;                    ///< to be compensated: as measured, or the model's
   std::optional<math::ErrorCurve> measured;  ///< as measured, where `curve` is the model's
@@ -66,6 +66,12 @@ bool has_tables(const Campaign&);
 Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
                                          const std::vector<std::string_view>& keys,
                                          OutputResult& result);
+
+/// True, with a finding that names the key and the file, where nobody says the number of one of
+/// these axes in the control.
+bool lacks_number(const std::vector<std::string>& of, const OutputInput& input,
+                  const std::vector<KnownAxis>& axes, const std::string& measurement,
+                  OutputResult& result);
 
 /// A note about this axis; its words find {axis} and {unit}.
 Remark remark(const AxisJob& job, std::string id);
