@@ -3,6 +3,7 @@
 // Results with their limits and decisions, on the first page (ISO/IEC 17025:2017, 7.8.6).
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "certificate.h"
@@ -31,13 +32,12 @@ bool is_named(const Source& source, const Evaluation& e, const std::string& name
   if (in_summary(name)) return true;
   if (name.size() < 2 || (name.back() != '+' && name.back() != '-')) return false;
   const std::string both = name.substr(0, name.size() - 1);
-  return in_summary(both) && std::none_of(e.values.begin(), e.values.end(), [&](const Value& v) {
-           return v.name == both && v.U;
-         });
+  return in_summary(both) && std::none_of(e.values.begin(), e.values.end(),
+                                          [&](const Value& v) { return v.name == both && v.U; });
 }
 
 /// All that have a limit: the paper says nowhere else what was decided. And those that the template
-/// names, unless there are very many.
+/// names; of very many not those of a measurement that has others.
 std::vector<Shown> shown_results(const Source& source,
                                  const std::vector<pages::Measured>& measured) {
   constexpr std::size_t most = 18;
@@ -54,7 +54,11 @@ std::vector<Shown> shown_results(const Source& source,
   const auto limited = [](const Shown& s) { return s.limit != nullptr; };
   if (all.size() <= most) return all;
   if (std::any_of(all.begin(), all.end(), limited)) {
-    std::erase_if(all, [&](const Shown& s) { return !limited(s); });
+    std::set<const pages::Measured*> with_limit;
+    for (const Shown& s : all)
+      if (limited(s)) with_limit.insert(s.measured);
+    std::erase_if(all,
+                  [&](const Shown& s) { return !limited(s) && with_limit.contains(s.measured); });
   } else {  // the first of each measurement
     const pages::Measured* last = nullptr;
     std::erase_if(all,

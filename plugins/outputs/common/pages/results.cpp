@@ -365,8 +365,8 @@ void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
   for (const Beside& curves : curves_of(source, m)) {
     const Series& first = *curves.front();
     Table table;
-    table.columns = {{w.get("plot.place", {{"axis", first.over}}),
-                      unit_text(first.position_quantity), true}};
+    table.columns = {
+        {w.get("plot.place", {{"axis", first.over}}), unit_text(first.position_quantity), true}};
     std::string names;
     for (const Series* s : curves) {
       names += (names.empty() ? "" : ", ") + symbol(s->name);
