@@ -39,7 +39,11 @@ def complete(text, languages, analyses, outputs='"json", "certificate", "pdf-rep
 
 
 def with_limits(text):
-    """Limits for every axis, the way parts are measured, and a sensor."""
+    """Limits for every axis, the way parts are measured, what an uncertainty needs, and a sensor."""
+    if "[environment]" not in text:
+        stated = (SITE / "09-tolerances" / "campaign.toml").read_text("utf-8")
+        environment = re.search(r"\[environment\]\n(?:.+\n)+", stated)[0]
+        text = text.replace("[[measurement]]", environment + "\n[[measurement]]", 1)
     text = re.sub(r"(\[machine\.axes\.[XYZ]\]\nkind = \"linear\"\n)", r"\1tolerance_um = { A = 30.0, R = 12.0, B = 6.0 }\n", text)
     text = re.sub(r"(kind = \"axis\"\n)", r"\1" + STATED.replace("\\", r"\\"), text)
     return text.replace("[environment]\n", '[[sensor]]\nmeasures = "material"\nmaker = "Sample Sensors"\nmodel = "Pt100"\n'
