@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well `explain` finds what the second generator (tests/hidden) has hidden:
-//   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped|beside COUNT SEED [--verbose] [--plugins FOLDER]
+//   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped|beside COUNT
+//   SEED [--verbose] [--plugins FOLDER]
 //                [--write FOLDER] [--right PERCENT] [--wrong PERCENT]
 // Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio explain --auto` does. Fails
 // if fewer are right, or more named wrongly, than --right and --wrong say.
@@ -156,7 +157,8 @@ bool place_is_right(const Hidden& h, const model::Explanation& said) {
 }
 
 struct Score {
-  Tally certain, described;  ///< names said to be certain that are hidden; descriptions to the floor
+  Tally certain,
+      described;  ///< names said to be certain that are hidden; descriptions to the floor
   Tally answered, right, kind, floor, wrong_name, place, alias, ends, noise, above_floor, values;
   std::map<std::string, Tally> of_effect, of_value;
   std::map<std::string, Tally> named_of;  ///< outside: `missing`, by cause
@@ -391,10 +393,11 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
   const auto a = arguments({argv + 1, argv + argc});
   if (!a) {
-    std::fprintf(
-        stderr,
-        "bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|\n             grouped|beside COUNT SEED\n"
-        "             [--verbose] [--plugins FOLDER] [--write FOLDER] [--right PERCENT] [--wrong PERCENT]\n");
+    std::fprintf(stderr,
+                 "bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|\n    "
+                 "         grouped|beside COUNT SEED\n"
+                 "             [--verbose] [--plugins FOLDER] [--write FOLDER] [--right PERCENT] "
+                 "[--wrong PERCENT]\n");
     return 2;
   }
   host::Plugins plugins;

@@ -125,13 +125,14 @@ Verb explain_verb(Common& common) {
   return {
       .name = "explain",
       .summary = "Which effect is missing from the model: candidates, ranked, and a verdict",
-      .arguments = joined(campaign_arguments(options->folder, common),
-                          {{"--auto", &options->automatic,
-                            "While an effect is missing or certain, add it to campaign.toml; show each step"},
-                           {.name = "--seed",
-                            .target = &options->seed,
-                            .help = "Of the shuffles behind the false-alarm rate",
-                            .shows_default = true}}),
+      .arguments = joined(
+          campaign_arguments(options->folder, common),
+          {{"--auto", &options->automatic,
+            "While an effect is missing or certain, add it to campaign.toml; show each step"},
+           {.name = "--seed",
+            .target = &options->seed,
+            .help = "Of the shuffles behind the false-alarm rate",
+            .shows_default = true}}),
       .footer =
           "Every effect of the catalogue (`nonio plugins`) that is not in the model is tried on "
           "top\n"

@@ -22,7 +22,7 @@ struct MergeWish {
 const char* const merge_name = "nonio merge";
 
 /// The axis that is said, or the only one that was measured.
-Expected<std::string> axis_of(const MergeWish& w, const Campaign& campaign) {
+Expected<std::string> merged_axis(const MergeWish& w, const Campaign& campaign) {
   if (!w.axis.empty()) return w.axis;
   std::vector<std::string> measured;
   for (const Measurement& m : campaign.measurements) {
@@ -65,7 +65,7 @@ int merge(const MergeWish& w, const Common& common) {
   const auto opened = open_campaign(merge_name, w.folder, common);
   if (!opened) return opened.error();
   const OpenCampaign& open = *opened;
-  const auto axis = axis_of(w, open.campaign());
+  const auto axis = merged_axis(w, open.campaign());
   if (!axis) return complain(merge_name, axis.error().message);
   const auto options = [&](const Info& info) { return campaign_options(open, info, *settings); };
   const std::string control = w.control.empty() ? open.campaign().machine.control : w.control;

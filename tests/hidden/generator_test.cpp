@@ -16,14 +16,9 @@ using namespace nonio::hidden;
 
 namespace {
 
-constexpr Kind kinds[] = {Kind::one,
-                          Kind::several,
-                          Kind::complete,
-                          Kind::outside,
-                          Kind::wave_under_curve,
-                          Kind::screw_and_curve,
-                          Kind::beside,
-                          Kind::grouped};
+constexpr Kind kinds[] = {Kind::one,     Kind::several,          Kind::complete,
+                          Kind::outside, Kind::wave_under_curve, Kind::screw_and_curve,
+                          Kind::beside,  Kind::grouped};
 constexpr std::uint64_t campaigns = 40;  // of each kind
 
 std::string read(const std::filesystem::path& path) {

@@ -107,10 +107,9 @@ std::string ModelWords::verdict(const model::Explanation& e, const PartModel& pa
   std::string text = finding_text(templates_, language_, verdict_finding(e, part), "says");
   if (e.verdict.kind != Kind::unknown) return text;
   if (!e.certain.empty())
-    text = says("verdict.certain", {{"rms", e.best_rms, part.deviation()}},
-                {{"part", kind_of(part.part)},
-                 {"axis", part.part.name},
-                 {"effects", listed(e.certain)}});
+    text = says(
+        "verdict.certain", {{"rms", e.best_rms, part.deviation()}},
+        {{"part", kind_of(part.part)}, {"axis", part.part.name}, {"effects", listed(e.certain)}});
   if (!e.fails.empty()) text += " " + place(e.fails.front(), part.deviation());
   return text;
 }

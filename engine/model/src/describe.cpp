@@ -11,8 +11,7 @@ std::vector<Description> described(const Finding& finding) {
   terms.insert(terms.end(), finding.descriptions.begin(), finding.descriptions.end());
   const Workbench bench(finding.part.table, terms, finding.weight);
   Workbench::State state = bench.state({});
-  for (std::size_t e = 0; e < explained; ++e)
-    state = bench.with(state, bench.gains(state, e), e);
+  for (std::size_t e = 0; e < explained; ++e) state = bench.with(state, bench.gains(state, e), e);
   std::vector<Description> out;
   while (true) {
     const VectorXd gains = bench.gains(state);

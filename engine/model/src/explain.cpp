@@ -44,7 +44,8 @@ Expected<Explanation> explain_on_means(const Part& part, const std::vector<Term>
   out->comparison = std::move(*whole);
   out->verdict.suspects_share =
       static_cast<double>(out->comparison.suspects.size()) / static_cast<double>(part.table.size());
-  if (too_many(out->comparison.suspects.size(), part.table.size())) out->verdict.kind = Verdict::Kind::unrepeatable;
+  if (too_many(out->comparison.suspects.size(), part.table.size()))
+    out->verdict.kind = Verdict::Kind::unrepeatable;
   for (Candidate& c : out->candidates) {
     if (!c.visible) continue;
     std::vector<Term> terms = out->comparison.fit.terms;

@@ -105,8 +105,8 @@ void arrange(std::vector<T>& column, const Rows& rows) {
 Observations in_order(const Observations& o, const std::vector<std::uint32_t>& rows) {
   Observations out = o;
   for (auto& axis : out.axes) arrange(axis.position, rows), arrange(axis.approach, rows);
-  for (auto* column : {&out.deviation, &out.u, &out.time, &out.material, &out.air, &out.pressure,
-                       &out.humidity})
+  for (auto* column :
+       {&out.deviation, &out.u, &out.time, &out.material, &out.air, &out.pressure, &out.humidity})
     arrange(*column, rows);
   for (auto* column : {&out.run, &out.line, &out.source_line}) arrange(*column, rows);
   arrange(out.sense, rows);

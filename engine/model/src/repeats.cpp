@@ -200,8 +200,8 @@ struct Groups {
   static bool by_cell(const Repeats& r) { return r.cell.size() >= 4 * r.cells; }
 };
 
-/// What is left when the median of its target or cell and the running median of its pass are taken out of
-/// each reading, twice: no model, and a misread value spoils no other.
+/// What is left when the median of its target or cell and the running median of its pass are taken
+/// out of each reading, twice: no model, and a misread value spoils no other.
 std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
   const Groups groups(r);
   const Members targets(groups.of, groups.count), passes(r.pass, r.passes);

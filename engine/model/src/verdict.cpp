@@ -126,8 +126,7 @@ class Judge {
       const auto works_in = places_of(f_.of_best.fit.part[t]);
       for (const Place& place : serious)
         for (const std::string& where : works_in)
-          if (same_factor(place.where, where) && place.rms * place.rms > share * rms2)
-            return true;
+          if (same_factor(place.where, where) && place.rms * place.rms > share * rms2) return true;
     }
     return false;
   }
@@ -158,8 +157,7 @@ class Judge {
 
   /// Where something that says so much of each reading works.
   std::vector<std::string> places_of(const std::vector<double>& says) const {
-    const VectorXd part =
-        Eigen::Map<const VectorXd>(says.data(), static_cast<Index>(says.size()));
+    const VectorXd part = Eigen::Map<const VectorXd>(says.data(), static_cast<Index>(says.size()));
     const VectorXd centred = part.array() - part.mean();
     return factors_of(f_.part, f_.repeats, f_.bench->root_weight(),
                       f_.bench->root_weight().cwiseProduct(centred));

@@ -13,7 +13,6 @@ inline bool too_many(std::size_t suspects, std::size_t readings) {
          static_cast<double>(suspects) > most_suspects * static_cast<double>(readings);
 }
 
-
 /// Verdict, where the model fails, and the plans for the verdict's aliases; the verdict's effect
 /// comes to lead `out.candidates`.
 void judge(const Finding& finding, Explanation& out);

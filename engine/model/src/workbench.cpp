@@ -275,7 +275,7 @@ Workbench::Projection Workbench::projection(const State& state) const {
   const MatrixXd own = gram(state.blocks);
   const Eigen::LLT<MatrixXd> llt(own);
   if (!reducible_ || (llt.info() == Eigen::Success &&
-                         llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent))) {
+                      llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent))) {
     out.z = llt.matrixL().solve(xy_(columns_of_state(state)));
     llt.matrixU().solveInPlace<Eigen::OnTheRight>(out.products);
     return out;
@@ -290,9 +290,7 @@ double Workbench::least_of(const Block& block) const {
   return several_axes_ && !reducible(block) ? independent_in_space : independent;
 }
 
-bool Workbench::reducible(const Block& block) const {
-  return instances_[block.effect].reducible;
-}
+bool Workbench::reducible(const Block& block) const { return instances_[block.effect].reducible; }
 
 /// Gram and Schmidt block by block, on scalar products.
 Workbench::Directions Workbench::directions(const std::vector<std::size_t>& blocks,
@@ -354,8 +352,7 @@ VectorXd Workbench::gains(const State& state, std::size_t effect) const {
 
 Workbench::State Workbench::with(const State& state, const VectorXd& gains,
                                  std::size_t effect) const {
-  if (instances_[effect].reducible)
-    return with_curve(state, gains, effect);
+  if (instances_[effect].reducible) return with_curve(state, gains, effect);
   std::size_t best = blocks_.size();
   double least = std::numeric_limits<double>::infinity();
   Index of_position = 0;

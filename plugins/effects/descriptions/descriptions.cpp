@@ -97,8 +97,8 @@ NONIO_PLUGIN(registry) {
       .shapes = {{{"targets", "targets", Quantity::count}, reversals, false}},
       .curve = true,
       .compensable = true,
-      .applies =
-          [](const Observations& o, const Axis& axis) { return !reversals(o, axis).empty(); },
+      .applies = [](const Observations& o,
+                    const Axis& axis) { return !reversals(o, axis).empty(); },
       .columns = of_reversal,
       .description = true});
   registry.add(Effect{

@@ -54,8 +54,9 @@ std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects
 /// The names that an effect has in this part: "backlash:X", "straightness:EYX".
 std::vector<std::string> names_of(const Part& part, const Effect& effect);
 
-/// The effects that a model names, then those that are always there, then its descriptions; an unknown kind or axis is an
-/// error with the nearest name. Effects of axes that other parts hold are left out.
+/// The effects that a model names, then those that are always there, then its descriptions; an
+/// unknown kind or axis is an error with the nearest name. Effects of axes that other parts hold
+/// are left out.
 Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
                                      const std::vector<std::string>& names,
                                      const std::vector<Effect>& effects);
