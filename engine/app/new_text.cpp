@@ -281,7 +281,8 @@ std::string example_readings(const Axis& axis) {
                      "# deviation = actual - target. Blank or nan: not taken.\n"
                      "run,direction,target" +
                      position + ",deviation" + deviation + "\n";
-  Noise noise(7);
+  // Of each axis its own: the same readings twice would ask for attention.
+  Noise noise(7U + static_cast<unsigned char>(axis.name.front() - 'X'));
   double target[targets];
   const double step = (to - from) / (targets + 1);
   for (int i = 0; i < targets; ++i) target[i] = from + step * (i + 1 + 0.2 * noise());

@@ -44,12 +44,13 @@ bool runs_no_gcode(const std::string& control) {
   return false;
 }
 
-/// What the options of the campaign's control say of its axes.
+/// What options and the record of the machine say of its axes.
 Settings said_of_axes(const OpenCampaign& open) {
   for (const Output& o : open.place->plugins.outputs())
     if (o.info.name == open.campaign().machine.control)
-      if (auto settled = host::settle_options(o.info, open.place->context.site.options,
-                                              open.read.manifest->options))
+      if (auto settled = host::settle_table_options(
+              o.info, open.place->context.site.options, *open.read.manifest,
+              open.read.machine ? &*open.read.machine : nullptr))
         return std::move(*settled);
   return {};
 }
@@ -168,12 +169,13 @@ int probe(const ProbeWish& w, const Common& common) {
   const Settings said = said_of_axes(open);
   Json all = Json::array();
   std::vector<Artifact> files;
-  bool good = true;
+  bool good = true, measured = false;
   for (std::size_t i = 0; i < open.read.observations.size(); ++i) {
     const Measurement& m = campaign.measurements[i];
     if (m.kind != "axis" || open.read.observations[i].size() == 0 ||
         (!w.axis.empty() && m.axis != w.axis))
       continue;
+    measured = true;
     const auto p = host::sign_probe(m, open.read.observations[i]);
     if (!p) {
       good = false;
@@ -205,7 +207,7 @@ int probe(const ProbeWish& w, const Common& common) {
     std::cout << Json{{"schema", "nonio-sign-probe/1"}, {"campaign", campaign.id}, {"probes", all}}
                      .dump(1)
               << "\n";
-  if (all.empty()) return complain(verb, "no measurement of an axis with readings", exit_failed);
+  if (!measured) return complain(verb, "no measurement of an axis with readings", exit_failed);
   return good ? exit_done : exit_failed;
 }
 

@@ -112,7 +112,7 @@ Blind random_machine(std::mt19937& random, const Kind& k) {
   b.measured.plus = [e = b.measured.plus, zero](double x) { return e(x) + zero; };
   const int place = which(random);
   b.axis.name = turn ? "C" : std::string(1, static_cast<char>('X' + place));
-  b.axis.number = place + 14;
+  b.axis.number = place + 13;
   b.measured.axis = b.measured.id = b.axis.name;
   const std::string unit = turn ? "_deg=" : "_mm=";
   const auto text = [&](double v) { return std::to_string(v / b.axis.unit()); };
