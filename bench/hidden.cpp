@@ -161,7 +161,8 @@ struct Score {
       described;  ///< names said to be certain that are hidden; descriptions to the floor
   Tally answered, right, kind, floor, wrong_name, place, alias, ends, noise, above_floor, values;
   std::map<std::string, Tally> of_effect, of_value;
-  std::map<std::string, Tally> named_of;  ///< outside: `missing`, by cause
+  std::map<std::string, Tally> named_of;                ///< outside: `missing`, by cause
+  std::map<std::string, std::uint64_t> certain_beside;  ///< certain, and not hidden
   double false_alarms = 0.0;
   double above_floor_expected = 0.0;  ///< sum of chances, of those in `above_floor`
   std::vector<double> cpu;            ///< of each explanation, s
@@ -215,7 +216,11 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
   const model::Explanation &first = f.steps.front().said, &last = f.steps.back().said;
   const bool named = first.verdict.kind == Verdict::Kind::missing;
   bool right = false, wrong = named;
-  for (const std::string& name : first.certain) score.certain.add(holds(h.truth.hidden, name));
+  for (const std::string& name : first.certain) {
+    const bool there = holds(h.truth.hidden, name);
+    score.certain.add(there);
+    if (!there) ++score.certain_beside[name.substr(0, name.find(':'))];
+  }
   if (!first.descriptions.empty() && first.comparison.floor)
     score.described.add(first.descriptions.back().rms <= 1.1 * first.comparison.floor->s);
   if (h.scenario.kind != Kind::complete && h.scenario.kind != Kind::outside) {
@@ -316,6 +321,9 @@ void print_score(const Score& s, Kind kind) {
     print("first verdict: missing, which is wrong", s.wrong_name);
   }
   print("certain names that are hidden", s.certain);
+  for (const auto& [name, count] : s.certain_beside)
+    std::printf("    not hidden: %-20s %llu\n", name.c_str(),
+                static_cast<unsigned long long>(count));
   print("descriptions leave at most 1.1 floors", s.described);
   print("s within 5 % of the noise that was drawn", s.noise);
   print("rms at most 1.05 times the floor of the repeats", s.above_floor);

@@ -21,9 +21,10 @@ constexpr double serious_p = 0.005;
 // What is left in the same place, of what the candidate says: beyond, the candidate is not it.
 constexpr double unexplained_share = 0.04;
 // The same of an effect that is certain, whatever else there is.
-constexpr double certain_share = 0.25;
-constexpr double certain_evidence = 12.0;  // 2 ln of 400 to 1
-constexpr double most_of_one_target = 0.5;
+constexpr double certain_share = 0.06;
+// Far more than chance asks for: what is left beside it is no independent noise.
+constexpr double certain_evidence = 50.0;
+constexpr double most_of_one_target = 0.3;
 
 /// Whether two places share a factor.
 bool same_factor(const std::string& a, const std::string& b) {
