@@ -121,7 +121,7 @@ class Confinement(NightTest):
         done = self.night("--json", expect=0)
         for line in done.stdout.splitlines():
             self.assertNotEqual(json.loads(line).get("event"), "forged")
-        self.assertIn("a plugin prints: ", done.stderr)
+        self.assertIn("analysis hostile (measurement X) prints: ", done.stderr)
         self.assertIn("the rest is dropped", done.stderr)
         self.assertLess(len(done.stderr), 100_000)
 
@@ -141,7 +141,7 @@ class Confinement(NightTest):
             self.assertEqual(self.ids("done"), ["a"])
 
     def test_memory_that_is_refused_once_while_an_output_prepares_is_no_note(self):
-        self.campaign("a")
+        self.campaign("a", run=GOOD)
         self.on_load("prepares-twice", expect=0)
         self.assertEqual([n for n in self.summary()["notes"] if "could not prepare" in n], [])
 
@@ -162,6 +162,7 @@ class Confinement(NightTest):
         self.campaign("a")
         done, _ = self.on_load("prints", "--json", expect=0)
         self.assertNotIn("forged", done.stdout)
+        self.assertIn('plugin test_on_load_prints.so prints: {"event":"forged"}', done.stderr)
 
     def test_loading_that_hangs_costs_its_limit_once(self):
         for i in range(3):
