@@ -45,6 +45,7 @@ class Faults(NightTest):
         super().setUp()
         for name in "abc":
             self.campaign(name, run=RUN)
+        (self.site / "site.toml").write_text("[limits]\nseconds = 20\n")  # what hangs is seen
         self.before = self.root / "before"
         self.references = {}
         self.counts = {}
@@ -151,6 +152,12 @@ class Faults(NightTest):
             return f"the next night is other: {self.differences(self.results(files), self.results(reference))}; {told}", ends
         left = [str(p) for p in out.rglob("*") if "nonio-tmp" in p.name or p.name.endswith(".before")]
         return (f"the next night left {left}, {told}" if left else ""), ends
+
+    def test_nothing_is_allocated_while_a_process_confines_itself(self):
+        """What is written there is the filter of its system calls; a refusal would leave it without an end, or with half of it."""
+        out = self.begin("first", "out")
+        self.night("first", out, {"NONIO_FAULT": f"malloc:1:{errno.ENOMEM}:1000000", "NONIO_FAULT_IN": "confining"}, expect=0)
+        self.assertEqual(tree(out), self.references["first"])
 
     def test_the_last_calls_of_a_night(self):
         """When all campaigns are done, and the register, the leftovers and the summary are left: every place."""

@@ -36,7 +36,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* loading_process = "the process that loads plugins";
 constexpr double load_seconds = 10.0, prepare_seconds = 30.0, answer_seconds = 30.0;
-constexpr std::string_view preparing = "prepare ";
+constexpr std::string_view preparing = "prepare ", died = "died";
+constexpr int most_unexplained = 3;
 constexpr std::size_t most_prints = 16 << 10;  // bytes
 
 /// What the process that loads plugins says when it is ready.
@@ -103,9 +104,13 @@ void PluginHost::end() {
 
 Expected<Catalogue> PluginHost::start() {
   constexpr int most_trials = 100;  // each leaves something out
+  int unexplained = 0;              // what the system refuses now it may give in a moment
   for (int i = 0; i < most_trials; ++i) {
     auto loaded = load_once();
-    if (loaded || loaded.error().key != preparing) return loaded;
+    const bool again =
+        !loaded && (loaded.error().key == preparing ||
+                    (loaded.error().key == died && ++unexplained < most_unexplained));
+    if (!again) return loaded;
   }
   return fail("plugin after plugin brings down " + std::string(loading_process));
 }
@@ -146,11 +151,10 @@ Expected<Catalogue> PluginHost::load_once() {
   const ChildEnd how = child_end(status);
   const std::string why = !hung.empty() ? hung : how.well ? "ended the process" : how.words;
   const std::string where = progress.get();
-  if (where.empty()) return fail(std::string(loading_process) + " died: " + why);
-  leave_out(where, why);
-  Error again{why};
-  again.key = preparing;
-  return fail(again);
+  Error error{where.empty() ? std::string(loading_process) + " died: " + why : why};
+  error.key = where.empty() ? died : preparing;
+  if (!where.empty()) leave_out(where, why);
+  return fail(error);
 }
 
 /// Every step has a limit of its own.
