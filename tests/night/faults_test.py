@@ -84,7 +84,7 @@ class Faults(NightTest):
         night = rng.choice(NIGHTS)
         # A confined process may send no signal, so only the main process kills itself.
         if rng.random() < 0.2:
-            call = rng.choice(KILLED)
+            call = rng.choice([c for c in KILLED if self.counts[night, "main"][c] > 0])
             return night, f"{call}:{self.place(rng, night, call, 'main')}:KILL@main"
         call = rng.choices(list(CALLS), [weight for weight, _ in CALLS.values()])[0]
         where = rng.choice(["all", "all", "main"] if call != "malloc" else ["all", "main"])

@@ -2,6 +2,7 @@
 """Real file systems that go wrong: a share (FUSE) whose answers fail or never come, a disk (loop device) that is full, one that takes what it
 cannot keep. Needs root and the devices; what is not there is skipped."""
 import contextlib
+import ctypes
 import errno
 import os
 import pathlib
@@ -27,6 +28,11 @@ has_disk = is_root and os.path.exists("/dev/loop-control") and shutil.which("mkf
 
 def run(*args):
     return subprocess.run([str(a) for a in args], capture_output=True, text=True)
+
+
+def end_with_parent():
+    """No share outlives a test that is killed: whoever touches it would hang."""
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
 
 
 class FileSystems(NightTest):
@@ -59,7 +65,7 @@ class FileSystems(NightTest):
         folder, mounted = self.site, self.root / "share"
         mounted.mkdir()
         server = subprocess.Popen([FUSE_PYTHON, "-B", pathlib.Path(__file__).with_name("share.py"), folder, mounted],
-                                  stderr=subprocess.PIPE, text=True)
+                                  stderr=subprocess.PIPE, text=True, preexec_fn=end_with_parent)
         faults = folder.with_suffix(".fault")
 
         def fault(*words):
@@ -92,19 +98,23 @@ class FileSystems(NightTest):
         (self.site / "site.toml").write_text("[limits]\ndisk_seconds = 2\n")
         with self.share() as fault:
             self.run_nonio(*DATE, out=reference, expect=0)
-            for call, path in (("readdir", "/b"), ("getattr", "/b"), ("open", "/b/campaign.toml"), ("read", "/b/x.csv")):
-                for how in (errno.EIO, errno.ESTALE, "hang"):
-                    told = (call, path, how)
-                    shutil.rmtree(self.out, ignore_errors=True)
-                    fault(*told)
+            for told in (("readdir", "/b", errno.EIO), ("readdir", "/b", "hang"), ("getattr", "/b", errno.ESTALE),
+                         ("open", "/b/campaign.toml", errno.ESTALE), ("read", "/b/x.csv", errno.EIO), ("read", "/b/x.csv", "hang")):
+                shutil.rmtree(self.out, ignore_errors=True)
+                fault(*told)
+                how = told[2]
+                words = "no answer within 2 s" if how == "hang" else os.strerror(how)
+                # A process that waits in the kernel for the share is left behind: neither this night waits for it, nor the next one.
+                for _ in range(2 if how == "hang" else 1):
+                    began = time.monotonic()
                     done = self.run_nonio(*DATE, "--quiet", expect=1)
-                    words = "no answer within 2 s" if how == "hang" else os.strerror(how)
                     self.assertRegex(done.stderr, rf"\bb\b.*{words}", told)
-                    self.assertEqual(sorted(self.ids("done")), ["a", "c"], told)
                     self.assertEqual([e["folder"] for e in self.summary()["failed"]], ["b"], told)
-                    fault()
-                    self.run_nonio(*DATE, expect=0)
-                    self.assertEqual(self.results_in(self.out), self.results_in(reference), told)
+                    self.assertEqual(len(self.ids("done") + self.ids("unchanged")), 2, told)
+                    self.assertLess(time.monotonic() - began, 30.0, told)
+                fault()
+                self.run_nonio(*DATE, expect=0)
+                self.assertEqual(self.results_in(self.out), self.results_in(reference), told)
             for path in ("/", "/b", "/site.toml", "/b/x.csv"):
                 shutil.rmtree(self.out, ignore_errors=True)
                 fault("getattr" if "." in path else "readdir", path, "hang")
@@ -113,7 +123,7 @@ class FileSystems(NightTest):
                 began = time.monotonic()
                 night.send_signal(signal.SIGTERM)
                 _, words = night.communicate(timeout=60)
-                self.assertEqual(night.returncode, 130, path + ": " + words)
+                self.assertIn(night.returncode, (130, -signal.SIGTERM), path + ": " + words)
                 self.assertLess(time.monotonic() - began, 10.0, path)
                 self.assertFalse(self.left())
                 fault()

@@ -20,13 +20,10 @@ namespace {
 
 using nonio::host::own_process, nonio::host::parent_process;
 
-/// Nothing of this belongs into a computation: whoever tries is ended, with its name.
+/// Nothing of this belongs into a process with plugins: whoever tries is ended, with its name.
 const char* const hostile[] = {"execve",
                                "execveat",
-                               "fork",
-                               "vfork",
                                "socket",
-                               "socketpair",
                                "connect",
                                "bind",
                                "listen",
@@ -35,23 +32,17 @@ const char* const hostile[] = {"execve",
                                "ptrace",
                                "process_vm_readv",
                                "process_vm_writev",
-                               "kill",
-                               "tkill",
                                "pidfd_open",
                                "pidfd_send_signal",
                                "pidfd_getfd",
                                "rt_sigqueueinfo",
                                "rt_tgsigqueueinfo",
-                               "memfd_create",
                                "memfd_secret",
                                "shmget",
                                "shmat",
-                               "shmctl",
                                "msgget",
                                "msgsnd",
-                               "msgrcv",
                                "semget",
-                               "semop",
                                "mq_open",
                                "bpf",
                                "keyctl",
@@ -89,57 +80,45 @@ const char* const hostile[] = {"execve",
                                "setresuid",
                                "setresgid",
                                "setgroups",
-                               "capset",
                                "personality",
                                "quotactl",
                                "open_by_handle_at",
-                               "name_to_handle_at",
                                "fanotify_init",
-                               "chmod",
-                               "fchmod",
-                               "fchmodat",
-                               "chown",
-                               "fchown",
-                               "lchown",
-                               "fchownat",
-                               "utimensat",
-                               "setxattr",
-                               "lsetxattr",
-                               "fsetxattr",
-                               "removexattr",
-                               "lremovexattr",
-                               "fremovexattr",
-                               "setpriority",
-                               "sched_setaffinity",
-                               "sched_setscheduler",
-                               "sched_setparam",
-                               "sched_setattr",
-                               "ioprio_set",
                                "syslog",
                                "acct"};
 
-/// What a verb has no use for.
-const char* const talking[] = {"execve",
-                               "execveat",
-                               "socket",
-                               "connect",
-                               "bind",
-                               "listen",
-                               "accept",
-                               "accept4",
-                               "ptrace",
-                               "process_vm_readv",
-                               "process_vm_writev",
-                               "bpf",
-                               "keyctl",
-                               "add_key",
-                               "request_key",
-                               "mount",
-                               "unshare",
-                               "setns",
-                               "io_uring_setup",
-                               "userfaultfd",
-                               "perf_event_open"};
+/// Nor this where plugins are loaded or compute; a verb makes processes and files of its own.
+const char* const of_verbs[] = {"fork",
+                                "vfork",
+                                "socketpair",
+                                "kill",
+                                "tkill",
+                                "memfd_create",
+                                "shmctl",
+                                "msgrcv",
+                                "semop",
+                                "capset",
+                                "name_to_handle_at",
+                                "chmod",
+                                "fchmod",
+                                "fchmodat",
+                                "chown",
+                                "fchown",
+                                "lchown",
+                                "fchownat",
+                                "utimensat",
+                                "setxattr",
+                                "lsetxattr",
+                                "fsetxattr",
+                                "removexattr",
+                                "lremovexattr",
+                                "fremovexattr",
+                                "setpriority",
+                                "sched_setaffinity",
+                                "sched_setscheduler",
+                                "sched_setparam",
+                                "sched_setattr",
+                                "ioprio_set"};
 
 /// What a computation does, and how it looks at files that it may not open.
 const char* const computing[] = {"read",
@@ -267,21 +246,32 @@ scmp_arg_cmp is_not(unsigned argument, scmp_datum_t value) {
   return {argument, SCMP_CMP_NE, value, 0};
 }
 
+/// Of an argument that the kernel takes as an int it drops the upper half.
+scmp_arg_cmp is_int(unsigned argument, std::uint32_t value) {
+  return masked(argument, 0xFFFFFFFF, value);
+}
+
+void forbid_hostile(Filter& filter) {
+  for (const char* call : hostile) filter.add(SCMP_ACT_KILL_PROCESS, call);
+  for (const std::uint32_t spared : {parent_process, 1U})
+    filter.add(SCMP_ACT_KILL_PROCESS, "tgkill", is_int(0, spared));
+  // signals by way of a descriptor; what the terminal would take for typed
+  for (const std::uint32_t command : {F_SETOWN, F_SETSIG, 15 /* F_SETOWN_EX */})
+    filter.add(SCMP_ACT_KILL_PROCESS, "fcntl", is_int(1, command));
+  for (const std::uint32_t command : {0x5412 /* TIOCSTI */, 0x541C /* TIOCLINUX */})
+    filter.add(SCMP_ACT_KILL_PROCESS, "ioctl", is_int(1, command));
+}
+
 /// For the process that loads plugins and makes the others: everything but what is hostile. A
 /// process may be made as its sibling only, which is how `PluginHost` does it.
 void print_loading() {
   Filter filter(SCMP_ACT_ALLOW);
-  for (const char* call : hostile) filter.add(SCMP_ACT_KILL_PROCESS, call);
+  forbid_hostile(filter);
+  for (const char* call : of_verbs) filter.add(SCMP_ACT_KILL_PROCESS, call);
   filter.add(SCMP_ACT_ERRNO(ENOSYS), "clone3");  // whose arguments a filter does not see
   filter.add(SCMP_ACT_KILL_PROCESS, "clone", masked(0, CLONE_THREAD | CLONE_PARENT, 0));
   filter.add(SCMP_ACT_ERRNO(EAGAIN), "clone", masked(0, CLONE_THREAD, CLONE_THREAD));
-  for (const std::uint32_t spared : {parent_process, 1U})
-    filter.add(SCMP_ACT_KILL_PROCESS, "tgkill", is(0, spared));
-  // signals by way of a descriptor
-  for (const scmp_datum_t command : {F_SETOWN, F_SETSIG, 15 /* F_SETOWN_EX */})
-    filter.add(SCMP_ACT_KILL_PROCESS, "fcntl", is(1, command));
   filter.add(SCMP_ACT_ERRNO(EPERM), "prlimit64", is_not(0, 0));
-  filter.add(SCMP_ACT_KILL_PROCESS, "ioctl", is(1, 0x5412 /* TIOCSTI */));
   // Memory that no limit counts: shared without a file, or growing like a stack.
   constexpr unsigned flags = 3;  // argument of mmap
   constexpr scmp_datum_t shared = MAP_SHARED | MAP_ANONYMOUS;
@@ -290,9 +280,14 @@ void print_loading() {
   filter.print("loading");
 }
 
+/// A verb signals its own children, but neither the process that was started nor all.
 void print_visit() {
   Filter filter(SCMP_ACT_ALLOW);
-  for (const char* call : talking) filter.add(SCMP_ACT_KILL_PROCESS, call);
+  forbid_hostile(filter);
+  for (const std::uint32_t spared : {parent_process, 1U, 0U, 0xFFFFFFFFU})
+    filter.add(SCMP_ACT_KILL_PROCESS, "kill", is_int(0, spared));
+  for (const std::uint32_t spared : {parent_process, 1U})
+    filter.add(SCMP_ACT_KILL_PROCESS, "tkill", is_int(0, spared));
   filter.print("visit");
 }
 

@@ -16,7 +16,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <fstream>
 #include <iostream>
 
 #include "child.h"
@@ -47,13 +46,6 @@ struct Ready {
   std::string refused;  ///< why it cannot go on; empty: it can
 };
 
-std::vector<pid_t> children() {
-  std::vector<pid_t> all;
-  std::ifstream list("/proc/self/task/" + std::to_string(::gettid()) + "/children");
-  for (pid_t pid; list >> pid;) all.push_back(pid);
-  return all;
-}
-
 void take_input() {
   const int nothing = ::open("/dev/null", O_RDONLY);
   if (nothing >= 0) ::dup2(nothing, STDIN_FILENO);
@@ -78,27 +70,18 @@ std::vector<fs::path> library_folders(const fs::path& own_plugins) {
 
 PluginHost::PluginHost(Wish wish) : wish_(std::move(wish)) {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
-  children_before_ = children();
+  children_before_ = own_children();
   for (std::string& words : lacking_confinement()) notes_.push_back(std::move(words));
 }
 
 PluginHost::~PluginHost() {
   end();
-  for (const pid_t pid : children()) {
-    if (std::find(children_before_.begin(), children_before_.end(), pid) != children_before_.end())
-      continue;
-    ::kill(pid, SIGKILL);
-    ::waitpid(pid, nullptr, 0);
-  }
+  end_children(children_before_);
 }
 
 void PluginHost::end() {
   control_ = Handle();
-  if (pid_ > 0) {
-    ::kill(-pid_, SIGKILL);
-    ::kill(pid_, SIGKILL);
-    ::waitpid(std::exchange(pid_, -1), nullptr, 0);
-  }
+  if (pid_ > 0) end_child(std::exchange(pid_, -1));
   pass_on_prints();
 }
 
@@ -145,15 +128,13 @@ Expected<Catalogue> PluginHost::load_once() {
     return std::move(ready.catalogue);
   }
   if (hung == "stopped") return fail("interrupted");
-  int status = 0;
-  ::kill(pid_, SIGKILL);
-  ::waitpid(std::exchange(pid_, -1), &status, 0);
-  const ChildEnd how = child_end(status);
+  const ChildEnd how = end_child(std::exchange(pid_, -1));
   const std::string why = !hung.empty() ? hung : how.well ? "ended the process" : how.words;
   const std::string where = progress.get();
   Error error{where.empty() ? std::string(loading_process) + " died: " + why : why};
   error.key = where.empty() ? died : preparing;
-  if (!where.empty()) leave_out(where, why);
+  // Who dies once may have been killed, or refused memory; who hangs has cost its limit.
+  if (!where.empty() && (!hung.empty() || !suspected_.insert(where).second)) leave_out(where, why);
   return fail(error);
 }
 
@@ -203,6 +184,7 @@ Expected<pid_t> PluginHost::make_process(Handle stream, const SharedWords& stage
       siginfo_t info{};
       if (::waitid(P_PID, static_cast<id_t>(hello->sender), &info, WEXITED | WNOHANG | WNOWAIT) ==
           0) {
+        deaths_ = 0;
         if (hello->descriptors.size() == 1)
           last_words_.push_back({hello->sender, std::move(hello->descriptors.front()),
                                  SharedWords(::fcntl(stage.descriptor(), F_DUPFD_CLOEXEC, 3))});

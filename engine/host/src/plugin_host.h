@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,7 @@ class PluginHost {
   std::vector<std::string> notes_;
   std::map<std::filesystem::path, std::string> refused_;  ///< and why
   std::map<std::string, std::string> unprepared_;         ///< outputs, and why
+  std::set<std::string> suspected_;                       ///< where it died once
   std::vector<pid_t> children_before_;
   pid_t pid_ = -1;
   Handle control_, prints_;
@@ -78,7 +80,7 @@ class PluginHost {
   };
   std::vector<LastWords> last_words_;
   std::size_t printed_ = 0;
-  int deaths_ = 0;
+  int deaths_ = 0;  ///< since a process was made
 };
 
 }  // namespace nonio::host
