@@ -203,7 +203,8 @@ class Confinement(NightTest):
 
     def test_what_a_plugin_leaves_running_ends_with_the_verb(self):
         self.campaign("a")
-        self.verb("compare", self.site / "a", plugins="on_load_leaves-visited", expect=0)
+        done = self.verb("compare", self.site / "a", plugins="on_load_leaves-visited", expect=0)
+        self.assertIn("it left a process", done.stderr)
         for command in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
             with contextlib.suppress(OSError):
                 self.assertNotIn(b"on_load_leaves-visited", command.read_bytes())
