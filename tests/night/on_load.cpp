@@ -38,8 +38,12 @@ int harm() {
     ::syscall(SYS_tgkill, (1L << 32) | ::getppid(), (1L << 32) | ::getppid(), SIGKILL);
   if (how == "kills-visited" && !is_tried()) ::kill(::getppid(), SIGKILL);
   if (how == "types-visited" && !is_tried()) ::ioctl(0, (1UL << 32) | TIOCSTI, "x");
-  if (how == "leaves-visited" && !is_tried() && ::fork() == 0 && ::setsid() > 0)
-    for (;;) ::pause();
+  if (how == "leaves-visited" && !is_tried()) {
+    if (::fork() == 0 && ::setsid() > 0)
+      for (;;) ::pause();
+    std::puts("it left a process");
+    std::fflush(stdout);
+  }
   if (how == "prints") std::puts("{\"event\":\"forged\"}"), std::fflush(stdout);
   if (how == "rounds") std::fesetround(FE_UPWARD);
   if (how == "reads" && ::open(std::getenv("NONIO_TEST_KEY"), O_RDONLY) >= 0)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "child.h"
 
+#include <fcntl.h>
 #include <malloc.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -89,6 +90,17 @@ void settle_child() {
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
+}
+
+void keep_silent() {
+  const int nothing = ::open("/dev/null", O_RDWR);
+  if (nothing < 0) return;
+  ::dup2(nothing, STDIN_FILENO);
+  ::dup2(nothing, STDOUT_FILENO);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  ::dup2(nothing, STDERR_FILENO);
+#endif
+  if (nothing > STDERR_FILENO) ::close(nothing);
 }
 
 pid_t fork_patiently() {

@@ -34,6 +34,7 @@ Message message_of(std::size_t campaign, const Expected<void>& result) {
 
 [[noreturn]] void serve(const Committer::Task& task, int channel) noexcept {
   settle_child();
+  keep_silent();
   for (Committer::Given given; ::read(channel, &given, sizeof given) == sizeof given;) {
     std::vector<Committer::Given> batch{given};
     while (batch.size() < largest_batch &&

@@ -176,6 +176,7 @@ Expected<void> Signer::fork_process() {
 
 void Signer::serve() const noexcept {
   settle_child();
+  keep_silent();
   ::prctl(PR_SET_DUMPABLE, 0);  // nobody may look into its memory
   ::close(to_);
   constexpr int most_deaths = 5;

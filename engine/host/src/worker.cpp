@@ -28,6 +28,7 @@ struct Message {
 [[noreturn]] void serve(const Worker::Task& task, int channel, double memory_MB,
                         SharedWords& stage) noexcept {
   settle_child();
+  keep_silent();
   limit_memory(memory_MB);
   const std::size_t at_start = memory_held();
   bool first = true;
