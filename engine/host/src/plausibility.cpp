@@ -363,6 +363,8 @@ std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t 
     if (out.size() > before) break;
   }
   implausible_span(campaign, m, o, all, out);
+  if (const Axis* axis = campaign.machine.axis(m.axis); axis != nullptr && m.kind == "axis")
+    period_against_pitch(*axis, o, out);
   if (m.kind == "diagonal") short_diagonal(m, o, out);
   if (m.kind == "ball-centres") implausible_centres(m, o, out);
   beyond_travel(campaign, o, out);

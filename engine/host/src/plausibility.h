@@ -32,6 +32,13 @@ void note_shared(const Twins& twins, Inputs& inputs);
 /// What the manifest alone says. `today`: YYYY-MM-DD, or empty: no day is too late.
 std::vector<Finding> implausible_campaign(const Manifest& manifest, const std::string& today);
 
+/// A pitch in inches under a name that says mm: no usual one, and a usual one 25.4 times as large;
+/// or that of another axis of the machine, 25.4 times as large.
+void implausible_pitch(const Campaign& campaign, std::vector<Finding>& out);
+
+/// The same as the readings betray it.
+void period_against_pitch(const Axis& axis, const Observations& o, std::vector<Finding>& out);
+
 /// What the readings of a measurement say. `all`: of each measurement of the campaign.
 std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t measurement,
                                           const std::vector<Observations>& all);
