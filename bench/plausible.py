@@ -86,6 +86,8 @@ def campaign(folder, index, seed):
     with_time = rng.random() < 0.3 and layout == "bidirectional"
     with_material = rng.random() < 0.3
     separator = rng.choice([",", ",", ";", "\t"])
+    if as_position and "unit: um" in comment:  # would be wrong
+        comment = ""
     head = ["run", "direction", f"target_{unit}", f"position_{unit}" if as_position else f"deviation_{reading}"]
     head += ["time_s"] * with_time + ["material_c"] * with_material
     lines = [separator.join(head)]

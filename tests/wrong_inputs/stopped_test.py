@@ -149,7 +149,13 @@ def cases():
         "other-expansion": (same, {"x.csv": rtl(own(), expansion="23.800000")}),
         "pitch-in-inch": (sub(("screw_pitch_mm = 10.0", "screw_pitch_mm = 0.3937")), {}),
         "period-against-pitch": (sub(("screw_pitch_mm = 10.0", "screw_pitch_mm = 0.2")), {"x.csv": waves()}),
+        "span-of-one-axis": (lambda text: sub(("[instrument]", Y_AXIS + "[instrument]"))(text) +
+                             '[[measurement]]\nid = "D1"\nkind = "diagonal"\nfrom = { X = 0, Y = 0 }\nto = { X = 800, Y = 600 }\n'
+                             'file = "d.csv"\n', {"d.csv": csv([[r, d, 80.0 * i, (7 * i + 3 * r) % 5 + 0.1 * i]
+                                                               for r in (1, 2) for d in "+-" for i in range(11)])}),
+        "pace-against-test": (same, {"x.csv": with_columns(own(), ["time_s"], lambda i: 0.15 * i)}),
         "pass-of-means": read(lambda r: r + [[6, *x[1:3], sum(y[3] for y in r if y[1:3] == x[1:3]) / 5] for x in r[:22]]),
+        "reading-far-off": read(lambda r: [x if i != 40 else x[:3] + [46083.0] for i, x in enumerate(r)]),
         "mark-among-readings": read(lambda r: [x if i % 7 else x[:3] + [0.0] for i, x in enumerate(
             [y[:3] + [y[3] + 40] for y in r])]),
         "targets-against-order": read(lambda r: tired.exchanged(r, 2)),

@@ -54,7 +54,8 @@ std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
                                                    const std::vector<Observations>& all);
 
 /// Temperatures, pressure, humidity and, if wanted, times.
-void implausible_columns(const Observations& o, bool with_times, std::vector<Finding>& out);
+void implausible_columns(const Measurement& m, const Observations& o, bool with_times,
+                         std::vector<Finding>& out);
 
 /// Centres of a ball: how far apart, and about which axis.
 void implausible_centres(const Measurement& m, const Observations& o, std::vector<Finding>& out);

@@ -31,12 +31,13 @@ void axis_statements(const Axis& a, std::vector<Statement>& all) {
         {key + "backlash_on_deg", a.backlash_on, -0.5 * degree, 0.5 * degree, Quantity::angle});
   else
     all.push_back({key + "backlash_on_mm", a.backlash_on, -1 * mm, 1 * mm, Quantity::length});
+  // One that is too small is not met, and that is seen; one too large is met by everything.
   for (const auto& [name, tolerance] : a.tolerance)
     if (a.rotary)
-      all.push_back({key + "tolerance_arcsec." + name, tolerance, 0.05 * arc_second,
-                     7200 * arc_second, Quantity::angular_deviation});
+      all.push_back({key + "tolerance_arcsec." + name, tolerance, 1e-3 * arc_second,
+                     600 * arc_second, Quantity::angular_deviation});
     else
-      all.push_back({key + "tolerance_um." + name, tolerance, 0.1 * micrometre, 10000 * micrometre,
+      all.push_back({key + "tolerance_um." + name, tolerance, 1e-3 * micrometre, 1000 * micrometre,
                      Quantity::deviation});
 }
 

@@ -123,6 +123,39 @@ void marks(const std::vector<Stroke>& strokes, double step, Quantity deviation,
   }
 }
 
+/// One reading that lies 30 times farther off the others of its target (of all, where it has none)
+/// than all readings range over: a table of means would carry a tenth of it to the motors.
+void far_off(const Observations& o, std::vector<Finding>& out) {
+  constexpr double ranges = 30.0, length = 300e-6, angle = 600.0 / arcsec_per_rad;
+  constexpr std::size_t fewest_readings = 8, fewest_here = 3;
+  if (o.size() < fewest_readings) return;
+  std::vector<double> all = o.deviation;
+  std::sort(all.begin(), all.end());
+  const std::size_t tail = all.size() / 10;  // what may be misread at each end
+  const double range = all[all.size() - 1 - tail] - all[tail], middle = all[all.size() / 2];
+  const auto& axis = o.axes.front();
+  const auto at = [&](std::size_t i) {
+    return std::tuple(o.line_of(i), axis.approach.empty() ? 0 : int{axis.approach[i]},
+                      std::llround(axis.position[i] / grid_tolerance));
+  };
+  std::map<std::tuple<std::uint32_t, int, long long>, std::vector<double>> cells;
+  for (std::size_t i = 0; i < o.size(); ++i) cells[at(i)].push_back(o.deviation[i]);
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    const auto& here = cells[at(i)];
+    const double off =
+        std::fabs(o.deviation[i] - (here.size() < fewest_here ? middle : middle_value(here)));
+    if (off <= (o.angular ? angle : length) || off <= ranges * range) continue;
+    const Quantity deviation = o.angular ? Quantity::angular_deviation : Quantity::deviation;
+    return out.push_back(
+        {.id = "plausibility.reading-far-off",
+         .attention = true,
+         .evidence = {{"value", o.deviation[i], deviation},
+                      {"off", off, deviation},
+                      {"range", range, deviation},
+                      {"line", static_cast<double>(o.source_line_of(i)), Quantity::count}}});
+  }
+}
+
 /// Passes that go one way but for two neighbours, where all others go one way, or turn at the same
 /// two: these targets were exchanged.
 void targets_against_order(const std::vector<Stroke>& strokes, Quantity position,
@@ -152,6 +185,7 @@ void implausible_values(const std::vector<Stroke>& strokes, const Observations& 
   const Quantity deviation = o.angular ? Quantity::angular_deviation : Quantity::deviation;
   targets_against_order(strokes, position_of(o.axes.front().rotary), out);
   if (step <= 0.0 || o.size() > most_sorted) return;
+  far_off(o, out);
   marks(strokes, step, deviation, out);
   pass_of_means(strokes, step, deviation, out);
 }
