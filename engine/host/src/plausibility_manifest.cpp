@@ -142,8 +142,9 @@ void exchanged_names(const Campaign& c, std::vector<Finding>& out) {
     for (std::size_t k = i + 1; k < c.measurements.size(); ++k) {
       const Measurement& other = c.measurements[k];
       const std::string its = short_name(other.file);
-      if (file != its && called(m, its) && called(other, file) && !called(m, file) &&
-          !called(other, its))
+      // A straightness may be called after its direction.
+      if (file != its && m.lateral.empty() && other.lateral.empty() && called(m, its) &&
+          called(other, file) && !called(m, file) && !called(other, its))
         push_name(m.file, short_name(m.file), m.id, out);
     }
     const Axis* axis = c.machine.axis(m.axis);
