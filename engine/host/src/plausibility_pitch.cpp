@@ -10,7 +10,7 @@
 namespace nonio::host {
 namespace {
 
-constexpr double inch = 25.4, most_in_inch = 2.0;  ///< mm: larger ones are pitches in mm
+constexpr double mm_per_inch = 25.4, most_in_inch = 2.0;  ///< mm: larger ones are pitches in mm
 
 /// Share of the squares about a line that a wave of this period takes away.
 double share_of_wave(const std::vector<double>& at, const std::vector<double>& values,
@@ -48,16 +48,16 @@ void implausible_pitch(const Campaign& c, std::vector<Finding>& out) {
     const bool of_catalogue = near(two_digits, pitch) && std::fabs(two_digits / pitch - 1.0) < 1e-9;
     const bool metric =
         !of_catalogue && std::any_of(std::begin(usual), std::end(usual),
-                                     [&](double u) { return near(inch * pitch, u); });
+                                     [&](double u) { return near(mm_per_inch * pitch, u); });
     const bool of_other =
         std::any_of(c.machine.axes.begin(), c.machine.axes.end(), [&](const Axis& a) {
-          return !a.rotary && a.screw_pitch && near(inch * pitch, 1e3 * *a.screw_pitch);
+          return !a.rotary && a.screw_pitch && near(mm_per_inch * pitch, 1e3 * *a.screw_pitch);
         });
     if (!metric && !of_other) continue;
     out.push_back({.id = "plausibility.pitch-in-inch",
                    .attention = true,
                    .evidence = {{"pitch", *axis.screw_pitch, Quantity::length},
-                                {"times", inch * *axis.screw_pitch, Quantity::length}},
+                                {"times", mm_per_inch * *axis.screw_pitch, Quantity::length}},
                    .texts = {{"axis", axis.name}}});
   }
 }
@@ -68,7 +68,7 @@ void period_against_pitch(const Axis& axis, const Observations& o, std::vector<F
   constexpr std::size_t fewest_targets = 12, waves = 3;
   constexpr double chance = 1e-7, least_share = 0.3, of_finer = 0.25;
   if (!axis.screw_pitch || axis.rotary || o.axes.size() != 1 || o.size() > most_sorted) return;
-  const double pitch = *axis.screw_pitch, period = inch * pitch;
+  const double pitch = *axis.screw_pitch, period = mm_per_inch * pitch;
   if (pitch <= 0.0 || 1e3 * pitch >= most_in_inch) return;
   std::map<double, std::pair<double, double>> cells;  // sum, count
   for (std::size_t i = 0; i < o.size(); ++i) {
