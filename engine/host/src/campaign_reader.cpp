@@ -185,10 +185,12 @@ class CampaignReader {
       return fail(who + " gave " + why);
     if (auto possible = possible_air(*observations, m.file); !possible) return possible;
     if (auto excluded = exclude(m, *observations); !excluded) return excluded;
-    for (Finding& doubt : implausible_end(bytes, m.file)) {
-      doubt.measurement = m.id;
-      out_.doubts.push_back(std::move(doubt));
-    }
+    auto ends = implausible_end(bytes, m.file);
+    for (auto* doubts : {&ends, &observations->doubts})
+      for (Finding& doubt : *doubts) {
+        doubt.measurement = m.id;
+        out_.doubts.push_back(std::move(doubt));
+      }
     if (observations->missing > 0 && m.kind != "axis")  // of an axis its analyses say it
       observations->notes.push_back(
           {"readings.not-taken",

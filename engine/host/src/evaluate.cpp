@@ -47,7 +47,10 @@ class CampaignRun {
 
  private:
   bool failed() const { return !out_.results.errors.empty(); }
-  void report(Error error) { out_.results.errors.push_back(std::move(error)); }
+  void report(Error error) {
+    if (read_.manifest) give_line(error, read_.manifest->lines, {"campaign"});
+    out_.results.errors.push_back(std::move(error));
+  }
   void locate(Error& error, const std::string& plugin = {}) const {
     host::locate(error, read_.manifest->lines, context_.site.lines, plugin);
   }
@@ -169,6 +172,8 @@ class CampaignRun {
       locate(evaluation.error(), analysis.info.name);
       if (evaluation.error().file.empty())
         evaluation.error().file = measurement == nullptr ? manifest_name : measurement->file;
+      give_line(evaluation.error(), read_.manifest->lines,
+                {"options." + analysis.info.name, "run.analyses"});
       return report(std::move(evaluation.error()));
     }
     const std::vector<std::string>& uses = evaluation->uses;
@@ -554,19 +559,19 @@ class CampaignRun {
   void place_at_output(Error& error, const Wanted& w) const {
     const std::string& name = w.output.info.name;
     locate(error, name);
-    if (!error.file.empty()) return;
-    const auto& own = read_.manifest->lines;
-    const std::string asked = read_.manifest->run.outputs             ? "run.outputs"
-                              : out_.campaign.machine.control == name ? "machine.control"
-                                                                      : "campaign.id";
-    for (const std::string& key : {"options." + name, asked, std::string("campaign")}) {
-      const auto found = own.find(key);
-      if (found == own.end()) continue;
-      error.file = manifest_name;
-      error.line = found->second;
-      return;
+    const bool blamed = error.line != 0;
+    if (error.file.empty()) error.file = manifest_name;
+    const std::string& control = out_.campaign.machine.control;
+    const bool own = read_.manifest->run.outputs.has_value() || control == name;
+    if (const auto line = context_.site.lines.find("run.outputs");
+        !blamed && error.file == manifest_name && !own && context_.site.run.outputs &&
+        line != context_.site.lines.end() && !read_.manifest->lines.contains("options." + name)) {
+      error.file = site_name;
+      error.line = line->second;
     }
-    error.file = manifest_name;
+    const std::string asked = read_.manifest->run.outputs ? "run.outputs" : "machine.control";
+    give_line(error, read_.manifest->lines,
+              {"options." + name, own ? asked : "campaign.id", "campaign"});
   }
 
   /// What was issued is not written again.

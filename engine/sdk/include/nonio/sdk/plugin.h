@@ -190,7 +190,7 @@ class Registry {
   ~Registry() = default;
 };
 
-inline constexpr int sdk_version = 7;
+inline constexpr int sdk_version = 8;
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
