@@ -97,7 +97,10 @@ class TableSetter {
       if (!title) return fail(title.error());
       auto unit = shape(table_.columns[c].unit, context_.fonts, false, names[c]);
       if (!unit) return fail(unit.error());
+      constexpr double short_title = 48;  // "U (k = 2)", "Nr. / No.": in one line
+      const double wide = width_of(*title) * context_.style.small;
       measure(c, *title, false);
+      if (wide <= short_title) needs.least[c] = std::max(needs.least[c], wide + 2 * pad + rounding);
       measure(c, *unit, false);
       titles_.push_back(std::move(*title));
       units_.push_back(std::move(*unit));
@@ -146,7 +149,8 @@ class TableSetter {
       units.push_back(set(units_[c], false, c));
       if (!units_[c].empty()) unit_height = std::max(unit_height, units[c].height());
     }
-    const double height = title_height + unit_height + 4;
+    constexpr double above_rows = 1.2;
+    const double height = title_height + unit_height + 3.5;
     Canvas canvas;
     canvas.stroke_colour(style.text);
     canvas.line(0.8);
@@ -162,7 +166,7 @@ class TableSetter {
       if (!units_[c].empty()) units[c].draw_all(canvas, x + pad, -1.5 - title_height, room, align);
       x += widths_[c];
     }
-    return {height, 0, std::move(canvas.ops), true};
+    return {height + above_rows, 0, std::move(canvas.ops), true};
   }
 
   /// A row; one of more than `together` lines may be divided between two of them.

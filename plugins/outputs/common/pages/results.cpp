@@ -317,8 +317,9 @@ std::vector<std::string> cells_of(const Source& source, const PointTable::Column
 }  // namespace
 
 std::string U_heading(const Source& source, double k) {
-  return source.words.get("targets.uncertainty",
-                          {{"k", localised(short_text(k, k == 2.0 ? 0 : 2), source.language())}});
+  return source.words.get(
+      "targets.uncertainty",
+      {{"k", k == 2.0 ? "2" : printed_number(k, Quantity::number, 2, source.language())}});
 }
 
 namespace {
@@ -373,7 +374,7 @@ void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
       table.columns.push_back({symbol(s->name), unit_text(s->quantity), true});
       table.columns.push_back({U_heading(source, s->k), unit_text(s->quantity), true});
     }
-    table.title = w.get("targets.curve", {{"name", names}});
+    table.title = w.get(curves.size() == 1 ? "targets.curve" : "targets.curves", {{"name", names}});
     const int decimals = decimals_for(first.position, first.position_quantity, 4);
     for (std::size_t i = 0; i < first.position.size(); ++i) {
       std::vector<Table::Cell> row = {{printed_number(first.position[i], first.position_quantity,
