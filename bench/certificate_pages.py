@@ -41,6 +41,8 @@ def complete(text, languages, analyses, outputs='"json", "certificate", "pdf-rep
     text = without_run(text)
     quoted = ", ".join(f'"{language}"' for language in languages)
     run = f'[run]\nanalyses = [{", ".join(analyses)}]\noutputs = [{outputs}]\n'
+    if languages[0] == "it":  # reports are English or Italian
+        run += '[options.pdf-report]\nlanguage = "it"\n'
     return (text.rstrip("\n") + "\n\n" + run + "\n[certificate]\nlanguages = [" + quoted + "]\n"
             'conditions = "Machine hall, no direct sun; 20 °C ± 1 K."\n')
 
@@ -171,8 +173,8 @@ def render(folder, dpi):
     without = []
     (folder / "pages").mkdir(exist_ok=True)
     (folder / "sheets").mkdir(exist_ok=True)
-    for pdf in sorted((folder / "out").glob("*/certificate*.pdf")) + sorted((folder / "out").glob("*/report.pdf")):
-        name = pdf.parent.name + ("-report" if pdf.name == "report.pdf" else "-draft" if "draft" in pdf.name else "")
+    for pdf in sorted((folder / "out").glob("*/certificate*.pdf")) + sorted((folder / "out").glob("*/report*.pdf")):
+        name = pdf.parent.name + ("-report" if pdf.name.startswith("report") else "-draft" if "draft" in pdf.name else "")
         work = folder / "pages" / name
         run("pdftoppm", "-r", dpi, pdf, work)
         pages = []

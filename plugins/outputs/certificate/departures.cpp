@@ -28,9 +28,10 @@ std::string excluded(const Source& source, const pages::Measured& m) {
   }
   if (which.empty()) return {};
   const std::string& reason = m.measurement.exclude_reason;
-  return source.words.get(
-      "departure.excluded",
-      {{"file", m.measurement.file}, {"which", which}, {"reason", reason.empty() ? "–" : reason}});
+  return ended(source,
+               source.words.get("departure.excluded", {{"file", m.measurement.file},
+                                                       {"which", which},
+                                                       {"reason", reason.empty() ? "–" : reason}}));
 }
 
 /// Of ISO 230-2, where it is not the one that everybody takes it for.
@@ -71,6 +72,12 @@ std::string places(const Source& source, const std::map<std::string, double>& at
 }
 
 }  // namespace
+
+std::string ended(const Source& source, std::string text) {
+  for (const std::string_view stop : {".", "!", "?", "。", "！", "？"})
+    if (text.ends_with(stop)) return text;
+  return text + (source.language() == "zh" ? "。" : ".");
+}
 
 std::vector<std::string> departures_of(const Source& source, const pages::Measured& m) {
   Sentences sentences;

@@ -151,6 +151,8 @@ void add_statements(const std::vector<Source>& sources, dcc::About& about) {
                 "method_heading.departures_of",
                 {{"measurement", a.measurement}, {"departures", pages::cmc_text(s, a)}});
           }));
+  if (!not_reported_text(sources.front()).empty())
+    add("", in_all(sources, [](const Source& s) { return not_reported_text(s); }));
   if (!undecided_text(sources.front()).empty())
     add("", in_all(sources, [](const Source& s) { return undecided_text(s); }));
   if (has_directions(in)) add("", word(sources, "notes.sign"));

@@ -93,7 +93,7 @@ TEST_F(Truth, WhatWasExcludedIsSaidWithItsReasonAndWithoutOneThereIsNoCertificat
   EXPECT_EQ(output().lacks(input(c)), keys) << "a dash is no reason";
   c.campaign.measurements[0].exclude_reason = "beam interrupted";
   EXPECT_TRUE(output().lacks(input(c)).empty());
-  const std::string said = "X.csv: line 57 (88.0 µm). Reason: beam interrupted";
+  const std::string said = "X.csv: line 57 (88.0 µm). Reason: beam interrupted.";
   EXPECT_TRUE(has(page(c), said));
   EXPECT_TRUE(has(dcc(c), said));
 }
@@ -130,12 +130,26 @@ TEST_F(Truth, TargetsLeftOutAreNotCountedAsEvaluated) {
   EXPECT_TRUE(has(text, "1 of 21 targets were left out"));
 }
 
+TEST_F(Truth, AMeasurementOfWhichNothingIsPrintedIsNamed) {
+  Case c = whole_case(plugins);
+  const std::string said = "Measured in this campaign and not reported here";
+  EXPECT_FALSE(has(page(c), said));
+  Measurement straight = c.campaign.measurements[0];
+  straight.id = "X-in-Y", straight.kind = "straightness", straight.lateral = "Y";
+  c.campaign.measurements.push_back(straight);
+  c.observations.push_back(c.observations[0]);
+  for (const std::string& text : {page(c), dcc(c)})
+    EXPECT_TRUE(has(text, said + ": Straightness of X in Y – measurement X-in-Y."));
+}
+
 TEST_F(Truth, ATestWithTargetsLeftOutIsOneToAPlanOfItsOwn) {
   Case c = with_target_of_one_direction(plugins);
   analyse(c);  // no value is given that needs the target; its plan is no other one for that
   EXPECT_TRUE(has(page(c), "1 of 21 targets were not reached from both directions"));
   EXPECT_TRUE(has(page(c), "the plan of ISO 230-2 was not followed"));
   EXPECT_FALSE(has(page(c), "ISO 230-2:2014, accuracy"));
+  for (const char* of_vdi : {"VDI", "Ps"})  // it gives no value at all: no column either
+    EXPECT_FALSE(has(page(c), of_vdi)) << of_vdi;
   analyse_with(c, "incomplete_targets", std::string("leave-out"));
   for (const std::string& text : {page(c), dcc(c)}) {
     EXPECT_TRUE(has(text, "20 of 21 targets are evaluated; ISO 230-2 asks all of them."));

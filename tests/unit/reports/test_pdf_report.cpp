@@ -217,6 +217,11 @@ TEST_F(PdfReport, WhatItSaysOfTheCampaignIsSo) {
   EXPECT_TRUE(has(text(both), "Positioning and geometry of a machine tool"));
   Case plan;
   EXPECT_TRUE(has(text(plan), "Plan of measurements"));
+  Case not_evaluated = usual();
+  EXPECT_TRUE(has(text(not_evaluated), "Readings and mean of each direction"));
+  not_evaluated.results.analyses.clear();  // of a diagonal, say: no mean is drawn
+  EXPECT_FALSE(has(text(not_evaluated), "mean of each direction"));
+  EXPECT_TRUE(has(text(not_evaluated), "Readings by run"));
   // Values that have no U by what they are: nobody has left anything out.
   const std::string not_stated = "the data for an uncertainty budget were not stated";
   Case without = usual();

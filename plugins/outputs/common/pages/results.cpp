@@ -252,9 +252,17 @@ struct Joined {
   std::vector<const PointTable::Column*> columns;
 };
 
-std::vector<Joined> joined_points(const Measured& m) {
+/// A certificate prints no more of an analysis that gives no value with an uncertainty.
+bool without_values(const Source& source, const Results::Analysed& a) {
+  const auto& values = a.evaluation.values;
+  return source.certificate && std::all_of(values.begin(), values.end(),
+                                           [&](const Value& v) { return left_out(source, v); });
+}
+
+std::vector<Joined> joined_points(const Source& source, const Measured& m) {
   std::vector<Joined> out;
   for (const auto* a : m.analyses) {
+    if (without_values(source, *a)) continue;
     const PointTable& points = a->evaluation.points;
     if (points.columns.empty() || points.columns.front().values.empty()) continue;
     Joined* into = nullptr;
@@ -331,7 +339,7 @@ std::vector<Beside> curves_of(const Source& source, const Measured& m) {
   constexpr std::size_t per_table = 3;
   std::vector<Beside> all;
   for (const Results::Analysed* a : m.analyses) {
-    if (a->plugin == model_analysis) continue;
+    if (a->plugin == model_analysis || without_values(source, *a)) continue;
     for (const Series& s : a->evaluation.series) {
       if (s.position.empty() || (source.certificate && s.U.size() != s.value.size())) continue;
       const bool fits = !all.empty() && all.back().size() < per_table &&
@@ -402,7 +410,7 @@ void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
 void add_targets(const Source& source, const Measured& m, Blocks& blocks) {
   const Wording& w = source.words;
   if (source.certificate) add_curves(source, m, blocks);
-  for (const Joined& joined : joined_points(m)) {
+  for (const Joined& joined : joined_points(source, m)) {
     const auto n = common_count(joined);
     Table table;
     table.title = w.get("targets.title");
