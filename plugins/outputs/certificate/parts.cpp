@@ -385,7 +385,12 @@ bool has_directions(const OutputInput& in) {
 void add_statements(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
   blocks.push_back({Heading{w.get("statements.title"), 2}, "statements.title"});
-  paragraph(blocks, w.get("notes.uncertainty") + " " + w.get("statements.guides"), "statements");
+  const std::vector<std::string>& parts = source.look.measurement;
+  const bool budget = std::find(parts.begin(), parts.end(), "budget") != parts.end();
+  paragraph(blocks,
+            w.get("notes.uncertainty") + " " + w.get("statements.guides") +
+                (budget ? " " + w.get("statements.budget") : ""),
+            "statements");
   if (has_directions(source.in)) paragraph(blocks, w.get("notes.sign"), "notes.sign");
   paragraph(blocks, w.get("notes.items") + " " + w.get("statements.whole"), "statements");
   if (!source.in.campaign.certificate.customer_data.empty())

@@ -201,6 +201,15 @@ TEST_F(Certificate, TheBudgetStandsInIt) {
                            "environment.drift_um", "rectangular"})
     EXPECT_TRUE(says(page, what)) << what;
   EXPECT_FALSE(has(page, "230-9")) << "its text was not read";
+  const std::string said = "Its budget stands with each measurement.";
+  EXPECT_TRUE(says(page, said));
+  const auto result = write(c);
+  ASSERT_TRUE(result);
+  EXPECT_FALSE(has(result->artifacts[1].bytes, said)) << "the DCC has none";
+  auto& parts =
+      std::get<std::vector<std::string>>(templates.tables["certificate"].values["measurement"]);
+  std::erase(parts, "budget");
+  EXPECT_FALSE(says(text(c), said));
 }
 
 TEST_F(Certificate, WhereTheLaboratorysFloorCountsItSaysSo) {
