@@ -67,11 +67,8 @@ std::vector<Shown> shown_results(const Source& source,
   return all;
 }
 
-/// In two languages a column of meanings makes each row two lines high.
-bool is_brief(const Source& source, const std::vector<Shown>& all) {
-  constexpr std::size_t few = 6;
-  return source.in.campaign.certificate.languages.size() > 1 && all.size() > few;
-}
+/// In two languages a column of meanings makes each row two lines high: they stand below.
+bool is_brief(const Source& source) { return source.in.campaign.certificate.languages.size() > 1; }
 
 /// "A: Accuracy, both directions. B: Reversal error, largest."
 std::string meanings(const Source& source, const std::vector<Shown>& all) {
@@ -111,7 +108,7 @@ void add_conformity(const Source& source, Blocks& blocks) {
   const bool factors = std::any_of(all.begin(), all.end(), [](const Shown& s) {
     return s.value->U && std::fabs(s.value->k - 2.0) >= 0.005;
   });
-  const bool brief = is_brief(source, all);
+  const bool brief = is_brief(source);
   Table table;
   table.columns = {{w.get("conformity.measurement"), "", false},
                    {w.get("results.symbol"), "", false}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "nonio/reports/model.h"
 #include "nonio/reports/number.h"
@@ -367,6 +368,22 @@ std::pair<Printed, bool> at_place(const Source& source, const Series& s, std::si
   return {std::move(shown), none};
 }
 
+/// A long table of one curve in two halves side by side.
+void add_curve_table(Table table, const std::string& field, Blocks& blocks) {
+  constexpr std::size_t narrow = 3, few = 12, most = 80;
+  const std::size_t n = table.rows.size();
+  if (table.columns.size() > narrow || n <= few || n > most) {
+    blocks.push_back({std::move(table), field});
+    return;
+  }
+  blocks.push_back({Heading{std::exchange(table.title, {}), 2}, field});
+  Table second = table;
+  const auto half = static_cast<std::ptrdiff_t>((n + 1) / 2);
+  table.rows.erase(table.rows.begin() + half, table.rows.end());
+  second.rows.erase(second.rows.begin(), second.rows.begin() + half);
+  blocks.push_back({Columns{{{{std::move(table), field}}, {{std::move(second), field}}}}, field});
+}
+
 /// Curves that no table of targets holds, at their places with U.
 void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
   const Wording& w = source.words;
@@ -398,7 +415,7 @@ void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
       if (any) table.rows.push_back(std::move(row));
     }
     if (!table.rows.empty())
-      blocks.push_back({std::move(table), "curves " + names + " of " + m.measurement.id});
+      add_curve_table(std::move(table), "curves " + names + " of " + m.measurement.id, blocks);
   }
   if (by_definition)
     blocks.push_back({Paragraph{w.get("targets.by_definition"), Paragraph::Look::small},
