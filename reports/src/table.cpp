@@ -20,8 +20,28 @@ struct Needs {
   std::vector<double> natural, least, numbers;
 };
 
+/// What each column asks for, but none more than one level: the short ones get all, so that one
+/// long column does not divide them.
+std::vector<double> up_to_a_level(const Needs& needs, double width) {
+  std::vector<double> out(needs.least.size());
+  const auto all_at = [&](double level) {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < out.size(); ++c)
+      sum += out[c] = std::max(needs.least[c], std::min(needs.natural[c], level));
+    return sum;
+  };
+  double low = 0.0, high = width;
+  for (int i = 0; i < 40; ++i) {
+    const double level = (low + high) / 2.0;
+    (all_at(level) > width ? high : low) = level;
+  }
+  all_at(low);
+  return out;
+}
+
 /// Widths of the columns: what each needs, if there is room, and what is left over shared out; else
-/// its widest word and a share of the rest. Where even that is too much, words give way to numbers.
+/// its widest word, and the rest to the short ones first. Where even that is too much, words give
+/// way to numbers.
 std::vector<double> column_widths(const Needs& needs, double width) {
   const auto sum = [](const std::vector<double>& v) {
     return std::accumulate(v.begin(), v.end(), 0.0);
@@ -37,7 +57,7 @@ std::vector<double> column_widths(const Needs& needs, double width) {
     for (double& w : out) w += (width - all) / static_cast<double>(out.size());
     return out;
   }
-  if (sum(needs.least) <= width) return between(needs.least, needs.natural);
+  if (sum(needs.least) <= width) return up_to_a_level(needs, width);
   if (sum(needs.numbers) <= width) return between(needs.numbers, needs.least);
   out = needs.numbers;
   for (double& w : out) w *= width / sum(needs.numbers);

@@ -475,7 +475,7 @@ TEST_F(Truth, TheFactorOfACurveIsTheSameOnPaperAndInTheDcc) {
   s.k = 2.23;
   c.results.analyses.front().evaluation.series = {s};
   EXPECT_TRUE(has(dcc(c), "<si:coverageFactorXMLList>2.23 2.23<"));
-  EXPECT_TRUE(has(page(c), "U (k = 2.2)"));
+  EXPECT_TRUE(has(page(c), "U (k = 2.23)"));
   EXPECT_TRUE(has(page(c), "zero by the definition of the curve"));
 }
 

@@ -202,7 +202,8 @@ TEST_F(PdfReport, WhatItSaysOfTheCampaignIsSo) {
   EXPECT_TRUE(has(text(axes), positioning));
   EXPECT_TRUE(has(text(axes), sign));
   // A limit of an axis that was not measured: no decision, and no rule of one.
-  axes.results.conformity.push_back({.axis = "Y", .name = "A"});
+  axes.results.conformity.push_back(
+      {"", "Y", "", "A", 5e-6, Quantity::deviation, Decision::cannot_be_decided, "no-value"});
   EXPECT_FALSE(has(text(axes), rule));
   decide(axes, "iso230-2", "A", 50e-6, Decision::conforms);
   EXPECT_TRUE(has(text(axes), rule));
