@@ -39,10 +39,12 @@ std::vector<double> up_to_a_level(const Needs& needs, double width) {
   return out;
 }
 
+using Widths = std::vector<double>;
+
 /// Widths of the columns: what each needs, if there is room, and what is left over shared out; else
-/// its widest word, and the rest to the short ones first. Where even that is too much, words give
-/// way to numbers.
-std::vector<double> column_widths(const Needs& needs, double width) {
+/// its widest word, and of the rest a share, or the short ones first: two ways. Where even that is
+/// too much, words give way to numbers.
+std::vector<Widths> column_widths(const Needs& needs, double width) {
   const auto sum = [](const std::vector<double>& v) {
     return std::accumulate(v.begin(), v.end(), 0.0);
   };
@@ -55,13 +57,14 @@ std::vector<double> column_widths(const Needs& needs, double width) {
   std::vector<double> out = needs.natural;
   if (const double all = sum(out); all <= width) {
     for (double& w : out) w += (width - all) / static_cast<double>(out.size());
-    return out;
+    return {out};
   }
-  if (sum(needs.least) <= width) return up_to_a_level(needs, width);
-  if (sum(needs.numbers) <= width) return between(needs.numbers, needs.least);
+  if (sum(needs.least) <= width)
+    return {up_to_a_level(needs, width), between(needs.least, needs.natural)};
+  if (sum(needs.numbers) <= width) return {between(needs.numbers, needs.least)};
   out = needs.numbers;
   for (double& w : out) w *= width / sum(needs.numbers);
-  return out;
+  return {out};
 }
 
 /// Ideographs divide anywhere; up to four stay together, as most words have no more. 1 = font size.
@@ -136,8 +139,32 @@ class TableSetter {
       }
       rows_.push_back(std::move(cells));
     }
-    widths_ = column_widths(needs, width_);
+    choose(column_widths(needs, width_));
     return {};
+  }
+
+  /// The way that makes the lower table.
+  void choose(const std::vector<Widths>& ways) {
+    std::size_t least = 0;
+    for (const Widths& way : ways) {
+      const std::size_t n = ways.size() == 1 ? 0 : lines(way);
+      if (widths_.empty() || n < least) widths_ = way, least = n;
+    }
+  }
+
+  std::size_t lines(const Widths& widths) const {
+    const auto in = [&](const Glyphs& text, std::size_t c) {
+      return wrap(text, (widths[c] - 2 * pad) / context_.style.small).size();
+    };
+    std::size_t all = 0, header = 0;
+    for (std::size_t c = 0; c < titles_.size(); ++c) header = std::max(header, in(titles_[c], c));
+    for (const Cells& row : rows_) {
+      std::size_t height = 1;
+      for (std::size_t c = 0; c < row.text.size(); ++c)
+        height = std::max(height, in(row.text[c], c));
+      all += height;
+    }
+    return header + all;
   }
 
   Expected<void> add_title(Laid& out) const {
