@@ -79,7 +79,7 @@ std::string meanings(const Source& source, const std::vector<Shown>& all) {
     if (meaning.empty() || !said.insert(s.value->name).second) continue;
     text += (text.empty() ? "" : "; ") + pages::symbol(s.value->name) + ": " + meaning;
   }
-  return text.empty() ? text : text + ".";
+  return text.empty() ? text : ended(source, text);
 }
 
 Level level_of(Decision decision) {
