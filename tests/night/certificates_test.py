@@ -531,6 +531,29 @@ class Certificates(SigningTest):
         self.assertEqual(self.results("c1")["certificate"]["changes"],
                          [{"file": "campaign.toml", "places": [{"key": "machine.serial", "before": "17", "after": "18"}]}])
 
+    def test_readings_that_another_campaign_has_too_can_be_amended(self):
+        self.by_hand()
+        for name in ("c1", "c2"):
+            self.signed_campaign(name)
+            (self.site / name / "x.csv").write_text(readings("both"))
+
+        def release():
+            draft, = json.loads(run(NONIO, "release", self.site / "c1", "--list", "--json").stdout)["drafts"]
+            findings = sorted({f["id"] for f in draft["findings"] if f["severity"] == "attention"})
+            self.assertTrue(any(f.startswith("plausibility.") for f in findings), findings)
+            return run(NONIO, "release", self.site / "c1", "--by", "Bruno Verdi", *(f"--reason={f}=the same test" for f in findings),
+                       check=False, env=self.environment)
+        self.night()
+        self.assertEqual(release().returncode, 0)
+        manifest = self.site / "c1" / "campaign.toml"
+        manifest.write_text(manifest.read_text().replace('serial = "17"', 'serial = "18"'))
+        self.amend("c1", "another serial number")
+        self.night()
+        self.assertTrue(self.draft("c1").exists(), (self.out / "summary.txt").read_text())
+        self.assertEqual(release().returncode, 0)
+        self.assertEqual(self.states(), {number(1): "amended", number(2): "issued"})
+        self.assertEqual([c["file"] for c in self.results("c1")["certificate"]["changes"]], ["campaign.toml"])
+
     def test_the_reason_of_a_withdrawal_is_carried_over(self):
         self.signed_campaign("c1")
         self.night()
