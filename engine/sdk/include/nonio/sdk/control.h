@@ -24,7 +24,9 @@ struct ControlTable {
   enum class Sign { error, correction };               ///< entries are +e, or -e
   enum class Entry { absolute, increment, position };  ///< position: nominal plus the entry
   enum class Grid { even, listed };
-  enum class Zero { free, reference, first };  ///< where an entry has to be 0
+  /// Where an entry has to be 0: nowhere; at the reference position, wherever that lies; or at the
+  /// first point, where the control begins to count its points, which is the reference position.
+  enum class Zero { free, reference, first };
   struct Scale {
     double linear = 1e-3, rotary = std::numbers::pi / 180.0;
     double of(bool is_rotary) const { return is_rotary ? rotary : linear; }
