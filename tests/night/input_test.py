@@ -126,7 +126,7 @@ class Input(NightTest):
             self.assertFalse(self.out.exists())
 
     def test_a_table_that_nobody_asked_for_does_not_fail_the_campaign(self):
-        small = "[options.siemens-840d]\nmax_points = 3\n"
+        small = '[options.siemens-840d]\naxes = ["X number=1"]\nmax_points = 3\n'
         self.campaign("any", extra=small)
         self.campaign("asked", run='[run]\noutputs = ["siemens-840d"]\n', extra=small)
         self.campaign("control", text=manifest("control").replace(

@@ -69,6 +69,8 @@ id = "X"
 kind = "axis"
 axis = "X"
 file = "x.csv"
+[options.siemens-840d]
+axes = ["X number=1"]
 """
 
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 
 #include "nonio/sdk/fields.h"
@@ -114,6 +115,21 @@ bool applies(const Campaign& campaign) {
                      [](const Measurement& m) { return m.kind == "ball-centres"; });
 }
 
+/// Findings for which nobody has said why the readings are right all the same (evidence `stands`):
+/// what a control reads is held back, as the host does with tables.
+std::string doubts_of(const Results& results) {
+  std::set<std::string> ids;
+  for (const Results::Analysed& a : results.analyses)
+    for (const Finding& f : a.evaluation.findings)
+      if (f.id.starts_with("plausibility.") &&
+          std::none_of(f.texts.begin(), f.texts.end(),
+                       [](const auto& text) { return text.first == "stands"; }))
+        ids.insert(f.id);
+  std::string list;
+  for (const std::string& id : ids) list += (list.empty() ? "" : ", ") + id;
+  return list;
+}
+
 Expected<OutputResult> write(const OutputInput& in) {
   OutputResult result;
   const std::vector<Line> lines = lines_of(in.campaign, in.results);
@@ -124,7 +140,13 @@ Expected<OutputResult> write(const OutputInput& in) {
   result.artifacts = {{"rotary-vectors.txt", text(in.campaign, lines)},
                       {"rotary-vectors.json", json(in.campaign, lines)},
                       {"rotary-vectors.csv", csv(lines)}};
-  write_controllers(lines, in.campaign.id, result);
+  const std::string doubts = doubts_of(in.results);
+  if (doubts.empty())
+    write_controllers(lines, in.campaign.id, result);
+  else
+    result.findings.push_back({.id = "table.withheld",
+                               .attention = true,
+                               .texts = {{"output", "rotary-vectors"}, {"findings", doubts}}});
   result.notes.push_back({.id = "vectors.frame"});
   return result;
 }

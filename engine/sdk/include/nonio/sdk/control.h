@@ -24,8 +24,9 @@ struct ControlTable {
   enum class Sign { error, correction };               ///< entries are +e, or -e
   enum class Entry { absolute, increment, position };  ///< position: nominal plus the entry
   enum class Grid { even, listed };
-  /// Where an entry has to be 0: nowhere; at the reference position, wherever that lies; or at the
-  /// first point, where the control begins to count its points, which is the reference position.
+  /// Where an entry has to be 0: nowhere (it is made so at the reference point all the same); at
+  /// the reference point, wherever that lies; at the first point, the zero of the axis, from which
+  /// the control counts its points.
   enum class Zero { free, reference, first };
   struct Scale {
     double linear = 1e-3, rotary = std::numbers::pi / 180.0;
@@ -76,6 +77,15 @@ struct LoadedTable {
 /// options, say what the files' names mean.
 struct TableInput {
   const std::vector<Artifact>& files;
+  const Campaign& campaign;
+  const Settings& options;
+};
+
+/// A control's backup, and the files of a new table: what `Output::merge` puts together.
+struct MergeInput {
+  const std::vector<Artifact>& backup;  ///< as it was saved, all files that hold tables
+  const std::vector<Artifact>& table;   ///< of this axis, as `Output::write` made them
+  const std::string& axis;
   const Campaign& campaign;
   const Settings& options;
 };
