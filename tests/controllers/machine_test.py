@@ -142,6 +142,22 @@ class Number(MachineTest):
         self.measured("fanuc", options='[options.fanuc]\naxes = ["Q number=4"]\n')
         self.assertIn("no axis Q", self.tables("fanuc")[1]["errors"][0]["message"], "the campaign's own slip")
 
+    def test_the_number_of_another_axis_is_refused(self):
+        self.record(["X", "Y"])
+        for control, key, axis in (("fanuc", "number", 2), ("linuxcnc", "joint", 1)):
+            self.measured(control, machine='asset = "S-1"\n', options='[options.%s]\naxes = ["Z %s=%d"]\n' % (control, key, axis))
+            _, results = self.tables(control, expect=1)
+            said = " ".join(e["message"] for e in results["errors"])
+            self.assertIn("axis Z, %s=%d is the number of axis %s, machines/S-1.toml" % (key, axis, "XY"[axis - 1]), said)
+            self.measured(control, machine='asset = "S-1"\n', options='[options.%s]\naxes = ["Z %s=7"]\n' % (control, key))
+            self.assertEqual(self.tables(control)[1]["errors"], [])
+
+    def test_one_axis_has_one_number(self):
+        for entries in ('"Z number=3 number=4"', '"Z number=3", "Z number=4"'):
+            self.measured("siemens-840d", options="[options.siemens-840d]\naxes = [%s]\n" % entries)
+            _, results = self.tables("siemens-840d", expect=1)
+            self.assertIn("axis Z has number=3 and number=4: which of them?", results["errors"][0]["message"])
+
     def test_an_asset_is_a_name_and_no_path(self):
         for asset in ("../S-1", "a/b", ".hidden", "a\\\\b"):
             self.measured("fanuc", machine='asset = "%s"\n' % asset)

@@ -79,8 +79,8 @@ TEST(Cross, SiemensTablesTakeStraightnessAndSquarenessAway) {
 }
 
 const Remark* note(const OutputResult& r, const std::string& id, const std::string& axis) {
-  for (const Remark& n : r.notes)
-    if (n.id == id && n.texts.front().second == axis) return &n;
+  for (const Remark& said : r.notes)
+    if (said.id == id && said.texts.front().second == axis) return &said;
   return nullptr;
 }
 
