@@ -178,11 +178,12 @@ class Layers {
     if (record_ == nullptr) return;
     const std::string other = key == "joint" ? "number" : key;
     const auto number = number_of(value);
-    if (other == "number" && number) look_for_owner(axis, key + value, *number, errors);
+    if (!number) return;
     const auto recorded = record_->axes.find(axis);
-    if (recorded == record_->axes.end()) return;
+    const bool known = recorded != record_->axes.end() && recorded->second.settings.contains(other);
+    if (!known && other == "number") look_for_owner(axis, key + value, *number, errors);
+    if (!known) return;
     const auto says = recorded->second.settings.find(other);
-    if (says == recorded->second.settings.end() || !number) return;
     if (std::fabs(*number - says->second) <= 1e-9 * std::max(1.0, std::fabs(says->second))) return;
     errors.push_back(at_axes("axis " + axis + ", " + key + value + " contradicts " +
                              place_in(*record_, key_of(axis, other)) + ", where it is " +
