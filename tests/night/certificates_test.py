@@ -544,22 +544,24 @@ class Certificates(SigningTest):
         self.assertIn("@", said["account"])
 
     def test_an_amendment_of_readings_that_another_campaign_has_too(self):
-        self.release = AUTOMATIC.replace("}]\n", """},
-  { finding = "plausibility.file-of-another-campaign", reason = "one test, two certificates" }]\n""")
-        self.site_with()
+        self.by_hand()
+        reasons = ("--reason", KNOWN + "=it is what was ordered", "--reason", "plausibility.file-of-another-campaign=one test, two papers")
         for name in ("c1", "c2"):
             self.signed_campaign(name)
             (self.site / name / "x.csv").write_text(readings("one"))
         self.night()
+        for name in ("c1", "c2"):
+            self.release_verb("--by", "Ada Neri", campaign=name, known=reasons, expect=0)
         self.assertEqual(self.states(), {number(1): "issued", number(2): "issued"})
         manifest = self.site / "c2" / "campaign.toml"
         manifest.write_text(manifest.read_text().replace('serial = "17"', 'serial = "18"'))
         self.amend("c2", "another serial number")
         self.night()
-        certificate = self.results("c2")["certificate"]
-        self.assertEqual(certificate["changes"],
+        self.assertEqual(self.ids("failed"), [])
+        self.release_verb("--by", "Ada Neri", campaign="c2", known=reasons, expect=0)
+        self.assertEqual(self.states(), {number(1): "issued", number(2): "amended", number(3): "issued"})
+        self.assertEqual(self.results("c2")["certificate"]["changes"],
                          [{"file": "campaign.toml", "places": [{"key": "machine.serial", "before": "17", "after": "18"}]}])
-        self.assertEqual(self.states()[certificate["replaces"]], "amended")
         self.assert_holds(self.pdf("c1"), self.pdf("c2"))
 
     def test_the_record_of_the_machine_is_in_its_certificate(self):
