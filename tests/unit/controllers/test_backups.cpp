@@ -99,7 +99,7 @@ TEST(Backup, CutAtEveryByteItIsTheWholeTableOrNone) {
         auto files = r->artifacts;
         files[f].bytes.resize(n);
         const auto read = read_back(output, files, with_axes(k), {{.name = "X"}});
-        if (!read) {
+        if (!read || read->empty()) {
           ++refused;
         } else if (!same(*read, *whole, false)) {
           ++wrong;

@@ -346,8 +346,11 @@ TEST(BlindMachines, WithATableAlreadyOn) {
       ++written;
       const auto truth = truly(b, r->control, r->was);
       const auto curve = curve_of(r->bench);
-      const double half =
-          (b.axis.rotary ? k.step_deg : k.step) / 2 + 2e-10 + second_order(*r, curve);
+      const double step = b.axis.rotary ? k.step_deg : k.step;
+      // The value of Ix86 that was on is read from the words, in mm or deg: it was typed in
+      // rounded.
+      const double typed = std::string(k.name) == "pmac" ? step / 2 : 0.0;
+      const double half = step / 2 + typed + 2e-10 + second_order(*r, curve);
       const double found[] = {truth.E(), truth.B(), truth.M()};
       for (int i = 0; i < 3; ++i) {
         const char* name[] = {"E", "B", "M"};
