@@ -566,6 +566,54 @@ class Certificates(SigningTest):
         self.assertEqual(said["reason"], "wrong stamp")
         self.assertIn("@", said["account"])
 
+    def test_an_amendment_of_readings_that_another_campaign_has_too(self):
+        self.by_hand()
+        reasons = ("--reason", KNOWN + "=it is what was ordered", "--reason", "plausibility.file-of-another-campaign=one test, two papers")
+        for name in ("c1", "c2"):
+            self.signed_campaign(name)
+            (self.site / name / "x.csv").write_text(readings("one"))
+        self.night()
+        for name in ("c1", "c2"):
+            self.release_verb("--by", "Ada Neri", campaign=name, known=reasons, expect=0)
+        self.assertEqual(self.states(), {number(1): "issued", number(2): "issued"})
+        manifest = self.site / "c2" / "campaign.toml"
+        manifest.write_text(manifest.read_text().replace('serial = "17"', 'serial = "18"'))
+        self.amend("c2", "another serial number")
+        self.night()
+        self.assertEqual(self.ids("failed"), [])
+        self.release_verb("--by", "Ada Neri", campaign="c2", known=reasons, expect=0)
+        self.assertEqual(self.states(), {number(1): "issued", number(2): "amended", number(3): "issued"})
+        self.assertEqual(self.results("c2")["certificate"]["changes"],
+                         [{"file": "campaign.toml", "places": [{"key": "machine.serial", "before": "17", "after": "18"}]}])
+        self.assert_holds(self.pdf("c1"), self.pdf("c2"))
+
+    def test_the_record_of_the_machine_is_in_its_certificate(self):
+        self.signed_campaign("c1")
+        manifest = self.site / "c1" / "campaign.toml"
+        manifest.write_text(manifest.read_text().replace("[machine]\n", '[machine]\nasset = "S-0042"\n', 1))
+        (self.site / "machines").mkdir()
+        record = self.site / "machines" / "S-0042.toml"
+        text = 'format = 1\nasset = "S-0042"\ncontrol = "siemens-840d"\n[axes.X]\nnumber = 3\nreference_mm = 100\n'
+        record.write_text(text)
+        self.night()
+        self.assertEqual(self.states(), {number(1): "issued"})
+        if shutil.which("pdfdetach"):
+            self.assertIn("machine-record.json", run("pdfdetach", "-list", self.pdf("c1")).stdout)
+        self.assert_holds(self.pdf("c1"))
+        # What is in the control by now makes no other data of these readings: the number stays, and so does the record.
+        before = self.pdf("c1").read_bytes()
+        record.write_text(text.replace("number = 3", "number = 4"))
+        self.night()
+        self.assertEqual(self.states(), {number(1): "issued"})
+        self.assertEqual(self.pdf("c1").read_bytes(), before)
+        self.assert_holds(self.pdf("c1"))
+        # Of an amendment's files none is "gone": the record was never a file of the campaign.
+        self.change("c1", "other")
+        self.night()
+        self.assertEqual(self.states(), {number(1): "amended", number(2): "issued"})
+        self.assertEqual([c["file"] for c in self.results("c1")["certificate"]["changes"]], ["x.csv"])
+        self.assert_holds(self.pdf("c1"))
+
     # What the register says.
 
     def register_says(self, file, site=None):

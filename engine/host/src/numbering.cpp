@@ -60,7 +60,8 @@ Expected<Files> attached_files(const std::vector<IssuedFile>& issued) {
     auto attached = sign::unverified_attachments(f.bytes);
     if (!attached) return fail(f.name + " in the register: " + attached.error().message);
     for (sign::Attachment& a : *attached)
-      if (a.relation == source_relation && a.name != templates_name)
+      if (a.relation == source_relation && a.name != templates_name &&
+          a.name != machine_record_name)
         files.emplace_back(a.name == settings_name ? site_name : std::move(a.name),
                            std::move(a.bytes));
     break;

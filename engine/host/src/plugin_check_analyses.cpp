@@ -255,6 +255,8 @@ std::optional<int> power_of(Quantity q) {
     case Quantity::deviation_per_length:
     case Quantity::deviation_per_angle:
     case Quantity::deviation_per_time:
+    case Quantity::deviation_per_kelvin:
+    case Quantity::angle_per_kelvin:
     case Quantity::angle_per_time:
     case Quantity::deviation_per_reading:
     case Quantity::angle_per_reading:

@@ -50,6 +50,31 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(from, text.find_last_not_of(" \t\r") - from + 1);
 }
 
+std::optional<std::string> with_lines(const std::string& text,
+                                      const std::function<bool(std::string_view)>& is_own,
+                                      const std::string& lines,
+                                      std::optional<std::size_t> otherwise) {
+  std::string out, fresh = lines;
+  std::optional<std::size_t> place;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t next = std::min(text.find('\n', at), text.size() - 1) + 1;
+    const std::string_view one = std::string_view(text).substr(at, next - at);
+    if (is_own(one.substr(0, one.find_last_not_of("\r\n") + 1))) {
+      if (!place) place = out.size();
+    } else {
+      out += one;
+    }
+    at = next;
+  }
+  if (!place) place = otherwise;
+  if (!place) return std::nullopt;
+  if (*place > 0 && out[*place - 1] != '\n') fresh.insert(0, "\n");
+  if (text.find("\r\n") != std::string::npos)
+    for (std::size_t at = 0; (at = fresh.find('\n', at)) != std::string::npos; at += 2)
+      fresh.replace(at, 1, "\r\n");
+  return out.insert(*place, fresh);
+}
+
 std::optional<double> real(std::string_view text) {
   const auto value = number<double>(text);
   return value && std::isfinite(*value) ? value : std::nullopt;

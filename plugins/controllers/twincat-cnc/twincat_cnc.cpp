@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "merge.h"
 #include "nonio/controllers/list.h"
 
 namespace nonio {
@@ -135,6 +136,9 @@ Expected<LoadedTable> cross(const List& list, const std::vector<controllers::Kno
                 .position = {column(list, "kw.crosscomp.table", ".setpoint")},
                 .plus = column(list, "kw.crosscomp.table", ".correction"),
                 .minus = {}};
+  const auto last = list.find("kw.crosscomp.last_index");
+  if (last == list.end() || static_cast<double>(t.plus.size()) != last->second + 1.0)
+    return fail("kw.crosscomp.last_index is not that of the last entry");
   for (double& x : t.position[0]) x *= 1e-7;
   for (double& v : t.plus) v *= sign * 1e-7;
   if (auto ok = math::sound(t); !ok) return tl::unexpected<Error>(ok.error());
@@ -181,8 +185,10 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
 std::string cross_list(const CrossCurve& c, const std::vector<controllers::KnownAxis>& axes,
                        double sign, const std::string& about) {
   const auto units = [](double x) { return std::to_string(std::llround(x / 1e-7)); };
-  std::string out = head({about, "compensation of " + controllers::plain(c.output) +
-                                     " by the position of " + controllers::plain(c.input)},
+  std::string out = head({about,
+                          "compensation of " + controllers::plain(c.output) +
+                              " by the position of " + controllers::plain(c.input),
+                          controllers::cross_words(c)},
                          axis_named(axes, c.output).number, c.output);
   out += line("kw.crosscomp.unit", "1") +
          line("kw.crosscomp.last_index", std::to_string(c.position.size() - 1)) +
@@ -191,7 +197,7 @@ std::string cross_list(const CrossCurve& c, const std::vector<controllers::Known
   for (std::size_t i = 0; i < c.position.size(); ++i) {
     const std::string row = "kw.crosscomp.table[" + std::to_string(i) + "]";
     out += line(row + ".setpoint", units(c.position[i])) +
-           line(row + ".correction", units(sign * (c.value[i] - c.value.front())));
+           line(row + ".correction", units(sign * c.value[i]));
   }
   return out;
 }
@@ -208,6 +214,7 @@ Expected<void> write_cross(const OutputInput& in, const std::vector<controllers:
     if (job.volume || said.empty()) continue;
     if (auto ok = controllers::fits(job, in.options); !ok) return ok;
     if (controllers::lacks_number(job.moving(), in, *axes, job.measurement, result)) continue;
+    if (controllers::oversized(job, in, result)) continue;
     std::vector<Artifact> files;
     for (const CrossCurve& c : job.curves)
       files.push_back({"twincat-cnc-cross-" + controllers::file_part(c.output) +
@@ -255,9 +262,11 @@ std::vector<Option> options() {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  registry.add(controllers::controller(
+  Output output = controllers::controller(
       {"twincat-cnc", "1.0.0",
        "Correction lists (kw.ssfk, kw.crosscomp) for Beckhoff TwinCAT CNC and the ISG kernel.",
        nonio::options()},
-      declared(), nonio::write, parse));
+      declared(), nonio::write, parse);
+  output.merge = twincat_cnc::merge;
+  registry.add(std::move(output));
 }
