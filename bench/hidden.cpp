@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well `explain` finds what the second generator (tests/hidden) has hidden:
-//   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped|beside COUNT
-//   SEED [--verbose] [--plugins FOLDER]
+//   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped|beside|
+//                fixed-end|blank-temperatures|day-wave|short-misread COUNT SEED
+//                [--verbose] [--plugins FOLDER]
 //                [--write FOLDER] [--right PERCENT] [--wrong PERCENT]
 // Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio explain --auto` does. Fails
 // if fewer are right, or more named wrongly, than --right and --wrong say.
@@ -206,7 +207,9 @@ void score_fit(Score& score, const Hidden& h, const model::Comparison& c) {
 }
 
 bool of_one(Kind kind) {
-  return kind == Kind::one || kind == Kind::wave_under_curve || kind == Kind::grouped;
+  return kind == Kind::one || kind == Kind::wave_under_curve || kind == Kind::grouped ||
+         kind == Kind::fixed_end || kind == Kind::blank_temperatures || kind == Kind::day_wave ||
+         kind == Kind::short_misread;
 }
 
 /// Whether the campaign was explained as it had to be.
@@ -371,7 +374,11 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
                                              {"wave-under-curve", Kind::wave_under_curve},
                                              {"screw-and-curve", Kind::screw_and_curve},
                                              {"grouped", Kind::grouped},
-                                             {"beside", Kind::beside}};
+                                             {"beside", Kind::beside},
+                                             {"fixed-end", Kind::fixed_end},
+                                             {"blank-temperatures", Kind::blank_temperatures},
+                                             {"day-wave", Kind::day_wave},
+                                             {"short-misread", Kind::short_misread}};
   if (words.size() < 3 || kinds.count(words[0]) == 0) return {};
   const auto count = whole(words[1]), seed = whole(words[2]);
   if (!count || !seed) return {};
@@ -403,7 +410,8 @@ int main(int argc, char** argv) {
   if (!a) {
     std::fprintf(stderr,
                  "bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|\n    "
-                 "         grouped|beside COUNT SEED\n"
+                 "         grouped|beside|fixed-end|blank-temperatures|day-wave|short-misread\n"
+                 "             COUNT SEED\n"
                  "             [--verbose] [--plugins FOLDER] [--write FOLDER] [--right PERCENT] "
                  "[--wrong PERCENT]\n");
     return 2;
