@@ -132,6 +132,7 @@ void draw_causes(Scenario& s, Random& random) {
       break;
     }
     case Kind::one:
+    case Kind::smallest:
     case Kind::grouped:
       s.hidden = pieces(random, s.rotary, 1, 3.5, 9.0);
       break;

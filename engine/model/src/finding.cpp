@@ -15,8 +15,6 @@ namespace {
 
 using State = Workbench::State;
 
-constexpr double least_rms = 0.2;  // of the noise: smaller effects are not worth a name
-
 class Finder {
  public:
   Finder(const Part& part, const std::vector<Term>& model, const std::vector<Term>& catalogue,
@@ -30,6 +28,7 @@ class Finder {
 
   Expected<Finding> run() {
     f_.suspects = suspects_of(f_.part.table, f_.repeats, model_);
+    if (auto alone = suspect_without_repeats(); !alone.empty()) f_.suspects = std::move(alone);
     for (int round = 0; round < 3; ++round) {
       if (auto searched = search(); !searched) return fail(searched.error());
       if (!suspect_again()) break;
@@ -109,17 +108,77 @@ class Finder {
   /// Shapes of a state between the values of their grids, as values of the grids.
   bool add_refined(const State& state) {
     const std::vector<Term> coarse = terms_of_state(state);
-    const std::vector<char> searched = flags(state, true);
-    const auto fitted = fit_near(f_.part.table, coarse, searched, f_.weight);
+    const bool any = add_fitted(state, coarse);
+    // A usual value stays where it is, unless it is moved a little: perhaps it is not the best.
+    std::vector<Term> moved = coarse;
+    bool usual = false;
+    for (Term& term : moved)
+      for (std::size_t k = 0; k < term.shape.size(); ++k) {
+        const auto grid = term.effect->shapes[k].grid(f_.part.table, term.axis);
+        if (!is_usual(term, term.shape, k) || grid.size() < 2) continue;
+        term.shape[k] += 1e-6 * (grid.back() - grid.front());
+        usual = true;
+      }
+    return (usual && add_fitted(state, moved)) || any;
+  }
+
+  bool add_fitted(const State& state, const std::vector<Term>& terms) {
+    const auto fitted = fit_near(f_.part.table, terms, flags(state, true), f_.weight);
     if (!fitted) return false;
     bool any = false;
-    for (std::size_t t = 0; t < coarse.size(); ++t) {
-      if (fitted->terms[t].shape == coarse[t].shape) continue;
-      f_.bench->add_shape(f_.part.table, f_.bench->effect_of(state.blocks[t]),
-                          fitted->terms[t].shape);
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      const Workbench::Block& block = f_.bench->blocks()[state.blocks[t]];
+      if (fitted->terms[t].shape == block.shape) continue;
+      f_.bench->add_shape(f_.part.table, block.effect, fitted->terms[t].shape);
       any = true;
     }
     return any;
+  }
+
+  /// Few readings without repeats: a misread value bends every effect. So each is left out in turn,
+  /// and the best explanation of the others predicts it.
+  std::vector<Suspect> suspect_without_repeats() {
+    constexpr std::size_t fewest = 8, most = 40;
+    const std::size_t n = f_.part.table.size();
+    const auto repeated = saturate(f_.repeats, f_.part.table.deviation, {});
+    if (n < fewest || n > most || repeated.dof >= 3.0 || f_.part.table.axes.size() > 1) return {};
+    f_.suspects.clear();
+    if (!search()) return {};
+    const double all = f_.best.criterion;
+    Suspect worst;
+    double least = all;
+    const double price = 3.0 * std::log(static_cast<double>(n));  // a value, and which of n
+    for (std::size_t i = 0; i < n; ++i) {
+      f_.suspects = {{i, 0.0, 0.0, 0.0}};
+      if (!search()) continue;
+      const double used = f_.bench->readings();
+      const double criterion =
+          static_cast<double>(n) * std::log(f_.best.squares / used) + f_.best.price + price;
+      if (!(criterion < least)) continue;
+      if (const auto s = predicted(i)) least = criterion, worst = *s;
+    }
+    f_.suspects.clear();
+    return least < all ? std::vector<Suspect>{worst} : std::vector<Suspect>{};
+  }
+
+  /// A reading of weight 0 against what the best explanation of the others says of it: none if it
+  /// is as far away as one of so many may be.
+  std::optional<Suspect> predicted(std::size_t row) const {
+    constexpr double rarely = 0.01;
+    const MatrixXd basis = f_.bench->basis(f_.best);
+    const double dof = f_.dof(f_.best), n = f_.bench->readings() + 1.0;
+    const auto fitted = fit_near(f_.part.table, terms_of_state(f_.best), flags(false), f_.weight);
+    if (!fitted || !(dof >= 3.0) || !(f_.best.squares > 0.0)) return {};
+    // Leverage of a row outside: no more than the largest within, at best a guess.
+    double leverage = 1.0 / n;
+    for (Index i = 0; i < basis.rows(); ++i)
+      leverage = std::max(leverage, 1.0 / n + basis.row(i).squaredNorm());
+    const double sigma = f_.left() * std::sqrt(1.0 + leverage);
+    const double e = fitted->residual[row];
+    if (math::t_two_sided(e / sigma, dof) * n > rarely) return {};
+    double least = 3.0;
+    while (math::t_two_sided(least, dof) * n > rarely) least += 0.05;
+    return Suspect{row, e, e / sigma, least * sigma};
   }
 
   /// Whether the best explanation suspects other readings than before.

@@ -12,6 +12,8 @@
 
 namespace nonio::model {
 
+inline constexpr double least_rms = 0.2;  ///< of the noise: smaller effects are not worth a name
+
 /// What the search over all sets of effects has found in one part: candidates and the verdict are
 /// read off it.
 struct Finding {

@@ -79,6 +79,7 @@ enum class Kind {
   fixed_end,           ///< one that grows (warm-up, temperature, growth) from a bearing at an end
   blank_temperatures,  ///< a wrong expansion; some rows have no temperature
   day_wave,            ///< a day's wave over 8 to 30 hours
+  smallest,            ///< one, to be made as large as `explain` says that it would be found
   short_misread,       ///< one that a single run of 10 to 12 readings shows, one of them misread
 };
 
