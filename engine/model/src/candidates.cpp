@@ -15,8 +15,6 @@ namespace {
 
 using State = Workbench::State;
 
-constexpr double alias_evidence = 6.0;  // 2 ln 20: one twentieth of the evidence is no difference
-
 double normal_below(double x) { return 0.5 * std::erfc(-x * std::numbers::sqrt2 / 2.0); }
 
 /// How large an effect must be to be found. In units of the variance of a reading the fall of the
@@ -139,6 +137,10 @@ class CandidateOf {
       if (changed.blocks.size() > rest.blocks.size() && as_good(changed))
         names.push_back(f_.terms[other].name());
     }
+    for (const std::string& name : f_.otherwise)
+      if (!f_.bench->holds(f_.best, f_.index_of(name)) &&
+          std::find(names.begin(), names.end(), name) == names.end())
+        names.push_back(name);
     return names;
   }
 

@@ -147,17 +147,22 @@ class Finder {
     const double all = f_.best.criterion;
     Suspect worst;
     double least = all;
+    std::vector<std::pair<double, std::vector<Term>>> each{{all, terms_of_state(f_.best)}};
     const double price = 3.0 * std::log(static_cast<double>(n));  // a value, and which of n
     for (std::size_t i = 0; i < n; ++i) {
       f_.suspects = {{i, 0.0, 0.0, 0.0}};
       if (!search()) continue;
-      const double used = f_.bench->readings();
-      const double criterion =
-          static_cast<double>(n) * std::log(f_.best.squares / used) + f_.best.price + price;
-      if (!(criterion < least)) continue;
-      if (const auto s = predicted(i)) least = criterion, worst = *s;
+      const double criterion = f_.best.criterion + price;
+      if (!(criterion < least + alias_evidence)) continue;
+      const auto s = predicted(i);
+      if (!s) continue;
+      each.emplace_back(criterion, terms_of_state(f_.best));
+      if (criterion < least) least = criterion, worst = *s;
     }
     f_.suspects.clear();
+    for (const auto& one : each)
+      for (const Term& term : one.second)
+        if (one.first < least + alias_evidence) f_.otherwise.push_back(term.name());
     return least < all ? std::vector<Suspect>{worst} : std::vector<Suspect>{};
   }
 

@@ -76,6 +76,7 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
     most_of_position_ = static_cast<Index>(std::ceil(0.6 * (targets - 1.0)));
     most_stated_ = static_cast<Index>(std::ceil(0.8 * (targets - 1.0)));
     most_of_curve_ = static_cast<Index>(targets) / 2 - 1;
+    few_ = o.size() <= 40 && 2 * o.size() < 5 * targets;
   }
   root_ = root_weights(o, weight);
   used_ = static_cast<double>((root_.array() > 0.0).count());
@@ -170,7 +171,11 @@ double Workbench::price(const Block& block, Index columns) const {
          2.0 * std::log(static_cast<double>(std::max<std::size_t>(instances_.size(), 2)));
 }
 
-double Workbench::criterion(double squares, double price) const {
+double Workbench::criterion(double squares, double price, Index parameters) const {
+  // Of few readings a large share is fitted by whatever comes (as in the corrected criteria of
+  // Hurvich and Tsai 1989).
+  const double free = used_ - static_cast<double>(zeros_ + parameters) - 2.0;
+  if (few_) price *= used_ / std::max(free, 0.5);
   return used_ * std::log(std::max(squares, 1e-300) / used_) + price;
 }
 
@@ -210,7 +215,7 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
     }
   }
   out.criterion = std::isnan(out.squares) ? std::numeric_limits<double>::infinity()
-                                          : criterion(out.squares, out.price);
+                                          : criterion(out.squares, out.price, out.parameters);
   return out;
 }
 
@@ -377,7 +382,9 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
     const double fall = gains(static_cast<Index>(b));
     if (std::isnan(fall)) continue;
     if (follows_targets(blocks_[b], of_position)) continue;
-    const double c = criterion(std::max(state.squares - fall, 1e-12 * yy_), price(blocks_[b]));
+    const double c =
+        criterion(std::max(state.squares - fall, 1e-12 * yy_), state.price + price(blocks_[b]),
+                  state.parameters + unknowns_of(blocks_[b]));
     if (c < least) least = c, best = b;
   }
   if (best == blocks_.size()) return state;
@@ -386,7 +393,7 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
   more.squares = std::max(state.squares - gains(static_cast<Index>(best)), 0.0);
   more.parameters += unknowns_of(blocks_[best]);
   more.price += price(blocks_[best]);
-  more.criterion = criterion(more.squares, more.price);
+  more.criterion = criterion(more.squares, more.price, more.parameters);
   return more;
 }
 

@@ -127,7 +127,7 @@ class Workbench {
   void count_shapes(Instance& instance) const;
   void fill_search(Block& block) const;
   const MatrixXd& products_of(std::size_t block) const;
-  double criterion(double squares, double price) const;
+  double criterion(double squares, double price, Index parameters) const;
 
   std::vector<Instance> instances_;
   std::vector<Block> blocks_;
@@ -141,6 +141,7 @@ class Workbench {
   Index most_of_position_ = 0, most_stated_ = 0, most_of_curve_ = 0;
   Index zeros_ = 0;
   bool several_axes_ = false, reducible_ = false;
+  bool few_ = false;  // readings without repeats
 };
 
 }  // namespace nonio::model
