@@ -50,12 +50,32 @@ class Finder {
     f_.start = std::move(*start);
     f_.best = best_explanation(*f_.bench, f_.start);
     // What lies between the values of a grid would be taken for an effect of its own.
-    const bool finer = add_refined(f_.start);
-    if (add_refined(f_.best) || finer) {
+    constexpr double worth_another_round = 1.0;
+    for (int round = 0; round < 3; ++round) {
+      const bool finer = add_refined(f_.start), alone = round == 0 && add_refined_alone();
+      if (!add_refined(f_.best) && !finer && !alone) break;
+      const double before = f_.best.criterion;
       f_.start = f_.bench->settled(std::move(f_.start));
       f_.best = best_explanation(*f_.bench, f_.start);
+      if (!(f_.best.criterion < before - worth_another_round)) break;
     }
     return {};
+  }
+
+  /// Each effect of the best explanation alone beside the model: what a coarse grid leaves of a
+  /// large one is not to be fitted by others.
+  bool add_refined_alone() {
+    bool any = false;
+    const State best = f_.best;
+    for (const std::size_t b : best.blocks) {
+      const std::size_t e = f_.bench->effect_of(b);
+      if (e < f_.in_model || f_.bench->blocks()[b].searched == 0) continue;
+      const State alone = f_.bench->with(f_.start, f_.bench->gains(f_.start, e), e);
+      if (alone.blocks.size() == f_.start.blocks.size()) continue;
+      any = add_fitted(alone, terms_of_state(alone)) || any;
+      any = add_moved(alone) || any;
+    }
+    return any;
   }
 
   /// Instants and periods of a model hold each other fast: tried from two sides. A curve that comes
@@ -107,10 +127,18 @@ class Finder {
 
   /// Shapes of a state between the values of their grids, as values of the grids.
   bool add_refined(const State& state) {
-    const std::vector<Term> coarse = terms_of_state(state);
-    const bool any = add_fitted(state, coarse);
-    // A usual value stays where it is, unless it is moved a little: perhaps it is not the best.
-    std::vector<Term> moved = coarse;
+    bool any = add_fitted(state, terms_of_state(state));
+    any = add_moved(state) || any;
+    // Another effect may stand for what such a value leaves.
+    for (const std::size_t b : state.blocks)
+      if (const std::size_t e = f_.bench->effect_of(b); e >= f_.in_model)
+        any = add_moved(f_.bench->without(state, e)) || any;
+    return any;
+  }
+
+  /// A usual value stays where it is, unless it is moved a little: perhaps it is not the best.
+  bool add_moved(const State& state) {
+    std::vector<Term> moved = terms_of_state(state);
     bool usual = false;
     for (Term& term : moved)
       for (std::size_t k = 0; k < term.shape.size(); ++k) {
@@ -119,7 +147,7 @@ class Finder {
         term.shape[k] += 1e-6 * (grid.back() - grid.front());
         usual = true;
       }
-    return (usual && add_fitted(state, moved)) || any;
+    return usual && add_fitted(state, moved);
   }
 
   bool add_fitted(const State& state, const std::vector<Term>& terms) {

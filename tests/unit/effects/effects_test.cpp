@@ -163,6 +163,7 @@ INSTANTIATE_TEST_SUITE_P(
             "elastic-reversal", true, {}, {{0.0, 0.5, 0.25}, {0.5, 0.0, std::sqrt(0.75) / 2.0}}}),
     [](const auto& c) {
       std::string name = c.param.kind;
+      if (!c.param.shape.empty() && c.param.shape.back() < 0.0) name += "-from-an-end";
       for (char& letter : name)
         if (letter == '-') letter = '_';
       return name;
