@@ -69,6 +69,7 @@ class Judge {
     find_cancelling();
     list_certain(serious, walks);
     if (!out_.together.empty() && !walks && !cancels(out_.together.front()) &&
+        !beside_cancelling(out_.together.front()) &&
         !in_doubt(out_.together.front(), serious, unexplained_share)) {
       v.kind = Verdict::Kind::missing;
       v.effect = out_.together.front();
@@ -203,6 +204,28 @@ class Judge {
     if (std::fabs(from) > farthest * read->length) return;
     out_.one_growth = read->middle + from;
     if (drift < growth) std::iter_swap(drift, growth);
+  }
+
+  /// Whether what a cancelling pair says together, which has no name, works where an effect does.
+  bool beside_cancelling(const std::string& name) const {
+    const auto* own = part_of(name);
+    if (own == nullptr) return false;
+    const auto works_in = places_of(*own);
+    const double rms2 = (f_.bench->without(f_.best, f_.index_of(name)).squares - f_.best.squares) /
+                        f_.bench->readings();
+    for (const auto& pair : out_.cancelling) {
+      std::vector<double> sum = *part_of(pair.first);
+      const std::vector<double>& other = *part_of(pair.second);
+      double mean = 0.0, squares = 0.0;
+      for (std::size_t i = 0; i < sum.size(); ++i) mean += sum[i] += other[i];
+      mean /= static_cast<double>(sum.size());
+      for (const double x : sum) squares += (x - mean) * (x - mean);
+      if (squares / static_cast<double>(sum.size()) < unexplained_share * rms2) continue;
+      for (const std::string& place : places_of(sum))
+        for (const std::string& where : works_in)
+          if (same_factor(place, where)) return true;
+    }
+    return false;
   }
 
   /// A further run that one of the two alone, in whatever form, could not follow.
