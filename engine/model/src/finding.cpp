@@ -180,7 +180,10 @@ class Finder {
     for (std::size_t i = 0; i < n; ++i) {
       f_.suspects = {{i, 0.0, 0.0, 0.0}};
       if (!search()) continue;
-      const double criterion = f_.best.criterion + price;
+      // As of all readings: a criterion of fewer has another unit.
+      const double used = f_.bench->readings();
+      const double criterion = f_.best.criterion + price +
+                               (static_cast<double>(n) - used) * std::log(f_.best.squares / used);
       if (!(criterion < least + alias_evidence)) continue;
       const auto s = predicted(i);
       if (!s) continue;

@@ -193,10 +193,19 @@ void refine_shapes(const Observations& o, std::vector<Term>& terms,
   for (std::size_t t = 0; t < terms.size(); ++t)
     for (const Effect::Shape& shape : terms[t].effect->shapes)
       continuous += searched[t] && shape.continuous;
-  for (std::size_t round = 0; round < (continuous > 1 ? 2U : 1U); ++round)
+  // One after the other; shapes of a large effect that go along with each other want more rounds.
+  constexpr std::size_t fewest = 2, most = 8;
+  constexpr double still_better = 1e-3;
+  double before = std::numeric_limits<double>::infinity();
+  for (std::size_t round = 0; round < (continuous > 1 ? most : 1U); ++round) {
     for (std::size_t t = 0; t < terms.size(); ++t)
       for (std::size_t k = 0; searched[t] && k < terms[t].shape.size(); ++k)
         if (terms[t].effect->shapes[k].continuous) refine(o, terms, t, k, root, y);
+    if (continuous < 2 || round + 1 < fewest) continue;
+    const double now = squares_with(o, terms, root, y);
+    if (!(now < before * (1.0 - still_better))) break;
+    before = now;
+  }
 }
 
 /// Whether a shape is an unknown of the fit: not where it has its usual or its only value.
