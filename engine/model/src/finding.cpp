@@ -132,8 +132,20 @@ class Finder {
     // Another effect may stand for what such a value leaves.
     for (const std::size_t b : state.blocks)
       if (const std::size_t e = f_.bench->effect_of(b); e >= f_.in_model)
-        any = add_moved(f_.bench->without(state, e)) || any;
+        any = add_without(state, e) || any;
     return any;
+  }
+
+  bool add_without(const State& state, std::size_t effect) {
+    const State rest = f_.bench->settled(f_.bench->without(state, effect));
+    const auto free = [&](std::size_t b) {
+      const auto& shapes = f_.terms[f_.bench->effect_of(b)].effect->shapes;
+      return std::any_of(shapes.begin(), shapes.end(),
+                         [](const Effect::Shape& shape) { return shape.usual.has_value(); });
+    };
+    if (std::none_of(rest.blocks.begin(), rest.blocks.end(), free)) return false;
+    const bool any = add_fitted(rest, terms_of_state(rest));
+    return add_moved(rest) || any;
   }
 
   /// A usual value stays where it is, unless it is moved a little: perhaps it is not the best.
