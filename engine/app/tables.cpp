@@ -218,7 +218,10 @@ void print_explanation(std::ostream& out, const host::Explained& e, const Campai
   if (c.floor) line(out, "noise floor", floor_text(*c.floor, q));
   print_candidates(out, e);
   for (const model::Candidate& candidate : e.explanation.candidates)
-    if (!host::is_ranked(candidate)) out << "  " << words.unseen(candidate) << "\n";
+    // A test of an hour is not meant to show the day: only the JSON says so.
+    if (!host::is_ranked(candidate) && candidate.why != "short-test")
+      out << "  " << words.unseen(candidate, host::place_of(e.part, campaign, candidate.rows))
+          << "\n";
   print_verdict(out, e, words);
   print_suspects(out, c, e.part, campaign, words);
   for (const std::string& warning : host::warnings_of(e.part, c.fit, words))

@@ -107,14 +107,29 @@ void measure(Hidden& h, const Cycle& c) {
   Random noise(s.seed, 4), wrong(s.seed, 5);
   const double zero = noise.uniform(-10.0, 10.0) * s.noise;
   const double resolution = s.rotary ? pi / 180.0 / 3600.0 * 1e-4 : 1e-10;
+  const std::size_t only = s.one_misread ? Random(s.seed, 6).below(c.size()) : c.size();
   for (std::size_t i = 0; i < c.size(); ++i) {
     double e = zero + s.noise * noise.normal();
     for (const auto& cause : h.causes) e += cause[i];
-    const bool misread = wrong.flag(s.misread);
+    const bool misread = s.one_misread ? i == only : wrong.flag(s.misread);
     const double by = wrong.sign() * wrong.uniform(8.0, 40.0) * s.noise;
     if (misread) e += by, h.misread.push_back(i);
     h.table.deviation.push_back(std::round(e / resolution) * resolution);
   }
+}
+
+/// A thermometer that is read at every second to fifth reading only, that now and then gives
+/// nothing, or that was off for a while.
+void blank(Hidden& h) {
+  Random random(h.scenario.seed, 7);
+  std::vector<double>& material = h.table.material;
+  const std::size_t n = material.size(), way = random.below(3);
+  const std::size_t every = random.whole(2, 5), length = n / random.whole(6, 12);
+  const std::size_t off = random.whole(1, n - length - 1);
+  const double share = random.uniform(0.05, 0.4);
+  for (std::size_t i = 0; i < n; ++i)
+    if (way == 0 ? i % every != 0 : way == 1 ? random.flag(share) : i >= off && i < off + length)
+      material[i] = std::numeric_limits<double>::quiet_NaN();
 }
 
 /// All readings towards + before all towards -, each group run by run and its targets ascending.
@@ -163,6 +178,7 @@ Hidden generate(const Scenario& s) {
   h.table = table_of(s, c);
   measure(h, c);
   if (s.kind == Kind::grouped) group(h);
+  if (s.kind == Kind::blank_temperatures) blank(h);
   return h;
 }
 

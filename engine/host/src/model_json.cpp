@@ -154,6 +154,19 @@ Json candidate_json(const model::Candidate& c, const PartModel& part, double rms
   json["aliases"] = c.aliases;
   json["says"] = words.candidate(c, part, rms_before);
   put(json, "minimum_detectable_rms", c.minimal_detectable, q);
+  if (c.bias > 1.0) put(json, "bias", c.bias, Quantity::ratio);
+  return json;
+}
+
+/// Why an effect is no candidate, in which lines of the file, and what would help.
+Json unseen_json(const model::Candidate& c, const PartModel& part, const Campaign& campaign,
+                 const ModelWords& words) {
+  const std::string says = words.unseen(c, place_of(part, campaign, c.rows));
+  Json json = {{"effect", c.term.name()}, {"says", says}, {"why_not", c.why}};
+  if (c.rows.empty()) return json;
+  Json lines = Json::array();
+  for (const std::uint32_t row : c.rows) lines.push_back(place_of(part, campaign, row).line);
+  json["lines"] = std::move(lines);
   return json;
 }
 
@@ -193,11 +206,14 @@ void put_explained(Json& json, const Explained& e, const Campaign& campaign,
     if (is_ranked(c))
       candidates.push_back(candidate_json(c, e.part, x.comparison.fit.rms, words));
     else
-      unseen.push_back({{"effect", c.term.name()}, {"says", words.unseen(c)}});
+      unseen.push_back(unseen_json(c, e.part, campaign, words));
   json["candidates"] = std::move(candidates);
   json["unseen"] = std::move(unseen);
   json["together"] = x.together;
   json["certain"] = x.certain;
+  Json cancelling = Json::array();
+  for (const auto& pair : x.cancelling) cancelling.push_back({pair.first, pair.second});
+  json["cancelling"] = std::move(cancelling);
   Json descriptions = Json::array();
   for (const model::Description& d : x.descriptions) {
     Json one = {{"effect", d.term.name()}};
@@ -279,6 +295,7 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
   for (const std::string& measurement : part.part.order_assumed)
     out.push_back(words.order_assumed(measurement));
   if (!part.part.table.order_known) out.push_back(words.order_unknown());
+  if (part.interpolated.count > 0) out.push_back(words.temperature_interpolated(part.interpolated));
   return out;
 }
 

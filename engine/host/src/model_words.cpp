@@ -105,11 +105,14 @@ std::string ModelWords::place(const model::Place& place, Quantity deviation) con
 
 std::string ModelWords::verdict(const model::Explanation& e, const PartModel& part) const {
   std::string text = finding_text(templates_, language_, verdict_finding(e, part), "says");
+  if (e.one_growth && e.verdict.kind == Kind::missing)
+    text += " " + says("one-growth", {{"at", *e.one_growth, Quantity::length}}, {});
   if (e.verdict.kind != Kind::unknown) return text;
   if (!e.certain.empty())
     text = says(
         "verdict.certain", {{"rms", e.best_rms, part.deviation()}},
         {{"part", kind_of(part.part)}, {"axis", part.part.name}, {"effects", listed(e.certain)}});
+  for (const auto& [one, other] : e.cancelling) text += " " + cancelling(one, other);
   if (!e.fails.empty()) text += " " + place(e.fails.front(), part.deviation());
   return text;
 }
@@ -125,15 +128,33 @@ std::string ModelWords::candidate(const model::Candidate& c, const PartModel& pa
                                        {"after", c.rms, q},
                                        {"p", c.p, Quantity::probability},
                                        {"detectable", c.minimal_detectable, q}};
+  constexpr double worth_saying = 1.05;
   const char* id = c.score > 0.0 ? c.aliases.empty() ? "candidate.evidence" : "candidate.alias"
                                  : "candidate.none";
-  return says(id, numbers, {{"effect", c.term.name()}, {"aliases", listed(c.aliases)}});
+  std::string text = says(id, numbers, {{"effect", c.term.name()}, {"aliases", listed(c.aliases)}});
+  if (c.score > 0.0 && c.bias > worth_saying)
+    text += " " + says("candidate.near",
+                       {{"detectable", c.minimal_detectable, q}, {"bias", c.bias, Quantity::ratio}},
+                       {});
+  return text;
 }
 
-std::string ModelWords::unseen(const model::Candidate& c) const {
-  const std::string text = says("unseen." + c.why, {}, {{"effect", c.term.name()}});
+std::string ModelWords::unseen(const model::Candidate& c, const RowsPlace& rows) const {
+  const std::string text =
+      says("unseen." + c.why, {{"count", static_cast<double>(rows.count), Quantity::count}},
+           {{"effect", c.term.name()}, {"file", rows.file}, {"lines", rows.lines}});
   return text.empty() ? says("unseen.other", {}, {{"effect", c.term.name()}, {"why", c.why}})
                       : text;
+}
+
+std::string ModelWords::temperature_interpolated(const RowsPlace& rows) const {
+  return says("temperature-interpolated",
+              {{"count", static_cast<double>(rows.count), Quantity::count}},
+              {{"file", rows.file}, {"lines", rows.lines}});
+}
+
+std::string ModelWords::cancelling(const std::string& one, const std::string& other) const {
+  return says("cancelling", {}, {{"one", one}, {"other", other}});
 }
 
 std::string ModelWords::plan(const model::Plan& plan) const {

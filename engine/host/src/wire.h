@@ -222,7 +222,7 @@ NONIO_ON_THE_WIRE(Results::Analysed, a, b, c, d)
 NONIO_ON_THE_WIRE(Results::Written, a, b, c)
 NONIO_ON_THE_WIRE(Results, a, b, c, d, e, f)
 
-NONIO_ON_THE_WIRE(Axis, a, b, c, d, e, f, g, h, i, j)
+NONIO_ON_THE_WIRE(Axis, a, b, c, d, e, f, g, h, i, j, k)
 NONIO_ON_THE_WIRE(Machine, a, b, c, d, e, f, g, h, i)
 NONIO_ON_THE_WIRE(Instrument, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
 NONIO_ON_THE_WIRE(Sensor, a, b, c, d, e, f, g, h)

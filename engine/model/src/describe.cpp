@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "describe.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace nonio::model {
 
-std::vector<Description> described(const Finding& finding) {
+std::vector<Description> described(
+    const Finding& finding, const std::vector<std::pair<std::string, std::string>>& cancelling) {
   std::vector<Term> terms = finding.of_best.fit.terms;
+  std::erase_if(terms, [&](const Term& term) {
+    return std::any_of(cancelling.begin(), cancelling.end(), [&](const auto& pair) {
+      return pair.first == term.name() || pair.second == term.name();
+    });
+  });
   const std::size_t explained = terms.size();
   terms.insert(terms.end(), finding.descriptions.begin(), finding.descriptions.end());
   const Workbench bench(finding.part.table, terms, finding.weight);

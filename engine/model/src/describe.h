@@ -9,6 +9,7 @@ namespace nonio::model {
 
 /// What the best explanation leaves, by descriptions: one after the other, the best first, as long
 /// as the evidence pays for their columns.
-std::vector<Description> described(const Finding& finding);
+std::vector<Description> described(
+    const Finding& finding, const std::vector<std::pair<std::string, std::string>>& cancelling);
 
 }  // namespace nonio::model

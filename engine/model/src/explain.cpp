@@ -23,7 +23,8 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
       out.together.push_back(c.term.name());
   out.best_rms = finding->of_best.fit.rms;
   judge(*finding, out);
-  if (out.verdict.kind == Verdict::Kind::unknown) out.descriptions = described(*finding);
+  if (out.verdict.kind == Verdict::Kind::unknown)
+    out.descriptions = described(*finding, out.cancelling);
   out.comparison = std::move(finding->of_model);
   return out;
 }

@@ -20,7 +20,10 @@ class ModelWords {
   std::string candidate(const model::Candidate& candidate, const PartModel& part,
                         double rms_before) const;
   /// Why these readings cannot show it.
-  std::string unseen(const model::Candidate& candidate) const;
+  std::string unseen(const model::Candidate& candidate, const RowsPlace& rows) const;
+  std::string temperature_interpolated(const RowsPlace& rows) const;
+  /// Two effects that cancel each other: neither is shown.
+  std::string cancelling(const std::string& one, const std::string& other) const;
   std::string plan(const model::Plan& plan) const;
   std::string suspect(const model::Suspect& suspect, const ReadingPlace& place,
                       Quantity deviation) const;

@@ -122,8 +122,20 @@ struct Candidate {
   double score = 0.0;  ///< 2 ln of the evidence for it; <= 0: none
   std::vector<Parameter> parameters;
   std::vector<std::string> aliases;  ///< these readings cannot tell them from this one
-  double minimal_detectable = 0.0;   ///< rms of the smallest one that would be found, m or rad
+  /// RMS of the smallest one that would be found nine times in ten, m or rad.
+  double minimal_detectable = 0.0;
+  /// Found near that size: an effect this large is found only where the noise makes it look so many
+  /// times larger in the mean. 1 where that is nothing.
+  double bias = 1.0;
+  std::vector<std::uint32_t>
+      rows{};  ///< not visible: rows of the part's table that stand in the way
 };
+
+/// Effects that concern a part and do not apply to its readings, with the reason: not visible.
+std::vector<Candidate> not_applying(const Part& part, const std::vector<Effect>& effects);
+
+/// Rows of the table that have no temperature of their own, where it is interpolated in time.
+std::vector<std::uint32_t> interpolated_temperatures(const Part& part);
 
 /// A further measurement that would tell the effects of an alias group apart.
 struct Plan {
@@ -156,6 +168,11 @@ struct Explanation {
   double best_rms = 0.0;              ///< what the best explanation leaves, m or rad
   /// Of these what is free of doubt, whatever the rest is; most evidence first.
   std::vector<std::string> certain;
+  /// Pairs of effects of `together` that cancel each other: neither is shown by that.
+  std::vector<std::pair<std::string, std::string>> cancelling;
+  /// Growth and drift of `together` that are as well one growth away from this place on the axis,
+  /// m.
+  std::optional<double> one_growth{};
   std::vector<Description> descriptions;  ///< unknown: of what the best explanation leaves
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
   std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
