@@ -104,6 +104,9 @@ struct Comparison {
   std::optional<NoiseFloor> floor{};
   std::optional<LackOfFit> lack_of_fit{};
   std::vector<Place> places{};  ///< all that were looked at, largest share first
+  /// Where something fails: the fewest places that hold what is left, each beside those before it,
+  /// so that nothing is counted twice; no share below 2 %.
+  std::vector<Place> seats{};
   std::size_t means = 0;        ///< long tables: of how many means the places tell; else 0
   std::vector<Suspect> suspects{};
   bool fails() const;  ///< something is left in some place
@@ -123,6 +126,8 @@ struct Candidate {
   std::vector<Parameter> parameters;
   std::vector<std::string> aliases;  ///< these readings cannot tell them from this one
   double minimal_detectable = 0.0;   ///< rms of the smallest one that would be found, m or rad
+  /// Descriptions of place beside which its evidence was found; else it is that beside the model.
+  std::vector<std::string> beside{};
 };
 
 /// A further measurement that would tell the effects of an alias group apart.
@@ -143,10 +148,15 @@ struct Verdict {
   double suspects_share = 0.0;  ///< of the readings
 };
 
-/// A description added to the best explanation and to those before it: what is left, not why.
+/// A description added to the model, to what is certain and to those before it: what is left, not
+/// why.
 struct Description {
+  enum class What { value_at_targets, reversal_at_targets, course };
   Term term;         ///< with the shapes found
   double rms = 0.0;  ///< what is left with it, m or rad
+  What what = What::course;
+  /// What it says, m or rad: of each target (values less their mean), else of each reading.
+  double low = 0.0, high = 0.0, mean = 0.0;
 };
 
 struct Explanation {
@@ -156,7 +166,7 @@ struct Explanation {
   double best_rms = 0.0;              ///< what the best explanation leaves, m or rad
   /// Of these what is free of doubt, whatever the rest is; most evidence first.
   std::vector<std::string> certain;
-  std::vector<Description> descriptions;  ///< unknown: of what the best explanation leaves
+  std::vector<Description> descriptions;  ///< unknown: of what is left beside the certain
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
   std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
   Verdict verdict;
