@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """real.py NONIO                       what `explain` says of the real readings in bench/real, held against what a
                                        person sees in them (bench/real/wanted.toml)
-real.py NONIO --hidden COUNT [--seed SEED]    an effect hidden in their scatter: whole passes, less the mean of each target
-                                       from each side, are drawn again; how often it is named
+real.py NONIO --hidden COUNT [--seed SEED]    an effect hidden in their scatter: whole passes, less the mean of each
+                                       target from each side, are drawn again; how often it is named
 real.py NONIO --complete COUNT [--seed SEED]  the same without an effect: how often the verdict is `nothing`, or says that passes differ
 
 Wilson's 95 % intervals. Status 1 where a set is not read as wanted."""
@@ -91,12 +91,12 @@ class Real:
         cells = collections.defaultdict(list)
         for r in rows:
             cells[r["direction"], float(r[target])].append(float(r[value]))
-        mean = {cell: statistics.fmean(values) for cell, values in cells.items()}
-        grow = math.sqrt(self.runs / (self.runs - 1))  # a mean takes some of the scatter with it
+        middle = {cell: statistics.fmean(values) for cell, values in cells.items()}
+        grow = math.sqrt(self.runs / (self.runs - 1))  # the middle takes some of the scatter with it
         self.passes = collections.defaultdict(list)
         for way in self.ways:
             for run in sorted({r["run"] for r in rows}, key=int):
-                left = {float(r[target]): grow * (float(r[value]) - mean[way, float(r[target])])
+                left = {float(r[target]): grow * (float(r[value]) - middle[way, float(r[target])])
                         for r in rows if r["direction"] == way and r["run"] == run}
                 self.passes[way].append([left[t] for t in self.targets])
         self.scatter = math.sqrt(statistics.fmean(v * v for w in self.ways for p in self.passes[w] for v in p))

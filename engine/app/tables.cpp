@@ -136,17 +136,28 @@ void print_candidates(std::ostream& out, const host::Explained& e) {
   }
 }
 
+/// What the best explanation adds; where it is none, what of it is not certain.
+void print_together(std::ostream& out, const model::Explanation& x) {
+  const bool unknown = x.verdict.kind == model::Verdict::Kind::unknown;
+  std::vector<std::string> names;
+  for (const std::string& name : x.together)
+    if (!unknown || std::find(x.certain.begin(), x.certain.end(), name) == x.certain.end())
+      names.push_back(name);
+  if (names.size() > (unknown ? 0U : 1U))
+    out << "    " << (unknown ? "it may also have, not certain: " : "the best explanation adds: ")
+        << host::listed(names) << "\n";
+}
+
 void print_verdict(std::ostream& out, const host::Explained& e, const host::ModelWords& words) {
   const model::Explanation& x = e.explanation;
   out << "  verdict: " << host::to_text(x.verdict.kind)
       << (x.verdict.effect.empty() ? "" : " " + x.verdict.effect) << "\n    "
       << words.verdict(x, e.part) << "\n";
-  if (x.together.size() > 1)
-    out << "    the best explanation adds: " << host::listed(x.together) << "\n";
+  print_together(out, x);
   for (const model::Description& d : x.descriptions)
     out << "    " << words.description(d, e.part) << "\n";
   for (const std::string& text : words.next(x, e.part))
-    out << "    " << (x.plans.empty() ? "" : "to tell them apart: ") << text << "\n";
+    out << "    " << (x.plans.empty() ? "next: " : "to tell them apart: ") << text << "\n";
   for (const char* what : {"is", "cure"})
     if (const std::string text = words.card(x.verdict.effect, what); !text.empty())
       out << "    " << text << "\n";

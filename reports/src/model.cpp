@@ -39,8 +39,10 @@ void add_curve(std::vector<ParameterRow>& rows, const std::string& effect,
     if (const std::size_t place = meaning.find("{at}"); at && place != std::string::npos)
       meaning.replace(
           place, 4, localised(evidence_text({"", *at, along}), language) + " " + unit_text(along));
-    rows.push_back({rows.empty() || name == std::string_view("rms") ? effect : "", "", meaning,
-                    localised(short_text(printed(value, q)), language), "–", unit_text(q)});
+    std::string text = localised(short_text(printed(value, q)), language);
+    if (text.starts_with('-')) text.replace(0, 1, "\u2212");
+    rows.push_back({name == std::string_view("rms") ? effect : "", "", meaning, std::move(text),
+                    "–", unit_text(q)});
   };
   row("rms", curve.rms, {});
   row("low", curve.low, curve.low_at);

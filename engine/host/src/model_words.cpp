@@ -56,7 +56,8 @@ std::string on_line(const model::Place& place) {
 }
 
 Finding place_finding(const model::Place& place, Quantity deviation) {
-  return {.id = (place.line.empty() ? "place." : "place.line.") + place.where,
+  const std::string of = place.together ? "together" : place.where;
+  return {.id = (place.line.empty() ? "place." : "place.line.") + of,
           .evidence = {percent("share", place.share),
                        {"rms", place.rms, deviation},
                        {"p", place.p, Quantity::probability}},
@@ -106,7 +107,7 @@ std::vector<Finding> no_sign_findings(const model::Explanation& e, const PartMod
 
 namespace {
 
-constexpr double told_apart = 4.0;  // standard deviations
+constexpr double told_apart = 4.0;         // standard deviations
 constexpr std::size_t enough_targets = 9;  // a wave and a bend need as many columns as 5 targets
 
 class Next {
@@ -138,8 +139,7 @@ class Next {
     const auto good = std::find_if(e_.plans.begin(), e_.plans.end(),
                                    [](const model::Plan& p) { return p.power >= told_apart; });
     if (good != e_.plans.end()) return out_.push_back(plan_finding(*good));
-    const auto [low, high] =
-        std::minmax_element(part_.part.along.begin(), part_.part.along.end());
+    const auto [low, high] = std::minmax_element(part_.part.along.begin(), part_.part.along.end());
     add("wider",
         {{"from", *low, part_.position()},
          {"to", *high, part_.position()},
@@ -259,7 +259,7 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
   if (v.kind == Kind::unknown && !e.certain.empty()) {
     f.id = "verdict.certain";
     f.texts.emplace_back("effects", listed(e.certain));
-    f.evidence.push_back({"after", e.best_rms, q});
+    f.evidence.push_back({"after", e.certain_rms, q});
   }
   return f;
 }

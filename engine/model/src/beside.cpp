@@ -2,6 +2,7 @@
 #include "beside.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "candidates.h"
 #include "describe.h"
@@ -20,7 +21,7 @@ std::vector<Term> certain_terms(const Explanation& out) {
   return terms;
 }
 
-/// Effects that are certain beside the model; their candidates.
+/// Effects that are certain beside the model and do not repeat at a place; their candidates.
 std::vector<Candidate> certain_in(const Part& part, const std::vector<Term>& model,
                                   const std::vector<Term>& catalogue, std::uint64_t seed) {
   std::vector<Candidate> out;
@@ -33,7 +34,8 @@ std::vector<Candidate> certain_in(const Part& part, const std::vector<Term>& mod
       e.together.push_back(c.term.name());
   judge(*finding, e);
   for (const Candidate& c : e.candidates)
-    if (std::find(e.certain.begin(), e.certain.end(), c.term.name()) != e.certain.end())
+    if (std::find(e.certain.begin(), e.certain.end(), c.term.name()) != e.certain.end() &&
+        !of_place(*finding, c.term))
       out.push_back(c);
   return out;
 }
@@ -54,6 +56,18 @@ void take_over(Candidate found, const std::vector<std::string>& beside, Explanat
 
 }  // namespace
 
+namespace {
+
+/// What is left with all that is certain in the model.
+double rms_beside(const Finding& finding, const Explanation& out) {
+  std::vector<Term> terms = finding.of_model.fit.terms;
+  for (Term& term : certain_terms(out)) terms.push_back(std::move(term));
+  const double rms = rms_with(finding.part.table, terms, finding.weight);
+  return std::isfinite(rms) ? rms : finding.of_model.fit.rms;
+}
+
+}  // namespace
+
 void describe(const Finding& finding, const std::vector<Term>& catalogue, Explanation& out) {
   out.descriptions = described(finding, certain_terms(out));
   std::vector<Term> model = finding.of_model.fit.terms;
@@ -66,6 +80,7 @@ void describe(const Finding& finding, const std::vector<Term>& catalogue, Explan
     for (Candidate& found : certain_in(finding.part, model, catalogue, finding.seed))
       take_over(std::move(found), beside, out);
   }
+  out.certain_rms = rms_beside(finding, out);
   if (out.certain.size() == before) return;
   std::stable_sort(out.candidates.begin(), out.candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });

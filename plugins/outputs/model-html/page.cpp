@@ -103,7 +103,9 @@ std::string cards(const Source& source) {
                            "effect." + c.effect.substr(0, c.effect.find(':')) + "." + what);
           !words.empty())
         text += element("p", html(typeset(words)));
-    if (!text.empty()) out += element("details", element("summary", html(c.effect)) + text);
+    if (!text.empty())
+      out +=
+          element("details", element("summary", html(c.effect)) + text, out.empty() ? "open" : "");
   }
   if (out.empty()) return out;
   return element("h3", html(source.words.get("model.card"))) + out;

@@ -77,11 +77,11 @@ void add_candidates(const Source& source, const ModelFit& fit, Blocks& blocks) {
   if (!table.rows.empty()) blocks.push_back({std::move(table), field});
   if (const std::string text = no_sign(fit, source.in.templates, source.language()); !text.empty())
     blocks.push_back({Paragraph{text, Paragraph::Look::small}, field});
-  for (const Finding& f : fit.next)
+  for (const Finding& f : fit.next) {
+    const std::string text = finding_text(source.in.templates, source.language(), f, "says");
     blocks.push_back(
-        {Paragraph{typeset(finding_text(source.in.templates, source.language(), f, "says")),
-                   Paragraph::Look::small},
-         field});
+        {Paragraph{words.get("model.next") + ": " + typeset(text), Paragraph::Look::small}, field});
+  }
 }
 
 void add_falling_error(const Source& source, const ModelFit& fit, Blocks& blocks) {

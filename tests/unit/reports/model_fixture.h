@@ -115,4 +115,15 @@ inline ModelFit made_model(const MadeModel& made = {}) {
   return f;
 }
 
+/// The same with an effect that is missing, two that are not, and something to measure.
+inline ModelFit with_candidates(ModelFit f) {
+  const Quantity q = deviation_of(f.angular);
+  f.candidates = {{"scale:" + f.axis, 81.5, 0.6e-6, 0.62e-6, 1e-12, 0.15e-6, {}, true}};
+  f.no_sign = {
+      {"no-sign.first", false, {{"size", 1.1e-6, q}}, {{"effect", "warm-up:" + f.axis}}},
+      {"no-sign.other", false, {{"size", 0.25e-6, q}}, {{"effect", "temperature:" + f.axis}}}};
+  f.next = {{"next.temperatures", false, {}, {}}};
+  return f;
+}
+
 }  // namespace nonio::fixtures

@@ -84,7 +84,8 @@ struct Place {
   /// Where it is largest, if it sits at one place: a target (m or rad), a run, an instant (s).
   std::optional<double> at{};
   Quantity at_quantity = Quantity::number;
-  std::string line{};  ///< in space: "position" along this one
+  std::string line{};     ///< in space: "position" along this one
+  bool together = false;  ///< of two factors: with what each of them says alone
 };
 
 /// A reading that contradicts its neighbours; kept, with weight 0, until the user excludes it.
@@ -166,6 +167,7 @@ struct Explanation {
   double best_rms = 0.0;              ///< what the best explanation leaves, m or rad
   /// Of these what is free of doubt, whatever the rest is; most evidence first.
   std::vector<std::string> certain;
+  double certain_rms = 0.0;  ///< unknown: with them in the model, m or rad
   std::vector<Description> descriptions;  ///< unknown: of what is left beside the certain
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
   std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
