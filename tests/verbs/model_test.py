@@ -39,7 +39,7 @@ class Model(VerbTest):
             self.assertAlmostEqual(effect["without"]["cv_rms"], dropped["cv_rms_um"], places=5)
             kept = [r + s for r, s in zip(data["residual"], effect["says"])]
             unfitted = (sum(r * r for r in kept) / len(kept)) ** 0.5
-            self.assertLessEqual(effect["without"]["rms"], unfitted + 1e-9)
+            self.assertLessEqual(effect["without"]["rms"], unfitted + 1e-5)  # eight digits on the page
         falls = [line.split("</div>")[0] for line in page.split('class="label">')[1:]]
         self.assertEqual(falls, ["no effects", "+ scale:X", "+ zero-drift:X", "+ backlash:X"])
 
