@@ -108,7 +108,7 @@ struct Comparison {
   /// Where something fails: the fewest places that hold what is left, each beside those before it,
   /// so that nothing is counted twice; no share below 2 %.
   std::vector<Place> seats{};
-  std::size_t means = 0;        ///< long tables: of how many means the places tell; else 0
+  std::size_t means = 0;  ///< long tables: of how many means the places tell; else 0
   std::vector<Suspect> suspects{};
   bool fails() const;  ///< something is left in some place
 };
@@ -167,7 +167,7 @@ struct Explanation {
   double best_rms = 0.0;              ///< what the best explanation leaves, m or rad
   /// Of these what is free of doubt, whatever the rest is; most evidence first.
   std::vector<std::string> certain;
-  double certain_rms = 0.0;  ///< unknown: with them in the model, m or rad
+  double certain_rms = 0.0;               ///< unknown: with them in the model, m or rad
   std::vector<Description> descriptions;  ///< unknown: of what is left beside the certain
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
   std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
