@@ -362,6 +362,7 @@ class PlotSetter {
     frame.across =
         axis_scale(across.low, across.high, std::clamp(static_cast<int>(width_ / 30), 2, 7), ticks,
                    plot_.language);
+    if (!plot_.lanes.empty()) frame.across = lanes();
     if (auto ok = draw_axes(frame, labels, *up_title); !ok) return ok;
     canvas_.clip(frame.x, frame.y, frame.w, frame.h);
     canvas_.ops += "1 j\n";  // round joins: no spikes where a curve turns
@@ -414,8 +415,10 @@ class PlotSetter {
     canvas_.stroke_colour(style_.rule);
     canvas_.line(0.25);
     for (const double tick : f.up.ticks) canvas_.segment(f.x, f.py(tick), f.x + f.w, f.py(tick));
-    for (const double tick : f.across.ticks)
-      canvas_.segment(f.px(tick), f.y, f.px(tick), f.y + f.h);
+    for (const double tick : f.across.ticks) {
+      const double at = plot_.lanes.empty() ? tick : tick + 0.5;  // lanes have their names between
+      canvas_.segment(f.px(at), f.y, f.px(at), f.y + f.h);
+    }
     canvas_.stroke_colour(style_.muted);
     canvas_.line(0.5);
     if (plot_.zero_line) canvas_.segment(f.x, f.py(0), f.x + f.w, f.py(0));
@@ -435,6 +438,13 @@ class PlotSetter {
                            std::span(up.glyphs).subspan(line.begin, line.end - line.begin));
     }
     return {};
+  }
+
+  AxisScale lanes() const {
+    AxisScale scale{0.0, static_cast<double>(plot_.lanes.size()), {}, plot_.lanes};
+    for (std::size_t k = 0; k < plot_.lanes.size(); ++k)
+      scale.ticks.push_back(static_cast<double>(k) + 0.5);
+    return scale;
   }
 
   /// Room for `span`, to both sides alike.

@@ -246,6 +246,24 @@ class Confinement(NightTest):
             self.assertEqual(tree(self.out), tree(reference))
         self.assertEqual(files(self.out), files(reference))
 
+    def test_a_verb_outlives_what_plugins_beside_the_program_do_while_they_are_loaded(self):
+        """They are not tried in a child first: the process is made anew, and then all are."""
+        self.campaign("a")
+        own = pathlib.Path(NONIO).resolve().parents[1]
+        for how, words in {"quits": "ended the process", "hangs": "no answer within 10 s"}.items():
+            program = self.root / f"program-{how}"
+            shutil.copytree(own / "lib", program / "lib", symlinks=True)
+            (program / "bin").mkdir()
+            shutil.copy2(NONIO, program / "bin")
+            (program / "share").symlink_to(own / "share")
+            plugins = next(program.rglob("csv-reader.so")).parent
+            shutil.copy(next((PLUGINS / f"on_load_{how}").glob("*.so")), plugins)
+            done = subprocess.run([program / "bin" / "nonio", "compare", self.site / "a"], capture_output=True, text=True,
+                                  timeout=120)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("did not survive loading: " + words, done.stderr, how)
+            self.assertIn("noise floor", done.stdout)
+
     def test_the_key_is_hidden_from_plugins_in_nights_and_verbs(self):
         self.campaign("a", run=GOOD)
         folder = self.site / "keys"

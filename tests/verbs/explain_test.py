@@ -63,6 +63,58 @@ class Explain(VerbTest):
         self.assertIn("verdict: missing backlash:X", shown)
         self.assertIn("#####", shown)
 
+    def test_what_there_is_no_sign_of_stands_on_one_line_with_the_size_that_would_be_seen(self):
+        self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
+        shown = self.nonio("explain", self.folder).stdout
+        line = next(l for l in shown.splitlines() if l.startswith("  No sign of: "))
+        self.assertRegex(line, r"No sign of: \S+:X \(would be seen from [\d.]+ um\), \S+:X \([\d.]+ um\)")
+        e = self.explain()
+        self.assertEqual(line.strip(), e["no_sign"])
+        for c in e["candidates"]:
+            self.assertEqual(c["score"] <= 0, f" {c['effect']} (" in line, c)
+        self.assertRegex(shown, r"If nothing were missing, this test would still name something (about|less than) 1 time in \d+\.")
+        self.assertNotIn(" of 200 shuffles", shown)
+
+    def test_nothing_says_how_far_it_goes(self):
+        self.campaign(manifest(["scale:X", "backlash:X"]), x=readings(scale=20, backlash=-6))
+        self.assertIn("nothing more, as far as these readings go", self.explain()["verdict"]["says"])
+
+    def real_like(self, drift, runs=5):
+        """Five targets, each with an error and a reversal of its own, far above the scatter."""
+        targets = [15.0, 25.2, 35.4, 45.6, 55.8]
+        place, reversal = [-4, 22, -29, 6, 4], [0, 9, -7, -1, -8]
+        rng, rows, step = random.Random(5), ["run,direction,target_mm,deviation_um"], 0
+        for run in range(1, runs + 1):
+            for way, order in (("+", range(5)), ("-", reversed(range(5)))):
+                for k in order:
+                    value = place[k] + reversal[k] * (0.5 if way == "+" else -0.5) + drift * step / 50 + rng.gauss(0, 0.7)
+                    rows.append(f"{run},{way},{targets[k]:g},{value:.3f}")
+                    step += 1
+        return "\n".join(rows) + "\n"
+
+    def test_a_drift_is_certain_beside_what_no_effect_of_place_explains(self):
+        self.campaign(manifest([]), x=self.real_like(drift=-8))
+        e = self.explain()
+        self.assertEqual(e["verdict"]["kind"], "unknown")
+        self.assertEqual(e["certain"], ["zero-drift:X"])
+        drift = next(c for c in e["candidates"] if c["effect"] == "zero-drift:X")
+        self.assertGreater(drift["score"], 50)
+        self.assertIn("free-position:X", drift["beside"])
+        self.assertIn("zero-drift:X", e["verdict"]["says"])
+        self.campaign(manifest([]), x=self.real_like(drift=0))
+        self.assertEqual(self.explain()["certain"], [])
+
+    def test_descriptions_have_their_size_and_the_sentence_says_what_to_measure(self):
+        self.campaign(manifest([]), x=self.real_like(drift=0))
+        e = self.explain()
+        sizes = {d["effect"]: (d["low_um"], d["high_um"], d["mean_um"]) for d in e["descriptions"]}
+        for got, true in zip(sizes["free-position:X"], (-29 - -0.2, 22 - -0.2)):
+            self.assertLess(abs(got - true), 1.5)
+        for got, true in zip(sizes["free-reversal:X"], (-8, 9, -1.4)):
+            self.assertLess(abs(got - true), 1.5)
+        self.assertTrue(any("9 targets or more" in text and "5 are too few" in text for text in e["next"]), e["next"])
+        self.assertIn("9 targets or more", self.nonio("explain", self.folder).stdout)
+
     def test_a_complete_model_misses_nothing(self):
         self.campaign(manifest(["scale:X", "backlash:X"]), x=readings(scale=20, backlash=-6))
         e = self.explain()

@@ -136,6 +136,7 @@ Json compared_json(const Compared& c, const Campaign& campaign, const ModelWords
   json["correlations"] = std::move(pairs);
   json["fails"] = places_json(failing(comparison.places), words, q);
   json["places"] = places_json(comparison.places, words, q);
+  json["left"] = places_json(comparison.seats, words, q);
   if (comparison.means > 0) json["means"] = comparison.means;
   json["suspects"] = suspects_json(comparison.suspects, c.part, campaign, words);
   json["warnings"] = warnings_of(c.part, comparison.fit, words);
@@ -152,6 +153,7 @@ Json candidate_json(const model::Candidate& c, const PartModel& part, double rms
   put(json, "score", c.score, Quantity::number);
   json["parameters"] = parameters_json(c.parameters, false);
   json["aliases"] = c.aliases;
+  if (!c.beside.empty()) json["beside"] = c.beside;
   json["says"] = words.candidate(c, part, rms_before);
   put(json, "minimum_detectable_rms", c.minimal_detectable, q);
   if (c.bias > 1.0) put(json, "bias", c.bias, Quantity::ratio);
@@ -218,12 +220,17 @@ void put_explained(Json& json, const Explained& e, const Campaign& campaign,
   for (const model::Description& d : x.descriptions) {
     Json one = {{"effect", d.term.name()}};
     put(one, "rms", d.rms, q);
+    put(one, "low", d.low, q);
+    put(one, "high", d.high, q);
+    put(one, "mean", d.mean, q);
     one["says"] = words.description(d, e.part);
     descriptions.push_back(std::move(one));
   }
   json["descriptions"] = std::move(descriptions);
   json["verdict"] = verdict_json(e, words);
   json["plans"] = plans_json(x.plans, words);
+  json["next"] = words.next(x, e.part);
+  if (const std::string text = words.no_sign(x, e.part); !text.empty()) json["no_sign"] = text;
   if (x.verdict.trials > 0) {
     put(json, "false_alarm_rate", x.verdict.false_alarms, Quantity::ratio);
     json["false_alarm_trials"] = x.verdict.trials;

@@ -239,11 +239,18 @@ std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
 void Plugins::load(const std::vector<fs::path>& folders) {
   step_aside();
   const std::vector<fs::path> paths = files_in(folders);
-  std::vector<std::string> refusals = probe(paths);
-  for (std::size_t i = 0; i < paths.size(); ++i)
+  std::vector<fs::path> strange;
+  std::copy_if(paths.begin(), paths.end(), std::back_inserter(strange), must_be_tried);
+  std::vector<std::string> refusals = probe(strange);
+  for (std::size_t i = 0; i < strange.size(); ++i)
     if (!refusals[i].empty() && !refusals[i].starts_with("did not survive"))
-      refusals[i] = probe(std::span(paths).subspan(i, 1)).front();
-  for (std::size_t i = 0; i < paths.size(); ++i) load_file(paths[i], refusals[i]);
+      refusals[i] = probe(std::span(strange).subspan(i, 1)).front();
+  const LoadingUntried loading;
+  std::size_t tried = 0;
+  for (const fs::path& path : paths) {
+    const bool is_strange = tried < strange.size() && strange[tried] == path;
+    load_file(path, is_strange ? refusals[tried++] : "");
+  }
 }
 
 void Plugins::load_file(const fs::path& path, const std::string& refusal) {

@@ -115,6 +115,8 @@ struct Plot {
   std::optional<std::pair<double, double>> range{};  ///< of the vertical axis; else what is drawn
   bool degrees = false;  ///< the horizontal axis is an angle: ticks at parts of a turn
   bool whole = false;    ///< the horizontal axis counts: ticks at whole numbers
+  /// The horizontal axis has a lane of width 1 for each name, from 0 on.
+  std::vector<std::string> lanes{};
   bool zero_line = true;
   bool same_scale = false;   ///< a length is as long across as up: a picture of something
   bool scales = true;        ///< false: nothing but the picture, and x_title as its caption
