@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "nonio/host/digest.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
 #include "plugin_checks.h"
@@ -457,6 +458,25 @@ Verdict effect_hostile(const Effect& e, const Bench& bench) {
 }
 
 }  // namespace
+
+Verdict fingerprint(const Effect& e, const Bench& bench) {
+  if (!e.columns || !e.applies) return skipped("applies or columns is missing");
+  const auto all = shown(e, bench);
+  if (all.empty()) return skipped(unseen);
+  if (bench.only_plugin) bench.only_plugin();
+  std::string text;
+  for (const Shown& s : all) {
+    bench.stage(s.where());
+    const auto shape = shape_at(e, s, 0.5);
+    if (!shape) continue;
+    const auto columns = e.columns(s.table(), s.term.axis, *shape);
+    text += s.where() + (columns ? std::string("\n") : ": " + columns.error().message + "\n");
+    if (!columns) continue;
+    for (const auto& c : *columns)
+      for (const double x : c) text += exact_text(x) + " ";
+  }
+  return {Verdict::State::passed, sha256(text)};
+}
 
 const std::vector<Check<Effect>>& effect_checks() {
   static const std::vector<Check<Effect>> checks = {

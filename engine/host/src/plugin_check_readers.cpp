@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "nonio/host/digest.h"
 #include "nonio/host/manifest.h"
 #include "nonio/sdk/format.h"
 #include "plugin_checks.h"
@@ -328,6 +329,24 @@ Verdict reader_foreign(const Reader& r, const Bench& bench) {
 }
 
 }  // namespace
+
+Verdict fingerprint(const Reader& r, const Bench& bench) {
+  if (!r.recognises || !r.reads || !r.read) return skipped("recognises, reads or read is missing");
+  const auto files = files_of(r, bench);
+  if (files.empty()) return skipped(no_file);
+  if (bench.only_plugin) bench.only_plugin();
+  std::string all;
+  for (const ReadFile& f : files) {
+    bench.stage(f.where());
+    const auto o = read(r, f, f.bytes);
+    all += f.where() + (o ? std::string("\n") : ": " + o.error().message + "\n");
+    for (std::size_t i = 0; o && i < o->size(); ++i) {
+      for (const double x : row_of(*o, i)) all += exact_text(x) + " ";
+      all += "\n";
+    }
+  }
+  return {Verdict::State::passed, sha256(all)};
+}
 
 const std::vector<Check<Reader>>& reader_checks() {
   static const std::vector<Check<Reader>> checks = {
