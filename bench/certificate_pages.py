@@ -27,11 +27,15 @@ STATED = ('feed_mm_per_min = 2000.0\ndwell_s = 3.0\nover_travel_mm = 2.0\ntool_o
           'workpiece_offset = { X = 0.0, Y = 0.0, Z = 250.0 }\ncompensation = "off"\n')
 
 
+def without_run(text):
+    return re.sub(r"(?m)^\[run\]\n(?:.+\n?)*", "", text)
+
+
 def complete(text, languages, analyses, outputs='"json", "certificate", "pdf-report"'):
     """Of a sample what a certificate needs beside its own keys."""
     text = text.replace("[machine]\n", '[machine]\ndescription = "Machine tool"\ncondition = "In use"\n', 1)
     text = text.replace("[campaign]\n", '[campaign]\ncustomer_address = "Via degli Esempi 1, 10100 Torino"\n', 1)
-    text = re.sub(r"\[run\]\n(?:.+\n?)*", "", text)
+    text = without_run(text)
     quoted = ", ".join(f'"{language}"' for language in languages)
     run = f'[run]\nanalyses = [{", ".join(analyses)}]\noutputs = [{outputs}]\n'
     return (text.rstrip("\n") + "\n\n" + run + "\n[certificate]\nlanguages = [" + quoted + "]\n"
@@ -39,7 +43,11 @@ def complete(text, languages, analyses, outputs='"json", "certificate", "pdf-rep
 
 
 def with_limits(text):
-    """Limits for every axis, the way parts are measured, and a sensor."""
+    """Limits for every axis, the way parts are measured, what an uncertainty needs, and a sensor."""
+    if "[environment]" not in text:
+        stated = (SITE / "09-tolerances" / "campaign.toml").read_text("utf-8")
+        environment = re.search(r"\[environment\]\n(?:.+\n)+", stated)[0]
+        text = text.replace("[[measurement]]", environment + "\n[[measurement]]", 1)
     text = re.sub(r"(\[machine\.axes\.[XYZ]\]\nkind = \"linear\"\n)", r"\1tolerance_um = { A = 30.0, R = 12.0, B = 6.0 }\n", text)
     text = re.sub(r"(kind = \"axis\"\n)", r"\1" + STATED.replace("\\", r"\\"), text)
     return text.replace("[environment]\n", '[[sensor]]\nmeasures = "material"\nmaker = "Sample Sensors"\nmodel = "Pt100"\n'
@@ -108,6 +116,7 @@ def campaigns():
         end = "-".join(languages)
         for kind, (sample, analyses) in kinds.items():
             text = (SITE / sample / "campaign.toml").read_text("utf-8").replace(f'id = "{sample}"', f'id = "{kind}-{end}"', 1)
+            text = without_run(text)
             tail = re.search(r"(?ms)^\[options\..*", text)
             options = tail[0] if tail else ""
             text = with_limits(complete(text[:tail.start()] if tail else text, languages, analyses)) + "\n" + options

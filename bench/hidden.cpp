@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well `explain` finds what the second generator (tests/hidden) has hidden:
-//   bench_hidden one|several|complete|outside COUNT SEED [--verbose] [--plugins FOLDER]
+//   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped|beside COUNT
+//   SEED [--verbose] [--plugins FOLDER]
 //                [--write FOLDER] [--right PERCENT] [--wrong PERCENT]
 // Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio explain --auto` does. Fails
 // if fewer are right, or more named wrongly, than --right and --wrong say.
@@ -156,9 +157,12 @@ bool place_is_right(const Hidden& h, const model::Explanation& said) {
 }
 
 struct Score {
+  Tally certain,
+      described;  ///< names said to be certain that are hidden; descriptions to the floor
   Tally answered, right, kind, floor, wrong_name, place, alias, ends, noise, above_floor, values;
   std::map<std::string, Tally> of_effect, of_value;
-  std::map<std::string, Tally> named_of;  ///< outside: `missing`, by cause
+  std::map<std::string, Tally> named_of;                ///< outside: `missing`, by cause
+  std::map<std::string, std::uint64_t> certain_beside;  ///< certain, and not hidden
   double false_alarms = 0.0;
   double above_floor_expected = 0.0;  ///< sum of chances, of those in `above_floor`
   std::vector<double> cpu;            ///< of each explanation, s
@@ -201,6 +205,10 @@ void score_fit(Score& score, const Hidden& h, const model::Comparison& c) {
   score_values(score, h, c.fit);
 }
 
+bool of_one(Kind kind) {
+  return kind == Kind::one || kind == Kind::wave_under_curve || kind == Kind::grouped;
+}
+
 /// Whether the campaign was explained as it had to be.
 bool judge(Score& score, const Hidden& h, const Followed& f) {
   score.answered.add(f.error.empty());
@@ -208,21 +216,30 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
   const model::Explanation &first = f.steps.front().said, &last = f.steps.back().said;
   const bool named = first.verdict.kind == Verdict::Kind::missing;
   bool right = false, wrong = named;
-  if (h.scenario.kind == Kind::one || h.scenario.kind == Kind::several) {
+  for (const std::string& name : first.certain) {
+    const bool there = holds(h.truth.hidden, name);
+    score.certain.add(there);
+    if (!there) ++score.certain_beside[name.substr(0, name.find(':'))];
+  }
+  if (!first.descriptions.empty() && first.comparison.floor)
+    score.described.add(first.descriptions.back().rms <= 1.1 * first.comparison.floor->s);
+  if (h.scenario.kind != Kind::complete && h.scenario.kind != Kind::outside) {
     const bool by_name = named && holds(h.truth.hidden, first.verdict.effect);
     const bool by_alias = named && std::any_of(h.truth.hidden.begin(), h.truth.hidden.end(),
                                                [&](const std::string& name) {
                                                  return holds(f.steps[0].aliases, name);
                                                });
     const bool all = all_and_nothing_else(h, f);
-    right = h.scenario.kind == Kind::one ? by_name || by_alias : all;
+    right = of_one(h.scenario.kind) ? by_name || by_alias : all;
+    if (h.scenario.kind == Kind::beside)
+      right = by_name || by_alias || holds(first.certain, h.truth.hidden.front());
     wrong = named && !by_name && !by_alias;
     score.alias.add(!by_name && by_alias);
     score.place.add(all);
     score.ends.add(last.verdict.kind == Verdict::Kind::nothing);
     for (const std::string& name : h.truth.hidden)
       score.of_effect[name.substr(0, name.find(':'))].add(
-          h.scenario.kind == Kind::one ? right : holds(f.added, name));
+          of_one(h.scenario.kind) ? right : holds(f.added, name));
     std::vector<std::string> exact = f.added, wanted = h.truth.hidden;
     std::sort(exact.begin(), exact.end());
     std::sort(wanted.begin(), wanted.end());
@@ -278,6 +295,7 @@ void tell(const Hidden& h, const Followed& f, std::uint64_t seed) {
       std::printf("    %-20s score %8.1f p %.2g rms %.2f aliases %s\n",
                   e.candidates[k].term.name().c_str(), e.candidates[k].score, e.candidates[k].p,
                   e.candidates[k].rms / s.noise, joined(e.candidates[k].aliases).c_str());
+    std::printf("    certain: %s\n", joined(e.certain).c_str());
     for (std::size_t k = 0; k < std::min<std::size_t>(3, e.fails.size()); ++k)
       std::printf("    left in %-24s share %.2f p %.2g\n", e.fails[k].where.c_str(),
                   e.fails[k].share, e.fails[k].p);
@@ -287,13 +305,14 @@ void tell(const Hidden& h, const Followed& f, std::uint64_t seed) {
 
 void print_score(const Score& s, Kind kind) {
   print("answered without an error", s.answered);
-  if (kind == Kind::one) print("named first, or its alias group", s.right);
-  if (kind == Kind::one || kind == Kind::several) {
+  if (of_one(kind)) print("named first, or its alias group", s.right);
+  if (kind != Kind::complete && kind != Kind::outside) {
     print("  of these by an alias group", s.alias);
     print("all found and nothing else", s.place);
     print("first verdict: missing, with a wrong name", s.wrong_name);
     print("ends with: nothing", s.ends);
   }
+  if (kind == Kind::beside) print("named, by verdict or as certain", s.right);
   if (kind == Kind::complete) print("verdict: nothing", s.right);
   if (kind == Kind::outside) {
     print("right verdict", s.kind);
@@ -301,6 +320,11 @@ void print_score(const Score& s, Kind kind) {
     print("unknown, and the right place named anywhere", s.place);
     print("first verdict: missing, which is wrong", s.wrong_name);
   }
+  print("certain names that are hidden", s.certain);
+  for (const auto& [name, count] : s.certain_beside)
+    std::printf("    not hidden: %-20s %llu\n", name.c_str(),
+                static_cast<unsigned long long>(count));
+  print("descriptions leave at most 1.1 floors", s.described);
   print("s within 5 % of the noise that was drawn", s.noise);
   print("rms at most 1.05 times the floor of the repeats", s.above_floor);
   if (s.above_floor.of > 0)
@@ -343,7 +367,11 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
   const std::map<std::string, Kind> kinds = {{"one", Kind::one},
                                              {"several", Kind::several},
                                              {"complete", Kind::complete},
-                                             {"outside", Kind::outside}};
+                                             {"outside", Kind::outside},
+                                             {"wave-under-curve", Kind::wave_under_curve},
+                                             {"screw-and-curve", Kind::screw_and_curve},
+                                             {"grouped", Kind::grouped},
+                                             {"beside", Kind::beside}};
   if (words.size() < 3 || kinds.count(words[0]) == 0) return {};
   const auto count = whole(words[1]), seed = whole(words[2]);
   if (!count || !seed) return {};
@@ -373,10 +401,11 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
   const auto a = arguments({argv + 1, argv + argc});
   if (!a) {
-    std::fprintf(
-        stderr,
-        "bench_hidden one|several|complete|outside COUNT SEED [--verbose]\n"
-        "             [--plugins FOLDER] [--write FOLDER] [--right PERCENT] [--wrong PERCENT]\n");
+    std::fprintf(stderr,
+                 "bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|\n    "
+                 "         grouped|beside COUNT SEED\n"
+                 "             [--verbose] [--plugins FOLDER] [--write FOLDER] [--right PERCENT] "
+                 "[--wrong PERCENT]\n");
     return 2;
   }
   host::Plugins plugins;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# What is installed: program, libraries, plugins, templates, man page; component `dev`: headers for plugins elsewhere.
+# What is installed: program, libraries, plugins, templates, man page, docs, samples; component `dev`: headers for plugins elsewhere.
 include(CMakePackageConfigHelpers)
 
 # In a folder of their own: no program but nonio and its plugins is to link with them, and they keep no ABI between versions.
@@ -44,3 +44,19 @@ install(CODE "
     set(folder vendor-completions)
   endif()
   file(INSTALL \"${zsh}\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/zsh/\${folder}\")")
+
+# Docs, the papers of each plugin, and samples to try it on.
+set(papers ${CMAKE_INSTALL_DATADIR}/doc/nonio)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${papers} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.svg)
+file(GLOB readmes CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/plugins/*/*/README.md)
+foreach(readme IN LISTS readmes)
+  get_filename_component(folder ${readme} DIRECTORY)
+  install(FILES ${PROJECT_SOURCE_DIR}/${readme} DESTINATION ${papers}/${folder})
+endforeach()
+# Named one by one: a key or a register that somebody made here to try things out stays here.
+set(samples ${PROJECT_SOURCE_DIR}/samples)
+install(DIRECTORY ${samples}/site ${samples}/simulate ${samples}/tutorial DESTINATION ${papers}/examples)
+install(DIRECTORY ${samples}/certificates/adjusted DESTINATION ${papers}/examples/certificates)
+install(FILES ${samples}/certificates/site.toml DESTINATION ${papers}/examples/certificates)
+install(PROGRAMS ${samples}/certificates/make-key.sh DESTINATION ${papers}/examples/certificates)
+install(FILES ${samples}/README.md DESTINATION ${papers}/examples)

@@ -33,16 +33,7 @@ pack(nonio nonio)
 pack(dev libnonio-dev)
 install(FILES ${parts}/nonio.service ${parts}/nonio.timer DESTINATION lib/systemd/system COMPONENT nonio EXCLUDE_FROM_ALL)
 install(FILES ${parts}/nonio.default DESTINATION /etc/default RENAME nonio COMPONENT nonio EXCLUDE_FROM_ALL)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION share/doc/nonio COMPONENT nonio EXCLUDE_FROM_ALL
-        FILES_MATCHING PATTERN *.md PATTERN *.png)
-# Named one by one: a key or a register that somebody made here to try things out stays here.
-set(samples ${PROJECT_SOURCE_DIR}/samples)
-set(examples share/doc/nonio/examples)
-install(DIRECTORY ${samples}/site ${samples}/simulate ${samples}/tutorial DESTINATION ${examples} COMPONENT nonio EXCLUDE_FROM_ALL)
-install(DIRECTORY ${samples}/certificates/adjusted DESTINATION ${examples}/certificates COMPONENT nonio EXCLUDE_FROM_ALL)
-install(FILES ${samples}/certificates/site.toml DESTINATION ${examples}/certificates COMPONENT nonio EXCLUDE_FROM_ALL)
-install(PROGRAMS ${samples}/certificates/make-key.sh DESTINATION ${examples}/certificates COMPONENT nonio EXCLUDE_FROM_ALL)
-install(FILES ${samples}/README.md ${parts}/Containerfile DESTINATION ${examples} COMPONENT nonio EXCLUDE_FROM_ALL)
+install(FILES ${parts}/Containerfile DESTINATION share/doc/nonio/examples COMPONENT nonio EXCLUDE_FROM_ALL)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "${NONIO_PACKAGE_CONTACT}")

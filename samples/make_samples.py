@@ -241,7 +241,7 @@ def tolerances():
     axis = linear(1000.0, tolerance_um="{ A = 22.0, E = 12.0, B = 3.0 }")
     return {"campaign.toml": manifest(
                 story, "09-tolerances", "Esempio Nove S.p.A.", "Padova", "2026-03-23",
-                {"maker": "Sample Machines", "model": "VM 10", "serial": "S-0109",
+                {"asset": "S-0109", "maker": "Sample Machines", "model": "VM 10", "serial": "S-0109",
                  "structure": "single-column", "control": "siemens-840d"},
                 {"X": axis}, [axis_measurement("X")],
                 environment={"misalignment_mm": "1.0", "temperature_range_K": "0.2",
@@ -327,6 +327,24 @@ STORIES = {
     **in_space.STORIES,
 }
 
+RECORDS = {"S-0109": """# Constructed, as all samples are: what the house knows of this machine, whoever measures it.
+format = 1
+asset = "S-0109"
+maker = "Sample Machines"
+model = "VM 10"
+serial = "S-0109"
+control = "siemens-840d"
+control_version = "4.95"
+
+[axes.X]
+number = 1                     # n of AXn
+name = "X1"
+reference_mm = 0.0
+travel = [0.0, 1000.0]
+largest_um = 100.0             # of the maker: what a table may add
+slope_um_per_m = 500.0
+"""}
+
 SITE = """# What holds for all sample campaigns. The laboratory is invented.
 [laboratory]
 name = "Sample Calibration Laboratory"
@@ -353,6 +371,8 @@ def main():
     here = os.path.dirname(os.path.abspath(__file__))
     folder = sys.argv[1] if len(sys.argv) > 1 else here
     write(os.path.join(folder, "site", "site.toml"), SITE)
+    for name, text in RECORDS.items():
+        write(os.path.join(folder, "site", "machines", name + ".toml"), text)
     for name, story in STORIES.items():
         for file, text in story().items():
             write(os.path.join(folder, "site", name, file), text)

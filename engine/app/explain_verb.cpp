@@ -28,13 +28,13 @@ class Explain {
     open_ = std::move(*opened);
     words_.emplace(open_.place->context.templates, "en");
     if (const int status = explain(); status != exit_done && all_.empty()) return status;
-    while (options_.automatic && missing() != nullptr) {
+    while (options_.automatic && !next().empty()) {
       if (steps_.size() == most_steps) {
         tell(std::to_string(most_steps) + " effects were added and one is still missing; stopped");
         failed_ = true;
         break;
       }
-      if (!add(missing()->explanation.verdict.effect)) break;
+      if (!add(next())) break;
       explain();
     }
     show();
@@ -70,10 +70,14 @@ class Explain {
     return all_.empty() ? exit_failed : exit_done;
   }
 
-  const host::Explained* missing() const {
-    if (all_.empty()) return nullptr;
-    const host::Explained& worst = all_[host::most_severe(all_)];
-    return worst.explanation.verdict.kind == model::Verdict::Kind::missing ? &worst : nullptr;
+  /// What belongs into the model beyond doubt; empty: nothing more.
+  std::string next() const {
+    if (all_.empty()) return {};
+    const model::Explanation& worst = all_[host::most_severe(all_)].explanation;
+    if (worst.verdict.kind == model::Verdict::Kind::missing) return worst.verdict.effect;
+    if (worst.verdict.kind == model::Verdict::Kind::unknown && !worst.certain.empty())
+      return worst.certain.front();
+    return {};
   }
 
   bool add(const std::string& effect) {
@@ -121,13 +125,14 @@ Verb explain_verb(Common& common) {
   return {
       .name = "explain",
       .summary = "Which effect is missing from the model: candidates, ranked, and a verdict",
-      .arguments = joined(campaign_arguments(options->folder, common),
-                          {{"--auto", &options->automatic,
-                            "While an effect is missing, add it to campaign.toml; show each step"},
-                           {.name = "--seed",
-                            .target = &options->seed,
-                            .help = "Of the shuffles behind the false-alarm rate",
-                            .shows_default = true}}),
+      .arguments = joined(
+          campaign_arguments(options->folder, common),
+          {{"--auto", &options->automatic,
+            "While an effect is missing or certain, add it to campaign.toml; show each step"},
+           {.name = "--seed",
+            .target = &options->seed,
+            .help = "Of the shuffles behind the false-alarm rate",
+            .shows_default = true}}),
       .footer =
           "Every effect of the catalogue (`nonio plugins`) that is not in the model is tried on "
           "top\n"

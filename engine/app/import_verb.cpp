@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -44,6 +45,7 @@ void print_json(const host::ImportReport& report, bool dry_run) {
                        {"reader", f.reader},
                        {"readings", f.readings},
                        {"missing", f.missing},
+                       {"assumed", f.assumed},
                        {"lacks", f.lacks}});
     campaigns.push_back({{"id", c.id},
                          {"whole", c.whole()},
@@ -63,8 +65,12 @@ void print_json(const host::ImportReport& report, bool dry_run) {
 }
 
 void print(const char* title, const std::vector<host::ImportReport::Passed>& list) {
+  constexpr std::size_t most = 20;
   if (!list.empty()) std::cout << title << "\n";
-  for (const auto& p : list) std::cout << "  " << p.file << ": " << p.why << "\n";
+  for (std::size_t i = 0; i < std::min(list.size(), most); ++i)
+    std::cout << "  " << list[i].file << ": " << list[i].why << "\n";
+  if (list.size() > most)
+    std::cout << "  and " << list.size() - most << " more (--json lists them all)\n";
 }
 
 void print(const host::ImportReport& report) {
@@ -80,10 +86,15 @@ void print(const host::ImportReport& report) {
               << (c.whole() ? "" : ", something is missing") << "\n";
     for (const std::string& lack : c.lacks) std::cout << "  wanted: " << lack << "\n";
     for (const host::ImportedFile& f : c.files) {
+      if (!f.same_as.empty()) {  // said once, and nothing more of this file
+        std::cout << "  " << f.file << ": " << f.lacks.front() << "\n";
+        continue;
+      }
       std::cout << "  " << f.file << ": measurement " << f.measurement << ", axis "
                 << (f.axis.empty() ? "?" : f.axis) << ", reader "
                 << (f.reader.empty() ? "?" : f.reader) << ", " << f.readings << " readings, "
                 << f.missing << " not taken\n";
+      for (const std::string& what : f.assumed) std::cout << "    assumed: " << what << "\n";
       for (const std::string& lack : f.lacks) std::cout << "    wanted: " << lack << "\n";
     }
   }
@@ -137,7 +148,8 @@ Verb import_verb(Common& common) {
                      {"--rule", &arguments->rule,
                       "How names are made: a pattern such as {machine}_{axis}_{date}.rtl, or a "
                       "file\n"
-                      "RULE.toml with pattern, campaign, kind, reader, exclude and [manifest]"})),
+                      "RULE.toml with pattern, campaign, kind, reader, exclude, axis, [axes] and "
+                      "[manifest]"})),
            required(takes(Takes::folder,
                           {"--out", &arguments->out, "Site that gets a folder for each campaign"})),
            {"--reader", &arguments->reader, "Reader of all files; else chosen by content"},
@@ -147,12 +159,13 @@ Verb import_verb(Common& common) {
            {"--dry-run", &arguments->dry_run, "Say what would be done; write nothing"}},
           common_arguments(common)),
       .footer =
-          "Places in a pattern: {axis} (capital letters and digits), {date} (20240302 or "
-          "2024-03-02),\n"
-          "{machine}, {id} (of the measurement), any other name of small letters, {*} for what "
-          "does not\n"
-          "count. A pattern with / is for the path below FOLDER, else for the file's name. A name "
-          "that\n"
+          "Places in a pattern: {axis} (capital letters and digits; x or y2 is X or Y2), {date} "
+          "(20240302\n"
+          "or 2024-03-02), {machine}, {id} (of the measurement), any other name of small letters, "
+          "{*} for\n"
+          "what does not count and may be nothing. A place that is there twice has one text. A "
+          "pattern\n"
+          "with / is for the path below FOLDER, else for the file's name. A name that\n"
           "can be read in two ways is not imported; neither is a second file with the same "
           "content.\n"
           "Every file is read as a night would read it; a campaign is written when nothing is "

@@ -59,8 +59,9 @@ int main(int argc, char** argv) try {
                        restamp_verb(common), apart(template_verb(common))});
   add("The error model", {apart(compare_verb(common)), apart(explain_verb(common)),
                           apart(model_verb(common)), apart(simulate_verb(common))});
-  add("At the machine", {apart(plan_verb(common)), apart(controllers_verb(common)),
-                         apart(diff_verb(common)), apart(apply_verb(common))});
+  add("At the machine",
+      {apart(plan_verb(common)), apart(controllers_verb(common)), apart(diff_verb(common)),
+       apart(apply_verb(common)), apart(merge_verb(common))});
   add("Plugins", {apart(plugins_verb(common)), apart(plugin_verb(common))});
   add("This program", {help_verb(program), version_verb(common), completion_verb(program)});
   return run(program, argc, argv);

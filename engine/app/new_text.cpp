@@ -189,6 +189,39 @@ std::string site_text(const NewSite& site) {
          "# password_file = \"/etc/nonio/password\"\n";
 }
 
+std::string machine_text(const NewMachine& m) {
+  std::string text =
+      "# What the house knows of this machine, whoever measures it; campaigns name it by\n"
+      "# asset in [machine]. All keys: docs/manifest.md.\nformat = 1\n";
+  text += text_line("asset", m.asset, "", "as this file is called");
+  text += text_line("maker", "", "Sample Machines");
+  text += text_line("model", m.model, "VM 12");
+  text += text_line("serial", m.serial, "S-0001");
+  text += text_line("control", m.control, "siemens-840d",
+                    "the numbers below are of this one: `nonio controllers`");
+  text += text_line("control_version", "", "4.95");
+  text += "# taken = [\"0\", \"100-227\"]  # numbers in use: of CEC tables, of FANUC's points\n";
+  int number = 0;
+  for (const Axis& a : m.axes) {
+    const std::string unit = a.rotary ? "deg" : "mm", small = a.rotary ? "arcsec" : "um";
+    const double per = a.rotary ? deg_per_rad : 1e3;
+    text += "\n[axes." + a.name + "]\n# number = " + std::to_string(++number) +
+            "  # as the control counts, not the place here\n# reference_" + unit +
+            " = 0.0  # position of the reference point\n";
+    if (a.travel)
+      text += "travel = [" + short_text(a.travel->first * per, 9) + ", " +
+              short_text(a.travel->second * per, 9) + "]\n";
+    text += "# largest_" + small +
+            " = 100.0  # of the maker: largest entry of a table, largest slope\n# slope_" +
+            std::string(a.rotary ? "arcsec_per_deg" : "um_per_m") + " = 200.0\n" +
+            "# table = \"none\"  # what is in the control now: \"machines/backup/x.ini\", or "
+            "\"none\"\n" +
+            "# backlash_" + unit +
+            " = \"none\"\n# since = 2026-11-03  # the day on which they came into it\n";
+  }
+  return text;
+}
+
 std::string campaign_text(const NewCampaign& c) {
   const bool example = c.example();
   std::string text;
@@ -202,6 +235,7 @@ std::string campaign_text(const NewCampaign& c) {
   text += text_line("site", "", "Torino", "where the machine stands");
   text += text_line("operator", c.operator_name, "A. Sample");
   text += "date = " + c.date + "\n\n[machine]\n";
+  text += text_line("asset", "", "S-0001", "its record: machines/S-0001.toml of the site");
   text += text_line("maker", "", "Sample Machines");
   text += text_line("model", marked(c.machine, example), "VM 12");
   text += text_line("serial", c.serial, "S-0001");
@@ -247,7 +281,8 @@ std::string example_readings(const Axis& axis) {
                      "# deviation = actual - target. Blank or nan: not taken.\n"
                      "run,direction,target" +
                      position + ",deviation" + deviation + "\n";
-  Noise noise(7);
+  // Of each axis its own: the same readings twice would ask for attention.
+  Noise noise(7U + static_cast<unsigned char>(axis.name.front() - 'X'));
   double target[targets];
   const double step = (to - from) / (targets + 1);
   for (int i = 0; i < targets; ++i) target[i] = from + step * (i + 1 + 0.2 * noise());

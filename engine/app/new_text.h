@@ -27,6 +27,13 @@ struct NewSite {
   std::string laboratory, address, country;
 };
 
+struct NewMachine {
+  std::string asset, model, serial, control;
+  std::vector<Axis> axes;
+};
+
+/// The record of a machine; what is not known stands as a comment.
+std::string machine_text(const NewMachine& machine);
 std::string site_text(const NewSite& site);
 std::string campaign_text(const NewCampaign& campaign);
 

@@ -323,6 +323,7 @@ int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::
   for (const std::string& file : written) std::cout << file << "\n";
   if (example)
     std::cout << "The readings are an EXAMPLE: nobody measured them. Put your own into the CSV.\n";
+  if (what == "machine") return exit_done;
   std::cout << "Next:  nonio " << (what == "site" ? "run " : "show ") << wish.folder
             << (what == "site" ? " --out out\n" : "\n");
   return exit_done;
@@ -370,19 +371,38 @@ int new_campaign(const NewWish& wish, const fs::path& folder, const Common& comm
   return write_new({*campaign}, wish, "campaign", example, common);
 }
 
+/// SITE/machines/<asset>.toml.
+int new_machine(const NewWish& wish, const fs::path& path, const Common& common) {
+  NewMachine machine{path.stem().string(), wish.machine, wish.serial, wish.control, {}};
+  if (path.extension() != ".toml" || path.parent_path().filename() != host::machines_folder)
+    return complain(new_name, "wanted SITE/machines/<asset>.toml, found " + wish.folder);
+  const auto axes = axes_of(wish.axes.empty() ? std::vector<std::string>{"X=0:500"} : wish.axes);
+  if (!axes) return complain(new_name, axes.error().message);
+  for (const NewAxis& a : *axes) machine.axes.push_back(a.axis);
+  const std::string text = machine_text(machine);
+  const std::string file = path.filename().string();
+  if (const auto read = host::parse_machine(text, file, machine.asset); !read)
+    return complain(new_name, text_of(read.error().front()) + "; nothing was written");
+  if (!host::is_artifact_name(file))
+    return complain(new_name, "wanted a plain name, found " + file);
+  std::vector<NewFiles> all{{path.parent_path(), {{file, text}}}};
+  return write_new(all, wish, "machine", false, common);
+}
+
 int make_new(NewWish wish, const Common& common) {
-  const std::vector<std::string> kinds{"site", "campaign"};
+  const std::vector<std::string> kinds{"site", "campaign", "machine"};
   const bool named = std::find(kinds.begin(), kinds.end(), wish.what) != kinds.end();
   if (wish.folder.empty() && named)
     return complain(new_name, "wanted a folder after \"" + wish.what + "\"");
   if (!wish.folder.empty() && !named)
-    return complain(new_name, "wanted site or campaign, found \"" + wish.what + "\"" +
+    return complain(new_name, "wanted site, campaign or machine, found \"" + wish.what + "\"" +
                                   host::suggestion(wish.what, kinds));
   if (wish.folder.empty()) wish.folder = std::exchange(wish.what, {});
   fs::path folder = fs::absolute(wish.folder).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
   if (const std::string why = in_the_way(folder); !why.empty()) return complain(new_name, why);
   if (wish.what.empty()) wish.what = site_above(folder) ? "campaign" : "site";
+  if (wish.what == "machine") return new_machine(wish, folder, common);
   if (wish.what == "site") return new_site(wish, folder, common);
   if (wish.empty || !(wish.laboratory + wish.address + wish.country).empty())
     return complain(
@@ -399,12 +419,14 @@ Verb new_verb(Common& common) {
       .name = "new",
       .summary = "A site or a campaign that runs at once, with an example to be replaced",
       .arguments = joined(
-          {required(offering(
-               {"site", "campaign"},
-               {"WHAT", &wish->what,
-                "site or campaign; may be left out: a campaign inside of a site or beside\n"
-                "campaigns, else a site"})),
-           takes(Takes::folder, {"FOLDER", &wish->folder, "The folder; new, or empty"}),
+          {required(offering({"site", "campaign", "machine"},
+                             {"WHAT", &wish->what,
+                              "site, campaign or machine; may be left out: a campaign inside of a "
+                              "site or beside\n"
+                              "campaigns, else a site"})),
+           takes(Takes::folder, {"FOLDER", &wish->folder,
+                                 "The folder; new, or empty. Of a machine the file of its "
+                                 "record,\nSITE/machines/<asset>.toml"}),
            {"--id", &wish->id, "Id of the campaign (default: from the folder's name)"},
            {"--customer", &wish->customer, "Customer"},
            {"--operator", &wish->operator_name, "Who measured"},
@@ -431,6 +453,7 @@ Verb new_verb(Common& common) {
           "Example readings are marked: EXAMPLE, NOT MEASURED stands with the customer and the\n"
           "machine, in every report. Nothing that exists is written over.\n\n"
           "Examples: nonio new site lab\n"
+          "          nonio new machine site/machines/S-0042.toml --axis X=0:800 --axis C=0:360\n"
           "          nonio new campaign site/2026-11-rossi --axis X=0:800 --file X=laser/x.csv",
       .run = [wish, &common] { return make_new(*wish, common); }};
 }

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "campaign_verb.h"
 #include "nonio/host/files.h"
+#include "nonio/host/manifest.h"
 #include "nonio/host/plan.h"
 #include "nonio/host/table_check.h"
 #include "nonio/sdk/format.h"
@@ -32,6 +37,58 @@ std::string writer_for(const std::string& control, const host::Plugins& plugins)
   return "gcode";
 }
 
+/// Of a control that runs no programs in G-code; the moves are told on the terminal all the same.
+bool runs_no_gcode(const std::string& control) {
+  for (const char* name : {"ecmc", "klipper", "marlin", "pmac", "twincat-nc-ptp"})
+    if (control == name) return true;
+  return false;
+}
+
+/// What options and the record of the machine say of its axes.
+Settings said_of_axes(const OpenCampaign& open) {
+  for (const Output& o : open.place->plugins.outputs())
+    if (o.info.name == open.campaign().machine.control)
+      if (auto settled = host::settle_table_options(
+              o.info, open.place->context.site.options, *open.read.manifest,
+              open.read.machine ? &*open.read.machine : nullptr))
+        return std::move(*settled);
+  return {};
+}
+
+/// That the probe stays within the travel, as the manifest has it, and option axes.
+Expected<void> within_travel(const host::SignProbe& p, const Axis* axis, const Settings& said) {
+  const double unit = p.rotary ? deg_per_rad : 1e3;
+  const char* const suffix = p.rotary ? "_deg" : "_mm";
+  double low = -HUGE_VAL, high = HUGE_VAL;
+  if (axis != nullptr && axis->travel) {
+    low = std::min(axis->travel->first, axis->travel->second);
+    high = std::max(axis->travel->first, axis->travel->second);
+  }
+  for (const std::string& entry : said.texts("axes")) {
+    std::istringstream words(entry);
+    std::string name, word;
+    if (!(words >> name) || name != p.axis) continue;
+    while (words >> word) {
+      const std::size_t equals = word.find('=');
+      const std::string key = word.substr(0, equals);
+      double value = 0.0;
+      if (equals == std::string::npos ||
+          std::from_chars(word.data() + equals + 1, word.data() + word.size(), value).ec !=
+              std::errc())
+        continue;
+      if (key == std::string("from") + suffix) low = std::max(low, value / unit);
+      if (key == std::string("to") + suffix) high = std::min(high, value / unit);
+    }
+  }
+  constexpr double slack = 1e-9;
+  const Quantity q = position_of(p.rotary);
+  for (const double x : {p.start, p.from, p.to})
+    if (x < low - slack || x > high + slack)
+      return fail("axis " + p.axis + ": the probe would go to " + with_unit(x, q) +
+                  ", the travel is " + with_unit(low, q) + " to " + with_unit(high, q));
+  return {};
+}
+
 /// The part program of a probe, by the writer of all part programs.
 Expected<Artifact> program_of(const host::SignProbe& p, const Machine& machine, const ProbeWish& w,
                               const std::map<std::string, std::string>& given,
@@ -46,7 +103,13 @@ Expected<Artifact> program_of(const host::SignProbe& p, const Machine& machine, 
   settings["programs"] = "sign-probe";
   settings["axes"] = p.axis;
   settings[p.rotary ? "feed_deg_per_min" : "feed_mm_per_min"] = std::to_string(w.feed);
+  if (w.control.empty() && runs_no_gcode(machine.control))
+    return fail("control " + machine.control +
+                " runs no part programs in G-code: enter the moves by hand (run without --out), or "
+                "name a writer with --control");
+  // A zero offset that stands in the control would send the axis elsewhere.
   const std::string control = w.control.empty() ? writer_for(machine.control, plugins) : w.control;
+  if (control == "gcode" && !machine.control.empty()) settings.emplace("work_offset", "G53");
   auto files = host::write_programs(plugins, control, with_axis, stops, settings);
   if (!files) return fail(files.error().front());
   Artifact& program = files->front();
@@ -103,18 +166,25 @@ int probe(const ProbeWish& w, const Common& common) {
     return complain(verb, "--axis: the campaign has no axis " + w.axis);
   const auto settings = settings_of(w.settings);
   if (!settings) return complain(verb, settings.error().message);
+  const Settings said = said_of_axes(open);
   Json all = Json::array();
   std::vector<Artifact> files;
-  bool good = true;
+  bool good = true, measured = false;
   for (std::size_t i = 0; i < open.read.observations.size(); ++i) {
     const Measurement& m = campaign.measurements[i];
     if (m.kind != "axis" || open.read.observations[i].size() == 0 ||
         (!w.axis.empty() && m.axis != w.axis))
       continue;
+    measured = true;
     const auto p = host::sign_probe(m, open.read.observations[i]);
     if (!p) {
       good = false;
       complain(verb, p.error().message);
+      continue;
+    }
+    if (auto inside = within_travel(*p, campaign.machine.axis(m.axis), said); !inside) {
+      good = false;
+      complain(verb, inside.error().message);
       continue;
     }
     std::string file;
@@ -137,7 +207,7 @@ int probe(const ProbeWish& w, const Common& common) {
     std::cout << Json{{"schema", "nonio-sign-probe/1"}, {"campaign", campaign.id}, {"probes", all}}
                      .dump(1)
               << "\n";
-  if (all.empty()) return complain(verb, "no measurement of an axis with readings", exit_failed);
+  if (!measured) return complain(verb, "no measurement of an axis with readings", exit_failed);
   return good ? exit_done : exit_failed;
 }
 

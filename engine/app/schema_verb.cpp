@@ -53,11 +53,11 @@ Verb schema_of(const std::string& file, Schema schema, Common& common) {
 }  // namespace
 
 Verb schema_verb(Common& common) {
-  return {
-      .name = "schema",
-      .summary = "JSON schemas, with which editors complete and check campaign.toml and site.toml",
-      .verbs = {schema_of("campaign", host::campaign_schema, common),
-                schema_of("site", host::site_schema, common)}};
+  return {.name = "schema",
+          .summary = "JSON schemas, with which editors complete and check the files of a site",
+          .verbs = {schema_of("campaign", host::campaign_schema, common),
+                    schema_of("site", host::site_schema, common),
+                    schema_of("machine", host::machine_schema, common)}};
 }
 
 }  // namespace nonio::app

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <functional>
 #include <iostream>
@@ -13,6 +14,7 @@
 #include "nonio/host/plan.h"
 #include "nonio/host/table_check.h"
 #include "nonio/sdk/format.h"
+#include "table_common.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -20,66 +22,13 @@ namespace nonio::app {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-using Texts = std::map<std::string, std::string>;
+using Json = TableJson;
 
 struct TableWish {
   std::string table, other, folder, control, out;
-  std::vector<std::string> settings, axes;
+  std::vector<std::string> settings, axes, backlash_was;
   bool was_on = false;
 };
-
-/// Numbers with the unit in their name: "largest_um".
-void put(Json& json, const std::string& name, double si, Quantity q) {
-  if (std::isfinite(si)) json[name + std::string(unit_of(q).suffix)] = printed(si, q);
-}
-
-Json shape_json(const host::TableShape& s, bool rotary) {
-  Json json = Json::object();
-  put(json, "largest", s.largest, deviation_of(rotary));
-  put(json, "largest_step", s.step, deviation_of(rotary));
-  put(json, "largest_step_from", s.step_at, position_of(rotary));
-  put(json, "largest_slope", s.slope, slope_of(rotary));
-  if (s.backlash) put(json, "backlash", *s.backlash, deviation_of(rotary));
-  return json;
-}
-
-Json difference_json(const host::TableDifference& d) {
-  Json json = {{"output", d.output}, {"by", d.input}};
-  put(json, "largest", d.largest, deviation_of(d.rotary));
-  put(json, "at", d.at, position_of(d.rotary));
-  put(json, "range", d.range, deviation_of(d.rotary));
-  if (d.present) json["present"] = shape_json(*d.present, d.rotary);
-  if (d.next) json["new"] = shape_json(*d.next, d.rotary);
-  return json;
-}
-
-void print_shape(const char* name, const std::optional<host::TableShape>& s, bool rotary) {
-  std::cout << "  " << name << ": ";
-  if (!s) {
-    std::cout << "no table\n";
-    return;
-  }
-  std::cout << "adds up to " << with_unit(s->largest, deviation_of(rotary)) << ", largest step "
-            << with_unit(s->step, deviation_of(rotary)) << " from "
-            << with_unit(s->step_at, position_of(rotary)) << " on, largest slope "
-            << with_unit(s->slope, slope_of(rotary));
-  if (s->backlash) std::cout << ", backlash " << with_unit(*s->backlash, deviation_of(rotary));
-  std::cout << "\n";
-}
-
-void print_difference(const host::TableDifference& d) {
-  std::cout << "axis " << d.output;
-  if (d.input.size() != 1 || d.input.front() != d.output) {
-    std::cout << " by the position of";
-    for (const std::string& in : d.input) std::cout << " " << in;
-  }
-  std::cout << ": they differ by up to " << with_unit(d.largest, deviation_of(d.rotary)) << " (at "
-            << with_unit(d.at, position_of(d.rotary)) << "), range "
-            << with_unit(d.range, deviation_of(d.rotary)) << "\n";
-  print_shape("present", d.present, d.rotary);
-  print_shape("new    ", d.next, d.rotary);
-}
 
 Json forecast_json(const host::TableForecast& f) {
   Json json = {{"measurement", f.measurement}, {"axis", f.axis}};
@@ -102,26 +51,6 @@ void print_forecast(const host::TableForecast& f) {
   std::cout << (f.worse() ? "  WORSE\n" : "\n");
 }
 
-/// Files, the control that they are of, and what it makes of them.
-struct Loaded {
-  const Output* control = nullptr;
-  std::vector<LoadedTable> tables;
-};
-
-Expected<Loaded> load(const host::Plugins& plugins, const std::string& files,
-                      const std::string& control, const Campaign& campaign, const Texts& settings,
-                      const std::function<host::Checked<Settings>(const Info&)>& options_of) {
-  auto read = host::read_table_files(files);
-  if (!read) return tl::unexpected<Error>(read.error());
-  const auto found = host::control_of(plugins, control, *read, campaign, settings);
-  if (!found) return tl::unexpected<Error>(found.error());
-  const auto options = options_of((*found)->info);
-  if (!options) return tl::unexpected<Error>(options.error().front());
-  auto tables = host::tables_in(**found, *read, campaign, *options);
-  if (!tables) return fail(files + ": " + tables.error().message);
-  return Loaded{*found, std::move(*tables)};
-}
-
 /// The axes of the machine in the order of their numbers.
 Campaign machine_of(const std::vector<std::string>& axes) {
   Campaign campaign;
@@ -129,30 +58,76 @@ Campaign machine_of(const std::vector<std::string>& axes) {
   return campaign;
 }
 
-int diff(const TableWish& w, const Common& common) {
-  const char* const verb = "nonio diff";
-  const auto settings = settings_of(w.settings);
-  if (!settings) return complain(verb, settings.error().message);
-  host::Plugins plugins;
-  plugins.load(common.plugin_folders());
-  for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
-  const Campaign campaign = machine_of(w.axes);
-  const auto options = [&](const Info& info) { return host::options_from(info, *settings); };
-  const auto was = load(plugins, w.table, w.control, campaign, *settings, options);
-  if (!was) return complain(verb, text_of(was.error()));
-  const auto will = load(plugins, w.other, was->control->info.name, campaign, *settings, options);
-  if (!will) return complain(verb, text_of(will.error()));
-  const auto all = host::differences(was->tables, will->tables);
+/// Their places are their numbers: `--axis` says so.
+void number_axes(const std::vector<std::string>& names, Settings& options) {
+  if (!options.has("axes")) return;
+  auto axes = options.texts("axes");
+  for (std::size_t i = 0; i < names.size(); ++i)
+    axes.insert(axes.begin() + static_cast<std::ptrdiff_t>(i),
+                names[i] + " number=" + std::to_string(i + 1));
+  options.values["axes"] = std::move(axes);
+}
+
+int tell_differences(const std::string& control, const std::vector<host::TableDifference>& all,
+                     const Common& common) {
   if (common.json) {
-    Json json = {{"schema", "nonio-diff/1"},
-                 {"control", was->control->info.name},
-                 {"tables", Json::array()}};
+    Json json = {{"schema", "nonio-diff/1"}, {"control", control}, {"tables", Json::array()}};
     for (const auto& d : all) json["tables"].push_back(difference_json(d));
     std::cout << json.dump(1) << "\n";
   } else {
     for (const auto& d : all) print_difference(d);
   }
   return exit_done;
+}
+
+/// What is in the control against what the campaign would write: of the campaign's axes only.
+int diff_with_campaign(const std::string& backup, const std::string& folder, const TableWish& w,
+                       const Texts& settings, const Common& common) {
+  const char* const verb = "nonio diff";
+  const auto opened = open_campaign(verb, folder, common);
+  if (!opened) return opened.error();
+  const OpenCampaign& open = *opened;
+  const auto options = [&](const Info& info) { return campaign_options(open, info, settings); };
+  const std::string control = w.control.empty() ? open.campaign().machine.control : w.control;
+  const auto present =
+      load(open.place->plugins, backup, control, open.campaign(), settings, options);
+  if (!present) return complain(verb, text_of(present.error()));
+  auto next =
+      host::tables_of_campaign(open.read, *present->control, *options(present->control->info),
+                               open.place->context.templates);
+  if (!next) return complain(verb, text_of(next.error()), exit_failed);
+  tell_findings(verb, open, next->findings);
+  if (next->tables.empty()) return complain(verb, "the campaign has no table", exit_failed);
+  auto all = host::differences(present->tables, next->tables);
+  std::erase_if(all, [](const host::TableDifference& d) { return !d.next; });
+  return tell_differences(present->control->info.name, all, common);
+}
+
+int diff(const TableWish& w, const Common& common) {
+  const char* const verb = "nonio diff";
+  const auto settings = settings_of(w.settings);
+  if (!settings) return complain(verb, settings.error().message);
+  const auto is_folder = [](const std::string& path) {
+    std::error_code error;
+    return std::filesystem::is_directory(path, error);
+  };
+  if (is_folder(w.other)) return diff_with_campaign(w.table, w.other, w, *settings, common);
+  if (is_folder(w.table)) return diff_with_campaign(w.other, w.table, w, *settings, common);
+  host::Plugins plugins;
+  plugins.load(common.plugin_folders());
+  for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
+  const Campaign campaign = machine_of(w.axes);
+  const auto options = [&](const Info& info) {
+    auto settled = host::options_from(info, *settings);
+    if (settled) number_axes(w.axes, *settled);
+    return settled;
+  };
+  const auto was = load(plugins, w.table, w.control, campaign, *settings, options);
+  if (!was) return complain(verb, text_of(was.error()));
+  const auto will = load(plugins, w.other, was->control->info.name, campaign, *settings, options);
+  if (!will) return complain(verb, text_of(will.error()));
+  return tell_differences(was->control->info.name, host::differences(was->tables, will->tables),
+                          common);
 }
 
 struct Applied {
@@ -179,15 +154,74 @@ int tell(const Applied& a, const std::string& control, const OpenCampaign& open,
     for (const auto& f : a.forecast) print_forecast(f);
     for (const std::string& file : a.files) std::cout << file << "\n";
   }
-  for (const Finding& f : a.findings)
-    if (f.attention)
-      std::cerr << "nonio apply: " << finding_text(open.place->context.templates, "en", f, "title")
-                << ": " << finding_text(open.place->context.templates, "en", f, "says") << "\n";
+  tell_findings("nonio apply", open, a.findings);
   if (a.forecast.empty())
     return complain("nonio apply", "no measurement of an axis that these tables correct",
                     exit_failed);
   const auto worse = [](const host::TableForecast& f) { return f.worse(); };
   return std::any_of(a.forecast.begin(), a.forecast.end(), worse) ? exit_failed : exit_done;
+}
+
+/// "0.012", "none", "X=0.012": mm or deg.
+struct BacklashWas {
+  std::string axis;  ///< empty: of the only one
+  double value = 0.0;
+};
+
+Expected<std::vector<BacklashWas>> backlash_was(const std::vector<std::string>& texts) {
+  std::vector<BacklashWas> all;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    BacklashWas one;
+    if (equals != std::string::npos) one.axis = text.substr(0, equals);
+    const std::string value = equals == std::string::npos ? text : text.substr(equals + 1);
+    const auto end = std::from_chars(value.data(), value.data() + value.size(), one.value);
+    const bool number = end.ec == std::errc() && end.ptr == value.data() + value.size();
+    if (value != "none" && !(number && std::isfinite(one.value) && std::fabs(one.value) <= 10.0))
+      return fail(
+          "--backlash-was: wanted a number of mm or deg, none, or AXIS= and one of these; found "
+          "\"" +
+          text + "\"");
+    if (value == "none") one.value = 0.0;
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+/// A table whose files do not hold the backlash value beside it: 0 would be a guess.
+Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settings& options) {
+  const auto said = backlash_was(w.backlash_was);
+  if (!said) return fail(said.error().message);
+  std::vector<bool> used(said->size());
+  for (const LoadedTable& t : present.tables) {
+    if (t.input != std::vector{t.output}) continue;
+    const double per = t.rotary ? deg_per_rad : 1e3;
+    for (std::size_t i = 0; i < said->size(); ++i) {
+      const BacklashWas& b = (*said)[i];
+      if (b.axis.empty() ? present.tables.size() > 1 : b.axis != t.output) continue;
+      used[i] = true;
+      const auto known =
+          t.backlash ? t.backlash : host::stated_backlash(options, t.output, t.rotary);
+      if (known && std::fabs(*known * per - b.value) > 5e-7)
+        return fail("--backlash-was says " + short_text(b.value, 6) + " for axis " + t.output +
+                    ", its files or the campaign say " + short_text(*known * per, 6));
+      if (!known) host::state_backlash(options, t.output, t.rotary, b.value / per);
+    }
+    const bool has_parameter = !present.control->control->backlash.empty();
+    if (has_parameter && !t.backlash && !host::stated_backlash(options, t.output, t.rotary))
+      return fail(w.table + " does not say what was in " + present.control->control->backlash +
+                  " of axis " + t.output +
+                  " while it was measured: give its file too, or --backlash-was VALUE|none, or "
+                  "backlash_on_" +
+                  (t.rotary ? "deg" : "mm") + " in [machine.axes." + t.output +
+                  "] of campaign.toml, or the record of the machine");
+  }
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (!used[i])
+      return fail("--backlash-was " + w.backlash_was[i] + ": " +
+                  ((*said)[i].axis.empty() ? "these files hold several tables; wanted AXIS=VALUE"
+                                           : "these files hold no table of that axis"));
+  return {};
 }
 
 int apply(const TableWish& w, const Common& common) {
@@ -196,28 +230,26 @@ int apply(const TableWish& w, const Common& common) {
   if (!settings) return complain(verb, settings.error().message);
   if (!w.out.empty() && !w.was_on)
     return complain(verb, "--out writes the renewed table: it needs --was-on");
+  if (!w.backlash_was.empty() && !w.was_on)
+    return complain(verb, "--backlash-was is about a table that was on: it needs --was-on");
   const auto opened = open_campaign(verb, w.folder, common);
   if (!opened) return opened.error();
   const OpenCampaign& open = *opened;
-  const host::Manifest& manifest = *open.read.manifest;
-  const auto options = [&](const Info& info) {
-    auto settled = host::settle_options(info, open.place->context.site.options, manifest.options);
-    if (!settled) return settled;
-    const auto told = host::options_from(info, *settings);
-    if (!told) return told;
-    for (const auto& [name, text] : *settings) settled->values[name] = told->values.at(name);
-    return settled;
-  };
+  const auto options = [&](const Info& info) { return campaign_options(open, info, *settings); };
   const std::string control = w.control.empty() ? open.campaign().machine.control : w.control;
   const auto table =
       load(open.place->plugins, w.table, control, open.campaign(), *settings, options);
   if (!table) return complain(verb, text_of(table.error()));
-  const Settings settled = *options(table->control->info);
+  Settings settled = *options(table->control->info);
   Applied a;
   if (!w.was_on) {
-    a.forecast = host::forecast(open.read, table->tables, settled);
+    const auto on = host::what_was_on(open.read, *table->control, settled);
+    if (!on) return complain(verb, text_of(on.error()));
+    a.forecast = host::forecast(open.read, table->tables, settled, *on);
     return tell(a, table->control->info.name, open, common);
   }
+  if (auto stated = settle_backlash(w, *table, settled); !stated)
+    return complain(verb, stated.error().message);
   auto renewed = host::renew(open.read, *table->control, settled, open.place->context.templates,
                              table->tables);
   if (!renewed) return complain(verb, text_of(renewed.error()), exit_failed);
@@ -255,7 +287,10 @@ Verb diff_verb(Common& common) {
           {required(takes(
                Takes::file,
                {"PRESENT", &w->table, "The table that is in the control: FILE, or FILE,FILE,..."})),
-           required(takes(Takes::file, {"NEW", &w->other, "The table that is to come into it"}))},
+           required(takes(Takes::file,
+                          {"NEW", &w->other,
+                           "The table that is to come into it; or a campaign, whose tables it is\n"
+                           "held against, of the axes that were measured"}))},
           table_arguments(*w),
           {{"--axis", &w->axes,
             "Name of an axis, in the order of their numbers; A, B, C are in deg;\n"
@@ -289,6 +324,10 @@ Verb apply_verb(Common& common) {
             "TABLE was in force while the campaign was measured: it is taken off the "
             "readings,\n"
             "and the new table is the whole of what is needed"},
+           {"--backlash-was", &w->backlash_was,
+            "With --was-on: what was in the backlash parameter, in mm or deg, where TABLE does "
+            "not\n"
+            "hold it: VALUE, none, or AXIS=VALUE; may be given several times"},
            takes(Takes::folder,
                  {"--out", &w->out, "With --was-on: the folder for the files of the new table"})}),
       .footer =

@@ -142,6 +142,8 @@ void print_verdict(std::ostream& out, const host::Explained& e, const host::Mode
       << words.verdict(x, e.part) << "\n";
   if (x.together.size() > 1)
     out << "    the best explanation adds: " << host::listed(x.together) << "\n";
+  for (const model::Description& d : x.descriptions)
+    out << "    " << words.description(d, e.part) << "\n";
   if (!x.plans.empty()) out << "    to tell them apart: " << words.plan(x.plans.front()) << "\n";
   for (const char* what : {"is", "cure"})
     if (const std::string text = words.card(x.verdict.effect, what); !text.empty())

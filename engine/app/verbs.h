@@ -13,6 +13,7 @@ Verb controllers_verb(Common& common);
 Verb diff_verb(Common& common);
 Verb explain_verb(Common& common);
 Verb import_verb(Common& common);
+Verb merge_verb(Common& common);
 Verb model_verb(Common& common);
 Verb new_verb(Common& common);
 Verb open_verb(Common& common);

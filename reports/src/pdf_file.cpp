@@ -13,6 +13,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <deque>
 #include <optional>
@@ -38,6 +39,16 @@ void record(HPDF_STATUS code, HPDF_STATUS detail, void* user) {
   if (failure->code == HPDF_OK) *failure = {code, detail};
 }
 
+/// Whether memory was refused to the document that is written: libharu may report something else
+/// then, which follows from it, or nothing.
+bool memory_was_refused = false;
+
+void* allocate(HPDF_UINT size) {
+  void* const memory = std::malloc(size);
+  memory_was_refused = memory_was_refused || memory == nullptr;
+  return memory;
+}
+
 /// Bytes that a stream of the document is written from: libharu's own streams copy byte by byte.
 struct Source {
   std::string_view bytes;
@@ -48,8 +59,11 @@ struct HaruDocument {
   Failure failure;
   std::deque<Source> sources;  ///< what they show outlives the document
   std::string bytes;           ///< as saved
-  HPDF_Doc doc;
-  HaruDocument() : doc(HPDF_New(record, &failure)) {}
+  HPDF_Doc doc = nullptr;
+  HaruDocument() {
+    memory_was_refused = false;
+    doc = HPDF_NewEx(record, allocate, std::free, 0, &failure);
+  }
   ~HaruDocument() {
     if (doc != nullptr) HPDF_Free(doc);
   }
@@ -377,6 +391,7 @@ Expected<std::string> write_pdf(PdfFile file, const Fonts& fonts) {
     pdf.doc->stream = HPDF_CallbackWriter_New(pdf.doc->mmgr, append, &pdf.bytes);
     if (pdf.failure.code == HPDF_OK) HPDF_SaveToStream(pdf.doc);
   }
+  if (memory_was_refused) return fail("the PDF could not be written: out of memory");
   if (pdf.failure.code != HPDF_OK || pdf.bytes.empty()) {
     std::array<char, 16> code{};
     std::to_chars(code.data(), code.data() + code.size() - 1, pdf.failure.code, 16);

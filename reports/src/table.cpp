@@ -44,6 +44,12 @@ std::vector<double> column_widths(const Needs& needs, double width) {
   return out;
 }
 
+/// Ideographs divide anywhere; up to four stay together, as most words have no more. 1 = font size.
+double kept(const Glyphs& text) {
+  constexpr double word = 4.0;
+  return std::any_of(text.begin(), text.end(), [](const Glyph& g) { return g.wide; }) ? word : 0.0;
+}
+
 class TableSetter {
  public:
   TableSetter(const Table& table, double width, const Context& context, std::string_view field)
@@ -80,7 +86,8 @@ class TableSetter {
         of[c] = std::max(of[c], room + 2 * pad + rounding);
       };
       const double size = context_.style.small, most = 0.4 * width_;
-      const double all = width_of(text) * size, word = widest_word(text) * size;
+      const double all = width_of(text) * size,
+                   word = std::max(widest_word(text) * size, std::min(all, kept(text) * size));
       ask(needs.natural, all);
       ask(needs.least, std::min(number ? all : word, most));
       if (number) ask(needs.numbers, std::min(all, most));

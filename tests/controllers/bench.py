@@ -4,6 +4,7 @@ import json
 import math
 import os
 import pathlib
+import random
 import subprocess
 import tempfile
 import unittest
@@ -11,14 +12,24 @@ import unittest
 NONIO = os.environ["NONIO"]
 
 
+def noise(direction, x):
+    """Three numbers whose sum is 0."""
+    rng = random.Random("%s%.6f" % (direction, x))
+    one, two = rng.uniform(-0.03, 0.03), rng.uniform(-0.03, 0.03)
+    return one, two, -one - two
+
+
 def axis_csv(targets, plus, minus=None, unit="mm"):
-    """Three runs without scatter; deviations in um or arcsec."""
+    """Three runs whose means are the curves and which scatter by 0.03; deviations in um or arcsec. Zeros stay zeros."""
     of = "deviation_um" if unit == "mm" else "deviation_arcsec"
     rows = ["run,direction,target_%s,%s" % (unit, of)]
-    for run in (1, 2, 3):
-        rows += ["%d,+,%.6f,%.9f" % (run, x, plus(x)) for x in targets]
-        if minus:
-            rows += ["%d,-,%.6f,%.9f" % (run, x, minus(x)) for x in targets[::-1]]
+    zero = not any(plus(x) for x in targets)
+    for run, share in ((1, 0), (2, 1), (3, 2)):
+        for direction, curve in (("+", plus), ("-", minus)):
+            if curve:
+                rows += ["%d,%s,%.6f,%.9f" % (run, direction, x, curve(x) + (
+                    0.0 if zero else noise(direction, x)[share]))
+                         for x in (targets if direction == "+" else targets[::-1])]
     return "\n".join(rows) + "\n"
 
 
@@ -37,12 +48,23 @@ class BenchTest(unittest.TestCase):
         text = 'format = 1\n[campaign]\nid = "c"\n[machine]\n'
         if control:
             text += 'control = "%s"\n' % control
+        if "number=" not in extra:
+            text += 'asset = "S-1"\n'
+            self.record([name for name, _ in axes], from_zero=control == "linuxcnc")
         for name, kind in axes:
             text += '[machine.axes.%s]\nkind = "%s"\n' % (name, kind)
         for name, (kind, data, more) in files.items():
             (self.folder / (name + ".csv")).write_text(data)
             text += '[[measurement]]\nid = "%s"\nkind = "%s"\nfile = "%s.csv"\n%s\n' % (name, kind, name, more)
         (self.folder / "campaign.toml").write_text(text + extra)
+
+    def record(self, axes, more="", from_zero=False, asset="S-1"):
+        """The machine as the site knows it: how its control counts the axes."""
+        folder = self.site / "machines"
+        folder.mkdir(exist_ok=True)
+        (folder / (asset + ".toml")).write_text('format = 1\nasset = "%s"\n%s' % (asset, more) + "".join(
+            '[axes.%s]\nkind = "%s"\nnumber = %d\n' % (a, "rotary" if a[0] in "ABC" else "linear", i + (not from_zero))
+            for i, a in enumerate(axes)))
 
     def one_axis(self, targets, plus, minus=None, extra="", control=None, unit="mm", axis="X"):
         self.campaign({axis: ("axis", axis_csv(targets, plus, minus, unit), 'axis = "%s"' % axis)}, extra,

@@ -110,7 +110,7 @@ class Axis(BenchTest):
         keys, side = self.ssfk(self.write("twincat-cnc", "twincat-cnc-X.lis"))
         self.assertEqual((keys["kopf.achs_nr"], keys["kw.ssfk.unit"], keys["kw.ssfk.bilateral"]), ("1", "1", "0"))
         self.expect_correction([(x, -v) for x, v in side("pos")], lambda x: -wave(x), 0.11)
-        self.assertRegex(self.file("twincat-cnc-X.lis"), r"getriebe\[0\]\.lose = 0\.003 mm")
+        self.assertRegex(self.file("twincat-cnc-X.lis"), r"getriebe\[0\]\.lose = 30 \(a whole number of 0\.1 um: 0\.003 mm\)")
 
     def test_twincat_cnc_bilateral_replaces_backlash(self):
         # 10 um were in the parameter, and 3 um were still lost: 13 um come into the two columns

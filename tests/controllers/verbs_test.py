@@ -85,10 +85,12 @@ class Tables(BenchTest):
         found = self.json_of("apply", present, self.folder, "--was-on", "--out", new)
         self.assertLess(found["predictions"][0]["after"]["E_um"], 0.01)
         rows = [list(map(float, line.split())) for line in (new / "linuxcnc-X.comp").read_text().splitlines()]
+        whole = lambda x: wave(0.0) - wave(x)  # zero at the reference point
         for x, up, down in rows:  # all of it, not the rest
-            self.assertAlmostEqual(up * 1e3, -wave(x), places=3)
-            self.assertAlmostEqual(down * 1e3, -wave(x), places=3)
-        self.assertAlmostEqual(found["tables"][0]["largest_um"], max(abs(0.5 * wave(x)) for x in TARGETS), delta=0.01)
+            self.assertAlmostEqual(up * 1e3, whole(x), places=3)
+            self.assertAlmostEqual(down * 1e3, whole(x), places=3)
+        self.assertAlmostEqual(found["tables"][0]["largest_um"], max(abs(whole(x) + 0.5 * wave(x)) for x in TARGETS),
+                               delta=0.01)
         self.nonio("apply", present, self.folder, "--out", new, expect=2)
 
     def test_backlash_of_the_present_files_is_counted(self):
@@ -198,6 +200,40 @@ class Probe(BenchTest):
         stops = [i for i, w in enumerate(words) if w == "STOP"]
         self.assertEqual([words[i - 1] for i in stops], ["CYCL DEF 9.1 DWELL 5"] * 2)
 
+    def test_the_probe_moves_in_machine_coordinates_whatever_the_control(self):
+        for control, of_axis in (("linuxcnc", ""), ("fanuc", ""), ("twincat-cnc", ""), ("aerotech", ""),
+                                 ("mitsubishi", "")):
+            self.one_axis(TARGETS, wave, wave, of_axis, control=control)
+            self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
+            text = (self.site / "p" / "sign-probe-X.nc").read_text()
+            moves = [l for l in text.splitlines() if "G1 X" in l]
+            self.assertEqual(len(moves), 3)
+            self.assertTrue(all(m.startswith("G53 G1 X") for m in moves), text)
+            self.assertNotIn("G54", text)
+            for word in ("(machine: not named in the manifest)", "moves X, the other axes stay", "G21 G17 G90 G94 G40 G49 G80"):
+                self.assertIn(word, text)
+        self.one_axis(TARGETS, wave, wave, control="siemens-840d")
+        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
+        moves = [l for l in (self.site / "p" / "sign-probe-X.mpf").read_text().splitlines() if l.startswith("G1")]
+        self.assertEqual([m.split(" X")[0] for m in moves], ["G1 SUPA"] * 3)
+
+    def test_no_program_for_a_control_without_gcode(self):
+        for control in ("ecmc", "pmac", "twincat-nc-ptp"):
+            self.one_axis(TARGETS, wave, wave, control=control)
+            self.nonio("plan", "sign-probe", self.folder)  # the moves are told
+            done = self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", expect=2)
+            self.assertIn("runs no part programs in G-code", done.stderr)
+            self.assertFalse((self.site / "p").exists())
+
+    def test_the_probe_stays_within_the_travel(self):
+        said = '[options.linuxcnc]\naxes = ["X from_mm=0 to_mm=%d"]\n'
+        self.one_axis(TARGETS, wave, wave, said % 60, control="linuxcnc")
+        done = self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", expect=1)
+        self.assertRegex(done.stderr, r"the travel is 0(\.0+)? mm to 60(\.0+)? mm")
+        self.assertFalse((self.site / "p").exists())
+        self.one_axis(TARGETS, wave, wave, said % 400, control="linuxcnc")
+        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
+
     def test_an_axis_that_is_too_good_shows_nothing(self):
         noise = iter([0.3, -0.4, 0.1, 0.5, -0.2] * 100)
         self.one_axis(TARGETS, lambda x: next(noise), lambda x: next(noise))
@@ -211,7 +247,8 @@ class Gantry(BenchTest):
     """X has a scale on each side: master and slave are two axes of the control, and have a table each."""
 
     def gantry(self, axis="", sides=("", ""), extra="", control="siemens-840d", structure="gantry"):
-        text = ('format = 1\n[campaign]\nid = "c"\n[machine]\nstructure = "%s"\ncontrol = "%s"\n[machine.axes.X]\n'
+        self.record(["X", "Y"])
+        text = ('format = 1\n[campaign]\nid = "c"\n[machine]\nasset = "S-1"\nstructure = "%s"\ncontrol = "%s"\n[machine.axes.X]\n'
                 'kind = "linear"\n%s\n[machine.axes.Y]\nkind = "linear"\n' % (structure, control, axis))
         for name, side, at, size in (("X1", sides[0], 300, 1.0), ("X2", sides[1], 8700, -2.0)):
             error = lambda x, size=size: size * wave(x)
@@ -258,17 +295,19 @@ class Gantry(BenchTest):
     def test_a_slave_without_a_number_gets_no_table_under_a_guessed_one(self):
         self.gantry('slave = "X2"', ("master", "slave"))
         files, findings, _ = self.tables()
-        self.assertIn("table.slave-number", findings)
+        self.assertIn("table.axis-number", findings)
         self.assertIn("siemens-840d-X-EEC.ini", files)
         self.assertFalse([n for n in files if "X2" in n])
-        # Its place among the machine's axes says it too.
+        # The record of the machine says it too; its place among the machine's axes does not.
         self.gantry('slave = "X2"\n[machine.axes.Z]\nkind = "linear"\n[machine.axes.X2]\nkind = "linear"', ("master", "slave"))
+        self.assertIn("table.axis-number", self.tables()[1])
+        self.record(["X", "Y", "X2"])
         self.assertIn("%_N_AX3_EEC_INI", self.tables()[0]["siemens-840d-X2-EEC.ini"])
 
     def test_a_control_that_counts_no_axes_needs_the_name_only(self):
         self.gantry('slave = "X2"', ("master", "slave"), control="heidenhain-tnc")
         files, findings, _ = self.tables("heidenhain-tnc")
-        self.assertNotIn("table.slave-number", findings)
+        self.assertNotIn("table.axis-number", findings)
         self.assertIn("heidenhain-tnc-X2.COM", files)
 
     def test_a_side_wants_the_name_of_the_second_axis(self):

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <tuple>
 
 #include "catalogue.h"
 
@@ -115,6 +117,30 @@ void measure(Hidden& h, const Cycle& c) {
   }
 }
 
+/// All readings towards + before all towards -, each group run by run and its targets ascending.
+void group(Hidden& h) {
+  Observations& o = h.table;
+  std::vector<std::size_t> rows(o.size());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  const auto& axis = o.axes.front();
+  std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) {
+    return std::tuple(-axis.approach[a], o.run[a], axis.position[a]) <
+           std::tuple(-axis.approach[b], o.run[b], axis.position[b]);
+  });
+  const auto arrange = [&](auto& column) {
+    const auto listed = column;
+    for (std::size_t i = 0; i < rows.size() && !listed.empty(); ++i) column[i] = listed[rows[i]];
+  };
+  arrange(o.axes.front().position);
+  arrange(o.axes.front().approach);
+  arrange(o.deviation);
+  arrange(o.material);
+  arrange(o.run);
+  for (auto& cause : h.causes) arrange(cause);
+  for (std::size_t& row : h.misread)
+    row = static_cast<std::size_t>(std::find(rows.begin(), rows.end(), row) - rows.begin());
+}
+
 }  // namespace
 
 Hidden generate(const Scenario& s) {
@@ -136,6 +162,7 @@ Hidden generate(const Scenario& s) {
   h.campaign = campaign_of(s, h.truth);
   h.table = table_of(s, c);
   measure(h, c);
+  if (s.kind == Kind::grouped) group(h);
   return h;
 }
 

@@ -16,7 +16,9 @@ using namespace nonio::hidden;
 
 namespace {
 
-constexpr Kind kinds[] = {Kind::one, Kind::several, Kind::complete, Kind::outside};
+constexpr Kind kinds[] = {Kind::one,     Kind::several,          Kind::complete,
+                          Kind::outside, Kind::wave_under_curve, Kind::screw_and_curve,
+                          Kind::beside,  Kind::grouped};
 constexpr std::uint64_t campaigns = 40;  // of each kind
 
 std::string read(const std::filesystem::path& path) {
@@ -105,10 +107,17 @@ TEST_P(HiddenCampaigns, the_truth_is_of_its_kind) {
     const Truth& t = h.truth;
     switch (GetParam()) {
       case Kind::one:
+      case Kind::beside:
+      case Kind::grouped:
         EXPECT_EQ(t.hidden.size(), 1U);
         EXPECT_TRUE(t.model.empty());
         EXPECT_EQ(t.verdict, "missing");
         break;
+      case Kind::wave_under_curve:
+        EXPECT_EQ(t.hidden, std::vector<std::string>{"periodic:X"});
+        EXPECT_EQ(t.model, std::vector<std::string>{"pitch-curve:X"});
+        break;
+      case Kind::screw_and_curve:
       case Kind::several:
         EXPECT_GE(t.hidden.size(), 2U);
         EXPECT_EQ(t.verdict, "missing");

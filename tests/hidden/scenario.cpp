@@ -65,11 +65,13 @@ void draw_pitch(Scenario& s, Random& random) {
 
 void draw_cycle(Scenario& s, Random& random) {
   s.rotary = random.flag(0.35);
+  if (s.kind == Kind::wave_under_curve || s.kind == Kind::screw_and_curve) s.rotary = false;
   s.targets = s.rotary ? random.whole(12, 36) : random.whole(11, 31);
   s.length = s.rotary ? 2.0 * pi : std::round(random.spread(300.0, 3000.0) / 10.0) / 100.0;
   s.even = random.flag(0.2);
   s.runs = static_cast<std::uint32_t>(random.whole(2, 5));
   s.timed = !random.flag(s.kind == Kind::several ? 1.0 / 3.0 : 0.2);
+  if (s.kind == Kind::grouped) s.timed = false;
   s.dwell = random.uniform(4.0, 10.0);
   s.feed = s.length / random.uniform(10.0, 40.0);
   s.pause = s.timed && random.flag(0.5) ? random.uniform(20.0, 180.0) : 0.0;
@@ -84,6 +86,7 @@ void draw_cycle(Scenario& s, Random& random) {
 void draw_causes(Scenario& s, Random& random) {
   switch (s.kind) {
     case Kind::one:
+    case Kind::grouped:
       s.hidden = pieces(random, s.rotary, 1, 3.5, 9.0);
       break;
     case Kind::several:
@@ -98,6 +101,21 @@ void draw_causes(Scenario& s, Random& random) {
       s.model = pieces(random, s.rotary, random.below(3), 1.6, 6.0);
       s.hidden = {
           {outside_sources()[random.below(outside_sources().size())], random.uniform(2.5, 6.0)}};
+      break;
+    case Kind::beside: {
+      const Source other[] = {Source::dent, Source::creeping_reversal, Source::zero_walk,
+                              Source::travel_hysteresis};
+      s.hidden = pieces(random, s.rotary, 1, 6.0, 9.0);
+      s.hidden.push_back({other[random.below(4)], random.uniform(2.5, 4.0)});
+      break;
+    }
+    case Kind::wave_under_curve:
+      s.model = {{Source::ground_pitch, random.uniform(1.6, 6.0)}};
+      s.hidden = {{Source::lead_error, random.uniform(1.6, 6.0)}};
+      break;
+    case Kind::screw_and_curve:
+      s.hidden = {{Source::ground_pitch, random.uniform(1.6, 6.0)},
+                  {Source::lead_error, random.uniform(1.6, 6.0)}};
       break;
   }
 }

@@ -8,6 +8,16 @@ trap 'rm -rf "$work"' EXIT
 "$cmake" -S "$plugin" -B "$work/plugin" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" \
   -DCMAKE_PREFIX_PATH="$work/prefix" > "$work/configure.log"
 "$cmake" --build "$work/plugin"
+# Docs, the papers of plugins, and a sample that runs.
+papers=$work/prefix/share/doc/nonio
+for file in howto-plugin.md howto-instruments.md pictures/long-tables.svg plugins/readers/long-table/README.md examples/README.md; do
+  [ -s "$papers/$file" ] || { echo "not installed: $file"; exit 1; }
+done
+[ -z "$(find "$papers" -empty -o -name '*.p12' -o -name '*.key')" ] || { echo "installed, and should not be: $(find "$papers" -empty)"; exit 1; }
+mkdir "$work/tried"
+cp -r "$papers/examples/site/02-constant-reversal" "$work/tried/"
+"$work/prefix/bin/nonio" run "$work/tried" --out "$work/tried-out" --quiet
+[ -s "$work/tried-out/02-constant-reversal/results.json" ]
 mkdir -p "$work/site/a"
 cat > "$work/site/a/campaign.toml" <<'TOML'
 format = 1

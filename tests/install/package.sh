@@ -92,6 +92,9 @@ diff -r --exclude=run.json --exclude=.nonio "$work/ours" "$root/srv/nonio/out" |
 step "a night: $(find "$root/srv/nonio/out" -type f | wc -l) files, the same bytes as from the build tree"
 
 # What is beside the program.
+for file in howto-plugin.md pictures/long-tables.svg plugins/readers/long-table/README.md examples/site/02-constant-reversal/campaign.toml; do
+  [ -s "$root/usr/share/doc/nonio/$file" ] || fail "the package lacks /usr/share/doc/nonio/$file"
+done
 man --warnings -l "$root/usr/share/man/man1/nonio.1.gz" > "$work/man" 2> "$work/man.log"
 [ ! -s "$work/man.log" ] || { cat "$work/man.log"; fail "the man page"; }
 grep -q 'run SITE' "$work/man" || fail "the man page does not say what nonio run does"

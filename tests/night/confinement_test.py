@@ -140,6 +140,24 @@ class Confinement(NightTest):
             self.assertIn(words, done.stderr, how)
             self.assertEqual(self.ids("done"), ["a"])
 
+    def test_memory_that_is_refused_once_while_an_output_prepares_is_no_note(self):
+        self.campaign("a")
+        self.on_load("prepares-twice", expect=0)
+        self.assertEqual([n for n in self.summary()["notes"] if "could not prepare" in n], [])
+
+    def test_a_key_that_others_can_read_signs_nothing(self):
+        self.campaign("a")
+        key = self.site / "lab.p12"
+        (self.site / "site.toml").write_text('[signing]\npkcs12 = "lab.p12"\npassword_env = "KEY_PASSWORD"\n')
+        key.write_bytes(b"no key, but that comes second")
+        note = lambda: next(n for n in self.summary()["notes"] if n.startswith("nothing can be signed"))
+        for mode in (0o644, 0o640, 0o604, 0o620, 0o600, 0o400):
+            key.chmod(mode)
+            self.run_nonio("--force", env={**os.environ, "KEY_PASSWORD": "secret"}, expect=0)
+            others = f"other users can get at the signing key {key} (mode {mode:04o})"
+            (self.assertIn if mode & 0o077 else self.assertNotIn)(others, note())
+            (self.assertIn if mode & 0o077 else self.assertNotIn)(f"chmod 600 {key}", note())
+
     def test_prints_while_loading_stay_out_of_the_stream(self):
         self.campaign("a")
         done, _ = self.on_load("prints", "--json", expect=0)
@@ -243,7 +261,8 @@ class Confinement(NightTest):
                 except OSError:
                     continue
                 seen.add(pid)
-                if "test_hostile.so" in maps:
+                # As code: to take its digest any process may map the file and read it.
+                if any("x" in line.split()[1] for line in maps.splitlines() if line.endswith("test_hostile.so")):
                     with_plugins.add(pid)
                     status = pathlib.Path(f"/proc/{pid}/status")
                     try:

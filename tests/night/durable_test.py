@@ -45,12 +45,13 @@ class Durable(NightTest):
 
     def test_renames_that_fail_leave_nothing(self):
         self.campaign("a")
-        for n in range(1, 12):
-            shutil.rmtree(self.out, ignore_errors=True)
-            done = self.run_nonio(env=fault(f"rename:{n}:{errno.EIO}"))
-            self.assertIn(done.returncode, (1, 2), done.stderr) if n < 8 else None
-            self.assertFalse(self.left(), n)
-            self.run_nonio(expect=0)
+        for times in (1, 1000):  # the summary's too
+            for n in range(1, 12):
+                shutil.rmtree(self.out, ignore_errors=True)
+                done = self.run_nonio(env=fault(f"rename:{n}:{errno.EIO}:{times}"))
+                self.assertIn(done.returncode, (1, 2), done.stderr) if n < 8 else None
+                self.assertFalse(self.left(), (n, times))
+                self.run_nonio(expect=0)
 
     def test_sighup_ends_as_sigterm_does(self):
         for i in range(30):
@@ -153,13 +154,30 @@ class Durable(NightTest):
         self.assertIn("cannot flush the disk", done.stderr)
         self.run_nonio(expect=0)
 
+    def test_what_the_disk_reports_only_once_is_heard(self):
+        """An error of the disk after the first results were written, before anybody flushes them."""
+        for name in "abc":
+            self.campaign(name)
+        counts = self.root / "counts"
+        self.run_nonio("--jobs", "3", env={**os.environ, "LD_PRELOAD": SHIM, "NONIO_FAULT_COUNTS": str(counts)}, expect=0)
+        writes = int(dict(line.split() for line in counts.read_text().splitlines())["write"])
+        good = {k: v for k, v in tree(self.out).items() if k.endswith("results.json")}
+        heard = 0
+        for n in range(1, writes, max(1, writes // 12)):
+            shutil.rmtree(self.out)
+            done = self.run_nonio("--jobs", "3", env=fault(f"write:{n}:LATE"))
+            heard += done.returncode == 1 and "cannot flush the disk" in done.stderr
+            self.run_nonio(expect=0)
+            self.assertEqual(good, {k: v for k, v in tree(self.out).items() if k.endswith("results.json")})
+        self.assertGreater(heard, 5)
+
     def test_a_failure_that_passes_leaves_the_last_good_result(self):
         self.campaign("a")
         self.run_nonio("--date", "2026-11-03", expect=0)
         good = {k: v for k, v in tree(self.out / "a").items()}
         for date in ("2026-11-04", "2026-11-05"):
             self.campaign("a", seed=date)
-            done = self.run_nonio("--date", date, env=fault(f"fork:5:{errno.EAGAIN}:100000"), expect=1)
+            done = self.run_nonio("--date", date, env=fault(f"fork:7:{errno.EAGAIN}:100000"), expect=1)
             self.assertIn("no worker process", done.stderr)
             self.assertEqual("failed", self.results("a")["status"])
             self.assertEqual(["last-good", "results.json", "run.json"], sorted(os.listdir(self.out / "a")))

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loaded before the C library (LD_PRELOAD): the n-th call of one of its functions fails, counted
 // over all processes of a night. NONIO_FAULT = FUNCTION:N:ERRNO[:TIMES], or FUNCTION:N:KILL, which
-// ends the main process by SIGKILL instead, or write:N:LOST, which says that it was written.
-// NONIO_FAULT_IN = main: only the calls of the main process count. NONIO_FAULT_COUNTS = FILE gets
-// how often each was called.
+// ends the main process by SIGKILL instead, or write:N:LOST, which says that it was written, or
+// write:N:LATE, of which the kernel finds out later that the disk did not take it: syncfs fails
+// then as Linux does it, once for each descriptor that was open before and for none that was opened
+// after. NONIO_FAULT_IN = main: only the calls of the main process count. NONIO_FAULT_COUNTS = FILE
+// gets how often each was called.
 #include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -57,14 +59,29 @@ enum Function {
 std::atomic<long>* counts = nullptr;  // shared by the processes
 int wanted = -1;
 long from = 0, times = 1;
-constexpr int lost = 0x10000;  // of a disk that says it has what it has not
-int code = 0;                  // 0: kill
+constexpr int lost = 0x10000;              // of a disk that says it has what it has not
+constexpr int late = 0x20000;              // of a disk that says afterwards that it has not
+std::atomic<long>* disk_failed = nullptr;  // shared by the processes
+bool told[1024];                           // descriptors that do not hear of it (any more)
+int code = 0;                              // 0: kill
 bool main_only = false;
 pid_t main_pid = 0;
 
 template <class F>
 F real(const char* name) {
   return reinterpret_cast<F>(::dlsym(RTLD_NEXT, name));
+}
+
+int opened(int fd) {
+  if (fd >= 0 && fd < 1024) told[fd] = disk_failed != nullptr && *disk_failed != 0;
+  return fd;
+}
+
+bool hears_of_the_disk(int fd) {
+  if (fd < 0 || fd >= 1024 || told[fd] || disk_failed == nullptr || *disk_failed == 0) return false;
+  told[fd] = true;
+  errno = EIO;
+  return true;
 }
 
 bool fails(Function f) {
@@ -91,6 +108,7 @@ __attribute__((constructor)) void begin() {
     if (std::strcmp(names[i], name) == 0) wanted = i;
   code = std::strcmp(what, "KILL") == 0   ? 0
          : std::strcmp(what, "LOST") == 0 ? lost
+         : std::strcmp(what, "LATE") == 0 ? late
                                           : std::atoi(what);
   const char* const in = std::getenv("NONIO_FAULT_IN");
   main_only = in != nullptr && std::strcmp(in, "main") == 0;
@@ -98,7 +116,9 @@ __attribute__((constructor)) void begin() {
   using Map = void* (*)(void*, size_t, int, int, int, off_t);
   void* shared =
       real<Map>("mmap")(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (shared != MAP_FAILED) counts = static_cast<std::atomic<long>*>(shared);
+  if (shared == MAP_FAILED) return;
+  counts = static_cast<std::atomic<long>*>(shared);
+  disk_failed = counts + functions;
 }
 
 __attribute__((destructor)) void end() {
@@ -122,7 +142,7 @@ int open(const char* path, int flags, ...) {
   const mode_t mode = va_arg(more, mode_t);
   va_end(more);
   if (fails(Open)) return -1;
-  return real<int (*)(const char*, int, ...)>("open")(path, flags, mode);
+  return opened(real<int (*)(const char*, int, ...)>("open")(path, flags, mode));
 }
 int open64(const char* path, int flags, ...) {
   va_list more;
@@ -130,7 +150,7 @@ int open64(const char* path, int flags, ...) {
   const mode_t mode = va_arg(more, mode_t);
   va_end(more);
   if (fails(Open)) return -1;
-  return real<int (*)(const char*, int, ...)>("open64")(path, flags, mode);
+  return opened(real<int (*)(const char*, int, ...)>("open64")(path, flags, mode));
 }
 int openat(int at, const char* path, int flags, ...) {
   va_list more;
@@ -138,7 +158,7 @@ int openat(int at, const char* path, int flags, ...) {
   const mode_t mode = va_arg(more, mode_t);
   va_end(more);
   if (fails(Open)) return -1;
-  return real<int (*)(int, const char*, int, ...)>("openat")(at, path, flags, mode);
+  return opened(real<int (*)(int, const char*, int, ...)>("openat")(at, path, flags, mode));
 }
 FILE* fopen(const char* path, const char* mode) {
   if (fails(Open)) return nullptr;
@@ -151,12 +171,17 @@ ssize_t write(int fd, const void* from_, size_t n) {
   struct stat file {};
   const bool is_file =
       real<int (*)(int, struct stat*)>("fstat")(fd, &file) == 0 && S_ISREG(file.st_mode);
-  if (fails(Write) && (code != lost || is_file)) return code == lost ? static_cast<ssize_t>(n) : -1;
+  if (fails(Write) && (code < lost || is_file)) {
+    if (code != late) return code == lost ? static_cast<ssize_t>(n) : -1;
+    *disk_failed = 1;
+  }
   return real<ssize_t (*)(int, const void*, size_t)>("write")(fd, from_, n);
 }
 int fsync(int fd) { return fails(Fsync) ? -1 : real<int (*)(int)>("fsync")(fd); }
 int fdatasync(int fd) { return fails(Fsync) ? -1 : real<int (*)(int)>("fdatasync")(fd); }
-int syncfs(int fd) noexcept { return fails(Syncfs) ? -1 : real<int (*)(int)>("syncfs")(fd); }
+int syncfs(int fd) noexcept {
+  return fails(Syncfs) || hears_of_the_disk(fd) ? -1 : real<int (*)(int)>("syncfs")(fd);
+}
 int rename(const char* a, const char* b) noexcept {
   return fails(Rename) ? -1 : real<int (*)(const char*, const char*)>("rename")(a, b);
 }

@@ -152,6 +152,17 @@ class Faults(NightTest):
         left = [str(p) for p in out.rglob("*") if "nonio-tmp" in p.name or p.name.endswith(".before")]
         return (f"the next night left {left}, {told}" if left else ""), ends
 
+    def test_the_last_calls_of_a_night(self):
+        """When all campaigns are done, and the register, the leftovers and the summary are left: every place."""
+        bad = []
+        for night, call, code, times in (("first", "open", errno.EIO, 10), ("first", "stat", errno.ESTALE, 1),
+                                         ("changed", "stat", errno.ESTALE, 1), ("first", "fork", errno.EAGAIN, 100000)):
+            last = self.counts[night][call]
+            for n in range(max(1, last - (2 if call == "fork" else 8)), last + 1):
+                why, _ = self.wrong(night, f"{call}:{n}:{code}:{times}")
+                bad += [f"{night}/{call}:{n}:{code}:{times}: {why}"] if why else []
+        self.assertFalse(bad, "\n".join(bad))
+
     def test_random_faults(self):
         rng = random.Random(SEED)
         print(f"seed {SEED}, {FAULTS} faults", flush=True)

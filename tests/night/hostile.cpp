@@ -66,7 +66,8 @@ void append() {
 void make() { got(::open(path, O_WRONLY | O_CREAT, 0644) >= 0, "a new file"); }
 void kill_parent() { ::kill(::getppid(), SIGKILL); }
 void kill_thread() { ::syscall(SYS_tgkill, ::getppid(), ::getppid(), SIGKILL); }
-void kill_all() { ::kill(-1, SIGKILL); }
+// The call is what is refused; where it is not, nobody else dies of this test.
+void kill_all() { ::kill(-1, 0); }
 void descriptors() {
   int open = 0;
   for (int fd = 3; fd < 1024; ++fd) open += ::fcntl(fd, F_GETFD) >= 0 ? 1 : 0;

@@ -126,7 +126,7 @@ class Input(NightTest):
             self.assertFalse(self.out.exists())
 
     def test_a_table_that_nobody_asked_for_does_not_fail_the_campaign(self):
-        small = "[options.siemens-840d]\nmax_points = 3\n"
+        small = '[options.siemens-840d]\naxes = ["X number=1"]\nmax_points = 3\n'
         self.campaign("any", extra=small)
         self.campaign("asked", run='[run]\noutputs = ["siemens-840d"]\n', extra=small)
         self.campaign("control", text=manifest("control").replace(
@@ -157,12 +157,37 @@ class Input(NightTest):
 
     def test_files_that_are_no_text_say_so(self):
         cases = {"empty": (b"", "empty file"), "blank": (b"\n \r\n", "empty file"),
-                 "utf16": (readings(1).encode("utf-16"), "UTF-16")}
+                 "utf16": (readings(1).encode("utf-16-le"), "UTF-16"),
+                 "utf16-cut": (readings(1).encode("utf-16")[:-1], "half a character at its end")}
         for name, (data, _) in cases.items():
             (self.campaign(name) / "x.csv").write_bytes(data)
         self.run_nonio(expect=1)
         for name, (_, words) in cases.items():
             self.assertIn(words, self.errors(name)[0]["message"])
+
+    def test_what_excel_saves_as_unicode_text_is_read(self):
+        text = readings(1).replace(",", "\t")
+        for name, data in {"plain": readings(1).encode(), "le": text.encode("utf-16"), "be": b"\xfe\xff" + text.encode("utf-16-be"),
+                           "sep": ("sep=\t\r\n" + text).encode()}.items():
+            (self.campaign(name) / "x.csv").write_bytes(data)
+        self.run_nonio(expect=0)
+        values = [[a["values"] for a in self.results(name)["analyses"]]
+                  for name in ("plain", "le", "be", "sep")]
+        self.assertTrue(values[0])
+        self.assertEqual(values[1:], [values[0]] * 3)
+
+    def test_files_of_the_e1733a_are_refused_by_their_names(self):
+        suffixes = ("Lin", "Ang", "str", "Squ", "Par", "rot", "Way", "Fla", "Dia", "LTB", "ATB", "STB", "LDA")
+        for s in suffixes:
+            folder = self.campaign("k-" + s.lower())
+            (folder / "campaign.toml").write_text((folder / "campaign.toml").read_text().replace("x.csv", "x." + s))
+            (folder / ("x." + s)).write_bytes(b"E1733A\x00\x01\x02")
+        self.run_nonio(expect=1)
+        for s in suffixes:
+            error = self.results("k-" + s.lower())["errors"][0]
+            self.assertEqual(error["file"], "x." + s)
+            self.assertIn("Keysight's laser program E1733A", error["message"])
+            self.assertIn("column map", error["message"])
 
     def test_what_no_analysis_evaluates_is_said(self):
         table = '[[measurement]]\nid = "T"\nkind = "observations"\nfile = "t.csv"\n'

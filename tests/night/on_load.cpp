@@ -7,7 +7,9 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <new>
 #include <string_view>
+#include <utility>
 
 #include "nonio/sdk/plugin.h"
 
@@ -31,4 +33,18 @@ const int done = harm();
 
 }  // namespace
 
-NONIO_PLUGIN(registry) { (void)registry, (void)done; }
+NONIO_PLUGIN(registry) {
+  (void)done;
+  if (std::string_view(NONIO_TEST_HOW) != "prepares-twice") return;
+  nonio::Output output;
+  output.info = {"second-thoughts", "1", "has no memory the first time", {}};
+  output.applies = [](const nonio::Campaign&) { return false; };
+  output.write = [](const nonio::OutputInput&) -> nonio::Expected<nonio::OutputResult> {
+    return nonio::OutputResult{};
+  };
+  output.prepare = [](const nonio::Templates&) {
+    static bool again = false;
+    if (!std::exchange(again, true)) throw std::bad_alloc();
+  };
+  registry.add(output);
+}

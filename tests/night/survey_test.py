@@ -72,9 +72,16 @@ class Survey(NightTest):
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (64, 64)))
         self.assertEqual(self.seen(done), {"a", deep})
 
+    @can_inject
     def test_a_folder_that_comes_and_goes_hides_no_other(self):
         names = [f"c{i:02}" for i in range(40)]
         self.campaigns(*names)
+        # At the worst moment: it was in the list, and is away when it is opened.
+        for i in (0, 19, 39):
+            done = self.run_nonio("--dry-run", "--json", env=with_faults(f"open:site/c{i:02}:{errno.ENOENT}"))
+            self.assertIn(done.returncode, (0, 1), done.stderr)
+            self.assertLessEqual(set(names) - {f"c{i:02}"}, self.seen(done))
+        # At any moment.
         stop = threading.Event()
 
         def restless():
@@ -102,7 +109,9 @@ class Survey(NightTest):
         (self.site / "huge").mkdir()
         with open(self.site / "huge" / "campaign.toml", "wb") as file:
             file.truncate(64 << 30)
-        self.run_nonio(expect=1)
+        # A program that reads it does not take the machine with it.
+        bounded = lambda: resource.setrlimit(resource.RLIMIT_AS, (8 << 30, 8 << 30))
+        self.run_nonio(expect=1, preexec_fn=bounded)
         self.assertEqual(self.ids("done"), ["a"])
         self.assertIn("wanted at most 1 MB", self.failed()["huge"])
         os.truncate(self.site / "huge" / "campaign.toml", 0)
@@ -140,6 +149,63 @@ class Survey(NightTest):
             self.assertLess(time.monotonic() - began, 5.0)
             self.assertNotIn("campaign.id", words)
         self.run_nonio(expect=0)
+
+    SIGNING = '[signing]\npkcs12 = "key.p12"\npassword_env = "KEY_PASSWORD"\n'
+
+    def hanging(self, rule, after=None):
+        return {**with_faults(rule), "KEY_PASSWORD": "secret", **({"NONIO_FAULTS_AFTER": str(after)} if after else {})}
+
+    @can_inject
+    def test_SIGTERM_ends_a_night_whose_own_files_hang(self):
+        """Also where they hung after they were read before."""
+        self.campaigns("a", "b")
+        (self.site / "templates").mkdir()
+        (self.site / "templates" / "x.toml").write_text("")
+        (self.site / "key.p12").write_bytes(b"key")
+        (self.site / "key.p12").chmod(0o600)
+        (self.site / "site.toml").write_text(self.SIGNING)
+        end = self.out / "b" / "run.json"
+        for rule, after in (("open:site/site.toml", None), ("stat:site/site.toml", None),
+                            ("open:templates/x.toml", None), ("stat:site/certificates.sqlite", None),
+                            ("stat:key.p12", None), ("stat:site/certificates.sqlite", end)):
+            shutil.rmtree(self.out, ignore_errors=True)
+            night = subprocess.Popen(self.command(), env=self.hanging(rule + ":hang", after),
+                                     stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            time.sleep(1.5)
+            self.assertIsNone(night.poll(), rule)
+            began = time.monotonic()
+            night.send_signal(signal.SIGTERM)
+            _, words = night.communicate(timeout=30)
+            self.assertEqual(night.returncode, 130, rule + words)
+            self.assertLess(time.monotonic() - began, 2.0, rule)
+        self.assertTrue(end.exists())
+        self.run_nonio(expect=0, env=self.hanging(""))
+
+    @can_inject
+    def test_a_register_or_key_that_hangs_costs_its_limit(self):
+        self.campaigns("a", "b")
+        (self.site / "key.p12").write_bytes(b"key")
+        (self.site / "key.p12").chmod(0o600)
+        (self.site / "site.toml").write_text(self.SIGNING + "[limits]\ndisk_seconds = 1\n")
+        reference = self.root / "reference"
+        date = ("--date", "2026-11-03")
+        self.run_nonio(*date, out=reference, expect=0, env=self.hanging(""))
+        began = time.monotonic()
+        for fault in ("hang", errno.ESTALE):
+            shutil.rmtree(self.out, ignore_errors=True)
+            rule = f"stat:site/certificates.sqlite:{fault}"
+            words = "no answer within" if fault == "hang" else os.strerror(errno.ESTALE)
+            self.assertIn(words, self.run_nonio(*date, expect=2, env=self.hanging(rule)).stderr)
+            # When all is done: a summary that does not know what was issued is none.
+            done = self.run_nonio(*date, expect=1, env=self.hanging(rule, self.out / "b" / "run.json"))
+            self.assertIn(words, done.stderr)
+            self.assertIn("the same command goes on where it stopped", done.stderr)
+            self.assertFalse((self.out / "summary.json").exists())
+            self.run_nonio(expect=0, env=self.hanging(""))
+            self.assertEqual(tree(self.out), tree(reference))
+        self.run_nonio(expect=0, env=self.hanging("stat:key.p12:hang"))
+        self.assertIn("nothing can be signed: the signing key: no answer within 1 s", "".join(self.summary()["notes"]))
+        self.assertLess(time.monotonic() - began, 40.0)
 
     @can_inject
     def test_SIGTERM_in_a_long_survey(self):

@@ -7,6 +7,7 @@
 #include "camonitor.h"
 #include "ecmc_iso230.h"
 #include "linuxcnc_probe.h"
+#include "long_table.h"
 #include "nonio/sdk/format.h"
 #include "rta.h"
 #include "rtl.h"
@@ -18,9 +19,9 @@ namespace reader_cases {
 /// All readers of instrument files.
 inline const std::vector<nonio::Reader>& readers() {
   static const std::vector<nonio::Reader> all{
-      nonio::renishaw::rtl_reader(), nonio::renishaw::rta_reader(), nonio::wide_table::reader(),
-      nonio::ecmc_iso230::reader(),  nonio::camonitor::reader(),    nonio::linuxcnc_probe::reader(),
-      nonio::ballbar::reader()};
+      nonio::renishaw::rtl_reader(),   nonio::renishaw::rta_reader(), nonio::wide_table::reader(),
+      nonio::long_table::reader(),     nonio::ecmc_iso230::reader(),  nonio::camonitor::reader(),
+      nonio::linuxcnc_probe::reader(), nonio::ballbar::reader()};
   return all;
 }
 

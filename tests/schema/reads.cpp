@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the host takes manifests, many at a time: schema_reads campaign|site, the paths on stdin;
-// a line for each, "ok" or the first error.
+// Whether the host takes manifests, many at a time: schema_reads campaign|site|machine, the paths
+// on stdin; a line for each, "ok" or the first error.
 #include <iostream>
 #include <string>
 
 #include "nonio/host/files.h"
+#include "nonio/host/machines.h"
 #include "nonio/host/manifest.h"
 
 namespace {
@@ -20,12 +21,14 @@ std::string verdict(const nonio::host::Checked<File>& read) {
 
 int main(int argc, char** argv) {
   const std::string file = argc == 2 ? argv[1] : "";
-  if (file != "campaign" && file != "site") return 2;
+  if (file != "campaign" && file != "site" && file != "machine") return 2;
   for (std::string path; std::getline(std::cin, path);) {
     const auto text = nonio::host::read_file(path);
     if (!text) return 1;
     std::cout << (file == "campaign" ? verdict(nonio::host::parse_manifest(*text, "campaign.toml"))
-                                     : verdict(nonio::host::parse_site(*text, "site.toml")))
+                  : file == "site"
+                      ? verdict(nonio::host::parse_site(*text, "site.toml"))
+                      : verdict(nonio::host::parse_machine(*text, "machines/S-1.toml", "S-1")))
               << "\n";
   }
 }

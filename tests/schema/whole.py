@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A campaign.toml and a site.toml with every key there is."""
+"""A campaign.toml, a site.toml and a machine's record with every key there is."""
 import datetime
 
 DAY = datetime.date(2026, 11, 3)
@@ -11,11 +11,11 @@ def campaign():
         "campaign": {"id": "2026-11-03-a", "customer": "C", "site": "S", "operator": "O", "customer_address": "A",
                      "date": DAY, "end_date": DAY, "received": DAY},
         "machine": {
-            "maker": "M", "model": "M", "serial": "1", "description": "D", "condition": "C", "control": "fanuc",
+            "asset": "S-1", "maker": "M", "model": "M", "serial": "1", "description": "D", "condition": "C", "control": "fanuc",
             "structure": "gantry",
             "axes": {"X": {"kind": "linear", "travel": [0.0, 500.0], "screw_pitch_mm": 10.0,
-                           "expansion_um_per_m_K": 11.5, "tolerance_um": {"A": 15.0, "R+": 6}, "slave": "X2"},
-                     "C": {"kind": "rotary", "travel": [0, 360], "teeth": 120, "tolerance_arcsec": {"A": 8.0}},
+                           "expansion_um_per_m_K": 11.5, "tolerance_um": {"A": 15.0, "R+": 6}, "slave": "X2", "table_on": "backup/x.ini", "backlash_on_mm": 0.01},
+                     "C": {"kind": "rotary", "travel": [0, 360], "teeth": 120, "tolerance_arcsec": {"A": 8.0}, "backlash_on_deg": "none"},
                      "Y": {"screw_pitch_mm": 10.0}, "B": {"teeth": 90},
                      "U": {"kind": "rotary", "teeth": 60}, "A1": {"kind": "linear", "tolerance_um": {"A": 1}}}},
         "instrument": {"maker": "M", "model": "M", "serial": "1", "calibrated": DAY, "certificate": "C",
@@ -32,7 +32,7 @@ def campaign():
                         "customer_data": ["machine.serial"]},
         "run": {"analyses": ["iso230-2", "model-fit"], "outputs": ["json"]},
         "measurement": [
-            {"id": "X 1", "kind": "axis", "file": "x.csv", "reader": "csv", "axis": "X", "adjustment": "before", "side": "master",
+            {"id": "X 1", "kind": "axis", "file": "x.csv", "reader": "csv", "axis": "X", "adjustment": "before", "order": "pendulum", "side": "master",
              "exclude": [3, 4], "exclude_reason": "R", "at": {"Y": 300}, "feed_mm_per_min": 1200, "dwell_s": 3,
              "over_travel_mm": 2.5, "tool_offset": {"Z": -120}, "workpiece_offset": {"X": 40}, "compensation": "on"},
             {"id": "S", "kind": "straightness", "file": "s.csv", "axis": "X", "lateral": "Y"},
@@ -49,6 +49,19 @@ def campaign():
                                               {"name": "P", "unit": "mm", "start": 800, "range": [500, 1500.5]}]}]},
         "tables": {"may_stand": [{"finding": "plausibility.passes-identical", "reason": "R"}]},
         "options": {"iso230-2": {"edition": 2006}},
+    }
+
+
+def machine():
+    return {
+        "format": 1,
+        "asset": "S-1", "maker": "M", "model": "M", "serial": "1", "control": "fanuc", "control_version": "V",
+        "taken": ["0", "100-227"],
+        "axes": {"X": {"kind": "linear", "number": 1, "name": "X1", "reference_mm": 0.0, "travel": [0, 800.5],
+                       "resolution_um": 1, "gear": "2:1", "largest_um": 100, "slope_um_per_m": 200.5,
+                       "table": "none", "backlash_mm": 0.01, "since": DAY},
+                 "C": {"kind": "rotary", "number": 4, "reference_deg": 0, "resolution_arcsec": 0.1,
+                       "largest_arcsec": 20, "slope_arcsec_per_deg": 1, "backlash_deg": "none", "since": DAY}},
     }
 
 

@@ -2,6 +2,7 @@
 """nonio explain: the JSON of the contract, verdicts, --auto."""
 import json
 import pathlib
+import random
 import shutil
 import unittest
 
@@ -98,6 +99,98 @@ class Explain(VerbTest):
         shown = self.nonio("explain", self.folder, "--auto").stdout
         self.assertIn("step 1: backlash:X added", shown)
         self.assertIn("verdict: nothing", shown)
+
+    def grouped(self, **effects):
+        """As spreadsheets list them: all runs towards +, then all towards -, ascending, without times."""
+        rows = readings(times=False, runs=5, **effects).splitlines()
+        head, rows = rows[0], [row.split(",") for row in rows[1:]]
+        rows.sort(key=lambda r: (r[1], int(r[0]), float(r[2])))  # "+" sorts before "-"
+        return "\n".join([head] + [",".join(r) for r in rows]) + "\n"
+
+    def test_rows_that_no_machine_runs_through_are_no_times(self):
+        self.campaign(manifest([]), x=self.grouped(backlash=-6))
+        e = self.explain()
+        self.assertEqual(e["verdict"].get("effect"), "backlash:X")
+        self.assertEqual(e["together"], ["backlash:X"])  # not a drift, nor a jump in the middle of the file
+        self.assertIn("there and back", " ".join(e["warnings"]))
+        self.campaign(manifest([]), x=self.grouped(drift=8))
+        self.assertEqual(self.explain()["verdict"].get("effect"), "zero-drift:X")
+
+    def test_the_order_is_said_in_the_manifest(self):
+        text = manifest([])
+        said = text.replace('file = "x.csv"', 'file = "x.csv"\norder = "{}"')
+        self.campaign(said.format("pendulum"), x=self.grouped(drift=8))
+        e = self.explain()
+        self.assertEqual((e["verdict"].get("effect"), e["warnings"]), ("zero-drift:X", []))
+        self.campaign(said.format("as-listed"), x=self.grouped(drift=8))
+        self.assertNotEqual(self.explain()["together"], ["zero-drift:X"])
+        self.campaign(said.format("unknown"), x=self.grouped(drift=8))
+        e = self.explain()
+        names = [c["effect"] for c in e["candidates"]]
+        for timely in ("zero-drift:X", "growth-drift:X", "warm-up:X", "run-jump:X"):
+            self.assertNotIn(timely, names)
+        self.assertIn("nothing is concluded from time", " ".join(e["warnings"]))
+        self.campaign(said.format("sideways"), x=self.grouped())
+        self.assertIn('"sideways"', self.nonio("explain", self.folder, expect=2).stderr)
+
+    def test_rows_in_another_order_say_the_same_where_they_have_times(self):
+        text = readings(scale=20, backlash=-6, drift=4)
+        self.campaign(manifest([]), x=text)
+        first = self.explain()
+        rows = text.splitlines()
+        self.campaign(manifest([]), x="\n".join(rows[:1] + sorted(rows[1:])) + "\n")
+        self.assertEqual(self.explain(), first)
+
+    def uneven_reversal(self):
+        """Five targets, each with a reversal of its own: no effect of the catalogue."""
+        rng = random.Random(5)
+        rows = ["run,direction,target_mm,deviation_um"]
+        reversal = {0: 0, 100: 9, 200: -7, 300: 8, 400: -6}
+        for run in range(1, 6):
+            for way in (1, -1):
+                for target in list(reversal)[::way]:
+                    value = reversal[target] * way / 2 + rng.gauss(0, 0.4)
+                    rows.append(f"{run},{'+' if way > 0 else '-'},{target},{value:.4f}")
+        return "\n".join(rows) + "\n"
+
+    def test_what_no_effect_explains_is_described(self):
+        self.campaign(manifest([]), x=self.uneven_reversal())
+        e = self.explain()
+        self.assertEqual(e["verdict"]["kind"], "unknown")
+        described = e["descriptions"]
+        self.assertEqual(described[0]["effect"], "free-reversal:X")
+        self.assertLess(described[-1]["rms_um"], 1.1 * e["noise_floor_um"])
+        self.assertNotIn("free-reversal:X", [c["effect"] for c in e["candidates"]])
+        self.assertIn("a description, not a cause", self.nonio("explain", self.folder).stdout)
+        for d in described:
+            self.nonio("model", "add", self.folder, d["effect"])
+        e = self.explain()
+        self.assertEqual((e["verdict"]["kind"], e["descriptions"]), ("nothing", []))
+        # Beside a description an effect says what it says alone, wherever it stands in the list.
+        self.nonio("model", "add", self.folder, "backlash:X")
+        self.assertIn("backlash:X", self.explain()["model"]["effects"])
+
+    def test_what_is_certain_is_named_beside_what_is_not(self):
+        rows = self.uneven_reversal().splitlines()
+        drift = [rows[0]]
+        for k, row in enumerate(rows[1:]):
+            *cells, value = row.split(",")
+            drift.append(",".join(cells + [f"{float(value) + 0.8 * k:.4f}"]))
+        self.campaign(manifest([]), x="\n".join(drift) + "\n")
+        e = self.explain()
+        self.assertIn("zero-drift:X", e["certain"] + [e["verdict"].get("effect")])
+        e = self.explain("--auto")
+        self.assertIn("zero-drift:X", e["model"]["effects"])
+        self.assertEqual(e["verdict"]["kind"], "unknown")
+        self.assertEqual(e["descriptions"][0]["effect"], "free-reversal:X")
+
+    def test_one_misread_value_of_15_is_no_contradiction(self):
+        rows = readings(runs=3, targets=[0, 100, 200, 300, 400], directions="+").splitlines()
+        rows[8] = ",".join(rows[8].split(",")[:3] + ["60", rows[8].split(",")[4]])
+        self.campaign(manifest([]), x="\n".join(rows) + "\n")
+        e = self.explain()
+        self.assertEqual([s["line"] for s in e["suspects"]], [9])
+        self.assertEqual(e["verdict"]["kind"], "nothing")
 
     def test_without_repeats_it_does_not_speak_of_noise(self):
         sample = pathlib.Path(__file__).parents[2] / "samples" / "site" / "06-long-axis"

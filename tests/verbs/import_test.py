@@ -167,6 +167,122 @@ class Import(unittest.TestCase):
         self.assertIn("Rossi", text)
         self.assertIn("screw_pitch_mm", text)
 
+    def rule(self, text):
+        path = self.root / "rule.toml"
+        path.write_text(text, encoding="utf-8")
+        return str(path)
+
+    def files_of(self, said):
+        return {f["file"]: f for c in said["campaigns"] for f in c["files"]}
+
+    def test_a_small_letter_is_the_axis_and_is_said(self):
+        self.file("week42/x/rawdata/x_230_2_edit.rtl", rtl([1, 2, 3]))
+        self.file("week42/y/rawdata/y_230_2.rtl", rtl([1, 2, 4]))
+        self.file("week42/y/rawdata/z_230_2.rtl", rtl([1, 2, 5]))
+        said = self.run_import(rule="{week}/{axis}/rawdata/{axis}_230_2{*}.rtl")
+        files = self.files_of(said)
+        self.assertEqual({f: (v["axis"], v["measurement"]) for f, v in files.items()},
+                         {"week42/x/rawdata/x_230_2_edit.rtl": ("X", "X"), "week42/y/rawdata/y_230_2.rtl": ("Y", "Y")})
+        self.assertEqual(files["week42/x/rawdata/x_230_2_edit.rtl"]["assumed"], ['axis X for "x" in its name'])
+        self.assertEqual([u["file"] for u in said["unmatched"]], ["week42/y/rawdata/z_230_2.rtl"])
+        self.assertIn('axis = "X"', (self.site / "week42/campaign.toml").read_text("utf-8").replace("'", '"'))
+
+    def test_places_that_end_by_themselves_need_nothing_between(self):
+        self.file("target_w42_x_8A.rtl", rtl([1, 2, 3]))
+        self.file("target_w42_y.rtl", rtl([1, 2, 4]))
+        self.file("target_w42_x8.rtl", rtl([1, 2, 5]))  # axis X, or X8?
+        said = self.run_import(rule="target_{week}_{axis}{*}.rtl")
+        self.assertEqual({f: v["axis"] for f, v in self.files_of(said).items()},
+                         {"target_w42_x_8A.rtl": "X", "target_w42_y.rtl": "Y"})
+        self.assertEqual(said["unmatched"], [{"file": "target_w42_x8.rtl", "why":
+                                              "its name can be read in two ways by the pattern"}])
+
+    def test_a_word_that_is_no_axis_is_none(self):
+        self.file("fp12_report_20240302.rtl", rtl([1, 2, 3]))
+        said = self.run_import(status=1)
+        self.assertEqual([u["file"] for u in said["unmatched"]], ["fp12_report_20240302.rtl"])
+
+    def test_axes_that_the_rule_states(self):
+        self.file("FP12_axis1_20240302.rtl", rtl([1, 2, 3]))
+        self.file("FP12_laengs_20240302.rtl", rtl([1, 2, 4]))
+        self.file("FP12_x_20240302.rtl", rtl([1, 2, 5]))
+        rule = 'pattern = "{machine}_{axis}_{date}.rtl"\n[axes]\naxis1 = "X"\nlaengs = "Y"\n'
+        said = self.run_import(rule=self.rule(rule))
+        files = self.files_of(said)
+        self.assertEqual({f: v["axis"] for f, v in files.items()},
+                         {"FP12_axis1_20240302.rtl": "X", "FP12_laengs_20240302.rtl": "Y"})
+        self.assertEqual(files["FP12_axis1_20240302.rtl"]["assumed"],
+                         ['axis X for "axis1" in its name, as the rule says'])
+        self.assertEqual([u["file"] for u in said["unmatched"]], ["FP12_x_20240302.rtl"])
+        for wrong, words in (('[axes]\naxis1 = "x 1"\n', "wanted an axis of capital letters and digits"),
+                             ('axis = "X"\n[axes]\naxis1 = "X"\n', "wanted the axis here or at {axis}")):
+            self.assertIn(words, self.run_import(rule=self.rule('pattern = "{machine}_{axis}_{date}.rtl"\n' + wrong),
+                                                 status=2))
+
+    def test_one_axis_of_all_files_as_the_rule_states(self):
+        self.file("FP12_20240302.rtl", rtl([1, 2, 3]))
+        said = self.run_import(rule=self.rule('pattern = "{machine}_{date}.rtl"\naxis = "X"\n'))
+        self.assertEqual(self.files_of(said)["FP12_20240302.rtl"]["assumed"], ["axis X, as the rule says"])
+        self.assertTrue(said["campaigns"][0]["written"])
+
+    def test_equal_readings_are_said_once(self):
+        for n, comment in enumerate(("", "\n", "\n\n", "\n\n\n")):
+            self.file(f"FP12/X/rawdata/x_{n}.rtl", rtl([1, 2, 3]) + comment)
+        rule = "{machine}/{axis}/rawdata/{*}.rtl"
+        said = self.run_import(rule=rule, status=1)
+        lacks = [f["lacks"] for f in said["campaigns"][0]["files"]]
+        self.assertEqual(lacks[0], [])
+        self.assertEqual([len(one) for one in lacks[1:]], [1, 1, 1])
+        self.assertEqual(lacks[1][0], 'the same readings as FP12/X/rawdata/x_0.rtl; exclude one of them, in the rule: '
+                                      'exclude = ["FP12/X/rawdata/x_1.rtl"]')
+        done = subprocess.run([NONIO, "import", str(self.source), "--rule", rule, "--out", str(self.site)],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.stdout.count("\n"), 6, done.stdout)
+        exclude = ", ".join(f'"FP12/X/rawdata/x_{n}.rtl"' for n in (1, 2, 3))
+        self.assertTrue(self.run_import(rule=self.rule(f'pattern = "{rule}"\nexclude = [{exclude}]\n'))
+                        ["campaigns"][0]["written"])
+
+    def test_many_files_that_follow_no_pattern_are_counted(self):
+        self.file("FP12_X_20240302.rtl", rtl([1, 2, 3]))
+        for n in range(50):
+            self.file(f"note{n}.txt", str(n))
+        done = subprocess.run([NONIO, "import", str(self.source), "--rule", "{machine}_{axis}_{date}.rtl", "--out",
+                               str(self.site), "--dry-run"], capture_output=True, text=True, check=False)
+        self.assertIn("and 30 more (--json lists them all)", done.stdout)
+        self.assertEqual(len(self.run_import("--dry-run")["unmatched"]), 50)
+
+    def test_text_of_excel_and_a_mark_before_an_rtl(self):
+        table = "run\tdirection\ttarget_mm\tdeviation_um\r\n1\t+\t0\t1,5\r\n1\t+\t10\t2,5\r\n"
+        (self.source / "FP12_X_20240302.txt").write_bytes(table.encode("utf-16"))
+        (self.source / "FP12_Y_20240302.txt").write_bytes(b"sep=;\r\n# gepr\xfcft\r\n" +
+                                                          table.replace("\t", ";").replace("1,5", "1,7").encode())
+        (self.source / "FP12_Z_20240302.txt").write_bytes(b"\xef\xbb\xbf" + rtl([1, 2, 4]).encode())
+        said = self.run_import(rule="{machine}_{axis}_{date}.txt")
+        self.assertEqual([(f["axis"], f["reader"], f["readings"]) for f in said["campaigns"][0]["files"]],
+                         [("X", "csv", 2), ("Y", "csv", 2), ("Z", "renishaw-rtl", 3)])
+
+    def test_a_long_table_with_two_tables(self):
+        rows = "".join(f"{c};{p};{t};{t + c / 100:.3f}\n" for c in (1, 2) for p, t in enumerate((0, 10, 20), 1))
+        back = "".join(f"{c};{p};{t};{t + c / 50:.3f}\n" for c in (1, 2) for p, t in ((3, 20), (2, 10), (1, 0)))
+        self.file("x/target_x_230.csv", "Forward\n" + rows + "Backward\n" + back)
+        rule = ('pattern = "{axis}/target_{axis}_{*}.csv"\ncampaign = "spring"\nreader = "long-table"\n'
+                '[manifest.options.long-table]\ncolumns = ["cycle", "pos", "target", "value"]\nvalues = "positions"\n'
+                'target_unit = "mm"\nvalue_unit = "mm"\nseparator = ";"\ntables = [%s]\n')
+        said = self.run_import(rule=self.rule(rule % '"2-7 forward", "9-14 reverse"'))
+        self.assertEqual(self.files_of(said)["x/target_x_230.csv"]["readings"], 12)
+        done = subprocess.run([NONIO, "run", str(self.site), "--out", str(self.root / "out")], capture_output=True,
+                              text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        results = json.loads((self.root / "out/spring/results.json").read_text(encoding="utf-8"))
+        iso = next(a for a in results["analyses"] if a["plugin"] == "iso230-2")
+        self.assertAlmostEqual(iso["values"]["B_mean"]["value"], 15.0 - 30.0)
+
+    def test_files_of_the_e1733a_are_refused_by_name(self):
+        (self.source / "FP12_X_20240302.Lin").write_bytes(b"\x00\x01E1733A")
+        said = self.run_import(rule="{machine}_{axis}_{date}.Lin", status=1)
+        self.assertIn("Keysight's laser program E1733A", said["campaigns"][0]["files"][0]["lacks"][0])
+        self.assertFalse(self.site.exists())
+
     def test_a_wrong_rule_is_named_with_its_line(self):
         rule = self.root / "rule.toml"
         rule.write_text('pattern = "{a}{b}.rtl"\npatern = "x"\n', encoding="utf-8")

@@ -69,6 +69,8 @@ id = "X"
 kind = "axis"
 axis = "X"
 file = "x.csv"
+[options.siemens-840d]
+axes = ["X number=1"]
 """
 
 
@@ -235,10 +237,10 @@ def of_readings():
              lambda text, rng: text.rstrip("\n").rsplit(",", rng.randint(1, 2))[0])
     bytes_of("cut-after-line", "truncation", "remarked", lambda text, rng: text[:text.rindex("\n", 0, len(text) * 2 // 3) + 1])
     bytes_of("encoding-bom", "encoding", "accepted", lambda text, rng: "\ufeff" + text)
-    bytes_of("encoding-utf16", "encoding", "refused", lambda text, rng: text.encode("utf-16"))
+    bytes_of("encoding-utf16", "encoding", "accepted", lambda text, rng: text.encode("utf-16"))
     bytes_of("encoding-utf16-be", "encoding", "refused", lambda text, rng: text.encode("utf-16-be"))
     bytes_of("encoding-zero-byte", "encoding", "refused", lambda text, rng: text[:200] + "\0" + text[200:])
-    bytes_of("encoding-latin1-comment", "encoding", "any", lambda text, rng: b"# Pr\xfcfung\n" + text.encode())
+    bytes_of("encoding-latin1-comment", "encoding", "accepted", lambda text, rng: b"# Pr\xfcfung\n" + text.encode())
     bytes_of("encoding-latin1-header", "encoding", "refused",
              lambda text, rng: text.encode().replace(b"deviation_um", b"deviation_\xb5m"))
     bytes_of("encoding-binary", "encoding", "refused", lambda text, rng: bytes(rng.randrange(256) for _ in range(4000)))

@@ -10,8 +10,10 @@
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 #include "nonio/host/formula.h"
+#include "nonio/host/table_check.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/text.h"
 #include "plausibility.h"
 #include "targets.h"
 #include "unknown_format.h"
@@ -30,6 +32,8 @@ class CampaignReader {
   ReadCampaign read() {
     out_.effects = context_.plugins->effects();
     if (read_manifest()) {
+      look_up_machine();
+      look_up_what_was_on();
       read_measurements();
       add_formulas();
     }
@@ -40,7 +44,11 @@ class CampaignReader {
 
  private:
   const Campaign& campaign() const { return out_.manifest->campaign; }
-  void report(Error error) { out_.errors.push_back(std::move(error)); }
+  /// What is wrong with a file as a whole is wrong from its first line on.
+  void report(Error error) {
+    if (error.line == 0 && !error.file.empty()) error.line = 1;
+    out_.errors.push_back(std::move(error));
+  }
   void word(std::vector<Remark>& notes) const {
     for (Remark& note : notes) note.english = remark_text(context_.templates, "en", note);
   }
@@ -62,7 +70,7 @@ class CampaignReader {
     out_.inputs.emplace_back(manifest_name, sha256(*text));
     auto manifest = parse_manifest(*text, manifest_name);
     if (!manifest) {
-      out_.errors = std::move(manifest.error());
+      for (Error& error : manifest.error()) report(std::move(error));
       return false;
     }
     out_.manifest = std::move(*manifest);
@@ -70,6 +78,69 @@ class CampaignReader {
     campaign.laboratory = context_.site.laboratory;
     campaign.certificate = certificate_of(context_.site.certificate, campaign.certificate);
     return true;
+  }
+
+  /// What the site's record of the machine says counts where the manifest says nothing.
+  void look_up_machine() {
+    Machine& machine = out_.manifest->campaign.machine;
+    const std::string input = machine_input(machine);
+    if (input.empty()) return;
+    out_.inputs.emplace_back(input, machine_digest(context_.machines, input));
+    const auto found = record_of(context_.machines, machine);
+    if (!found) return report(at("machine", found.error().message));
+    if (*found == nullptr) return;
+    const RecordFile& file = **found;
+    if (!file.record) {
+      for (const Error& e : file.record.error()) report(e);
+      return;
+    }
+    for (Error& e : contradictions(*out_.manifest, *file.record)) report(std::move(e));
+    out_.machine = *file.record;
+    if (machine.control.empty()) machine.control = file.record->control;
+    for (Axis& axis : machine.axes) take_present_state(axis, file);
+  }
+
+  /// What the record says is in the control counts for measurements of later days, where the
+  /// manifest does not say what was on.
+  void take_present_state(Axis& axis, const RecordFile& file) {
+    const auto found = file.record->axes.find(axis.name);
+    if (found == file.record->axes.end()) return;
+    const RecordedAxis& recorded = found->second;
+    if (recorded.since.empty() || !(campaign().date > recorded.since)) return;
+    if (!axis.table_on && recorded.table) {
+      axis.table_on = recorded.table;
+      if (const auto files = file.tables.find(axis.name); files != file.tables.end())
+        out_.tables_on[axis.name] = files->second;
+    }
+    if (!axis.backlash_on) axis.backlash_on = recorded.backlash;
+  }
+
+  void look_up_what_was_on() {
+    for (const Axis& axis : campaign().machine.axes) {
+      if (!axis.table_on || axis.table_on->empty() || out_.tables_on.contains(axis.name)) continue;
+      const std::string key = "machine.axes." + axis.name + ".table_on";
+      auto files = read_table_files(*axis.table_on, folder_);
+      if (files) {
+        note_tables(*axis.table_on, *files);
+        out_.tables_on[axis.name] = std::move(*files);
+      } else {
+        report(at(key, files.error().message));
+      }
+    }
+    for (const Measurement& m : campaign().measurements)
+      if (m.compensation == "off" && out_.tables_on.contains(m.axis))
+        report(at("measurement." + m.id + ".compensation",
+                  "\"off\" contradicts table_on of axis " + m.axis));
+  }
+
+  /// In the order of the list.
+  void note_tables(const std::string& list, const std::vector<Artifact>& files) {
+    std::size_t from = 0;
+    for (const Artifact& f : files) {
+      const std::size_t comma = std::min(list.find(',', from), list.size());
+      note_input(list.substr(from, comma - from), sha256(f.bytes));
+      from = comma + 1;
+    }
   }
 
   void read_measurements() {
@@ -89,7 +160,10 @@ class CampaignReader {
     note_input(m.file, file ? sha256(file->bytes()) : absent);
     if (!path) return fail(at("measurement." + m.id + ".file", path.error().message));
     if (!file) return fail(at("measurement." + m.id + ".file", file.error().message));
-    const auto reader = choose_reader(m, file->bytes());
+    const auto converted = utf8_of_utf16(file->bytes());
+    if (!converted) return fail(converted.error());
+    const std::string_view bytes = *converted ? std::string_view(**converted) : file->bytes();
+    const auto reader = choose_reader(m, bytes);
     if (!reader) return fail(reader.error());
     if (*reader == nullptr) return {};
     const Info& info = (*reader)->info;
@@ -98,8 +172,9 @@ class CampaignReader {
     const std::string who = "reader " + info.name;
     stage_(who + " (measurement " + m.id + ")");
     auto observations = guarded(who, [&] {
-      return (*reader)->read({file->bytes(), campaign(), m, *options,
-                              [&](std::size_t offset) { file->release(offset); }});
+      return (*reader)->read({bytes, campaign(), m, *options, [&](std::size_t offset) {
+                                if (!*converted) file->release(offset);
+                              }});
     });
     if (!observations) {
       Error error = observations.error();
@@ -110,7 +185,7 @@ class CampaignReader {
       return fail(who + " gave " + why);
     if (auto possible = possible_air(*observations, m.file); !possible) return possible;
     if (auto excluded = exclude(m, *observations); !excluded) return excluded;
-    for (Finding& doubt : implausible_end(file->bytes(), m.file)) {
+    for (Finding& doubt : implausible_end(bytes, m.file)) {
       doubt.measurement = m.id;
       out_.doubts.push_back(std::move(doubt));
     }
@@ -156,7 +231,7 @@ class CampaignReader {
     }
     const std::string refused = context_.plugins->refusals();
     if (any)
-      return fail(Error{"no reader knows the format of this file: " + what_is_wrong(bytes) +
+      return fail(Error{"no reader knows the format of this file: " + what_is_wrong(bytes, m.file) +
                             "; or the format of an installed reader (`nonio plugins`)" +
                             (refused.empty() ? "" : "; of the plugins " + refused),
                         m.file, first_content_line(bytes)});

@@ -119,12 +119,23 @@ class Desk {
     attachments_.push_back({std::move(name), std::move(bytes), type, relation, says});
   }
 
+  void attach_machine() {
+    const auto record = record_of(context_.machines, e_.campaign.machine);
+    if (record && *record != nullptr)
+      add(machine_record_name, packed(**record), "application/json", "Source",
+          "what the site knows of the machine");
+  }
+
   /// As they were evaluated, byte by byte.
   Expected<void> attach_inputs() {
     if (drafts_.empty() && !e_.certificate) return {};
     const std::string prefix = input_name("");
     for (const auto& [input, digest] : e_.inputs) {
       if (input.starts_with(shared_name(""))) continue;  // what another campaign has
+      if (input.starts_with(machine_prefix)) {
+        attach_machine();
+        continue;
+      }
       const bool is_file = input.starts_with(prefix);
       const std::string name = is_file ? input.substr(prefix.size()) : input;
       const auto path = path_inside(folder_, name);

@@ -138,6 +138,12 @@ class Again {
       if (!site) return fail(site.error().front());
       context_.site = std::move(*site);
     }
+    context_.machines.clear();
+    if (const sign::Attachment* machine = find_attachment(v_, machine_record_name)) {
+      auto record = unpacked_record(machine->bytes);
+      if (!record) return fail(record.error());
+      context_.machines.push_back(std::move(*record));
+    }
     auto manifest = parse_manifest(find_attachment(v_, manifest_name)->bytes, manifest_name);
     if (!manifest) return fail(manifest.error().front());
     Content content;
@@ -213,9 +219,9 @@ class Again {
     std::vector<std::string> wanted = {results_name};
     const std::string prefix = input_name("");
     for (const auto& [input, digest] : again.inputs)
-      if (!input.starts_with(shared_name("")))
+      if (!input.starts_with(shared_name("")) && !input.starts_with(machine_prefix))
         wanted.push_back(input.starts_with(prefix) ? input.substr(prefix.size()) : input);
-    for (const char* name : {settings_name, templates_name})
+    for (const char* name : {settings_name, templates_name, machine_record_name})
       if (find_attachment(v_, name) != nullptr) wanted.emplace_back(name);
     for (const sign::Attachment& a : v_.attachments)
       if (is_document(a) && is_listed(a)) wanted.push_back(a.name);

@@ -10,17 +10,29 @@
 namespace nonio::host {
 namespace fs = std::filesystem;
 
-Checked<SiteFile> read_site(const fs::path& site, std::string& digest) {
+namespace {
+
+Expected<std::optional<std::string>> read_settings(const fs::path& site) {
   const auto there = is_there(site / site_name);
-  if (!there) return tl::unexpected(std::vector<Error>{there.error()});
-  if (!*there) {
-    digest = sha256("");
-    return SiteFile{};
-  }
-  const auto text = read_small_file(site / site_name);
-  if (!text) return tl::unexpected(std::vector<Error>{Error{text.error().message, site_name}});
-  digest = sha256(*text);
-  return parse_site(*text, site_name);
+  if (!there) return fail(there.error());
+  if (!*there) return std::nullopt;
+  auto text = read_small_file(site / site_name);
+  if (!text) return fail(Error{text.error().message, site_name});
+  return std::move(*text);
+}
+
+}  // namespace
+
+Checked<SiteFile> site_in(const SiteFiles& files, std::string& digest) {
+  digest = sha256(files.settings.value_or(""));
+  if (!files.settings) return SiteFile{};
+  return parse_site(*files.settings, site_name);
+}
+
+Checked<SiteFile> read_site(const fs::path& site, std::string& digest) {
+  auto settings = read_settings(site);
+  if (!settings) return tl::unexpected(std::vector<Error>{settings.error()});
+  return site_in({std::move(*settings)}, digest);
 }
 
 Expected<std::vector<fs::path>> with_site_templates(std::vector<fs::path> folders,
@@ -66,12 +78,40 @@ Expected<std::map<std::string, fs::path>> files_below(const fs::path& folder) {
 
 }  // namespace
 
+Expected<SiteFiles> read_site_files(const fs::path& site,
+                                    const std::function<void(const fs::path&)>& reading) {
+  SiteFiles files;
+  reading(site / site_name);
+  auto settings = read_settings(site);
+  if (!settings) return fail(settings.error());
+  files.settings = std::move(*settings);
+  // Read again where they are used; here a share that hangs is noticed.
+  reading(site / machines_folder);
+  if (const auto machines = read_machines(site); !machines) return fail(machines.error());
+  reading(site / "templates");
+  const auto own = with_site_templates({}, site);
+  if (!own) return fail(own.error());
+  if (own->empty()) return files;
+  files.templates.folder = own->front();
+  const auto paths = files_below(own->front());
+  if (!paths) return fail(paths.error());
+  for (const auto& [name, path] : *paths) {
+    reading(path);
+    auto bytes = read_file(path);
+    if (!bytes) return fail(bytes.error());
+    files.templates.files[name] = std::move(*bytes);
+  }
+  return files;
+}
+
 namespace {
 
 /// Fonts have megabytes, and every installation has them.
 bool travels(std::string_view name) { return !name.starts_with("fonts/"); }
 
-std::string hex(std::string_view bytes) {
+}  // namespace
+
+std::string to_hex(std::string_view bytes) {
   constexpr std::string_view digits = "0123456789abcdef";
   std::string out;
   for (const char c : bytes) {
@@ -94,6 +134,8 @@ Expected<std::string> from_hex(const std::string& text) {
   return out;
 }
 
+namespace {
+
 std::string line_of(const std::string& name, const std::string& digest) {
   return name + " " + digest + "\n";
 }
@@ -113,25 +155,28 @@ Expected<void> keep(Templates& templates, const std::string& name, std::string b
 }  // namespace
 
 Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::string& digest,
-                                   std::string* json) {
+                                   std::string* json, const TemplateFiles& own) {
   std::map<std::string, fs::path> files;
   for (const fs::path& folder : folders) {
     auto here = files_below(folder);
     if (!here) return fail(here.error());
     for (auto& [name, path] : *here) files[name] = std::move(path);
   }
+  for (const auto& [name, bytes] : own.files) files[name] = own.folder / name;
   Templates templates;
   std::string all;
   Json carried = Json::object();
   for (const auto& [name, path] : files) {
-    auto bytes = read_file(path);
+    const auto of_site = own.files.find(name);
+    auto bytes =
+        of_site == own.files.end() ? read_file(path) : Expected<std::string>(of_site->second);
     if (!bytes) return fail(bytes.error());
     const std::string sum = sha256(*bytes);
     all += line_of(name, sum);
     if (json != nullptr)
       carried[name] = !travels(name)            ? Json{{"sha256", sum}}
                       : name.ends_with(".toml") ? Json{{"text", *bytes}}
-                                                : Json{{"hex", hex(*bytes)}};
+                                                : Json{{"hex", to_hex(*bytes)}};
     if (auto kept = keep(templates, name, std::move(*bytes), path.string()); !kept)
       return fail(kept.error());
   }

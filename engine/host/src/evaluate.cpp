@@ -13,6 +13,7 @@
 #include "nonio/host/campaign_reader.h"
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
+#include "nonio/host/table_check.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/statement.h"
 #include "plausibility.h"
@@ -75,6 +76,15 @@ class CampaignRun {
 
   std::optional<Settings> settle(const Info& info) {
     auto options = settle_options(info, context_.site.options, read_.manifest->options);
+    if (options) return std::move(*options);
+    for (Error& e : options.error()) report(std::move(e));
+    return std::nullopt;
+  }
+
+  std::optional<Settings> settle(const Output& output) {
+    if (output.stage != Output::Stage::table) return settle(output.info);
+    auto options = settle_table_options(output.info, context_.site.options, *read_.manifest,
+                                        read_.machine ? &*read_.machine : nullptr);
     if (options) return std::move(*options);
     for (Error& e : options.error()) report(std::move(e));
     return std::nullopt;
@@ -229,21 +239,29 @@ class CampaignRun {
   void doubt() {
     if (failed()) return;
     stage_("analysis " + std::string(plausibility_name));
-    for (auto& one : implausible(read_, context_, out_.inputs))
+    for (auto& one : implausible(read_, context_, out_.inputs, out_.results.analyses))
       out_.results.analyses.push_back(std::move(one));
-    for (const Results::Analysed& a : out_.results.analyses)
-      if (a.plugin == plausibility_name)
-        for (const Finding& f : a.evaluation.findings) doubts_.insert(f.id);
-    std::set<std::string> known = doubts_;
-    doubts_.erase(std::string(no_scatter));
-    for (const StandingFinding& standing : read_.manifest->tables_may_stand) {
+    const auto& may_stand = read_.manifest->tables_may_stand;
+    std::set<std::string> known;
+    for (Results::Analysed& a : out_.results.analyses) {
+      if (a.plugin != plausibility_name) continue;
+      for (Finding& f : a.evaluation.findings) {
+        known.insert(f.id);
+        const auto standing =
+            std::find_if(may_stand.begin(), may_stand.end(),
+                         [&](const StandingFinding& one) { return one.finding == f.id; });
+        if (standing == may_stand.end())
+          doubts_.insert(f.id);
+        else
+          f.texts.emplace_back(stands_because, standing->reason);
+      }
+    }
+    for (const StandingFinding& standing : may_stand)
       if (!known.contains(standing.finding))
         report(Error{"tables.may_stand: the readings have no finding " + standing.finding +
                          "; they have " +
                          (known.empty() ? "none" : list({known.begin(), known.end()})),
                      manifest_name, standing.line});
-      doubts_.erase(standing.finding);
-    }
   }
 
   /// No analysis and no model has looked at it: said, so that nobody takes silence for a result.
@@ -337,13 +355,24 @@ class CampaignRun {
       if (all && output->stage == Output::Stage::table && !control.empty() &&
           control != output->info.name)
         continue;
+      if (output->stage == Output::Stage::table && !control_of_record(output->info.name)) continue;
       if (!output->applies(out_.campaign)) continue;
       const bool asked =
           !all || output->stage != Output::Stage::table || control == output->info.name;
-      if (auto options = settle(output->info))
-        wanted.push_back({*output, std::move(*options), asked});
+      if (auto options = settle(*output)) wanted.push_back({*output, std::move(*options), asked});
     }
     return wanted;
+  }
+
+  /// A table of another control than the machine's: the manifest that asks for it is wrong, and of
+  /// what site.toml asks for all machines it is left out.
+  bool control_of_record(const std::string& output) {
+    if (!read_.machine || read_.machine->control.empty() || read_.machine->control == output)
+      return true;
+    if (read_.manifest->run.outputs)
+      report(at("run.outputs", "asks for tables of " + output + ", and " + read_.machine->file +
+                                   " says that the control is " + read_.machine->control));
+    return false;
   }
 
   void write_outputs() {
@@ -427,6 +456,24 @@ class CampaignRun {
             out_.certificate ? &out_.certificate->issue : nullptr};
   }
 
+  /// On top of what was on while the campaign was measured: the new table takes its place.
+  Expected<OutputResult> write_table(const Wanted& w) {
+    auto on = what_was_on(read_, w.output, w.options);
+    if (!on) {
+      if (w.asked) on.error().key = "machine.axes." + read_.tables_on.begin()->first + ".table_on";
+      return fail(on.error());
+    }
+    if (!*on) return w.output.write(input(w));
+    const bool of_model = for_tables_ && *for_tables_;
+    const std::vector<Observations> of_curves =
+        of_model ? without_tables(out_.campaign, **for_tables_, (*on)->tables) : (*on)->readings;
+    auto written =
+        w.output.write({out_.campaign, of_curves, out_.results, (*on)->options, context_.templates,
+                        of_model ? &(*on)->readings : nullptr, nullptr});
+    if (written) compare_with_measured(read_, *written);
+    return written;
+  }
+
   void check_control() {
     const std::string& control = out_.campaign.machine.control;
     std::vector<std::string> tables;
@@ -465,7 +512,7 @@ class CampaignRun {
       if (output.stage == Output::Stage::table && !doubts_.empty()) return withheld(output);
       if (output.stage == Output::Stage::table && for_tables_ && !*for_tables_)
         return without_model(output, for_tables_->error().message);
-      auto written = output.write(input(w));
+      auto written = output.stage == Output::Stage::table ? write_table(w) : output.write(input(w));
       if (!written && !w.asked && written.error().key.empty()) {
         const std::string why = std::move(written.error().message);
         written = OutputResult();
@@ -473,6 +520,9 @@ class CampaignRun {
                                      .attention = true,
                                      .texts = {{"output", output.info.name}, {"why", why}}});
       }
+      if (written && !w.asked)  // a control that the machine may not even have
+        for (Finding& f : written->findings)
+          if (f.id == "table.axis-number") f.attention = false;
       return written;
     });
     if (result)

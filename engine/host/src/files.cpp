@@ -301,9 +301,10 @@ Expected<std::vector<Descriptor>> fill(const fs::path& folder, const std::vector
   return open;
 }
 
-void remove_temporaries(const fs::path& folder, const std::vector<Artifact>& files) {
-  std::error_code ignored;
-  for (const Artifact& file : files) fs::remove(temporary_path(folder, file.name), ignored);
+std::vector<std::string> names_of(const std::vector<Artifact>& files) {
+  std::vector<std::string> names;
+  for (const Artifact& file : files) names.push_back(file.name);
+  return names;
 }
 
 Expected<bool> make_folder(const fs::path& folder) {
@@ -341,10 +342,9 @@ Expected<void> publish(const fs::path& folder, const std::vector<Artifact>& file
   auto done = fill_and_flush(folder, files);
   // After the files: a journal that was committed for them holds the new folder already.
   if (done && *is_new) done = flush_folder(fs::absolute(folder).parent_path());
-  std::vector<std::string> names;
-  for (const Artifact& file : files) names.push_back(file.name);
+  const std::vector<std::string> names = names_of(files);
   if (done) done = rename_temporaries(folder, names);
-  if (!done) remove_temporaries(folder, files);
+  if (!done) remove_temporaries(folder, names);
   return done;
 }
 
@@ -352,11 +352,11 @@ Expected<void> write_temporaries(const fs::path& folder, const std::vector<Artif
   if (const auto made = make_folder(folder); !made) return fail(made.error());
   const auto filled = fill(folder, files);
   if (filled) return {};
-  remove_temporaries(folder, files);
+  remove_temporaries(folder, names_of(files));
   return fail(filled.error());
 }
 
-std::vector<std::string> temporaries(const fs::path& folder) {
+Expected<std::vector<std::string>> temporaries(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
@@ -364,6 +364,8 @@ std::vector<std::string> temporaries(const fs::path& folder) {
     if (name.starts_with('.') && name.ends_with(leftover_suffix))
       names.push_back(name.substr(1, name.size() - 1 - leftover_suffix.size()));
   }
+  if (error && error != std::errc::no_such_file_or_directory)
+    return fail("cannot read the folder " + folder.string() + ": " + error.message());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -373,10 +375,18 @@ void drop_cached(const fs::path& path) {
   if (fd) ::posix_fadvise(fd.get(), 0, 0, POSIX_FADV_DONTNEED);
 }
 
+void remove_temporaries(const fs::path& folder, const std::vector<std::string>& names) {
+  constexpr int tries = 3;  // a refusal may pass
+  for (const std::string& name : names)
+    for (int i = 0; i < tries; ++i) {
+      std::error_code error;
+      fs::remove(temporary_path(folder, name), error);
+      if (!error) break;
+    }
+}
+
 void remove_leftovers(const fs::path& folder) {
-  std::error_code ignored;
-  for (const std::string& name : temporaries(folder))
-    fs::remove(temporary_path(folder, name), ignored);
+  if (const auto names = temporaries(folder)) remove_temporaries(folder, *names);
 }
 
 }  // namespace nonio::host

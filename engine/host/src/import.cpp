@@ -10,7 +10,9 @@
 #include "nonio/host/digest.h"
 #include "nonio/host/evaluate.h"
 #include "nonio/host/files.h"
+#include "nonio/sdk/text.h"
 #include "toml_reader.h"
+#include "unknown_format.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -161,8 +163,7 @@ class Importer {
       report_.campaigns.push_back(std::move(campaign));
       return {};
     }
-    const std::string text = manifest_of(campaign, found);
-    check(campaign, found, text);
+    check(campaign, found);
     std::error_code error;
     const fs::path folder = wish_.out / id;
     if (is_campaign_id(id) && fs::exists(fs::symlink_status(folder, error)))
@@ -174,7 +175,7 @@ class Importer {
         if (!campaign.files[i].name.empty())
           artifacts.push_back({campaign.files[i].name, std::move(found[i].bytes)});
       artifacts.push_back(
-          {manifest_name, manifest_of(campaign, found)});  // last: it shows the rest
+          {manifest_name, manifest_of(campaign, found.front().places)});  // last: it shows the rest
       if (auto ok = publish(folder, artifacts); !ok) return ok;
       campaign.written = true;
     }
@@ -217,7 +218,10 @@ class Importer {
     else
       file.name = name;
     if (const auto axis = f.places.find("axis"); axis != f.places.end())
-      file.axis = axis->second;
+      take_axis(axis->second, file);
+    else if (!wish_.rule.axis.empty())
+      file.axis = wish_.rule.axis,
+      file.assumed.push_back("axis " + file.axis + ", as the rule says");
     else if (wish_.rule.kind != "observations")
       file.lacks.push_back(
           "axis: which axis of the machine was measured; no place {axis} says it, and it is not "
@@ -232,22 +236,32 @@ class Importer {
     return file;
   }
 
+  void take_axis(const std::string& word, ImportedFile& file) const {
+    file.axis = word;
+    if (const auto stated = wish_.rule.axes.find(word); stated != wish_.rule.axes.end())
+      file.axis = stated->second;
+    else if (file.axis[0] >= 'a' && file.axis[0] <= 'z')
+      file.axis[0] = static_cast<char>(file.axis[0] - 32);
+    if (file.axis != word)
+      file.assumed.push_back("axis " + file.axis + " for \"" + word + "\" in its name" +
+                             (wish_.rule.axes.empty() ? "" : ", as the rule says"));
+  }
+
   /// campaign.toml; what is still to be filled stands above it and in its place as a comment.
-  std::string manifest_of(const ImportedCampaign& campaign, const std::vector<Found>& found) const {
+  std::string manifest_of(const ImportedCampaign& campaign, const Places& places) const {
     toml::table root;
     if (auto extra = parse_toml(wish_.rule.manifest, "rule"); extra) root = std::move(*extra);
     if (!root.contains("campaign")) root.insert("campaign", toml::table{});
     if (toml::table* own = root["campaign"].as_table()) {
       own->insert_or_assign("id", campaign.id);
-      const Places& places = found.front().places;
       if (const auto date = places.find("date"); date != places.end() && !own->contains("date"))
         if (auto parsed = parse_toml("d = " + iso_date(date->second), "date"))
           own->insert("date", *(*parsed)["d"].as_date());
     }
     if (!root.contains("machine")) root.insert("machine", toml::table{});
     if (toml::table* machine = root["machine"].as_table())
-      if (const auto model = found.front().places.find("machine");
-          model != found.front().places.end() && !machine->contains("model"))
+      if (const auto model = places.find("machine");
+          model != places.end() && !machine->contains("model"))
         machine->insert("model", model->second);
     std::ostringstream out;
     for (const std::string& lack : campaign.lacks) out << "# to fill: " << one_line(lack) << "\n";
@@ -269,38 +283,74 @@ class Importer {
     return text;
   }
 
-  /// Reads every file as a night would.
-  void check(ImportedCampaign& campaign, const std::vector<Found>& found, const std::string& text) {
-    const auto manifest = parse_manifest(text, manifest_name);
+  /// Reads every file as a night would. Names and ids that are there twice keep nobody from looking
+  /// into the files.
+  void check(ImportedCampaign& campaign, const std::vector<Found>& found) {
+    if (const auto manifest = manifest_to_read(campaign, found.front().places)) {
+      std::map<std::string, std::string> first;
+      auto measurement = manifest->campaign.measurements.begin();
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        ImportedFile& file = campaign.files[i];
+        if (!can_be_read(file)) continue;
+        const std::string digest = look_into(*manifest, *measurement++, file, found[i]);
+        if (digest.empty()) continue;
+        const auto [same, fresh] = first.try_emplace(digest, file.file);
+        if (fresh) continue;
+        // Name and id are perhaps those of the other file too; one sentence is enough.
+        file.same_as = same->second;
+        file.lacks = {"the same readings as " + file.same_as +
+                      "; exclude one of them, in the rule: exclude = [\"" + file.file + "\"]"};
+      }
+    }
     const bool asked = std::any_of(campaign.files.begin(), campaign.files.end(),
                                    [](const ImportedFile& f) { return !f.lacks.empty(); });
-    if (!manifest) {
-      if (!asked && campaign.lacks.empty())
-        for (const Error& e : manifest.error()) campaign.lacks.push_back(e.message);
-      return;
-    }
-    std::map<std::string, std::string> first;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      ImportedFile& file = campaign.files[i];
-      const auto obs =
-          read(*manifest, manifest->campaign.measurements[i], found[i].bytes, file.reader);
-      if (!obs) {
-        const Error& e = obs.error();
-        file.lacks.push_back((e.line != 0 ? "line " + std::to_string(e.line) + ": " : "") +
-                             e.message);
-        continue;
-      }
-      file.readings = obs->size();
-      file.missing = obs->missing;
-      const std::string digest = digest_of(*obs);
-      if (digest.empty()) continue;
-      if (const auto [same, fresh] = first.try_emplace(digest, file.file); !fresh)
-        file.lacks.push_back("the same readings as " + same->second + "; exclude one of them");
-    }
+    if (asked || !campaign.lacks.empty()) return;
+    const auto manifest =
+        parse_manifest(manifest_of(campaign, found.front().places), manifest_name);
+    if (!manifest)
+      for (const Error& e : manifest.error()) campaign.lacks.push_back(e.message);
   }
 
-  Expected<Observations> read(const Manifest& manifest, const Measurement& m,
-                              const std::string& bytes, std::string& name) const {
+  bool can_be_read(const ImportedFile& file) const {
+    return !file.axis.empty() || wish_.rule.kind == "observations";
+  }
+
+  /// All files that can be read, under names and ids of their own.
+  Checked<Manifest> manifest_to_read(const ImportedCampaign& campaign, const Places& places) const {
+    ImportedCampaign all;
+    all.id = "import";
+    for (const ImportedFile& file : campaign.files) {
+      if (!can_be_read(file)) continue;
+      ImportedFile own;
+      own.axis = file.axis;
+      own.name = own.measurement = "m" + std::to_string(all.files.size());
+      all.files.push_back(std::move(own));
+    }
+    return parse_manifest(manifest_of(all, places), manifest_name);
+  }
+
+  /// Digest of the readings of a file; empty if there are none, or nobody can tell.
+  std::string look_into(const Manifest& manifest, Measurement m, ImportedFile& file,
+                        const Found& found) const {
+    m.id = file.measurement;
+    m.file = fs::path(file.file).filename().string();
+    const auto obs = read(manifest, m, found, file.reader);
+    if (!obs) {
+      const Error& e = obs.error();
+      file.lacks.push_back((e.line != 0 ? "line " + std::to_string(e.line) + ": " : "") +
+                           e.message);
+      return {};
+    }
+    file.readings = obs->size();
+    file.missing = obs->missing;
+    return digest_of(*obs);
+  }
+
+  Expected<Observations> read(const Manifest& manifest, const Measurement& m, const Found& found,
+                              std::string& name) const {
+    const auto converted = utf8_of_utf16(found.bytes);
+    if (!converted) return fail(converted.error());
+    const std::string& bytes = *converted ? **converted : found.bytes;
     const Reader* reader = nullptr;
     for (const Reader& r : plugins_.readers()) {
       if (!name.empty() ? r.info.name == name
@@ -308,7 +358,8 @@ class Importer {
         reader = reader == nullptr ? &r : reader;
     }
     if (reader == nullptr)
-      return fail(name.empty() ? "no reader knows the format of this file"
+      return fail(name.empty() ? "no reader knows the format of this file: " +
+                                     what_is_wrong(bytes, found.file)
                                : plugins_.absence("reader", name));
     name = reader->info.name;
     const auto options = settle_options(reader->info, site_options(), manifest.options);

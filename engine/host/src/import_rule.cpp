@@ -34,12 +34,16 @@ Expected<std::vector<Token>> tokens_of(const std::string& pattern) {
       return fail(
           "pattern: wanted {name} of small letters, or {*} for what does not count, found \"" +
           pattern.substr(i) + "\"");
-    if (!tokens.empty() && tokens.back().place)
+    // An axis and a date end where they are no axis and no date any more; what can be read in two
+    // ways all the same is not imported.
+    const auto bounded = [](const std::string& place) {
+      return place == "axis" || place == "date";
+    };
+    const bool told = !tokens.empty() && ((name == "*" && bounded(tokens.back().text)) ||
+                                          (tokens.back().text == "*" && bounded(name)));
+    if (!tokens.empty() && tokens.back().place && !told)
       return fail("pattern: wanted something between {" + tokens.back().text + "} and {" + name +
                   "}: nobody could tell where one ends");
-    const auto same = [&](const Token& t) { return t.place && t.text == name && name != "*"; };
-    if (std::any_of(tokens.begin(), tokens.end(), same))
-      return fail("pattern: {" + name + "} is there twice");
     tokens.push_back({name, true});
     i = close + 1;
   }
@@ -51,14 +55,25 @@ bool all_of_digits(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Whether a place can hold this text. Axes are capital letters and digits; a date has its year
-/// first, as all other orders can be taken for one another.
-bool fits(const std::string& place, std::string_view text) {
-  if (text.empty() || text.find('/') != text.npos) return false;
-  if (place == "axis")
-    return text.size() <= 8 && text[0] >= 'A' && text[0] <= 'Z' &&
-           std::all_of(text.begin(), text.end(),
-                       [](char c) { return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); });
+/// An axis of a machine: capital letters and digits, or a small letter of ISO 841 and digits (x,
+/// u2), which means the capital one.
+bool is_axis(std::string_view text) {
+  if (text.empty() || text.size() > 8) return false;
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (std::string_view("xyzabcuvw").find(text[0]) != std::string_view::npos)
+    return std::all_of(text.begin() + 1, text.end(), digit);
+  return text[0] >= 'A' && text[0] <= 'Z' && std::all_of(text.begin(), text.end(), [&](char c) {
+           return (c >= 'A' && c <= 'Z') || digit(c);
+         });
+}
+
+/// Whether a place can hold this text. A date has its year first, as all other orders can be taken
+/// for one another. What does not count may be nothing.
+bool fits(const ImportRule& rule, const std::string& place, std::string_view text) {
+  if (text.find('/') != text.npos) return false;
+  if (place == "*") return true;
+  if (text.empty()) return false;
+  if (place == "axis") return rule.axes.empty() ? is_axis(text) : rule.axes.contains(text);
   if (place == "date")
     return (text.size() == 8 && all_of_digits(text)) ||
            (text.size() == 10 && text[4] == '-' && text[7] == '-' &&
@@ -69,7 +84,8 @@ bool fits(const std::string& place, std::string_view text) {
 
 class Matcher {
  public:
-  Matcher(const std::vector<Token>& tokens, std::string_view text) : tokens_(tokens), text_(text) {}
+  Matcher(const ImportRule& rule, const std::vector<Token>& tokens, std::string_view text)
+      : rule_(rule), tokens_(tokens), text_(text) {}
   std::vector<Places> match() {
     from(0, 0);
     if (steps_ > most_steps) found_.resize(2);  // not looked at to the end, so not known to be one
@@ -90,18 +106,23 @@ class Matcher {
       if (text_.substr(at).starts_with(t.text)) from(token + 1, at + t.text.size());
       return;
     }
-    for (std::size_t length = 1; at + length <= text_.size(); ++length) {
+    for (std::size_t length = 0; at + length <= text_.size(); ++length) {
       const std::string_view part = text_.substr(at, length);
-      if (part.back() == '/') return;
-      if (!fits(t.text, part)) continue;
-      if (t.text != "*") now_[t.text] = part;
+      if (part.ends_with('/')) return;
+      if (!fits(rule_, t.text, part)) continue;
+      // A place that is there twice has the same text both times.
+      const auto known = now_.find(t.text);
+      if (known != now_.end() && known->second != part) continue;
+      const bool names = t.text != "*" && known == now_.end();
+      if (names) now_[t.text] = part;
       from(token + 1, at + length);
-      if (t.text != "*") now_.erase(t.text);
+      if (names) now_.erase(t.text);
     }
   }
 
   static constexpr std::uint64_t most_steps = 200000;
 
+  const ImportRule& rule_;
   const std::vector<Token>& tokens_;
   std::string_view text_;
   Places now_;
@@ -120,12 +141,34 @@ constexpr Key rule_keys[] = {
     {.name = "exclude",
      .holds = Key::Holds::texts,
      .help = "Files whose path holds one of these are passed over."},
+    {.name = "axis",
+     .holds = Key::Holds::text,
+     .help = "Axis of every file, where no name says it."},
+    {.name = "axes",
+     .holds = Key::Holds::anything,
+     .help = "What may stand at {axis}, and the axis that it means."},
     {.name = "manifest",
      .holds = Key::Holds::anything,
      .help = "What goes into every campaign.toml."},
 };
 constexpr Key rule_file = {
     .name = "rule", .holds = Key::Holds::table, .help = "Rule of an import.", .keys = rule_keys};
+
+/// The axes that a rule states are axes, and stated in one place.
+void check_axes(const ImportRule& rule, TableReader& reader) {
+  const auto axis = [](const std::string& name) {
+    return is_axis(name) && name[0] >= 'A' && name[0] <= 'Z';
+  };
+  const char* const wanted = "wanted an axis of capital letters and digits, found \"";
+  if (!rule.axis.empty() && !axis(rule.axis)) reader.error("axis", wanted + rule.axis + "\"");
+  for (const auto& [word, name] : rule.axes)
+    if (!axis(name)) reader.error("axes", wanted + name + "\" for \"" + word + "\"");
+  const bool place = rule.pattern.find("{axis}") != std::string::npos;
+  if (!rule.axis.empty() && place)
+    reader.error("axis", "wanted the axis here or at {axis} of the pattern, found both");
+  if (!rule.axes.empty() && !place)
+    reader.error("axes", "wanted a place {axis} in the pattern, found none");
+}
 
 Expected<void> check(const ImportRule& rule) {
   if (rule.pattern.empty()) return fail("pattern: is missing: how the names of the files are made");
@@ -154,6 +197,11 @@ Checked<ImportRule> parse_import_rule(std::string_view text, const std::string& 
   if (const std::string kind = reader.text("kind"); !kind.empty()) rule.kind = kind;
   rule.reader = reader.text("reader");
   rule.exclude = reader.texts("exclude").value_or(std::vector<std::string>{});
+  rule.axis = reader.text("axis");
+  if (const toml::table* axes = reader.anything("axes"))
+    for (const auto& [word, node] : *axes)
+      rule.axes[std::string(word.str())] = node.value_or(std::string());
+  check_axes(rule, reader);
   if (const toml::table* manifest = reader.anything("manifest")) {
     for (const char* own : {"format", "measurement"})
       if (manifest->contains(own))
@@ -179,7 +227,7 @@ std::vector<Places> readings_of_name(const ImportRule& rule, const std::string& 
   const bool whole_path = rule.pattern.find('/') != std::string::npos;
   const std::size_t slash = path.rfind('/');
   const std::string name = whole_path || slash == std::string::npos ? path : path.substr(slash + 1);
-  return Matcher(*tokens, name).match();
+  return Matcher(rule, *tokens, name).match();
 }
 
 }  // namespace nonio::host

@@ -35,6 +35,11 @@ constexpr When if_linear{"kind", linear}, if_rotary{"kind", rotary};
 constexpr Choice sides[] = {{"master"}, {"slave"}};
 constexpr Words axis_runs[] = {"axis"};
 
+constexpr Words some_backlash = "wanted a number from -10 to 10, or \"none\"";
+constexpr double most_backlash = 10.0;
+constexpr Words an_asset =
+    "wanted up to 100 characters without / and \\, not starting with a point; found \"{}\"";
+
 constexpr Key axis_keys[] = {
     {.name = "kind",
      .holds = text,
@@ -76,6 +81,30 @@ constexpr Key axis_keys[] = {
      .help = "Of a gantry axis: name of the control's axis that drives the second side; its table "
              "is made of the measurement with side = \"slave\".",
      .only = if_linear},
+    {.name = "table_on",
+     .holds = text,
+     .help =
+         "The table that was on in the control while this axis was measured: its file below the "
+         "campaign's folder, \"backup/x.ini\", with others of one table behind commas; or "
+         "\"none\". The new table takes its place. Not said, nothing is taken to have been on."},
+    {.name = "backlash_on_mm",
+     .holds = number_or_none,
+     .help =
+         "What the control's backlash parameter held while this axis was measured, or \"none\".",
+     .unit = "mm",
+     .only = if_linear,
+     .wanted = some_backlash,
+     .least = -most_backlash,
+     .most = most_backlash},
+    {.name = "backlash_on_deg",
+     .holds = number_or_none,
+     .help =
+         "What the control's backlash parameter held while this axis was measured, or \"none\".",
+     .unit = "deg",
+     .only = if_rotary,
+     .wanted = some_backlash,
+     .least = -most_backlash,
+     .most = most_backlash},
     {.name = "tolerance_um",
      .holds = number_table,
      .help = "Upper limits of results by their names, { A = 15.0, \"R+\" = 6.0 }.",
@@ -95,6 +124,12 @@ constexpr Key axis_keys[] = {
 };
 
 constexpr Key machine_keys[] = {
+    {.name = "asset",
+     .holds = text,
+     .help = "The machine's own number in the house; its record is machines/<asset>.toml of the "
+             "site. Without it the record is found by maker and serial.",
+     .wanted = an_asset,
+     .text = asset_rule},
     {.name = "maker", .holds = text, .help = "Maker of the machine."},
     {.name = "model", .holds = text, .help = "Model of the machine."},
     {.name = "serial", .holds = text, .help = "Serial number of the machine."},
@@ -115,8 +150,8 @@ constexpr Key machine_keys[] = {
      .choices = structures},
     {.name = "axes",
      .holds = named_tables,
-     .help = "The axes of the machine by their names, [machine.axes.X], in the order in which the "
-             "control counts them.",
+     .help = "The axes of the machine by their names, [machine.axes.X]. How the control counts "
+             "them stands in the record of the machine.",
      .keys = axis_keys,
      .initials = "ABC",
      .by_name = "kind",
@@ -307,6 +342,7 @@ constexpr Choice measurement_kinds[] = {{"axis"},         {"straightness"},  {"a
                                         {"observations"}, {"ballbar"}};
 constexpr Choice on_or_off[] = {{"on"}, {"off"}};
 constexpr Choice adjustments[] = {{"before"}, {"after"}};
+constexpr Choice listed_orders[] = {{"pendulum"}, {"as-listed"}, {"unknown"}};
 constexpr Choice linear_axes[] = {{"X"}, {"Y"}, {"Z"}};
 constexpr Words of_one_axis[] = {"axis", "straightness", "angle", "ball-centres"};
 constexpr Words straightness[] = {"straightness"}, angle[] = {"angle"};
@@ -349,6 +385,13 @@ constexpr Key measurement_keys[] = {
      .help = "Which of two tests was made before and which after the machine was adjusted, for "
              "the certificate.",
      .choices = adjustments},
+    {.name = "order",
+     .holds = text,
+     .help = "In which order the readings of a file without times were taken: there and back run "
+             "by run (pendulum), as its rows stand, or nobody knows: then nothing is concluded "
+             "from time.",
+     .only = {"kind", axis_runs},
+     .choices = listed_orders},
     {.name = "side",
      .holds = text,
      .help = "Of a gantry axis with a scale on each side: on which one this line lies. Each side "
@@ -1044,6 +1087,160 @@ constexpr Key specification_keys[] = {
     {.name = "effect", .holds = tables, .help = "A known effect.", .keys = effect_keys},
 };
 
+constexpr Words a_limit = "wanted a limit above 0";
+constexpr Words a_position = "wanted a position of at most 1000000 in size";
+constexpr Words taken_numbers = "wanted numbers or ranges of them, [\"0\", \"100-227\"]";
+
+constexpr Key recorded_axis_keys[] = {
+    {.name = "kind",
+     .holds = text,
+     .help = "Whether the axis moves along a line or turns; without it by its name: A, B and C "
+             "turn (ISO 841).",
+     .choices = axis_kinds},
+    {.name = "number",
+     .holds = whole,
+     .help = "The axis' number as the control counts: n of AXn, controlled axis, joint, motor.",
+     .wanted = "wanted a whole number from 0 to 99",
+     .least = 0,
+     .most = 99},
+    {.name = "name", .holds = text, .help = "What the control calls the axis, where it is not so."},
+    {.name = "reference_mm",
+     .holds = number,
+     .help = "Position of the reference point.",
+     .unit = "mm",
+     .only = if_linear,
+     .wanted = a_position,
+     .least = -most_mm,
+     .most = most_mm},
+    {.name = "reference_deg",
+     .holds = number,
+     .help = "Position of the reference point.",
+     .unit = "deg",
+     .only = if_rotary,
+     .wanted = a_position,
+     .least = -most_mm,
+     .most = most_mm},
+    {.name = "travel",
+     .holds = span,
+     .help = "Ends of the travel.",
+     .unit = "mm or deg",
+     .wanted = two_numbers,
+     .least = -most_mm,
+     .most = most_mm},
+    {.name = "resolution_um",
+     .holds = number,
+     .help = "Smallest step that the control counts.",
+     .unit = "um",
+     .only = if_linear,
+     .wanted = a_limit,
+     .least = 0.0,
+     .above = true},
+    {.name = "resolution_arcsec",
+     .holds = number,
+     .help = "Smallest step that the control counts.",
+     .unit = "arcsec",
+     .only = if_rotary,
+     .wanted = a_limit,
+     .least = 0.0,
+     .above = true},
+    {.name = "gear",
+     .holds = text,
+     .help = "Ratio between motor and screw or table, \"2:1\"; for people."},
+    {.name = "largest_um",
+     .holds = number,
+     .help = "Largest entry of a table that the machine's maker allows.",
+     .unit = "um",
+     .only = if_linear,
+     .wanted = a_limit,
+     .least = 0.0,
+     .above = true},
+    {.name = "largest_arcsec",
+     .holds = number,
+     .help = "Largest entry of a table that the machine's maker allows.",
+     .unit = "arcsec",
+     .only = if_rotary,
+     .wanted = a_limit,
+     .least = 0.0,
+     .above = true},
+    {.name = "slope_um_per_m",
+     .holds = number,
+     .help = "Largest slope of a table that the machine's maker allows.",
+     .unit = "um/m",
+     .only = if_linear,
+     .wanted = a_limit,
+     .least = 0.0,
+     .above = true},
+    {.name = "slope_arcsec_per_deg",
+     .holds = number,
+     .help = "Largest slope of a table that the machine's maker allows.",
+     .unit = "arcsec/deg",
+     .only = if_rotary,
+     .wanted = a_limit,
+     .least = 0.0,
+     .above = true},
+    {.name = "table",
+     .holds = text,
+     .help = "The table that is in the control: its file below the site, with others of one table "
+             "behind commas; or \"none\"."},
+    {.name = "backlash_mm",
+     .holds = number_or_none,
+     .help = "What the control's backlash parameter holds, or \"none\".",
+     .unit = "mm",
+     .only = if_linear,
+     .wanted = some_backlash,
+     .least = -most_backlash,
+     .most = most_backlash},
+    {.name = "backlash_deg",
+     .holds = number_or_none,
+     .help = "What the control's backlash parameter holds, or \"none\".",
+     .unit = "deg",
+     .only = if_rotary,
+     .wanted = some_backlash,
+     .least = -most_backlash,
+     .most = most_backlash},
+    {.name = "since",
+     .holds = date,
+     .help = "The day on which table and backlash came into the control. They count for "
+             "measurements of later days only."},
+};
+
+constexpr Key machine_file_keys[] = {
+    required_format(),
+    {.name = "asset",
+     .holds = text,
+     .help = "The machine's own number in the house; the file is called so.",
+     .required = true,
+     .missing = "the name of this file without .toml",
+     .wanted = an_asset,
+     .text = asset_rule},
+    {.name = "maker", .holds = text, .help = "Maker of the machine."},
+    {.name = "model", .holds = text, .help = "Model of the machine."},
+    {.name = "serial", .holds = text, .help = "Serial number of the machine."},
+    {.name = "control",
+     .holds = text,
+     .help = "Output plugin that writes the tables of the machine's control. The axes' numbers are "
+             "for this control only.",
+     .named = Named::control},
+    {.name = "control_version", .holds = text, .help = "Version of the control's software."},
+    {.name = "taken",
+     .holds = texts,
+     .help = "Numbers that are in use in the control: of CEC tables, of Fanuc's points. New tables "
+             "take others.",
+     .wanted = taken_numbers,
+     .text = {.letters = "0-9-", .not_first = "-", .shortest = 1, .longest = 13}},
+    {.name = "axes",
+     .holds = named_tables,
+     .help = "The axes of the machine by their names, [axes.X].",
+     .keys = recorded_axis_keys,
+     .initials = "ABC",
+     .by_name = "kind",
+     .named_so = "rotary"},
+};
+
+constexpr Key machine_toml = {.name = "machine.toml",
+                              .holds = table,
+                              .help = "Record of a machine, machines/<asset>.toml of a site.",
+                              .keys = machine_file_keys};
 constexpr Key campaign_toml = {.name = "campaign.toml",
                                .holds = table,
                                .help = "Manifest of a campaign of machine-tool calibration.",
@@ -1075,6 +1272,7 @@ bool has_letter(std::string_view letters, char c) {
 
 const Key& campaign_file() { return declared::campaign_toml; }
 const Key& site_file() { return declared::site_toml; }
+const Key& machine_file() { return declared::machine_toml; }
 const Key& specification_file() { return declared::specification_toml; }
 
 bool obeys(std::string_view text, const TextRule& rule) {

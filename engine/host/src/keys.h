@@ -37,22 +37,23 @@ enum class Named { nothing, reader, effect, analysis, output, control };
 
 struct Key {
   enum class Holds {
-    text,          ///< one line
-    number,        ///< finite
-    whole,         ///< 0 to 1000000000
-    flag,          ///< true or false
-    date,          ///< a day without quotes
-    texts,         ///< a list
-    numbers,       ///< a list
-    wholes,        ///< a list of whole numbers
-    span,          ///< two numbers, the smaller one first
-    number_table,  ///< numbers under any name
-    translations,  ///< a text, or texts by language
-    table,         ///< with the keys `keys`
-    tables,        ///< a list of them: [[name]]
-    named_tables,  ///< tables of that kind under any name
-    options,       ///< a table for each plugin, with its options
-    anything       ///< a table that is not looked into
+    text,            ///< one line
+    number,          ///< finite
+    number_or_none,  ///< a finite number, or the text "none"
+    whole,           ///< 0 to 1000000000
+    flag,            ///< true or false
+    date,            ///< a day without quotes
+    texts,           ///< a list
+    numbers,         ///< a list
+    wholes,          ///< a list of whole numbers
+    span,            ///< two numbers, the smaller one first
+    number_table,    ///< numbers under any name
+    translations,    ///< a text, or texts by language
+    table,           ///< with the keys `keys`
+    tables,          ///< a list of them: [[name]]
+    named_tables,    ///< tables of that kind under any name
+    options,         ///< a table for each plugin, with its options
+    anything         ///< a table that is not looked into
   };
 
   std::string_view name;
@@ -85,12 +86,16 @@ struct Key {
 /// The whole file as one table: what is not named here is unknown.
 const Key& campaign_file();
 const Key& site_file();
+/// SITE/machines/<asset>.toml.
+const Key& machine_file();
 /// What a specification of `nonio simulate` has besides campaign.toml.
 const Key& specification_file();
 /// What tells the kind of axis that a cycle moves; settled by the code that reads cycles.
 inline constexpr std::string_view cycle_axis = "(axis)";
 
 inline constexpr std::string_view summaries[] = {"summary.json", "summary.txt"};
+/// Its record is the file of that name in SITE/machines.
+inline constexpr TextRule asset_rule{.not_letters = "/\\\n\t", .not_first = ". ", .longest = 100};
 /// Folders of results are named by it.
 inline constexpr TextRule campaign_id_rule{
     .letters = "a-z0-9._-", .not_first = ".", .longest = 100, .except = summaries};

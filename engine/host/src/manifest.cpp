@@ -69,6 +69,12 @@ std::optional<double> expansion_of(TableReader& reader) {
   return value;
 }
 
+/// Nothing where nobody says it; empty where it is said that there was none.
+std::optional<std::string> table_on(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  return text == "none" ? std::string() : text;
+}
+
 Axis read_axis(const std::string& name, TableReader& reader) {
   Axis axis{.name = name, .rotary = rotary_by_name(name)};
   const std::string kind = reader.text("kind");
@@ -84,6 +90,9 @@ Axis read_axis(const std::string& name, TableReader& reader) {
     if (axis.slave == axis.name && !axis.slave.empty())
       reader.error("slave", "wanted another axis than " + axis.name + ", which is the master");
   }
+  axis.table_on = table_on(reader.text("table_on"));
+  axis.backlash_on = axis.rotary ? reader.number_or_none("backlash_on_deg", deg)
+                                 : reader.number_or_none("backlash_on_mm", mm);
   for (const auto& [result, limit] : axis.rotary ? reader.number_table("tolerance_arcsec", arcsec)
                                                  : reader.number_table("tolerance_um", um))
     axis.tolerance[result] = limit;
@@ -95,6 +104,7 @@ Machine read_machine(TableReader& top) {
   Machine machine;
   auto reader = top.table("machine");
   if (!reader) return machine;
+  machine.asset = reader->text("asset");
   machine.maker = reader->text("maker");
   machine.model = reader->text("model");
   machine.serial = reader->text("serial");
@@ -232,6 +242,7 @@ Measurement read_measurement(TableReader& reader) {
   m.axis = reader.text("axis");
   m.lateral = reader.text("lateral");
   m.adjustment = reader.text("adjustment");
+  m.order = reader.text("order");
   if (m.kind == "axis") m.side = reader.text("side");
   if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
     reader.error("lateral", "wanted another axis than " + m.axis +
@@ -321,21 +332,6 @@ void restore_axis_order(const toml::table& root, Machine& machine) {
   };
   std::stable_sort(machine.axes.begin(), machine.axes.end(),
                    [&](const Axis& a, const Axis& b) { return line(a) < line(b); });
-}
-
-void note_lines(const toml::table& table, const std::string& prefix, KeyLines& lines) {
-  for (const auto& [key, node] : table) {
-    const std::string name = prefix + std::string(key.str());
-    lines[name] = node.source().begin.line;
-    if (const toml::table* child = node.as_table()) note_lines(*child, name + ".", lines);
-    if (const toml::array* list = node.as_array())
-      for (const toml::node& item : *list)
-        if (const toml::table* child = item.as_table()) {
-          const std::string one = name + "." + (*child)["id"].value_or(std::string());
-          lines[one] = child->source().begin.line;
-          note_lines(*child, one + ".", lines);
-        }
-  }
 }
 
 }  // namespace

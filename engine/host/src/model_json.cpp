@@ -197,6 +197,15 @@ void put_explained(Json& json, const Explained& e, const Campaign& campaign,
   json["candidates"] = std::move(candidates);
   json["unseen"] = std::move(unseen);
   json["together"] = x.together;
+  json["certain"] = x.certain;
+  Json descriptions = Json::array();
+  for (const model::Description& d : x.descriptions) {
+    Json one = {{"effect", d.term.name()}};
+    put(one, "rms", d.rms, q);
+    one["says"] = words.description(d, e.part);
+    descriptions.push_back(std::move(one));
+  }
+  json["descriptions"] = std::move(descriptions);
   json["verdict"] = verdict_json(e, words);
   json["plans"] = plans_json(x.plans, words);
   if (x.verdict.trials > 0) {
@@ -267,6 +276,9 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
     if (fit.lost[t] > 0) out.push_back(words.not_told(fit.terms[t].name(), fit.lost[t]));
   if (part.part.kind == model::Part::Kind::space && model::stood_somewhere(part.part))
     out.push_back(words.stood_somewhere());
+  for (const std::string& measurement : part.part.order_assumed)
+    out.push_back(words.order_assumed(measurement));
+  if (!part.part.table.order_known) out.push_back(words.order_unknown());
   return out;
 }
 

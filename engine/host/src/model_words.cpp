@@ -68,6 +68,15 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
   if (e.comparison.floor) f.evidence.push_back({"floor", e.comparison.floor->s, q});
   f.texts = {{"part", kind_of(part.part)}, {"axis", part.part.name}, {"effect", v.effect}};
   f.measurement = part.part.measurements.front();
+  if (v.kind == Kind::unrepeatable) {
+    const auto count = [](std::size_t n) { return static_cast<double>(n); };
+    f.evidence.push_back({"count", count(e.comparison.suspects.size()), Quantity::count});
+    f.evidence.push_back({"readings", count(part.part.table.size()), Quantity::count});
+    if (!e.fails.empty() && e.fails.front().where == "run")
+      f.id += "-run";
+    else if (e.comparison.suspects.size() <= 2)
+      f.id += "-two";
+  }
   if (v.kind == Kind::missing && !e.candidates.empty()) {
     const model::Candidate& c = e.candidates.front();
     f.evidence.push_back({"after", c.rms, q});
@@ -96,9 +105,17 @@ std::string ModelWords::place(const model::Place& place, Quantity deviation) con
 
 std::string ModelWords::verdict(const model::Explanation& e, const PartModel& part) const {
   std::string text = finding_text(templates_, language_, verdict_finding(e, part), "says");
-  if (e.verdict.kind == Kind::unknown && !e.fails.empty())
-    text += " " + place(e.fails.front(), part.deviation());
+  if (e.verdict.kind != Kind::unknown) return text;
+  if (!e.certain.empty())
+    text = says(
+        "verdict.certain", {{"rms", e.best_rms, part.deviation()}},
+        {{"part", kind_of(part.part)}, {"axis", part.part.name}, {"effects", listed(e.certain)}});
+  if (!e.fails.empty()) text += " " + place(e.fails.front(), part.deviation());
   return text;
+}
+
+std::string ModelWords::description(const model::Description& d, const PartModel& part) const {
+  return says("description", {{"after", d.rms, part.deviation()}}, {{"effect", d.term.name()}});
 }
 
 std::string ModelWords::candidate(const model::Candidate& c, const PartModel& part,
@@ -149,6 +166,12 @@ std::string ModelWords::not_told(const std::string& effect, std::size_t paramete
 }
 
 std::string ModelWords::stood_somewhere() const { return says("stood-somewhere", {}, {}); }
+
+std::string ModelWords::order_assumed(const std::string& measurement) const {
+  return says("order-assumed", {}, {{"measurement", measurement}});
+}
+
+std::string ModelWords::order_unknown() const { return says("order-unknown", {}, {}); }
 
 std::string ModelWords::unmeasured(const std::string& effect) const {
   return says("unmeasured", {}, {{"effect", effect}});

@@ -17,6 +17,7 @@
 #include "json_values.h"
 #include "nonio/host/files.h"
 #include "nonio/host/record.h"
+#include "read_apart.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -119,12 +120,11 @@ std::string today() {
 
 }  // namespace
 
-Expected<NightState> begin_night(const RunOptions& options,
+Expected<NightState> begin_night(const RunOptions& options, const std::string& site,
                                  std::optional<std::uint64_t> issued_so_far) {
   NightState night;
   const fs::path& out = options.out;
-  std::error_code error;
-  night.site = fs::weakly_canonical(options.site, error).string();
+  night.site = site;
   night.force = options.force;
   night.date = options.date.empty() ? today() : options.date;
   night.issued_before = issued_so_far;
@@ -132,8 +132,13 @@ Expected<NightState> begin_night(const RunOptions& options,
   if (!state) return fail(state.error());
   if (*state) {
     const Json& json = **state;
-    if (std::string why = other_site(known_text(json, "site"), night.site, out); !why.empty())
-      return fail(std::move(why));
+    if (const std::string known = known_text(json, "site"); known != site) {
+      const auto why = read_apart<std::string>(
+          "the site " + known, Limits{}.disk_seconds,
+          [&](SignsOfLife&) { return Expected<std::string>(other_site(known, site, out)); });
+      if (!why) return fail(why.error());
+      if (!why->empty()) return fail(*why);
+    }
     night.resumed = known_text(json, "state") == "running";
     night.number = json["night"].get<std::uint64_t>() + (night.resumed ? 0 : 1);
     // A forced run that was interrupted is finished as what it was.

@@ -32,7 +32,7 @@ struct NightState {
 
 /// An error if the folder holds the results of another site that is still there: campaigns of both
 /// would be taken for one another's, and the summary would tell of one of them only.
-Expected<NightState> begin_night(const RunOptions& options,
+Expected<NightState> begin_night(const RunOptions& options, const std::string& site,
                                  std::optional<std::uint64_t> issued_so_far);
 /// `night.issued_before` is then what the next one begins with.
 Expected<void> end_night(const std::filesystem::path& out, const NightState& night,

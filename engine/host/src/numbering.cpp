@@ -26,8 +26,11 @@ namespace {
 /// the results.
 Inputs data_of(const Evaluated& evaluated, const Context& context) {
   Inputs data = evaluated.inputs;
-  // What other campaigns do makes no other data of these.
-  std::erase_if(data, [](const auto& one) { return one.first.starts_with(shared_name("")); });
+  // What other campaigns do makes no other data of these, and what is in the control by now
+  // neither.
+  std::erase_if(data, [](const auto& one) {
+    return one.first.starts_with(shared_name("")) || one.first.starts_with(machine_prefix);
+  });
   data.emplace_back(site_name, sha256(context.site.evaluation));
   return data;
 }
@@ -67,6 +70,7 @@ Expected<Files> current_files(const Evaluated& evaluated, const Context& context
   Files files;
   const std::string prefix = input_name("");
   for (const auto& [input, digest] : evaluated.inputs) {
+    if (input.starts_with(machine_prefix)) continue;
     const std::string name = input.starts_with(prefix) ? input.substr(prefix.size()) : input;
     const auto path = path_inside(folder, name);
     if (!path) return fail(path.error());
@@ -135,10 +139,10 @@ const StandingRule* rule_for(const Numbering& numbering, const KnownFinding& fin
   return nullptr;
 }
 
-bool Numbers::has_register() const {
+Expected<bool> Numbers::has_register() const {
   const auto path = register_path(where_.site, context_.site.numbering);
-  std::error_code error;
-  return path && fs::exists(*path, error);
+  if (!path) return fail(path.error());
+  return is_there(*path);
 }
 
 Expected<Register> Numbers::open() const {
@@ -157,6 +161,8 @@ bool any_unruled(const std::vector<KnownFinding>& findings, const Numbering& num
 /// Everything that the pages of a draft depend on.
 Inputs made_from(const Evaluated& evaluated, const Context& context) {
   Inputs all = data_of(evaluated, context);
+  for (const auto& [name, digest] : evaluated.inputs)
+    if (name.starts_with(machine_prefix)) all.emplace_back(name, digest);
   for (const auto& [name, digest] : shared_inputs(context))
     if (name != site_name) all.emplace_back(name, digest);
   return all;
@@ -238,7 +244,11 @@ Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& 
                                     std::vector<std::string>& missing, bool as_draft) const {
   for (std::string& key : days_to_come(evaluated.campaign, where_.today))
     missing.push_back(std::move(key));
-  if (!missing.empty() && !has_register()) return Certificate{};
+  if (!missing.empty()) {
+    const auto there = has_register();
+    if (!there) return fail(there.error());
+    if (!*there) return Certificate{};
+  }
   auto opened = open();
   if (!opened) return fail(opened.error());
   const std::string& campaign = evaluated.campaign.id;
@@ -379,7 +389,7 @@ void Numbers::note_differences(Evaluated& evaluated) const {
 }
 
 void Numbers::note_failure(const std::string& campaign, const std::string& why) const {
-  if (!has_register()) return;
+  if (!has_register().value_or(false)) return;
   auto opened = open();
   if (!opened) return;
   [[maybe_unused]] const auto noted = opened->note_failure(campaign, why);

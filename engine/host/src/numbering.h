@@ -54,7 +54,7 @@ class Numbers {
 
  private:
   Expected<Register> open() const;
-  bool has_register() const;
+  Expected<bool> has_register() const;
   bool may_issue(const Evaluated& evaluated) const;
   Expected<void> amend(Register& opened, const RegisterEntry& before, const Evaluated& evaluated,
                        const std::filesystem::path& folder, Issue& issue,

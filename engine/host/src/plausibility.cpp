@@ -7,7 +7,6 @@
 #include <map>
 
 #include "nonio/sdk/format.h"
-#include "traceability.h"
 #include "twins.h"
 
 namespace nonio::host {
@@ -15,13 +14,13 @@ namespace {
 
 /// Beyond these a machine tool is no machine tool, or its readings are in another unit.
 struct Bounds {
-  double slope = 0.01;         ///< of the deviation over the travel
-  double share = 0.002;        ///< of the travel, if it is also more than `size`
-  double size, most;           ///< of the range of the deviations
-  double small_share = 0.025;  ///< of a short stretch, if it is also more than `small_size`
-  double small_size;           ///< below it a short stretch says nothing
-  double scatter;              ///< standard deviation of repeated readings
-  double least;                ///< range that no machine keeps over a travel of `least_travel`
+  double slope = 0.02;        ///< of the deviation over the travel
+  double share = 0.002;       ///< of the travel, if it is also more than `size`
+  double size, most;          ///< of the range of the deviations
+  double small_share = 0.05;  ///< of a short stretch, if it is also more than `small_size`
+  double small_size;          ///< below it a short stretch says nothing
+  double scatter;             ///< standard deviation of repeated readings
+  double least;               ///< range that no machine keeps over a travel of `least_travel`
   double least_travel;
 };
 constexpr double um = 1e-6, arcsec = 1.0 / arcsec_per_rad;
@@ -29,7 +28,7 @@ constexpr Bounds of_lengths{.size = 300 * um,
                             .most = 20000 * um,
                             .small_size = 2 * um,
                             .scatter = 500 * um,
-                            .least = 0.1 * um,
+                            .least = 0.05 * um,
                             .least_travel = 0.02};
 constexpr Bounds of_angles{.size = 600 * arcsec,
                            .most = 3600 * arcsec,
@@ -115,7 +114,8 @@ class Size {
   }
 
   void too_large(std::vector<Finding>& out) const {
-    const bool position = measurement_.kind == "axis" || measurement_.kind == "diagonal";
+    const bool position = measurement_.kind == "axis" || measurement_.kind == "diagonal" ||
+                          measurement_.kind == "step-diagonal";
     if (position && same_unit() && std::fabs(slope_) > bounds_.slope)
       return out.push_back({.id = "plausibility.deviation-grows-with-position",
                             .attention = true,
@@ -155,8 +155,16 @@ class Size {
            .attention = true,
            .evidence = {{"readings", static_cast<double>(o_.size()), Quantity::count},
                         {"value", o_.deviation.front(), deviation_}}});
-    if (measurement_.kind == "straightness" || o_.lines.size() > 1) return;
-    if (const double U = uncertainty(); U > 0.0 && range < 0.2 * U)
+    // The line goes out of a straightness; U of its optics is another one.
+    const bool straightness = measurement_.kind == "straightness";
+    if (straightness && range_of_rest_ < 0.4 * bounds_.least && scatter_ < 0.4 * bounds_.least &&
+        travel_ >= bounds_.least_travel && means_.size() > 2)
+      return out.push_back(
+          {.id = "plausibility.deviation-too-small",
+           .attention = true,
+           .evidence = {{"range", range_of_rest_, deviation_}, {"travel", travel_, position_}}});
+    if (straightness) return;
+    if (const auto [U, least] = uncertainty(); range < least)
       out.push_back({.id = "plausibility.deviation-below-uncertainty",
                      .attention = true,
                      .evidence = {{"range", range, deviation_}, {"U", U, deviation_}}});
@@ -196,11 +204,16 @@ class Size {
     range_of_rest_ = range_of(rest);
   }
 
-  /// The instrument's own, k = 2; 0 if it was not stated.
-  double uncertainty() const {
+  /// The instrument's own, k = 2 (0 if it was not stated), and the range below which it cannot have
+  /// seen anything. Its part with the length is one line, which an axis that was set with the same
+  /// instrument follows.
+  std::pair<double, double> uncertainty() const {
+    constexpr double of_fixed = 0.5, of_length = 0.15;
     const Instrument& i = campaign_.instrument;
-    if (o_.angular) return i.U_angle.value_or(0.0);
-    return i.U_fixed.value_or(0.0) + i.U_per_length.value_or(0.0) * travel_;
+    if (o_.angular) return {i.U_angle.value_or(0.0), of_fixed * i.U_angle.value_or(0.0)};
+    const double fixed = i.U_fixed.value_or(0.0);
+    const double with_length = i.U_per_length.value_or(0.0) * travel_;
+    return {fixed + with_length, of_fixed * fixed + of_length * with_length};
   }
 
   const Campaign& campaign_;
@@ -211,6 +224,25 @@ class Size {
   std::vector<std::pair<double, double>> means_;
   double travel_ = 0.0, slope_ = 0.0, range_ = 0.0, range_of_rest_ = 0.0, scatter_ = 0.0;
 };
+
+/// A step diagonal is four lines, each with a zero of its own.
+std::vector<Observations> lines_of(const Observations& o) {
+  if (o.lines.size() < 2) return {o};
+  std::vector<Observations> out(o.lines.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].angular = o.angular;
+    out[i].lines = {o.lines[i]};
+    for (const auto& axis : o.axes) out[i].axes.push_back({axis.axis, axis.rotary, {}, {}});
+  }
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    Observations& line = out[o.line_of(i)];
+    line.deviation.push_back(o.deviation[i]);
+    for (std::size_t k = 0; k < o.axes.size(); ++k)
+      line.axes[k].position.push_back(o.axes[k].position[i]);
+  }
+  std::erase_if(out, [](const Observations& line) { return line.size() == 0; });
+  return out;
+}
 
 /// How far a measurement went along one axis.
 double span_along(const Observations& o, const std::string& axis) {
@@ -235,14 +267,17 @@ void implausible_span(const Campaign& campaign, const Measurement& m, const Obse
     return out.push_back({.id = "plausibility.span-of-another-unit",
                           .attention = true,
                           .evidence = {{"span", span, position}, {"other", widest, position}}});
-  if (axis->travel) {
-    const double travel = axis->travel->second - axis->travel->first;
+  if (axis->travel || axis->rotary) {
+    // A turn, where nobody stated how far it goes.
+    const double travel =
+        axis->travel ? axis->travel->second - axis->travel->first : 360.0 / deg_per_rad;
+    if (!axis->travel && widest > 7.0 / deg_per_rad && span <= most_of_travel * travel) return;
     if (widest < least_of_travel * travel || span > most_of_travel * travel)
-      return out.push_back({.id = "plausibility.span-against-travel",
-                            .attention = true,
-                            .evidence = {{"span", span, position},
-                                         {"travel", travel, position},
-                                         {"share", span / travel, Quantity::ratio}}});
+      out.push_back({.id = "plausibility.span-against-travel",
+                     .attention = true,
+                     .evidence = {{"span", span, position},
+                                  {"travel", travel, position},
+                                  {"share", span / travel, Quantity::ratio}}});
   }
   if (axis->screw_pitch && *axis->screw_pitch >= least_pitch && widest < 0.5 * *axis->screw_pitch)
     out.push_back(
@@ -251,18 +286,61 @@ void implausible_span(const Campaign& campaign, const Measurement& m, const Obse
          .evidence = {{"span", span, position}, {"pitch", *axis->screw_pitch, Quantity::length}}});
 }
 
-/// Degrees Fahrenheit, say.
-void implausible_temperature(const Observations& o, std::vector<Finding>& out) {
-  constexpr double coldest = 0.0, hottest = 50.0;
-  for (const auto& [name, column] : {std::pair{"material", &o.material}, {"air", &o.air}}) {
-    double sum = 0.0, n = 0.0;
-    for (const double t : *column)
-      if (std::isfinite(t)) sum += t, n += 1.0;
-    if (n > 0.0 && (sum / n < coldest || sum / n > hottest))
-      out.push_back({.id = "plausibility.temperature",
-                     .attention = true,
-                     .evidence = {{"mean", sum / n, Quantity::temperature}},
-                     .texts = {{"column", std::string(name) + "_c"}}});
+/// Targets where the axis cannot be: one of both was counted from another place.
+void beyond_travel(const Campaign& campaign, const Observations& o, std::vector<Finding>& out) {
+  constexpr double spare_share = 0.02;
+  for (const auto& column : o.axes) {
+    const Axis* axis = campaign.machine.axis(column.axis);
+    if (axis == nullptr || !axis->travel || column.position.empty()) continue;
+    const auto [from, to] = *axis->travel;
+    const double spare = spare_share * (to - from);
+    const auto [low, high] = std::minmax_element(column.position.begin(), column.position.end());
+    if (*low >= from - spare && *high <= to + spare) continue;
+    const Quantity position = axis->rotary ? Quantity::angle : Quantity::length;
+    out.push_back({.id = "plausibility.targets-outside-travel",
+                   .attention = true,
+                   .evidence = {{"first", *low, position},
+                                {"last", *high, position},
+                                {"from", from, position},
+                                {"to", to, position}},
+                   .texts = {{"axis", column.axis}}});
+  }
+}
+
+/// A diagonal whose targets are a small piece of it.
+void short_diagonal(const Measurement& m, const Observations& o, std::vector<Finding>& out) {
+  double square = 0.0;
+  for (const auto& [axis, from] : m.from)
+    if (const auto to = m.to.find(axis); to != m.to.end()) square += std::pow(to->second - from, 2);
+  const double length = std::sqrt(square), span = range_of(along(o));
+  if (span >= least_of_travel * length) return;
+  out.push_back({.id = "plausibility.span-against-travel",
+                 .attention = true,
+                 .evidence = {{"span", span, Quantity::length},
+                              {"travel", length, Quantity::length},
+                              {"share", span / length, Quantity::ratio}}});
+}
+
+/// U of what was evaluated against all of it: then the test says nothing of the axis.
+void uncertain(const std::vector<Results::Analysed>& analyses, const std::string& measurement,
+               std::vector<Finding>& out) {
+  constexpr double most = 5.0;
+  for (const Results::Analysed& a : analyses) {
+    if (a.measurement != measurement) continue;
+    double value = 0.0, U = 0.0;
+    Quantity quantity = Quantity::deviation;
+    for (const Value& v : a.evaluation.values) {
+      if (!v.U || (v.quantity != Quantity::deviation && v.quantity != Quantity::angular_deviation))
+        continue;
+      value = std::max(value, std::fabs(v.value));
+      U = std::max(U, *v.U);
+      quantity = v.quantity;
+    }
+    if (U <= most * value || value <= 0.0) continue;
+    return out.push_back({.id = "plausibility.uncertainty-beyond-deviation",
+                          .attention = true,
+                          .evidence = {{"U", U, quantity}, {"value", value, quantity}},
+                          .texts = {{"analysis", a.plugin}}});
   }
 }
 
@@ -275,44 +353,27 @@ std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t 
   const Observations& o = all[measurement];
   if (o.size() == 0 || o.axes.empty() || o.axes.front().position.empty()) return out;
   const bool runs = along_one_axis(m) || m.kind == "diagonal";
-  const Size size(campaign, m, o);
-  if (runs) size.too_large(out);
-  if (runs || m.kind == "step-diagonal") size.too_small(out);
-  implausible_span(campaign, m, o, all, out);
-  if (runs || m.kind == "step-diagonal") implausible_passes(o, runs, out);
-  implausible_temperature(o, out);
-  return out;
-}
-
-std::vector<Finding> implausible_campaign(const Manifest& manifest, const std::string& today) {
-  std::vector<Finding> out;
-  const Campaign& c = manifest.campaign;
-  for (const std::string& axis : manifest.undeclared_axes) {
-    std::string known;
-    for (const Axis& a : c.machine.axes)
-      if (std::find(manifest.undeclared_axes.begin(), manifest.undeclared_axes.end(), a.name) ==
-          manifest.undeclared_axes.end())
-        known += (known.empty() ? "" : ", ") + a.name;
-    out.push_back({.id = "plausibility.unknown-axis",
-                   .attention = true,
-                   .texts = {{"axis", axis}, {"known", known}}});
+  const bool steps = m.kind == "step-diagonal";
+  for (const Observations& line : lines_of(o)) {
+    if (!runs && !steps) break;
+    const Size size(campaign, m, line);
+    const std::size_t before = out.size();
+    size.too_large(out);
+    size.too_small(out);
+    if (out.size() > before) break;
   }
-  for (const auto& [key, day] :
-       {std::pair{"campaign.date", &c.date}, {"campaign.end_date", &c.end_date}})
-    if (!today.empty() && *day > today)
-      out.push_back({.id = "plausibility.day-to-come",
-                     .attention = true,
-                     .texts = {{"key", key}, {"day", *day}, {"today", today}}});
-  for (Finding& f : traceability_findings(c))
-    if (f.id == "traceability.calibrated-later") {
-      f.id = "plausibility.calibrated-later";
-      out.push_back(std::move(f));
-    }
+  implausible_span(campaign, m, o, all, out);
+  if (m.kind == "diagonal") short_diagonal(m, o, out);
+  if (m.kind == "ball-centres") implausible_centres(m, o, out);
+  beyond_travel(campaign, o, out);
+  if (runs || steps) implausible_passes(o, runs, out);
+  implausible_columns(o, runs, out);
   return out;
 }
 
 std::vector<Results::Analysed> implausible(const ReadCampaign& read, const Context& context,
-                                           const Inputs& inputs) {
+                                           const Inputs& inputs,
+                                           const std::vector<Results::Analysed>& analyses) {
   std::vector<Results::Analysed> out;
   const Campaign& campaign = read.manifest->campaign;
   const auto add = [&](const std::string& id, std::vector<Finding> findings) {
@@ -324,6 +385,7 @@ std::vector<Results::Analysed> implausible(const ReadCampaign& read, const Conte
   add("", implausible_campaign(*read.manifest, context.today));
   std::map<std::string, std::string> digest_of, first_with;
   for (const auto& [name, digest] : inputs) digest_of[name] = digest;
+  const auto twice = passes_of_another_measurement(campaign, read.observations);
   for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
     const Measurement& m = campaign.measurements[i];
     std::vector<Finding> findings;
@@ -339,8 +401,12 @@ std::vector<Results::Analysed> implausible(const ReadCampaign& read, const Conte
       findings.push_back({.id = "plausibility.file-twice",
                           .attention = true,
                           .texts = {{"file", m.file}, {"other", first->second}}});
+    else
+      for (const Finding& f : twice)
+        if (f.measurement == m.id) findings.push_back(f);
     for (Finding& f : implausible_readings(campaign, i, read.observations))
       findings.push_back(std::move(f));
+    if (m.kind == "axis") uncertain(analyses, m.id, findings);
     add(m.id, std::move(findings));
   }
   return out;

@@ -15,14 +15,16 @@ namespace nonio::host {
 
 inline constexpr std::string_view plausibility_name = "plausibility";
 inline constexpr std::string_view plausibility_prefix = "plausibility.";
+/// Evidence of a finding that a person lets stand for tables: the reason. Outputs that write for
+/// controls without being tables look for it.
+inline constexpr const char* stands_because = "stands";
 inline constexpr std::string_view file_of_another_campaign =
     "plausibility.file-of-another-campaign";
-/// The one doubt that keeps no table: copies change no mean.
-inline constexpr std::string_view no_scatter = "plausibility.no-scatter";
 
 /// All of them, an entry for each measurement that has any, and one without for the campaign.
 std::vector<Results::Analysed> implausible(const ReadCampaign& read, const Context& context,
-                                           const Inputs& inputs);
+                                           const Inputs& inputs,
+                                           const std::vector<Results::Analysed>& analyses);
 
 /// Which of the files another campaign has too becomes one of the inputs.
 void note_shared(const Twins& twins, Inputs& inputs);
@@ -36,6 +38,19 @@ std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t 
 
 /// Passes that are copies, directions that are swapped or go against the order of the rows.
 void implausible_passes(const Observations& o, bool with_directions, std::vector<Finding>& out);
+
+/// Passes of which more agrees than chance allows.
+void implausible_copies(const Observations& o, std::vector<Finding>& out);
+
+/// Passes that stand in an earlier measurement of the campaign too.
+std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
+                                                   const std::vector<Observations>& all);
+
+/// Temperatures, pressure, humidity and, if wanted, times.
+void implausible_columns(const Observations& o, bool with_times, std::vector<Finding>& out);
+
+/// Centres of a ball: how far apart, and about which axis.
+void implausible_centres(const Measurement& m, const Observations& o, std::vector<Finding>& out);
 
 /// A file of text that ends within its last number.
 std::vector<Finding> implausible_end(std::string_view bytes, const std::string& file);

@@ -81,12 +81,37 @@ Observations rearranged(const Observations& o, const std::vector<std::size_t>& o
   return out;
 }
 
-Settings settings_for(const Info& info, const Sample& sample) {
-  auto settled = settle_options(info, {}, sample.options);
+namespace {
+
+/// How its control counts the axes: by their places, so that tables of every control are written.
+MachineRecord record_for(const Sample& sample) {
+  MachineRecord record;
+  for (const Axis& a : sample.campaign.machine.axes)
+    record.axes[a.name] = {.rotary = a.rotary,
+                           .settings = {{"number", static_cast<double>(record.axes.size() + 1)}}};
+  return record;
+}
+
+Settings or_defaults(Checked<Settings> settled, const Info& info) {
   if (settled) return std::move(*settled);
   Settings defaults;
   for (const Option& o : info.options) defaults.values[o.name] = o.otherwise;
   return defaults;
+}
+
+}  // namespace
+
+Settings settings_for(const Info& info, const Sample& sample) {
+  return or_defaults(settle_options(info, {}, sample.options), info);
+}
+
+Settings settings_for(const Output& output, const Sample& sample) {
+  if (output.stage != Output::Stage::table) return settings_for(output.info, sample);
+  Manifest manifest;
+  manifest.campaign = sample.campaign;
+  manifest.options = sample.options;
+  const MachineRecord record = record_for(sample);
+  return or_defaults(settle_table_options(output.info, {}, manifest, &record), output.info);
 }
 
 Results results_of(const Sample& s, const Bench& bench) {

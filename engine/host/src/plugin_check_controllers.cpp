@@ -104,7 +104,7 @@ Written written_table(const Output& o, const Sample& s, const Settings& options,
 
 /// Ways to set the plugin up: nobody knows the sign of some controls, which the user then says.
 std::vector<Settings> set_ups(const Output& o, const Sample& s) {
-  const Settings defaults = settings_for(o.info, s);
+  const Settings defaults = settings_for(o, s);
   std::vector<Settings> all{defaults};
   for (const Option& option : o.info.options)
     if (option.name == "sign")

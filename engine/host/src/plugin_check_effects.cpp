@@ -373,6 +373,11 @@ bool unseen_in(const model::Explanation& x, const std::string& name) {
   });
 }
 
+bool describes(const model::Explanation& x, const std::string& name) {
+  return std::any_of(x.descriptions.begin(), x.descriptions.end(),
+                     [&](const model::Description& d) { return d.term.name() == name; });
+}
+
 /// In the first sample of an axis, or of space, that determines it.
 Verdict effect_explained(const Effect& e, const Bench& bench) {
   if (e.always) return skipped("it is in every model and never a candidate");
@@ -388,8 +393,10 @@ Verdict effect_explained(const Effect& e, const Bench& bench) {
     const auto x = model::explain(p->part, always ? *always : std::vector<model::Term>{}, catalogue,
                                   bench.seed);
     if (!x) return failed(s.where() + ": " + x.error().message);
-    if (named(*x, s.term.name())) return passed();
+    if (named(*x, s.term.name()) || describes(*x, s.term.name())) return passed();
     if (unseen_in(*x, s.term.name())) continue;
+    // A free curve of time may look as if the readings did not repeat.
+    if (e.description && x->verdict.kind == model::Verdict::Kind::unrepeatable) continue;
     return failed(s.where() + ": planted alone, explain says " +
                   (x->verdict.effect.empty() ? "nothing" : x->verdict.effect) + " instead");
   }

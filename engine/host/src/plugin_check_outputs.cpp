@@ -91,7 +91,7 @@ bool same(const OutputResult& a, const OutputResult& b) {
 
 Verdict output_again(const Output& o, const Bench& bench) {
   return each_output(o, bench, [&](const Sample& s, const Results& results) -> std::string {
-    const Settings options = settings_for(o.info, s);
+    const Settings options = settings_for(o, s);
     const auto one = written(o, s, results, options, bench);
     const auto two = written(o, s, results, options, bench);
     if (one.has_value() != two.has_value()) return "it fails only one of two times";
@@ -104,7 +104,7 @@ Verdict output_writes(const Output& o, const Bench& bench) {
   std::size_t files = 0;
   std::string first;
   Verdict v = each_output(o, bench, [&](const Sample& s, const Results& results) -> std::string {
-    const auto r = written(o, s, results, settings_for(o.info, s), bench);
+    const auto r = written(o, s, results, settings_for(o, s), bench);
     if (!r) {
       if (first.empty()) first = "; sample " + s.name + ": " + r.error().message;
       return {};
@@ -119,7 +119,7 @@ Verdict output_writes(const Output& o, const Bench& bench) {
 
 Verdict output_empty(const Output& o, const Bench& bench) {
   return each_output(o, bench, [&](const Sample& given, const Results& results) -> std::string {
-    const Settings options = settings_for(o.info, given);
+    const Settings options = settings_for(o, given);
     if (std::string why = complaint(o, given, {}, options, bench); !why.empty())
       return "without results: " + why;
     Sample s = given;
@@ -180,8 +180,7 @@ Verdict output_hostile(const Output& o, const Bench& bench) {
       const Sample odd = renamed(s, text);
       bench.stage("sample " + s.name + ", texts: " + name);
       const Results results = results_of(odd, bench);
-      if (std::string why = complaint(o, odd, results, settings_for(o.info, odd), bench);
-          !why.empty())
+      if (std::string why = complaint(o, odd, results, settings_for(o, odd), bench); !why.empty())
         return name + ": " + why;
     }
     at += 2;
@@ -226,7 +225,7 @@ Verdict output_options(const Output& o, const Bench& bench) {
   Results results;
   std::size_t most = 0;
   const Verdict v = each_output(o, bench, [&](const Sample& s, const Results& r) -> std::string {
-    const auto w = written(o, s, r, settings_for(o.info, s), bench);
+    const auto w = written(o, s, r, settings_for(o, s), bench);
     std::size_t files = 1;
     if (w) files += w->artifacts.size();
     if (files > most) most = files, largest = &s, results = r;
@@ -235,7 +234,7 @@ Verdict output_options(const Output& o, const Bench& bench) {
   if (largest == nullptr) return v;
   for (const Option& option : o.info.options)
     for (const Setting& end : ends_of(option)) {
-      Settings options = settings_for(o.info, *largest);
+      Settings options = settings_for(o, *largest);
       options.values[option.name] = end;
       bench.stage("sample " + largest->name + ", option " + option.name);
       if (std::string why = complaint(o, *largest, results, options, bench); !why.empty())

@@ -95,6 +95,8 @@ std::vector<std::size_t> shuffled(std::size_t n, Random& random);
 Observations rearranged(const Observations& o, const std::vector<std::size_t>& order);
 /// The plugin's defaults, and what the sample says.
 Settings settings_for(const Info& info, const Sample& sample);
+/// Of a table: beside these, the numbers of the axes by their places.
+Settings settings_for(const Output& output, const Sample& sample);
 /// All that the program's own analyses and its model say of a sample.
 Results results_of(const Sample& sample, const Bench& bench);
 

@@ -234,6 +234,19 @@ std::string PluginHost::check_secrets() const {
   return {};
 }
 
+namespace {
+
+bool is_prepared(const Output& output, const Templates& templates) {
+  try {
+    output.prepare(templates);
+    return true;
+  } catch (...) {
+    return false;
+  }
+}
+
+}  // namespace
+
 Plugins& PluginHost::load_all(SharedWords& progress, std::vector<std::string>& said) const {
   auto* plugins = new Plugins;  // never unloaded
   for (const fs::path& path : plugins->files_in(wish_.folders)) {
@@ -248,11 +261,10 @@ Plugins& PluginHost::load_all(SharedWords& progress, std::vector<std::string>& s
   for (const Output& output : plugins->outputs()) {
     if (output.prepare == nullptr || unprepared_.contains(output.info.name)) continue;
     progress.set(std::string(preparing) + output.info.name);
-    try {
-      output.prepare(wish_.context.templates);
-    } catch (...) {
+    // What the system refuses now it may give in a moment.
+    if (!is_prepared(output, wish_.context.templates) &&
+        !is_prepared(output, wish_.context.templates))
       said.push_back("output " + output.info.name + " could not prepare: it threw an exception");
-    }
     restore_process_state();
   }
   progress.set("");

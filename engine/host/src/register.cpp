@@ -95,7 +95,12 @@ Expected<std::optional<Register>> open_if_there(const fs::path& site, const Numb
                                                 double patience) {
   const auto path = register_path(site, numbering);
   if (!path) return fail(path.error());
-  if (std::error_code error; !fs::exists(*path, error)) return std::nullopt;
+  std::error_code error;
+  const auto kind = fs::status(*path, error).type();
+  if (kind == fs::file_type::not_found) return std::nullopt;
+  if (kind == fs::file_type::none)
+    return fail("cannot look at the register of certificates " + path->string() + ": " +
+                error.message());
   auto opened = Register::open(site, numbering, patience);
   if (!opened) return fail(opened.error());
   return std::move(*opened);

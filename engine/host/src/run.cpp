@@ -10,12 +10,12 @@
 #include "disk.h"
 #include "night_state.h"
 #include "nonio/host/files.h"
+#include "read_apart.h"
 #include "runner.h"
 #include "set_up.h"
 #include "store.h"
 #include "summary.h"
 #include "survey.h"
-#include "watched.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -66,27 +66,20 @@ void store_refused(const RunOptions& options, const Context& context, const Nigh
   }
 }
 
-/// The first look at the site, in a child: a share that hangs must not hold up this process, which
-/// could then not even be stopped.
-std::string no_site(const fs::path& site) {
-  constexpr double patience = Limits{}.disk_seconds;
-  auto child = Watched::start([&](SignsOfLife&, const Watched::Send&) {
-    std::error_code error;
-    if (!fs::is_directory(site, error)) return;
-    for (fs::directory_iterator it(site, error), end; !error && it != end; it.increment(error)) {
-    }
-    if (read_small_file(site / site_name) && is_there(site / "templates")) return;
-  });
-  if (!child) return child.error().message;
-  std::vector<Watched> children;
-  children.push_back(std::move(*child));
-  while (!children.front().ended() && !is_stop_requested()) {
-    if (children.front().is_silent(patience))
-      return "cannot read the site " + site.string() + ": " + no_answer(patience);
-    wait_for_parcels(children);
-    children.front().take();
-  }
-  return {};
+/// The first look at the site: the name by which the night's record knows it.
+Expected<std::string> look_at_site(const RunOptions& options) {
+  const fs::path& site = options.site;
+  return read_apart<std::string>("the site " + site.string(), Limits{}.disk_seconds,
+                                 [&](SignsOfLife& signs) -> Expected<std::string> {
+                                   signs.reading(site.string());
+                                   std::error_code error;
+                                   if (!fs::is_directory(site, error))
+                                     return fail("there is no site folder " + site.string());
+                                   if (std::string why = unfit_output(site, options.out);
+                                       !why.empty())
+                                     return fail(std::move(why));
+                                   return fs::weakly_canonical(site, error).string();
+                                 });
 }
 
 /// A register in an output folder below the site would be lost with it.
@@ -114,16 +107,23 @@ struct Known {
 Expected<std::optional<Known>> known_of(const RunOptions& options, const Context& context) {
   const Numbering& numbering = context.site.numbering;
   const double patience = std::min(5.0, numbering.patience);
-  Known known;
-  auto numbers = Register::entries(options.site, numbering, patience);
-  if (!numbers && is_locked(numbers.error())) return std::nullopt;
-  if (!numbers) return fail(numbers.error());
-  known.numbers = std::move(*numbers);
-  auto drafts = Register::drafts(options.site, numbering, patience);
-  if (!drafts && is_locked(drafts.error())) return std::nullopt;
-  if (!drafts) return fail(drafts.error());
-  known.drafts = std::move(*drafts);
-  return known;
+  auto known = read_apart<std::pair<std::vector<RegisterEntry>, std::vector<WaitingDraft>>>(
+      "the register of certificates", context.site.limits.disk_seconds + patience,
+      [&](SignsOfLife& signs)
+          -> Expected<std::pair<std::vector<RegisterEntry>, std::vector<WaitingDraft>>> {
+        signs.reading((options.site / numbering.register_file).string());
+        if (const auto sound = check_register_place(options, context); !sound)
+          return fail(sound.error());
+        auto numbers = Register::entries(options.site, numbering, patience);
+        if (!numbers) return fail(numbers.error());
+        signs.beat();
+        auto drafts = Register::drafts(options.site, numbering, patience);
+        if (!drafts) return fail(drafts.error());
+        return std::pair(std::move(*numbers), std::move(*drafts));
+      });
+  if (!known && is_locked(known.error())) return std::nullopt;
+  if (!known) return fail(known.error());
+  return Known{std::move(known->first), std::move(known->second)};
 }
 
 std::uint64_t issued_so_far(const std::vector<RegisterEntry>& numbers) {
@@ -132,16 +132,15 @@ std::uint64_t issued_so_far(const std::vector<RegisterEntry>& numbers) {
   return last;
 }
 
-/// What is new, in the order of the numbers, and what waits.
-void note_certificates(Night& night, const RunOptions& options, const Context& context,
-                       NightState& state) {
+/// What is new, in the order of the numbers, and what waits. An error if the register cannot be
+/// read: a summary without what was issued would pass for one of a night that issued nothing.
+Expected<void> note_certificates(Night& night, const RunOptions& options, const Context& context,
+                                 NightState& state) {
   auto known = known_of(options, context);
-  if (!known || !*known) {
-    night.notes.push_back(
-        known ? "the register of certificates is locked: what was issued is not listed"
-              : known.error().message);
-    state.issued_before.reset();
-    return;
+  if (!known) return fail(known.error());
+  if (!*known) {  // the next night lists it
+    night.notes.push_back("the register of certificates is locked: what was issued is not listed");
+    return {};
   }
   const std::uint64_t before = state.issued_before.value_or(0);
   state.issued_before = issued_so_far((*known)->numbers);
@@ -153,6 +152,7 @@ void note_certificates(Night& night, const RunOptions& options, const Context& c
     if (here != night.campaigns.end() && here->status != "failed")
       night.waiting.push_back(std::move(draft));
   }
+  return {};
 }
 
 void tidy_root(const fs::path& out) {
@@ -164,6 +164,7 @@ void tidy_root(const fs::path& out) {
 Expected<void> tidy_below(const fs::path& out, bool hashed) {
   std::error_code error;
   for (fs::directory_iterator it(out, error), end; !error && it != end; it.increment(error)) {
+    if (is_stop_requested()) return fail("interrupted");
     std::error_code ignored;
     if (!it->is_directory(ignored) || it->is_symlink(ignored)) continue;
     if (hashed && it->path().filename().string().size() != 2) continue;
@@ -179,14 +180,19 @@ Expected<void> tidy_below(const fs::path& out, bool hashed) {
 Expected<void> tidy_all(const Night& night, const fs::path& out, bool resumed) {
   tidy_root(out);
   if (resumed) return tidy_below(out, results_folder(out, "a") != out / "a");
-  for (const CampaignState& c : night.campaigns)
+  for (const CampaignState& c : night.campaigns) {
+    if (is_stop_requested()) return fail("interrupted");
     if (c.action == Action::done && c.is_campaign)
       if (auto tidied = tidy(results_folder(out, c.id)); !tidied) return tidied;
+  }
   return {};
 }
 
-Expected<void> close_night(const Night& night, const RunOptions& options, const NightState& state) {
+/// First what cannot be left lying; then what the register says; the summary last.
+Expected<void> close_night(Night& night, const RunOptions& options, const Context& context,
+                           NightState& state) {
   if (auto tidied = tidy_all(night, options.out, state.resumed); !tidied) return tidied;
+  if (auto noted = note_certificates(night, options, context, state); !noted) return noted;
   if (auto written = write_summary(night, options.out, options.version); !written) return written;
   return end_night(options.out, state, {state.of(), night.campaigns.size(), night.failed()});
 }
@@ -202,19 +208,19 @@ void tell_vanished(const Night& night, const RunEvents& events) {
 }
 
 /// The night itself, in an output folder that nobody else uses.
-void do_night(const RunOptions& options, const RunEvents& events, SetUp& place,
-              const std::optional<Known>& known, Night& night) {
+void do_night(const RunOptions& options, const RunEvents& events, const std::string& site_text,
+              SetUp& place, const std::optional<Known>& known, Night& night) {
   const Context& context = place.context;
   const auto refuse = [&](std::string why) {
-    night.end = Night::End::refused;
+    night.end = is_stop_requested() ? Night::End::interrupted : Night::End::refused;
     night.error = std::move(why);
   };
   if (const auto settled =
           settle_folders(options.out, context.site.hashed_folders, options.dry_run);
       !settled)
     return refuse(settled.error().message);
-  auto state =
-      begin_night(options, known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
+  auto state = begin_night(options, site_text,
+                           known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
   if (!state) return refuse(state.error().message);
   night.night = state->of();
   if (state->last) night.seen_before = state->last->seen;
@@ -257,10 +263,12 @@ void do_night(const RunOptions& options, const RunEvents& events, SetUp& place,
     tidy_root(options.out);
     return;
   }
-  note_certificates(night, options, context, *state);
   // The campaigns are safe; if this fails the night stays open, and the next run ends it.
-  if (const auto closed = close_night(night, options, *state); !closed)
-    night.error = closed.error().message;
+  const auto closed = close_night(night, options, context, *state);
+  if (closed) return;
+  tidy_root(options.out);
+  if (is_stop_requested()) return refuse({});
+  night.error = closed.error().message + "; the same command goes on where it stopped";
 }
 
 }  // namespace
@@ -268,20 +276,12 @@ void do_night(const RunOptions& options, const RunEvents& events, SetUp& place,
 Night run_site(const RunOptions& options, const RunEvents& events) {
   Night night;
   const auto refuse = [&](std::string why) {
-    night.end = Night::End::refused;
+    night.end = is_stop_requested() ? Night::End::interrupted : Night::End::refused;
     night.error = std::move(why);
     return std::move(night);
   };
-  if (const std::string why = no_site(options.site); !why.empty()) return refuse(why);
-  if (is_stop_requested()) {
-    night.end = Night::End::interrupted;
-    return night;
-  }
-  std::error_code error;
-  if (!fs::is_directory(options.site, error))
-    return refuse("there is no site folder " + options.site.string());
-  if (const std::string why = unfit_output(options.site, options.out); !why.empty())
-    return refuse(why);
+  const auto site_text = look_at_site(options);
+  if (!site_text) return refuse(site_text.error().message);
   const auto place = set_up(options);
   if (!place) return refuse(place.error().message);
   const Context& context = (*place)->context;
@@ -293,8 +293,6 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
     if (!taken) return refuse(taken.error().message);
     lock.emplace(std::move(*taken));
   }
-  if (const auto sound = check_register_place(options, context); !sound)
-    return refuse(sound.error().message);
   const auto known = known_of(options, context);
   if (!known) return refuse(known.error().message);
   if (!*known)
@@ -306,7 +304,7 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   // What takes the memory goes first, then there is enough to tell of it.
   auto reserve = std::make_unique<std::array<char, 1 << 18>>();
   try {
-    do_night(options, events, **place, *known, night);
+    do_night(options, events, *site_text, **place, *known, night);
   } catch (const std::exception& e) {
     reserve.reset();
     night.error = dynamic_cast<const std::bad_alloc*>(&e) != nullptr

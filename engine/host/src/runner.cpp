@@ -19,6 +19,7 @@
 #include "database.h"
 #include "disk.h"
 #include "nonio/host/files.h"
+#include "read_apart.h"
 #include "store.h"
 #include "twins.h"
 #include "worker.h"
@@ -172,7 +173,9 @@ class Runner {
                                     std::chrono::duration<double>(numbering.patience));
     last_trial_ = Clock::now() >= *give_up_;
     constexpr double now_and_then = 0.5;  // s
-    auto numbers = Register::entries(options_.site, numbering, now_and_then);
+    auto numbers = read_apart<std::vector<RegisterEntry>>(
+        "the register of certificates", context_.site.limits.disk_seconds,
+        [&](SignsOfLife&) { return Register::entries(options_.site, numbering, now_and_then); });
     events_.tick();
     if (!numbers && is_locked(numbers.error()) && !last_trial_) return;
     if (recheck_ && numbers) {
@@ -390,7 +393,7 @@ class Runner {
   /// The worker did not come back with results: the campaign is failed, and says why.
   void lost(std::size_t index, const std::string& why) {
     CampaignState& c = campaigns_[index];
-    numbers_.note_failure(c.id, why);
+    note_failure(c.id, why);
     if (releasing_) return finish(index, "failed", {Error{why}});  // the draft stays
     Evaluated evaluated;
     evaluated.campaign.id = c.id;
@@ -402,6 +405,17 @@ class Runner {
       evaluated.results.errors.push_back(
           Error{"and this could not be stored: " + stored.error().message});
     finish(index, "failed", std::move(evaluated.results.errors));
+  }
+
+  /// In the register. A share that hangs costs its limit once.
+  void note_failure(const std::string& campaign, const std::string& why) {
+    if (register_hangs_) return;
+    const auto noted = read_apart<bool>("the register of certificates",
+                                        context_.site.limits.disk_seconds, [&](SignsOfLife&) {
+                                          numbers_.note_failure(campaign, why);
+                                          return Expected<bool>(true);
+                                        });
+    register_hangs_ = !noted;
   }
 
   void finish(std::size_t index, std::string status, std::vector<Error> errors) {
@@ -435,6 +449,7 @@ class Runner {
   std::vector<std::size_t> waiting_;  ///< need the register, which is locked
   std::optional<Worker::Clock::time_point> give_up_;
   bool last_trial_ = false;
+  bool register_hangs_ = false;
   std::vector<Worker> workers_;
 };
 

@@ -145,6 +145,8 @@ class SchemaWriter {
         if (!key.otherwise.empty())
           json_.member("default", std::strtod(std::string(key.otherwise).c_str(), nullptr));
         return;
+      case Holds::number_or_none:
+        return put_number_or_none(key);
       case Holds::whole:
         return put_whole(key);
       case Holds::flag:
@@ -217,6 +219,16 @@ class SchemaWriter {
   void put_range(const Key& key) {
     if (key.least) json_.member(key.above ? "exclusiveMinimum" : "minimum", *key.least);
     if (key.most) json_.member("maximum", *key.most);
+  }
+
+  void put_number_or_none(const Key& key) {
+    json_.key("type");
+    json_.begin_array();
+    json_.value("number");
+    json_.value("string");
+    json_.end_array();
+    put_range(key);
+    json_.member("pattern", "^none$");
   }
 
   void put_whole(const Key& key) {
@@ -514,6 +526,10 @@ std::string campaign_schema(const Plugins& plugins) {
 
 std::string site_schema(const Plugins& plugins) { return SchemaWriter(plugins).write(site_file()); }
 
+std::string machine_schema(const Plugins& plugins) {
+  return SchemaWriter(plugins).write(machine_file());
+}
+
 namespace {
 
 std::string help_of(const Key& file, std::string_view path) {
@@ -532,5 +548,6 @@ std::string help_of(const Key& file, std::string_view path) {
 
 std::string campaign_key_help(std::string_view path) { return help_of(campaign_file(), path); }
 std::string site_key_help(std::string_view path) { return help_of(site_file(), path); }
+std::string machine_key_help(std::string_view path) { return help_of(machine_file(), path); }
 
 }  // namespace nonio::host

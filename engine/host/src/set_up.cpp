@@ -8,6 +8,7 @@
 
 #include "context.h"
 #include "plausibility.h"
+#include "read_apart.h"
 #include "runner.h"
 
 namespace nonio::host {
@@ -94,18 +95,25 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
   Context& context = place->context;
   context.version = options.version;
   context.today = day_of_clock();
-  auto site = read_site(options.site, context.site_sha256);
+  const auto files = read_apart<SiteFiles>(
+      "the site " + options.site.string(), Limits{}.disk_seconds, [&](SignsOfLife& signs) {
+        return read_site_files(options.site,
+                               [&](const fs::path& path) { signs.reading(path.string()); });
+      });
+  if (!files) return fail(all_of({files.error()}));
+  auto site = site_in(*files, context.site_sha256);
   if (!site) return fail(all_of(site.error()));
   context.site = std::move(*site);
   place->notes = context.site.notes;
+  auto machines = read_machines(options.site);
+  if (!machines) return fail(all_of({machines.error()}));
+  context.machines = std::move(*machines);
   if (context.site.signing && !options.dry_run) {  // before any plugin is in the memory
-    place->signer.emplace(*context.site.signing, options.site);
+    place->signer.emplace(*context.site.signing, options.site, context.site.limits.disk_seconds);
     note_key(*place, !context.site.signing->time_stamp.empty());
   }
-  const auto template_folders = with_site_templates(options.template_folders, options.site);
-  if (!template_folders) return fail(template_folders.error());
-  auto templates =
-      read_templates(*template_folders, context.templates_sha256, &context.templates_json);
+  auto templates = read_templates(options.template_folders, context.templates_sha256,
+                                  &context.templates_json, files->templates);
   if (!templates) return fail(all_of({templates.error()}));
   context.templates = std::move(*templates);
   if (auto allowed = check_user(options); !allowed) return fail(allowed.error());

@@ -4,23 +4,30 @@
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <functional>
 #include <iostream>
+#include <thread>
 #include <utility>
 
 #include "channel.h"
 #include "child.h"
 #include "guarded.h"
 #include "nonio/host/files.h"
+#include "runner.h"
+#include "watched.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -55,7 +62,23 @@ std::string in_site(const fs::path& site, const std::string& path) {
   return path.empty() ? path : (site / path).string();
 }
 
+/// Whoever can read the key can sign in the laboratory's name.
+Expected<void> check_key_file(const fs::path& key) {
+  constexpr mode_t others = S_IRWXG | S_IRWXO;
+  struct stat info {};
+  if (::stat(key.c_str(), &info) != 0 || (info.st_mode & others) == 0) return {};
+  std::array<char, 8> mode{};
+  std::snprintf(mode.data(), mode.size(), "%04o", info.st_mode & 07777U);
+  return fail("other users can get at the signing key " + key.string() + " (mode " + mode.data() +
+              "); wanted a file for the user alone who signs: chmod 600 " + key.string() +
+              (info.st_uid == ::geteuid()
+                   ? ""
+                   : ", and chown " + std::to_string(::geteuid()) + " " + key.string()));
+}
+
 Expected<sign::Key> open_key(const Signing& s, const fs::path& site) {
+  if (!s.pkcs12.empty())
+    if (auto well = check_key_file(site / s.pkcs12); !well) return fail(well.error());
   auto password = password_of(s, site);
   if (!password) return fail(password.error());
   auto key =
@@ -105,9 +128,9 @@ void answer(int stream, const Expected<sign::Key>& key,
   done ? reply("", *done) : reply(done.error().message, {});
 }
 
-/// `while_waiting`: called now and then until the answer begins; may be empty.
+/// `go_on`: asked now and then until the answer begins; may be empty.
 Expected<sign::Signed> ask(int channel, std::string_view bytes,
-                           const std::function<void()>& while_waiting = {}) {
+                           const std::function<bool()>& go_on = {}) {
   auto ends = channel_pair(SOCK_STREAM, signing_process);
   if (!ends) return fail(ends.error());
   const Handle own = std::move((*ends)[0]);
@@ -118,7 +141,8 @@ Expected<sign::Signed> ask(int channel, std::string_view bytes,
   }
   asked = asked && write_text(own.get(), bytes);
   pollfd answered{own.get(), POLLIN, 0};
-  while (asked && while_waiting && ::poll(&answered, 1, 100) <= 0) while_waiting();
+  while (asked && go_on && ::poll(&answered, 1, 100) <= 0)
+    if (!go_on()) return fail("no answer");
   std::string why;
   sign::Signed done;
   if (!asked || !read_text(own.get(), why) || !read_text(own.get(), done.no_time_stamp) ||
@@ -130,14 +154,24 @@ Expected<sign::Signed> ask(int channel, std::string_view bytes,
 
 }  // namespace
 
-Signer::Signer(const Signing& signing, fs::path site) : signing_(signing), site_(std::move(site)) {}
+Signer::Signer(const Signing& signing, fs::path site, double disk_seconds)
+    : signing_(signing), site_(std::move(site)), disk_seconds_(disk_seconds) {}
 
 Signer::~Signer() {
   if (to_ >= 0) ::close(to_);
   if (from_ >= 0) ::close(from_);
+  end_process();
+}
+
+/// One that waits for a disk in the kernel is left behind.
+void Signer::end_process() {
+  using Clock = std::chrono::steady_clock;
   if (pid_ < 0) return;
   ::kill(pid_, SIGKILL);
-  ::waitpid(pid_, nullptr, 0);
+  const auto patience = Clock::now() + std::chrono::seconds(2);
+  while (::waitpid(pid_, nullptr, WNOHANG) == 0 && Clock::now() < patience)
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  pid_ = -1;
 }
 
 Expected<void> Signer::fork_process() {
@@ -155,10 +189,11 @@ void Signer::serve() const noexcept {
   ::close(to_);
   constexpr int most_deaths = 5;
   const auto key = guarded("the signing key", [&]() -> Expected<sign::Key> {
+    if (!given_up_.empty()) return fail(given_up_);
     if (deaths_ > most_deaths) return fail("the process that opens it dies again and again");
     return open_key(signing_, site_);
   });
-  const auto stamping = stamping_of(signing_, site_);
+  const auto stamping = key ? stamping_of(signing_, site_) : fail(key.error());
   while (const auto asked = receive_descriptors(from_))
     for (const Handle& stream : asked->descriptors) answer(stream.get(), key, stamping);
   ::_exit(0);
@@ -170,7 +205,18 @@ Expected<sign::Identity> Signer::start() {
   to_ = (*ends)[0].release();
   from_ = (*ends)[1].release();
   if (auto made = fork_process(); !made) return fail(made.error());
-  const auto hello = ask(to_, {}, [this] { revive(); });
+  const auto deadline =
+      std::chrono::steady_clock::now() + std::chrono::duration<double>(disk_seconds_);
+  const auto hello = ask(to_, {}, [&] {
+    revive();
+    return !is_stop_requested() && std::chrono::steady_clock::now() < deadline;
+  });
+  if (!hello && std::chrono::steady_clock::now() >= deadline) {
+    given_up_ = no_answer(disk_seconds_);
+    end_process();
+    revive();
+    return fail("the signing key: " + given_up_);
+  }
   if (!hello) return fail(hello.error());
   sign::Identity who;
   const std::size_t blank = hello->bytes.find(' ');

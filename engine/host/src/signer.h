@@ -22,7 +22,8 @@ std::vector<std::filesystem::path> secret_files(const Signing& signing,
 /// key once; if that does not succeed, it says why to everyone who asks.
 class Signer {
  public:
-  Signer(const Signing& signing, std::filesystem::path site);
+  /// A disk or share without an answer for `disk_seconds` is none.
+  Signer(const Signing& signing, std::filesystem::path site, double disk_seconds);
   Signer(const Signer&) = delete;
   Signer& operator=(const Signer&) = delete;
   ~Signer();
@@ -37,11 +38,14 @@ class Signer {
 
  private:
   Expected<void> fork_process();
+  void end_process();
   [[noreturn]] void serve() const noexcept;
 
   const Signing& signing_;
   const std::filesystem::path site_;
   pid_t pid_ = -1;
+  const double disk_seconds_;
+  std::string given_up_{};  ///< why nobody signs any more
   int deaths_ = 0;
   int to_ = -1, from_ = -1;  ///< the two ends of the channel on which requests come
 };

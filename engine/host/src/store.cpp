@@ -104,7 +104,9 @@ Expected<void> stage(const fs::path& out, const Evaluated& e, const Context& con
 
   if (auto looked = look_back(folder, record); !looked) return looked;
   if (auto written = write_record(folder, record); !written) return written;
-  for (const std::string& name : temporaries(folder))
+  const auto left = temporaries(folder);
+  if (!left) return fail(left.error());
+  for (const std::string& name : *left)
     if (std::error_code ignored; name != record_name)
       fs::remove(temporary_path(folder, name), ignored);
   return write_temporaries(folder, files);
@@ -179,8 +181,12 @@ class Move {
     std::error_code error;
     const fs::path before = folder / record_before_name;
     const fs::path last_good = folder / last_good_name;
-    if (!fs::exists(fs::symlink_status(before, error))) return {};
-    if (fs::is_directory(last_good, error) && !fs::exists(last_good / record_name, error))
+    const auto aside = is_there(before), kept = is_there(last_good),
+               whole = is_there(last_good / record_name);
+    for (const auto* looked : {&aside, &kept, &whole})
+      if (!*looked) return fail(looked->error());
+    if (!*aside) return {};
+    if (*kept && !*whole)
       fs::rename(before, last_good / record_name, error);
     else
       fs::remove(before, error);
@@ -279,11 +285,14 @@ Expected<void> store(const fs::path& out, const Evaluated& evaluated, const Cont
 Expected<void> tidy(const fs::path& folder) {
   constexpr int tries = 3;  // a refusal may pass
   auto left = temporaries(folder);
-  for (int i = 0; i < tries && !left.empty(); ++i, left = temporaries(folder))
+  for (int i = 0; i < tries && (!left || !left->empty()); ++i, left = temporaries(folder))
     remove_leftovers(folder);
-  if (!left.empty()) return fail("cannot remove " + temporary_path(folder, left.front()).string());
-  std::error_code error;
-  if (!fs::exists(folder / record_name, error)) return {};
+  if (!left) return fail(left.error());
+  if (!left->empty())
+    return fail("cannot remove " + temporary_path(folder, left->front()).string());
+  const auto complete = is_there(folder / record_name);
+  if (!complete) return fail(complete.error());
+  if (!*complete) return {};
   return Move::put_away_record_before(folder);
 }
 

@@ -6,6 +6,7 @@
 #include "json_values.h"
 #include "night_state.h"
 #include "nonio/host/files.h"
+#include "runner.h"
 #include "spool.h"
 
 namespace nonio::host {
@@ -257,11 +258,12 @@ Expected<void> write_summary(const Night& night, const fs::path& out, const std:
   Spool text = Spool::at(temporary_path(out, names[0]));
   Spool json = Spool::at(temporary_path(out, names[1]));
   Lists lists(out / state_folder);
-  for (const CampaignState& c : night.campaigns)
-    if (const auto added = lists.add(c, out); !added) {
-      remove_leftovers(out);
-      return fail("cannot write the summary in " + out.string() + ": " + added.error().message);
-    }
+  for (const CampaignState& c : night.campaigns) {
+    const auto added = is_stop_requested() ? fail("interrupted") : lists.add(c, out);
+    if (added) continue;
+    remove_temporaries(out, names);
+    return fail("cannot write the summary in " + out.string() + ": " + added.error().message);
+  }
   for (const Vanished& v : night.vanished) lists.add(v);
   write_text(text, night, lists, version);
   write_json(json, night, lists, version, out);
@@ -269,7 +271,7 @@ Expected<void> write_summary(const Night& night, const fs::path& out, const std:
   if (written) written = json.flush();
   if (written) written = rename_temporaries(out, names);
   if (written) return written;
-  remove_leftovers(out);
+  remove_temporaries(out, names);
   return fail("cannot write the summary in " + out.string() + ": " + written.error().message);
 }
 

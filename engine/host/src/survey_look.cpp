@@ -132,6 +132,10 @@ std::string Look::changes(CampaignState& state, const Record& record,
     why.push_back(std::string(manifest_name) + " changed");
   const std::string prefix = input_name("");
   for (const auto& [name, digest] : record.inputs)
+    if (name.starts_with(machine_prefix) && machine_digest(in_.context.machines, name) != digest)
+      why.push_back("the record of the machine (" + name.substr(machine_prefix.size()) +
+                    ") changed");
+  for (const auto& [name, digest] : record.inputs)
     if (name.starts_with(prefix)) look_at_file(state, name.substr(prefix.size()), digest, why);
   if (in_.force && record.night != in_.night) return "--force";
   look_at_outputs(state, record, why);

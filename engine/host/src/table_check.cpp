@@ -99,15 +99,8 @@ void compare(TableDifference& d, const std::vector<const LoadedTable*>& was,
   if (!will.empty()) d.next = shape_of(will);
 }
 
-/// "X number=1 backlash_mm=0.010" of option `axes`: what was in the parameter while measured.
 double present_backlash(const Settings& options, const std::string& axis, bool rotary) {
-  double value = 0.0;
-  const std::string key = rotary ? " backlash_deg=" : " backlash_mm=";
-  for (const std::string& entry : options.texts("axes"))
-    if (const std::size_t at = entry.find(key);
-        entry.rfind(axis + " ", 0) == 0 && at != std::string::npos)
-      std::from_chars(entry.data() + at + key.size(), entry.data() + entry.size(), value);
-  return value / (rotary ? deg_per_rad : 1e3);
+  return stated_backlash(options, axis, rotary).value_or(0.0);
 }
 
 TableForecast forecast_of(const std::string& measurement, const std::string& axis,
@@ -144,19 +137,51 @@ Observations without(const Observations& o, const std::string& axis, const Table
   return raw;
 }
 
-}  // namespace
+/// Of the files themselves, where nobody says another.
+void state_backlash_of(Settings& options, const Tables& tables) {
+  for (const LoadedTable& t : tables)
+    if (t.backlash.value_or(0.0) != 0.0 && present_backlash(options, t.output, t.rotary) == 0.0)
+      state_backlash(options, t.output, t.rotary, *t.backlash);
+}
 
-Expected<std::vector<Artifact>> read_table_files(const std::string& list) {
+/// In the words of the new table.
+void say_what_was_on(Campaign& campaign, const Settings& options, const Tables& present) {
+  for (Axis& axis : campaign.machine.axes) {
+    if (!corrects(present, axis.name)) continue;
+    axis.table_on = "nonio apply --was-on";
+    axis.backlash_on = present_backlash(options, axis.name, axis.rotary);
+  }
+}
+
+template <class Read>
+Expected<std::vector<Artifact>> read_list(const std::string& list, const Read& read) {
   std::vector<Artifact> files;
   for (std::size_t from = 0; from <= list.size();) {
     const std::size_t comma = std::min(list.find(',', from), list.size());
     const std::filesystem::path path = list.substr(from, comma - from);
-    auto bytes = read_file(path);
+    auto bytes = read(path);
     if (!bytes) return tl::unexpected<Error>(bytes.error());
     files.push_back({path.filename().string(), std::move(*bytes)});
     from = comma + 1;
   }
   return files;
+}
+
+}  // namespace
+
+Expected<std::vector<Artifact>> read_table_files(const std::string& list) {
+  return read_list(list, [](const std::filesystem::path& path) { return read_file(path); });
+}
+
+Expected<std::vector<Artifact>> read_table_files(const std::string& list,
+                                                 const std::filesystem::path& base) {
+  return read_list(list, [&](const std::filesystem::path& path) -> Expected<std::string> {
+    const auto inside = path_inside(base, path.string());
+    if (!inside) return fail(inside.error());
+    auto bytes = read_small_file(*inside);
+    if (!bytes) return fail(path.string() + ": " + bytes.error().message);
+    return bytes;
+  });
 }
 
 Expected<Tables> tables_in(const Output& o, const std::vector<Artifact>& files, const Campaign& c,
@@ -210,8 +235,89 @@ std::vector<TableDifference> differences(const Tables& present, const Tables& ne
   return out;
 }
 
+std::optional<double> stated_backlash(const Settings& options, const std::string& axis,
+                                      bool rotary) {
+  std::optional<double> value;
+  const std::string key = rotary ? " backlash_deg=" : " backlash_mm=";
+  for (const std::string& entry : options.texts("axes")) {
+    const std::size_t at = entry.find(key);
+    double number = 0.0;
+    if (entry.rfind(axis + " ", 0) != 0 || at == std::string::npos) continue;
+    const char* const from = entry.data() + at + key.size();
+    if (std::from_chars(from, entry.data() + entry.size(), number).ec == std::errc())
+      value = number / (rotary ? deg_per_rad : 1e3);
+  }
+  return value;
+}
+
+void state_backlash(Settings& options, const std::string& axis, bool rotary, double value) {
+  auto axes = options.texts("axes");
+  axes.push_back(axis + (rotary ? " backlash_deg=" : " backlash_mm=") +
+                 fixed_text(value * (rotary ? deg_per_rad : 1e3), 9));
+  options.values["axes"] = std::move(axes);
+}
+
+std::vector<Observations> without_tables(const Campaign& campaign,
+                                         const std::vector<Observations>& readings,
+                                         const Tables& tables) {
+  std::vector<Observations> raw;
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    raw.push_back(
+        without(readings[i], control_axis(campaign.machine, campaign.measurements[i]), tables));
+  return raw;
+}
+
+Expected<std::optional<Underlay>> what_was_on(const ReadCampaign& read, const Output& output,
+                                              const Settings& options) {
+  if (read.tables_on.empty() || output.parse == nullptr) return std::optional<Underlay>();
+  const Campaign& campaign = read.manifest->campaign;
+  Underlay on{{}, options, {}};
+  for (const auto& [axis, files] : read.tables_on) {
+    const std::string who = "what was on while axis " + axis + " was measured: ";
+    auto tables = tables_in(output, files, campaign, options);
+    if (!tables) return fail(who + tables.error().message);
+    if (!corrects(*tables, axis))
+      return fail(who + "its files hold no table of " + axis +
+                  (tables->empty() ? "" : ", but of " + tables->front().output) +
+                  "; which number has the axis in the control?");
+    for (const LoadedTable& t : *tables) {  // a file may hold those of other axes too
+      if (t.output != axis) continue;
+      const auto stated = stated_backlash(options, axis, t.rotary);
+      if (stated && t.backlash.value_or(0.0) != 0.0 && std::fabs(*stated - *t.backlash) > 5e-10)
+        return fail(who + "its files hold another backlash than backlash_on says");
+      on.tables.push_back(t);
+    }
+  }
+  state_backlash_of(on.options, on.tables);
+  on.readings = without_tables(campaign, read.observations, on.tables);
+  return std::optional(std::move(on));
+}
+
+void compare_with_measured(const ReadCampaign& read, OutputResult& result) {
+  const auto& measurements = read.manifest->campaign.measurements;
+  std::erase_if(result.findings, [](const Finding& f) { return f.id == "table.no-gain"; });
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    const Measurement& m = measurements[i];
+    if (m.kind != "axis" || read.observations[i].size() == 0) continue;
+    const auto test = math::AxisTest::arrange(read.observations[i]);
+    const auto was = math::before(math::error_curve(test));
+    for (Prediction& p : result.predictions) {
+      if (p.measurement != m.id) continue;
+      p.before = p.name == "B" ? was.B() : p.name == "M" ? was.M() : was.E();
+      if (!p.name.starts_with("E") || p.after < p.before) continue;
+      const Quantity q = deviation_of(test.rotary);
+      result.findings.push_back({"table.no-gain",
+                                 true,
+                                 {{"before", p.before, q}, {"after", p.after, q}},
+                                 {{"axis", m.axis}},
+                                 m.id,
+                                 "This table would not make the axis better."});
+    }
+  }
+}
+
 std::vector<TableForecast> forecast(const ReadCampaign& read, const Tables& tables,
-                                    const Settings& options) {
+                                    const Settings& options, const std::optional<Underlay>& on) {
   std::vector<TableForecast> out;
   const auto& measurements = read.manifest->campaign.measurements;
   for (std::size_t i = 0; i < read.observations.size(); ++i) {
@@ -221,25 +327,19 @@ std::vector<TableForecast> forecast(const ReadCampaign& read, const Tables& tabl
     const auto test = math::AxisTest::arrange(read.observations[i]);
     const auto curve = math::error_curve(test);
     if (curve.position.size() < 2) continue;
-    out.push_back(forecast_of(m.id, axis, curve, curve, test.rotary, tables,
-                              present_backlash(options, axis, test.rotary)));
+    const auto raw = on ? math::error_curve(math::AxisTest::arrange(on->readings[i])) : curve;
+    out.push_back(forecast_of(m.id, axis, curve, raw, test.rotary, tables,
+                              present_backlash(on ? on->options : options, axis, test.rotary)));
   }
   return out;
 }
 
 Expected<RenewedTables> renew(const ReadCampaign& read, const Output& output, Settings options,
                               const Templates& templates, const Tables& present) {
-  const Campaign& campaign = read.manifest->campaign;
-  std::vector<std::string> axes = options.texts("axes");
-  for (const LoadedTable& t : present)
-    if (t.backlash.value_or(0.0) != 0.0 && present_backlash(options, t.output, t.rotary) == 0.0)
-      axes.push_back(t.output + (t.rotary ? " backlash_deg=" : " backlash_mm=") +
-                     fixed_text(*t.backlash * (t.rotary ? deg_per_rad : 1e3), 9));
-  options.values["axes"] = axes;
-  std::vector<Observations> raw;
-  for (std::size_t i = 0; i < read.observations.size(); ++i)
-    raw.push_back(without(read.observations[i],
-                          control_axis(campaign.machine, campaign.measurements[i]), present));
+  Campaign campaign = read.manifest->campaign;
+  state_backlash_of(options, present);
+  say_what_was_on(campaign, options, present);
+  const std::vector<Observations> raw = without_tables(campaign, read.observations, present);
   const Results none;
   const auto write = [&](const Campaign& c, const std::vector<Observations>& o) {
     return guarded("output " + output.info.name, [&] {

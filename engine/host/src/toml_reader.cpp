@@ -169,6 +169,21 @@ Expected<toml::table> parse_toml(std::string_view text, const std::string& file)
   }
 }
 
+void note_lines(const toml::table& table, const std::string& prefix, KeyLines& lines) {
+  for (const auto& [key, node] : table) {
+    const std::string name = prefix + std::string(key.str());
+    lines[name] = node.source().begin.line;
+    if (const toml::table* child = node.as_table()) note_lines(*child, name + ".", lines);
+    if (const toml::array* list = node.as_array())
+      for (const toml::node& item : *list)
+        if (const toml::table* child = item.as_table()) {
+          const std::string one = name + "." + (*child)["id"].value_or(std::string());
+          lines[one] = child->source().begin.line;
+          note_lines(*child, one + ".", lines);
+        }
+  }
+}
+
 std::string type_name(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::table:
@@ -313,9 +328,23 @@ std::optional<double> TableReader::finite(std::string_view key, const toml::node
 }
 
 std::optional<double> TableReader::number(std::string_view name, double scale) {
-  const Found found = find(name, {Key::Holds::number});
+  return number_at(find(name, {Key::Holds::number}), scale);
+}
+
+std::optional<double> TableReader::number_or_none(std::string_view name, double scale) {
+  const Found found = find(name, {Key::Holds::number_or_none});
   if (found.node == nullptr) return std::nullopt;
-  const auto value = finite(name, *found.node);
+  if (const auto text = found.node->value_exact<std::string>()) {
+    if (*text == "none") return 0.0;
+    refuse(found.key, "\"" + *text + "\"");
+    return std::nullopt;
+  }
+  return number_at(found, scale);
+}
+
+std::optional<double> TableReader::number_at(const Found& found, double scale) {
+  if (found.node == nullptr) return std::nullopt;
+  const auto value = finite(found.key.name, *found.node);
   if (!value) return std::nullopt;
   if (!in_range(*value, found.key)) {
     std::string shown;

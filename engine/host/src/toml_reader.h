@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "keys.h"
+#include "nonio/host/manifest.h"
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/settings.h"
 
@@ -28,6 +29,8 @@ class TableReader {
 
   std::string text(std::string_view key);
   std::optional<double> number(std::string_view key, double scale = 1.0);
+  /// 0 where the file says "none".
+  std::optional<double> number_or_none(std::string_view key, double scale = 1.0);
   std::optional<int> whole(std::string_view key);
   std::optional<bool> flag(std::string_view key);
   std::string date(std::string_view key);
@@ -79,6 +82,7 @@ class TableReader {
     return {table, declaration, std::move(place), file_, errors_};
   }
 
+  std::optional<double> number_at(const Found& found, double scale);
   Found find(std::string_view name, std::initializer_list<Key::Holds> as);
   bool holds(const When& when) const;
   bool is_needed(const Key& key) const { return key.required || holds(key.needed); }
@@ -102,6 +106,9 @@ class TableReader {
 
 /// The whole file, or one error with its line.
 Expected<toml::table> parse_toml(std::string_view text, const std::string& file);
+
+/// Adds the line of each key below a table to `lines`: "axes.X.number".
+void note_lines(const toml::table& table, const std::string& prefix, KeyLines& lines);
 
 std::string type_name(const toml::node& node);
 

@@ -2,6 +2,7 @@
 #include "unknown_format.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace nonio::host {
 namespace {
@@ -35,6 +36,24 @@ std::string quoted(std::string_view line) {
   return out + (line.size() > most ? "...\"" : "\"");
 }
 
+/// Formats whose layout is not public, by the suffix of the file's name.
+std::string known_by_name(std::string_view file) {
+  constexpr std::string_view keysight[] = {"lin", "ang", "str", "squ", "par", "rot", "way",
+                                           "fla", "dia", "ltb", "atb", "stb", "lda"};
+  const std::size_t dot = file.rfind('.');
+  if (dot == file.npos) return {};
+  std::string suffix(file.substr(dot + 1));
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  if (std::find(std::begin(keysight), std::end(keysight), suffix) == std::end(keysight)) return {};
+  return "its name ends as those of Keysight's laser program E1733A do (" +
+         quoted(file.substr(dot)) +
+         "), whose layout is not public. Export the readings from that program as text and read "
+         "them with a column map (reader = \"long-table\" or \"wide-table\"); to read the file "
+         "itself, "
+         "such a file is needed with the values that the program shows for it";
+}
+
 bool is_numbers(std::string_view line) {
   const auto numeric = [](char c) {
     return std::string_view("0123456789+-.eE").find(c) != std::string_view::npos;
@@ -54,7 +73,8 @@ std::uint64_t first_content_line(std::string_view bytes) {
   return number;
 }
 
-std::string what_is_wrong(std::string_view bytes) {
+std::string what_is_wrong(std::string_view bytes, std::string_view file) {
+  if (auto known = known_by_name(file); !known.empty()) return known;
   if (bytes.find('\n') == bytes.npos && bytes.find('\r') + 1 < bytes.size() &&
       bytes.find('\r') != bytes.npos)
     return "expected lines that end with LF or CR LF, found CR only (the line ends of an old "

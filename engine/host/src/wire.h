@@ -14,7 +14,9 @@
 #include <variant>
 #include <vector>
 
+#include "context.h"
 #include "nonio/host/evaluate.h"
+#include "nonio/host/register.h"
 #include "nonio/sdk/plugin.h"
 
 /// Values as bytes, between two processes of one program: numbers bit by bit. What comes from a
@@ -220,15 +222,15 @@ NONIO_ON_THE_WIRE(Results::Analysed, a, b, c, d)
 NONIO_ON_THE_WIRE(Results::Written, a, b, c)
 NONIO_ON_THE_WIRE(Results, a, b, c, d, e, f)
 
-NONIO_ON_THE_WIRE(Axis, a, b, c, d, e, f, g, h)
-NONIO_ON_THE_WIRE(Machine, a, b, c, d, e, f, g, h)
+NONIO_ON_THE_WIRE(Axis, a, b, c, d, e, f, g, h, i, j)
+NONIO_ON_THE_WIRE(Machine, a, b, c, d, e, f, g, h, i)
 NONIO_ON_THE_WIRE(Instrument, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
 NONIO_ON_THE_WIRE(Sensor, a, b, c, d, e, f, g, h)
 NONIO_ON_THE_WIRE(Environment, a, b, c, d, e, f, g, h, i)
 NONIO_ON_THE_WIRE(Cmc, a, b, c)
 NONIO_ON_THE_WIRE(Laboratory, a, b, c, d, e, f, g)
 NONIO_ON_THE_WIRE(CertificateTexts, a, b, c, d, e, f, g, h, i, j, k, l)
-NONIO_ON_THE_WIRE(Measurement, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s)
+NONIO_ON_THE_WIRE(Measurement, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t)
 NONIO_ON_THE_WIRE(Formula::Parameter, a, b, c, d)
 NONIO_ON_THE_WIRE(Formula, a, b, c, d, e)
 NONIO_ON_THE_WIRE(Campaign, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
@@ -236,6 +238,13 @@ NONIO_ON_THE_WIRE(Campaign, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r
 NONIO_ON_THE_WIRE(IssuedFile, a, b, c, d)
 NONIO_ON_THE_WIRE(Certificate, a, b, c, d, e, f, g, h)
 NONIO_ON_THE_WIRE(Evaluated, a, b, c, d, e, f)
+
+NONIO_ON_THE_WIRE(TemplateFiles, a, b)
+NONIO_ON_THE_WIRE(SiteFiles, a, b)
+NONIO_ON_THE_WIRE(KnownFinding, a, b, c, d)
+NONIO_ON_THE_WIRE(Approval, a, b, c, d)
+NONIO_ON_THE_WIRE(RegisterEntry, a, b, c, d, e, f, g, h, i, j, k, l)
+NONIO_ON_THE_WIRE(WaitingDraft, a, b, c, d, e, f, g, h, i)
 
 NONIO_ON_THE_WIRE(Option, a, b, c, d, e, f, g)
 NONIO_ON_THE_WIRE(Info, a, b, c, d, e)

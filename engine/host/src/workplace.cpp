@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <optional>
+
 #include "apart.h"
 #include "context.h"
 #include "nonio/host/campaign_reader.h"
@@ -11,12 +13,19 @@ namespace fs = std::filesystem;
 fs::path site_of(const fs::path& campaign) {
   std::error_code error;
   const fs::path start = fs::canonical(campaign, error);
-  for (fs::path folder = start; !error && !folder.empty(); folder = folder.parent_path()) {
-    // One that cannot be looked at is not none: reading it says what is wrong.
-    if (is_there(folder / site_name).value_or(true)) return folder;
-    if (folder == folder.parent_path()) break;
-  }
-  return campaign;
+  // One that cannot be looked at is not none: reading it says what is wrong.
+  const auto has = [](const char* name) {
+    return [name](const fs::path& folder) { return is_there(folder / name).value_or(true); };
+  };
+  const auto nearest = [&](const auto& is_it) -> std::optional<fs::path> {
+    for (fs::path folder = start; !error && !folder.empty(); folder = folder.parent_path()) {
+      if (is_it(folder)) return folder;
+      if (folder == folder.parent_path()) break;
+    }
+    return std::nullopt;
+  };
+  if (const auto site = nearest(has(site_name))) return *site;
+  return nearest(has(machines_folder)).value_or(campaign);
 }
 
 Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
@@ -36,6 +45,9 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   auto read = read_site(site, context.site_sha256);
   if (!read) return fail(read.error().front());
   context.site = std::move(*read);
+  auto machines = read_machines(site);
+  if (!machines) return fail(machines.error());
+  context.machines = std::move(*machines);
   const auto folders = with_site_templates(template_folders, site);
   if (!folders) return fail(folders.error());
   auto templates = read_templates(*folders, context.templates_sha256);

@@ -23,7 +23,7 @@ class CandidateOf {
     Candidate c;
     c.term = f_.terms[e];
     c.score = -std::numeric_limits<double>::infinity();
-    const State alone = f_.bench->with(f_.start, f_.bench->gains(f_.start, e), e);
+    const State alone = f_.bench->joined(f_.start, f_.bench->gains(f_.start, e), e);
     if (alone.blocks.size() == f_.start.blocks.size()) {
       c.visible = false;
       c.why = f_.bench->instances()[e].blocks.empty() ? "not-shown" : "aliased";
@@ -34,7 +34,7 @@ class CandidateOf {
     if (member) {
       for (const std::size_t b : f_.best.blocks)
         if (f_.bench->effect_of(b) == e) block = b;
-      c.score = f_.bench->without(f_.best, e).criterion - f_.best.criterion;
+      c.score = f_.bench->settled(f_.bench->without(f_.best, e)).criterion - f_.best.criterion;
       c.p = f_.chance.corrected(p_of(*f_.bench, f_.best, e));
       c.aliases = aliases_of(e);
     } else {
@@ -42,7 +42,7 @@ class CandidateOf {
     }
     c.term.shape = f_.bench->blocks()[block].shape;
     c.minimal_detectable = minimal_detectable(e, block);
-    fit_candidate(e, c);
+    fit_candidate(alone, c);
     return c;
   }
 
@@ -54,7 +54,7 @@ class CandidateOf {
     const VectorXd gains = f_.bench->gains(rest);
     for (std::size_t other = f_.in_model; other < f_.terms.size(); ++other) {
       if (other == member || f_.bench->holds(f_.best, other)) continue;
-      const State changed = f_.bench->settled(f_.bench->with(rest, gains, other));
+      const State changed = f_.bench->settled(f_.bench->joined(rest, gains, other));
       if (changed.blocks.size() > rest.blocks.size() && as_good(changed))
         names.push_back(f_.terms[other].name());
     }
@@ -71,7 +71,7 @@ class CandidateOf {
 
   /// Evidence of an effect outside the best explanation: added to it, or instead of a member.
   void score_outsider(std::size_t e, Candidate& c) const {
-    const State more = f_.bench->with(f_.best, f_.bench->gains(f_.best, e), e);
+    const State more = f_.bench->joined(f_.best, f_.bench->gains(f_.best, e), e);
     if (more.blocks.size() > f_.best.blocks.size()) {
       c.score = f_.best.criterion - more.criterion;
       c.p = f_.chance.corrected(p_of(*f_.bench, more, e));
@@ -80,7 +80,7 @@ class CandidateOf {
       const std::size_t member = f_.bench->effect_of(b);
       if (member < f_.in_model) continue;
       const State rest = f_.bench->without(f_.best, member);
-      const State changed = f_.bench->with(rest, f_.bench->gains(rest, e), e);
+      const State changed = f_.bench->joined(rest, f_.bench->gains(rest, e), e);
       if (changed.blocks.size() == rest.blocks.size()) continue;
       const double score = rest.criterion - changed.criterion;
       if (score <= c.score) continue;
@@ -103,9 +103,13 @@ class CandidateOf {
     return s * needed / std::sqrt(f_.bench->readings() * std::max(visible, 1e-12));
   }
 
-  void fit_candidate(std::size_t e, Candidate& c) const {
-    std::vector<Term> terms;
-    for (const Term& t : f_.of_model.fit.terms) terms.push_back(t);
+  /// In the model, whose curves may have fewer knots beside it.
+  void fit_candidate(const State& with, Candidate& c) const {
+    const std::size_t e = f_.bench->effect_of(with.blocks.back());
+    std::vector<Term> terms = f_.of_model.fit.terms;
+    for (std::size_t t = 0; t < terms.size(); ++t)
+      if (with.blocks[t] != f_.start.blocks[t])
+        terms[t].shape = f_.bench->blocks()[with.blocks[t]].shape;
     terms.push_back(c.term);
     const auto fitted =
         fit_near(f_.part.table, terms, std::vector<char>(terms.size(), 0), f_.weight);

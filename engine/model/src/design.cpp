@@ -40,6 +40,10 @@ Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
   return out;
 }
 
+bool may_lose(const Observations& o, const Term& term) {
+  return term.effect->curve && (o.axes.size() > 1 || term.effect->description);
+}
+
 Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vector<Term>& terms,
                                           const VectorXd& root, std::vector<Index>* lost) {
   std::vector<MatrixXd> blocks;
@@ -48,7 +52,7 @@ Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vect
     auto block = columns_of(o, term, term.shape);
     if (!block) return fail(block.error());
     blocks.push_back(std::move(*block));
-    curves = curves || (term.effect->curve && o.axes.size() > 1);
+    curves = curves || may_lose(o, term);
   }
   if (lost != nullptr) lost->assign(terms.size(), 0);
   if (!curves) return blocks;
@@ -61,7 +65,7 @@ Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vect
     const Eigen::JacobiSVD<MatrixXd> svd(own, Eigen::ComputeThinU | Eigen::ComputeThinV);
     Index rank = 0;
     while (rank < own.cols() && svd.singularValues()(rank) > curve_threshold * size) ++rank;
-    if (terms[t].effect->curve && rank > 0 && rank < own.cols()) {
+    if (may_lose(o, terms[t]) && rank > 0 && rank < own.cols()) {
       if (lost != nullptr) (*lost)[t] = own.cols() - rank;
       blocks[t] = blocks[t] * svd.matrixV().leftCols(rank);
     }

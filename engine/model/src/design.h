@@ -27,6 +27,10 @@ Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
 /// terms before it.
 inline constexpr double curve_threshold = 1e-4;
 
+/// Whether a term may say less beside those before it than it says alone: curves in space, and
+/// descriptions.
+bool may_lose(const Observations& o, const Term& term);
+
 /// The columns of all terms. Of a curve in space whose readings cannot tell it wholly from the
 /// terms before it (the odd parts of two straightnesses on two diagonals) only the combinations
 /// that they can tell; `lost`: how many of each term's are not.

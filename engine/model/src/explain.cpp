@@ -3,6 +3,7 @@
 
 #include "candidates.h"
 #include "compare.h"
+#include "describe.h"
 #include "finding.h"
 #include "thin.h"
 #include "verdict.h"
@@ -20,7 +21,9 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
   for (const Candidate& c : out.candidates)
     if (c.visible && finding->bench->holds(finding->best, finding->index_of(c.term.name())))
       out.together.push_back(c.term.name());
+  out.best_rms = finding->of_best.fit.rms;
   judge(*finding, out);
+  if (out.verdict.kind == Verdict::Kind::unknown) out.descriptions = described(*finding);
   out.comparison = std::move(finding->of_model);
   return out;
 }
@@ -41,7 +44,8 @@ Expected<Explanation> explain_on_means(const Part& part, const std::vector<Term>
   out->comparison = std::move(*whole);
   out->verdict.suspects_share =
       static_cast<double>(out->comparison.suspects.size()) / static_cast<double>(part.table.size());
-  if (out->verdict.suspects_share > most_suspects) out->verdict.kind = Verdict::Kind::unrepeatable;
+  if (too_many(out->comparison.suspects.size(), part.table.size()))
+    out->verdict.kind = Verdict::Kind::unrepeatable;
   for (Candidate& c : out->candidates) {
     if (!c.visible) continue;
     std::vector<Term> terms = out->comparison.fit.terms;

@@ -25,7 +25,7 @@ class Finder {
     for (const Term& c : catalogue)
       if (std::none_of(model.begin(), model.end(),
                        [&](const Term& m) { return m.name() == c.name(); }))
-        f_.terms.push_back(c);
+        (c.effect->description ? f_.descriptions : f_.terms).push_back(c);
   }
 
   Expected<Finding> run() {

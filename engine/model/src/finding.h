@@ -20,6 +20,7 @@ struct Finding {
   std::vector<Term> terms{};  ///< of the model, then the catalogue's others
   std::size_t in_model = 0;   ///< so many terms are the model's
   std::uint64_t seed = 0;
+  std::vector<Term> descriptions{};  ///< of the catalogue, that the model does not have
   std::vector<Suspect> suspects{};
   std::vector<double> weight{};  ///< of each reading: 0 for suspects
   std::optional<Workbench> bench{};

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "design.h"
+#include "order.h"
 
 namespace nonio::model {
 
@@ -174,8 +175,12 @@ std::vector<std::size_t> coordinates_of(const Observations& o) {
   return {out.begin(), out.end()};
 }
 
-void append_run(Part& part, const Observations& more, const std::string& id) {
+void append_run(Part& part, const Observations& listed, const Measurement& m) {
+  const Order order = order_of(listed, m.order);
+  const Observations more = in_order(listed, order.rows);
+  if (order.assumed) part.order_assumed.push_back(m.id);
   Observations& to = part.table;
+  to.order_known = to.order_known && order.known;
   const auto& from = more.axes.front();
   if (to.axes.empty()) {
     to.axes = {{from.axis, from.rotary, {}, {}}};
@@ -187,8 +192,10 @@ void append_run(Part& part, const Observations& more, const std::string& id) {
   part.along = axis.position;
   part.way = axis.approach;
   to.line.insert(to.line.end(), more.size(), static_cast<std::uint32_t>(to.lines.size()));
-  to.lines.push_back({id, more.lines.empty() ? Vector{} : more.lines.front().sense});
-  append_readings(part, more, id);
+  to.lines.push_back({m.id, more.lines.empty() ? Vector{} : more.lines.front().sense});
+  append_readings(part, more, m.id);
+  std::copy(order.rows.begin(), order.rows.end(),
+            part.row.end() - static_cast<std::ptrdiff_t>(order.rows.size()));
 }
 
 void append_space(Part& part, const Campaign& campaign, const std::vector<Observations>& read,

@@ -24,8 +24,9 @@ bool senses_several(const Observations&);
 /// Coordinates (0, 1, 2) that its axes move along or that it senses.
 std::vector<std::size_t> coordinates_of(const Observations&);
 
-/// One more run of the part's axis, as a line of its own.
-void append_run(Part& part, const Observations& more, const std::string& id);
+/// One more measurement of the part's axis, as a line of its own, in the order in which its
+/// readings were taken.
+void append_run(Part& part, const Observations& listed, const Measurement& m);
 
 /// The measurements `members` of a campaign as the table of a part in space. Where an axis stood
 /// still it is where the measurement says (`at`, `from`), else NaN.

@@ -83,7 +83,7 @@ class Parts {
       fresh.axes = {axis};
       part = parts_.insert(parts_.end(), std::move(fresh));
     }
-    append_run(*part, read_[m], measurement(m).id);
+    append_run(*part, read_[m], measurement(m));
   }
 
   void add_balls(std::size_t m) {
@@ -223,6 +223,8 @@ Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
       if (auto term = term_of(part, effect, of); term && effect.applies(part.table, term->axis))
         terms.push_back(std::move(*term));
   }
+  std::stable_partition(terms.begin(), terms.end(),
+                        [](const Term& term) { return !term.effect->description; });
   return terms;
 }
 

@@ -188,13 +188,26 @@ std::optional<NoiseFloor> noise_floor(const Saturated& s) {
 
 namespace {
 
-/// What is left when the median of its target and the running median of its pass are taken out of
-/// each reading, twice: no model, and a misread value spoils no other.
+/// What readings are held against each other in: cells where these have four readings each, so that
+/// a reversal that differs from target to target is no scatter; else targets.
+struct Groups {
+  const std::vector<std::uint32_t>& of;
+  std::size_t count;
+  explicit Groups(const Repeats& r)
+      : of(by_cell(r) ? r.cell : r.target), count(by_cell(r) ? r.cells : r.targets) {}
+
+ private:
+  static bool by_cell(const Repeats& r) { return r.cell.size() >= 4 * r.cells; }
+};
+
+/// What is left when the median of its target or cell and the running median of its pass are taken
+/// out of each reading, twice: no model, and a misread value spoils no other.
 std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
-  const Members targets(r.target, r.targets), passes(r.pass, r.passes);
+  const Groups groups(r);
+  const Members targets(groups.of, groups.count), passes(r.pass, r.passes);
   std::vector<double> e = y, some, smooth;
   for (int round = 0; round < 3; ++round) {
-    for (std::size_t t = 0; t < r.targets; ++t) {
+    for (std::size_t t = 0; t < groups.count; ++t) {
       const auto rows = targets[t];
       if (rows.size() < 3) continue;
       some.clear();
@@ -221,18 +234,19 @@ std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
 
 std::vector<double> apart_from_others(const Repeats& r, const std::vector<std::uint32_t>& rows,
                                       const std::vector<double>& e) {
-  // Of each target that is asked for, its values in order: one left out moves the middle by one.
-  std::vector<std::size_t> asked(r.targets, 0);
+  const Groups groups(r);
+  // Of each group that is asked for, its values in order: one left out moves the middle by one.
+  std::vector<std::size_t> asked(groups.count, 0);
   std::size_t lists = 0;
   for (const auto i : rows)
-    if (asked[r.target[i]] == 0) asked[r.target[i]] = ++lists;
+    if (asked[groups.of[i]] == 0) asked[groups.of[i]] = ++lists;
   std::vector<std::vector<double>> values(lists);
   for (std::size_t i = 0; i < e.size() && lists > 0; ++i)
-    if (const std::size_t list = asked[r.target[i]]; list > 0) values[list - 1].push_back(e[i]);
+    if (const std::size_t list = asked[groups.of[i]]; list > 0) values[list - 1].push_back(e[i]);
   for (auto& v : values) std::sort(v.begin(), v.end());
   std::vector<double> out;
   for (const auto i : rows) {
-    const std::vector<double>& v = values[asked[r.target[i]] - 1];
+    const std::vector<double>& v = values[asked[groups.of[i]] - 1];
     const std::size_t others = v.size() - 1;
     const auto own =
         static_cast<std::size_t>(std::lower_bound(v.begin(), v.end(), e[i]) - v.begin());

@@ -35,7 +35,7 @@ std::vector<State> grown(const Workbench& bench, const std::vector<State>& level
       std::set<std::size_t> effects = effects_of(bench, s);
       effects.insert(e);
       if (seen.contains(effects)) continue;
-      State more = bench.with(s, gains, e);
+      State more = bench.joined(s, gains, e);
       if (more.blocks.size() == s.blocks.size()) continue;
       seen.insert(std::move(effects));
       next.push_back(std::move(more));
@@ -61,7 +61,7 @@ bool improve(const Workbench& bench, const State& start, State& best) {
     const VectorXd gains = bench.gains(rest);
     for (std::size_t other = 0; other < bench.instances().size(); ++other) {
       if (other == e || bench.holds(rest, other)) continue;
-      State changed = bench.with(rest, gains, other);
+      State changed = bench.joined(rest, gains, other);
       if (changed.criterion < best.criterion + 3.0) changed = bench.settled(std::move(changed));
       if (changed.criterion < best.criterion - 1e-9) {
         best = std::move(changed);

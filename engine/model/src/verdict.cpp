@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -19,6 +20,11 @@ constexpr double least_left = 0.25;  // of the noise: smaller structure is not w
 constexpr double serious_p = 0.005;
 // What is left in the same place, of what the candidate says: beyond, the candidate is not it.
 constexpr double unexplained_share = 0.04;
+// The same of an effect that is certain, whatever else there is.
+constexpr double certain_share = 0.06;
+// Far more than chance asks for: what is left beside it is no independent noise.
+constexpr double certain_evidence = 50.0;
+constexpr double most_of_one_target = 0.3;
 
 /// Whether two places share a factor.
 bool same_factor(const std::string& a, const std::string& b) {
@@ -56,7 +62,9 @@ class Judge {
       v.kind = Verdict::Kind::unrepeatable;
       return;
     }
-    if (!out_.together.empty() && !walks && !in_doubt(out_.together.front(), serious)) {
+    list_certain(serious, walks);
+    if (!out_.together.empty() && !walks &&
+        !in_doubt(out_.together.front(), serious, unexplained_share)) {
       v.kind = Verdict::Kind::missing;
       v.effect = out_.together.front();
     }
@@ -74,41 +82,86 @@ class Judge {
   }
 
  private:
-  /// Whether the model beside a zero that walks is better evidence than the best set of effects.
-  bool zero_walks() const {
+  /// Evidence of the model beside a zero that walks.
+  double criterion_beside_walk(const std::vector<Term>& terms) const {
+    const auto blocks = blocks_of(f_.part.table, terms, f_.bench->root_weight());
+    if (!blocks) return std::numeric_limits<double>::infinity();
     MatrixXd model(static_cast<Index>(f_.part.table.size()), 0);
-    const auto blocks = blocks_of(f_.part.table, f_.of_model.fit.terms, f_.bench->root_weight());
-    if (!blocks) return false;
     for (const MatrixXd& block : *blocks) {
       model.conservativeResize(Eigen::NoChange, model.cols() + block.cols());
       model.rightCols(block.cols()) = block;
     }
+    return criterion_of_walk(f_.part.table, f_.bench->root_weight(), model);
+  }
+
+  /// Whether the model beside a zero that walks is better evidence than the best set of effects.
+  bool zero_walks() const {
     const double price = f_.start.price + std::log(f_.bench->readings()) +
                          2.0 * std::log(static_cast<double>(f_.terms.size()));
-    return criterion_of_walk(f_.part.table, f_.bench->root_weight(), model) + price <
-           f_.best.criterion;
+    return criterion_beside_walk(f_.of_model.fit.terms) + price < f_.best.criterion;
+  }
+
+  /// Whether an effect of the best set is there also if the zero walks.
+  bool beside_walk(const std::string& name) const {
+    std::vector<Term> terms = f_.of_model.fit.terms;
+    const double without = criterion_beside_walk(terms);
+    double price = 0.0;
+    for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t)
+      if (f_.of_best.fit.terms[t].name() == name) {
+        const Workbench::Block& block = f_.bench->blocks()[f_.best.blocks[t]];
+        price = f_.bench->price(block.effect, block.count);
+        terms.push_back(f_.of_best.fit.terms[t]);
+      }
+    return without - criterion_beside_walk(terms) - price > certain_evidence;
   }
 
   /// Whether something else is left in the places where this effect works: then it may be no more
   /// than the nearest thing in the catalogue.
-  bool in_doubt(const std::string& name, const std::vector<Place>& serious) const {
+  bool in_doubt(const std::string& name, const std::vector<Place>& serious, double share) const {
     for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t) {
       if (f_.of_best.fit.terms[t].name() != name) continue;
-      const VectorXd part = Eigen::Map<const VectorXd>(
-          f_.of_best.fit.part[t].data(), static_cast<Index>(f_.of_best.fit.part[t].size()));
-      const VectorXd centred = part.array() - part.mean();
       // What it alone can say: effects that cancel each other may both be large.
       const double rms2 =
           (f_.bench->without(f_.best, f_.index_of(name)).squares - f_.best.squares) /
           f_.bench->readings();
-      const auto works_in = factors_of(f_.part, f_.repeats, f_.bench->root_weight(),
-                                       f_.bench->root_weight().cwiseProduct(centred));
+      const auto works_in = places_of(f_.of_best.fit.part[t]);
       for (const Place& place : serious)
         for (const std::string& where : works_in)
-          if (same_factor(place.where, where) && place.rms * place.rms > unexplained_share * rms2)
-            return true;
+          if (same_factor(place.where, where) && place.rms * place.rms > share * rms2) return true;
     }
     return false;
+  }
+
+  /// Effects whose evidence stands whatever the rest is: overwhelming, and of what is left in their
+  /// places nothing as large as they are.
+  void list_certain(const std::vector<Place>& serious, bool walks) {
+    for (const std::string& name : out_.together) {
+      const auto c = std::find_if(out_.candidates.begin(), out_.candidates.end(),
+                                  [&](const Candidate& k) { return k.term.name() == name; });
+      if (c->score < certain_evidence || !c->aliases.empty()) continue;
+      if (in_doubt(name, serious, certain_share)) continue;
+      if (of_one_target(name) || (walks && !beside_walk(name))) continue;
+      out_.certain.push_back(name);
+    }
+  }
+
+  /// Whether the readings of one target are most of its evidence: then it is that target.
+  bool of_one_target(const std::string& name) const {
+    const VectorXd without = f_.residual(f_.bench->without(f_.best, f_.index_of(name)));
+    const VectorXd explained = without - f_.residual(f_.best);
+    std::vector<double> share(f_.repeats.targets, 0.0);
+    for (Index i = 0; i < without.size(); ++i)
+      share[f_.repeats.target[static_cast<std::size_t>(i)]] += explained(i) * without(i);
+    return *std::max_element(share.begin(), share.end()) >
+           most_of_one_target * explained.dot(without);
+  }
+
+  /// Where something that says so much of each reading works.
+  std::vector<std::string> places_of(const std::vector<double>& says) const {
+    const VectorXd part = Eigen::Map<const VectorXd>(says.data(), static_cast<Index>(says.size()));
+    const VectorXd centred = part.array() - part.mean();
+    return factors_of(f_.part, f_.repeats, f_.bench->root_weight(),
+                      f_.bench->root_weight().cwiseProduct(centred));
   }
 
   /// Structure smaller than this is not worth a verdict.
@@ -171,7 +224,7 @@ class Judge {
       out_.fails.insert(out_.fails.begin(), *run);
       return true;
     }
-    return out_.verdict.suspects_share > most_suspects ||
+    return too_many(f_.suspects.size(), f_.part.table.size()) ||
            two_valued(f_.repeats, f_.of_best.fit.residual, f_.weight);
   }
 

@@ -65,7 +65,8 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
   Made own;
   std::vector<MatrixXd> parts;
   for (const Term& term : terms) {
-    instances_.push_back({term, {}, {}, 0.0});
+    instances_.push_back({term, {}, {}, 0.0, may_lose(o, term)});
+    reducible_ = reducible_ || instances_.back().reducible;
     add(o, instances_.size() - 1, parts, made != nullptr ? *made : own);
   }
   Index columns = 0;
@@ -273,8 +274,8 @@ Workbench::Projection Workbench::projection(const State& state) const {
   if (state.blocks.empty()) return out;
   const MatrixXd own = gram(state.blocks);
   const Eigen::LLT<MatrixXd> llt(own);
-  if (!several_axes_ || (llt.info() == Eigen::Success &&
-                         llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent))) {
+  if (!reducible_ || (llt.info() == Eigen::Success &&
+                      llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent))) {
     out.z = llt.matrixL().solve(xy_(columns_of_state(state)));
     llt.matrixU().solveInPlace<Eigen::OnTheRight>(out.products);
     return out;
@@ -289,9 +290,7 @@ double Workbench::least_of(const Block& block) const {
   return several_axes_ && !reducible(block) ? independent_in_space : independent;
 }
 
-bool Workbench::reducible(const Block& block) const {
-  return several_axes_ && instances_[block.effect].term.effect->curve;
-}
+bool Workbench::reducible(const Block& block) const { return instances_[block.effect].reducible; }
 
 /// Gram and Schmidt block by block, on scalar products.
 Workbench::Directions Workbench::directions(const std::vector<std::size_t>& blocks,
@@ -353,8 +352,7 @@ VectorXd Workbench::gains(const State& state, std::size_t effect) const {
 
 Workbench::State Workbench::with(const State& state, const VectorXd& gains,
                                  std::size_t effect) const {
-  if (several_axes_ && instances_[effect].term.effect->curve)
-    return with_curve(state, gains, effect);
+  if (instances_[effect].reducible) return with_curve(state, gains, effect);
   std::size_t best = blocks_.size();
   double least = std::numeric_limits<double>::infinity();
   Index of_position = 0;
@@ -389,6 +387,31 @@ Workbench::State Workbench::with_curve(const State& state, const VectorXd& gains
     blocks.push_back(b);
     State more = this->state(std::move(blocks));
     if (more.criterion < least) least = more.criterion, best = std::move(more);
+  }
+  return best;
+}
+
+Workbench::State Workbench::joined(const State& state, const VectorXd& gains,
+                                   std::size_t effect) const {
+  State best = with(state, gains, effect);
+  const auto& own = instances_[effect].blocks;
+  if (several_axes_ ||
+      std::none_of(own.begin(), own.end(), [&](std::size_t b) { return blocks_[b].of_position; }))
+    return best;
+  for (std::size_t i = 0; i < state.blocks.size(); ++i) {
+    const Block& present = blocks_[state.blocks[i]];
+    const Instance& curve = instances_[present.effect];
+    if (!curve.term.effect->curve || present.effect == effect) continue;
+    for (const std::size_t fewer : curve.blocks) {
+      if (blocks_[fewer].count >= present.count) continue;
+      std::vector<std::size_t> blocks = state.blocks;
+      blocks[i] = fewer;
+      const State base = this->state(std::move(blocks));
+      State more = with(base, this->gains(base, effect), effect);
+      if (more.blocks.size() == base.blocks.size()) continue;
+      if (best.blocks.size() == state.blocks.size() || more.criterion < best.criterion)
+        best = std::move(more);
+    }
   }
   return best;
 }
@@ -450,7 +473,7 @@ Expected<std::vector<std::vector<double>>> Workbench::best_shapes() const {
 MatrixXd Workbench::basis(const State& state) const {
   const std::vector<Index> columns = columns_of_state(state);
   if (columns.empty()) return MatrixXd(y_.size(), 0);
-  if (!several_axes_) {
+  if (!reducible_) {
     const Eigen::HouseholderQR<MatrixXd> qr(x_(Eigen::all, columns));
     return qr.householderQ() * MatrixXd::Identity(y_.size(), static_cast<Index>(columns.size()));
   }

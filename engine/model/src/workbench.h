@@ -27,6 +27,7 @@ class Workbench {
     std::vector<std::size_t> blocks;  ///< none: the readings cannot show it
     std::string error;
     double cost_of_shape = 0.0;  ///< 2 ln of the number of independent values of its shapes
+    bool reducible = false;      ///< may_lose
   };
   /// Blocks in the order in which they came in, with what they leave.
   struct State {
@@ -68,6 +69,9 @@ class Workbench {
   /// The state with the best block of this effect added, or nothing that can be added (blocks as
   /// before).
   State with(const State& state, const VectorXd& gains, std::size_t effect) const;
+  /// The same, where it is better with curves of fewer knots: a curve that is there follows what
+  /// the new effect has to say, and takes the targets that it would need.
+  State joined(const State& state, const VectorXd& gains, std::size_t effect) const;
   /// Each effect's shapes looked for again while the others stay, until nothing improves.
   State settled(State state) const;
   bool holds(const State& state, std::size_t effect) const;
@@ -129,7 +133,7 @@ class Workbench {
   // Columns and searched shapes of position: of a set, with stated terms, of a curve not stated.
   Index most_of_position_ = 0, most_stated_ = 0, most_of_curve_ = 0;
   Index zeros_ = 0;
-  bool several_axes_ = false;
+  bool several_axes_ = false, reducible_ = false;
 };
 
 }  // namespace nonio::model

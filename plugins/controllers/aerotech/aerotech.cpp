@@ -12,7 +12,8 @@ using controllers::CrossCurve;
 using controllers::CrossJob;
 using controllers::Sheet;
 
-// .cal: corrections at equal distances from home, added up over all tables of an axis.
+// .cal: corrections at equal distances from home, added up over all tables of an axis; beyond a
+// table its end holds, so that one to each side of home makes both. A turn does not repeat itself.
 ControlTable declared() {
   ControlTable t;
   t.name = ".cal";
@@ -30,19 +31,28 @@ ControlTable declared() {
 }
 
 Expected<std::vector<Artifact>> files(const Sheet& s) {
-  const bool below = s.grid.last() < s.grid.step / 2.0;
-  if (!below && s.grid.first < -s.grid.step / 2.0)
-    return fail("axis " + s.job.axis +
-                ": home (0) lies inside of the targets, and which way "
-                "HOMEOFFSET counts is not documented: measure from home to one side");
-  const std::string step =
-      controllers::decimal((below ? -1.0 : 1.0) * s.grid.step / s.position_unit(), 4);
-  std::string out = controllers::comments(s.words(), "; ") + ":START " +
-                    std::to_string(s.job.number) + " SAMPLEDIST=" + step +
-                    " POSUNIT=PRIMARY CORUNIT=PRIMARY\n:START HOMEOFFSET=0\n";
-  for (std::size_t i = 0; i < s.plus.size(); ++i)
-    out += s.entry(s.plus[below ? s.plus.size() - 1 - i : i]) + "\n";
-  return std::vector<Artifact>{{"aerotech-" + s.job.stem + ".cal", out + ":END\n"}};
+  const auto below = std::llround(-s.grid.first / s.grid.step);  // points below home, or above it
+  const auto above = std::llround(s.grid.last() / s.grid.step);
+  const auto entry = [&](std::int64_t k) {  // k steps from home; between home and targets: none
+    const std::int64_t i = k + below;
+    if (i < 0 || i >= static_cast<std::int64_t>(s.plus.size())) return std::string("0.0");
+    return s.entry(s.plus[static_cast<std::size_t>(i)]);
+  };
+  std::vector<std::string> words = s.words();
+  if (below > 0 && above > 0)
+    words.emplace_back(
+        "two tables from home, one to each side: the control adds them, and each is 0 beyond home");
+  std::string out = controllers::comments(words, "; ");
+  for (const std::int64_t side : {1, -1}) {
+    const std::int64_t points = side > 0 ? above : below;
+    if (points <= 0) continue;
+    out += ":START " + std::to_string(s.job.number) + " SAMPLEDIST=" +
+           controllers::decimal(static_cast<double>(side) * s.grid.step / s.position_unit(), 4) +
+           " POSUNIT=PRIMARY CORUNIT=PRIMARY\n:START HOMEOFFSET=0\n";
+    for (std::int64_t k = 0; k <= points; ++k) out += entry(side * k) + "\n";
+    out += ":END\n";
+  }
+  return std::vector<Artifact>{{"aerotech-" + s.job.stem + ".cal", std::move(out)}};
 }
 
 /// Rows by the position of the second axis, columns by that of the first one; both corrections side
@@ -162,11 +172,12 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
 
 Expected<OutputResult> write(const OutputInput& in) {
   OutputResult result;
-  const controllers::Writer writer{"aerotech",
-                                   *controllers::chosen(declared(), in.options),
-                                   {"number:", "step", "backlash"},
-                                   files,
-                                   parse};
+  const controllers::Writer writer{.name = "aerotech",
+                                   .table = *controllers::chosen(declared(), in.options),
+                                   .keys = {"number:", "step", "backlash"},
+                                   .files = files,
+                                   .parse = parse,
+                                   .wraps = false};
   const auto jobs = controllers::write_axes(in, writer, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   const Campaign campaign = controllers::with_axes_of(in, *jobs);
@@ -174,6 +185,7 @@ Expected<OutputResult> write(const OutputInput& in) {
   if (!axes) return tl::unexpected<Error>(axes.error());
   for (const CrossJob& set : controllers::cross_jobs(in)) {
     if (set.volume || set.curves.size() != 2) continue;
+    if (controllers::lacks_number(set.moving(), in, *axes, set.measurement, result)) continue;
     if (std::any_of(set.curves.begin(), set.curves.end(),
                     [](const CrossCurve& c) { return std::fabs(c.position.front()) > 1e-9; }))
       return fail("diagonals of " + set.measurement +

@@ -8,9 +8,14 @@
 namespace nonio::controllers {
 namespace {
 
+// What every control's tables take: the machine is the same whoever compensates it.
 std::set<std::string> full_keys(const std::vector<std::string_view>& keys) {
   std::set<std::string> out;
-  if (!keys.empty()) out.emplace("drifted");
+  if (!keys.empty())
+    out = {"drifted",     "number",         "reference_mm",   "reference_deg",
+           "backlash_mm", "backlash_deg",   "from_mm",        "from_deg",
+           "to_mm",       "to_deg",         "resolution_um",  "resolution_arcsec",
+           "largest_um",  "largest_arcsec", "slope_um_per_m", "slope_arcsec_per_deg"};
   for (const std::string_view k : keys) {
     if (k.back() == ':') {
       out.emplace(k.substr(0, k.size() - 1));
@@ -76,7 +81,7 @@ Expected<std::vector<KnownAxis>> known_axes(const TableInput& in) {
   if (!settings) return tl::unexpected<Error>(settings.error());
   std::vector<KnownAxis> axes;
   for (const Axis& a : in.campaign.machine.axes) {
-    KnownAxis axis{a.name, axes.size() + 1, a.rotary, (*settings)[a.name]};
+    KnownAxis axis{a.name, 0, a.rotary, (*settings)[a.name]};
     if (const auto n = axis.setting("number"); n && *n >= 1.0 && *n < 1e6)
       axis.number = static_cast<std::size_t>(*n);
     axes.push_back(std::move(axis));
@@ -86,7 +91,7 @@ Expected<std::vector<KnownAxis>> known_axes(const TableInput& in) {
 
 KnownAxis axis_numbered(const std::vector<KnownAxis>& axes, std::size_t number) {
   for (const KnownAxis& a : axes)
-    if (a.number == number) return a;
+    if (number != 0 && a.number == number) return a;
   return {std::to_string(number), number, false, {}};
 }
 

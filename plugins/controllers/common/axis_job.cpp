@@ -29,6 +29,74 @@ Expected<void> check_names(const std::map<std::string, AxisSettings>& settings,
   return {};
 }
 
+/// What was on while the axis was measured, as far as somebody says it.
+struct Present {
+  std::optional<std::string> table;  ///< its files; empty: there was none
+  bool backlash = false;             ///< somebody says it
+};
+
+const Measurement* measurement_of(const OutputInput& input, const AxisJob& job) {
+  for (const Measurement& m : input.campaign.measurements)
+    if (m.id == job.measurement) return &m;
+  return nullptr;
+}
+
+Present present_of(const OutputInput& input, const AxisJob& job) {
+  const Axis* axis = input.campaign.machine.axis(job.axis);
+  const Measurement* m = measurement_of(input, job);
+  const bool off = m != nullptr && m->compensation == "off";
+  Present p;
+  if (axis != nullptr) p.table = axis->table_on;
+  if (!p.table && off) p.table = std::string();
+  p.backlash =
+      off || (axis != nullptr && axis->backlash_on) || job.position_setting("backlash").has_value();
+  return p;
+}
+
+std::vector<std::string> present_lines(const OutputInput& input, const AxisJob& job) {
+  const Present p = present_of(input, job);
+  std::vector<std::string> lines;
+  if (!p.table)
+    lines.emplace_back(
+        "ASSUMED, nobody says it: no table of this axis was on while it was measured (table_on)");
+  else
+    lines.push_back(p.table->empty()
+                        ? "no table of this axis was on while it was measured"
+                        : "while this axis was measured the table of " + plain(*p.table) +
+                              " was on: this one takes its place and is the whole of it");
+  if (!p.backlash && job.present_backlash() == 0.0)
+    lines.push_back(std::string("ASSUMED, nobody says it: the backlash parameter was 0 while the "
+                                "axis was measured (backlash_on_") +
+                    std::string(job.unit()) + ")");
+  else
+    lines.push_back("the backlash parameter was " + with_unit(job, job.present_backlash(), 6) +
+                    " while the axis was measured");
+  return lines;
+}
+
+/// False with a finding where compensation was on, and nobody says which table: what is left of
+/// the error would be loaded in place of the table that took the rest away.
+bool knows_what_was_on(const OutputInput& input, const AxisJob& job, OutputResult& result) {
+  const Present p = present_of(input, job);
+  const Measurement* m = measurement_of(input, job);
+  if (m != nullptr && m->compensation == "on" && !p.table) {
+    result.findings.push_back({"table.which-was-on",
+                               true,
+                               {},
+                               {{"axis", job.axis}},
+                               job.measurement,
+                               "Say table_on in [machine.axes." + job.axis +
+                                   "]: the file of the table that was on, or \"none\"."});
+    return false;
+  }
+  if (p.table && p.backlash) return true;
+  const char* const id = p.table      ? "table.assumed-no-backlash"
+                         : p.backlash ? "table.assumed-no-table"
+                                      : "table.assumed-nothing-on";
+  result.notes.push_back(remark(job, id));
+  return true;
+}
+
 std::vector<std::string> about(const OutputInput& input, const AxisJob& job) {
   const Machine& m = input.campaign.machine;
   std::vector<std::string> lines;
@@ -40,11 +108,7 @@ std::vector<std::string> about(const OutputInput& input, const AxisJob& job) {
   lines.push_back("measured from " + with_unit(job, job.curve.position.front(), 4) + " to " +
                   with_unit(job, job.curve.position.back(), 4) + ", " +
                   std::to_string(job.curve.position.size()) + " targets");
-  lines.push_back(job.present_backlash() == 0.0
-                      ? "for a control in which table and backlash of this axis were off while it "
-                        "was measured"
-                      : "for a control in which the table of this axis was off and its backlash " +
-                            with_unit(job, job.present_backlash(), 6) + " while it was measured");
+  for (std::string& line : present_lines(input, job)) lines.push_back(std::move(line));
   return lines;
 }
 
@@ -74,12 +138,6 @@ std::vector<std::string> suspects_of(const math::AxisTest& test, const AxisJob& 
     readings.push_back(std::move(text));
   }
   return readings;
-}
-
-std::size_t place_of(const Machine& machine, const std::string& axis) {
-  for (std::size_t i = 0; i < machine.axes.size(); ++i)
-    if (machine.axes[i].name == axis) return i + 1;
-  return machine.axes.size() + 1;
 }
 
 AxisJob job_of(const OutputInput& input, std::size_t index) {
@@ -135,7 +193,7 @@ Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
   std::map<std::size_t, std::string> numbers;
   for (AxisJob& j : jobs) {
     const std::string& owner = numbers.emplace(j.number, j.axis).first->second;
-    if (owner != j.axis)
+    if (j.number != 0 && owner != j.axis)
       return wrong_axes("axes " + owner + " and " + j.axis + " would both be axis number " +
                         std::to_string(j.number) + ": set axes = [\"" + j.axis + " number=...\"]");
     if (count[j.axis] > 1) {
@@ -174,14 +232,24 @@ std::set<std::string> unsided_axes(const Campaign& campaign) {
   return axes;
 }
 
-/// Whether a control that counts its axes would get a table under a number that nobody stated: the
-/// second side of a gantry has no place among the machine's axes.
-bool number_unsaid(const AxisJob& job, const OutputInput& input,
-                   const std::vector<std::string_view>& keys) {
-  const auto& all = input.campaign.machine.axes;
-  return std::any_of(all.begin(), all.end(), [&](const Axis& a) { return a.slave == job.axis; }) &&
-         input.campaign.machine.axis(job.axis) == nullptr && !job.setting("number") &&
-         std::find(keys.begin(), keys.end(), "number:") != keys.end();
+/// Whether a control that counts its axes would get a table under a number that nobody stated.
+bool number_unsaid(const AxisJob& job, const std::vector<std::string_view>& keys) {
+  return job.number == 0 && std::find(keys.begin(), keys.end(), "number:") != keys.end();
+}
+
+/// What to write, and where.
+void refuse_number(const std::string& axis, const std::string& measurement,
+                   const OutputInput& input, OutputResult& result) {
+  const std::string& asset = input.campaign.machine.asset;
+  const std::string file = "machines/" + (asset.empty() ? "<asset>" : asset) + ".toml";
+  result.findings.push_back({"table.axis-number",
+                             true,
+                             {},
+                             {{"axis", axis}, {"file", file}},
+                             measurement,
+                             "Say its number in the control: number = ... under [axes." + axis +
+                                 "] of " + file + ", or axes = [\"" + axis +
+                                 " number=...\"] under the options of this output."});
 }
 
 }  // namespace
@@ -192,12 +260,22 @@ bool has_tables(const Campaign& campaign) {
       [](const Measurement& m) { return m.kind == "axis" || m.kind == "step-diagonal"; });
 }
 
+bool lacks_number(const std::vector<std::string>& of, const OutputInput& input,
+                  const std::vector<KnownAxis>& axes, const std::string& measurement,
+                  OutputResult& result) {
+  std::set<std::string> unsaid;
+  for (const std::string& axis : of)
+    if (axis_named(axes, axis).number == 0) unsaid.insert(axis);
+  for (const std::string& axis : unsaid) refuse_number(axis, measurement, input, result);
+  return !unsaid.empty();
+}
+
 Remark remark(const AxisJob& job, std::string id) {
   return {std::move(id), {}, {{"axis", job.axis}, {"unit", std::string(job.unit())}}};
 }
 
 bool AxisJob::one_value_helps() const {
-  if (!curve.bidirectional()) return false;
+  if (!curve.bidirectional() || reversal.kind == math::Reversal::Kind::not_constant) return false;
   const double mean = curve.mean_reversal();
   double largest = 0.0, left = 0.0;
   for (std::size_t i = 0; i < curve.plus.size(); ++i) {
@@ -254,9 +332,9 @@ Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
       continue;
     }
     job.stem = file_part(job.axis);
-    job.number = place_of(input.campaign.machine, job.axis);
     if (const auto it = settings->find(job.axis); it != settings->end()) job.settings = it->second;
-    if (const auto n = job.setting("number")) {
+    if (const auto n = job.setting("number");
+        n && std::find(keys.begin(), keys.end(), "number:") != keys.end()) {
       if (!(*n >= 1.0 && *n <= 99.0 && *n == std::floor(*n)))
         return wrong_axes("option axes, axis " + job.axis +
                           ": number must be a whole number from 1 to 99");
@@ -266,16 +344,11 @@ Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
       refuse_drift(job, result);
       continue;
     }
-    if (number_unsaid(job, input, keys)) {
-      result.findings.push_back(
-          {"table.slave-number",
-           true,
-           {},
-           {{"axis", job.axis}},
-           job.measurement,
-           "Say its number in the control: axes = [\"" + job.axis + " number=...\"]."});
+    if (number_unsaid(job, keys)) {
+      refuse_number(job.axis, job.measurement, input, result);
       continue;
     }
+    if (!job.from_diagonals && !knows_what_was_on(input, job, result)) continue;
     job.about = about(input, job);
     say_what_was_left_out(job, result);
     jobs.push_back(std::move(job));
@@ -301,6 +374,8 @@ double wished_step(const AxisJob& job, const Settings& options) {
 
 bool refused(const AxisJob& job, bool directions, OutputResult& result) {
   if (job.reversal.kind != math::Reversal::Kind::not_constant || directions) return false;
+  const auto [low, high] = std::minmax_element(job.curve.mean.begin(), job.curve.mean.end());
+  if (low == job.curve.mean.end() || job.reversal.largest_left < *high - *low) return false;
   const Quantity q = deviation_of(job.rotary);
   result.findings.push_back(
       {"table.refused-reversal",
@@ -385,8 +460,18 @@ std::string reversal_words(const AxisJob& job, bool directions) {
 }
 
 void doubt_backlash(const AxisJob& job, OutputResult& result) {
+  const Quantity q = deviation_of(job.rotary);
+  if (job.reversal.kind == math::Reversal::Kind::not_constant) {
+    result.findings.push_back(
+        {"table.backlash-not-constant",
+         true,
+         {{"mean", job.reversal.mean, q}, {"left", job.reversal.largest_left, q}},
+         {{"axis", job.axis}},
+         job.measurement,
+         "The pitch table is right for itself; the backlash value stays as it was."});
+    return;
+  }
   if (!job.one_value_helps()) {
-    const Quantity q = deviation_of(job.rotary);
     result.findings.push_back({"table.backlash-no-gain",
                                false,
                                {{"mean", job.reversal.mean, q},

@@ -131,6 +131,12 @@ std::optional<CrossJob> of_volume(const OutputInput& in, const Results::Analysed
 
 }  // namespace
 
+std::vector<std::string> CrossJob::moving() const {
+  std::vector<std::string> names;
+  for (const CrossCurve& c : curves) names.insert(names.end(), {c.input, c.output});
+  return names;
+}
+
 std::string CrossJob::axes() const {
   std::vector<std::string> names;
   for (const CrossCurve& c : curves)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nonio/controllers/size.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::controllers {
@@ -55,7 +56,11 @@ void surround(math::Grid& grid, double reference) {
 
 std::vector<double> wanted(const AxisJob& job, const Writer& w) {
   if (w.wanted) return w.wanted(job);
-  return w.wraps ? job.table_curve().position : job.curve.position;
+  if (w.wraps) return job.table_curve().position;
+  std::vector<double> rows = job.curve.position;
+  if (job.turn && rows.back() < rows.front() + full_turn - 1e-9)
+    rows.push_back(rows.front() + full_turn);
+  return rows;
 }
 
 /// The targets as rows; those that the digits do not tell apart are one.
@@ -66,8 +71,6 @@ std::vector<double> listed(const AxisJob& job, const Writer& w, const ControlTab
   for (const double x : wanted(job, w))
     if (rows.empty() || fixed_text(x / unit, digits) != fixed_text(rows.back() / unit, digits))
       rows.push_back(x);
-  const bool open = !w.wraps && job.turn && rows.back() < rows.front() + full_turn - 1e-9;
-  if (open) rows.push_back(rows.front() + full_turn);
   return rows;
 }
 
@@ -93,14 +96,15 @@ Expected<void> place_points(Sheet& s, const Writer& w) {
 /// Where the curve is known over a turn that does not repeat itself, its end is its beginning.
 double value_at(const AxisJob& job, const Writer& w, const std::vector<double>& values, double x) {
   const auto& position = (w.wraps ? job.table_curve() : job.curve).position;
-  const bool next =
-      !w.wraps && job.turn && x > position.back() && x > position.front() + full_turn - 1e-9;
-  return math::ErrorCurve::at(position, values, next ? x - full_turn : x);
+  const double open = position.front() + full_turn - position.back();
+  if (w.wraps || !job.turn || x <= position.back() || open < 1e-9)
+    return math::ErrorCurve::at(position, values, x);
+  const double part = std::min(1.0, (x - position.back()) / open);
+  return values.back() + part * (values.front() - values.back());
 }
 
+/// What the error is where entries are to be 0: the zero of the instrument is no error of the axis.
 double zero_of(const Sheet& s, const Writer& w, const math::ErrorCurve& curve) {
-  const bool free = s.table.zero == ControlTable::Zero::free;
-  if (free && !s.job.position_setting("reference")) return 0.0;
   const auto& values = !s.directions || w.zero_of == 0 ? curve.mean
                        : w.zero_of > 0                 ? curve.plus
                                                        : curve.minus;
@@ -182,24 +186,23 @@ Expected<void> check_range(const Sheet& s, const Writer& w) {
   return {};
 }
 
-/// Where entries are 0. Increments count from the reference, so the nearest end of what was
-/// measured will not do for them.
-void set_reference(Sheet& s, OutputResult& result) {
+/// Where entries are 0, before the points are placed. Increments count from the reference, so the
+/// nearest end of what was measured will not do for them; some controls count from their own zero.
+Expected<void> set_reference(Sheet& s, OutputResult& result) {
   const auto told = s.job.position_setting("reference");
-  if (anchored(s.table)) {
-    s.reference = s.job.turn ? 0.0 : told.value_or(0.0);
-    if (!told) result.notes.push_back(remark(s.job, "table.reference-at-zero"));
-  } else {
+  if (!anchored(s.table)) {
     s.reference = told.value_or(0.0);
+    return {};
   }
-}
-
-void note_zero(const Sheet& s, OutputResult& result) {
-  if (s.table.zero != ControlTable::Zero::reference || anchored(s.table)) return;
-  Remark zero =
-      remark(s.job, s.job.position_setting("reference") ? "table.zero-at" : "table.zero-taken");
-  zero.evidence = {{"reference", s.reference, position_of(s.job.rotary)}};
-  result.notes.push_back(std::move(zero));
+  if (s.table.zero == ControlTable::Zero::first && told.value_or(0.0) != 0.0)
+    return wrong_axes("axis " + s.job.axis +
+                      ": this control counts its table from the zero of the axis, where the entry "
+                      "is 0: reference_" +
+                      std::string(s.job.unit()) + " must be 0, found " +
+                      with_unit(s.job, *told, 4));
+  s.reference = s.job.turn ? 0.0 : told.value_or(0.0);
+  if (!told) result.notes.push_back(remark(s.job, "table.reference-at-zero"));
+  return {};
 }
 
 Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table, const OutputInput& input,
@@ -213,9 +216,9 @@ Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table, const Ou
           .minus = {},
           .plus_steps = {},
           .minus_steps = {}};
-  set_reference(s, result);
+  if (auto ok = set_reference(s, result); !ok) return tl::unexpected<Error>(ok.error());
   if (auto placed = place_points(s, w); !placed) return tl::unexpected<Error>(placed.error());
-  if (table.zero == ControlTable::Zero::reference && !anchored(table))
+  if (!anchored(table))
     s.reference = reference_position(job, s.position.front(), s.position.back());
   fill(s, w);
   s.plus_steps = steps_of(s.plus, s.value_step(), table.entry);
@@ -255,9 +258,13 @@ Expected<bool> write_axis(AxisJob& job, const OutputInput& input, const Writer& 
   if (!correction)
     return fail("axis " + job.axis + ": the table written cannot be read back: " +
                 (read ? "it is of another axis" : read.error().message));
+  const TableSize size = size_of(*read, job.axis, sheet->position);
+  if (oversized(job, size, sheet->value_step(), result)) return false;
   if (!sheet->directions && job.curve.bidirectional()) look_at_reversal(job, *table, result);
   predict(job, *correction, result);
-  note_zero(*sheet, result);
+  if (!anchored(*table) || job.position_setting("reference"))
+    note_zero(job, sheet->reference, result);
+  note_size(job, size, result);
   job.loaded = std::move(*read);
   for (Artifact& f : *files) result.artifacts.push_back(std::move(f));
   return true;
@@ -269,6 +276,19 @@ std::string Sheet::at(std::size_t i) const {
   return in_steps(position[i], table.position_step.of(job.rotary), position_unit());
 }
 
+std::vector<std::string> Sheet::zero_and_size() const {
+  TableSize size;
+  for (const auto* entries : {&plus, &minus}) {
+    std::vector<double> c = *entries;
+    for (std::size_t i = 0; i < c.size(); ++i)
+      c[i] -= table.entry == Entry::position ? position[i] : 0;
+    size.take(position, c);
+  }
+  return {"zero at " + with_unit(job, reference, 4) +
+              (job.position_setting("reference") ? "" : ", taken as reference point"),
+          size_words(job, size)};
+}
+
 std::string Sheet::entry(double si) const { return in_steps(si, value_step(), value_unit()); }
 
 std::vector<std::string> Sheet::words() const {
@@ -277,8 +297,8 @@ std::vector<std::string> Sheet::words() const {
   lines.push_back(table.sign == ControlTable::Sign::error
                       ? "sign: the measured deviation (actual - nominal) with its own sign"
                       : "sign: the opposite of the measured deviation (actual - nominal)");
-  if (table.zero != ControlTable::Zero::free)
-    lines.push_back("zero at " + with_unit(job, reference, 4));
+  for (std::string& line : zero_and_size()) lines.push_back(std::move(line));
+  lines.push_back(points_said + std::to_string(plus_steps.size()));
   const bool stays = table.backlash.empty() && !directions && job.curve.bidirectional();
   lines.push_back(stays ? "mean reversal B = " + deviation_words(job, job.curve.mean_reversal()) +
                               ": it stays, the table is of the mean of both directions"

@@ -23,6 +23,23 @@ std::vector<Artifact> list_file(const Sheet& s, std::string_view name, bool two)
   return {{std::string(name) + "-" + s.job.stem + ".txt", std::move(out)}};
 }
 
+namespace {
+
+Expected<void> whole_text(const Artifact& f, std::size_t points) {
+  if (f.bytes.back() != '\n') return fail(f.name + ": the last line has no end: the file was cut");
+  const std::size_t at = f.bytes.find(points_said);
+  if (at == std::string::npos) return {};
+  const auto words = words_of(
+      std::string_view(f.bytes).substr(at + std::string_view(points_said).size(), 20), " \r\n");
+  const auto said = whole(words.empty() ? "" : words.front());
+  if (!said || *said != static_cast<std::int64_t>(points))
+    return fail(f.name + ": " + std::to_string(points) + " points, its words say " +
+                std::string(words.empty() ? "nothing" : words.front()) + ": the file was cut");
+  return {};
+}
+
+}  // namespace
+
 Expected<std::vector<LoadedTable>> parse_files(const TableInput& in, const ControlTable& table,
                                                std::string_view name, const Take& take) {
   const auto axes = known_axes(in);
@@ -31,13 +48,14 @@ Expected<std::vector<LoadedTable>> parse_files(const TableInput& in, const Contr
   for (const Artifact& f : in.files) {
     RawTable raw{axis_of_file(*axes, f.name, std::string(name) + "-"), {}, {}};
     raw.backlash = parameter_in(f.bytes, table.backlash);
-    bool any = false;
+    std::size_t points = 0;
     for (const std::string_view line : lines_of(f.bytes)) {
       const auto taken = take(line, raw);
       if (!taken) return tl::unexpected<Error>(taken.error());
-      any = any || *taken;
+      points += *taken ? 1U : 0U;
     }
-    if (!any) continue;
+    if (points == 0) continue;
+    if (auto ok = whole_text(f, points); !ok) return tl::unexpected<Error>(ok.error());
     auto read = loaded(table, raw);
     if (!read) return tl::unexpected<Error>(read.error());
     const auto& x = read->position.front();

@@ -57,6 +57,18 @@ std::optional<double> real(std::string_view text) {
 
 std::optional<std::int64_t> whole(std::string_view text) { return number<std::int64_t>(text); }
 
+std::vector<std::pair<std::int64_t, std::int64_t>> ranges_of(
+    const std::vector<std::string>& texts) {
+  std::vector<std::pair<std::int64_t, std::int64_t>> out;
+  for (const std::string& text : texts) {
+    const auto parts = words_of(text, "-");
+    if (parts.empty()) continue;
+    const auto low = whole(parts.front()), high = whole(parts.back());
+    if (low && high) out.emplace_back(*low, *high);
+  }
+  return out;
+}
+
 std::string plain(std::string_view text) {
   std::string out;
   for (const char c : text) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "merge.h"
 #include "nonio/controllers/kit.h"
 #include "nonio/sdk/format.h"
 #include "parse.h"
@@ -96,8 +97,20 @@ struct Numbering {
   struct Range {
     std::string axis;
     std::int64_t low, high;
+    bool chosen = false;  ///< nobody asked for them
   };
   std::vector<Range> taken{};
+
+  /// The first number from which so many more are not in use.
+  static std::int64_t free_from(std::int64_t low, std::int64_t above, const Settings& o) {
+    const auto used = controllers::ranges_of(o.texts("taken"));
+    for (std::size_t i = 0; i < used.size();)
+      if (used[i].first <= low + above && low <= used[i].second)
+        low = used[i].second + 1, i = 0;
+      else
+        ++i;
+    return low;
+  }
 
   Expected<void> place(const Sheet& s, Parameters& p) {
     const Settings& o = s.input.options;
@@ -107,9 +120,10 @@ struct Numbering {
     const auto asked = s.job.setting("reference_number");
     const std::int64_t all = o.integer("reference_number", -1);
     const std::int64_t reference = asked ? std::llround(*asked) : all;
-    p.low = asked || all >= 0 ? reference - before : next;
+    const std::int64_t above = intervals - (p.turn != 0 ? 0 : 1);
+    p.low = asked || all >= 0 ? reference - before : free_from(next, above, o);
     p.reference = p.low + before;
-    p.high = p.low + intervals - (p.turn != 0 ? 0 : 1);
+    p.high = p.low + above;
     p.negative_low = o.integer("negative_numbers", 3000) + p.low;
     const std::int64_t last = o.integer("last_number", 1023);
     if (p.low < 0 || p.high > last)
@@ -122,7 +136,7 @@ struct Numbering {
                     std::to_string(std::max(r.low, p.low)) + " to " +
                     std::to_string(std::min(r.high, p.high)) + ": set axes = [\"" + s.job.axis +
                     " reference_number=...\"]");
-    taken.push_back({s.job.axis, p.low, p.high});
+    taken.push_back({s.job.axis, p.low, p.high, !asked && all < 0});
     next = std::max(next, p.high + 1);
     return {};
   }
@@ -172,10 +186,16 @@ std::string words(const Sheet& s, const Parameters& p) {
        short_text(o.number(job.rotary ? "detection_unit_arcsec" : "detection_unit_um"), 4) +
        (job.rotary ? " arcsec" : " um"));
   line(controllers::reversal_words(job, s.directions));
+  for (const std::string& zero : s.zero_and_size()) line(zero);
   line("controlled axis number " + std::to_string(job.number) + "; reference position at " +
        controllers::with_unit(job, s.reference, 4));
   line(std::string("3605#0 (both directions) = ") + (s.directions ? "1" : "0") +
        ", by hand: the other bits of 3605 belong to the builder of the machine");
+  line(job.setting("reference_number") || o.integer("reference_number", -1) >= 0
+           ? "numbers " + std::to_string(p.low) + " to " + std::to_string(p.high) + ", as asked for"
+           : "CHOSEN, not read from a backup: numbers " + std::to_string(p.low) + " to " +
+                 std::to_string(p.high) +
+                 "; where another axis has them, load a file of nonio merge instead");
   line(is(3620, p.reference) + ", " + is(3621, p.low) + ", " + is(3622, p.high) + ", " +
        is(3623, p.magnification) + ", " + is(3624, p.interval));
   if (p.turn != 0) line(is(3625, p.turn) + ", type of axis: rotary");
@@ -209,7 +229,14 @@ Expected<OutputResult> write(const OutputInput& input) {
       .coarser = {
           "magnification", o.integer("magnification", 1), 100,
           o.flag("extended") ? "" : ", or set extended = true if the control takes -128..127"}};
-  return controllers::write_tables(input, writer);
+  auto result = controllers::write_tables(input, writer);
+  for (const Numbering::Range& r : numbering.taken)
+    if (result && r.chosen)
+      result->notes.push_back(
+          {"table.numbers-chosen",
+           {},
+           {{"axis", r.axis}, {"numbers", std::to_string(r.low) + "-" + std::to_string(r.high)}}});
+  return result;
 }
 
 Option whole(std::string name, std::int64_t otherwise, std::string help, double least,
@@ -232,6 +259,8 @@ std::vector<Option> options() {
         "",
         "Direction in which the axis returns to reference.",
         {"+", "-"}},
+       {"taken", std::vector<std::string>{}, "",
+        "Numbers that are in use in the control, \"0\", \"100-227\": others are taken."},
        whole("magnification", 1, "Parameter 3623.", 1, 100),
        whole("reference_number", -1, "Parameter 3620; -1: the next free numbers are taken.", -1,
              1535),
@@ -249,9 +278,11 @@ std::vector<Option> options() {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  registry.add(controllers::controller(
+  Output output = controllers::controller(
       {"fanuc", "1.1.0",
        "Stored pitch error compensation (3620-3627) and backlash (1851) for FANUC.",
        fanuc::options()},
-      fanuc::declared(), fanuc::write, fanuc::parse, false));
+      fanuc::declared(), fanuc::write, fanuc::parse, false);
+  output.merge = fanuc::merge;
+  registry.add(std::move(output));
 }

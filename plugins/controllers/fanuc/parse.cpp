@@ -21,24 +21,10 @@ struct Memory {
   std::int64_t least = -7, most = 7;                  // what one number holds
 };
 
-// N<number>[A<axis>]P<value>, one block a line.
-Expected<void> block(Memory& memory, std::string_view line) {
-  std::int64_t number = -1, axis = 0, value = 0;
-  bool has_value = false;
-  const auto whole_line = std::string(line);
-  while (!line.empty()) {
-    const char letter = line.front();
-    std::int64_t n = 0;
-    const auto r = std::from_chars(line.data() + 1, line.data() + line.size(), n);
-    if (r.ec != std::errc() || (letter != 'N' && letter != 'A' && letter != 'P'))
-      return fail("not a block: " + whole_line);
-    if (letter == 'N') number = n;
-    if (letter == 'A') axis = n;
-    if (letter == 'P') value = n, has_value = true;
-    line.remove_prefix(static_cast<std::size_t>(r.ptr - line.data()));
-  }
+Expected<void> put(Memory& memory, std::int64_t number, std::int64_t axis, std::int64_t value,
+                   const std::string& whole_line) {
   constexpr std::int64_t word = 1000000000;  // what a parameter of a control can be
-  if (number < 0 || number > word || !has_value || std::abs(value) > word || std::abs(axis) > word)
+  if (number < 0 || number > word || std::abs(value) > word || std::abs(axis) > word)
     return fail("not a block: " + whole_line);
   if (number < 10000) {
     memory.parameter[axis][number] = value;
@@ -51,6 +37,26 @@ Expected<void> block(Memory& memory, std::string_view line) {
   return {};
 }
 
+// N<number>P<value>, or N<number>A<axis>P<value>A<axis>P<value>, one block a line.
+Expected<void> block(Memory& memory, std::string_view line) {
+  std::int64_t number = -1, axis = 0;
+  bool has_value = false;
+  const auto whole_line = std::string(line);
+  while (!line.empty()) {
+    const char letter = line.front();
+    std::int64_t n = 0;
+    const auto r = std::from_chars(line.data() + 1, line.data() + line.size(), n);
+    if (r.ec != std::errc() || (letter != 'N' && letter != 'A' && letter != 'P'))
+      return fail("not a block: " + whole_line);
+    if (letter == 'N') number = n;
+    if (letter == 'A') axis = n;
+    line.remove_prefix(static_cast<std::size_t>(r.ptr - line.data()));
+    if (letter != 'P') continue;
+    has_value = true;  // a block has one P, or one for each A
+    if (auto ok = put(memory, number, axis, n, whole_line); !ok) return ok;
+  }
+  return has_value ? Expected<void>{} : fail("not a block: " + whole_line);
+}
 Expected<void> punched(Memory& memory, std::string_view text) {
   int percents = 0;
   for (std::string_view line : controllers::lines_of(text)) {
@@ -109,8 +115,11 @@ Expected<LoadedTable> table(const Memory& m, const ParameterValues& p,
   auto plus = staircase(m, p, 0);
   if (!plus) return tl::unexpected<Error>(plus.error());
   auto minus = plus;
-  const bool directions = p.count(3626) != 0;  // 3605#0 is set by hand where there are two sets
+  // 3605#0 is set by hand where there are two sets; a whole backup says it.
+  const auto bits = p.find(3605);
+  const bool directions = bits == p.end() ? p.count(3626) != 0 : bits->second % 10 == 1;
   if (directions) {
+    if (p.count(3626) == 0) return fail("no parameter 3626");
     if (p.count(3627) == 0) return fail("no parameter 3627");
     minus = staircase(m, p, p.at(3626) - p.at(3621));
     if (!minus) return tl::unexpected<Error>(minus.error());
@@ -143,6 +152,12 @@ Expected<LoadedTable> table(const Memory& m, const ParameterValues& p,
   return out;
 }
 
+/// A backup has these parameters of every axis, 0 where there is no table.
+bool has_table(const ParameterValues& p) {
+  const auto interval = p.find(3624);
+  return interval != p.end() ? interval->second != 0 : p.count(3620) != 0;
+}
+
 }  // namespace
 
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
@@ -160,7 +175,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (!any) return fail("not a punched text: it does not begin with %");
   std::vector<LoadedTable> tables;
   for (const auto& [number, parameters] : memory.parameter) {
-    if (parameters.count(3620) == 0 && memory.pitch.empty()) continue;
+    if (!has_table(parameters)) continue;
     const auto axis = axis_numbered(*axes, static_cast<std::size_t>(number));
     const bool plus = o.text("reference_return") != "-";
     const Units units = axis.rotary

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "merge.h"
 #include "nonio/controllers/kit.h"
 #include "parse.h"
 
@@ -122,6 +123,7 @@ std::string words(const Sheet& s, const Layout& layout, const std::string& artif
       "sign: entries are the measured deviation (actual - nominal) with its own sign, "
       "in " +
       std::string(job.unit()));
+  for (std::string& line : s.zero_and_size()) lines.push_back(std::move(line));
   lines.push_back(controllers::reversal_words(job, s.directions));
   if (job.curve.bidirectional()) {
     lines.emplace_back(layout.listed ? "CfgAxisComp/backLash (401802), positive where the encoder "
@@ -130,6 +132,10 @@ std::string words(const Sheet& s, const Layout& layout, const std::string& artif
                                        "positive where the encoder leads the table:");
     lines.push_back("backLash = " + signed_decimal(s.backlash() * job.per_si(), 4));
   }
+  lines.emplace_back(
+      "CONFIG.CMA beside it names the tables of the measured axes only: loaded in place of the "
+      "control's own it takes the tables of all other axes away; let it into a backup with nonio "
+      "merge");
   lines.emplace_back("MP730 or the configuration must allow non-linear compensation for this axis");
   return controllers::comments(lines, "");
 }
@@ -246,6 +252,7 @@ Expected<OutputResult> write(const OutputInput& input) {
   result.artifacts.push_back(
       {"heidenhain-tnc-CONFIG.CMA",
        cma_table(written, axis_columns(input.campaign, *written.front()), layout)});
+  result.notes.push_back({"heidenhain.cma-alone"});
   controllers::note_facts(writer, result);
   return result;
 }
@@ -253,7 +260,7 @@ Expected<OutputResult> write(const OutputInput& input) {
 std::vector<Option> options() {
   return controllers::table_options(
       declared(),
-      "step_mm, first_mm, reference_mm (where the table is made zero; else nowhere), backlash_mm "
+      "step_mm, first_mm, reference_mm (where the table is made zero; else at 0), backlash_mm "
       "(the parameter while measured), and the same with _deg",
       {{"layout",
         std::string("tnc640"),
@@ -268,9 +275,11 @@ std::vector<Option> options() {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  registry.add(controllers::controller(
+  Output output = controllers::controller(
       {"heidenhain-tnc", "1.1.0",
        "Non-linear axis error tables (.COM, .CMA) and backlash for HEIDENHAIN TNC.",
        heidenhain::options()},
-      heidenhain::declared(), heidenhain::write, heidenhain::parse, false));
+      heidenhain::declared(), heidenhain::write, heidenhain::parse, false);
+  output.merge = heidenhain::merge;
+  registry.add(std::move(output));
 }

@@ -88,8 +88,22 @@ LoadedTable table(const KnownAxis& input, const KnownAxis& output, const std::ve
   return t;
 }
 
+/// Which axis a table is of, as CONFIG.CMA says: by the table's name.
+using Owners = std::map<std::string, std::string, std::less<>>;
+
+void note_owners(std::string_view cma, Owners& owners) {
+  const Lines lines = controllers::lines_of(cma);
+  if (lines.size() < 2) return;
+  for (const std::string_view name : controllers::words_of(lines[1])) {
+    if (name == "NR" || name == "ACTIVE") continue;
+    for (std::size_t i = 2; i < lines.size(); ++i)
+      if (const auto table = cell(lines[i], column_of(lines[1], name)); !table.empty())
+        owners.emplace(table, name);
+  }
+}
+
 Expected<std::vector<LoadedTable>> com(std::string_view bytes, const std::vector<KnownAxis>& axes,
-                                       std::size_t most) {
+                                       std::size_t most, const Owners& owners) {
   const Lines lines = controllers::lines_of(bytes);
   if (lines.size() < 4) return fail("not a .COM table");
   const bool with_datum = lines[0].find("DATUM:") != std::string_view::npos;
@@ -102,7 +116,10 @@ Expected<std::vector<LoadedTable>> com(std::string_view bytes, const std::vector
     return fail(std::to_string(x->size()) + " rows, the control takes 2 to " +
                 std::to_string(most));
   const auto name_of_table = cell(lines[0], 6);  // AXIS_X.COM or AXIS-X-before.COM
-  const KnownAxis input = axis_of_file(axes, name_of_table, name_of_table.substr(0, 5));
+  const auto owner = owners.find(name_of_table);
+  const KnownAxis input = owner != owners.end()
+                              ? axis_named(axes, owner->second)
+                              : axis_of_file(axes, name_of_table, name_of_table.substr(0, 5));
   const auto negative = column(lines, end, "BACKLASH");
   if (!negative) return tl::unexpected<Error>(negative.error());
   std::vector<LoadedTable> tables;
@@ -127,6 +144,9 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   std::vector<LoadedTable> tables;
   std::map<std::string, double> backlash;  // by axis; "": whatever axis it is
   const auto most = static_cast<std::size_t>(in.options.integer("max_points", 256));
+  Owners owners;
+  for (const Artifact& f : in.files)
+    if (f.bytes.rfind("BEGIN CONFIG.CMA", 0) == 0) note_owners(f.bytes, owners);
   for (const Artifact& f : in.files) {
     const Lines lines = controllers::lines_of(f.bytes);
     const bool is_table = !lines.empty() && lines[0].rfind("BEGIN ", 0) == 0;
@@ -136,7 +156,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
         backlash[f.name.empty() ? "" : axis_of_file(*axes, f.name, "heidenhain-tnc-").name] = *v;
     if (!is_table && in.files.size() == 1) return fail("not a .COM table");
     if (!is_table) continue;
-    auto read = com(f.bytes, *axes, most);
+    auto read = com(f.bytes, *axes, most, owners);
     if (!read) return read;
     tables.insert(tables.end(), read->begin(), read->end());
   }

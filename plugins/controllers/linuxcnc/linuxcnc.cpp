@@ -45,16 +45,34 @@ std::string comp_file(const Sheet& s) {
   return out;
 }
 
-std::string joint_of(const AxisJob& job) {
-  const auto joint = job.setting("joint");
-  return joint ? fixed_text(*joint, 0) : std::to_string(job.number - 1);
+/// As the machine counts them, from 0; nothing where nobody says it.
+std::optional<std::string> joint_of(const AxisJob& job) {
+  const auto joint = job.setting("joint"), number = job.setting("number");
+  if (!joint && !number) return std::nullopt;
+  return fixed_text(joint ? *joint : *number, 0);
+}
+
+/// No section that could be pasted where it does not belong.
+std::string section_of(const AxisJob& job) {
+  const auto joint = joint_of(job);
+  if (joint) return "[JOINT_" + *joint + "]\n";
+  const std::string axis = controllers::plain(job.axis);
+  return "# the joint of " + axis +
+         " is not stated: put these lines into its section; to have it\n" +
+         "# here say axes = [\"" + axis + " joint=...\"], or number in the machine's record\n";
+}
+
+/// The table itself has no end that shows: how long it is stands beside it.
+std::string lines_said(const std::string& comp, const Sheet& s) {
+  return comp + " has " + std::to_string(s.position.size()) + " lines";
 }
 
 std::string ini_snippet(const Sheet& s, const std::string& comp) {
   return controllers::comments(s.warning, "# ") + controllers::comments(s.job.about, "# ") +
-         "# BACKLASH has no effect beside this table: the reversal is in its two columns\n"
-         "[JOINT_" +
-         joint_of(s.job) + "]\nCOMP_FILE = " + comp +
+         controllers::comments(s.zero_and_size(), "# ") + "# " + lines_said(comp, s) +
+         "\n"
+         "# BACKLASH has no effect beside this table: the reversal is in its two columns\n" +
+         section_of(s.job) + "COMP_FILE = " + comp +
          "\nCOMP_FILE_TYPE = " + std::to_string(s.input.options.integer("type")) + "\n";
 }
 
@@ -63,7 +81,9 @@ std::string words(const Sheet& s, const std::string& comp) {
   const bool inch = s.input.options.text("units") == "inch" && !job.rotary;
   std::vector<std::string> lines = s.warning;
   lines.insert(lines.end(), job.about.begin(), job.about.end());
-  lines.push_back("file " + comp + ", joint " + joint_of(job) + ", in " +
+  for (std::string& line : s.zero_and_size()) lines.push_back(std::move(line));
+  lines.push_back(lines_said(comp, s));
+  lines.push_back("file " + comp + ", joint " + joint_of(job).value_or("not stated") + ", in " +
                   (inch ? "inch" : std::string(job.unit())) +
                   ": nominal, moving towards plus, moving towards minus");
   lines.emplace_back(
@@ -89,12 +109,37 @@ std::string words(const Sheet& s, const std::string& comp) {
 }
 
 Expected<std::vector<Artifact>> files(const Sheet& s) {
-  if (const double joint = s.job.setting("joint").value_or(0.0);
+  if (const double joint = s.job.setting("joint").value_or(s.job.setting("number").value_or(0.0));
       joint < 0.0 || joint > 15.0 || joint != std::floor(joint))
     return fail("option axes, axis " + s.job.axis + ": joint must be a whole number from 0 to 15");
   const std::string stem = "linuxcnc-" + s.job.stem, comp = stem + ".comp";
   return std::vector<Artifact>{
       {comp, comp_file(s)}, {stem + ".ini", ini_snippet(s, comp)}, {stem + ".txt", words(s, comp)}};
+}
+
+/// The controller stops reading for good at the first line that is not three numbers, and says
+/// nothing: a file that was cut, or of which a part has no effect, is no table to count on.
+Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Artifact>& beside) {
+  const auto all = controllers::lines_of(f.bytes);
+  std::size_t last = all.size();
+  while (last > 0 && controllers::trimmed(all[last - 1]).empty()) --last;
+  if (taken < last && taken < 256)
+    return fail(f.name + ", line " + std::to_string(taken + 1) +
+                ": wanted three numbers, found \"" + std::string(all[taken].substr(0, 60)) +
+                "\"; the control stops reading there without a message");
+  if (f.bytes.back() != '\n') return fail(f.name + ": the last line has no end: the file was cut");
+  const std::string key = f.name + " has ";
+  for (const Artifact& a : beside) {
+    const std::size_t at = f.name.empty() ? std::string::npos : a.bytes.find(key);
+    if (at == std::string::npos) continue;
+    const auto said =
+        controllers::words_of(std::string_view(a.bytes).substr(at + key.size(), 20), " \r\n");
+    const auto n = controllers::whole(said.empty() ? "" : said.front());
+    if (n && *n != static_cast<std::int64_t>(taken))
+      return fail(f.name + ": " + std::to_string(taken) + " lines, " + a.name + " says " +
+                  std::to_string(*n) + ": the file was cut");
+  }
+  return {};
 }
 
 // As the controller's source and runs of it show: reading stops for good at the first line that is
@@ -109,6 +154,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
     controllers::RawTable raw{controllers::axis_of_file(*axes, f.name, "linuxcnc-"), {}, {}};
     raw.backlash = 0.0;  // BACKLASH is ignored beside a table
     const double unit = t.value_unit.of(raw.axis.rotary);
+    std::size_t taken = 0;
     for (const std::string_view line : controllers::lines_of(f.bytes)) {
       const auto words_of_line = controllers::words_of(line);
       if (line.size() > 254 || raw.position.size() == 256 || words_of_line.size() < 3) break;
@@ -116,12 +162,14 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
                  plus = controllers::real(words_of_line[1]),
                  minus = controllers::real(words_of_line[2]);
       if (!x || !plus || !minus) break;
+      ++taken;
       if (!raw.position.empty() && !(*x > raw.position.back())) continue;
       raw.position.push_back(*x);
       raw.plus.push_back(*plus);
       raw.minus.push_back(*minus);
     }
     if (raw.position.empty()) continue;  // an .ini, or words; or a table that has no effect
+    if (auto ok = whole(f, taken, in.files); !ok) return tl::unexpected<Error>(ok.error());
     auto read = controllers::loaded(t, raw);
     if (!read) return tl::unexpected<Error>(read.error());
     for (auto* trims : {&read->plus, &read->minus})
@@ -135,7 +183,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
 Expected<OutputResult> write(const OutputInput& input) {
   const controllers::Writer writer{.name = "linuxcnc",
                                    .table = table_of(input.options),
-                                   .keys = {"joint:", "step", "first", "backlash"},
+                                   .keys = {"joint:", "step", "first", "reference", "backlash"},
                                    .files = files,
                                    .parse = parse,
                                    .always_directions = true,
@@ -150,8 +198,9 @@ std::vector<Option> options() {
   t.points = 0;
   return controllers::table_options(
       t,
-      "joint (else the axis' place in the manifest, from 0), step_mm, first_mm, backlash_mm "
-      "(BACKLASH while measured), and the same with _deg",
+      "joint (or number; not stated, the INI lines name none), step_mm, first_mm, reference_mm "
+      "(where the table is made zero), backlash_mm (BACKLASH while measured), and the same with "
+      "_deg",
       {{"type",
         std::int64_t{0},
         "",

@@ -62,13 +62,39 @@ std::string file_text(const CrossJob& job, const OutputInput& input, std::int64_
            "entries are the error of the output axis with its own sign:",
            "a positive entry moves the output axis towards minus",
            "MD18342[t] >= " + std::to_string(points) + "; enable MD32710 of " +
-               (job.volume ? "all" : "both") + " output axes and SD41300[t]"},
+               (job.volume ? "all" : "both") + " output axes and SD41300[t]",
+           chosen_words(number, job.curves.size())},
           "; ");
   for (const CrossCurve& curve : job.curves) out += table(curve, number++, name);
   return out + "M17\n";
 }
 
 }  // namespace
+
+Expected<void> free_tables(std::int64_t first, std::size_t count, const Settings& options) {
+  const std::int64_t last = first + static_cast<std::int64_t>(count) - 1;
+  for (const auto& [low, high] : controllers::ranges_of(options.texts("taken")))
+    if (low <= last && first <= high)
+      return fail("CEC tables " + std::to_string(first) + " to " + std::to_string(last) +
+                  " would meet those in use (" + std::to_string(low) + " to " +
+                  std::to_string(high) + "): set first_cec_table, or use nonio merge");
+  return {};
+}
+
+std::string chosen_words(std::int64_t first, std::size_t count) {
+  return "CHOSEN, not read from a backup: CEC tables " + std::to_string(first) + " to " +
+         std::to_string(first + static_cast<std::int64_t>(count) - 1) +
+         "; where the control has others there, load a file of nonio merge instead";
+}
+
+void note_chosen(const std::string& axis, std::int64_t first, std::size_t count,
+                 OutputResult& result) {
+  const std::int64_t last = first + static_cast<std::int64_t>(count) - 1;
+  result.notes.push_back(
+      {"table.numbers-chosen",
+       {},
+       {{"axis", axis}, {"numbers", std::to_string(first) + "-" + std::to_string(last)}}});
+}
 
 Expected<void> write_cross_tables(const OutputInput& input,
                                   const std::vector<controllers::AxisJob>& pitch,
@@ -84,12 +110,16 @@ Expected<void> write_cross_tables(const OutputInput& input,
   const auto jobs = controllers::cross_jobs(input);
   for (const CrossJob& job : jobs) {
     if (auto ok = controllers::fits(job, input.options); !ok) return ok;
+    if (controllers::lacks_number(job.moving(), input, *axes, job.measurement, result)) continue;
+    if (auto free = free_tables(first, job.curves.size(), input.options); !free)
+      return fail("diagonals of " + job.measurement + ": " + free.error().message);
     const std::string stem = "siemens-840d-" + controllers::file_part(job.axes()) +
                              (jobs.size() > 1 ? "-" + controllers::file_part(job.measurement) : "");
     Artifact file{stem + "-CEC.ini", file_text(job, input, first, name)};
     if (auto done = controllers::predict_cross(job, {file}, parse, pitch, input, result); !done)
       return done;
     result.artifacts.push_back(std::move(file));
+    note_chosen(job.axes(), first, job.curves.size(), result);
   }
   const bool volume = std::any_of(jobs.begin(), jobs.end(), [](const auto& j) { return j.volume; });
   if (!jobs.empty()) result.notes.push_back({volume ? "siemens.cross-volume" : "siemens.cross"});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cross_tables.h"
+#include "merge.h"
 #include "nonio/controllers/kit.h"
 #include "parse.h"
 
@@ -59,7 +60,7 @@ std::string encoder_table(const Sheet& s) {
   out +=
       remarks(s, {sign_is, sign_does,
                   "zero at the reference position " + controllers::with_unit(s.job, s.reference, 4),
-                  controllers::reversal_words(s.job, false),
+                  s.zero_and_size().back(), controllers::reversal_words(s.job, false),
                   "MD38000[" + system + "] >= " + std::to_string(s.grid.points) +
                       "; load with MD32700[" + system + "] = 0, then 1, power on, reference"});
   for (std::size_t i = 0; i < s.plus.size(); ++i)
@@ -76,6 +77,11 @@ std::string backlash_file(const Sheet& s) {
          axis_name(s) + "]=" + decimal(s.backlash() * s.job.per_si(), 6) + "\nM17\n";
 }
 
+std::int64_t first_table(const Sheet& s) {
+  return s.input.options.integer("first_cec_table") +
+         2 * (static_cast<std::int64_t>(s.job.number) - 1);
+}
+
 // Direction-dependent pitch: input axis = output axis, one table for each direction of travel.
 std::string direction_tables(const Sheet& s) {
   const bool quoted = s.input.options.flag("quoted_axes");
@@ -84,11 +90,11 @@ std::string direction_tables(const Sheet& s) {
   out += remarks(
       s, {sign_is, sign_does,
           "mean of both directions zero at " + controllers::with_unit(s.job, s.reference, 4),
-          controllers::reversal_words(s.job, true),
+          s.zero_and_size().back(), controllers::reversal_words(s.job, true),
+          chosen_words(first_table(s), 2),
           "MD18342[t] >= " + std::to_string(s.grid.points) +
               "; enable MD32710 of the axis and SD41300[t]"});
-  std::int64_t number = s.input.options.integer("first_cec_table") +
-                        2 * (static_cast<std::int64_t>(s.job.number) - 1);
+  std::int64_t number = first_table(s);
   for (const int direction : {1, -1}) {
     const std::string t = std::to_string(number++);
     const auto& entries = direction > 0 ? s.plus : s.minus;
@@ -103,6 +109,9 @@ std::string direction_tables(const Sheet& s) {
 
 Expected<std::vector<Artifact>> files(const Sheet& s) {
   const std::string stem = "siemens-840d-" + s.job.stem;
+  if (s.directions)
+    if (auto free = free_tables(first_table(s), 2, s.input.options); !free)
+      return fail("axis " + s.job.axis + ": " + free.error().message);
   if (s.directions) return std::vector<Artifact>{{stem + "-CEC.ini", direction_tables(s)}};
   std::vector<Artifact> out{{stem + "-EEC.ini", encoder_table(s)}};
   if (s.job.curve.bidirectional()) out.push_back({stem + "-backlash.ini", backlash_file(s)});
@@ -117,6 +126,12 @@ Expected<OutputResult> write(const OutputInput& input) {
       "siemens-840d", *table, {"number:", "step", "first", "reference", "backlash"}, files, parse};
   const auto jobs = controllers::write_axes(input, writer, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
+  for (const AxisJob& job : *jobs)
+    if (job.loaded && input.options.flag("directions") && job.curve.bidirectional())
+      note_chosen(job.axis,
+                  input.options.integer("first_cec_table") +
+                      2 * (static_cast<std::int64_t>(job.number) - 1),
+                  2, result);
   if (auto done = write_cross_tables(input, *jobs, result); !done)
     return tl::unexpected<Error>(done.error());
   controllers::note_facts(writer, result);
@@ -136,6 +151,9 @@ std::vector<Option> options() {
         {},
         0.0,
         120.0},
+       {"taken", std::vector<std::string>{}, "",
+        "Numbers of CEC tables that are in use in the control, \"0\", \"4-9\": none of them is "
+        "written."},
        {"quoted_axes", false, "", "CEC axes as \"AX1\" (newer) and not as (AX1)."}});
   return list;
 }
@@ -145,9 +163,11 @@ std::vector<Option> options() {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  registry.add(controllers::controller(
+  Output output = controllers::controller(
       {"siemens-840d", "1.1.0",
        "Leadscrew error tables (EEC), direction tables (CEC) and backlash for SINUMERIK.",
        siemens::options()},
-      siemens::declared(), siemens::write, siemens::parse, false));
+      siemens::declared(), siemens::write, siemens::parse, false);
+  output.merge = siemens::merge;
+  registry.add(std::move(output));
 }

@@ -46,9 +46,30 @@ std::string head(const std::vector<std::string>& words, std::size_t number,
          line("kopf.log_achs_name", controllers::plain(name));
 }
 
+// P-AXIS-00103 is a whole number of 16 bits, in 0.1 um as the lists are (0.0001 deg).
+constexpr std::int64_t most_lose = 32767;
+
+/// The words of a list with the parameter as it is typed in, not in mm.
+Expected<std::vector<std::string>> words_with_lose(const Sheet& s) {
+  std::vector<std::string> words = s.words();
+  const double unit = s.position_unit();
+  const std::int64_t lose = std::llround(s.backlash() / unit);
+  if (std::abs(lose) > most_lose)
+    return fail("axis " + s.job.axis + ": P-AXIS-00103 would be " + std::to_string(lose) +
+                ", the control takes -32768..32767: the axis must be mended");
+  for (std::string& line : words)
+    if (line.rfind(s.table.backlash + " = ", 0) == 0)
+      line = s.table.backlash + " = " + std::to_string(lose) +
+             (s.job.rotary ? " (a whole number of 0.0001 deg: " : " (a whole number of 0.1 um: ") +
+             with_unit(s.job, static_cast<double>(lose) * unit, 6) + ")";
+  return words;
+}
+
 Expected<std::vector<Artifact>> files(const Sheet& s) {
+  const auto words = words_with_lose(s);
+  if (!words) return tl::unexpected<Error>(words.error());
   const auto units = [&](double x) { return std::to_string(std::llround(x / s.position_unit())); };
-  std::string out = head(s.words(), s.job.number, s.job.axis);
+  std::string out = head(*words, s.job.number, s.job.axis);
   out += line("kw.ssfk.unit", "1") + line("kw.ssfk.interval", units(s.grid.step)) +
          line("kw.ssfk.kw_startpos", units(s.grid.first)) +
          line("kw.ssfk.kw_nr_max", std::to_string(s.grid.points)) +
@@ -120,6 +141,17 @@ Expected<LoadedTable> cross(const List& list, const std::vector<controllers::Kno
   return t;
 }
 
+/// "getriebe[0].lose = 30": among the words, as in the list of the axis itself.
+std::optional<double> lose_in(std::string_view bytes, bool rotary) {
+  const std::string_view key = "getriebe[0].lose";
+  const std::size_t at = bytes.find(key);
+  if (at == std::string_view::npos) return std::nullopt;
+  const auto words = controllers::words_of(bytes.substr(at + key.size(), 60), " =\t\r\n");
+  const auto v = controllers::whole(words.empty() ? "" : words.front());
+  return v ? std::optional(static_cast<double>(*v) * declared().position_unit.of(rotary))
+           : std::nullopt;
+}
+
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   const auto axes = controllers::known_axes(in);
   if (!axes) return tl::unexpected<Error>(axes.error());
@@ -134,7 +166,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
     if (list.count("kw.ssfk.kw_nr_max") != 0) {
       auto read = screw(list, axis);
       if (!read) return tl::unexpected<Error>(read.error());
-      if (!read->backlash) read->backlash = controllers::parameter_in(f.bytes, declared().backlash);
+      if (!read->backlash) read->backlash = lose_in(f.bytes, axis.rotary);
       tables.push_back(std::move(*read));
     }
     if (list.count("kw.crosscomp.last_index") == 0) continue;
@@ -175,6 +207,7 @@ Expected<void> write_cross(const OutputInput& in, const std::vector<controllers:
   for (const CrossJob& job : jobs) {
     if (job.volume || said.empty()) continue;
     if (auto ok = controllers::fits(job, in.options); !ok) return ok;
+    if (controllers::lacks_number(job.moving(), in, *axes, job.measurement, result)) continue;
     std::vector<Artifact> files;
     for (const CrossCurve& c : job.curves)
       files.push_back({"twincat-cnc-cross-" + controllers::file_part(c.output) +

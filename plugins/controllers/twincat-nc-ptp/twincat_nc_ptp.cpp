@@ -39,7 +39,36 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
   return std::vector<Artifact>{{"twincat-nc-ptp-" + s.job.stem + ".st", out + "END_VAR\n"}};
 }
 
+/// The number behind this word.
+std::optional<std::int64_t> number_behind(std::string_view text, std::string_view key) {
+  const std::size_t at = text.find(key);
+  if (at == std::string_view::npos) return std::nullopt;
+  const auto words = controllers::words_of(text.substr(at + key.size(), 40), " :=],);\r\n");
+  return words.empty() ? std::nullopt : controllers::whole(words.front());
+}
+
+/// The text says how many elements there are, and ends: one that was cut is no shorter table.
+Expected<void> whole(const Artifact& f) {
+  const std::string_view text = f.bytes;
+  const std::string_view element = "Compensation :=";
+  std::int64_t found = 0;
+  for (std::size_t at = 0; (at = text.find(element, at)) != std::string_view::npos; ++at) ++found;
+  if (found == 0) return {};
+  const auto declared = number_behind(text, "ARRAY[1..");
+  const auto said = number_behind(text, "NoOfTableElements");
+  if (!declared || *declared != found || (said && *said != found))
+    return fail(f.name + ": " + std::to_string(found) + " elements, " +
+                (declared ? "ARRAY[1.." + std::to_string(*declared) + "]" : "no ARRAY[1..n]") +
+                (said ? ", NoOfTableElements " + std::to_string(*said) : "") +
+                ": the file was cut or changed");
+  if (text.find("END_VAR") == std::string_view::npos)
+    return fail(f.name + ": no END_VAR: the file was cut");
+  return {};
+}
+
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
+  for (const Artifact& f : in.files)
+    if (auto ok = whole(f); !ok) return tl::unexpected<Error>(ok.error());
   const auto take = [](std::string_view line, controllers::RawTable& raw) -> Expected<bool> {
     const auto w = controllers::words_of(line, " (),];");
     if (w.size() < 3 || w[0] != "Position") return false;

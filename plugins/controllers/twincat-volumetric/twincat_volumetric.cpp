@@ -3,6 +3,7 @@
 #include <map>
 
 #include "nonio/controllers/kit.h"
+#include "nonio/controllers/size.h"
 
 namespace nonio {
 namespace {
@@ -34,6 +35,7 @@ struct Block {
   std::string axis;
   std::vector<double> position;
   std::map<std::string, CrossCurve> curves;
+  double zero = 0.0;  ///< where its own errors are 0
 };
 
 std::vector<Block> blocks_of(const std::vector<AxisJob>& jobs, const std::vector<CrossJob>& sets) {
@@ -49,9 +51,14 @@ std::vector<Block> blocks_of(const std::vector<AxisJob>& jobs, const std::vector
     for (const CrossCurve& c : s.curves) add(c);
   std::vector<Block> out;
   for (auto& [axis, b] : all) {
+    const std::string_view name = axis;
     std::sort(b.position.begin(), b.position.end());
     const auto same = [](double x, double y) { return y - x < 1e-7; };
     b.position.erase(std::unique(b.position.begin(), b.position.end(), same), b.position.end());
+    b.zero = std::clamp(0.0, b.position.front(), b.position.back());
+    for (const AxisJob& j : jobs)
+      if (j.axis == name)
+        b.zero = controllers::reference_position(j, b.position.front(), b.position.back());
     out.push_back(std::move(b));
   }
   return out;
@@ -67,14 +74,29 @@ std::string text_of(const std::vector<Block>& blocks, double sign,
     for (const double x : b.position) {
       out += controllers::decimal(x * 1e3, 4);
       for (const auto& [along, c] : b.curves)
-        out += " " +
-               controllers::decimal(sign * 1e3 *
-                                        (math::ErrorCurve::at(c.position, c.value, x) -
-                                         math::ErrorCurve::at(c.position, c.value, b.position[0])),
-                                    6);
+        out += " " + controllers::decimal(sign * 1e3 *
+                                              (math::ErrorCurve::at(c.position, c.value, x) -
+                                               math::ErrorCurve::at(c.position, c.value, b.zero)),
+                                          6);
       out += "\n";
     }
   }
+  return out;
+}
+
+/// Where the errors over one axis are 0, and how large those of its positioning are.
+std::string zero_words(const Block& b, const std::vector<AxisJob>& jobs) {
+  std::string out =
+      "errors over " + b.axis + ": zero at " + controllers::decimal(b.zero * 1e3, 4) + " mm";
+  for (const AxisJob& j : jobs)
+    if (const auto c = b.curves.find(j.axis); j.axis == b.axis && c != b.curves.end()) {
+      std::vector<double> e = c->second.value;
+      const double zero = math::ErrorCurve::at(c->second.position, e, b.zero);
+      for (double& v : e) v -= zero;
+      controllers::TableSize size;
+      size.take(c->second.position, e);
+      out += "; " + controllers::size_words(j, size);
+    }
   return out;
 }
 
@@ -124,7 +146,8 @@ Expected<OutputResult> write(const OutputInput& in) {
   OutputResult result;
   const auto table = controllers::chosen(declared(), in.options);
   if (!table) return tl::unexpected<Error>(table.error());
-  const controllers::Writer writer{"twincat-volumetric", *table, {"backlash"}, {}, parse};
+  const controllers::Writer writer{
+      "twincat-volumetric", *table, {"reference", "backlash"}, {}, parse};
   auto jobs = controllers::axis_jobs(in, writer.keys, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   std::erase_if(*jobs, [&](const AxisJob& j) {
@@ -149,13 +172,24 @@ Expected<OutputResult> write(const OutputInput& in) {
   for (const Block& b : blocks) axes += b.axis;
   for (const AxisJob& j : *jobs)
     for (const std::string& warning : controllers::warnings(j, result)) words.push_back(warning);
+  for (const Block& b : blocks) words.push_back(zero_words(b, *jobs));
   const double sign = table->sign == ControlTable::Sign::error ? 1.0 : -1.0;
   result.artifacts.push_back({"twincat-volumetric-" + axes + ".csv", text_of(blocks, sign, words)});
   const auto read = parse({result.artifacts, in.campaign, in.options});
   if (!read) return tl::unexpected<Error>(read.error());
-  for (AxisJob& job : *jobs)
-    if (const auto c = math::correction_of(*read, job.axis, job.present_backlash()))
-      controllers::predict(job, *c, result);
+  for (AxisJob& job : *jobs) {
+    const auto c = math::correction_of(*read, job.axis, job.present_backlash());
+    if (!c) continue;
+    const auto size = controllers::size_of(*read, job.axis, job.curve.position);
+    if (controllers::oversized(job, size, table->value_step.linear, result)) {
+      result.artifacts.clear();  // one file holds all axes
+      return result;
+    }
+    controllers::predict(job, *c, result);
+    for (const Block& b : blocks)
+      if (b.axis == job.axis) controllers::note_zero(job, b.zero, result);
+    controllers::note_size(job, size, result);
+  }
   for (const CrossJob& set : sets) controllers::predict_lines(set, *read, result);
   controllers::note_facts(writer, result);
   return result;
@@ -169,6 +203,6 @@ NONIO_PLUGIN(registry) {
   registry.add(controllers::controller(
       {"twincat-volumetric", "1.0.0",
        "Volumetric compensation (TF5280, ISG CSV) for TwinCAT CNC: ISO 230 errors over X, Y and Z.",
-       controllers::table_options(declared(), "backlash_mm")},
+       controllers::table_options(declared(), "reference_mm, backlash_mm")},
       declared(), nonio::write, parse));
 }

@@ -67,6 +67,12 @@ void add_authority(const Source&, Blocks&);
 /// Who released it, the frame of the signature and the code: at the foot of the first page.
 void add_signature(const Source&, Blocks&);
 
+/// Limits that nothing was held against; empty if there are none.
+std::string undecided_text(const Source&);
+
+/// Directions of approach and their signs mean something: a test over targets is printed.
+bool has_directions(const OutputInput&);
+
 /// What it says of the certificate that it replaces, with every change; empty if there is none.
 std::string amendment_text(const Source&);
 

@@ -144,7 +144,9 @@ void add_statements(const std::vector<Source>& sources, dcc::About& about) {
   own("conditions.title", t.conditions);
   own("opinions.title", t.opinions);
   own("parties.place", in.campaign.site);
-  add("", word(sources, "notes.sign"));
+  if (!undecided_text(sources.front()).empty())
+    add("", in_all(sources, [](const Source& s) { return undecided_text(s); }));
+  if (has_directions(in)) add("", word(sources, "notes.sign"));
   add("", word(sources, "notes.items"));
   add("", word(sources, "statements.whole"));
   if (!t.customer_data.empty())

@@ -278,22 +278,48 @@ void add_departures(const Source& source, Blocks& blocks) {
 
 }  // namespace
 
+namespace {
+
+/// Of an analysis that used two methods (the standard's plan here, one of its own there) each with
+/// the measurements that it holds for.
+void add_methods(const Source& source, Blocks& blocks) {
+  struct Method {
+    std::string plugin, words, measurements;
+  };
+  std::vector<Method> methods;
+  for (const Results::Analysed& a : source.in.results.analyses) {
+    if (!is_printed(a)) continue;
+    const std::string words = method_of(source, a);
+    const auto known = std::find_if(methods.begin(), methods.end(), [&](const Method& m) {
+      return m.plugin == a.plugin && m.words == words;
+    });
+    if (known == methods.end())
+      methods.push_back({a.plugin, words, a.measurement});
+    else
+      known->measurements += ", " + a.measurement;
+  }
+  std::string all;
+  for (const Method& m : methods) {
+    const bool alone = std::none_of(methods.begin(), methods.end(), [&](const Method& o) {
+      return &o != &m && o.plugin == m.plugin;
+    });
+    all += (all.empty() ? "" : " ") +
+           (alone ? m.words
+                  : source.words.get("method_heading.departures_of",
+                                     {{"measurement", m.measurements}, {"departures", m.words}}));
+  }
+  paragraph(blocks, all, "method");
+}
+
+}  // namespace
+
 void add_method(const Source& source, Blocks& blocks) {
   const CertificateTexts& texts = source.in.campaign.certificate;
   if (!source.in.issue->replaces.empty())
     if (Grid changes = changes_of(source); is_long(changes))
       blocks.push_back({std::move(changes), "amendment.changes"});
   blocks.push_back({Heading{label(source, "method_heading.title"), 2}, "method_heading.title"});
-  std::vector<std::string> methods;
-  for (const Results::Analysed& a : source.in.results.analyses) {
-    if (!is_printed(a)) continue;
-    const std::string method = method_of(source, a);
-    if (std::find(methods.begin(), methods.end(), method) == methods.end())
-      methods.push_back(method);
-  }
-  std::string all;
-  for (const std::string& method : methods) all += (all.empty() ? "" : " ") + method;
-  paragraph(blocks, all, "method");
+  add_methods(source, blocks);
   if (!texts.procedure.empty())
     paragraph(blocks,
               source.words.get("method_heading.procedure", {{"procedure", texts.procedure}}),
@@ -325,97 +351,6 @@ void add_conditions(const Source& source, Blocks& blocks) {
   paragraph(blocks, stated, "certificate.conditions");
 }
 
-namespace {
-
-/// A result of the first page.
-struct Shown {
-  const pages::Measured* measured;
-  const Value* value;
-  const Conformity* limit;
-};
-
-/// Those with a limit, and those that the template names; of very many the former alone.
-std::vector<Shown> shown_results(const Source& source,
-                                 const std::vector<pages::Measured>& measured) {
-  constexpr std::size_t most = 18;
-  const std::vector<std::string>& summary = source.look.summary;
-  std::vector<Shown> all;
-  for (const pages::Measured& m : measured)
-    for (const Results::Analysed* a : m.analyses) {
-      if (!is_printed(*a)) continue;
-      for (const Value& v : a->evaluation.values) {
-        const Conformity* limit = pages::conformity_of(source.in, *a, v.name);
-        const bool named = std::find(summary.begin(), summary.end(), v.name) != summary.end();
-        if (v.U && (named || limit != nullptr)) all.push_back({&m, &v, limit});
-      }
-    }
-  const auto limited = [](const Shown& s) { return s.limit != nullptr; };
-  if (all.size() > most && std::any_of(all.begin(), all.end(), limited))
-    std::erase_if(all, [&](const Shown& s) { return !limited(s); });
-  if (all.size() > most) {  // the first of each measurement
-    const pages::Measured* last = nullptr;
-    std::erase_if(all,
-                  [&](const Shown& s) { return std::exchange(last, s.measured) == s.measured; });
-  }
-  return all;
-}
-
-Level level_of(Decision decision) {
-  return decision == Decision::conforms           ? Level::good
-         : decision == Decision::does_not_conform ? Level::failed
-                                                  : Level::attention;
-}
-
-}  // namespace
-
-void add_conformity(const Source& source, Blocks& blocks) {
-  const Wording& w = source.words;
-  const std::vector<pages::Measured> measured = pages::measured(source.in);
-  const std::vector<Shown> all = shown_results(source, measured);
-  if (all.empty()) return;
-  const bool limits =
-      std::any_of(all.begin(), all.end(), [](const Shown& s) { return s.limit != nullptr; });
-  const bool factors = std::any_of(all.begin(), all.end(), [](const Shown& s) {
-    return s.value->U && std::fabs(s.value->k - 2.0) >= 0.005;
-  });
-  Table table;
-  table.columns = {
-      {w.get("conformity.measurement"), "", false},
-      {w.get("results.symbol"), "", false},
-      {w.get("results.meaning"), "", false},
-      {w.get("results.value"), "", true},
-      {factors ? w.get("results.uncertainty") : pages::U_heading(source, 2.0), "", true}};
-  if (factors) table.columns.push_back({w.get("results.k"), "", true});
-  if (limits) table.columns.push_back({w.get("conformity.limit"), "", true});
-  table.columns.push_back({"", "", false});
-  if (limits) table.columns.push_back({w.get("results.decision"), "", false});
-  for (const Shown& s : all) {
-    const Value& v = *s.value;
-    const Printed shown = printed_result(v.value, v.U, v.quantity, source.language());
-    std::vector<Table::Cell> row = {{s.measured->measurement.id},
-                                    {pages::symbol(v.name), true},
-                                    {w.get_or("value." + v.name, "")},
-                                    {shown.value},
-                                    {shown.U}};
-    if (factors)
-      row.push_back({v.U ? printed_number(v.k, Quantity::number, 2, source.language()) : ""});
-    if (limits)
-      row.push_back(
-          {s.limit == nullptr ? "–" : pages::plain_number(source, s.limit->tolerance, v.quantity)});
-    row.push_back({unit_text(v.quantity)});
-    if (limits && s.limit == nullptr) row.push_back({"–"});
-    if (limits && s.limit != nullptr)
-      row.push_back({pages::decision_text(source, s.limit->decision),
-                     s.limit->decision != Decision::conforms, level_of(s.limit->decision)});
-    table.rows.push_back(std::move(row));
-  }
-  blocks.push_back(
-      {Heading{w.get(limits ? "conformity.title" : "conformity.results"), 1}, "conformity.title"});
-  blocks.push_back({std::move(table), "conformity"});
-  if (limits)
-    paragraph(blocks, pages::rule_text(source) + " " + w.get("conformity.specification"), "rule");
-}
-
 void add_opinions(const Source& source, Blocks& blocks) {
   const std::string& opinions = source.in.campaign.certificate.opinions;
   if (opinions.empty()) return;
@@ -423,11 +358,18 @@ void add_opinions(const Source& source, Blocks& blocks) {
   paragraph(blocks, opinions, "certificate.opinions");
 }
 
+bool has_directions(const OutputInput& in) {
+  const std::vector<pages::Measured> all = pages::measured(in);
+  return std::any_of(all.begin(), all.end(), [](const pages::Measured& m) {
+    return is_printed(m) && pages::over_one_position(m.measurement);
+  });
+}
+
 void add_statements(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
   blocks.push_back({Heading{w.get("statements.title"), 2}, "statements.title"});
   paragraph(blocks, w.get("notes.uncertainty") + " " + w.get("statements.guides"), "statements");
-  paragraph(blocks, w.get("notes.sign"), "notes.sign");
+  if (has_directions(source.in)) paragraph(blocks, w.get("notes.sign"), "notes.sign");
   paragraph(blocks, w.get("notes.items") + " " + w.get("statements.whole"), "statements");
   if (!source.in.campaign.certificate.customer_data.empty())
     paragraph(blocks, "* " + w.get("statements.customer_data"), "statements.customer_data");

@@ -298,6 +298,8 @@ class Requests {
     std::vector<std::string> lines;
     for (const std::string& part : {m.maker, m.model, m.serial})
       if (!part.empty()) lines = {(lines.empty() ? "machine:" : lines.front()) + " " + part};
+    if (lines.empty() && path.moves.back().stop)
+      lines.emplace_back("machine: not named in the manifest");
     lines.push_back("measurement " + path.name + ": moves " + axes + ", the other axes stay");
     lines.push_back(how);
     lines.push_back(std::to_string(wish_.runs) + " runs, " + direction(path) + ", " +

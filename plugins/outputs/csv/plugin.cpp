@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio {
@@ -23,18 +24,6 @@ std::string number(double si, Quantity quantity) {
   std::string text;
   append_shortest(text, printed(si, quantity));
   return text;
-}
-
-/// A field that is text: quoted where RFC 4180 asks for it. A spreadsheet takes text that starts
-/// with one of = + - @ (or with a tab or CR before it) for a formula; an apostrophe stops that.
-std::string text(std::string_view words) {
-  std::string field(words);
-  if (!field.empty() && std::string_view("=+-@\t\r").find(field.front()) != std::string_view::npos)
-    field.insert(0, 1, '\'');
-  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
-  std::string quoted = "\"";
-  for (const char c : field) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
 }
 
 void add_row(std::string& out, const std::vector<std::string>& fields) {
@@ -63,11 +52,11 @@ bool belongs(const Conformity& c, const Results::Analysed& a, std::string_view n
 
 std::vector<std::string> value_row(const Results& results, const Results::Analysed& a,
                                    const Value& v) {
-  std::vector<std::string> row = {text(a.measurement),
-                                  text(a.plugin),
-                                  text(v.name),
+  std::vector<std::string> row = {csv_text(a.measurement),
+                                  csv_text(a.plugin),
+                                  csv_text(v.name),
                                   number(v.value, v.quantity),
-                                  text(unit_of(v.quantity).symbol),
+                                  csv_text(unit_of(v.quantity).symbol),
                                   v.U ? number(*v.U, v.quantity) : "",
                                   "",
                                   ""};
@@ -89,8 +78,8 @@ void add_undecided(std::string& out, const Results& results) {
                              [&](const Value& v) { return belongs(c, a, v.name); });
         });
     if (!has_value)
-      add_row(out, {text(c.measurement), text(c.plugin), text(c.name), "",
-                    text(unit_of(c.quantity).symbol), "", number(c.tolerance, c.quantity),
+      add_row(out, {csv_text(c.measurement), csv_text(c.plugin), csv_text(c.name), "",
+                    csv_text(unit_of(c.quantity).symbol), "", number(c.tolerance, c.quantity),
                     words_of(c.decision)});
   }
 }
@@ -108,7 +97,7 @@ std::string table_file(const PointTable& points) {
   std::vector<std::string> row;
   std::size_t rows = 0;
   for (const PointTable::Column& c : points.columns) {
-    row.push_back(text(c.name + std::string(unit_of(c.quantity).suffix)));
+    row.push_back(csv_text(c.name + std::string(unit_of(c.quantity).suffix)));
     rows = std::max(rows, c.values.size());
   }
   add_row(out, row);

@@ -6,21 +6,16 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/json.h"
 
 namespace nonio {
 namespace {
-
-std::string json_text(std::string_view text) {
-  using Json = nlohmann::ordered_json;
-  return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 void append_count(std::string& out, std::uint64_t value) {
   std::array<char, 24> buffer{};

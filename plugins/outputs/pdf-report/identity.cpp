@@ -83,7 +83,7 @@ namespace {
 void add_conformity(const Source& source, std::vector<std::string>& lines) {
   const Wording& w = source.words;
   for (const Conformity& c : source.in.results.conformity) {
-    if (c.decision == Decision::conforms) continue;
+    if (c.decision == Decision::conforms || c.measurement.empty()) continue;
     const Value* value = nullptr;
     for (const Results::Analysed& a : source.in.results.analyses)
       if (a.plugin == c.plugin && a.measurement == c.measurement)
@@ -103,6 +103,7 @@ void add_conformity(const Source& source, std::vector<std::string>& lines) {
     lines.push_back(
         w.get("status.of_measurement", {{"measurement", c.measurement}, {"what", what}}));
   }
+  for (std::string& sentence : undecided(source)) lines.push_back(std::move(sentence));
 }
 
 bool has_results(const Evaluation& e) {

@@ -20,11 +20,17 @@ std::string dwell(double seconds, const std::string& word) {
 std::string format(const Program& p, const Settings& options) {
   std::string out;
   for (const std::string& line : p.about) out += "(" + line + ")\n";
-  out += "G21 G17 G90 G94 G40 G49 G80\nG61\n" + options.text("work_offset", "G54") + "\n";
+  const std::string offset = options.text("work_offset", "G54");
+  const bool machine = offset == "G53";
+  if (machine)
+    out +=
+        "(G53: machine coordinates whatever offset is active; some controls move so)\n"
+        "(at rapid, whatever F says: rapid override down)\n";
+  out += "G21 G17 G90 G94 G40 G49 G80\nG61\n" + (machine ? "" : offset + "\n");
   out += "F" + programs::number(p.feed) + "\n";
   const std::string word = options.text("dwell_word", "P-s");
   for (const math::MeasuringMove& move : p.path.moves) {
-    out += "G1";
+    out += machine ? "G53 G1" : "G1";
     for (std::size_t a = 0; a < p.path.axes.size(); ++a)
       out += " " + p.path.axes[a] + programs::position(p.path, a, move.to[a]);
     out += "\n";
@@ -55,8 +61,9 @@ NONIO_PLUGIN(registry) {
            Option{"work_offset",
                   std::string("G54"),
                   "",
-                  "Offset that is set to the machine's zero.",
-                  {"G54", "G55", "G56", "G57", "G58", "G59"}}}),
+                  "Offset that is set to the machine's zero; G53: none, each move is in machine "
+                  "coordinates.",
+                  {"G53", "G54", "G55", "G56", "G57", "G58", "G59"}}}),
       true};
   output.applies = [](const nonio::Campaign&) { return true; };
   output.write = nonio::write;

@@ -20,8 +20,10 @@ std::string format(const Program& p, const Settings&) {
   for (const std::string& line : p.about) out += "; " + line + "\n";
   // G500: no settable offset; D0: no tool offset; G60: exact stop.
   out += "G710 G90 G94 G40 G500 D0\nG60\nMSG(\"" + p.path.name + ": DRY RUN FIRST\")\n";
+  // SUPA: neither frames nor external, set or handwheel offsets in this block.
+  const bool probe = p.path.moves.back().stop;
   for (const math::MeasuringMove& move : p.path.moves) {
-    out += "G1";
+    out += probe ? "G1 SUPA" : "G1";
     for (std::size_t a = 0; a < p.path.axes.size(); ++a)
       out += " " + word(p.path.axes[a], programs::position(p.path, a, move.to[a]));
     out += " F" + programs::number(p.feed) + "\n";

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 
+#include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 #include "vectors.h"
 
@@ -68,16 +70,6 @@ std::string json(const Campaign& campaign, const std::vector<Line>& lines) {
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// A field of text: quoted where RFC 4180 asks for it, and never a spreadsheet's formula.
-std::string field(std::string text) {
-  if (!text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos)
-    text.insert(0, 1, '\'');
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string csv(const std::vector<Line>& lines) {
   std::string out = "measurement,axis,name,value,unit,U\n";
   const auto digits = [](double si, Quantity q) {
@@ -89,7 +81,7 @@ std::string csv(const std::vector<Line>& lines) {
       for (const Value& v : *three) values.push_back(&v);
     values.push_back(&line.radius);
     for (const Value* v : values)
-      out += field(line.measurement) + "," + field(line.axis) + "," + v->name + "," +
+      out += csv_text(line.measurement) + "," + csv_text(line.axis) + "," + v->name + "," +
              digits(v->value, v->quantity) + "," + std::string(unit_of(v->quantity).symbol) + "," +
              (v->U ? digits(*v->U, v->quantity) : "") + "\n";
   }
@@ -123,6 +115,21 @@ bool applies(const Campaign& campaign) {
                      [](const Measurement& m) { return m.kind == "ball-centres"; });
 }
 
+/// Findings for which nobody has said why the readings are right all the same (evidence `stands`):
+/// what a control reads is held back, as the host does with tables.
+std::string doubts_of(const Results& results) {
+  std::set<std::string> ids;
+  for (const Results::Analysed& a : results.analyses)
+    for (const Finding& f : a.evaluation.findings)
+      if (f.id.starts_with("plausibility.") &&
+          std::none_of(f.texts.begin(), f.texts.end(),
+                       [](const auto& text) { return text.first == "stands"; }))
+        ids.insert(f.id);
+  std::string list;
+  for (const std::string& id : ids) list += (list.empty() ? "" : ", ") + id;
+  return list;
+}
+
 Expected<OutputResult> write(const OutputInput& in) {
   OutputResult result;
   const std::vector<Line> lines = lines_of(in.campaign, in.results);
@@ -133,7 +140,13 @@ Expected<OutputResult> write(const OutputInput& in) {
   result.artifacts = {{"rotary-vectors.txt", text(in.campaign, lines)},
                       {"rotary-vectors.json", json(in.campaign, lines)},
                       {"rotary-vectors.csv", csv(lines)}};
-  write_controllers(lines, in.campaign.id, result);
+  const std::string doubts = doubts_of(in.results);
+  if (doubts.empty())
+    write_controllers(lines, in.campaign.id, result);
+  else
+    result.findings.push_back({.id = "table.withheld",
+                               .attention = true,
+                               .texts = {{"output", "rotary-vectors"}, {"findings", doubts}}});
   result.notes.push_back({.id = "vectors.frame"});
   return result;
 }

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "fields.h"
+#include "nonio/sdk/fields.h"
+#include "nonio/sdk/text.h"
 #include "runs.h"
 
 namespace nonio::ballbar {
@@ -27,32 +28,10 @@ bool name_character(char c) {
          c == '-' || c == '.' || c == ':' || byte >= 0x80;
 }
 
-void append_utf8(std::string& out, std::uint32_t c) {
-  const auto part = [&](std::uint32_t shift, std::uint32_t mark) {
-    out += static_cast<char>(mark | ((c >> shift) & (mark == 0x80 ? 0x3FU : 0xFFU)));
-  };
-  if (c < 0x80) {
-    out += static_cast<char>(c);
-  } else if (c < 0x800) {
-    part(6, 0xC0);
-    part(0, 0x80);
-  } else if (c < 0x10000) {
-    part(12, 0xE0);
-    part(6, 0x80);
-    part(0, 0x80);
-  } else {
-    part(18, 0xF0);
-    part(12, 0x80);
-    part(6, 0x80);
-    part(0, 0x80);
-  }
-}
-
 class Scanner {
  public:
-  Scanner(std::string_view bytes, const std::function<void(const Element&)>& take)
-      : bytes_(bytes), take_(take) {
-    if (bytes_.starts_with("\xEF\xBB\xBF")) at_ = 3;
+  Scanner(std::string_view bytes, const TakeElement& take) : bytes_(bytes), take_(take) {
+    at_ = bytes_.size() - without_mark(bytes_).size();
   }
 
   Expected<void> scan() {
@@ -115,6 +94,7 @@ class Scanner {
 
   Expected<void> open() {
     Element element;
+    element.number = ++elements_;
     element.line = static_cast<std::uint64_t>(
         1 +
         std::count(bytes_.begin() + static_cast<std::ptrdiff_t>(counted_),
@@ -174,7 +154,7 @@ class Scanner {
     Element element = std::move(open_.back());
     open_.pop_back();
     element.text = std::string(stripped(element.text));
-    take_(element);
+    take_(element, open_);
   }
 
   Expected<void> text(std::string_view raw) {
@@ -227,11 +207,12 @@ class Scanner {
   }
 
   std::string_view bytes_;
-  const std::function<void(const Element&)>& take_;
+  const TakeElement& take_;
   std::size_t at_ = 0;
   std::size_t counted_ = 0;  ///< up to here lines were counted
   std::uint64_t lines_ = 0;  ///< ends of lines before that
   bool root_ = false;
+  std::uint64_t elements_ = 0;
   std::vector<Element> open_;
 };
 
@@ -243,8 +224,7 @@ std::string Element::attribute(std::string_view key) const {
   return {};
 }
 
-Expected<void> for_each_element(std::string_view bytes,
-                                const std::function<void(const Element&)>& take) {
+Expected<void> for_each_element(std::string_view bytes, const TakeElement& take) {
   if (bytes.find('\0') != bytes.npos || !is_utf8(bytes))
     return fail("wanted XML in UTF-8, found other bytes; is the file UTF-16?");
   return Scanner(bytes, take).scan();

@@ -4,7 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include "fields.h"
+#include "nonio/sdk/fields.h"
+#include "nonio/sdk/text.h"
 
 namespace nonio::reading {
 namespace {
@@ -52,19 +53,6 @@ constexpr HighHalf windows_1252 = {
     0x00EC, 0x00ED, 0x00EE, 0x00EF, 0x00F0, 0x00F1, 0x00F2, 0x00F3, 0x00F4, 0x00F5, 0x00F6, 0x00F7,
     0x00F8, 0x00F9, 0x00FA, 0x00FB, 0x00FC, 0x00FD, 0x00FE, 0x00FF,
 };
-
-void append_utf8(std::string& out, unsigned c) {
-  if (c < 0x80) {
-    out += static_cast<char>(c);
-  } else if (c < 0x800) {
-    out += static_cast<char>(0xC0U | (c >> 6U));
-    out += static_cast<char>(0x80U | (c & 0x3FU));
-  } else {
-    out += static_cast<char>(0xE0U | (c >> 12U));
-    out += static_cast<char>(0x80U | ((c >> 6U) & 0x3FU));
-    out += static_cast<char>(0x80U | (c & 0x3FU));
-  }
-}
 
 const HighHalf* high_half(std::string_view code_page) {
   if (code_page == "windows-1250") return &windows_1250;

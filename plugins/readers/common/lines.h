@@ -18,6 +18,8 @@ class Lines {
   bool next(std::string_view& line);
   std::uint64_t number() const { return number_; }  ///< of the line last given, from 1
   std::size_t offset() const;
+  /// What a first line "sep=;" says, if there is one.
+  std::optional<char> separator() const;
 
  private:
   std::string_view bytes_;
@@ -29,10 +31,18 @@ enum class Content { nothing, comment, fields };
 Content content_of(std::string_view line);
 
 /// What no line of a text file may hold. Rows of numbers need no such look: their fields would not
-/// be numbers.
-std::optional<Error> not_text(std::string_view line);
+/// be numbers. Nobody reads a comment: it may be in any code page.
+std::optional<Error> not_text(std::string_view line, bool comment = false);
 
-/// The next line with fields on it; false at the end of the file, or with `error` set.
+/// The separator of the fields as Excel states it in a first line "sep=;"; nothing of any other
+/// line.
+std::optional<char> stated_separator(std::string_view line);
+
+/// An error where a first line "sep=;" and the header row disagree.
+std::optional<Error> other_separator(std::optional<char> stated, char found);
+
+/// The next line with fields on it, a first line "sep=;" passed over; false at the end of the file,
+/// or with `error` set.
 bool next_content(Lines& lines, std::string_view& line, std::optional<Error>& error);
 
 }  // namespace nonio::reading

@@ -12,12 +12,6 @@ Error at_line(std::uint64_t line, std::string message) {
   return error;
 }
 
-Error of_option(std::string_view option, std::string message) {
-  Error error{"option " + std::string(option) + ": " + std::move(message)};
-  error.key = option;
-  return error;
-}
-
 std::vector<std::string_view> by_blanks(std::string_view line) {
   constexpr std::string_view blanks = " \t";
   std::vector<std::string_view> fields;
@@ -27,6 +21,18 @@ std::vector<std::string_view> by_blanks(std::string_view line) {
     fields.push_back(line.substr(from, to - from));
     from = line.find_first_not_of(blanks, to);
   }
+  return fields;
+}
+
+std::optional<std::vector<std::string_view>> by_separator(std::string_view line, char separator) {
+  if (separator == ' ') return by_blanks(line);
+  if (separator == '|') {
+    line = trimmed(line);
+    if (line.starts_with('|')) line.remove_prefix(1);
+    if (line.ends_with('|')) line.remove_suffix(1);
+  }
+  std::vector<std::string_view> fields;
+  if (!split(line, separator, fields)) return std::nullopt;
   return fields;
 }
 

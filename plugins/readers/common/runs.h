@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
 #include <vector>
 
-#include "fields.h"
+#include "nonio/sdk/column_map.h"
+#include "nonio/sdk/fields.h"
 #include "nonio/sdk/plugin.h"
 
 /// What the readers of instrument files share: runs of one axis, each reading once.
@@ -18,11 +20,12 @@ namespace nonio::reading {
 /// An error with its line; the file is that of the measurement.
 Error at_line(std::uint64_t line, std::string message);
 
-/// `text` as an error of an option: "option unit: wanted ..., found ...".
-Error of_option(std::string_view option, std::string message);
-
 /// The fields of a line with blanks between them.
 std::vector<std::string_view> by_blanks(std::string_view line);
+
+/// The fields of a line of a table whose separator a user named: ' ' stands for blanks, '|' may
+/// stand at both ends too. Nothing where a quote is not closed.
+std::optional<std::vector<std::string_view>> by_separator(std::string_view line, char separator);
 
 /// Numbers of one file: a decimal point everywhere, or a decimal comma everywhere.
 class Numbers {

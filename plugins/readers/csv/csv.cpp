@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "duplicates.h"
-#include "fields.h"
 #include "header.h"
 #include "lines.h"
+#include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 #include "spatial.h"
 
@@ -271,6 +271,8 @@ Expected<Header> read_header(Lines& lines, const Expectation& expectation) {
   if (!next_content(lines, line, error))
     return error ? fail(std::move(*error)) : fail("expected a header row, found an empty file");
   if ((error = not_text(line))) return fail(std::move(*error));
+  if ((error = other_separator(lines.separator(), find_separator(line))))
+    return fail(std::move(*error));
   return parse_header(line, expectation);
 }
 
@@ -369,7 +371,7 @@ bool recognises(std::string_view head) {
   Lines lines(head);
   std::string_view line;
   while (lines.next(line))
-    if (content_of(line) == Content::fields)
+    if (content_of(line) == Content::fields && !(lines.number() == 1 && stated_separator(line)))
       return known_names(line, find_separator(line)) > 0 || has_spatial_name(line);
   return false;
 }

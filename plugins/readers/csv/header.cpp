@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-#include "fields.h"
+#include "nonio/sdk/fields.h"
 
 namespace nonio::csv {
 using namespace reading;

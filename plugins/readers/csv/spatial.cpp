@@ -10,7 +10,7 @@
 #include <string>
 #include <tuple>
 
-#include "fields.h"
+#include "nonio/sdk/fields.h"
 #include "table.h"
 
 namespace nonio::csv {

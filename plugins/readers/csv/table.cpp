@@ -6,8 +6,8 @@
 #include <limits>
 #include <optional>
 
-#include "fields.h"
 #include "lines.h"
+#include "nonio/sdk/fields.h"
 
 namespace nonio::csv {
 using namespace reading;
@@ -33,6 +33,7 @@ class TableReader {
     while (!error && next_content(lines, line, error)) {
       line_ = lines.number();
       error = not_text(line);
+      if (!error && header) error = other_separator(lines.separator(), separator_of(line));
       if (!error) error = header ? take_header(line) : take_row(line);
       header = false;
     }

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "air.h"
-#include "fields.h"
+#include "nonio/sdk/fields.h"
 #include "runs_of.h"
 
 namespace nonio::renishaw {
@@ -93,6 +93,7 @@ Expected<Observations> read_rtl(const ReadInput& input) {
 
 /// Every file of this family but rta, to refuse the others with a word for them.
 bool recognises(std::string_view head) {
+  head = without_mark(head);
   return trimmed(head.substr(0, head.find_first_of("\r\n"))) == "HEADER::" && !is_type(head, "rta");
 }
 

@@ -2,7 +2,6 @@
 #include "column_map.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
 #include <tuple>
 
@@ -11,21 +10,14 @@
 namespace nonio::wide_table {
 using namespace reading;
 using Role = Column::Role;
-using Way = Column::Way;
 
 namespace {
 
 const char* const roles_help =
     "\"target\", \"ignore\", a run and how it went (\"1 +\", \"1 -\", or \"1 forward\", \"1 "
-    "reverse\": as the targets are listed), or of a print \"mean +\", \"mean -\", \"2s +\", \"2s "
+    "reverse\": as the targets are listed; \"1\" where option tables says how it went), or of a "
+    "print \"mean +\", \"mean -\", \"2s +\", \"2s "
     "-\" (or forward, reverse), \"mean\", \"dead zone\"";
-
-Way way_of(std::string_view word) {
-  if (word == "+") return Way::plus;
-  if (word == "-") return Way::minus;
-  if (word == "forward") return Way::forward;
-  return word == "reverse" ? Way::reverse : Way::none;
-}
 
 Expected<Column> column_of(const std::string& text) {
   const auto words = by_blanks(text);
@@ -36,10 +28,12 @@ Expected<Column> column_of(const std::string& text) {
   if (words.size() == 1 && words[0] == "target") return Column{Role::target};
   if (words.size() == 1 && words[0] == "ignore") return Column{Role::ignore};
   if (words.size() == 1 && words[0] == "mean") return Column{Role::both};
+  if (words.size() == 1 && whole_number(words[0], 10000) != 0)
+    return Column{Role::reading, Way::none, whole_number(words[0], 10000)};
   if (words.size() != 2) return wrong();
   if (words[0] == "dead" && words[1] == "zone") return Column{Role::dead_zone};
   Column column;
-  column.way = way_of(words[1]);
+  column.way = way_named(words[1]);
   if (column.way == Way::none) return wrong();
   if (words[0] == "mean" || words[0] == "2s") {
     column.role = words[0] == "mean" ? Role::mean : Role::two_sigma;
@@ -78,40 +72,19 @@ Expected<std::vector<Column>> columns_of(const std::vector<std::string>& texts) 
   return columns;
 }
 
-Expected<double> unit_of_option(const Settings& options, const char* name,
-                                const std::map<std::string, double, std::less<>>& units) {
-  const auto found = units.find(options.text(name));
-  if (found != units.end()) return found->second;
-  std::string list;
-  for (const auto& [unit, value] : units) list += (list.empty() ? "" : ", ") + unit;
-  return fail(of_option(
-      name, "wanted one of " + list + " for this axis, found \"" + options.text(name) + "\""));
-}
-
-Expected<char> separator_of(const Settings& options) {
-  const std::string name = options.text("separator");
-  static const std::map<std::string, char, std::less<>> separators{
-      {",", ','}, {";", ';'}, {"tab", '\t'}, {"blank", ' '}, {"|", '|'}};
-  const auto found = separators.find(name);
-  if (found != separators.end()) return found->second;
-  return fail(of_option(
-      "separator", "wanted one of \",\" \";\" \"tab\" \"blank\" \"|\", found \"" + name + "\""));
-}
-
-Expected<void> take_values(const Settings& options, Map& map) {
-  const std::string values = options.text("values");
-  if (values == "positions") {
-    map.positions = true;
-  } else if (values == "target - actual") {
-    map.sign = -1.0;
-  } else if (values != "actual - target") {
-    return fail(of_option("values",
-                          "wanted what the values are, \"actual - target\", \"target - actual\" or "
-                          "\"positions\"; found \"" +
-                              values + "\". A sign is not guessed"));
-  }
-  if (map.positions && map.means())
-    return fail(of_option("values", "wanted deviations in a table of means, found positions"));
+/// Each run has its way, of its column or of its table, and not of both.
+Expected<void> check_ways(const Map& map) {
+  for (const Column& c : map.columns)
+    for (const RowRange& table : map.tables)
+      if (c.role == Role::reading && (c.way == Way::none) == (table.way == Way::none))
+        return fail(of_option("columns",
+                              "wanted how the axis went, of each run (\"1 +\") or of "
+                              "each of the tables (\"12-36 forward\"), found it " +
+                                  std::string(c.way == Way::none ? "nowhere" : "twice") +
+                                  " for run " + std::to_string(c.run)));
+  if (map.means() && map.tables.size() > 1)
+    return fail(of_option("tables",
+                          "wanted one table of means, found " + std::to_string(map.tables.size())));
   return {};
 }
 
@@ -122,32 +95,25 @@ bool Map::means() const {
                      [](const Column& c) { return c.role == Role::mean; });
 }
 
+Map Map::of(const RowRange& table) const {
+  Map map = *this;
+  map.tables = {table};
+  for (Column& c : map.columns)
+    if (c.role == Role::reading && c.way == Way::none) c.way = table.way;
+  return map;
+}
+
 Expected<Map> map_of(const Settings& options, bool rotary) {
-  static const std::map<std::string, double, std::less<>> lengths{
-      {"m", 1.0}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}, {"inch", 0.0254}},
-      angles{{"deg", 1.0 / deg_per_rad},
-             {"rad", 1.0},
-             {"mrad", 1e-3},
-             {"urad", 1e-6},
-             {"arcsec", 1.0 / arcsec_per_rad}};
   Map map;
   auto columns = columns_of(options.texts("columns"));
   if (!columns) return fail(columns.error());
+  auto table = table_map_of(options, rotary);
+  if (!table) return fail(table.error());
+  static_cast<TableMap&>(map) = std::move(*table);
   map.columns = std::move(*columns);
-  const auto target = unit_of_option(options, "target_unit", rotary ? angles : lengths),
-             value = unit_of_option(options, "value_unit", rotary ? angles : lengths);
-  if (!target) return fail(target.error());
-  if (!value) return fail(value.error());
-  map.target_unit = *target;
-  map.value_unit = *value;
-  const auto separator = separator_of(options);
-  if (!separator) return fail(separator.error());
-  map.separator = *separator;
-  if (auto ok = take_values(options, map); !ok) return fail(ok.error());
-  map.first_line = static_cast<std::uint64_t>(options.integer("first_line", 1));
-  map.last_line = static_cast<std::uint64_t>(options.integer("last_line", 0));
-  if (map.last_line != 0 && map.last_line < map.first_line)
-    return fail(of_option("last_line", "wanted a line behind first_line, or 0 for the end"));
+  if (map.positions && map.means())
+    return fail(of_option("values", "wanted deviations in a table of means, found positions"));
+  if (auto ok = check_ways(map); !ok) return fail(ok.error());
   return map;
 }
 

@@ -13,7 +13,6 @@
 namespace nonio::wide_table {
 using namespace reading;
 using Role = Column::Role;
-using Way = Column::Way;
 
 namespace {
 
@@ -32,46 +31,36 @@ int decimals_of(std::string_view number) {
 
 class TableReader {
  public:
-  explicit TableReader(const Map& map) : map_(map), numbers_(map.separator != ',') {}
+  /// The decimal mark is the same in all tables of the file.
+  TableReader(const Map& map, Numbers& numbers) : map_(map), numbers_(numbers) {}
 
   Expected<Table> read(std::string_view bytes) {
     Lines lines(bytes);
     std::string_view line;
     while (lines.next(line)) {
-      if (lines.number() < map_.first_line) continue;
-      if (map_.last_line != 0 && lines.number() > map_.last_line) break;
+      if (lines.number() < rows_.first) continue;
+      if (rows_.last != 0 && lines.number() > rows_.last) break;
       if (content_of(line) != Content::fields) continue;
       if (auto error = not_text(line)) return fail(at_line(lines.number(), error->message));
       if (auto ok = row(line, lines.number()); !ok) return fail(ok.error());
     }
     if (table_.rows.size() < 2)
-      return fail("wanted two targets or more from line " + std::to_string(map_.first_line) +
+      return fail("wanted two targets or more from line " + std::to_string(rows_.first) +
                   " on, found " + std::to_string(table_.rows.size()));
     return std::move(table_);
   }
 
  private:
-  std::vector<std::string_view> fields_of(std::string_view line, bool& sound) const {
-    sound = true;
-    if (map_.separator == ' ') return by_blanks(line);
-    if (map_.separator == '|') {
-      line = trimmed(line);
-      if (line.starts_with('|')) line.remove_prefix(1);
-      if (line.ends_with('|')) line.remove_suffix(1);
-    }
-    std::vector<std::string_view> fields;
-    sound = split(line, map_.separator, fields);
-    return fields;
-  }
-
   Expected<void> row(std::string_view line, std::uint64_t number) {
-    bool sound = false;
-    const auto fields = fields_of(line, sound);
-    if (!sound || fields.size() != map_.columns.size())
+    const auto split = by_separator(line, map_.separator);
+    if (!split || split->size() != map_.columns.size())
       return fail(at_line(number, "wanted " + std::to_string(map_.columns.size()) +
                                       " fields as in option columns, found " +
-                                      std::to_string(fields.size()) + ": " + shown(line) +
-                                      "; rows begin and end at first_line and last_line"));
+                                      std::to_string(split ? split->size() : 0) + ": " +
+                                      shown(line) +
+                                      "; rows begin and end at first_line and "
+                                      "last_line, or as option tables says"));
+    const auto& fields = *split;
     std::vector<double> values;
     for (std::size_t k = 0; k < fields.size(); ++k) {
       const Role role = map_.columns[k].role;
@@ -95,23 +84,16 @@ class TableReader {
   }
 
   const Map& map_;
-  Numbers numbers_;
+  const RowRange& rows_ = map_.tables.front();
+  Numbers& numbers_;
   Table table_;
 };
-
-std::int8_t direction(Way way, int listed) {
-  const int sign = way == Way::plus      ? 1
-                   : way == Way::minus   ? -1
-                   : way == Way::forward ? listed
-                                         : -listed;
-  return static_cast<std::int8_t>(sign);
-}
 
 /// Column of that role that goes that way; npos if there is none.
 std::size_t column(const Map& map, Role role, int way, int listed) {
   for (std::size_t k = 0; k < map.columns.size(); ++k)
     if (const Column& c = map.columns[k];
-        c.role == role && (way == 0 || direction(c.way, listed) == way))
+        c.role == role && (way == 0 || direction_of(c.way, listed) == way))
       return k;
   return std::string::npos;
 }
@@ -129,7 +111,7 @@ Expected<void> no_average(const Map& map, const Table& table, int listed) {
       for (std::size_t j = 0; j < row.size(); ++j) {
         const bool same_way =
             map.columns[j].role == Role::reading && j != k &&
-            direction(map.columns[j].way, listed) == direction(map.columns[k].way, listed);
+            direction_of(map.columns[j].way, listed) == direction_of(map.columns[k].way, listed);
         if (!same_way) continue;
         sum += row[j];
         ++others;
@@ -181,32 +163,44 @@ void note_means(const Map& map, const Table& table, bool rotary, Observations& o
       {"wide.means", {{"largest", 0.5 * largest * map.value_unit, deviation_of(rotary)}}});
 }
 
-Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
-  const auto map = map_of(input.options, axis.rotary);
-  if (!map) return fail(map.error());
-  const auto table = TableReader(*map).read(input.bytes);
-  if (!table) return fail(table.error());
-  const int listed = sense_of(table->targets);
-  if (listed == 0)
-    return fail(at_line(table->lines.front(), "wanted targets that only rise or only fall"));
-  if (auto ok = map->means() ? check_print(*map, *table, listed) : no_average(*map, *table, listed);
-      !ok)
-    return fail(ok.error());
-  Runs runs(input, axis, axis.rotary);
-  for (std::size_t i = 0; i < table->rows.size(); ++i)
-    for (std::size_t k = 0; k < map->columns.size(); ++k) {
-      const Column& c = map->columns[k];
+Expected<void> add_rows(const Map& map, const Table& table, int listed, Runs& runs) {
+  for (std::size_t i = 0; i < table.rows.size(); ++i)
+    for (std::size_t k = 0; k < map.columns.size(); ++k) {
+      const Column& c = map.columns[k];
       if (c.role != Role::reading && c.role != Role::mean) continue;
-      const double value = table->rows[i][k], target = table->targets[i] * map->target_unit;
-      const double deviation =
-          map->positions ? value * map->value_unit - target : map->sign * value * map->value_unit;
-      if (auto ok = runs.add(
-              {std::max(c.run, 1U), direction(c.way, listed), target, deviation, table->lines[i]});
+      const double target = table.targets[i] * map.target_unit;
+      const double deviation = map.deviation(table.rows[i][k] * map.value_unit, target);
+      if (auto ok = runs.add({std::max(c.run, 1U), direction_of(c.way, listed), target, deviation,
+                              table.lines[i]});
           !ok)
-        return fail(ok.error());
+        return ok;
     }
+  return {};
+}
+
+Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
+  const auto all = map_of(input.options, axis.rotary);
+  if (!all) return fail(all.error());
+  Numbers numbers(all->separator != ',');
+  Runs runs(input, axis, axis.rotary);
+  int listed = 0;  // of the first table: "forward" means one direction in the whole file
+  Table last;
+  for (const RowRange& rows : all->tables) {
+    const Map map = all->of(rows);
+    auto table = TableReader(map, numbers).read(input.bytes);
+    if (!table) return fail(table.error());
+    const int sense = sense_of(table->targets);
+    if (sense == 0)
+      return fail(at_line(table->lines.front(), "wanted targets that only rise or only fall"));
+    if (listed == 0) listed = sense;
+    if (auto ok = map.means() ? check_print(map, *table, listed) : no_average(map, *table, listed);
+        !ok)
+      return fail(ok.error());
+    if (auto ok = add_rows(map, *table, listed, runs); !ok) return fail(ok.error());
+    last = std::move(*table);
+  }
   auto obs = runs.finish();
-  if (obs && map->means()) note_means(*map, *table, axis.rotary, *obs);
+  if (obs && all->means()) note_means(*all, last, axis.rotary, *obs);
   return obs;
 }
 
@@ -228,28 +222,9 @@ Reader reader() {
       "Tables with a row for each target and a column for each run and direction, as the user maps "
       "them; only where the measurement names this reader.",
       {{"columns", std::vector<std::string>{}, "",
-        "What each column is, in order: target, ignore, \"1 +\", \"1 -\", \"1 forward\", \"mean "
-        "+\", \"2s +\", mean, \"dead zone\"."},
-       {"values",
-        std::string(),
-        "",
-        "What the values are.",
-        {"", "actual - target", "target - actual", "positions"}},
-       {"target_unit", std::string(), "", "mm, um, m, inch; deg, rad, mrad, arcsec."},
-       {"value_unit", std::string(), "", "um, mm, nm, m, inch; arcsec, deg, urad, mrad, rad."},
-       {"separator",
-        std::string(),
-        "",
-        "What stands between the columns.",
-        {"", ",", ";", "tab", "blank", "|"}},
-       {"first_line", std::int64_t{1}, "", "Line of the first row.", {}, 1.0, 4e9},
-       {"last_line",
-        std::int64_t{0},
-        "",
-        "Line of the last row; 0: the end of the file.",
-        {},
-        0.0,
-        4e9}}};
+        "What each column is, in order: target, ignore, \"1 +\", \"1 -\", \"1 forward\", \"1\", "
+        "\"mean +\", \"2s +\", mean, \"dead zone\"."}}};
+  for (Option& option : table_map_options()) r.info.options.push_back(std::move(option));
   // Nobody could tell it from any other table.
   r.recognises = [](std::string_view) { return false; };
   r.reads = [](std::string_view kind) { return kind == "axis"; };

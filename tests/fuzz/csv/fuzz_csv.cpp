@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "csv.h"
-#include "fields.h"
+#include "nonio/sdk/fields.h"
 
 namespace {
 
@@ -26,8 +26,7 @@ void must(bool holds, const char* what) {
 void check_error(const nonio::Error& error, std::string_view bytes) {
   must(!error.message.empty(), "an error has words");
   must(error.message.size() < 1000, "an error is short");
-  must(nonio::reading::is_utf8(error.message) && nonio::reading::is_utf8(error.column),
-       "words are UTF-8");
+  must(nonio::is_utf8(error.message) && nonio::is_utf8(error.column), "words are UTF-8");
   for (const std::string* words : {&error.message, &error.column})
     for (const char c : *words)
       must(static_cast<unsigned char>(c) >= 0x20, "words have no control characters");

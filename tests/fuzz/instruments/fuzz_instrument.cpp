@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-#include "fields.h"
+#include "nonio/sdk/fields.h"
 #include "nonio/sdk/plugin.h"
 #include READER_HEADER
 
@@ -25,7 +25,7 @@ void must(bool holds, const char* what) {
 }
 
 void must_be_words(const std::string& words) {
-  must(nonio::reading::is_utf8(words), "words are UTF-8");
+  must(nonio::is_utf8(words), "words are UTF-8");
   for (const char c : words)
     must(static_cast<unsigned char>(c) >= 0x20, "words have no control characters");
 }
@@ -117,6 +117,14 @@ struct World {
     if (print)
       columns = {"target",     "mean forward", "mean reverse", "mean",
                  "2s forward", "2s reverse",   "dead zone"};
+    if (reader.info.name == "long-table") {
+      columns = {"cycle", "pos", "target", "value"};
+      if (bytes.find("+") != bytes.npos) columns.push_back("direction");
+    }
+    const bool tables = bytes.find("table") != bytes.npos;
+    if (columns.back() == "value" || tables)
+      set("tables", std::vector<std::string>{"2-4 forward", "6- reverse"});
+    if (reader.info.name == "wide-table" && tables) columns = {"target", "1", "2", "3"};
     set("columns", columns);
     set("code_page", std::string(bytes.size() % 2 == 0 ? "windows-1251" : "utf-8"));
     set("touches", std::int64_t{bytes.size() % 4 == 0 ? 5 : 0});

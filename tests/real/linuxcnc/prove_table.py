@@ -1,10 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""prove_table.py WRITER PLUGIN
+"""prove_table.py WRITER PLUGIN NONIO
 
 An invented axis is wrong by a known function, another one in each direction. Nonio's plugin writes
 its table; LinuxCNC itself, without display and real-time kernel, loads it and goes to the targets
-from both sides. The axis stands at motor + error(motor): it must be at the target, to 0.1 um.
+from both sides. The axis stands at motor + error(motor): it must be at the target, to 0.1 um, but for
+what the error is at the reference point (0), where the table is zero.
+
+Types 0 and 1; an instrument that was not zeroed; a table that was on while it was measured (nonio
+apply); the two sides of a gantry.
 
 Exit status: 0 shown, 1 not so, 77 LinuxCNC is not here.
 """
@@ -33,6 +37,23 @@ def error(x, direction):
                      -0.005 - 0.002 * math.sin(x / 30.0))
 
 
+def error_2(x, direction):
+    """of the second side of a gantry"""
+    return -0.8 * error(x, direction) + 4e-5 * x
+
+
+def at_reference(of):
+    return (of(0.0, +1) + of(0.0, -1)) / 2.0
+
+
+OFFSET = 50.14  # mm: a sensor that was not set to zero
+
+
+def before(x, direction):
+    """what an old table of type 1 adds, mm; linear between the targets"""
+    return 0.004 * math.sin(x / 100.0) + (0.001 if direction > 0 else -0.002)
+
+
 INI = """[EMC]
 VERSION = 1.1
 MACHINE = table
@@ -53,8 +74,8 @@ EMCIO = io
 CYCLE_TIME = 0.01
 TOOL_TABLE = tools
 [KINS]
-KINEMATICS = trivkins coordinates=X
-JOINTS = 1
+KINEMATICS = trivkins coordinates={coordinates} kinstype={kins}
+JOINTS = {joints}
 [TRAJ]
 COORDINATES = X
 LINEAR_UNITS = mm
@@ -67,7 +88,9 @@ MIN_LIMIT = -100
 MAX_LIMIT = 500
 MAX_VELOCITY = 1000
 MAX_ACCELERATION = 5000
-[JOINT_0]
+"""
+
+JOINT = """[JOINT_{n}]
 TYPE = LINEAR
 MIN_LIMIT = -100
 MAX_LIMIT = 500
@@ -76,21 +99,27 @@ MAX_ACCELERATION = 5000
 FERROR = 1000
 MIN_FERROR = 1000
 HOME_SEQUENCE = 0
-COMP_FILE = table.comp
+COMP_FILE = table{n}.comp
 COMP_FILE_TYPE = {type}
 """
 
 HAL = """loadrt homemod
-loadrt trivkins coordinates=X
-loadrt motmod servo_period_nsec=1000000 num_joints=1
+loadrt trivkins coordinates={coordinates} kinstype={kins}
+loadrt motmod servo_period_nsec=1000000 num_joints={joints}
 addf motion-command-handler servo-thread
 addf motion-controller servo-thread
-net motor joint.0.motor-pos-cmd => joint.0.motor-pos-fb
 net chain iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
 """
+HAL_JOINT = "net motor{n} joint.{n}.motor-pos-cmd => joint.{n}.motor-pos-fb\n"
 
 
 # ---- inside: one LinuxCNC, from start to stop, in the current folder
+
+def joints():
+    """of the machine in this folder"""
+    with open("machine.ini") as f:
+        return f.read().count("[JOINT_")
+
 
 class Controller:
     def __init__(self):
@@ -132,7 +161,7 @@ class Controller:
             self.status, self.command = self.api.stat(), self.api.command()
             self.errors = self.api.error_channel()
             self.status.poll()
-            return self.status.joints == 1
+            return self.status.joints == joints()
         except self.api.error:
             return False
 
@@ -157,13 +186,14 @@ class Controller:
         c.wait_complete(5)
         c.teleop_enable(0)
         c.wait_complete(5)
-        c.home(0)  # on the spot: motor 0 is joint 0
-        self.wait("homing", lambda: self.polled("homed")[0])
+        for n in range(joints()):  # on the spot: motor 0 is joint 0
+            c.home(n)
+            self.wait("homing", lambda: self.polled("homed")[n])
         c.mode(api.MODE_MDI)
         c.wait_complete(5)
 
-    def pins(self, *names):
-        return [self.hal.get_value("joint.0." + n) for n in names]
+    def pins(self, joint, *names):
+        return [self.hal.get_value("joint.%d.%s" % (joint, n)) for n in names]
 
     def go(self, x):
         self.command.mdi("G53 G0 X%.9f" % x)
@@ -172,8 +202,9 @@ class Controller:
         still = [time.monotonic(), None]
 
         def settled():  # the correction is ramped in, moves do not wait for it
-            now = self.pins("motor-pos-cmd", "vel-cmd", "backlash-corr", "backlash-filt")
-            if now != still[1] or now[1] != 0.0 or now[2] != now[3]:
+            now = [self.pins(n, "motor-pos-cmd", "vel-cmd", "backlash-corr", "backlash-filt")
+                   for n in range(joints())]
+            if now != still[1] or any(j[1] != 0.0 or j[2] != j[3] for j in now):
                 still[:] = [time.monotonic(), now]
             return time.monotonic() - still[0] > 0.02
 
@@ -185,8 +216,10 @@ class Controller:
             for x in targets:
                 self.go(x - 5.0 * direction)
                 self.go(x)
-                commanded, motor, offset = self.pins("pos-cmd", "motor-pos-cmd", "motor-offset")
-                rows.append([x, direction, commanded, motor - offset])
+                for n in range(joints()):
+                    commanded, motor, offset = self.pins(n, "pos-cmd", "motor-pos-cmd",
+                                                         "motor-offset")
+                    rows.append([x, direction, commanded, motor - offset, n])
         said = self.errors.poll()
         return {"rows": rows, "errors": [said[1]] if said else []}
 
@@ -283,13 +316,22 @@ def skip(words):
     sys.exit(77)
 
 
-def run(table, file_type, private):
+def machine(tables, file_type):
+    """names and texts of the files of a machine with so many joints on axis X"""
+    words = {"coordinates": "X" * len(tables), "joints": len(tables), "type": file_type,
+             "kins": "BOTH" if len(tables) > 1 else "1"}
+    ini = INI.format(**words) + "".join(JOINT.format(n=n, **words) for n in range(len(tables)))
+    hal = HAL.format(**words) + "".join(HAL_JOINT.format(n=n) for n in range(len(tables)))
+    return [("machine.ini", ini), ("machine.hal", hal), ("tools", ""), ("parameters", "")] + [
+        ("table%d.comp" % n, table) for n, table in enumerate(tables)]
+
+
+def run(tables, file_type, private):
     folder = tempfile.mkdtemp(prefix="nonio-linuxcnc-")
     sockets = tempfile.mkdtemp(prefix="nonio-rt-")
     there = {kind: left_behind(kind) for kind in ("shm", "sem")}
     try:
-        for name, text in (("table.comp", table), ("machine.ini", INI.format(type=file_type)),
-                           ("machine.hal", HAL), ("tools", ""), ("parameters", "")):
+        for name, text in machine(tables, file_type):
             with open(os.path.join(folder, name), "w") as f:
                 f.write(text)
         environment = {"PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "HOME": folder,
@@ -327,22 +369,60 @@ def run(table, file_type, private):
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def judge(file_type, result):
+def judge(name, errors, result):
     if "problem" in result or result["errors"]:
-        print("type %d: %s" % (file_type, result.get("problem", result.get("errors"))))
+        print("%s: %s" % (name, result.get("problem", result.get("errors"))))
         return False
-    left = [(abs(motor + error(motor, d) - commanded), x, d)
-            for x, d, commanded, motor in result["rows"]]
-    moved = max(abs(motor - commanded) for _, _, commanded, motor in result["rows"])
+    left = [(abs(motor + errors[n](motor, d) - commanded - at_reference(errors[n])), x, d)
+            for x, d, commanded, motor, n in result["rows"]]
+    moved = max(abs(row[3] - row[2]) for row in result["rows"])
     worst = max(left)
-    print("type %d: %d targets and directions, corrections up to %.4f mm, |actual - commanded| up "
-          "to %.7f mm (at %g mm, %+d)" % (file_type, len(left), moved, *worst))
-    return len(left) == 2 * len(TARGETS) and moved > 0.015 and all(
+    print("%s: %d targets and directions, corrections up to %.4f mm, |actual - commanded| up "
+          "to %.7f mm (at %g mm, %+d)" % (name, len(left), moved, *worst))
+    return len(left) == 2 * len(TARGETS) * len(errors) and 0.012 < moved < 0.1 and all(
         l[0] <= TOLERANCE for l in left)
 
 
+def written(file_type, of, offset=0.0):
+    """the table by the plugin, of such readings"""
+    lines = ["%r %r %r" % (x, (of(x, +1) + offset) * 1e3, (of(x, -1) + offset) * 1e3)
+             for x in TARGETS]
+    return subprocess.run([sys.argv[1], sys.argv[2], str(file_type)], input="\n".join(lines),
+                          stdout=subprocess.PIPE, text=True, check=True).stdout
+
+
+def renewed():
+    """the table of a campaign that was measured with another table on, by nonio apply"""
+    with tempfile.TemporaryDirectory(prefix="nonio-apply-") as folder:
+        campaign = os.path.join(folder, "site", "c")
+        os.makedirs(campaign)
+        old = os.path.join(folder, "linuxcnc-X.comp")
+        with open(old, "w") as f:
+            f.writelines("%.8f %.8f %.8f\n" % (x, before(x, +1), before(x, -1)) for x in TARGETS)
+        with open(os.path.join(campaign, "campaign.toml"), "w") as f:
+            f.write('format = 1\n[campaign]\nid = "c"\n[machine]\ncontrol = "linuxcnc"\n'
+                    '[machine.axes.X]\nkind = "linear"\n[options.linuxcnc]\ntype = 1\n'
+                    '[[measurement]]\nid = "X"\nkind = "axis"\naxis = "X"\nfile = "X.csv"\n')
+        with open(os.path.join(campaign, "X.csv"), "w") as f:
+            f.write("run,direction,target_mm,deviation_um\n")
+            for run in (1, 2):
+                for d, order in ((+1, TARGETS), (-1, TARGETS[::-1])):
+                    for x in order:
+                        c = before(x, d)
+                        f.write("%d,%s,%.6f,%.9f\n" % (run, "+" if d > 0 else "-", x,
+                                                      (error(x + c, d) + c) * 1e3))
+        out = os.path.join(folder, "out")
+        done = subprocess.run([sys.argv[3], "apply", old, campaign, "--was-on", "--out", out],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        try:
+            with open(os.path.join(out, "linuxcnc-X.comp")) as f:
+                return f.read()
+        except OSError:
+            raise SystemExit("nonio apply: " + done.stdout)
+
+
 def main():
-    if len(sys.argv) != 3:
+    if len(sys.argv) != 4:
         print(__doc__)
         return 2
     missing = [p for p in PROGRAMS if not shutil.which(p)]
@@ -352,13 +432,14 @@ def main():
     private = namespaces()
     if not private and left_behind("shm"):
         skip("another LinuxCNC is running, and the kernel gives no private namespaces")
-    lines = ["%r %r %r" % (x, error(x, +1) * 1e3, error(x, -1) * 1e3) for x in TARGETS]
     good = True
-    for file_type in (0, 1):
-        table = subprocess.run([sys.argv[1], sys.argv[2], str(file_type)], input="\n".join(lines),
-                               stdout=subprocess.PIPE, text=True, check=True).stdout
-        result = run(table, file_type, private)
-        good = judge(file_type, result) and good
+    for name, file_type, tables, errors in (
+            ("type 0", 0, [written(0, error)], [error]),
+            ("type 1", 1, [written(1, error)], [error]),
+            ("an instrument that was not zeroed", 0, [written(0, error, OFFSET)], [error]),
+            ("a table that was on before", 1, [renewed()], [error]),
+            ("a gantry pair", 0, [written(0, error), written(0, error_2)], [error, error_2])):
+        good = judge(name, errors, run(tables, file_type, private)) and good
     return 0 if good else 1
 
 

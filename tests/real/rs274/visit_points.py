@@ -7,6 +7,7 @@ which order and how long must be the plan, written down here once more.
 
 Exit status: 0 shown, 1 not so, 77 rs274 is not here.
 """
+import json
 import pathlib
 import re
 import shutil
@@ -132,6 +133,57 @@ class Interpreter(unittest.TestCase):
         self.assertEqual(len({round(b - a, 3) for a, b in zip(up, up[1:])}), 4, up)
         start, end = round(up[0] - OVER, 3), round(up[-1] + OVER, 3)
         self.assertEqual([p[0] for p, rest in stops if rest == 0], [start] + [end, start] * RUNS)
+
+
+class SignProbe(unittest.TestCase):
+    """Offsets that stand in the control (G54, G92) do not move the probe: it is in machine coordinates."""
+
+    def test_offsets_do_not_move_it(self):
+        with tempfile.TemporaryDirectory(prefix="nonio-rs274-") as name:
+            folder = pathlib.Path(name)
+            (folder / "c").mkdir()
+            (folder / "c" / "campaign.toml").write_text(
+                'format = 1\n[campaign]\nid = "c"\n[machine]\nmodel = "FP 12"\ncontrol = "linuxcnc"\n'
+                '[machine.axes.X]\nkind = "linear"\ntravel = [-10, 410]\n'
+                '[[measurement]]\nid = "X"\nkind = "axis"\naxis = "X"\nfile = "X.csv"\n')
+            rows = ["run,direction,target_mm,deviation_um"]
+            rows += [f"{r},{d},{50 * i},{(i * i) % 7}" for r in (1, 2) for d in "+-" for i in range(9)]
+            (folder / "c" / "X.csv").write_text("\n".join(rows) + "\n")
+            done = subprocess.run([NONIO, "plan", "sign-probe", folder / "c", "--out", folder / "p", "--json"],
+                                  capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            probe = json.loads(done.stdout)["probes"][0]
+            program = folder / "p" / "sign-probe-X.nc"
+            text = program.read_text()
+            self.assertIn("(machine: FP 12)", text)
+            self.assertIn("DRY RUN FIRST", text)
+            # G54 is at 100 inch, G92 at 7 inch, and both are on
+            (program.parent / "v.var").write_text("5210\t1\n5211\t7\n5220\t1\n5221\t100\n")
+            ran = subprocess.run(["rs274", "-v", "v.var", "-g", program.name], cwd=program.parent, text=True,
+                                 capture_output=True, timeout=60)
+            self.assertEqual(ran.returncode, 0, ran.stderr)
+            offset = {}
+            moves, seen = [], []
+            for line in ran.stdout.splitlines():
+                word = re.search(r"([A-Z_0-9]+)\(([^)]*)\)", line)
+                if word is None:
+                    continue
+                numbers = re.findall(r"-?\d+\.?\d*", word.group(2))
+                if word.group(1) == "SET_G5X_OFFSET":
+                    offset["g5x"] = float(numbers[1])
+                elif word.group(1) == "SET_G92_OFFSET":
+                    offset["g92"] = float(numbers[0])
+                elif word.group(1) in ("STRAIGHT_FEED", "STRAIGHT_TRAVERSE"):
+                    moves.append((word.group(1), float(numbers[0]) + sum(offset.values())))
+                seen.append(word.group(1))
+        self.assertEqual(len(offset), 2)
+        self.assertGreater(min(offset.values()), 100.0)
+        wanted = [probe[k] for k in ("start_mm", "from_mm", "to_mm")]
+        self.assertEqual([kind for kind, _ in moves], ["STRAIGHT_FEED"] * 3)
+        for (_, at), to in zip(moves, wanted):
+            self.assertAlmostEqual(at, to, delta=1e-3)
+        for word, times in (("DWELL", 2), ("PROGRAM_STOP", 2), ("PROGRAM_END", 1)):
+            self.assertEqual(seen.count(word), times, word)
 
 
 if shutil.which("rs274") is None:

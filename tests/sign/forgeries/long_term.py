@@ -493,11 +493,11 @@ def forgeries(pdf, made, authority):
     token = authority.token(pdf)
     yield "time stamp over the issued part only", whole.copy().write(token=token)
     yield "time stamp of another file", whole.copy().write(token=authority.token(b"x"))
-    yield "time stamp of an hour ago, moved", Update(twice, authority).write(token=bytes.fromhex(re.findall(
-        rb"/DocTimeStamp.*?/Contents <([0-9a-f]*)>", lta, re.S)[0].decode().rstrip("0") + "00"))
+    padded = re.search(rb"/DocTimeStamp.*?/Contents <([0-9a-f]*?)(?:00)*>", lta, re.S)[1].decode()
+    yield "time stamp of an hour ago, moved", Update(twice, authority).write(token=bytes.fromhex(padded + "00"))
     yield "no time stamp in its place", re.sub(rb"(/DocTimeStamp\n.*?/Contents <)[0-9a-f]*", lambda m: m[1] + b"0" * 32768, lta, flags=re.S)
     gap = lta.index(b"/Contents <", lta.index(b"/DocTimeStamp")) + 11
-    size = len(lta[gap:lta.index(b">", gap)].rstrip(b"0"))
+    size = len(padded)
     yield "time stamp in capital letters", lta[:gap] + lta[gap:gap + size].upper() + lta[gap + size:]
     yield "something in the padding", lta[:gap + size + 20] + b"41" + lta[gap + size + 22:]
     yield "time stamp that is a signature", whole.copy().write(token=openssl(

@@ -267,6 +267,28 @@ TEST(EveryTable, WarnsOfSuspectReadings) {
   }
 }
 
+// A place in the manifest is no number of the control.
+TEST(EveryTable, NumberIsNeverGuessed) {
+  std::mt19937 random(11);
+  Bench b(random_axis(random, false));
+  b.numbered = false;
+  for (const Output& output : {siemens_plugin(), fanuc_plugin()}) {
+    const auto r = b.write(output);
+    ASSERT_TRUE(r) << output.info.name;
+    EXPECT_TRUE(r->artifacts.empty()) << output.info.name;
+    const Finding* f = finding(*r, "table.axis-number");
+    ASSERT_NE(f, nullptr) << output.info.name;
+    EXPECT_TRUE(f->attention);
+    EXPECT_TRUE(contains(f->advice, "[axes.X] of machines/<asset>.toml"));
+  }
+  for (const Output& output : {heidenhain_plugin(), linuxcnc_plugin()}) {
+    const auto r = b.write(output);
+    ASSERT_TRUE(r) << output.info.name;
+    EXPECT_FALSE(r->artifacts.empty()) << output.info.name;
+  }
+  EXPECT_FALSE(contains(file(*b.write(linuxcnc_plugin()), "linuxcnc-X.ini"), "[JOINT_"));
+}
+
 // A mistake in option `axes` names the option, of which the host knows the line.
 TEST(EveryTable, SaysThatOptionAxesIsToBlame) {
   for (const Kind& k : kinds())
@@ -385,7 +407,7 @@ TEST(EveryTable, PresentBacklashIsCounted) {
   EXPECT_TRUE(contains(file(*h, "heidenhain-tnc-X.txt"), "backLash = +0.0130\n"));
   // LinuxCNC drops its BACKLASH beside a table: -5 um of it come into one column, +5 into the other
   const auto l = b.write(linuxcnc_plugin(), {{"axes", present}});
-  EXPECT_EQ(lines(file(*l, "linuxcnc-X.comp"))[0], "0.00000000 -0.00500000 0.00800000");
+  EXPECT_EQ(lines(file(*l, "linuxcnc-X.comp"))[0], "0.00000000 -0.00650000 0.00650000");
 }
 
 // Over-travel at reversal: nearly always a value that is too large already.

@@ -36,9 +36,9 @@ TEST(Heidenhain, ListedLayoutByHand) {
   EXPECT_EQ(file(*r, "heidenhain-tnc-X.COM"),
             "BEGIN AXIS_X.COM MM\n"
             "NR   AXISPOS       BACKLASH      X\n"
-            "0    -100.0000                   -0.0175\n"
-            "1    +0.0000                     +0.0025\n"
-            "2    +100.0000                   +0.0225\n"
+            "0    -100.0000                   -0.0200\n"
+            "1    +0.0000                     +0.0000\n"
+            "2    +100.0000                   +0.0200\n"
             "[END]\n");
   EXPECT_TRUE(contains(file(*r, "heidenhain-tnc-X.txt"), "backLash = +0.0050\n"));
   EXPECT_EQ(file(*r, "heidenhain-tnc-CONFIG.CMA"),
@@ -62,9 +62,9 @@ TEST(Heidenhain, EquidistantLayoutByHand) {
   EXPECT_EQ(file(*r, "heidenhain-tnc-X.COM"),
             "BEGIN AXIS-X.COM  DATUM:-100.0000 DISTANCE:+100.0000\n"
             "NR                  X\n"
-            "0       -100.0000   -0.0175\n"
-            "1       +0.0000     +0.0025\n"
-            "2       +100.0000   +0.0225\n");
+            "0       -100.0000   -0.0200\n"
+            "1       +0.0000     +0.0000\n"
+            "2       +100.0000   +0.0200\n");
   EXPECT_LT(prediction(*r, "E").after, 0.06 * um);
 }
 
@@ -78,7 +78,7 @@ TEST(Heidenhain, SecondAxisHasItsOwnColumn) {
   EXPECT_EQ(lines(file(*r, "heidenhain-tnc-Y.COM"))[1],
             "NR   AXISPOS       BACKLASH      X             Y");
   EXPECT_EQ(lines(file(*r, "heidenhain-tnc-Y.COM"))[2],
-            "0    -100.0000                                 -0.0175");
+            "0    -100.0000                                 -0.0200");
   const std::string cma = file(*r, "heidenhain-tnc-CONFIG.CMA");
   EXPECT_EQ(assigned(cma, "X"), "AXIS_X.COM");
   EXPECT_EQ(assigned(cma, "Y"), "AXIS_Y.COM");
@@ -92,7 +92,7 @@ TEST(Heidenhain, DirectionsFillTheBacklashColumn) {
   options["directions"] = true;
   const auto r = Bench(two_axes_x()).write(heidenhain_plugin(), options);
   ASSERT_TRUE(r) << r.error().message;
-  EXPECT_EQ(lines(file(*r, "heidenhain-tnc-X.COM"))[2], "0    -100.0000     -0.0150       -0.0200");
+  EXPECT_EQ(lines(file(*r, "heidenhain-tnc-X.COM"))[2], "0    -100.0000     -0.0175       -0.0225");
   EXPECT_TRUE(contains(file(*r, "heidenhain-tnc-X.txt"), "backLash = +0.0000\n"));
   EXPECT_LT(prediction(*r, "B").after, 0.05 * um);
   options["layout"] = std::string("itnc530");

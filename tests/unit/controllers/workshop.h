@@ -61,13 +61,31 @@ inline Settings settings(const Output& output, const Options& given) {
   return s;
 }
 
+/// As the record of a machine would say it, for the axes whose entries do not: X is the first.
+inline void state_numbers(Settings& s, const Output& output, const std::vector<Axis>& axes) {
+  if (!s.has("axes")) return;
+  auto entries = s.texts("axes");
+  const bool joints = output.info.name == "linuxcnc";  // counts from 0
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const std::string begin = axes[i].name + " ";
+    bool said = false;
+    for (const std::string& e : entries)
+      said = said || (e.rfind(begin, 0) == 0 && (e.find(" number=") != std::string::npos ||
+                                                 e.find(" joint=") != std::string::npos));
+    if (!said) entries.push_back(begin + "number=" + std::to_string(joints ? i : i + 1));
+  }
+  s.values["axes"] = entries;
+}
+
 /// What the control makes of these files, on a machine with these axes.
 inline Expected<std::vector<LoadedTable>> read_back(
     const Output& output, const std::vector<Artifact>& files, const Options& options = {},
     const std::vector<Axis>& axes = {{.name = "X"}, {.name = "Y"}, {.name = "Z"}}) {
   Campaign campaign;
   campaign.machine.axes = axes;
-  return output.parse({files, campaign, settings(output, options)});
+  Settings s = settings(output, options);
+  state_numbers(s, output, axes);
+  return output.parse({files, campaign, s});
 }
 
 /// What it adds to one axis by its own position.
@@ -113,6 +131,7 @@ struct Bench {
   std::vector<Observations> observations;
   Results results;
   Templates templates;
+  bool numbered = true;  ///< somebody says how the control counts the axes
 
   Bench() {
     campaign.id = "test";
@@ -156,7 +175,8 @@ struct Bench {
   }
 
   Expected<OutputResult> write(const Output& output, const Options& options = {}) const {
-    const Settings s = settings(output, options);
+    Settings s = settings(output, options);
+    if (numbered) state_numbers(s, output, campaign.machine.axes);
     return output.write({campaign, observations, results, s, templates});
   }
 };

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fields.h"
+#include "nonio/sdk/fields.h"
 
 namespace nonio::csv {
 using namespace reading;

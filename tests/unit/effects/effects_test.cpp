@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <set>
 #include <sstream>
 
 #include "nonio/host/manifest.h"
@@ -81,6 +82,8 @@ const std::vector<std::string> kinds_in_space = {
     "squareness",    "straightness",      "yaw",         "pitch",     "roll",
     "line-slope",    "mirror-tilt",       "centre",      "direction", "radial-run-out",
     "axial-run-out", "linear-squareness", "linear-scale"};
+
+const std::vector<std::string> descriptions = {"free-position", "free-reversal", "free-time"};
 
 std::vector<double> first_shape(const Effect& e, const Observations& o, const Axis& axis) {
   std::vector<double> shape;
@@ -195,6 +198,26 @@ TEST(Effects, WhatATableCanTakeAway) {
   }
 }
 
+TEST(Effects, DescriptionsAreNoCandidatesAndSayEachTargetByItself) {
+  const Observations o = campaign(linear(), 5, 0.1, 3);
+  for (const std::string& name : descriptions) {
+    const Effect& e = effect(name);
+    EXPECT_TRUE(e.description && e.curve) << name;
+    ASSERT_TRUE(e.applies(o, linear())) << name;
+    const auto columns = e.columns(o, linear(), first_shape(e, o, linear()));
+    ASSERT_TRUE(columns) << name;
+    if (name == "free-time") continue;
+    // Each column is of one target.
+    for (const auto& column : *columns) {
+      std::set<double> at;
+      for (std::size_t i = 0; i < o.size(); ++i)
+        if (column[i] != 0.0) at.insert(o.axes.front().position[i]);
+      EXPECT_EQ(at.size(), 1U) << name;
+    }
+    EXPECT_FALSE(e.applies(campaign(linear(), 4, 0.1, 3), linear())) << name;
+  }
+}
+
 TEST(Effects, EveryOneHasACardInEveryLanguage) {
   for (const char* language : {"en", "it"}) {
     const std::string file = std::string(NONIO_WORDS) + "/" + language + "/effects.toml";
@@ -209,6 +232,7 @@ TEST(Effects, EveryOneHasACardInEveryLanguage) {
     };
     auto all = kinds;
     all.insert(all.end(), kinds_in_space.begin(), kinds_in_space.end());
+    all.insert(all.end(), descriptions.begin(), descriptions.end());
     for (const auto& kind : all) {
       for (const char* part : {"title", "is", "size", "looks", "alike", "cure"})
         expect("effect." + kind + "." + part);

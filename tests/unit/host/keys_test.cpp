@@ -108,7 +108,7 @@ TEST(Keys, DeclarationsAreSound) {
         key.unit == "um" || key.unit == "arcsec" || key.unit == "K" || key.unit == "MB";
     EXPECT_TRUE(!has_suffix || key.name.find(key.unit) != std::string_view::npos) << place;
   };
-  for (const Key* file : {&campaign_file(), &site_file(), &specification_file()})
+  for (const Key* file : {&campaign_file(), &site_file(), &machine_file(), &specification_file()})
     every_key(*file, std::string(file->name), look);
   EXPECT_GT(seen, 120U);
 }

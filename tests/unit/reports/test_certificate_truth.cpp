@@ -323,6 +323,62 @@ TEST_F(Truth, TheFirstPageSaysItAll) {
     EXPECT_TRUE(has(first, what)) << what;
 }
 
+/// A limit that nothing was held against is not passed over; a test in one direction has results.
+TEST_F(Truth, LimitsThatNothingWasHeldAgainstAreSaid) {
+  Behaviour one;
+  one.minus = false;
+  Case c = made(one);
+  Axis other = c.campaign.machine.axes[0];
+  other.name = "Z";
+  other.tolerance = {{"A", 10e-6}};
+  c.campaign.machine.axes.push_back(other);
+  c.campaign.machine.axes[0].tolerance = {{"A", 30e-6}, {"B", 6e-6}};
+  std::string first = read_pdf(files(c)[0]).pages.front();
+  std::replace(first.begin(), first.end(), '\n', ' ');
+  for (const std::string& text : {first, dcc(c)}) {
+    EXPECT_TRUE(has(text, "X: no decision on A, B; a limit is stated, but")) << text;
+    EXPECT_TRUE(has(text, "axes that were not measured; nothing is decided of them: Z."));
+  }
+  for (const char* what : {"A↑", "E↑", "R↑"}) EXPECT_TRUE(has(first, what)) << what;
+  decide(c, "iso230-2", "A", 30e-6, Decision::conforms);
+  EXPECT_TRUE(has(page(c), "X: no decision on B; a limit"));
+}
+
+/// However many they are: a decision that a paper lacks is one that nobody can object to.
+TEST_F(Truth, EveryDecisionIsPrinted) {
+  Case c = whole_case(plugins);
+  for (int i = 1; i <= 8; ++i) {
+    const std::string id = "X" + std::to_string(i);
+    c.add(id, {});
+    c.campaign.machine.axes.back().expansion = 11.5e-6;
+  }
+  analyse(c);
+  for (const Measurement& m : c.campaign.measurements)
+    for (const char* name : {"A", "R", "B"})
+      c.results.conformity.push_back(
+          {m.id, "X", "iso230-2", name, 1e-6, Quantity::deviation, Decision::does_not_conform, ""});
+  ASSERT_EQ(c.results.conformity.size(), 27U);
+  const std::string text = page(c);
+  std::size_t count = 0;
+  for (std::size_t at = text.find("does not conform "); at != std::string::npos;
+       at = text.find("does not conform ", at + 1))
+    ++count;
+  EXPECT_GE(count, c.results.conformity.size()) << text;
+}
+
+/// "ISO 230-2" and "the plan of ISO 230-2 was not followed" of one paper: of which axis each.
+TEST_F(Truth, TwoMethodsSayForWhichMeasurementsTheyHold) {
+  Case c = whole_case(plugins);
+  Behaviour two_runs;
+  two_runs.runs = 2;
+  c.add("Y short", two_runs);
+  c.campaign.machine.axes.back().expansion = 11.5e-6;
+  analyse(c);
+  const std::string text = page(c);
+  EXPECT_TRUE(has(text, "X: ISO 230-2:2014, accuracy")) << text;
+  EXPECT_TRUE(has(text, "Y short: Positioning of a numerically controlled axis to a test plan"));
+}
+
 /// The frame's page is the first one, however long names, tables and changes are.
 TEST_F(Truth, TheSignatureStandsOnTheFirstPageWhateverIsAboveIt) {
   const std::string name(90, 'N');

@@ -70,6 +70,24 @@ TEST_F(PdfReport, AnOrdinaryAxisTakesTwoPages) {
   }
 }
 
+/// One line with the axes' names for all limits of axes that were not measured.
+TEST_F(PdfReport, LimitsOfAxesThatWereNotMeasuredAreNamedOnce) {
+  Case c = usual();
+  for (const char* name : {"V", "W"}) {
+    Axis axis = c.campaign.machine.axes.front();
+    axis.name = name;
+    axis.tolerance = {{"A", 20e-6}, {"B", 6e-6}, {"R", 9e-6}};
+    c.campaign.machine.axes.push_back(axis);
+    for (const auto& [limit, value] : axis.tolerance)
+      c.results.conformity.push_back({"", name, "", limit, value, Quantity::deviation,
+                                      Decision::cannot_be_decided, "no-value"});
+  }
+  std::string all = text(c);
+  std::replace(all.begin(), all.end(), '\n', ' ');
+  EXPECT_TRUE(has(all, "not measured; nothing is decided of them: V, W.")) << all;
+  EXPECT_FALSE(has(all, "can neither be accepted")) << all;
+}
+
 /// Tables that were refused, models and advice are no business of a customer.
 TEST_F(PdfReport, WhatIsForTheLaboratoryStandsInItsPartAlone) {
   Case c = usual();

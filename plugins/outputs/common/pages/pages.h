@@ -66,6 +66,9 @@ bool follows_plan(const OutputInput&, const Results::Analysed&);
 const Conformity* conformity_of(const OutputInput&, const Results::Analysed&,
                                 const std::string& name);
 std::string decision_text(const Source&, Decision);
+/// Limits of the manifest that nothing is held against: axes that were not measured, results that
+/// a test does not give. A sentence each.
+std::vector<std::string> undecided(const Source&);
 /// The rule by which is decided, in words, with its risk.
 std::string rule_text(const Source&);
 

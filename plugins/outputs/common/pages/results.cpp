@@ -179,6 +179,38 @@ const Conformity* conformity_of(const OutputInput& in, const Results::Analysed& 
   return nullptr;
 }
 
+std::vector<std::string> undecided(const Source& source) {
+  const Wording& w = source.words;
+  const Campaign& c = source.in.campaign;
+  const auto is_held = [&](const std::string& measurement, const std::string& name) {
+    const auto& all = source.in.results.conformity;
+    return std::any_of(all.begin(), all.end(), [&](const Conformity& k) {
+      return k.measurement == measurement && k.name == name &&
+             !(source.certificate && k.reason == "no-uncertainty");
+    });
+  };
+  std::string not_measured;
+  std::vector<std::string> sentences;
+  for (const Axis& axis : c.machine.axes) {
+    if (axis.tolerance.empty()) continue;
+    bool measured = false;
+    for (const Measurement& m : c.measurements) {
+      if (m.axis != axis.name || m.kind != "axis") continue;
+      measured = true;
+      std::string names;
+      for (const auto& [name, limit] : axis.tolerance)
+        if (!is_held(m.id, name)) names += (names.empty() ? "" : ", ") + symbol(name);
+      if (!names.empty())
+        sentences.push_back(
+            w.get("undecided.no_result", {{"measurement", m.id}, {"names", names}}));
+    }
+    if (!measured) not_measured += (not_measured.empty() ? "" : ", ") + axis.name;
+  }
+  if (!not_measured.empty())
+    sentences.push_back(w.get("undecided.not_measured", {{"axes", not_measured}}));
+  return sentences;
+}
+
 /// Two tables stand side by side; with tolerances and decisions they need the whole width, and what
 /// is said of the second one stands beside it.
 void add_results(const Source& source, const Measured& m, Blocks& blocks) {
@@ -291,49 +323,73 @@ std::string U_heading(const Source& source, double k) {
 
 namespace {
 
-/// Curves that no table of targets holds, each at its places with U.
-void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
-  const Wording& w = source.words;
-  Blocks tables;
-  constexpr double nothing = 1e-12;  // m or rad
-  bool by_definition = false;
+/// Curves over the same places.
+using Beside = std::vector<const Series*>;
+
+std::vector<Beside> curves_of(const Source& source, const Measured& m) {
+  constexpr std::size_t per_table = 3;
+  std::vector<Beside> all;
   for (const Results::Analysed* a : m.analyses) {
     if (a->plugin == model_analysis) continue;
     for (const Series& s : a->evaluation.series) {
       if (s.position.empty() || (source.certificate && s.U.size() != s.value.size())) continue;
-      Table table;
-      table.title = w.get("targets.curve", {{"name", symbol(s.name)}});
-      table.columns = {
-          {w.get("plot.place", {{"axis", s.over}}), unit_text(s.position_quantity), true},
-          {symbol(s.name), unit_text(s.quantity), true},
-          {U_heading(source, s.k), unit_text(s.quantity), true}};
-      const int decimals = decimals_for(s.position, s.position_quantity, 4);
-      for (std::size_t i = 0; i < s.position.size(); ++i) {
-        if (!std::isfinite(s.value[i])) continue;
-        const std::optional<double> U =
-            i < s.U.size() && std::isfinite(s.U[i]) ? std::optional(s.U[i]) : std::nullopt;
-        const bool none = !U || !(*U > 0.0);
-        if (none && source.certificate && std::fabs(s.value[i]) > nothing)
-          continue;  // without its U
-        by_definition |= none;
-        const Printed shown = printed_result(s.value[i], U, s.quantity, source.language());
-        table.rows.push_back(
-            {{printed_number(s.position[i], s.position_quantity, decimals, source.language())},
-             {shown.value},
-             {shown.U.empty() ? "–" : shown.U}});
-      }
-      if (!table.rows.empty())
-        tables.push_back({std::move(table), "curve " + s.name + " of " + m.measurement.id});
+      const bool fits = !all.empty() && all.back().size() < per_table &&
+                        all.back().front()->over == s.over &&
+                        all.back().front()->position_quantity == s.position_quantity &&
+                        all.back().front()->position == s.position;
+      if (!fits) all.emplace_back();
+      all.back().push_back(&s);
     }
   }
-  constexpr std::size_t per_row = 3;
-  for (std::size_t i = 0; i < tables.size(); i += per_row) {
-    Columns row;
-    for (std::size_t k = i; k < i + per_row; ++k) {
-      row.parts.emplace_back();
-      if (k < tables.size()) row.parts.back().push_back(std::move(tables[k]));
+  return all;
+}
+
+/// Value and U; nothing where a certificate lacks U, a dash for it where the value is zero by
+/// definition.
+std::pair<Printed, bool> at_place(const Source& source, const Series& s, std::size_t i) {
+  constexpr double nothing = 1e-12;  // m or rad
+  if (!std::isfinite(s.value[i])) return {{"", ""}, false};
+  const std::optional<double> U =
+      i < s.U.size() && std::isfinite(s.U[i]) ? std::optional(s.U[i]) : std::nullopt;
+  const bool none = !U || !(*U > 0.0);
+  if (none && source.certificate && std::fabs(s.value[i]) > nothing) return {{"", ""}, false};
+  Printed shown = printed_result(s.value[i], U, s.quantity, source.language());
+  if (shown.U.empty()) shown.U = "–";
+  return {std::move(shown), none};
+}
+
+/// Curves that no table of targets holds, at their places with U.
+void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
+  const Wording& w = source.words;
+  bool by_definition = false;
+  for (const Beside& curves : curves_of(source, m)) {
+    const Series& first = *curves.front();
+    Table table;
+    table.columns = {
+        {w.get("plot.place", {{"axis", first.over}}), unit_text(first.position_quantity), true}};
+    std::string names;
+    for (const Series* s : curves) {
+      names += (names.empty() ? "" : ", ") + symbol(s->name);
+      table.columns.push_back({symbol(s->name), unit_text(s->quantity), true});
+      table.columns.push_back({U_heading(source, s->k), unit_text(s->quantity), true});
     }
-    blocks.push_back({std::move(row), "curves of " + m.measurement.id});
+    table.title = w.get("targets.curve", {{"name", names}});
+    const int decimals = decimals_for(first.position, first.position_quantity, 4);
+    for (std::size_t i = 0; i < first.position.size(); ++i) {
+      std::vector<Table::Cell> row = {{printed_number(first.position[i], first.position_quantity,
+                                                      decimals, source.language())}};
+      bool any = false;
+      for (const Series* s : curves) {
+        auto [shown, none] = at_place(source, *s, i);
+        any |= !shown.value.empty();
+        by_definition |= none;
+        row.push_back({std::move(shown.value)});
+        row.push_back({std::move(shown.U)});
+      }
+      if (any) table.rows.push_back(std::move(row));
+    }
+    if (!table.rows.empty())
+      blocks.push_back({std::move(table), "curves " + names + " of " + m.measurement.id});
   }
   if (by_definition)
     blocks.push_back({Paragraph{w.get("targets.by_definition"), Paragraph::Look::small},

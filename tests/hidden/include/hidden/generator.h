@@ -67,10 +67,14 @@ const char* to_text(Source source);
 std::string kind_of(Source source);
 
 enum class Kind {
-  one,       ///< one hidden effect, 3.5 to 9 times the noise
-  several,   ///< two or three, 1.6 to 4 times the noise, 1 % misreadings
-  complete,  ///< the model holds all that is there
-  outside,   ///< something outside the catalogue, beside up to two effects of the model
+  one,               ///< one hidden effect, 3.5 to 9 times the noise
+  several,           ///< two or three, 1.6 to 4 times the noise, 1 % misreadings
+  complete,          ///< the model holds all that is there
+  outside,           ///< something outside the catalogue, beside up to two effects of the model
+  wave_under_curve,  ///< a lead error; the model holds the screw's ground pitch
+  screw_and_curve,   ///< both hidden
+  beside,            ///< one of 6 to 9 times the noise, and something outside of 2.5 to 4
+  grouped,           ///< one; the file lists all runs towards + before those towards -, no times
 };
 
 struct Piece {

@@ -15,6 +15,9 @@ namespace nonio::host {
 /// One campaign folder: what its manifest says and what its measurements hold.
 struct ReadCampaign {
   std::optional<Manifest> manifest;        ///< none if it cannot be read; then nothing else is
+  std::optional<MachineRecord> machine{};  ///< what the site knows of the campaign's machine
+  /// Of each axis: files of the table that was on while it was measured, where it was one.
+  std::map<std::string, std::vector<Artifact>> tables_on{};
   std::vector<Observations> observations;  ///< of each measurement; empty where none could be read
   std::vector<Effect> effects;             ///< of the plugins and of the campaign
   std::vector<Finding> doubts{};           ///< what makes the files themselves implausible
@@ -30,10 +33,18 @@ ReadCampaign read_campaign(const std::filesystem::path& folder, const Context& c
 /// Takes away the rows whose flag is 0.
 void keep_rows(Observations& observations, const std::vector<char>& kept);
 
+/// Templates that were read already: names below the folder, and bytes.
+struct TemplateFiles {
+  std::filesystem::path folder{};
+  std::map<std::string, std::string> files{};
+};
+
 /// All template folders laid over each other, the later ones winning, and one digest of them.
 /// `json`, if wanted: all of them in one text, from which `templates_from` has them again.
+/// `own` wins over all folders.
 Expected<Templates> read_templates(const std::vector<std::filesystem::path>& folders,
-                                   std::string& digest, std::string* json = nullptr);
+                                   std::string& digest, std::string* json = nullptr,
+                                   const TemplateFiles& own = {});
 
 /// Templates that travelled in a signed file.
 struct CarriedTemplates {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "nonio/host/machines.h"
 #include "nonio/host/manifest.h"
 #include "nonio/host/plugins.h"
 #include "nonio/sdk/results.h"
@@ -19,7 +20,8 @@ namespace nonio::host {
 struct Context {
   std::string version;
   SiteFile site;
-  std::string site_sha256;  ///< of site.toml; of nothing if there is none
+  std::string site_sha256;    ///< of site.toml; of nothing if there is none
+  MachineRecords machines{};  ///< of the site
   const Plugins* plugins = nullptr;
   std::string plugins_sha256;  ///< empty where no results are recorded
   std::string today{};         ///< YYYY-MM-DD; empty where no day is too late

@@ -94,8 +94,9 @@ Expected<void> publish(const std::filesystem::path& folder, const std::vector<Ar
 /// are missing are made.
 Expected<void> write_temporaries(const std::filesystem::path& folder,
                                  const std::vector<Artifact>& files);
-/// The names that files under temporary names in a folder are to get, in order.
-std::vector<std::string> temporaries(const std::filesystem::path& folder);
+/// The names that files under temporary names in a folder are to get, in order; none if there is no
+/// such folder.
+Expected<std::vector<std::string>> temporaries(const std::filesystem::path& folder);
 /// What was flushed of this file is read from the disk the next time.
 void drop_cached(const std::filesystem::path& path);
 
@@ -104,6 +105,9 @@ void drop_cached(const std::filesystem::path& path);
 std::filesystem::path temporary_path(const std::filesystem::path& folder, const std::string& name);
 Expected<void> rename_temporaries(const std::filesystem::path& folder,
                                   const std::vector<std::string>& names);
+
+/// Removes files under temporary names whose names are known: the folder need not be listed.
+void remove_temporaries(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
 /// Removes what a killed process left half-written in a folder.
 void remove_leftovers(const std::filesystem::path& folder);

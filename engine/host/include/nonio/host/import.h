@@ -20,13 +20,16 @@ struct ImportRule {
   std::string kind = "axis";         ///< of every measurement
   std::string reader;                ///< empty: by content
   std::vector<std::string> exclude;  ///< files are passed over whose path holds one of these
-  std::string manifest;              ///< TOML: what stands in every campaign.toml besides
+  std::string axis;                  ///< of every file; empty: what stands at {axis}
+  /// What may stand at {axis}, and the axis of the machine it means; empty: see `fits`.
+  std::map<std::string, std::string, std::less<>> axes;
+  std::string manifest;  ///< TOML: what stands in every campaign.toml besides
 };
 
 using Places = std::map<std::string, std::string, std::less<>>;
 
-/// A pattern alone, or a TOML file with `pattern`, `campaign`, `kind`, `reader`, `exclude` and the
-/// table [manifest].
+/// A pattern alone, or a TOML file with `pattern`, `campaign`, `kind`, `reader`, `exclude`, `axis`
+/// and the tables [axes] and [manifest].
 Checked<ImportRule> import_rule_of_pattern(const std::string& pattern);
 Checked<ImportRule> parse_import_rule(std::string_view text, const std::string& file);
 
@@ -39,7 +42,9 @@ struct ImportedFile {
   std::string name;  ///< in the campaign
   std::string measurement, axis, reader;
   std::uint64_t readings = 0, missing = 0;
-  std::vector<std::string> lacks;  ///< what has to be said or mended before it can be read
+  std::vector<std::string> lacks;    ///< what has to be said or mended before it can be read
+  std::string same_as;               ///< the file that has the same readings
+  std::vector<std::string> assumed;  ///< what was taken from the name or the rule, not as it stood
 };
 
 struct ImportedCampaign {

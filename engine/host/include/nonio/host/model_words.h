@@ -28,6 +28,9 @@ class ModelWords {
   /// A curve in space some of whose parameters are counted to other effects.
   std::string not_told(const std::string& effect, std::size_t parameters) const;
   /// Measurements that do not say where the other axes stood.
+  std::string description(const model::Description&, const PartModel&) const;
+  std::string order_assumed(const std::string& measurement) const;
+  std::string order_unknown() const;
   std::string stood_somewhere() const;
   std::string unmeasured(const std::string& effect) const;
   /// What the catalogue says of an effect by its kind: "is", "size", "looks", "cure"; "" if

@@ -14,6 +14,9 @@ namespace nonio::host {
 
 /// "a.ini,b.ini": the files of one table.
 Expected<std::vector<Artifact>> read_table_files(const std::string& list);
+/// The same from inside of a folder, each of at most 1 MB.
+Expected<std::vector<Artifact>> read_table_files(const std::string& list,
+                                                 const std::filesystem::path& base);
 
 /// The controller plugin of this name; without one that after which the files are called, or the
 /// only one that can read them.
@@ -55,9 +58,32 @@ struct TableForecast {
   bool worse() const { return !(E[1] <= E[0]); }
 };
 
-/// With these tables in the control in place of none.
+/// What was in force while a campaign was measured, and its readings without it.
+struct Underlay {
+  std::vector<LoadedTable> tables;
+  Settings options;                    ///< with the backlash values that these tables' files hold
+  std::vector<Observations> readings;  ///< as they would be without these tables
+};
+/// The tables that were on, as manifest and record say; none: there was no table. An error where
+/// the control does not read them as tables of these axes.
+Expected<std::optional<Underlay>> what_was_on(const ReadCampaign&, const Output&,
+                                              const Settings& options);
+/// The same readings, or what a model says of them, without these tables; the backlash stays.
+std::vector<Observations> without_tables(const Campaign&, const std::vector<Observations>&,
+                                         const std::vector<LoadedTable>&);
+/// A table was made of readings without what was on: before it, the axis is as it was measured.
+void compare_with_measured(const ReadCampaign&, OutputResult&);
+
+/// The backlash parameter while axis was measured, m or rad, of option `axes`; nothing: not said.
+std::optional<double> stated_backlash(const Settings& options, const std::string& axis,
+                                      bool rotary);
+/// Adds it.
+void state_backlash(Settings& options, const std::string& axis, bool rotary, double value);
+
+/// With these tables in the control in place of what was on, or of none.
 std::vector<TableForecast> forecast(const ReadCampaign&, const std::vector<LoadedTable>&,
-                                    const Settings& options);
+                                    const Settings& options,
+                                    const std::optional<Underlay>& on = std::nullopt);
 
 /// What the plugin would write for the campaign if these tables were in force while it was
 /// measured: they are taken off the readings first, so that the new table is the whole of what is
@@ -70,6 +96,28 @@ struct RenewedTables {
 };
 Expected<RenewedTables> renew(const ReadCampaign&, const Output&, Settings options,
                               const Templates&, const std::vector<LoadedTable>& present);
+
+/// The tables that a control gets of the campaign; none where all were refused.
+struct CampaignTables {
+  std::vector<Artifact> files;
+  std::vector<LoadedTable> tables;
+  std::vector<Finding> findings;
+};
+Expected<CampaignTables> tables_of_campaign(const ReadCampaign&, const Output&,
+                                            const Settings& options, const Templates&);
+
+/// A control's backup with the table of one axis renewed.
+struct MergedTables {
+  std::vector<Artifact> files;  ///< that changed, whole; none: the table was refused
+  std::vector<TableDifference> differences;
+  std::vector<Finding> findings;
+  std::vector<Remark> notes;
+};
+/// An error where the plugin cannot merge, or where what the control reads of another axis would
+/// change.
+Expected<MergedTables> merge_tables(const ReadCampaign&, const Output&, const Settings& options,
+                                    const Templates&, const std::vector<Artifact>& backup,
+                                    const std::string& axis);
 
 /// Two positions of an axis, reached from below, between which its error differs most. With the
 /// table the instrument shows `left` of that, or twice the difference if the sign is wrong.

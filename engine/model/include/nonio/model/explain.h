@@ -30,6 +30,9 @@ struct Part {
   std::vector<std::uint32_t> row{};          ///< of each reading: row of its measurement's table
   std::vector<double> along{};               ///< of each reading: its place on its line, m or rad
   std::vector<std::int8_t> way{};            ///< of each reading: +1 or -1 along its line
+  /// Measurements of an axis whose file cannot be in the order in which it was measured: the cycle
+  /// of ISO 230-2 is assumed.
+  std::vector<std::string> order_assumed{};
 };
 
 /// A reading that was taken where the manifest does not say where the other axes stood.
@@ -51,8 +54,9 @@ std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects
 /// The names that an effect has in this part: "backlash:X", "straightness:EYX".
 std::vector<std::string> names_of(const Part& part, const Effect& effect);
 
-/// The effects that a model names, then those that are always there; an unknown kind or axis is an
-/// error with the nearest name. Effects of axes that other parts hold are left out.
+/// The effects that a model names, then those that are always there, then its descriptions; an
+/// unknown kind or axis is an error with the nearest name. Effects of axes that other parts hold
+/// are left out.
 Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
                                      const std::vector<std::string>& names,
                                      const std::vector<Effect>& effects);
@@ -139,10 +143,20 @@ struct Verdict {
   double suspects_share = 0.0;  ///< of the readings
 };
 
+/// A description added to the best explanation and to those before it: what is left, not why.
+struct Description {
+  Term term;         ///< with the shapes found
+  double rms = 0.0;  ///< what is left with it, m or rad
+};
+
 struct Explanation {
   Comparison comparison;
   std::vector<Candidate> candidates;  ///< best first
   std::vector<std::string> together;  ///< what the best explanation adds to the model
+  double best_rms = 0.0;              ///< what the best explanation leaves, m or rad
+  /// Of these what is free of doubt, whatever the rest is; most evidence first.
+  std::vector<std::string> certain;
+  std::vector<Description> descriptions;  ///< unknown: of what the best explanation leaves
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
   std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
   Verdict verdict;

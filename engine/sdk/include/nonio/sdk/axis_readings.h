@@ -24,7 +24,9 @@ struct AxisReadings {
   std::vector<double> K;  ///< material temperature less its mean, K; 0 everywhere if not measured
   double length = 0.0;    ///< of the measured stretch
   double duration = 0.0;  ///< of the longest line, s
-  bool timed = false;     ///< false: one reading counts as one second, in file order
+  /// False: one reading counts as one second, in the order of the rows; where that is not known
+  /// either, `t` is 0 everywhere.
+  bool timed = false;
   bool temperature = false;  ///< every reading has a material temperature
 };
 
@@ -44,7 +46,7 @@ inline void fill_times(const Observations& o, AxisReadings& r) {
   std::vector<double> first(lines, std::numeric_limits<double>::infinity()), count(lines, 0.0);
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (!r.moved[i]) continue;
-    r.t[i] = r.timed ? o.time[i] : count[line_of(i)]++;
+    r.t[i] = r.timed ? o.time[i] : o.order_known ? count[line_of(i)]++ : 0.0;
     first[line_of(i)] = std::min(first[line_of(i)], r.t[i]);
   }
   for (std::size_t i = 0; i < o.size(); ++i) {

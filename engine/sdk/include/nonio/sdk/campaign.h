@@ -22,6 +22,9 @@ struct Axis {
   std::optional<double> expansion{};          ///< 1/K
   std::map<std::string, double> tolerance{};  ///< upper limit of a result, by its name: m or rad
   std::string slave{};  ///< of a gantry: name of the control's axis that drives the second side
+  /// What was on in the control while the axis was measured; none: nobody says it.
+  std::optional<std::string> table_on{};  ///< files of the table; empty: there was none
+  std::optional<double> backlash_on{};    ///< m or rad; 0: there was none
 };
 
 struct Machine {
@@ -30,6 +33,7 @@ struct Machine {
   std::string structure;               ///< gantry, single-column, bridge, other; empty if not said
   std::string control;  ///< name of the output plugin that writes its tables; empty: any
   std::vector<Axis> axes;
+  std::string asset{};  ///< the machine's own number in the house; empty if not said
 
   const Axis* axis(std::string_view name) const {
     for (const Axis& a : axes)
@@ -114,6 +118,8 @@ struct Measurement {
   std::string exclude_reason{};            ///< why they do not; a certificate needs it
   std::map<std::string, double> at{};      ///< where the axes that stood still were, m
   std::string adjustment{};                ///< "before" or "after" one; empty: not said
+  /// Of the rows, where they have no times: "pendulum", "as-listed", "unknown"; empty: not said.
+  std::string order{};
 
   /// How the test was made, as ISO 230-2 wants it reported; what is empty was not said.
   std::optional<double> feed{};                      ///< m/s, rad/s

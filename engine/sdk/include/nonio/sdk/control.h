@@ -24,7 +24,9 @@ struct ControlTable {
   enum class Sign { error, correction };               ///< entries are +e, or -e
   enum class Entry { absolute, increment, position };  ///< position: nominal plus the entry
   enum class Grid { even, listed };
-  enum class Zero { free, reference, first };  ///< where an entry has to be 0
+  /// Where an entry has to be 0: nowhere (it is made so at the reference point all the same), at
+  /// the reference point, at the zero of the axis, from which the points count.
+  enum class Zero { free, reference, first };
   struct Scale {
     double linear = 1e-3, rotary = std::numbers::pi / 180.0;
     double of(bool is_rotary) const { return is_rotary ? rotary : linear; }
@@ -74,6 +76,15 @@ struct LoadedTable {
 /// options, say what the files' names mean.
 struct TableInput {
   const std::vector<Artifact>& files;
+  const Campaign& campaign;
+  const Settings& options;
+};
+
+/// A control's backup, and the files of a new table: what `Output::merge` puts together.
+struct MergeInput {
+  const std::vector<Artifact>& backup;  ///< as it was saved, all files that hold tables
+  const std::vector<Artifact>& table;   ///< of this axis, as `Output::write` made them
+  const std::string& axis;
   const Campaign& campaign;
   const Settings& options;
 };

@@ -58,6 +58,9 @@ struct Observations {
   /// Of the machine (manifest), for effects that depend on it.
   std::string structure{};
 
+  /// False: nobody knows in which order the rows were taken (manifest, `order = "unknown"`).
+  bool order_known = true;
+
   std::uint64_t missing = 0;  ///< readings that were not taken
   std::vector<Remark> notes;  ///< what the reader did that a user would want to know
 

@@ -100,6 +100,9 @@ struct Effect {
   /// An unknown of the set-up (how a mirror stood): in every model that it applies to, never a
   /// candidate.
   bool always = false;
+  /// A curve that says what is left and not why ("a reversal for each target"): never a candidate,
+  /// offered where no effect explains. Beside other effects it is what they leave of it.
+  bool description = false;
 };
 
 struct AnalysisInput {
@@ -162,9 +165,17 @@ struct Output {
   std::vector<std::string> (*lacks)(const OutputInput&) = nullptr;
   /// Optional: what is wrong with the templates and words that this output uses.
   std::vector<Error> (*check_templates)(const Templates&) = nullptr;
-  /// Of a table: what the control takes, and what it makes of files that are in it.
+  /// Of a table: what the control takes, and what it makes of files that are in it. Where the
+  /// output has an option `axes` of texts, the host puts into it what the record of the machine
+  /// says: "X number=1 reference_mm=0 from_mm=0 to_mm=800 resolution_um=1 largest_um=100
+  /// slope_um_per_m=200", and the same of rotary axes (_deg, _arcsec, slope_arcsec_per_deg). What
+  /// of it the control does not need is passed over.
   std::optional<ControlTable> control{};
   Expected<std::vector<LoadedTable>> (*parse)(const TableInput&) = nullptr;
+  /// Optional: the files of the backup with the table of this axis in place of its present one, all
+  /// else byte for byte as it was. Only files that changed are given. An error where it would touch
+  /// another axis.
+  Expected<std::vector<Artifact>> (*merge)(const MergeInput&) = nullptr;
 };
 
 /// What the host gives to a plugin's registration function.
@@ -179,7 +190,7 @@ class Registry {
   ~Registry() = default;
 };
 
-inline constexpr int sdk_version = 6;
+inline constexpr int sdk_version = 7;
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
@@ -203,7 +214,7 @@ inline constexpr int sdk_version = 6;
 #endif
 
 /// Everything that must agree before a plugin may be called.
-#define NONIO_ABI_TAG "nonio-sdk 6; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
+#define NONIO_ABI_TAG "nonio-sdk 7; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
 
 /// The one exported symbol, `nonio_plugin`. Plain: the host reads the tag before it calls anything.
 struct PluginEntry {

@@ -16,7 +16,7 @@ using AxisSettings = std::map<std::string, double, std::less<>>;
 
 struct KnownAxis {
   std::string name;
-  std::size_t number = 1;  ///< setting `number`, else its place in the manifest, from 1
+  std::size_t number = 0;  ///< setting `number`; 0: nobody says it, and nobody guesses it
   bool rotary = false;
   AxisSettings settings;
 
@@ -27,7 +27,9 @@ struct KnownAxis {
 };
 
 /// Entries "X number=1 step_mm=50" of option `axes`, by axis. `keys`: "reference" stands for
-/// reference_mm and reference_deg, a name with ':' at its end for a plain number; none: any.
+/// reference_mm and reference_deg, a name with ':' at its end for a plain number; none: any. What
+/// the record of a machine may say is always taken: number, reference, from, to, backlash,
+/// resolution, largest, slope.
 Expected<std::map<std::string, AxisSettings>> settings_of_axes(
     const Settings& options, const std::vector<std::string_view>& keys = {});
 

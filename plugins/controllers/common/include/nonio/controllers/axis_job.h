@@ -21,7 +21,7 @@ namespace nonio::controllers {
 struct AxisJob {
   std::string axis, measurement;
   std::string stem;        ///< of file names; with the measurement where an axis has two of them
-  std::size_t number = 1;  ///< its place among the machine's axes, from 1
+  std::size_t number = 0;  ///< in the control; 0: nobody says it
   bool rotary = false;
   math::ErrorCurve curve;                    ///< to be compensated: as measured, or the model's
   std::optional<math::ErrorCurve> measured;  ///< as measured, where `curve` is the model's
@@ -44,6 +44,7 @@ struct AxisJob {
   double backlash() const {
     return one_value_helps() ? present_backlash() - curve.mean_reversal() : present_backlash();
   }
+  /// Decided apart from the pitch: the reversal is constant enough that one value takes most of it.
   bool one_value_helps() const;
   /// The table of an axis that drifted was asked for: setting `drifted`.
   bool takes_drift() const { return setting("drifted").value_or(0.0) != 0.0; }
@@ -66,6 +67,12 @@ Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
                                          const std::vector<std::string_view>& keys,
                                          OutputResult& result);
 
+/// True, with a finding that names the key and the file, where nobody says the number of one of
+/// these axes in the control.
+bool lacks_number(const std::vector<std::string>& of, const OutputInput& input,
+                  const std::vector<KnownAxis>& axes, const std::string& measurement,
+                  OutputResult& result);
+
 /// A note about this axis; its words find {axis} and {unit}.
 Remark remark(const AxisJob& job, std::string id);
 
@@ -76,8 +83,8 @@ std::vector<Option> step_options();
 /// The step for this axis from its settings or the options; 0: not said.
 double wished_step(const AxisJob& job, const Settings& options);
 
-/// True, with a finding, where one value cannot compensate the reversal and no direction tables
-/// are asked for.
+/// True, with a finding, where the reversal changes along the axis by as much as the pitch table
+/// takes away, and no direction tables are asked for.
 bool refused(const AxisJob& job, bool directions, OutputResult& result);
 
 /// Lines for a table of an axis that was not stable while it was measured, or of readings that

@@ -38,6 +38,8 @@ struct CrossJob {
 
   /// X, Y, Z as far as they are in it, for names of files.
   std::string axes() const;
+  /// Every axis that a curve is of or over.
+  std::vector<std::string> moving() const;
 };
 
 /// Of the analyses that could separate the straightnesses: what is not known has no table.

@@ -18,6 +18,9 @@
 /// the readings and the numbers of a table, and between a table and what it does, is here.
 namespace nonio::controllers {
 
+/// "points in this table: 17", among the words: text without an end shows then where it was cut.
+inline constexpr const char* points_said = "points in this table: ";
+
 inline constexpr double full_turn = 2.0 * std::numbers::pi;  // rad
 
 /// A table of one axis before it is text.
@@ -27,7 +30,7 @@ struct Sheet {
   const OutputInput& input;
   bool directions = false;       ///< there is a table for each direction
   math::Grid grid{};             ///< where evenly spaced
-  double reference = 0.0;        ///< where an entry is 0, if one has to be; SI
+  double reference = 0.0;        ///< where an entry is 0; of two columns, their mean; SI
   std::vector<double> position;  ///< SI
   /// What an entry says (+e or -e, less what it is at the reference), SI, not yet rounded; `minus`
   /// is empty unless there are `directions`.
@@ -46,6 +49,8 @@ struct Sheet {
   /// an entry.
   std::string at(std::size_t i) const;
   std::string entry(double si) const;
+  /// Where the table is zero, and how large and steep it is: two lines that every file has.
+  std::vector<std::string> zero_and_size() const;
   /// Machine, axis, date, warnings, sign and reversal, for comments or a file of their own.
   std::vector<std::string> words() const;
 };

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /// Texts of tables, to be written and to be read.
@@ -19,6 +20,9 @@ std::string_view trimmed(std::string_view text);
 /// The whole text as a finite number, with or without its sign.
 std::optional<double> real(std::string_view text);
 std::optional<std::int64_t> whole(std::string_view text);
+
+/// Numbers and ranges of them, "0", "100-227", as first and last; what is none is left out.
+std::vector<std::pair<std::int64_t, std::int64_t>> ranges_of(const std::vector<std::string>& texts);
 
 /// Printable ASCII on one line, whatever the manifest says.
 std::string plain(std::string_view text);

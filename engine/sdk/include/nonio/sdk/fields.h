@@ -1,32 +1,59 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fields.h"
+#pragma once
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
+#include <string>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
+#include "nonio/sdk/format.h"
+#include "nonio/sdk/text.h"
+
+/// The lowest floor of readers of text: lines to fields, fields to numbers, text to words for a
+/// user.
 namespace nonio::reading {
-namespace {
+
+enum class DecimalMark : std::uint8_t { none, point, comma };
+
+struct Field {
+  enum class Kind : std::uint8_t {
+    taken,      ///< a finite number below 1e19 in size
+    not_taken,  ///< blank, nan, n/a, #N/A (#N/D, #NV), infinite, or 1e19 and more in size
+    bad,        ///< anything else
+  };
+  Kind kind = Kind::bad;
+  DecimalMark mark = DecimalMark::none;
+  double value = 0.0;
+};
+
+inline std::string_view trimmed(std::string_view text) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+bool missing_in_spreadsheet(std::string_view text);
+
+namespace detail {
 
 /// From here on a number is a mark of the instrument that no reading was taken.
-constexpr double sentinel = 1e19;
+inline constexpr double sentinel = 1e19;
 
-constexpr std::array<double, 23> power_of_ten = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                                 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-bool same_word(std::string_view text, std::string_view lower) {
+inline bool same_word(std::string_view text, std::string_view lower) {
   return std::equal(text.begin(), text.end(), lower.begin(), lower.end(),
                     [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + 32 : a) == b; });
 }
 
-bool means_not_taken(std::string_view text) {
+inline bool means_not_taken(std::string_view text) {
   if (text.empty() || same_word(text, "n/a")) return true;
   if (missing_in_spreadsheet(text)) return true;
   if (text.front() == '+' || text.front() == '-') text.remove_prefix(1);
@@ -43,13 +70,13 @@ struct Decimal {
 };
 
 /// Adds the digits at `p`, and gives where they end.
-const char* take_digits(const char* p, const char* end, std::uint64_t& digits) {
+inline const char* take_digits(const char* p, const char* end, std::uint64_t& digits) {
   for (; p != end && is_digit(*p); ++p) digits = digits * 10 + static_cast<std::uint64_t>(*p - '0');
   return p;
 }
 
 /// [eE][+-]digits at `p`; false if there is something else.
-bool take_exponent(const char* p, const char* end, Decimal& d) {
+inline bool take_exponent(const char* p, const char* end, Decimal& d) {
   if (p == end) return true;
   if (*p != 'e' && *p != 'E') return false;
   ++p;
@@ -65,7 +92,7 @@ bool take_exponent(const char* p, const char* end, Decimal& d) {
   return true;
 }
 
-bool take_apart(std::string_view text, bool comma_allowed, Decimal& d) {
+inline bool take_apart(std::string_view text, bool comma_allowed, Decimal& d) {
   const char* first = text.data();
   const char* const end = first + text.size();
   if (first != end && (*first == '-' || *first == '+')) d.negative = *first++ == '-';
@@ -82,7 +109,7 @@ bool take_apart(std::string_view text, bool comma_allowed, Decimal& d) {
 }
 
 /// Every digit counts here, so the library does it; the text is known to be well formed.
-double slow_value(std::string_view text, const Decimal& d) {
+inline double slow_value(std::string_view text, const Decimal& d) {
   std::string plain(text.front() == '+' ? text.substr(1) : text);
   std::replace(plain.begin(), plain.end(), ',', '.');
   double value = 0.0;
@@ -99,16 +126,20 @@ double slow_value(std::string_view text, const Decimal& d) {
   return large ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
-}  // namespace
+}  // namespace detail
 
-bool missing_in_spreadsheet(std::string_view text) {
-  return same_word(text, "#n/a") || same_word(text, "#n/d") || same_word(text, "#nv");
+/// What a spreadsheet writes for a value that is not there: #N/A, in other languages #N/D, #NV.
+inline bool missing_in_spreadsheet(std::string_view text) {
+  return detail::same_word(text, "#n/a") || detail::same_word(text, "#n/d") ||
+         detail::same_word(text, "#nv");
 }
 
-Field parse_number(std::string_view text, bool comma_allowed) {
-  Decimal d;
-  if (!take_apart(text, comma_allowed, d)) {
-    const auto kind = means_not_taken(text) ? Field::Kind::not_taken : Field::Kind::bad;
+/// A decimal number as it stands in a file: sign, digits, one decimal mark, exponent; no thousands
+/// separator, no hexadecimal, nothing behind it. The value is the double nearest to the text.
+inline Field parse_number(std::string_view text, bool comma_allowed) {
+  detail::Decimal d;
+  if (!detail::take_apart(text, comma_allowed, d)) {
+    const auto kind = detail::means_not_taken(text) ? Field::Kind::not_taken : Field::Kind::bad;
     return {kind, DecimalMark::none, 0.0};
   }
   double value = 0.0;
@@ -117,32 +148,34 @@ Field parse_number(std::string_view text, bool comma_allowed) {
   constexpr std::uint64_t exact = 1ULL << 53U;
   if (d.count <= 19 && d.digits <= exact && d.exponent >= -22 && d.exponent <= 22) {
     value = static_cast<double>(d.digits);
-    value = d.exponent < 0 ? value / power_of_ten[static_cast<std::size_t>(-d.exponent)]
-                           : value * power_of_ten[static_cast<std::size_t>(d.exponent)];
+    value = d.exponent < 0 ? value / exact_powers_of_10[static_cast<std::size_t>(-d.exponent)]
+                           : value * exact_powers_of_10[static_cast<std::size_t>(d.exponent)];
     if (d.negative) value = -value;
   } else {
-    value = slow_value(text, d);
+    value = detail::slow_value(text, d);
   }
-  const auto kind = std::fabs(value) < sentinel ? Field::Kind::taken : Field::Kind::not_taken;
+  const auto kind =
+      std::fabs(value) < detail::sentinel ? Field::Kind::taken : Field::Kind::not_taken;
   return {kind, d.mark, value + 0.0};  // + 0.0: no negative zero
 }
 
-std::uint32_t parse_run(std::string_view text) {
+/// 1..4294967295, digits only; 0 if it is anything else.
+inline std::uint32_t parse_run(std::string_view text) {
   std::uint64_t run = 0;
   if (text.empty()) return 0;
   for (const char c : text) {
-    if (!is_digit(c)) return 0;
+    if (!detail::is_digit(c)) return 0;
     run = run * 10 + static_cast<std::uint64_t>(c - '0');
     if (run > std::numeric_limits<std::uint32_t>::max()) return 0;
   }
   return static_cast<std::uint32_t>(run);
 }
 
-namespace {
+namespace detail {
 
 /// A field in quotes that open at `open`; gives where it ends, npos if it is not well formed.
-std::size_t quoted_end(std::string_view line, std::size_t open, char separator,
-                       std::string_view& field) {
+inline std::size_t quoted_end(std::string_view line, std::size_t open, char separator,
+                              std::string_view& field) {
   std::size_t close = line.find('"', open + 1);
   while (close != line.npos && close + 1 < line.size() && line[close + 1] == '"')
     close = line.find('"', close + 2);
@@ -153,9 +186,11 @@ std::size_t quoted_end(std::string_view line, std::size_t open, char separator,
   return end == line.size() || line[end] == separator ? end : line.npos;
 }
 
-}  // namespace
+}  // namespace detail
 
-bool split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
+/// Splits a line; fields come trimmed and without the quotes around them. False if a quote is not
+/// closed on this line or something stands behind a closing one.
+inline bool split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
   const char* const end = line.data() + line.size();
   for (const char* p = line.data();; ++p) {
@@ -163,7 +198,7 @@ bool split(std::string_view line, char separator, std::vector<std::string_view>&
     if (p != end && *p == '"') {
       std::string_view field;
       const auto after =
-          quoted_end(line, static_cast<std::size_t>(p - line.data()), separator, field);
+          detail::quoted_end(line, static_cast<std::size_t>(p - line.data()), separator, field);
       if (after == line.npos) return false;
       fields.push_back(field);
       p = line.data() + after;
@@ -176,29 +211,9 @@ bool split(std::string_view line, char separator, std::vector<std::string_view>&
   }
 }
 
-bool is_utf8(std::string_view text) {
-  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  for (std::size_t i = 0; i < text.size();) {
-    const unsigned c = at(i);
-    if (c < 0x80) {
-      ++i;
-      continue;
-    }
-    const std::size_t more = c >= 0xF0 ? 3 : c >= 0xE0 ? 2 : 1;
-    if (c < 0xC2 || c > 0xF4 || i + more >= text.size()) return false;
-    for (std::size_t k = 1; k <= more; ++k)
-      if ((at(i + k) & 0xC0U) != 0x80) return false;
-    const unsigned second = at(i + 1);
-    // Overlong forms, surrogates, beyond U+10FFFF (RFC 3629 section 4).
-    if ((c == 0xE0 && second < 0xA0) || (c == 0xED && second > 0x9F) ||
-        (c == 0xF0 && second < 0x90) || (c == 0xF4 && second > 0x8F))
-      return false;
-    i += more + 1;
-  }
-  return true;
-}
-
-std::string shown(std::string_view text) {
+/// Text of a file, quoted for a message: shortened, and control characters and bytes that are not
+/// UTF-8 as \xHH.
+inline std::string shown(std::string_view text) {
   constexpr std::size_t most = 40;
   constexpr std::string_view hex = "0123456789ABCDEF";
   std::string_view part = text.substr(0, most);
@@ -227,9 +242,9 @@ std::string shown(std::string_view text) {
   return out + (part.size() < text.size() ? "...\"" : "\"");
 }
 
-namespace {
+namespace detail {
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
+inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -244,16 +259,17 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-}  // namespace
+}  // namespace detail
 
-std::string_view nearest(std::string_view name, const std::vector<std::string_view>& names) {
+/// The name of `names` nearest to `name` by edit distance; names must not be empty.
+inline std::string_view nearest(std::string_view name, const std::vector<std::string_view>& names) {
   name = name.substr(0, 24);  // longer than any name of a column
   std::string_view best = names.front();
-  std::size_t least = edit_distance(name, best);
+  std::size_t least = detail::edit_distance(name, best);
   for (const std::string_view candidate : names) {
     const std::size_t a = name.size(), b = candidate.size();
     if ((a > b ? a - b : b - a) >= least) continue;  // the distance is at least that
-    const std::size_t distance = edit_distance(name, candidate);
+    const std::size_t distance = detail::edit_distance(name, candidate);
     if (distance >= least) continue;
     least = distance;
     best = candidate;
@@ -262,3 +278,20 @@ std::string_view nearest(std::string_view name, const std::vector<std::string_vi
 }
 
 }  // namespace nonio::reading
+
+namespace nonio {
+
+/// Text as a field of a CSV file: quoted where RFC 4180 asks for it. A spreadsheet takes text that
+/// starts with one of = + - @ (or with a tab or CR before it) for a formula; an apostrophe stops
+/// that.
+inline std::string csv_text(std::string_view words) {
+  std::string field(words);
+  if (!field.empty() && std::string_view("=+-@\t\r").find(field.front()) != std::string_view::npos)
+    field.insert(0, 1, '\'');
+  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
+  std::string quoted = "\"";
+  for (const char c : field) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace nonio

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "axis_argument.h"
+#include "nonio/host/files.h"
+#include "nonio/host/plan.h"
+#include "table_common.h"
+#include "verbs.h"
+
+namespace nonio::app {
+
+namespace {
+
+struct MergeWish {
+  std::string backup, folder, control, axis, out;
+  std::vector<std::string> settings;
+};
+
+const char* const merge_name = "nonio merge";
+
+/// The axis that is said, or the only one that was measured.
+Expected<std::string> merged_axis(const MergeWish& w, const Campaign& campaign) {
+  if (!w.axis.empty()) return w.axis;
+  std::vector<std::string> measured;
+  for (const Measurement& m : campaign.measurements) {
+    const std::string axis = control_axis(campaign.machine, m);
+    if (m.kind == "axis" && std::find(measured.begin(), measured.end(), axis) == measured.end())
+      measured.push_back(axis);
+  }
+  if (measured.size() == 1) return measured.front();
+  std::string list;
+  for (const std::string& a : measured) list += (list.empty() ? "" : ", ") + a;
+  return fail(measured.empty() ? "the campaign has no measurement of an axis"
+                               : "wanted --axis, one of " + list);
+}
+
+int tell_merged(const host::MergedTables& merged, const Loaded& present, const std::string& axis,
+                const MergeWish& w, const OpenCampaign& open, const Common& common) {
+  std::vector<std::string> written;
+  if (!w.out.empty())
+    for (const Artifact& f : merged.files)
+      written.push_back((std::filesystem::path(w.out) / f.name).string());
+  if (common.json) {
+    TableJson json = {{"schema", "nonio-merge/1"},
+                      {"campaign", open.campaign().id},
+                      {"control", present.control->info.name},
+                      {"axis", axis},
+                      {"tables", TableJson::array()}};
+    for (const auto& d : merged.differences) json["tables"].push_back(difference_json(d));
+    json["files"] = written;
+    std::cout << json.dump(1) << "\n";
+    return exit_done;
+  }
+  for (const auto& d : merged.differences) print_difference(d);
+  for (const std::string& file : written) std::cout << file << "\n";
+  return exit_done;
+}
+
+int merge(const MergeWish& w, const Common& common) {
+  const auto settings = settings_of(w.settings);
+  if (!settings) return complain(merge_name, settings.error().message);
+  const auto opened = open_campaign(merge_name, w.folder, common);
+  if (!opened) return opened.error();
+  const OpenCampaign& open = *opened;
+  const auto axis = merged_axis(w, open.campaign());
+  if (!axis) return complain(merge_name, axis.error().message);
+  const auto options = [&](const Info& info) { return campaign_options(open, info, *settings); };
+  const std::string control = w.control.empty() ? open.campaign().machine.control : w.control;
+  const auto present =
+      load(open.place->plugins, w.backup, control, open.campaign(), *settings, options);
+  if (!present) return complain(merge_name, text_of(present.error()));
+  const auto merged =
+      host::merge_tables(open.read, *present->control, *options(present->control->info),
+                         open.place->context.templates, present->files, *axis);
+  if (!merged) return complain(merge_name, text_of(merged.error()), exit_failed);
+  tell_findings(merge_name, open, merged->findings);
+  if (merged->files.empty()) return complain(merge_name, "nothing was written", exit_failed);
+  if (!w.out.empty())
+    if (auto done = host::publish(std::filesystem::absolute(w.out), merged->files); !done)
+      return complain(merge_name, text_of(done.error()), exit_failed);
+  return tell_merged(*merged, *present, *axis, w, open, common);
+}
+
+}  // namespace
+
+Verb merge_verb(Common& common) {
+  auto w = std::make_shared<MergeWish>();
+  using Takes = Argument::Takes;
+  return {
+      .name = "merge",
+      .summary = "A control's backup with the table of one axis renewed, all else as it was",
+      .arguments = joined(
+          {required(takes(
+               Takes::file,
+               {"BACKUP", &w->backup, "What was saved from the control: FILE, or FILE,FILE,..."})),
+           required(takes(Takes::folder, {"--with", &w->folder, "Folder of the campaign"})),
+           {"--axis", &w->axis, "The axis; may be left out where one was measured"},
+           takes(Takes::folder,
+                 {"--out", &w->out,
+                  "Folder for the files that change; without it, only what changes"}),
+           {"--control", &w->control, "The control that the files are of (`nonio controllers`)"},
+           settings_argument(w->settings,
+                             "NAME=VALUE: an option of that control; may be given\n"
+                             "several times")},
+          common_arguments(common)),
+      .footer =
+          "For files that hold several axes: FANUC's parameters and pitch data, SINUMERIK's "
+          "archives,\n"
+          "HEIDENHAIN's CONFIG.CMA. The new table gets the numbers that the axis has in the "
+          "backup, or\n"
+          "free ones. Everything else stays byte for byte. What the control would read is held "
+          "against\n"
+          "what it reads now: where a table of another axis would change, nothing is written.\n\n"
+          "Exit status: 0 merged; 1 refused; 2 usage or configuration.\n\n"
+          "Example: nonio merge backup/CNCPARAM.TXT --with site/2026-11-rossi --axis Z --out load",
+      .run = [w, &common] { return merge(*w, common); }};
+}
+
+}  // namespace nonio::app

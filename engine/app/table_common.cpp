@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "table_common.h"
+
+#include <cmath>
+#include <iostream>
+
+#include "nonio/host/plan.h"
+#include "nonio/sdk/format.h"
+#include "tables.h"
+
+namespace nonio::app {
+
+/// Numbers with the unit in their name: "largest_um".
+void put(TableJson& json, const std::string& name, double si, Quantity q) {
+  if (std::isfinite(si)) json[name + std::string(unit_of(q).suffix)] = printed(si, q);
+}
+
+static TableJson shape_json(const host::TableShape& s, bool rotary) {
+  TableJson json = TableJson::object();
+  put(json, "largest", s.largest, deviation_of(rotary));
+  put(json, "largest_step", s.step, deviation_of(rotary));
+  put(json, "largest_step_from", s.step_at, position_of(rotary));
+  put(json, "largest_slope", s.slope, slope_of(rotary));
+  if (s.backlash) put(json, "backlash", *s.backlash, deviation_of(rotary));
+  return json;
+}
+
+TableJson difference_json(const host::TableDifference& d) {
+  TableJson json = {{"output", d.output}, {"by", d.input}};
+  put(json, "largest", d.largest, deviation_of(d.rotary));
+  put(json, "at", d.at, position_of(d.rotary));
+  put(json, "range", d.range, deviation_of(d.rotary));
+  if (d.present) json["present"] = shape_json(*d.present, d.rotary);
+  if (d.next) json["new"] = shape_json(*d.next, d.rotary);
+  return json;
+}
+
+static void print_shape(const char* name, const std::optional<host::TableShape>& s, bool rotary) {
+  std::cout << "  " << name << ": ";
+  if (!s) {
+    std::cout << "no table\n";
+    return;
+  }
+  std::cout << "adds up to " << with_unit(s->largest, deviation_of(rotary)) << ", largest step "
+            << with_unit(s->step, deviation_of(rotary)) << " from "
+            << with_unit(s->step_at, position_of(rotary)) << " on, largest slope "
+            << with_unit(s->slope, slope_of(rotary));
+  if (s->backlash) std::cout << ", backlash " << with_unit(*s->backlash, deviation_of(rotary));
+  std::cout << "\n";
+}
+
+void print_difference(const host::TableDifference& d) {
+  std::cout << "axis " << d.output;
+  if (d.input.size() != 1 || d.input.front() != d.output) {
+    std::cout << " by the position of";
+    for (const std::string& in : d.input) std::cout << " " << in;
+  }
+  std::cout << ": they differ by up to " << with_unit(d.largest, deviation_of(d.rotary)) << " (at "
+            << with_unit(d.at, position_of(d.rotary)) << "), range "
+            << with_unit(d.range, deviation_of(d.rotary)) << "\n";
+  print_shape("present", d.present, d.rotary);
+  print_shape("new    ", d.next, d.rotary);
+}
+
+Expected<Loaded> load(const host::Plugins& plugins, const std::string& files,
+                      const std::string& control, const Campaign& campaign, const Texts& settings,
+                      const std::function<host::Checked<Settings>(const Info&)>& options_of) {
+  auto read = host::read_table_files(files);
+  if (!read) return tl::unexpected<Error>(read.error());
+  const auto found = host::control_of(plugins, control, *read, campaign, settings);
+  if (!found) return tl::unexpected<Error>(found.error());
+  const auto options = options_of((*found)->info);
+  if (!options) return tl::unexpected<Error>(options.error().front());
+  auto tables = host::tables_in(**found, *read, campaign, *options);
+  if (!tables) return fail(files + ": " + tables.error().message);
+  return Loaded{*found, std::move(*tables), std::move(*read)};
+}
+
+host::Checked<Settings> campaign_options(const OpenCampaign& open, const Info& info,
+                                         const Texts& settings) {
+  auto settled =
+      host::settle_table_options(info, open.place->context.site.options, *open.read.manifest,
+                                 open.read.machine ? &*open.read.machine : nullptr);
+  if (!settled) return settled;
+  const auto told = host::options_from(info, settings);
+  if (!told) return told;
+  for (const auto& [name, text] : settings) {
+    auto axes = settled->texts("axes");  // of each axis the last word counts
+    settled->values[name] = told->values.at(name);
+    if (name != "axes") continue;
+    for (std::string& entry : told->texts("axes")) axes.push_back(std::move(entry));
+    settled->values[name] = std::move(axes);
+  }
+  return settled;
+}
+
+void tell_findings(const char* verb, const OpenCampaign& open,
+                   const std::vector<Finding>& findings) {
+  const Templates& words = open.place->context.templates;
+  for (const Finding& f : findings)
+    if (f.attention)
+      std::cerr << verb << ": " << finding_text(words, "en", f, "title") << ": "
+                << finding_text(words, "en", f, "says") << "\n";
+}
+
+}  // namespace nonio::app

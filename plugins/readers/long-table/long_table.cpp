@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "long_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "lines.h"
+#include "nonio/sdk/column_map.h"
+#include "nonio/sdk/format.h"
+#include "runs.h"
+
+namespace nonio::long_table {
+using namespace reading;
+
+namespace {
+
+enum class Role : std::uint8_t { ignore, cycle, pos, target, direction, value };
+constexpr std::array<std::pair<const char*, Role>, 6> roles = {{{"ignore", Role::ignore},
+                                                                {"cycle", Role::cycle},
+                                                                {"pos", Role::pos},
+                                                                {"target", Role::target},
+                                                                {"direction", Role::direction},
+                                                                {"value", Role::value}}};
+
+struct Map : TableMap {
+  std::vector<Role> columns;
+  bool has(Role role) const {
+    return std::find(columns.begin(), columns.end(), role) != columns.end();
+  }
+};
+
+Expected<std::vector<Role>> columns_of(const std::vector<std::string>& texts) {
+  std::vector<Role> columns;
+  for (const std::string& text : texts) {
+    const auto role =
+        std::find_if(roles.begin(), roles.end(), [&](const auto& r) { return text == r.first; });
+    if (role == roles.end())
+      return fail(of_option("columns",
+                            "wanted target, value, cycle (the run), pos (number of the target), "
+                            "direction or ignore; found " +
+                                shown(text)));
+    const bool twice = std::find(columns.begin(), columns.end(), role->second) != columns.end();
+    if (role->second != Role::ignore && twice)
+      return fail(of_option("columns", "wanted \"" + text + "\" once, found it twice"));
+    columns.push_back(role->second);
+  }
+  for (const auto& [name, role] : {roles[3], roles[5], roles[1]})
+    if (std::find(columns.begin(), columns.end(), role) == columns.end())
+      return fail(of_option("columns", std::string("wanted one \"") + name +
+                                           "\", found none. A table does not say what its columns "
+                                           "are, and it is not guessed"));
+  return columns;
+}
+
+Expected<Map> map_of(const Settings& options, bool rotary) {
+  Map map;
+  auto columns = columns_of(options.texts("columns"));
+  if (!columns) return fail(columns.error());
+  auto table = table_map_of(options, rotary);
+  if (!table) return fail(table.error());
+  static_cast<TableMap&>(map) = std::move(*table);
+  map.columns = std::move(*columns);
+  for (const RowRange& rows : map.tables)
+    if ((rows.way == Way::none) != map.has(Role::direction))
+      return fail(of_option("tables", std::string("wanted how the axis went, from a column "
+                                                  "\"direction\" or of each of the tables (\"12-36 "
+                                                  "forward\"), found it ") +
+                                          (rows.way == Way::none ? "nowhere" : "twice")));
+  return map;
+}
+
+struct Row {
+  std::uint32_t cycle = 0, pos = 0;
+  Way way = Way::none;
+  double target = 0.0, value = 0.0;  ///< as in the file
+  std::uint64_t line = 0;
+};
+
+class TableReader {
+ public:
+  explicit TableReader(const Map& map) : map_(map), numbers_(map.separator != ',') {}
+
+  Expected<std::vector<Row>> read(std::string_view bytes) {
+    Lines lines(bytes);
+    std::string_view line;
+    std::size_t table = 0;
+    while (table < map_.tables.size() && lines.next(line)) {
+      const std::uint64_t number = lines.number();
+      while (table < map_.tables.size() && map_.tables[table].last != 0 &&
+             map_.tables[table].last < number)
+        ++table;
+      if (table == map_.tables.size()) break;
+      if (number < map_.tables[table].first || content_of(line) != Content::fields) continue;
+      if (auto error = not_text(line)) return fail(at_line(number, error->message));
+      if (auto ok = row(line, number, map_.tables[table].way); !ok) return fail(ok.error());
+    }
+    return std::move(rows_);
+  }
+
+ private:
+  Expected<void> row(std::string_view line, std::uint64_t number, Way way) {
+    const auto fields = by_separator(line, map_.separator);
+    if (!fields || fields->size() != map_.columns.size())
+      return fail(at_line(number, "wanted " + std::to_string(map_.columns.size()) +
+                                      " fields as in option columns, found " +
+                                      std::to_string(fields ? fields->size() : 0) + ": " +
+                                      shown(line) +
+                                      "; rows begin and end at first_line and "
+                                      "last_line, or as option tables says"));
+    Row row;
+    row.way = way;
+    row.line = number;
+    for (std::size_t k = 0; k < fields->size(); ++k)
+      if (auto ok = field((*fields)[k], k, row); !ok) return ok;
+    if (auto ok = same_target(row); !ok) return ok;
+    rows_.push_back(row);
+    return {};
+  }
+
+  Expected<void> field(std::string_view text, std::size_t k, Row& row) {
+    const auto in_column = [&](const char* what) {
+      return std::string(what) + " in column " + std::to_string(k + 1);
+    };
+    const auto wrong = [&](const char* what) {
+      return fail(at_line(row.line, "wanted " + in_column(what) + ", found " + shown(text)));
+    };
+    const Role role = map_.columns[k];
+    if (role == Role::cycle && (row.cycle = parse_run(text)) == 0)
+      return wrong("a run, 1 or more,");
+    if (role == Role::pos && (row.pos = parse_run(text)) == 0)
+      return wrong("the number of a target, 1 or more,");
+    if (role == Role::direction && (row.way = way_named(text)) == Way::none)
+      return wrong("+, -, forward or reverse");
+    if (role != Role::target && role != Role::value) return {};
+    const bool target = role == Role::target;
+    const auto number = target ? numbers_.number(text, row.line, in_column("a target"))
+                               : numbers_.reading(text, row.line, in_column("a number"));
+    if (!number) return fail(number.error());
+    (target ? row.target : row.value) = *number;
+    return {};
+  }
+
+  /// A number of a target stands for one target: else a column was taken for another.
+  Expected<void> same_target(const Row& row) {
+    if (row.pos == 0) return {};
+    const auto [known, fresh] = by_pos_.try_emplace(row.pos, row);
+    if (fresh || known->second.target == row.target) return {};
+    std::string wanted, found;
+    append_shortest(wanted, known->second.target);
+    append_shortest(found, row.target);
+    return fail(at_line(row.line, "wanted target " + wanted + " at pos " + std::to_string(row.pos) +
+                                      " as in line " + std::to_string(known->second.line) +
+                                      ", found " + found));
+  }
+
+  const Map& map_;
+  Numbers numbers_;
+  std::map<std::uint32_t, Row> by_pos_;
+  std::vector<Row> rows_;
+};
+
+/// How the first run that went forward lists its targets; 0 if nobody can tell.
+int listed_in(const std::vector<Row>& rows) {
+  const auto first =
+      std::find_if(rows.begin(), rows.end(), [](const Row& r) { return r.way == Way::forward; });
+  std::vector<double> targets;
+  for (auto r = first; r != rows.end() && r->way == first->way && r->cycle == first->cycle; ++r)
+    targets.push_back(r->target);
+  return sense_of(targets);
+}
+
+Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
+  const auto map = map_of(input.options, axis.rotary);
+  if (!map) return fail(map.error());
+  const auto rows = TableReader(*map).read(input.bytes);
+  if (!rows) return fail(rows.error());
+  const int listed = listed_in(*rows);
+  Runs runs(input, axis, axis.rotary);
+  for (const Row& row : *rows) {
+    if ((row.way == Way::forward || row.way == Way::reverse) && listed == 0)
+      return fail(at_line(row.line,
+                          "wanted a first run \"forward\" whose targets only rise or only "
+                          "fall, found none; say + and - in place of forward and reverse"));
+    const double target = row.target * map->target_unit;
+    if (auto ok = runs.add({row.cycle, direction_of(row.way, listed), target,
+                            map->deviation(row.value * map->value_unit, target), row.line});
+        !ok)
+      return fail(ok.error());
+  }
+  return runs.finish();
+}
+
+Expected<Observations> read(const ReadInput& input) {
+  const auto axis = axis_of(input);
+  if (!axis) return fail(axis.error());
+  auto obs = read_file(input, **axis);
+  if (!obs && obs.error().key.empty()) obs.error().file = input.measurement.file;
+  return obs;
+}
+
+}  // namespace
+
+Reader reader() {
+  Reader r;
+  r.info = {"long-table",
+            "1.0",
+            "Tables with a row for each reading, as the user maps their columns; only where the "
+            "measurement names this reader.",
+            {{"columns", std::vector<std::string>{}, "",
+              "What each column is, in order: target, value, cycle, pos, direction, ignore."}}};
+  for (Option& option : table_map_options()) r.info.options.push_back(std::move(option));
+  // Nobody could tell it from any other table.
+  r.recognises = [](std::string_view) { return false; };
+  r.reads = [](std::string_view kind) { return kind == "axis"; };
+  r.read = read;
+  return r;
+}
+
+}  // namespace nonio::long_table
