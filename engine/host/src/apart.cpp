@@ -35,11 +35,12 @@ void flush_output() {
 }
 
 /// What the shell would do with a program that ended so.
-[[noreturn]] void end_as(pid_t child) {
+[[noreturn]] void end_as(pid_t child, const std::vector<pid_t>& children_before) {
   ::signal(SIGINT, SIG_IGN);  // the child gets it too, and says how it ends
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
     ;
+  end_children(children_before);  // what plugins have left running
   if (WIFEXITED(status)) ::_exit(WEXITSTATUS(status));
   if (WTERMSIG(status) == SIGINT) ::_exit(130);
   std::cerr << "nonio: a plugin brought the process down in which it ran: "
@@ -62,9 +63,11 @@ void step_aside() {
   where_run = Place::apart;
   flush_output();
   std::cerr.flush();
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+  const std::vector<pid_t> children_before = own_children();
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
-  if (child > 0) end_as(child);
+  if (child > 0) end_as(child, children_before);
   if (child < 0) {
     std::cerr << "nonio: no process for the plugins: " << std::strerror(errno) << "\n";
     ::_exit(2);

@@ -2,13 +2,11 @@
 #include "committer.h"
 
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <iostream>
 #include <utility>
@@ -76,8 +74,7 @@ Expected<void> Committer::start() {
 void Committer::end() {
   if (channel_ >= 0) ::close(std::exchange(channel_, -1));
   if (pid_ < 0) return;
-  ::kill(pid_, SIGKILL);
-  ::waitpid(std::exchange(pid_, -1), nullptr, 0);
+  end_child(std::exchange(pid_, -1));
 }
 
 Expected<void> Committer::give(Given campaign) {

@@ -126,7 +126,10 @@ class CampaignRun {
       const Measurement& m = out_.campaign.measurements[i];
       if (read_.observations[i].size() == 0) continue;
       for (const Analysis* analysis : analyses)
-        if (analysis->applies && analysis->applies(out_.campaign, m))
+        if (analysis->applies &&
+            applies(
+                "analysis", analysis->info.name,
+                [&] { return analysis->applies(out_.campaign, m); }, " (measurement " + m.id + ")"))
           analyse_with(*analysis, &m, [&](const Settings& options) {
             return analysis->analyse(
                 {out_.campaign, m, read_.observations[i], options, &read_.observations});
@@ -137,6 +140,17 @@ class CampaignRun {
         analyse_with(*analysis, nullptr, [&](const Settings& options) {
           return analysis->analyse_campaign({out_.campaign, read_.observations, options});
         });
+  }
+
+  /// What the plugin says of itself.
+  template <class Ask>
+  bool applies(const char* kind, const std::string& name, const Ask& ask,
+               const std::string& where = {}) {
+    const std::string who = std::string(kind) + " " + name;
+    stage_(who + where + ", asked whether it applies");
+    const auto said = guarded_answer(who, ask);
+    if (!said) report(said.error());
+    return said && *said;
   }
 
   /// Of one measurement, or of the campaign if there is none.
@@ -356,7 +370,8 @@ class CampaignRun {
           control != output->info.name)
         continue;
       if (output->stage == Output::Stage::table && !control_of_record(output->info.name)) continue;
-      if (!output->applies(out_.campaign)) continue;
+      if (!applies("output", output->info.name, [&] { return output->applies(out_.campaign); }))
+        continue;
       const bool asked =
           !all || output->stage != Output::Stage::table || control == output->info.name;
       if (auto options = settle(*output)) wanted.push_back({*output, std::move(*options), asked});
