@@ -8,6 +8,7 @@
 
 #include "nonio/host/digest.h"
 #include "nonio/sdk/format.h"
+#include "plugin_check_truth.h"
 #include "plugin_checks.h"
 
 namespace nonio::host::kit {
@@ -452,6 +453,8 @@ Verdict fingerprint(const Analysis& a, const Bench& bench) {
 
 const std::vector<Check<Analysis>>& analysis_checks() {
   static const std::vector<Check<Analysis>> checks = {
+      {"truth", "It gives the values of expected/values.csv.",
+       [](const Analysis& x, const Bench& bench) { return truth(x, bench); }},
       {"again", "The same input gives the same bytes.", analysis_again},
       {"says", "Of a sample that it applies to it says something.", analysis_says},
       {"finite", "What cannot be given is absent.", analysis_finite},

@@ -7,6 +7,7 @@
 
 #include "nonio/math/loaded_table.h"
 #include "nonio/sdk/format.h"
+#include "plugin_check_truth.h"
 #include "plugin_checks.h"
 
 namespace nonio::host::kit {
@@ -102,7 +103,8 @@ Written written_table(const Output& o, const Sample& s, const Settings& options,
   return {r->artifacts, std::move(*tables), {}};
 }
 
-/// Ways to set the plugin up: nobody knows the sign of some controls, which the user then says.
+/// Ways to set the plugin up: nobody knows the sign of some controls, which the user then says; a
+/// table for each direction.
 std::vector<Settings> set_ups(const Output& o, const Sample& s) {
   const Settings defaults = settings_for(o, s);
   std::vector<Settings> all{defaults};
@@ -112,6 +114,11 @@ std::vector<Settings> set_ups(const Output& o, const Sample& s) {
         all.push_back(defaults);
         all.back().values["sign"] = choice;
       }
+  if (o.control->bidirectional)
+    for (std::size_t i = 0, n = all.size(); i < n; ++i) {
+      all.push_back(all[i]);
+      all.back().values["directions"] = true;
+    }
   return all;
 }
 
@@ -368,6 +375,8 @@ const std::vector<Check<Output>>& controller_checks() {
   static const std::vector<Check<Output>> checks = {
       {"declared", "Name, units, steps and how well each fact is known are declared.",
        table_declared},
+      {"truth", "Files of the maker do what table.csv says.",
+       [](const Output& x, const Bench& bench) { return truth(x, bench); }},
       {"cancels", "Its table, read back, takes a planted error away.", table_cancels},
       {"sign", "Over an error that rises the control adds what falls as much.", table_sign},
       {"rounding", "No point is off by more than half a step.", table_rounding},

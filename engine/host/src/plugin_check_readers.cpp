@@ -7,6 +7,7 @@
 #include "nonio/host/digest.h"
 #include "nonio/host/manifest.h"
 #include "nonio/sdk/format.h"
+#include "plugin_check_truth.h"
 #include "plugin_checks.h"
 
 namespace nonio::host::kit {
@@ -263,13 +264,14 @@ Verdict reader_signs(const Reader& r, const Bench& bench) {
   return each_file(r, bench, [&](const ReadFile& f, const Observations& whole) -> std::string {
     for (const Token& t : numbers_of(f.bytes, random)) {
       const std::string number = f.bytes.substr(t.at, t.length);
-      const std::string other = number[0] == '-'   ? number.substr(1)
-                                : number[0] == '+' ? "-" + number.substr(1)
-                                                   : "-" + number;
-      const auto o = read(r, f, with_token(f.bytes, t, other));
-      if (o && o->size() < whole.size())
-        return other + " in place of " + number + " in " + line_words(f.bytes, t.at) + ": " +
-               std::to_string(whole.size() - o->size()) + " readings are gone";
+      const std::string size =
+          number[0] == '-' || number[0] == '+' ? number.substr(1) : number;
+      for (const std::string& other : {size, "-" + size, "+" + size}) {
+        const auto o = read(r, f, with_token(f.bytes, t, other));
+        if (o && o->size() < whole.size())
+          return other + " in place of " + number + " in " + line_words(f.bytes, t.at) + ": " +
+                 std::to_string(whole.size() - o->size()) + " readings are gone";
+      }
     }
     return {};
   });
@@ -301,6 +303,20 @@ Verdict reader_inch(const Reader& r, const Bench& bench) {
     });
   }
   return skipped("no option has the choices mm and inch");
+}
+
+/// Against readings.csv: a file tells nobody whether its numbers were taken for what they are.
+Verdict reader_truth(const Reader& r, const Bench& bench) {
+  std::size_t compared = 0;
+  Verdict v = each_file(r, bench, [&](const ReadFile& f, const Observations& o) -> std::string {
+    for (const Source& source : bench.sources)
+      if (source.name == f.sample)
+        return differs_from_truth(o, f.campaign.measurements[f.measurement], source, compared);
+    return {};
+  });
+  if (v.state == Verdict::State::passed && compared == 0)
+    return skipped("no readings.csv beside a file of a case: write down what the instrument showed");
+  return v;
 }
 
 /// Files of anybody else.
@@ -351,6 +367,7 @@ Verdict fingerprint(const Reader& r, const Bench& bench) {
 const std::vector<Check<Reader>>& reader_checks() {
   static const std::vector<Check<Reader>> checks = {
       {"reads", "It reads its samples: columns of one length, of numbers.", reader_reads},
+      {"truth", "Reading by reading it finds what readings.csv says.", reader_truth},
       {"again", "The same input gives the same bytes.", reader_again},
       {"empty", "Nothing is found in an empty file.", reader_empty},
       {"foreign", "It knows no file of another kind.", reader_foreign},

@@ -93,6 +93,8 @@ Verdict fingerprint(const Output& output, const Bench& bench);
 std::vector<std::size_t> shuffled(std::size_t n, Random& random);
 /// The rows in this order; of lines and their names nothing changes.
 Observations rearranged(const Observations& o, const std::vector<std::size_t>& order);
+/// Readings that nobody should have sent.
+std::vector<std::pair<std::string, Observations>> odd_tables(const Observations& o);
 /// The plugin's defaults, and what the sample says.
 Settings settings_for(const Info& info, const Sample& sample);
 /// Of a table: beside these, the numbers of the axes by their places.
