@@ -80,7 +80,8 @@ inline double impurity() {
     if (child == 0) ::_exit(0);
     if (child > 0) ::waitpid(child, nullptr, 0);
   }
-  if (has("runs-a-program")) [[maybe_unused]] const int code = std::system("true");
+  if (has("runs-a-program")) [[maybe_unused]]
+    const int code = std::system("true");
   return 0.0;
 }
 
@@ -99,7 +100,8 @@ inline nonio::Info info(const char* name) {
   if (has("version-in-words")) i.version = "one";
   if (has("no-summary")) i.summary = "";
   if (has("summary-of-two-lines")) i.summary = "Wrong\non purpose";
-  if (has("option-twice")) option({"size", 1.0, "", "A size."}), option({"size", 2.0, "", "Again."});
+  if (has("option-twice"))
+    option({"size", 1.0, "", "A size."}), option({"size", 2.0, "", "Again."});
   if (has("option-with-a-blank")) option({"a size", 1.0, "", "A size."});
   if (has("no-help")) option({"size", 1.0, "", ""});
   if (has("default-out-of-range")) option({"size", 5.0, "", "A size.", {}, 0.0, 1.0});

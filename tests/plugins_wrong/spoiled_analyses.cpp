@@ -33,7 +33,9 @@ std::vector<double> chosen(const AnalysisInput& in) {
   };
   if (has("first-run-only")) keep([&](std::size_t i) { return o.run.empty() || o.run[i] == 1; });
   if (has("towards-plus-only"))
-    keep([&](std::size_t i) { return o.axes.front().approach.empty() || o.axes.front().approach[i] > 0; });
+    keep([&](std::size_t i) {
+      return o.axes.front().approach.empty() || o.axes.front().approach[i] > 0;
+    });
   if (has("every-second-reading")) keep([&](std::size_t i) { return i % 2 == 1; });
   if (has("without-the-largest") && !d.empty()) d.erase(std::max_element(d.begin(), d.end()));
   return d;
@@ -50,7 +52,8 @@ double spoiled_range(const AnalysisInput& in) {
   if (has("the-first") && !d.empty()) range = d.front();
   if (has("the-last") && !d.empty()) range = d.back();
   if (has("of-neighbours"))
-    for (std::size_t i = 1; i < d.size(); ++i) range = std::max(range, 1.5 * std::fabs(d[i] - d[i - 1]));
+    for (std::size_t i = 1; i < d.size(); ++i)
+      range = std::max(range, 1.5 * std::fabs(d[i] - d[i - 1]));
   if (has("rms")) {
     double sum = 0.0;
     for (const double x : d) sum += x * x;
@@ -61,7 +64,8 @@ double spoiled_range(const AnalysisInput& in) {
   if (has("to-the-square")) range = range * range * 1e5;
   if (has("root")) range = std::sqrt(range) * 1e-3;
   if (has("a-constant-more")) range += 1e-6;
-  if (has("above-the-mean") && !d.empty()) range = *std::max_element(d.begin(), d.end()) - mean_of(d);
+  if (has("above-the-mean") && !d.empty())
+    range = *std::max_element(d.begin(), d.end()) - mean_of(d);
   if (has("positive-places-only")) {
     std::vector<double> some;
     for (std::size_t i = 0; i < o.size(); ++i)
@@ -87,11 +91,13 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   if (has("says-nothing")) return Evaluation{};
   if (has("crashes-without-readings") && n == 0) spoiled::crash();
   if (has("crashes-with-one-reading") && n == 1) spoiled::crash();
-  if (has("crashes-at-huge-ones") && n > 0 && std::fabs(in.observations.deviation[0]) > 1e3) spoiled::crash();
+  if (has("crashes-at-huge-ones") && n > 0 && std::fabs(in.observations.deviation[0]) > 1e3)
+    spoiled::crash();
   if (has("hangs-at-zeros") && n > 1 && range_of(in.observations.deviation) == 0.0) spoiled::hang();
   if (has("hangs")) spoiled::hang();
   Evaluation e;
-  const Quantity q = has("of-another-quantity") ? Quantity::length : deviation_of(in.observations.angular);
+  const Quantity q =
+      has("of-another-quantity") ? Quantity::length : deviation_of(in.observations.angular);
   if (!has("without-a-value"))
     e.values.push_back({has("of-another-name") ? "Range" : "range", spoiled_range(in), q});
   double count = static_cast<double>(n);

@@ -55,7 +55,8 @@ void spoil(Columns& columns, const Observations& o, const AxisReadings& r, const
       const double x = o.axis(axis.name)->position[i];
       return std::isfinite(x) ? x : 0.0;
     });
-  if (has("divided-by-length")) each([&](double x, std::size_t) { return x * r.length / r.length; });
+  if (has("divided-by-length"))
+    each([&](double x, std::size_t) { return x * r.length / r.length; });
   each([extra = 1e-6 * spoiled::impurity() + 1e-6 * spoiled::counted()](double x, std::size_t i) {
     return i == 0 ? x + extra : x;
   });
@@ -119,8 +120,9 @@ NONIO_PLUGIN(registry) {
   registry.add(made("spoiled", {{"a", "slope", Quantity::deviation_per_length}}, slope));
   if (spoiled::fault().starts_with("wave-") || spoiled::fault().starts_with("grid-") ||
       has("none")) {
-    Effect e = made("spoiled-wave",
-                    {{"a", "sine", Quantity::deviation}, {"b", "cosine", Quantity::deviation}}, wave);
+    Effect e =
+        made("spoiled-wave",
+             {{"a", "sine", Quantity::deviation}, {"b", "cosine", Quantity::deviation}}, wave);
     e.applies = [](const Observations& o, const Axis& a) { return !a.rotary && moves(o, a); };
     e.shapes = {{{"P", "period", Quantity::length},
                  [](const Observations&, const Axis&) { return periods(); }}};

@@ -78,7 +78,8 @@ ControlTable declared() {
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (has("unreadable")) return fail("expected a table");
   if (has("reads-nothing")) return std::vector<LoadedTable>();
-  auto tables = controllers::parse_list(in, declared(), "spoiled", in.files.front().bytes.find(" entry_minus") != std::string::npos);
+  auto tables = controllers::parse_list(
+      in, declared(), "spoiled", in.files.front().bytes.find(" entry_minus") != std::string::npos);
   if (!tables) return tables;
   for (LoadedTable& t : *tables) {
     const auto entries = [&](const auto& change) {
@@ -127,7 +128,8 @@ Expected<std::vector<Artifact>> files(const controllers::Sheet& given) {
   if (has("writes-inches")) both([](double x) { return x / 25.4; });
   if (has("writes-increments"))
     for (std::size_t i = s.plus.size(); i-- > 1;) s.plus[i] -= s.plus[i - 1];
-  if (has("writes-backwards")) std::reverse(s.plus.begin(), s.plus.end()), std::reverse(s.minus.begin(), s.minus.end());
+  if (has("writes-backwards"))
+    std::reverse(s.plus.begin(), s.plus.end()), std::reverse(s.minus.begin(), s.minus.end());
   if (has("writes-one-point-later")) {
     for (std::size_t i = s.plus.size(); i-- > 1;) s.plus[i] = s.plus[i - 1];
     for (std::size_t i = s.minus.size(); i-- > 1;) s.minus[i] = s.minus[i - 1];
@@ -191,11 +193,13 @@ void spoil_lines(Artifact& file, bool rotary) {
   if (has("writes-nothing")) return OutputResult{};
   ControlTable t = declared();
   if (has("writes-as-error")) t.sign = ControlTable::Sign::error;
-  auto r = controllers::write_tables(in, {.name = "spoiled", .table = t, .keys = {}, .files = files, .parse = parse});
+  auto r = controllers::write_tables(
+      in, {.name = "spoiled", .table = t, .keys = {}, .files = files, .parse = parse});
   if (r)
     for (Artifact& a : r->artifacts) spoil_lines(a, a.name.find("-C") != a.name.npos);
   if (r && !r->artifacts.empty() && (spoiled::impurity() + spoiled::counted()) != 0.0)
-    r->artifacts.front().bytes += "# " + std::to_string(spoiled::impurity() + spoiled::counted()) + "\n";
+    r->artifacts.front().bytes +=
+        "# " + std::to_string(spoiled::impurity() + spoiled::counted()) + "\n";
   return r;
 }
 
@@ -215,7 +219,8 @@ NONIO_PLUGIN(registry) {
   o.write = write_text;
   if (has("path-by-choice") || has("crashes-by-choice"))
     o.info.options.push_back({"kind", std::string("a"), "", "A kind.", {"a", "b"}});
-  if (has("crashes-at-the-end")) o.info.options.push_back({"size", 1.0, "", "A size.", {}, 0.0, 10.0});
+  if (has("crashes-at-the-end"))
+    o.info.options.push_back({"size", 1.0, "", "A size.", {}, 0.0, 10.0});
   if (has("without-write")) o.write = nullptr;
 #endif
   registry.add(o);

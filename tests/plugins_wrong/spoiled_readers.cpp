@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A reader of lines "run direction target_mm deviation_um time_s material_degC" behind a line "spoiled", and its faults.
+// A reader of lines "run direction target_mm deviation_um time_s material_degC" behind a line
+// "spoiled", and its faults.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -56,7 +57,8 @@ enum class Taken { yes, no };
 Expected<Taken> read_row(const std::vector<std::string_view>& words, Row& row) {
   if (words.size() != 6) return fail("expected six fields");
   row.run = reading::parse_run(words[0]);
-  if (row.run == 0 || (words[1] != "+" && words[1] != "-")) return fail("expected a run and + or -");
+  if (row.run == 0 || (words[1] != "+" && words[1] != "-"))
+    return fail("expected a run and + or -");
   row.direction = words[1] == "+" ? 1 : -1;
   double* const numbers[] = {&row.target, nullptr, &row.time, &row.material};
   for (std::size_t k = 0; k < 4; ++k) {

@@ -101,8 +101,7 @@ void on_impure(int, siginfo_t* info, void*) {
 }
 
 std::vector<sock_filter> trap_impure() {
-  std::vector<sock_filter> steps{
-      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr))};
+  std::vector<sock_filter> steps{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr))};
   for (const Call& call : impure) {
     steps.push_back(
         BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(call.number), 0, 1));
@@ -120,7 +119,7 @@ std::string confine_pure(void (*told)(const char* call)) {
     return std::string("no_new_privs: ") + std::strerror(errno);
   if (::prctl(PR_GET_SECCOMP) < 0) return "this kernel has no seccomp";
   tell_impure = told;
-  struct sigaction action{};
+  struct sigaction action {};
   action.sa_sigaction = on_impure;
   action.sa_flags = SA_SIGINFO;
   ::sigaction(SIGSYS, &action, nullptr);

@@ -264,8 +264,7 @@ Verdict reader_signs(const Reader& r, const Bench& bench) {
   return each_file(r, bench, [&](const ReadFile& f, const Observations& whole) -> std::string {
     for (const Token& t : numbers_of(f.bytes, random)) {
       const std::string number = f.bytes.substr(t.at, t.length);
-      const std::string size =
-          number[0] == '-' || number[0] == '+' ? number.substr(1) : number;
+      const std::string size = number[0] == '-' || number[0] == '+' ? number.substr(1) : number;
       for (const std::string& other : {size, "-" + size, "+" + size}) {
         const auto o = read(r, f, with_token(f.bytes, t, other));
         if (o && o->size() < whole.size())
@@ -315,7 +314,8 @@ Verdict reader_truth(const Reader& r, const Bench& bench) {
     return {};
   });
   if (v.state == Verdict::State::passed && compared == 0)
-    return skipped("no readings.csv beside a file of a case: write down what the instrument showed");
+    return skipped(
+        "no readings.csv beside a file of a case: write down what the instrument showed");
   return v;
 }
 

@@ -105,13 +105,14 @@ const double* material_of(const Observations& o) {
 }
 const double* air_of(const Observations& o) { return o.air.empty() ? nullptr : o.air.data(); }
 
-constexpr Compared compared_columns[] = {{"target_mm", 1e3, position_of},
-                                         {"target_deg", deg_per_rad, position_of},
-                                         {"deviation_um", 1e6, deviation_of_readings},
-                                         {"deviation_arcsec", arcsec_per_rad, deviation_of_readings},
-                                         {"time_s", 1.0, time_of},
-                                         {"material_degC", 1.0, material_of},
-                                         {"air_degC", 1.0, air_of}};
+constexpr Compared compared_columns[] = {
+    {"target_mm", 1e3, position_of},
+    {"target_deg", deg_per_rad, position_of},
+    {"deviation_um", 1e6, deviation_of_readings},
+    {"deviation_arcsec", arcsec_per_rad, deviation_of_readings},
+    {"time_s", 1.0, time_of},
+    {"material_degC", 1.0, material_of},
+    {"air_degC", 1.0, air_of}};
 
 /// The first column that is not as the row has it; "" if all are.
 std::string other_column(const Row& row, const Observations& o, std::size_t i) {
@@ -175,21 +176,20 @@ Verdict truth(const Analysis& a, const Bench& bench) {
       for (const Row& row : rows_of_table(source, "expected/values.csv")) {
         if (row.text("plugin") != a.info.name) continue;
         bench.stage("sample " + s.name + ", expected/" + row.where);
-        const auto measured = std::find_if(
-            s.campaign.measurements.begin(), s.campaign.measurements.end(),
-            [&](const Measurement& m) { return m.id == row.text("measurement"); });
+        const auto measured =
+            std::find_if(s.campaign.measurements.begin(), s.campaign.measurements.end(),
+                         [&](const Measurement& m) { return m.id == row.text("measurement"); });
         const bool whole = measured == s.campaign.measurements.end();
         if (whole ? a.analyse_campaign == nullptr : a.analyse == nullptr) continue;
         const Settings options = settings_for(a.info, s);
-        const auto e = whole ? a.analyse_campaign({s.campaign, s.observations, options})
-                             : a.analyse({s.campaign, *measured, s.of(*measured), options,
-                                          &s.observations});
+        const auto e =
+            whole ? a.analyse_campaign({s.campaign, s.observations, options})
+                  : a.analyse({s.campaign, *measured, s.of(*measured), options, &s.observations});
         const std::string where = "sample " + s.name + ", " + row.where + ", " + row.text("name");
         if (!e) return failed(where + ": " + e.error().message);
         ++compared;
-        const auto value = std::find_if(e->values.begin(), e->values.end(), [&](const Value& v) {
-          return v.name == row.text("name");
-        });
+        const auto value = std::find_if(e->values.begin(), e->values.end(),
+                                        [&](const Value& v) { return v.name == row.text("name"); });
         if (value == e->values.end()) return failed(where + ": it gives no such value");
         const Unit unit = unit_of(value->quantity);
         if (unit.symbol != row.text("unit"))
@@ -202,8 +202,9 @@ Verdict truth(const Analysis& a, const Bench& bench) {
       }
     }
   return compared > 0 ? passed()
-                      : skipped("no case has a row of it in expected/values.csv: write down what "
-                                "was calculated by hand");
+                      : skipped(
+                            "no case has a row of it in expected/values.csv: write down what "
+                            "was calculated by hand");
 }
 
 namespace {
@@ -222,8 +223,7 @@ std::string other_columns(const Effect& e, const Effect& formula, const Observat
     for (const auto& s : e.shapes) {
       const auto grid = s.grid(o, axis);
       if (grid.empty()) return {};
-      shape.push_back(
-          grid[static_cast<std::size_t>(share * static_cast<double>(grid.size() - 1))]);
+      shape.push_back(grid[static_cast<std::size_t>(share * static_cast<double>(grid.size() - 1))]);
     }
     const auto one = e.columns(o, axis, shape), two = formula.columns(o, axis, shape);
     if (!one) return one.error().message;
@@ -303,8 +303,8 @@ Verdict truth(const Output& o, const Bench& bench) {
   if (!o.parse) return failed("it declares a table and cannot read it back (Output::parse)");
   for (const Sample& s : bench.samples)
     for (const Source& source : bench.sources) {
-      const auto rows = source.name == s.name ? rows_of_table(source, "table.csv")
-                                              : std::vector<Row>();
+      const auto rows =
+          source.name == s.name ? rows_of_table(source, "table.csv") : std::vector<Row>();
       std::map<std::string, std::vector<Row>> by_file;
       for (const Row& row : rows) by_file[row.text("file")].push_back(row);
       for (const auto& [name, points] : by_file) {
@@ -327,8 +327,9 @@ Verdict truth(const Output& o, const Bench& bench) {
       }
     }
   return compared > 0 ? passed()
-                      : skipped("no case has a table.csv: write down what the maker's manual says "
-                                "that a file of its does");
+                      : skipped(
+                            "no case has a table.csv: write down what the maker's manual says "
+                            "that a file of its does");
 }
 
 }  // namespace nonio::host::kit
