@@ -81,6 +81,30 @@ Observations rearranged(const Observations& o, const std::vector<std::size_t>& o
   return out;
 }
 
+std::vector<std::pair<std::string, Observations>> odd_tables(const Observations& o) {
+  std::vector<std::pair<std::string, Observations>> all;
+  all.emplace_back("no readings", rearranged(o, {}));
+  all.emplace_back("one reading", rearranged(o, {0}));
+  std::vector<std::size_t> same(9, o.size() / 2), plus;
+  all.emplace_back("one target", rearranged(o, same));
+  for (std::size_t i = 0; i < o.size(); ++i)
+    if (o.axes.front().approach.empty() || o.axes.front().approach[i] > 0) plus.push_back(i);
+  all.emplace_back("one direction", rearranged(o, plus));
+  Observations bare = o;
+  for (auto* column : {&bare.time, &bare.material, &bare.air, &bare.u}) column->clear();
+  for (auto* column : {&bare.run, &bare.source_line}) column->clear();
+  all.emplace_back("positions only", bare);
+  Observations huge = o;
+  for (auto& axis : huge.axes)
+    for (double& x : axis.position) x *= 1e150;
+  all.emplace_back("huge positions", std::move(huge));
+  Observations blank = o;
+  for (auto* column : {&blank.time, &blank.material})
+    for (std::size_t i = 0; i < column->size(); i += 3) (*column)[i] = std::nan("");
+  all.emplace_back("times and temperatures missing", std::move(blank));
+  return all;
+}
+
 namespace {
 
 /// How its control counts the axes: by their places, so that tables of every control are written.
