@@ -24,16 +24,16 @@ struct Needs {
 /// long column does not divide them.
 std::vector<double> up_to_a_level(const Needs& needs, double width) {
   std::vector<double> out(needs.least.size());
-  const auto all_at = [&](double level) {
+  const auto all_at = [&](double most) {
     double sum = 0.0;
     for (std::size_t c = 0; c < out.size(); ++c)
-      sum += out[c] = std::max(needs.least[c], std::min(needs.natural[c], level));
+      sum += out[c] = std::max(needs.least[c], std::min(needs.natural[c], most));
     return sum;
   };
   double low = 0.0, high = width;
   for (int i = 0; i < 40; ++i) {
-    const double level = (low + high) / 2.0;
-    (all_at(level) > width ? high : low) = level;
+    const double most = (low + high) / 2.0;
+    (all_at(most) > width ? high : low) = most;
   }
   all_at(low);
   return out;

@@ -116,6 +116,27 @@ MachineRecord record_for(const Sample& sample) {
   return record;
 }
 
+/// Of controls that count: nobody but the machine's builder knows how many counts an axis has.
+void add_encoders(Settings& settings, const Info& info, const Machine& machine) {
+  for (const Option& o : info.options) {
+    if (o.name != "axes" || o.help.find("counts_per_mm") == o.help.npos) continue;
+    auto entries = settings.values.find(o.name);
+    if (entries == settings.values.end()) continue;
+    auto* list = std::get_if<std::vector<std::string>>(&entries->second);
+    for (const Axis& axis : machine.axes) {
+      const std::string counts = axis.rotary ? " counts_per_deg=3600" : " counts_per_mm=2000";
+      if (list == nullptr) continue;
+      const auto own = std::find_if(list->begin(), list->end(), [&](const std::string& entry) {
+        return entry.starts_with(axis.name + " ");
+      });
+      if (own == list->end())
+        list->push_back(axis.name + counts);
+      else if (own->find(" counts_per") == own->npos)
+        *own += counts;
+    }
+  }
+}
+
 Settings or_defaults(Checked<Settings> settled, const Info& info) {
   if (settled) return std::move(*settled);
   Settings defaults;
@@ -135,7 +156,10 @@ Settings settings_for(const Output& output, const Sample& sample) {
   manifest.campaign = sample.campaign;
   manifest.options = sample.options;
   const MachineRecord record = record_for(sample);
-  return or_defaults(settle_table_options(output.info, {}, manifest, &record), output.info);
+  Settings settings =
+      or_defaults(settle_table_options(output.info, {}, manifest, &record), output.info);
+  add_encoders(settings, output.info, sample.campaign.machine);
+  return settings;
 }
 
 Results results_of(const Sample& s, const Bench& bench) {

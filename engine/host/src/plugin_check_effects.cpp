@@ -396,8 +396,9 @@ Verdict effect_explained(const Effect& e, const Bench& bench) {
     if (!x) return failed(s.where() + ": " + x.error().message);
     if (named(*x, s.term.name()) || describes(*x, s.term.name())) return passed();
     if (unseen_in(*x, s.term.name())) continue;
-    // A free curve of time may look as if the readings did not repeat.
-    if (e.description && x->verdict.kind == model::Verdict::Kind::unrepeatable) continue;
+    // A cause that comes near is named before a description; a free curve of time may look as if
+    // the readings did not repeat.
+    if (e.description && x->verdict.kind != model::Verdict::Kind::nothing) continue;
     return failed(s.where() + ": planted alone, explain says " +
                   (x->verdict.effect.empty() ? "nothing" : x->verdict.effect) + " instead");
   }

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Steady = std::chrono::steady_clock;
 
 constexpr const char* loading_process = "the process that loads plugins";
 constexpr double load_seconds = 10.0, prepare_seconds = 30.0, answer_seconds = 30.0;
@@ -141,15 +141,15 @@ Expected<Catalogue> PluginHost::load_once() {
 /// Every step has a limit of its own.
 Expected<std::string> PluginHost::answer(int stream, SharedWords& progress, std::string& hung) {
   std::string last;
-  auto deadline = Clock::now() + std::chrono::duration<double>(load_seconds);
+  auto deadline = Steady::now() + std::chrono::duration<double>(load_seconds);
   while (!is_ready(stream)) {
     pass_on_prints();
     if (wish_.stopped != nullptr && wish_.stopped()) hung = "stopped";
     const std::string now = progress.get();
     const double limit = now.starts_with(preparing) ? prepare_seconds : load_seconds;
-    if (now != last) deadline = Clock::now() + std::chrono::duration<double>(limit);
+    if (now != last) deadline = Steady::now() + std::chrono::duration<double>(limit);
     last = now;
-    if (Clock::now() > deadline)
+    if (Steady::now() > deadline)
       hung = "no answer within " + std::to_string(static_cast<int>(limit)) + " s";
     if (!hung.empty()) return fail(hung);
   }

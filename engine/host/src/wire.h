@@ -144,7 +144,7 @@ class Reader {
     bool there = false;
     get(there);
     value.reset();
-    if (there) get(value.emplace());
+    if (there) get(value.emplace(T{}));
   }
   template <class A, class B>
   void get(std::pair<A, B>& both) {

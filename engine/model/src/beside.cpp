@@ -54,16 +54,19 @@ void take_over(Candidate found, const std::vector<std::string>& beside, Explanat
   out.certain.push_back(name);
 }
 
-}  // namespace
-
-namespace {
-
 /// What is left with all that is certain in the model.
 double rms_beside(const Finding& finding, const Explanation& out) {
   std::vector<Term> terms = finding.of_model.fit.terms;
   for (Term& term : certain_terms(out)) terms.push_back(std::move(term));
   const double rms = rms_with(finding.part.table, terms, finding.weight);
   return std::isfinite(rms) ? rms : finding.of_model.fit.rms;
+}
+
+/// Where the search is worth doing again beside free values of place: with few targets, in which
+/// the catalogue cannot say what repeats there. More would cost more than they tell.
+bool few_places(const Finding& finding) {
+  constexpr std::uint32_t most_targets = 60;
+  return finding.part.kind == Part::Kind::axis && finding.repeats.targets <= most_targets;
 }
 
 }  // namespace
@@ -74,7 +77,7 @@ void describe(const Finding& finding, const std::vector<Term>& catalogue, Explan
   std::vector<std::string> beside;
   const std::size_t before = out.certain.size();
   for (const Description& description : out.descriptions) {
-    if (!of_place(finding, description.term)) continue;
+    if (!few_places(finding) || !of_place(finding, description.term)) continue;
     model.push_back(description.term);
     beside.push_back(description.term.name());
     for (Candidate& found : certain_in(finding.part, model, catalogue, finding.seed))

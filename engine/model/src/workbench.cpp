@@ -76,7 +76,7 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
     most_of_position_ = static_cast<Index>(std::ceil(0.6 * (targets - 1.0)));
     most_stated_ = static_cast<Index>(std::ceil(0.8 * (targets - 1.0)));
     most_of_curve_ = static_cast<Index>(targets) / 2 - 1;
-    few_ = o.size() <= 40 && 2 * o.size() < 5 * targets;
+    few_ = o.size() <= 40 && static_cast<double>(o.size()) < 2.5 * static_cast<double>(targets);
   }
   root_ = root_weights(o, weight);
   used_ = static_cast<double>((root_.array() > 0.0).count());

@@ -31,6 +31,8 @@ ControlTable declared() {
   return t;
 }
 
+constexpr std::string_view two_tables = "two tables from home";
+
 Expected<std::vector<Artifact>> files(const Sheet& s) {
   const auto below = std::llround(-s.grid.first / s.grid.step);  // points below home, or above it
   const auto above = std::llround(s.grid.last() / s.grid.step);
@@ -41,8 +43,8 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
   };
   std::vector<std::string> words = s.words();
   if (below > 0 && above > 0)
-    words.emplace_back(
-        "two tables from home, one to each side: the control adds them, and each is 0 beyond home");
+    words.push_back(std::string(two_tables) +
+                    ", one to each side: the control adds them, and each is 0 beyond home");
   std::string out = controllers::comments(words, "; ");
   for (const std::int64_t side : {1, -1}) {
     const std::int64_t points = side > 0 ? above : below;
@@ -188,7 +190,14 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (!axes) return tl::unexpected<Error>(axes.error());
   Parser parser{*axes};
   for (const Artifact& f : in.files)
+    if (auto ended = controllers::ends_whole(f.name, f.bytes); !ended)
+      return tl::unexpected<Error>(ended.error());
+  for (const Artifact& f : in.files) {
+    const std::size_t before = parser.tables.size();
     if (auto done = parser.file(f.bytes); !done) return tl::unexpected<Error>(done.error());
+    if (f.bytes.find(two_tables) != f.bytes.npos && parser.tables.size() == before + 1)
+      return fail(f.name + ": one of its two tables is missing: the file was cut");
+  }
   if (parser.tables.empty()) return fail("no :START");
   return parser.tables;
 }

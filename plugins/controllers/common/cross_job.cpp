@@ -67,7 +67,7 @@ void make_zero(CrossCurve& curve, const std::map<std::string, AxisSettings>& set
   for (double& v : curve.value) v -= zero;
 }
 
-TableSize size_of(const CrossCurve& curve) {
+TableSize size_of_curve(const CrossCurve& curve) {
   TableSize size;
   size.take(curve.position, curve.value);
   return size;
@@ -192,7 +192,7 @@ bool oversized(const CrossJob& job, const OutputInput& in, OutputResult& result)
   for (const CrossCurve& curve : job.curves) {
     const auto axis = settings.find(curve.output);
     if (axis == settings.end()) continue;
-    const TableSize size = size_of(curve);
+    const TableSize size = size_of_curve(curve);
     const auto hold = [&](const char* key, Quantity q, double found, double at) {
       const auto said = axis->second.find(key);
       if (said == axis->second.end()) return;
@@ -215,7 +215,7 @@ bool oversized(const CrossJob& job, const OutputInput& in, OutputResult& result)
 }
 
 std::string cross_words(const CrossCurve& curve) {
-  const TableSize size = size_of(curve);
+  const TableSize size = size_of_curve(curve);
   return plain(curve.output) + " over " + plain(curve.input) + ": zero at " +
          decimal(curve.reference * 1e3, 4) + " mm of " + plain(curve.input) +
          (curve.told ? "" : ", taken as reference point") + "; largest entry " +
@@ -225,7 +225,7 @@ std::string cross_words(const CrossCurve& curve) {
 
 void note_cross(const CrossJob& job, OutputResult& result) {
   for (const CrossCurve& curve : job.curves) {
-    const TableSize size = size_of(curve);
+    const TableSize size = size_of_curve(curve);
     result.notes.push_back({curve.told ? "table.cross-zero-at" : "table.cross-zero-taken",
                             {{"reference", curve.reference, Quantity::length},
                              {"largest", size.largest, Quantity::deviation},

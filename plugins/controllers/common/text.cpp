@@ -21,6 +21,11 @@ std::optional<Number> number(std::string_view text) {
 
 }  // namespace
 
+Expected<void> ends_whole(std::string_view name, std::string_view text) {
+  if (text.empty() || text.back() == '\n') return {};
+  return fail(std::string(name) + ": the last line has no end: the file was cut");
+}
+
 std::vector<std::string_view> lines_of(std::string_view text) {
   std::vector<std::string_view> lines;
   while (!text.empty()) {

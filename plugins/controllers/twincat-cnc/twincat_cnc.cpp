@@ -121,6 +121,8 @@ Expected<LoadedTable> screw(const List& list, const controllers::KnownAxis& axis
     raw.position.push_back(at("kw_startpos") + at("interval") * static_cast<double>(i));
   const bool both = at("bilateral") == 1.0;
   if (both) raw.minus = column(list, "kw.ssfk.table", ".neg"), raw.backlash = 0.0;
+  if (both && raw.minus.size() != raw.plus.size())
+    return fail("kw.ssfk.table has not as many entries neg as pos");
   if (at("modulo") == 1.0) raw.outside = LoadedTable::Outside::repeats;
   return controllers::loaded(declared(), raw);
 }
@@ -162,6 +164,8 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   const std::string said = in.options.text("cross_sign");
   std::vector<LoadedTable> tables;
   for (const Artifact& f : in.files) {
+    if (auto ended = controllers::ends_whole(f.name, f.bytes); !ended)
+      return tl::unexpected<Error>(ended.error());
     const List list = read_list(f.bytes);
     const auto number = list.find("kopf.achs_nr");
     if (number == list.end() || !(number->second >= 1.0 && number->second < 1e6))

@@ -110,6 +110,9 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   std::size_t first = 0;  // of the tables, that of this block
   bool names = true;
   for (const Artifact& f : in.files)
+    if (auto ended = controllers::ends_whole(f.name, f.bytes); !ended)
+      return tl::unexpected<Error>(ended.error());
+  for (const Artifact& f : in.files)
     for (std::string_view line : controllers::lines_of(f.bytes)) {
       line = line.substr(0, line.find("//"));
       const auto w = controllers::words_of(line, " ,;\t");

@@ -25,7 +25,7 @@ std::vector<Word> words_of(std::string_view comment) {
   char before = ' ';
   for (std::size_t i = 0; i < comment.size();) {
     const auto belongs = [&](char c) {
-      return detail::is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+      return reading::detail::is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
              static_cast<unsigned char>(c) >= 0x80;
     };
     if (!belongs(comment[i])) {

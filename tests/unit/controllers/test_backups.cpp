@@ -17,6 +17,9 @@ struct Kind {
   const char* comment = nullptr;  ///< begins a line that says nothing
   bool below = false;
   std::string axes = "X number=1";
+  /// Nothing in the control's layout says where it ends: cut behind a whole line it is a shorter
+  /// table.
+  bool ends_say_nothing = false;
 };
 
 std::vector<Kind> kinds() {
@@ -25,14 +28,20 @@ std::vector<Kind> kinds() {
           {"siemens-840d directions", plugin_siemens_840d, both, ";"},
           {"heidenhain-tnc", plugin_heidenhain_tnc, {}},
           {"heidenhain-tnc directions", plugin_heidenhain_tnc, both},
-          {"heidenhain-tnc itnc530", plugin_heidenhain_tnc, {{"layout", std::string("itnc530")}}},
+          {"heidenhain-tnc itnc530",
+           plugin_heidenhain_tnc,
+           {{"layout", std::string("itnc530")}},
+           nullptr,
+           false,
+           "X number=1",
+           true},
           {"fanuc", plugin_fanuc, {{"extended", true}}},
           {"fanuc directions", plugin_fanuc, {{"extended", true}, {"directions", true}}},
           {"linuxcnc", plugin_linuxcnc, {}},
           {"twincat-cnc", plugin_twincat_cnc, {}, "#"},
           {"twincat-cnc directions", plugin_twincat_cnc, both, "#"},
           {"twincat-nc-ptp", plugin_twincat_nc_ptp, {}},
-          {"twincat-volumetric", plugin_twincat_volumetric, error, "//"},
+          {"twincat-volumetric", plugin_twincat_volumetric, error, "//", false, "X number=1", true},
           {"fagor-8055", plugin_fagor_8055, error, "#"},
           {"haas-classic", plugin_haas_classic, error, "#", true},
           {"mitsubishi", plugin_mitsubishi, {}, "#"},
@@ -98,6 +107,7 @@ TEST(Backup, CutAtEveryByteItIsTheWholeTableOrNone) {
       for (std::size_t n = 1; n < r->artifacts[f].bytes.size() && wrong == 0; ++n) {
         auto files = r->artifacts;
         files[f].bytes.resize(n);
+        if (k.ends_say_nothing && files[f].bytes.back() == '\n') continue;
         const auto read = read_back(output, files, with_axes(k), {{.name = "X"}});
         if (!read || read->empty()) {
           ++refused;

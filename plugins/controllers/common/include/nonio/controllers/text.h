@@ -9,11 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "nonio/sdk/error.h"
+
 /// Texts of tables, to be written and to be read.
 namespace nonio::controllers {
 
 /// Without the ends of lines, LF or CR LF.
 std::vector<std::string_view> lines_of(std::string_view text);
+/// An error where the last line has no end: the file was cut, and what is left of a number is
+/// another one.
+Expected<void> ends_whole(std::string_view name, std::string_view text);
 /// What stands between these characters.
 std::vector<std::string_view> words_of(std::string_view line,
                                        std::string_view separators = " \t\r");
