@@ -116,7 +116,8 @@ MachineRecord record_for(const Sample& sample) {
   return record;
 }
 
-/// Of controls that count: nobody but the machine's builder knows how many counts an axis has.
+/// Of controls that count: nobody but the machine's builder knows how many counts an axis has. So
+/// many that a sixteenth of one is a nanometre.
 void add_encoders(Settings& settings, const Info& info, const Machine& machine) {
   for (const Option& o : info.options) {
     if (o.name != "axes" || o.help.find("counts_per_mm") == o.help.npos) continue;
@@ -124,7 +125,7 @@ void add_encoders(Settings& settings, const Info& info, const Machine& machine) 
     if (entries == settings.values.end()) continue;
     auto* list = std::get_if<std::vector<std::string>>(&entries->second);
     for (const Axis& axis : machine.axes) {
-      const std::string counts = axis.rotary ? " counts_per_deg=3600" : " counts_per_mm=2000";
+      const std::string counts = axis.rotary ? " counts_per_deg=3600" : " counts_per_mm=62500";
       if (list == nullptr) continue;
       const auto own = std::find_if(list->begin(), list->end(), [&](const std::string& entry) {
         return entry.starts_with(axis.name + " ");
