@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "nonio/host/formula.h"
+#include "nonio/host/manifest.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
@@ -242,28 +243,51 @@ std::string other_columns(const Effect& e, const Effect& formula, const Observat
   return {};
 }
 
+/// formulas.toml of a case: [[model.formula]] as in a manifest, where they would be refused, since
+/// they say what an effect says.
+Expected<std::vector<Formula>> formulas_of(const Source& source) {
+  const Artifact* file = file_of(source, "formulas.toml");
+  if (file == nullptr) return std::vector<Formula>();
+  auto manifest =
+      parse_manifest(source.manifest + "\n" + file->bytes, "campaign.toml, formulas.toml");
+  if (!manifest) return fail(manifest.error().front());
+  return std::move(manifest->campaign.formulas);
+}
+
+/// A formula of a sample, against the effect of that name.
+Verdict same_as(const Formula& formula, const Effect& e, const Sample& s, const Bench& bench,
+                std::size_t& compared) {
+  for (const model::Part& part : model::parts_of(s.campaign, s.observations))
+    for (const Axis& axis : part.axes) {
+      if (axis.name != formula.axis || !e.applies(part.table, axis)) continue;
+      bench.stage("sample " + s.name + ", " + formula.name);
+      const auto said = formula_effect(formula, axis);
+      if (!said) return failed("sample " + s.name + ": " + said.error().message);
+      if (const std::string why = other_columns(e, *said, part.table, axis); !why.empty())
+        return failed("sample " + s.name + ", axis " + axis.name + ": " + why);
+      ++compared;
+    }
+  return passed();
+}
+
 }  // namespace
 
 Verdict truth(const Effect& e, const Bench& bench) {
   std::size_t compared = 0;
   if (!e.columns || !e.applies) return failed("applies or columns is missing");
   for (const Sample& s : bench.samples)
-    for (const Formula& formula : s.campaign.formulas) {
-      if (formula.name != "truth-" + e.info.name) continue;
-      for (const model::Part& part : model::parts_of(s.campaign, s.observations))
-        for (const Axis& axis : part.axes) {
-          if (axis.name != formula.axis || !e.applies(part.table, axis)) continue;
-          bench.stage("sample " + s.name + ", " + formula.name);
-          const auto said = formula_effect(formula, axis);
-          if (!said) return failed("sample " + s.name + ": " + said.error().message);
-          if (const std::string why = other_columns(e, *said, part.table, axis); !why.empty())
-            return failed("sample " + s.name + ", axis " + axis.name + ": " + why);
-          ++compared;
-        }
+    for (const Source& source : bench.sources) {
+      const auto formulas = source.name == s.name ? formulas_of(source) : std::vector<Formula>();
+      if (!formulas) return failed("sample " + s.name + ": " + formulas.error().message);
+      for (const Formula& formula : *formulas) {
+        if (formula.name != e.info.name) continue;
+        Verdict v = same_as(formula, e, s, bench, compared);
+        if (v.state != Verdict::State::passed) return v;
+      }
     }
   return compared > 0 ? passed()
-                      : skipped("no case has a [[model.formula]] called \"truth-" + e.info.name +
-                                "\": write the effect down as a formula");
+                      : skipped("no case has a formula called \"" + e.info.name +
+                                "\" in formulas.toml: write the effect down as a formula");
 }
 
 namespace {

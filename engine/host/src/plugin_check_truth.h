@@ -8,7 +8,7 @@
 #include "plugin_checks.h"
 
 /// What a person wrote beside the files of a case, because the file alone tells nobody whether it
-/// was understood: readings.csv, table.csv, expected/values.csv, formulas called "truth-...".
+/// was understood: readings.csv, table.csv, expected/values.csv, formulas.toml.
 namespace nonio::host::kit {
 
 /// Of a reader: reading by reading, against readings.csv.
