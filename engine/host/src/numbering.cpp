@@ -263,6 +263,11 @@ Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& 
   if (auto same = check_release(made_from(evaluated, context_)); !same) return fail(same.error());
   const auto before = opened->last_number(campaign);
   if (!before) return fail(before.error());
+  // Of the same data, by a night beside this one, since they were looked for? Then nothing is
+  // amended.
+  if (*before) found = opened->find(campaign, data);
+  if (!found) return fail(found.error());
+  if (*found) return std::move(**found);
   Certificate certificate;
   Issue& issue = certificate.issue;
   if (*before)
