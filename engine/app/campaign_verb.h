@@ -8,6 +8,7 @@
 
 #include "common.h"
 #include "nonio/host/campaign_model.h"
+#include "nonio/host/model_words.h"
 
 namespace nonio::app {
 
@@ -25,6 +26,9 @@ struct OpenCampaign {
 tl::expected<OpenCampaign, int> open_campaign(
     const char* verb, const std::string& folder, const Common& common,
     host::TemplatesFor what = host::TemplatesFor::documents);
+
+/// Sentences in the language of the site, or English for JSON.
+host::ModelWords words_for(const OpenCampaign& open, const Common& common);
 
 /// "CAMPAIGN", --templates and the common options.
 std::vector<Argument> campaign_arguments(std::string& folder, Common& common);

@@ -11,12 +11,12 @@ namespace {
 
 int compare(const std::string& folder, const Common& common) {
   const char* const verb = "nonio compare";
-  auto opened = open_campaign(verb, folder, common, host::TemplatesFor::english_words);
+  auto opened = open_campaign(verb, folder, common, host::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   auto parts = host::part_models(open.read, open.campaign().model);
   if (!parts) return complain(verb, text_of(parts.error()));
-  const host::ModelWords words(open.place->context.templates, "en");
+  const host::ModelWords words = words_for(open, common);
   std::vector<std::string> warnings;
   for (const std::string& effect : host::unmeasured(open.campaign().model, *parts))
     warnings.push_back(words.unmeasured(effect));

@@ -24,10 +24,10 @@ class Explain {
 
   int run() {
     auto opened =
-        open_campaign("nonio explain", options_.folder, common_, host::TemplatesFor::english_words);
+        open_campaign("nonio explain", options_.folder, common_, host::TemplatesFor::terminal);
     if (!opened) return opened.error();
     open_ = std::move(*opened);
-    words_.emplace(open_.place->context.templates, "en");
+    words_.emplace(words_for(open_, common_));
     if (const int status = explain(); status != exit_done && all_.empty()) return status;
     while (options_.automatic && !next().empty()) {
       if (steps_.size() == most_steps) {
@@ -90,7 +90,7 @@ class Explain {
     }
     steps_.push_back(change->step);
     if (!common_.json) {
-      std::cout << "step " << steps_.size() << ": ";
+      std::cout << words_->terminal()("step", {{"number", std::to_string(steps_.size())}}) << ": ";
       print_change(std::cout, *change, *words_);
     }
     return true;

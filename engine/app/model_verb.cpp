@@ -19,14 +19,14 @@ const char* const model_name = "nonio model";
 
 int show_model(const ModelOptions& options, const Common& common) {
   auto opened =
-      open_campaign("nonio model show", options.folder, common, host::TemplatesFor::english_words);
+      open_campaign("nonio model show", options.folder, common, host::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   auto parts = host::part_models(open.read, open.campaign().model);
   if (!parts) return complain(model_name, text_of(parts.error()));
   const auto history = host::read_history(open.folder);
   if (!history) return complain(model_name, text_of(history.error()), exit_failed);
-  const host::ModelWords words(open.place->context.templates, "en");
+  const host::ModelWords words = words_for(open, common);
   std::vector<host::Compared> all;
   std::vector<Error> errors = open.read.errors;
   for (host::PartModel& part : *parts) {
@@ -42,7 +42,7 @@ int show_model(const ModelOptions& options, const Common& common) {
     std::cout << host::compare_json(all, open.campaign(), words, {}, errors);
   } else {
     for (const host::Compared& one : all) print_model(std::cout, one, words);
-    print_history(std::cout, *history);
+    print_history(std::cout, *history, words.terminal());
   }
   return errors.empty() ? exit_done : exit_failed;
 }
@@ -62,14 +62,14 @@ std::string refusal(const OpenCampaign& open, const std::string& effect, bool ad
 
 int change(const ModelOptions& options, const Common& common, bool add) {
   auto opened = open_campaign(add ? "nonio model add" : "nonio model drop", options.folder, common,
-                              host::TemplatesFor::english_words);
+                              host::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   if (const std::string why = refusal(open, options.effect, add); !why.empty())
     return complain(model_name, why + "; nothing was changed");
   const auto changed = host::change_model(open.folder, open.read, options.effect, add);
   if (!changed) return complain(model_name, text_of(changed.error()), exit_failed);
-  const host::ModelWords words(open.place->context.templates, "en");
+  const host::ModelWords words = words_for(open, common);
   if (common.json)
     std::cout << host::change_json(*changed, open.campaign(), words);
   else

@@ -15,7 +15,9 @@
 #include "nonio/host/campaign_reader.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
+#include "nonio/host/record.h"
 #include "nonio/host/results_json.h"
+#include "nonio/host/terminal_words.h"
 #include "nonio/sdk/format.h"
 #include "results_folder.h"
 #include "verbs.h"
@@ -34,6 +36,7 @@ struct ShowWish {
 struct Shown {
   std::string text;
   Templates templates;
+  std::string language = "en";
 };
 
 /// What the night would write, without a number drawn for a certificate;
@@ -51,7 +54,8 @@ Expected<Shown> evaluated_now(const fs::path& folder, const Common& common) {
   for (const Results::Written& w : evaluated.results.outputs)
     for (const Artifact& a : w.result.artifacts)
       files.push_back({a.name, a.bytes.size(), host::sha256(a.bytes)});
-  return Shown{host::results_json(evaluated, context, files), context.templates};
+  return Shown{host::results_json(evaluated, context, files), context.templates,
+               context.site.language};
 }
 
 Expected<Shown> of_night(const fs::path& folder, const Common& common) {
@@ -60,7 +64,10 @@ Expected<Shown> of_night(const fs::path& folder, const Common& common) {
   std::string digest;
   auto templates = host::read_templates(common.template_folders(), digest);
   if (!templates) return fail(templates.error());
-  return Shown{std::move(*text), std::move(*templates)};
+  Shown shown{std::move(*text), std::move(*templates)};
+  if (const auto record = host::read_record(folder); record && !record->language.empty())
+    shown.language = record->language;
+  return shown;
 }
 
 /// The number of a finding's evidence by its name with the unit: mean_um.
@@ -107,7 +114,7 @@ std::string to_width(std::string text, std::size_t width, bool left = false) {
 
 class Page {
  public:
-  Page(const Shown& shown, std::ostream& out) : templates_(shown.templates), out_(out) {
+  Page(const Shown& shown, std::ostream& out) : say_(shown.templates, shown.language), out_(out) {
     winsize size{};
     const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col != 0;
     width_ = known ? std::clamp<std::size_t>(size.ws_col, 80, 120) : 80;
@@ -151,14 +158,14 @@ class Page {
   }
 
   void entry(const std::string& name, const std::string& text) {
-    if (!text.empty()) out_ << "  " << to_width(name, 12) << text << "\n";
+    if (!text.empty()) out_ << "  " << to_width(say_.of("campaign", name), 12) << text << "\n";
   }
 
   void head(const Json& results) {
     const Json& c = results.at("campaign");
     const std::string status = results.at("status");
     out_ << paint(c.at("id").get<std::string>(), Colour::bold) << "  "
-         << paint(status, status_colour(status)) << "\n";
+         << paint(say_.of("status", status), status_colour(status)) << "\n";
     for (const char* name : {"customer", "site", "date", "operator"})
       entry(name, c.value(name, ""));
     for (const char* name : {"machine", "instrument"}) {
@@ -172,21 +179,23 @@ class Page {
     if (!results.contains("certificate")) return;
     const Json& issued = results.at("certificate");
     const std::string replaced = issued.value("replaces", "");
-    entry("certificate", issued.value("number", "") + " of " + issued.value("date", "") +
-                             (replaced.empty() ? "" : ", replaces " + replaced));
+    entry("certificate",
+          say_("certificate-of",
+               {{"number", issued.value("number", "")}, {"date", issued.value("date", "")}}) +
+              (replaced.empty() ? "" : ", " + say_("replaces", {{"number", replaced}})));
   }
 
   void error(const Json& e) {
     Error error{e.value("message", ""), e.value("file", ""), e.value("line", std::uint64_t{0})};
     error.column = e.value("column", "");
-    out_ << "\n" << paint("error", Colour::red) << "\n";
+    out_ << "\n" << paint(say_("error"), Colour::red) << "\n";
     wrapped("  ", text_of(error));
   }
 
   void analysis(const Json& a, std::vector<std::string>& seen) {
     const std::string measurement = a.value("measurement", "");
     if (!measurement.empty() && std::find(seen.begin(), seen.end(), measurement) == seen.end()) {
-      heading("measurement " + measurement);
+      heading(say_("measurement", {{"id", measurement}}));
       seen.push_back(measurement);
     }
     const std::string name = a.at("plugin").get<std::string>() + " " + a.value("version", "");
@@ -194,7 +203,8 @@ class Page {
     values(a.at("values"));
     if (a.contains("series"))
       for (const auto& [series_name, s] : a.at("series").items()) series(series_name, s);
-    if (a.contains("rows")) out_ << "    " << a.at("rows").size() << " rows, in results.json\n";
+    if (a.contains("rows"))
+      out_ << "    " << say_("rows", {{"count", std::to_string(a.at("rows").size())}}) << "\n";
     for (const Json& f : a.at("findings")) finding(f, measurement);
     notes(a, "  ");
   }
@@ -222,9 +232,11 @@ class Page {
       limits = limits || v.contains("decision");
       name_width = std::max(name_width, columns_of(name) + 1);
     }
-    out_ << "    " << to_width("", name_width) << to_width("value", 12, true)
+    out_ << "    " << to_width("", name_width) << to_width(say_("value"), 12, true)
          << to_width("U", 10, true) << "  "
-         << (limits ? to_width("unit", 10) + to_width("tolerance", 9, true) + "  decision" : "unit")
+         << (limits ? to_width(say_("unit"), 10) + to_width(say_("limit"), 9, true) + "  " +
+                          say_("decision")
+                    : say_("unit"))
          << "\n";
     for (const auto& [name, v] : all.items()) {
       out_ << "    " << to_width(name, name_width) << to_width(number(v, "value"), 12, true)
@@ -234,7 +246,7 @@ class Page {
         out_ << unit << "\n";
       else
         out_ << to_width(unit, 10) << to_width(shortest(v.at("tolerance").get<double>()), 9, true)
-             << "  " << paint(decision, status_colour(decision)) << "\n";
+             << "  " << paint(say_.of("decision", decision), status_colour(decision)) << "\n";
     }
   }
 
@@ -246,9 +258,16 @@ class Page {
         most = std::max(most, v.get<double>());
       }
     if (!(least <= most)) return;
-    out_ << "    " << to_width(name, 8) << "a curve over " << s.value("over", "") << ", "
-         << fixed_text(least, 3) << " to " << fixed_text(most, 3) << " " << s.value("unit", "")
-         << ", in results.json\n";
+    out_ << "    " << to_width(name, 8)
+         << say_("series", {{"over", s.value("over", "")},
+                            {"low", fixed_text(least, 3)},
+                            {"high", fixed_text(most, 3)},
+                            {"unit", s.value("unit", "")}})
+         << "\n";
+  }
+
+  std::string text_of(const Finding& f, const char* part) const {
+    return finding_text(say_.templates(), say_.language(), f, part);
   }
 
   /// Two analyses of one measurement may find the same.
@@ -257,19 +276,20 @@ class Page {
     const bool again = !told_.insert(measurement + "\n" + json.dump()).second;
     if (again && !f.attention) return;
     const std::string of = f.measurement.empty() ? "" : f.measurement + ": ";
-    out_ << "    " << (f.attention ? paint("attention", Colour::yellow) : std::string("info     "))
-         << "  " << of << finding_text(templates_, "en", f, "title")
-         << (again ? ": as above\n" : "\n");
+    out_ << "    "
+         << (f.attention ? paint(to_width(say_("severity.attention"), 9), Colour::yellow)
+                         : to_width(say_("severity.info"), 9))
+         << "  " << of << text_of(f, "title") << (again ? ": " + say_("as-above") : "") << "\n";
     if (again) return;
-    if (const std::string says = finding_text(templates_, "en", f, "says"); !says.empty())
+    if (const std::string says = text_of(f, "says"); !says.empty())
       wrapped("               ", says);
-    if (const std::string advice = finding_text(templates_, "en", f, "advice"); !advice.empty())
-      wrapped("               ", "Advice: " + advice);
+    if (const std::string advice = text_of(f, "advice"); !advice.empty())
+      wrapped("               ", say_("advice") + ": " + advice);
   }
 
   void notes(const Json& of, const std::string& indent) {
     if (!of.contains("notes")) return;
-    if (indent.empty()) heading("notes");
+    if (indent.empty()) heading(say_("notes"));
     for (const Json& note : of.at("notes")) wrapped(indent + "  ", note.get<std::string>());
   }
 
@@ -277,11 +297,11 @@ class Page {
     bool any = false;
     for (const Json& c : all) {
       if (c.value("decision", "") != "cannot be decided") continue;
-      if (!std::exchange(any, true)) heading("tolerances that cannot be decided");
+      if (!std::exchange(any, true)) heading(say_("undecided"));
       const std::string reason = c.value("reason", ""),
-                        why = words(templates_, "en", "results." + reason);
-      out_ << "  axis " << c.value("axis", "") << ", " << c.value("name", "") << ": "
-           << (why.empty() ? reason : why) << "\n";
+                        why = words(say_.templates(), say_.language(), "results." + reason);
+      out_ << "  " << say_("head.axis") << " " << c.value("axis", "") << ", " << c.value("name", "")
+           << ": " << (why.empty() ? reason : why) << "\n";
     }
   }
 
@@ -290,9 +310,10 @@ class Page {
     if (t.contains("predictions"))
       for (const Json& p : t.at("predictions"))
         out_ << "    " << p.value("measurement", "") << ", " << p.value("name", "") << ": "
-             << fixed_text(p.at("before").get<double>(), 3) << " before, "
-             << fixed_text(p.at("predicted").get<double>(), 3) << " " << p.value("unit", "")
-             << " predicted\n";
+             << say_("predicted", {{"before", fixed_text(p.at("before").get<double>(), 3)},
+                                   {"after", fixed_text(p.at("predicted").get<double>(), 3)},
+                                   {"unit", p.value("unit", "")}})
+             << "\n";
     if (t.contains("findings"))
       for (const Json& f : t.at("findings")) finding(f, "");
     notes(t, "  ");
@@ -300,12 +321,12 @@ class Page {
 
   void outputs(const Json& results) {
     if (results.at("outputs").empty()) return;
-    heading("files");
+    heading(say_("files"));
     for (const Json& o : results.at("outputs"))
       out_ << "  " << to_width(o.at("file"), 34) << " " << o.value("plugin", "") << "\n";
   }
 
-  const Templates& templates_;
+  host::TerminalWords say_;
   std::ostream& out_;
   std::size_t width_ = 80;
   std::set<std::string> told_{};

@@ -97,10 +97,11 @@ host::Checked<Settings> campaign_options(const OpenCampaign& open, const Info& i
 void tell_findings(const char* verb, const OpenCampaign& open,
                    const std::vector<Finding>& findings) {
   const Templates& words = open.place->context.templates;
+  const std::string& language = open.place->context.site.language;
   for (const Finding& f : findings)
     if (f.attention)
-      std::cerr << verb << ": " << finding_text(words, "en", f, "title") << ": "
-                << finding_text(words, "en", f, "says") << "\n";
+      std::cerr << verb << ": " << finding_text(words, language, f, "title") << ": "
+                << finding_text(words, language, f, "says") << "\n";
 }
 
 }  // namespace nonio::app

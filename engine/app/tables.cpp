@@ -13,8 +13,11 @@ namespace {
 
 constexpr std::size_t bar_width = 40;
 
+/// Columns of characters, not bytes.
 std::string padded(std::string text, std::size_t width) {
-  if (text.size() < width) text.append(width - text.size(), ' ');
+  const auto columns = static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+  if (columns < width) text.append(width - columns, ' ');
   return text;
 }
 
@@ -46,27 +49,30 @@ std::string floor_text(const model::NoiseFloor& floor, Quantity q) {
 const char* head_of(const model::Part& part) {
   switch (part.kind) {
     case model::Part::Kind::axis:
-      return "axis ";
+      return "head.axis";
     case model::Part::Kind::space:
-      return "axes ";
+      return "head.axes";
     case model::Part::Kind::balls:
       break;
   }
-  return "ball centres ";
+  return "head.balls";
 }
 
-void print_head(std::ostream& out, const host::PartModel& part) {
+void print_head(std::ostream& out, const host::PartModel& part, const host::ModelWords& words) {
+  const host::TerminalWords say = words.terminal();
   const std::string effects = host::listed(part.names());
-  out << head_of(part.part) << part.part.name << " (" << host::listed(part.part.measurements)
-      << "): " << part.part.table.size()
-      << " readings; model: " << (effects.empty() ? "nothing but the zero" : effects) << "\n";
+  out << say(head_of(part.part)) << " " << part.part.name << " ("
+      << host::listed(part.part.measurements) << "): "
+      << say("head.readings", {{"count", std::to_string(part.part.table.size())},
+                               {"model", effects.empty() ? say("head.empty") : effects}})
+      << "\n";
 }
 
 /// Curves by what they say, everything else by its parameters.
 void print_parameters(std::ostream& out, const model::Fit& fit, const host::PartModel& part,
                       const host::ModelWords& words) {
   if (fit.parameters.empty()) return;
-  out << "  parameters\n";
+  out << "  " << words.terminal()("parameters") << "\n";
   std::string told;
   for (const model::Parameter& p : fit.parameters) {
     const auto term = std::find_if(fit.terms.begin(), fit.terms.end(),
@@ -86,15 +92,17 @@ void print_parameters(std::ostream& out, const model::Fit& fit, const host::Part
         << (p.quantity == Quantity::count ? fixed_text(value, 0) : short_text(value, 4));
     if (std::isfinite(p.u)) out << ", u = " << short_text(printed(p.u, p.quantity), 2);
     const std::string_view unit = unit_of(p.quantity).symbol;
-    out << (unit.empty() ? "" : " ") << unit << (p.shape ? "  (searched)" : "") << "\n";
+    out << (unit.empty() ? "" : " ") << unit << (p.shape ? "  " + words.terminal()("searched") : "")
+        << "\n";
   }
 }
 
 /// One after the other: each beside those above it.
 void print_places(std::ostream& out, const model::Comparison& c, const host::ModelWords& words,
                   Quantity deviation) {
-  if (!c.fails()) return line(out, "where it fails", "nowhere");
-  out << "  where it fails\n";
+  const host::TerminalWords say = words.terminal();
+  if (!c.fails()) return line(out, say("fails"), say("fails.nowhere"));
+  out << "  " << say("fails") << "\n";
   for (const model::Place& place : c.seats)
     out << "    " << padded(place.where + host::on_line(place), 24) << " "
         << words.place(place, deviation) << "\n";
@@ -103,31 +111,33 @@ void print_places(std::ostream& out, const model::Comparison& c, const host::Mod
 void print_suspects(std::ostream& out, const model::Comparison& c, const host::PartModel& part,
                     const Campaign& campaign, const host::ModelWords& words) {
   for (const model::Suspect& s : c.suspects)
-    out << "  suspect: "
+    out << "  " << words.terminal()("suspect") << ": "
         << words.suspect(s, host::place_of(part, campaign, s.row), part.deviation()) << "\n";
 }
 
-std::string largest_text(const host::Compared& compared, const Campaign& campaign) {
+std::string largest_text(const host::Compared& compared, const Campaign& campaign,
+                         const host::TerminalWords& say) {
   const host::PartModel& part = compared.part;
   const auto at = host::place_of(part, campaign, compared.comparison.largest_row);
-  std::string text = with_unit(compared.comparison.largest, part.deviation()) + " at " +
-                     evidence_text({"", at.target, at.position}) + " " +
-                     std::string(unit_of(at.position).symbol) + ", run " + std::to_string(at.run) +
-                     (at.direction == 0  ? ""
-                      : at.direction > 0 ? ", direction +"
-                                         : ", direction -") +
-                     ", " + at.file;
+  const std::string direction = at.direction > 0 ? "+" : "-";
+  std::string text =
+      say("largest.at", {{"value", with_unit(compared.comparison.largest, part.deviation())},
+                         {"position", evidence_text({"", at.target, at.position}) + " " +
+                                          std::string(unit_of(at.position).symbol)},
+                         {"run", std::to_string(at.run)}}) +
+      (at.direction == 0 ? "" : ", " + say("largest.direction", {{"direction", direction}})) +
+      ", " + at.file;
   return at.line == 0 ? text : text + ":" + std::to_string(at.line);
 }
 
-void print_candidates(std::ostream& out, const host::Explained& e) {
+void print_candidates(std::ostream& out, const host::Explained& e, const host::TerminalWords& say) {
   const Quantity q = e.part.deviation();
   double best = 0.0;
   for (const model::Candidate& c : e.explanation.candidates)
     if (host::is_ranked(c)) best = std::max(best, c.score);
   if (best > 0.0)
-    out << "  " << padded("candidate", 22) << padded("evidence", 32) << padded("RMS after", 14)
-        << padded("left-out runs", 15) << "p\n";
+    out << "  " << padded(say("candidate"), 22) << padded(say("evidence"), 32)
+        << padded(say("rms-after"), 14) << padded(say("left-out"), 15) << "p\n";
   for (const model::Candidate& c : e.explanation.candidates) {
     if (!host::is_ranked(c) || !(c.score > 0.0)) continue;
     out << "  " << padded(c.term.name(), 22) << bar(c.score, best, 20) << " "
@@ -137,44 +147,46 @@ void print_candidates(std::ostream& out, const host::Explained& e) {
 }
 
 /// What the best explanation adds; where it is none, what of it is not certain.
-void print_together(std::ostream& out, const model::Explanation& x) {
+void print_together(std::ostream& out, const model::Explanation& x,
+                    const host::TerminalWords& say) {
   const bool unknown = x.verdict.kind == model::Verdict::Kind::unknown;
   std::vector<std::string> names;
   for (const std::string& name : x.together)
     if (!unknown || std::find(x.certain.begin(), x.certain.end(), name) == x.certain.end())
       names.push_back(name);
   if (names.size() > (unknown ? 0U : 1U))
-    out << "    " << (unknown ? "it may also have, not certain: " : "the best explanation adds: ")
-        << host::listed(names) << "\n";
+    out << "    " << say(unknown ? "together.unknown" : "together") << ": " << host::listed(names)
+        << "\n";
 }
 
 void print_verdict(std::ostream& out, const host::Explained& e, const host::ModelWords& words) {
   const model::Explanation& x = e.explanation;
-  out << "  verdict: " << host::to_text(x.verdict.kind)
+  const host::TerminalWords say = words.terminal();
+  out << "  " << say("verdict") << ": " << say.of("verdict", host::to_text(x.verdict.kind))
       << (x.verdict.effect.empty() ? "" : " " + x.verdict.effect) << "\n    "
       << words.verdict(x, e.part) << "\n";
-  print_together(out, x);
+  print_together(out, x, say);
   for (const model::Description& d : x.descriptions)
     out << "    " << words.description(d, e.part) << "\n";
   for (const std::string& text : words.next(x, e.part))
-    out << "    " << (x.plans.empty() ? "next: " : "to tell them apart: ") << text << "\n";
+    out << "    " << say(x.plans.empty() ? "next" : "next.apart") << ": " << text << "\n";
   for (const char* what : {"is", "cure"})
     if (const std::string text = words.card(x.verdict.effect, what); !text.empty())
       out << "    " << text << "\n";
   if (x.verdict.trials > 0) out << "    " << words.false_alarms(x.verdict) << "\n";
 }
 
-void print_bars(std::ostream& out, const host::ModelStep& step) {
+void print_bars(std::ostream& out, const host::ModelStep& step, const host::TerminalWords& say) {
   const double whole = std::max(
       {step.rms_before.value_or(0.0), step.rms_after.value_or(0.0), step.floor.value_or(0.0)});
   const Quantity q = step.quantity;
-  const auto one = [&](const char* name, const std::optional<double>& rms) {
+  const auto one = [&](const std::string& name, const std::optional<double>& rms) {
     if (rms)
       out << "  " << padded(name, 8) << bar(*rms, whole, bar_width, step.floor) << " "
           << with_unit(*rms, q) << "\n";
   };
-  one("before", step.rms_before);
-  one("after", step.rms_after);
+  one(say("before"), step.rms_before);
+  one(say("after"), step.rms_after);
 }
 
 }  // namespace
@@ -188,47 +200,50 @@ void print_comparison(std::ostream& out, const host::Compared& compared, const C
   const model::Comparison& c = compared.comparison;
   const host::PartModel& part = compared.part;
   const Quantity q = part.deviation();
-  print_head(out, part);
+  const host::TerminalWords say = words.terminal();
+  print_head(out, part, words);
   line(out, "RMS", with_unit(c.fit.rms, q));
-  line(out, "left-out runs", c.cv_rms ? with_unit(*c.cv_rms, q) : "not to be had: one run");
-  line(out, "noise floor", c.floor ? floor_text(*c.floor, q) : "not known: nothing was repeated");
-  if (c.largest != 0.0) line(out, "largest residual", largest_text(compared, campaign));
-  line(out, "redundancy", std::to_string(c.fit.redundancy));
+  line(out, say("left-out"), c.cv_rms ? with_unit(*c.cv_rms, q) : say("left-out.one-run"));
+  line(out, say("floor"), c.floor ? floor_text(*c.floor, q) : say("floor.unknown"));
+  if (c.largest != 0.0) line(out, say("largest"), largest_text(compared, campaign, say));
+  line(out, say("redundancy"), std::to_string(c.fit.redundancy));
   if (c.lack_of_fit && std::isfinite(c.lack_of_fit->F))
-    line(out, "lack of fit", words.lack_of_fit(c, q));
+    line(out, say("lack-of-fit"), words.lack_of_fit(c, q));
   print_parameters(out, c.fit, part, words);
   for (const host::Correlated& pair : host::correlated(c.fit))
-    line(out, "correlated",
-         pair.one->effect + " " + pair.one->name + " and " + pair.other->effect + " " +
-             pair.other->name + ": r = " + fixed_text(pair.r, 3));
+    line(out, say("correlated"),
+         say("correlated.pair", {{"one", pair.one->effect + " " + pair.one->name},
+                                 {"other", pair.other->effect + " " + pair.other->name}}) +
+             ": r = " + fixed_text(pair.r, 3));
   print_places(out, c, words, part.deviation());
-  if (c.means > 0)
-    line(out, "", "told from " + std::to_string(c.means) + " means of neighbouring readings");
+  if (c.means > 0) line(out, "", say("means", {{"count", std::to_string(c.means)}}));
   print_suspects(out, c, part, campaign, words);
   for (const std::string& warning : host::warnings_of(part, c.fit, words))
-    out << "  warning: " << warning << "\n";
+    out << "  " << say("warning") << ": " << warning << "\n";
 }
 
 void print_model(std::ostream& out, const host::Compared& compared, const host::ModelWords& words) {
   const model::Comparison& c = compared.comparison;
   const Quantity q = compared.part.deviation();
-  print_head(out, compared.part);
+  const host::TerminalWords say = words.terminal();
+  print_head(out, compared.part, words);
   line(out, "RMS", with_unit(c.fit.rms, q));
-  if (c.cv_rms) line(out, "left-out runs", with_unit(*c.cv_rms, q));
-  if (c.floor) line(out, "noise floor", floor_text(*c.floor, q));
+  if (c.cv_rms) line(out, say("left-out"), with_unit(*c.cv_rms, q));
+  if (c.floor) line(out, say("floor"), floor_text(*c.floor, q));
   print_parameters(out, c.fit, compared.part, words);
   for (const std::string& warning : host::warnings_of(compared.part, c.fit, words))
-    out << "  warning: " << warning << "\n";
+    out << "  " << say("warning") << ": " << warning << "\n";
 }
 
 void print_explanation(std::ostream& out, const host::Explained& e, const Campaign& campaign,
                        const host::ModelWords& words) {
   const model::Comparison& c = e.explanation.comparison;
   const Quantity q = e.part.deviation();
-  print_head(out, e.part);
+  const host::TerminalWords say = words.terminal();
+  print_head(out, e.part, words);
   line(out, "RMS", with_unit(c.fit.rms, q));
-  if (c.floor) line(out, "noise floor", floor_text(*c.floor, q));
-  print_candidates(out, e);
+  if (c.floor) line(out, say("floor"), floor_text(*c.floor, q));
+  print_candidates(out, e, say);
   if (const std::string text = words.no_sign(e.explanation, e.part); !text.empty())
     out << "  " << text << "\n";
   for (const model::Candidate& candidate : e.explanation.candidates)
@@ -239,35 +254,40 @@ void print_explanation(std::ostream& out, const host::Explained& e, const Campai
   print_verdict(out, e, words);
   print_suspects(out, c, e.part, campaign, words);
   for (const std::string& warning : host::warnings_of(e.part, c.fit, words))
-    out << "  warning: " << warning << "\n";
+    out << "  " << say("warning") << ": " << warning << "\n";
 }
 
 void print_change(std::ostream& out, const host::Change& change, const host::ModelWords& words) {
   const host::ModelStep& step = change.step;
-  out << step.effect << (step.added ? " added" : " dropped") << "; the model is now "
-      << (change.effects.empty() ? "empty" : host::listed(change.effects)) << "\n";
-  if (!change.no_before.empty()) out << "  before: " << change.no_before << "\n";
+  const host::TerminalWords say = words.terminal();
+  out << say(step.added ? "added" : "dropped",
+             {{"effect", step.effect},
+              {"model",
+               change.effects.empty() ? say("model.empty") : host::listed(change.effects)}})
+      << "\n";
+  if (!change.no_before.empty()) out << "  " << say("before") << ": " << change.no_before << "\n";
   const Quantity q = step.quantity;
-  const auto row = [&](const char* name, const std::optional<double>& before,
+  const auto row = [&](const std::string& name, const std::optional<double>& before,
                        const std::optional<double>& after) {
     out << "  " << padded(name, 18) << padded(before ? with_unit(*before, q) : "-", 14)
         << (after ? with_unit(*after, q) : "-") << "\n";
   };
-  out << "  " << padded("", 18) << padded("before", 14) << "after\n";
+  out << "  " << padded("", 18) << padded(say("before"), 14) << say("after") << "\n";
   row("RMS", step.rms_before, step.rms_after);
-  row("left-out runs", step.cv_before, step.cv_after);
-  if (step.floor) line(out, "noise floor", with_unit(*step.floor, q));
-  print_bars(out, step);
+  row(say("left-out"), step.cv_before, step.cv_after);
+  if (step.floor) line(out, say("floor"), with_unit(*step.floor, q));
+  print_bars(out, step, say);
   if (!change.after) return;
   print_parameters(out, change.after->comparison.fit, change.after->part, words);
   for (const std::string& warning :
        host::warnings_of(change.after->part, change.after->comparison.fit, words))
-    out << "  warning: " << warning << "\n";
+    out << "  " << say("warning") << ": " << warning << "\n";
 }
 
-void print_history(std::ostream& out, const std::vector<host::ModelStep>& history) {
+void print_history(std::ostream& out, const std::vector<host::ModelStep>& history,
+                   const host::TerminalWords& say) {
   if (history.empty()) return;
-  out << "history\n";
+  out << say("history") << "\n";
   double whole = 0.0;
   for (const host::ModelStep& step : history)
     whole = std::max({whole, step.rms_before.value_or(0.0), step.rms_after.value_or(0.0)});

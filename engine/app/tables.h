@@ -19,6 +19,7 @@ void print_explanation(std::ostream& out, const host::Explained& explained,
 void print_change(std::ostream& out, const host::Change& change, const host::ModelWords& words);
 /// The effects with their values, and what they leave.
 void print_model(std::ostream& out, const host::Compared& compared, const host::ModelWords& words);
-void print_history(std::ostream& out, const std::vector<host::ModelStep>& history);
+void print_history(std::ostream& out, const std::vector<host::ModelStep>& history,
+                   const host::TerminalWords& say);
 
 }  // namespace nonio::app

@@ -156,7 +156,7 @@ Expected<void> keep(Templates& templates, const std::string& name, std::string b
 
 Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::string& digest,
                                    std::string* json, const TemplateFiles& own,
-                                   std::string_view below) {
+                                   const std::vector<std::string>& below) {
   std::map<std::string, fs::path> files;
   for (const fs::path& folder : folders) {
     auto here = files_below(folder);
@@ -164,7 +164,11 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
     for (auto& [name, path] : *here) files[name] = std::move(path);
   }
   for (const auto& [name, bytes] : own.files) files[name] = own.folder / name;
-  std::erase_if(files, [&](const auto& file) { return !file.first.starts_with(below); });
+  std::erase_if(files, [&](const auto& file) {
+    return !below.empty() &&
+           std::none_of(below.begin(), below.end(),
+                        [&](const std::string& start) { return file.first.starts_with(start); });
+  });
   Templates templates;
   std::string all;
   Json carried = Json::object();

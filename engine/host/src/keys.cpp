@@ -938,8 +938,16 @@ constexpr Key signing_keys[] = {
      .most = 300},
 };
 
+constexpr Choice terminal_languages[] = {{"de"}, {"en"}, {"it"}};
+
 constexpr Key site_file_keys[] = {
     format_key,
+    {.name = "language",
+     .holds = text,
+     .help = "Language of the terminal and of summary.txt. JSON, --help and error messages are "
+             "English.",
+     .otherwise = "en",
+     .choices = terminal_languages},
     {.name = "laboratory",
      .holds = table,
      .help = "The laboratory that measures.",

@@ -406,6 +406,8 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   SiteFile site;
   TableReader top(*root, site_file(), file, errors);
   top.whole("format");
+  if (const std::string language = top.text("language"); !language.empty())
+    site.language = language;
   if (auto reader = top.table("laboratory")) {
     site.laboratory = {reader->text("name"),       reader->text("address"),
                        reader->text("country"),    reader->text("accreditation"),

@@ -21,6 +21,7 @@ void put_findings(JsonWriter& json, const char* key, const std::vector<KnownFind
     json.member("measurement", f.measurement);
     json.member("id", f.id);
     json.member("title", f.title);
+    if (!f.said.empty()) json.member("said", f.said);
     json.member("severity", f.attention ? "attention" : "info");
     json.end_object();
   }
@@ -46,9 +47,11 @@ std::string text(dom::element e) { return std::string(std::string_view(e)); }
 
 std::vector<KnownFinding> findings_of(dom::array json) {
   std::vector<KnownFinding> out;
-  for (const dom::object f : json)
+  for (const dom::object f : json) {
     out.push_back({text(f["measurement"]), text(f["id"]), text(f["title"]),
                    std::string_view(f["severity"]) == "attention"});
+    if (dom::element e; f["said"].get(e) == simdjson::SUCCESS) out.back().said = text(e);
+  }
   return out;
 }
 
@@ -73,6 +76,7 @@ Record record_of(dom::object json) {
   for (const auto [name, digest] : dom::object(json["inputs"]))
     r.inputs.emplace_back(name, text(digest));
   if (dom::element e; json["certificate"].get(e) == simdjson::SUCCESS) r.certificate = text(e);
+  if (dom::element e; json["language"].get(e) == simdjson::SUCCESS) r.language = text(e);
   if (bool draft = false; json["draft"].get(draft) == simdjson::SUCCESS) r.draft = draft;
   for (const auto [name, size_and_digest] : dom::object(json["files"]))
     r.files.push_back({std::string(name), size_and_digest.at(0), text(size_and_digest.at(1))});
@@ -107,6 +111,7 @@ std::string to_json(const Record& r) {
   json.end_object();
   if (!r.certificate.empty()) json.member("certificate", r.certificate);
   if (r.draft) json.member("draft", true);
+  if (!r.language.empty()) json.member("language", r.language);
   put_files(json, r.files);
   json.key("errors");
   json.begin_array();

@@ -193,7 +193,9 @@ Expected<void> close_night(Night& night, const RunOptions& options, const Contex
                            NightState& state) {
   if (auto tidied = tidy_all(night, options.out, state.resumed); !tidied) return tidied;
   if (auto noted = note_certificates(night, options, context, state); !noted) return noted;
-  if (auto written = write_summary(night, options.out, options.version); !written) return written;
+  const TerminalWords words(context.templates, context.site.language);
+  if (auto written = write_summary(night, options.out, options.version, words); !written)
+    return written;
   return end_night(options.out, state, {state.of(), night.campaigns.size(), night.failed()});
 }
 

@@ -11,17 +11,21 @@
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 #include "nonio/host/results_json.h"
+#include "nonio/host/terminal_words.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
 
-std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates) {
+std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates,
+                                         const std::string& language) {
+  const TerminalWords words(templates, language);
+  const bool english = language == "en";
   std::vector<KnownFinding> out;
   const auto take = [&](const std::vector<Finding>& findings) {
     for (const Finding& f : findings) {
       KnownFinding known{f.measurement, f.id, finding_text(templates, "en", f, "title"),
-                         f.attention};
+                         f.attention, english ? "" : finding_text(templates, language, f, "title")};
       const auto same = std::find_if(out.begin(), out.end(),
                                      [&](const KnownFinding& k) { return k.same(known); });
       if (same == out.end())
@@ -35,7 +39,12 @@ std::vector<KnownFinding> known_findings(const Results& results, const Templates
   for (const Conformity& c : results.conformity)
     if (c.decision != Decision::conforms)
       out.push_back({c.measurement, "tolerance." + c.axis + "." + c.name + "." + c.plugin,
-                     c.name + " of axis " + c.axis + ": " + to_text(c.decision), true});
+                     c.name + " of axis " + c.axis + ": " + to_text(c.decision), true,
+                     english ? ""
+                             : words("tolerance",
+                                     {{"name", c.name},
+                                      {"axis", c.axis},
+                                      {"decision", words.of("decision", to_text(c.decision))}})});
   return out;
 }
 
@@ -89,7 +98,9 @@ Expected<void> stage(const fs::path& out, const Evaluated& e, const Context& con
   if (e.certificate) record.certificate = e.certificate->issue.number;
   record.draft = e.certificate && e.certificate->draft;
   record.errors = e.results.errors;
-  record.findings = known_findings(e.results, context.templates);
+  const std::string& language = context.site.language;
+  if (language != "en") record.language = language;
+  record.findings = known_findings(e.results, context.templates, language);
 
   std::vector<Artifact> files;
   for (const auto& w : e.results.outputs)

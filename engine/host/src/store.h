@@ -47,6 +47,7 @@ Expected<void> store(const std::filesystem::path& out, const Evaluated& evaluate
 Expected<void> tidy(const std::filesystem::path& folder);
 
 /// The findings of all analyses and outputs, each once, with their English titles.
-std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates);
+std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates,
+                                         const std::string& language = "en");
 
 }  // namespace nonio::host

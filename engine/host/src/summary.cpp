@@ -23,10 +23,32 @@ std::string where(const Error& e) {
   return text.empty() ? e.message : text + ": " + e.message;
 }
 
-std::string first_error(const CampaignState& c) {
+/// With "(and 3 more)" in the language of `words`.
+std::string first_error(const CampaignState& c, const TerminalWords& words) {
   if (c.errors.empty()) return c.reason;
   const std::size_t more = c.errors.size() - 1;
-  return where(c.errors.front()) + (more == 0 ? "" : " (and " + std::to_string(more) + " more)");
+  return where(c.errors.front()) +
+         (more == 0 ? "" : " " + words("more", {{"count", std::to_string(more)}}));
+}
+
+/// Why a campaign was done, in the language of `words`: a fixed text, or a name and what became of
+/// it.
+std::string one_reason(const std::string& text, const TerminalWords& words) {
+  for (const char* what : {" changed", " is missing from the output", " was changed in the output"})
+    if (text.ends_with(what))
+      return words(std::string("reason.*") + what,
+                   {{"what", text.substr(0, text.size() - std::string_view(what).size())}});
+  return words.of("reason", text);
+}
+
+std::string reason_in(const std::string& text, const TerminalWords& words) {
+  std::string out;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find("; ", from), text.size());
+    out += (from == 0 ? "" : "; ") + one_reason(text.substr(from, to - from), words);
+    from = to + 2;
+  }
+  return out;
 }
 
 /// One list of the summary, as text for a person and as lines of JSON for a program.
@@ -56,31 +78,36 @@ Json entry_json(const CampaignState& c, const std::string& reason) {
   return json;
 }
 
-std::string night_words(const NightOf& night) {
-  return "night " + std::to_string(night.number) + (night.date.empty() ? "" : " of " + night.date);
+std::string night_words(const NightOf& night, const TerminalWords& words) {
+  return words(night.date.empty() ? "night" : "night-of",
+               {{"number", std::to_string(night.number)}, {"date", night.date}});
 }
 
 Json night_json(const NightOf& night) { return {{"night", night.number}, {"date", night.date}}; }
 
 /// Which night this is, and whether campaigns are missing: first of all, so that nobody takes an
 /// old summary for tonight's.
-std::string night_line(const Night& night) {
-  std::string line = night_words(night.night) + "; " + std::to_string(night.campaigns.size()) +
-                     (night.campaigns.size() == 1 ? " campaign seen, " : " campaigns seen, ");
-  line[0] = 'N';
-  return line + (night.seen_before ? std::to_string(*night.seen_before) + " the night before\n"
-                                   : "none before: it is the first night\n");
+std::string night_line(const Night& night, const TerminalWords& words) {
+  std::string line =
+      night_words(night.night, words) + "; " + words.counted("seen", night.campaigns.size()) + ", ";
+  if (line[0] >= 'a' && line[0] <= 'z') line[0] = static_cast<char>(line[0] - 'a' + 'A');
+  return line +
+         (night.seen_before ? words("seen-before", {{"count", std::to_string(*night.seen_before)}})
+                            : words("first-night")) +
+         "\n";
 }
 
 struct Lists {
-  explicit Lists(const fs::path& folder)
-      : done("done", folder),
+  Lists(const fs::path& folder, const TerminalWords& in_words)
+      : words(in_words),
+        done("done", folder),
         unchanged("unchanged", folder),
         attention("attention", folder),
         failed("failed", folder),
         vanished("vanished", folder),
         fresh("new_findings", folder),
         fresh_text(Spool::in(folder)) {}
+  const TerminalWords& words;
   List done, unchanged, attention, failed, vanished, fresh;
   Spool fresh_text;  // of those that ask for attention
 
@@ -99,18 +126,23 @@ struct Lists {
     }
     const bool is_done = c.action == Action::done;
     (is_done ? done : unchanged)
-        .add(is_done ? c.id + ": " + c.reason : c.id, entry_json(c, c.reason));
+        .add(is_done ? c.id + ": " + reason_in(c.reason, words) : c.id, entry_json(c, c.reason));
     if (!is_done && c.status == "ok") return {};
     const auto record = read_record(results_folder(out, c.id));
     if (!record) return fail(record.error());
     if (c.status == "attention") {
-      std::string words;
-      for (const KnownFinding& f : record->findings)
-        if (f.attention)
-          words += (words.empty() ? "" : "; ") +
-                   (f.measurement.empty() ? "" : f.measurement + ": ") + f.title;
-      if (words.empty()) words = "see the notes in its results.json";
-      attention.add(c.id + ": " + words, entry_json(c, words));
+      std::string said, english;
+      for (const KnownFinding& f : record->findings) {
+        if (!f.attention) continue;
+        const std::string of = f.measurement.empty() ? "" : f.measurement + ": ";
+        said += (said.empty() ? "" : "; ") + of + f.heading();
+        english += (english.empty() ? "" : "; ") + of + f.title;
+      }
+      if (english.empty()) {
+        english = "see the notes in its results.json";
+        said = words("see-notes");
+      }
+      attention.add(c.id + ": " + said, entry_json(c, english));
     }
     if (!is_done) return {};
     for (const KnownFinding& f : record->findings)
@@ -123,14 +155,15 @@ struct Lists {
  private:
   /// With how long it has been so, and where results are that still stand.
   void add_failed(const CampaignState& c, const fs::path& out) {
-    std::string line = c.id + ": " + first_error(c);
-    Json entry = entry_json(c, first_error(c));
+    std::string line = c.id + ": " + first_error(c, words);
+    Json entry = entry_json(c, first_error(c, {words.templates(), "en"}));
     const fs::path results = results_folder(out, c.id);
     const auto record = read_record(results);
     if (record && record->failed_since) {
       const NightOf& since = *record->failed_since;
       entry["failed_since"] = night_json(since);
-      if (since.number != record->night) line += "; failed since " + night_words(since);
+      if (since.number != record->night)
+        line += "; " + words("failed-since", {{"night", night_words(since, words)}});
     }
     const std::string folder = (results / last_good_name).lexically_relative(out).generic_string();
     if (const auto good = read_record(out / folder)) {
@@ -138,14 +171,14 @@ struct Lists {
       entry["last_good"] = night_json(night);
       entry["last_good"]["status"] = good->status;
       entry["last_good"]["folder"] = folder;
-      line += "; the last good result is that of " + night_words(night) + ", in " + folder;
+      line += "; " + words("last-good", {{"night", night_words(night, words)}, {"folder", folder}});
     }
     failed.add(line, entry);
   }
 
   void add_fresh(const CampaignState& c, const KnownFinding& f) {
     const std::string line =
-        c.id + (f.measurement.empty() ? "" : ", " + f.measurement) + ": " + f.title;
+        c.id + (f.measurement.empty() ? "" : ", " + f.measurement) + ": " + f.heading();
     fresh.add(line, {{"campaign", c.id},
                      {"measurement", f.measurement},
                      {"id", f.id},
@@ -156,23 +189,20 @@ struct Lists {
 };
 
 /// All numbers, as long as they fit a line.
-std::string issued_line(const std::vector<RegisterEntry>& issued) {
+std::string issued_line(const std::vector<RegisterEntry>& issued, const TerminalWords& words) {
   constexpr std::size_t most = 8;
-  std::string line = "issued " + std::to_string(issued.size()) +
-                     (issued.size() == 1 ? " certificate: " : " certificates: ");
+  std::string line = words.counted("issued", issued.size()) + ": ";
   if (issued.size() > most)
     return line + issued.front().number + " .. " + issued.back().number + "\n";
   for (const RegisterEntry& e : issued)
     line += (&e == &issued.front() ? "" : ", ") + e.number + " (" + e.campaign +
-            (e.replaces.empty() ? "" : ", replaces " + e.replaces) + ")";
+            (e.replaces.empty() ? "" : ", " + words("replaces", {{"number", e.replaces}})) + ")";
   return line + "\n";
 }
 
-std::string waiting_line(const std::vector<WaitingDraft>& drafts) {
+std::string waiting_line(const std::vector<WaitingDraft>& drafts, const TerminalWords& words) {
   constexpr std::size_t most = 8;
-  std::string line = std::to_string(drafts.size()) +
-                     (drafts.size() == 1 ? " draft waits" : " drafts wait") +
-                     " for a release (nonio release): ";
+  std::string line = words.counted("waiting", drafts.size()) + ": ";
   for (std::size_t i = 0; i < std::min(most, drafts.size()); ++i)
     line += (i == 0 ? "" : ", ") + drafts[i].campaign;
   return line + (drafts.size() > most ? ", ..." : "") + "\n";
@@ -180,28 +210,32 @@ std::string waiting_line(const std::vector<WaitingDraft>& drafts) {
 
 void write_text(Spool& out, const Night& night, Lists& lists, const std::string& version) {
   const auto n = [](std::size_t count) { return std::to_string(count); };
-  out.add("Nonio " + version + ": " + n(night.campaigns.size()) +
-          (night.campaigns.size() == 1 ? " campaign: " : " campaigns: ") + n(lists.done.count) +
-          " done, " + n(lists.unchanged.count) + " unchanged, " + n(lists.failed.count) +
-          " failed; " + (lists.vanished.count == 0 ? "" : n(lists.vanished.count) + " vanished; ") +
-          n(lists.attention.count) + (lists.attention.count == 1 ? " asks" : " ask") +
-          " for attention\n");
-  out.add(night_line(night));
-  if (!night.issued.empty()) out.add(issued_line(night.issued));
-  if (!night.waiting.empty()) out.add(waiting_line(night.waiting));
+  const TerminalWords& words = lists.words;
+  out.add("Nonio " + version + ": " + words.counted("campaigns", night.campaigns.size()) + ": " +
+          words("counts", {{"done", n(lists.done.count)},
+                           {"unchanged", n(lists.unchanged.count)},
+                           {"failed", n(lists.failed.count)}}) +
+          "; " +
+          (lists.vanished.count == 0
+               ? ""
+               : words("vanished", {{"count", n(lists.vanished.count)}}) + "; ") +
+          words.counted("attention", lists.attention.count) + "\n");
+  out.add(night_line(night, words));
+  if (!night.issued.empty()) out.add(issued_line(night.issued, words));
+  if (!night.waiting.empty()) out.add(waiting_line(night.waiting, words));
   // What somebody must act on comes first.
   const auto section = [&](const char* heading, Spool& body) {
     if (body.empty()) return;
-    out.add(std::string("\n") + heading + "\n");
+    out.add("\n" + words(heading) + "\n");
     out.add(body);
   };
-  section("FAILED", lists.failed.text);
-  section("VANISHED SINCE AN EARLIER NIGHT", lists.vanished.text);
-  section("ATTENTION", lists.attention.text);
-  section("NEW SINCE THE LAST RUN", lists.fresh_text);
-  section("DONE, AND WHY", lists.done.text);
-  section("UNCHANGED", lists.unchanged.text);
-  if (!night.notes.empty()) out.add("\nNOTES\n");
+  section("heading.failed", lists.failed.text);
+  section("heading.vanished", lists.vanished.text);
+  section("heading.attention", lists.attention.text);
+  section("heading.new", lists.fresh_text);
+  section("heading.done", lists.done.text);
+  section("heading.unchanged", lists.unchanged.text);
+  if (!night.notes.empty()) out.add("\n" + words("heading.notes") + "\n");
   for (const std::string& note : night.notes) out.add("  " + note + "\n");
 }
 
@@ -252,12 +286,13 @@ std::size_t Night::failed() const {
                     [](const CampaignState& c) { return c.status == "failed"; }));
 }
 
-Expected<void> write_summary(const Night& night, const fs::path& out, const std::string& version) {
+Expected<void> write_summary(const Night& night, const fs::path& out, const std::string& version,
+                             const TerminalWords& words) {
   const std::vector<std::string> names{"summary.txt", "summary.json"};
   remove_leftovers(out);
   Spool text = Spool::at(temporary_path(out, names[0]));
   Spool json = Spool::at(temporary_path(out, names[1]));
-  Lists lists(out / state_folder);
+  Lists lists(out / state_folder, words);
   for (const CampaignState& c : night.campaigns) {
     const auto added = is_stop_requested() ? fail("interrupted") : lists.add(c, out);
     if (added) continue;

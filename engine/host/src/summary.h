@@ -5,12 +5,14 @@
 #include <string>
 
 #include "nonio/host/run.h"
+#include "nonio/host/terminal_words.h"
 
 namespace nonio::host {
 
 /// summary.txt and summary.json (schema nonio-summary/1) of a complete night, written into `out`.
-/// The findings come from the campaigns' records there, one at a time; the lists grow in files.
+/// summary.txt speaks the language of `words`, summary.json English. The findings come from the
+/// campaigns' records there, one at a time; the lists grow in files.
 Expected<void> write_summary(const Night& night, const std::filesystem::path& out,
-                             const std::string& version);
+                             const std::string& version, const TerminalWords& words);
 
 }  // namespace nonio::host

@@ -244,7 +244,7 @@ NONIO_ON_THE_WIRE(Evaluated, a, b, c, d, e, f)
 
 NONIO_ON_THE_WIRE(TemplateFiles, a, b)
 NONIO_ON_THE_WIRE(SiteFiles, a, b)
-NONIO_ON_THE_WIRE(KnownFinding, a, b, c, d)
+NONIO_ON_THE_WIRE(KnownFinding, a, b, c, d, e)
 NONIO_ON_THE_WIRE(Approval, a, b, c, d)
 NONIO_ON_THE_WIRE(RegisterEntry, a, b, c, d, e, f, g, h, i, j, k, l)
 NONIO_ON_THE_WIRE(WaitingDraft, a, b, c, d, e, f, g, h, i)

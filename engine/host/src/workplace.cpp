@@ -50,8 +50,9 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   context.machines = std::move(*machines);
   const auto folders = with_site_templates(template_folders, site);
   if (!folders) return fail(folders.error());
-  auto templates = read_templates(*folders, context.templates_sha256, nullptr, {},
-                                  what == TemplatesFor::documents ? "" : "words/en/");
+  std::vector<std::string> below;
+  if (what == TemplatesFor::terminal) below = {"words/en/", "words/" + context.site.language + "/"};
+  auto templates = read_templates(*folders, context.templates_sha256, nullptr, {}, below);
   if (!templates) return fail(templates.error());
   context.templates = std::move(*templates);
   if (context.site.signing) hide_from_plugins(secret_files(*context.site.signing, site));

@@ -43,7 +43,7 @@ NONIO_PLUGIN(registry) {
   output.info = {"model-html",
                  "1.0.0",
                  "The error model as an interactive page for a browser, in one file.",
-                 {{"language", std::string("en"), "", "Language of the page.", {"en", "it"}}}};
+                 {{"language", std::string("en"), "", "Language of the page.", {"de", "en", "it"}}}};
   output.stage = nonio::Output::Stage::document;
   output.applies = nonio::model_html::applies;
   output.write = nonio::model_html::write;

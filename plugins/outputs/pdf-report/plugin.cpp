@@ -51,7 +51,7 @@ NONIO_PLUGIN(registry) {
       "pdf-report",
       "1.0.0",
       "The campaign's report as a PDF with plots, in English or Italian.",
-      {{"language", std::string("en"), "", "Language of the report.", {"en", "it"}},
+      {{"language", std::string("en"), "", "Language of the report.", {"de", "en", "it"}},
        {"template", std::string("report"), "", "Name of the template: templates/<name>.toml."},
        {"sign", false, "", "Have it signed with the key of [signing] in site.toml."}}};
   output.stage = nonio::Output::Stage::document;

@@ -41,10 +41,11 @@ struct TemplateFiles {
 
 /// All template folders laid over each other, the later ones winning, and one digest of them.
 /// `json`, if wanted: all of them in one text, from which `templates_from` has them again.
-/// `own` wins over all folders. `below`: only files whose names begin so.
+/// `own` wins over all folders. `below`, if any: only files whose names begin with one of these.
 Expected<Templates> read_templates(const std::vector<std::filesystem::path>& folders,
                                    std::string& digest, std::string* json = nullptr,
-                                   const TemplateFiles& own = {}, std::string_view below = {});
+                                   const TemplateFiles& own = {},
+                                   const std::vector<std::string>& below = {});
 
 /// Templates that travelled in a signed file.
 struct CarriedTemplates {
@@ -66,7 +67,7 @@ struct Workplace {
 
 /// What `open_workplace` reads of the templates: fonts and words of other languages take a third of
 /// the time of a short command.
-enum class TemplatesFor { documents, english_words };
+enum class TemplatesFor { documents, terminal };
 
 /// Plugins, templates and the site.toml of the nearest folder above the campaign that has one.
 Expected<std::unique_ptr<Workplace>> open_workplace(

@@ -88,6 +88,7 @@ struct SiteFile {
   RawOptions options;
   Limits limits;
   KeyLines lines;
+  std::string language = "en";     ///< of the terminal and of summary.txt
   bool hashed_folders = false;     ///< results in OUT/ab/<id>
   std::string settings;            ///< TOML: what of the file has a say in a certificate
   std::string evaluation;          ///< TOML: what of it has a say in results

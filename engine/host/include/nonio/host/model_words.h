@@ -5,6 +5,7 @@
 
 #include "nonio/host/campaign_model.h"
 #include "nonio/host/nearest.h"
+#include "nonio/host/terminal_words.h"
 #include "nonio/sdk/results.h"
 #include "nonio/sdk/settings.h"
 
@@ -15,6 +16,9 @@ class ModelWords {
  public:
   ModelWords(const Templates& templates, std::string language)
       : templates_(templates), language_(std::move(language)) {}
+
+  /// Labels and phrases of the terminal in the same language.
+  TerminalWords terminal() const { return {templates_, language_}; }
 
   std::string place(const model::Place& place, Quantity deviation) const;
   std::string verdict(const model::Explanation& explanation, const PartModel& part) const;

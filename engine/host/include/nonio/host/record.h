@@ -16,6 +16,8 @@ namespace nonio::host {
 struct KnownFinding {
   std::string measurement, id, title;
   bool attention = false;
+  std::string said{};  ///< the title in the language of the site; empty: English
+  const std::string& heading() const { return said.empty() ? title : said; }
   bool same(const KnownFinding& other) const {
     return measurement == other.measurement && id == other.id;
   }
@@ -49,6 +51,7 @@ struct Record {
   bool draft = false;       ///< of a certificate that waits for its release
   std::vector<RecordedFile> files;
   std::vector<Error> errors;
+  std::string language{};                        ///< of the site, for `nonio show`; empty: English
   std::vector<KnownFinding> findings, previous;  ///< previous: of the last night before this one
 };
 
