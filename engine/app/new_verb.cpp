@@ -12,6 +12,7 @@
 #include "axis_argument.h"
 #include "new_text.h"
 #include "nonio/host/campaign_reader.h"
+#include "nonio/host/evaluate.h"
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
 #include "verbs.h"

@@ -16,6 +16,7 @@
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 #include "nonio/host/results_json.h"
+#include "nonio/host/template_files.h"
 #include "nonio/sdk/format.h"
 #include "results_folder.h"
 #include "verbs.h"

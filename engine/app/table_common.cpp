@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "nonio/host/plan.h"
+#include "nonio/host/table_files.h"
 #include "nonio/sdk/format.h"
 #include "tables.h"
 

@@ -5,12 +5,13 @@
 #include <set>
 
 #include "certificate_reader.h"
+#include "formula_copy.h"
 #include "guarded.h"
 #include "names.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 #include "nonio/host/formula.h"
-#include "nonio/host/table_check.h"
+#include "nonio/host/table_files.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/text.h"

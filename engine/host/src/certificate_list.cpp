@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "context.h"
+#include "site_files.h"
 #include "nonio/host/files.h"
 #include "nonio/sdk/statement.h"
 

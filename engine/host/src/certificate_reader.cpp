@@ -3,7 +3,7 @@
 
 #include <tuple>
 
-#include "nonio/host/register.h"
+#include "nonio/host/number_pattern.h"
 
 namespace nonio::host {
 

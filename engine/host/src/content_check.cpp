@@ -19,11 +19,11 @@
 #include "nonio/host/files.h"
 #include "nonio/host/record.h"
 #include "nonio/host/results_json.h"
+#include "nonio/host/template_files.h"
 #include "numbering.h"
 #include "plausibility.h"
 #include "recomputed.h"
-#include "twins.h"
-#include "worker.h"
+#include "shared_words.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;

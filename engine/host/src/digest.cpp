@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/host/digest.h"
 
+#include <algorithm>
+#include <charconv>
 #include <openssl/evp.h>
 
 #include <array>
@@ -57,6 +59,13 @@ Expected<std::string> sha256_of_file(const std::filesystem::path& path,
   });
   if (!read) return fail(read.error());
   return digest.hex();
+}
+
+std::uint64_t short_digest(std::string_view sha256) {
+  constexpr std::size_t digits = 16;
+  std::uint64_t value = 0;
+  std::from_chars(sha256.data(), sha256.data() + std::min(sha256.size(), digits), value, 16);
+  return value;
 }
 
 }  // namespace nonio::host

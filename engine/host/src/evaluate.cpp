@@ -651,16 +651,6 @@ Decision decide(double value, double U, double tolerance, std::string_view rule)
   return Decision::cannot_be_decided;
 }
 
-std::string input_name(const std::string& file) { return "file " + file; }
-std::string shared_name(const std::string& file) { return "shared " + file; }
-
-Inputs shared_inputs(const Context& context) {
-  return {{"site.toml", context.site_sha256},
-          {"plugins", context.plugins_sha256},
-          {"templates", context.templates_sha256},
-          {"version", context.version}};
-}
-
 Evaluated evaluate(const fs::path& folder, const std::string& id, const Context& context,
                    const Stage& stage, const Draw& draw, const Twins& twins) {
   return CampaignRun(folder, context, stage, draw, twins).run(id);

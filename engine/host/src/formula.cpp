@@ -234,20 +234,6 @@ Expected<Effect::Columns> columns(const Formula& formula, const Observations& o,
 
 }  // namespace
 
-std::optional<Quantity> quantity_of(std::string_view unit) {
-  for (const FormulaUnit& u : formula_units)
-    if (u.symbol() == unit) return u.quantity;
-  return std::nullopt;
-}
-
-std::string known_units() {
-  std::string text;
-  for (const FormulaUnit& u : formula_units)
-    text +=
-        (text.empty() ? "" : ", ") + std::string(u.symbol()) + " (" + std::string(u.words) + ")";
-  return text;
-}
-
 Expected<Effect> formula_effect(const Formula& formula, const Axis& axis) {
   constexpr std::size_t most_linear = 8, most_shapes = 3;
   const auto wrong = [&](const std::string& why) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "formula_copy.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-
-#include "nonio/host/formula.h"
 
 namespace nonio::host {
 

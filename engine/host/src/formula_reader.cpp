@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "formula_units.h"
 #include "nonio/host/formula.h"
 #include "nonio/host/nearest.h"
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "nonio/sdk/units.h"
@@ -38,5 +40,10 @@ inline constexpr std::array<FormulaUnit, 18> formula_units{
      {Quantity::time, "time"},
      {Quantity::temperature_difference, "temperature difference"},
      {Quantity::number, "none: a number"}}};
+
+/// The quantity that is printed in this unit; none if no quantity is.
+std::optional<Quantity> quantity_of(std::string_view unit);
+/// "um (deviation), mm (position), ...": what `quantity_of` knows.
+std::string known_units();
 
 }  // namespace nonio::host

@@ -5,7 +5,6 @@
 #include <map>
 #include <set>
 
-#include "nonio/host/evaluate.h"
 #include "nonio/host/machines.h"
 #include "nonio/sdk/format.h"
 

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 
-#include "context.h"
+#include "site_files.h"
 #include "json_values.h"
 #include "nonio/host/digest.h"
-#include "nonio/host/evaluate.h"
 #include "nonio/host/files.h"
-#include "nonio/host/table_check.h"
+#include "nonio/host/table_files.h"
 #include "nonio/sdk/format.h"
 #include "toml_reader.h"
 

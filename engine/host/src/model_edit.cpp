@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "nonio/host/evaluate.h"
 #include "toml_reader.h"
 
 namespace nonio::host {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "names.h"
 #include "nonio/host/model_json.h"
 
 namespace nonio::host {

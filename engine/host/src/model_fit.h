@@ -11,8 +11,6 @@
 /// effects of all plugins; in results.json it stands as plugin "model-fit".
 namespace nonio::host {
 
-inline constexpr const char* model_fit_name = "model-fit";
-
 struct ModelFits {
   std::vector<Results::Analysed> analyses;
   std::vector<ModelFit> models;  ///< of those that could be fitted

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "model_fit.h"
 
 namespace nonio::host {
 

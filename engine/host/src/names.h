@@ -3,12 +3,18 @@
 
 #include <vector>
 
-#include "nonio/host/evaluate.h"
+#include "nonio/host/context.h"
 
 namespace nonio::host {
 
+/// The analysis of the host itself, see model_fit.h.
+inline constexpr const char* model_fit_name = "model-fit";
+
 /// `[options.x]` for an x that no plugin is, which would otherwise be ignored in silence.
 std::vector<Error> ownerless_options(const RawOptions& options, const Plugins& plugins);
+
+/// What is wrong with the names and options of site.toml: it would be wrong in every campaign.
+std::vector<Error> site_mistakes(const Context& context);
 
 /// Fills in file and line of an error that says by its key what is to blame: an option of
 /// `plugin` or a key of the manifest or, where they do not have it, of site.toml.

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "number_pattern.h"
+#include "nonio/host/number_pattern.h"
 
 #include <algorithm>
 
 #include "nonio/host/files.h"
-#include "nonio/host/register.h"
 
 namespace nonio::host {
 

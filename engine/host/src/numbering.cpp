@@ -14,7 +14,6 @@
 #include "nonio/sign/verify.h"
 #include "plausibility.h"
 #include "recomputed.h"
-#include "store.h"
 #include "traceability.h"
 
 namespace nonio::host {

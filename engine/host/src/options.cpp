@@ -140,4 +140,47 @@ Expected<Settings> parse_settings(std::string_view text, const std::string& file
   return settings;
 }
 
+namespace {
+
+/// What was written on a command line, as the kind that the option has.
+Setting setting_of(std::string_view text, const Option* declared) {
+  if (declared != nullptr && std::holds_alternative<std::string>(declared->otherwise))
+    return std::string(text);
+  if (declared != nullptr &&
+      std::holds_alternative<std::vector<std::string>>(declared->otherwise)) {
+    std::vector<std::string> list;
+    for (std::size_t from = 0; from <= text.size();) {
+      const std::size_t comma = std::min(text.find(',', from), text.size());
+      list.emplace_back(text.substr(from, comma - from));
+      from = comma + 1;
+    }
+    return list;
+  }
+  if (text == "true" || text == "false") return text == "true";
+  const char* const end = text.data() + text.size();
+  std::int64_t whole = 0;
+  if (const auto [stop, error] = std::from_chars(text.data(), end, whole);
+      error == std::errc() && stop == end)
+    return whole;
+  double number = 0.0;
+  if (const auto [stop, error] = std::from_chars(text.data(), end, number);
+      error == std::errc() && stop == end && std::isfinite(number))
+    return number;
+  return std::string(text);
+}
+
+}  // namespace
+
+Checked<Settings> options_from(const Info& plugin,
+                               const std::map<std::string, std::string>& texts) {
+  RawOptions raw;
+  for (const auto& [name, text] : texts) {
+    const auto& known = plugin.options;
+    const auto declared = std::find_if(known.begin(), known.end(),
+                                       [&, &n = name](const Option& o) { return o.name == n; });
+    raw[plugin.name][name].value = setting_of(text, declared == known.end() ? nullptr : &*declared);
+  }
+  return settle_options(plugin, {}, raw);
+}
+
 }  // namespace nonio::host

@@ -124,33 +124,6 @@ Json row_json(const PointTable& table, std::size_t row, const TriplePlan& p,
   return json;
 }
 
-/// What was written on a command line, as the kind that the option has.
-Setting setting_of(std::string_view text, const Option* declared) {
-  if (declared != nullptr && std::holds_alternative<std::string>(declared->otherwise))
-    return std::string(text);
-  if (declared != nullptr &&
-      std::holds_alternative<std::vector<std::string>>(declared->otherwise)) {
-    std::vector<std::string> list;
-    for (std::size_t from = 0; from <= text.size();) {
-      const std::size_t comma = std::min(text.find(',', from), text.size());
-      list.emplace_back(text.substr(from, comma - from));
-      from = comma + 1;
-    }
-    return list;
-  }
-  if (text == "true" || text == "false") return text == "true";
-  const char* const end = text.data() + text.size();
-  std::int64_t whole = 0;
-  if (const auto [stop, error] = std::from_chars(text.data(), end, whole);
-      error == std::errc() && stop == end)
-    return whole;
-  double number = 0.0;
-  if (const auto [stop, error] = std::from_chars(text.data(), end, number);
-      error == std::errc() && stop == end && std::isfinite(number))
-    return number;
-  return std::string(text);
-}
-
 }  // namespace
 
 std::string why_listed(const TriplePlan& plan) {
@@ -206,18 +179,6 @@ std::string triples_json(const math::TripleWish& wish, const math::TriplePlans& 
     json["rows"].push_back(row_json(table, i, plans.plans[i], plans.plans.front()));
   if (plans.plans.empty()) json["nothing_fits"] = why_nothing(plans);
   return dump(json);
-}
-
-Checked<Settings> options_from(const Info& plugin,
-                               const std::map<std::string, std::string>& texts) {
-  RawOptions raw;
-  for (const auto& [name, text] : texts) {
-    const auto& known = plugin.options;
-    const auto declared = std::find_if(known.begin(), known.end(),
-                                       [&, &n = name](const Option& o) { return o.name == n; });
-    raw[plugin.name][name].value = setting_of(text, declared == known.end() ? nullptr : &*declared);
-  }
-  return settle_options(plugin, {}, raw);
 }
 
 Checked<std::vector<Artifact>> write_programs(const Plugins& plugins, const std::string& output,

@@ -6,8 +6,8 @@
 #include <ctime>
 #include <map>
 
+#include "nonio/host/digest.h"
 #include "nonio/sdk/format.h"
-#include "twins.h"
 
 namespace nonio::host {
 namespace {

@@ -15,14 +15,15 @@
 
 #include "child.h"
 #include "confine.h"
-#include "context.h"
+#include "site_files.h"
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
+#include "nonio/host/template_files.h"
 #include "nonio/sdk/format.h"
 #include "plugin_checks.h"
 #include "plugin_file.h"
 #include "plugin_symbols.h"
-#include "worker.h"
+#include "shared_words.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;

@@ -17,7 +17,7 @@
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
 #include "plugin_file.h"
-#include "worker.h"
+#include "shared_words.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;

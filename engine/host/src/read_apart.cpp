@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "runner.h"
+#include "nonio/host/stop.h"
 
 namespace nonio::host {
 

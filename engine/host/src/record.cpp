@@ -3,10 +3,13 @@
 
 #include <simdjson.h>
 
+#include <algorithm>
 #include <new>
 
 #include "json_writer.h"
 #include "nonio/host/files.h"
+#include "nonio/host/results_json.h"
+#include "nonio/sdk/format.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -163,6 +166,29 @@ Expected<std::optional<LastRecord>> last_record(const fs::path& campaign_output)
 
 Expected<std::optional<Record>> staged_record(const fs::path& campaign_output) {
   return record_at(temporary_path(campaign_output, record_name));
+}
+
+std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates) {
+  std::vector<KnownFinding> out;
+  const auto take = [&](const std::vector<Finding>& findings) {
+    for (const Finding& f : findings) {
+      KnownFinding known{f.measurement, f.id, finding_text(templates, "en", f, "title"),
+                         f.attention};
+      const auto same = std::find_if(out.begin(), out.end(),
+                                     [&](const KnownFinding& k) { return k.same(known); });
+      if (same == out.end())
+        out.push_back(std::move(known));
+      else
+        same->attention |= known.attention;
+    }
+  };
+  for (const auto& a : results.analyses) take(a.evaluation.findings);
+  for (const auto& o : results.outputs) take(o.result.findings);
+  for (const Conformity& c : results.conformity)
+    if (c.decision != Decision::conforms)
+      out.push_back({c.measurement, "tolerance." + c.axis + "." + c.name + "." + c.plugin,
+                     c.name + " of axis " + c.axis + ": " + to_text(c.decision), true});
+  return out;
 }
 
 }  // namespace nonio::host

@@ -10,7 +10,7 @@
 #include "journal.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
-#include "number_pattern.h"
+#include "nonio/host/number_pattern.h"
 #include "register_tables.h"
 
 namespace nonio::host {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "context.h"
+#include "site_files.h"
 #include "nonio/host/certificate_list.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/host/restamp.h"
 
-#include "context.h"
+#include "site_files.h"
 #include "nonio/host/files.h"
 #include "nonio/host/record.h"
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <ctime>
 #include <new>
@@ -23,6 +22,7 @@
 #include "store.h"
 #include "twins.h"
 #include "worker.h"
+#include "secret_files.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -30,9 +30,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using Action = CampaignState::Action;
-
-std::atomic<bool> stop_requested = false;  // set by a signal
-static_assert(std::atomic<bool>::is_always_lock_free);
 
 /// A worker is replaced after so many campaigns: starting one is then cheap, and what plugins may
 /// leave behind in it does not grow old. Plugins from elsewhere than beside the program were not
@@ -82,8 +79,8 @@ class Runner {
     keep_freed_memory();
     const std::size_t jobs =
         options_.jobs != 0 ? options_.jobs : Poco::Environment::processorCount();
-    while (!stop_requested) {
-      while (workers_.size() < jobs && !stop_requested) {
+    while (!is_stop_requested()) {
+      while (workers_.size() < jobs && !is_stop_requested()) {
         const auto campaign = next();
         if (!campaign) break;
         start(*campaign);
@@ -454,10 +451,6 @@ class Runner {
 };
 
 }  // namespace
-
-void request_stop() { stop_requested = true; }
-
-bool is_stop_requested() { return stop_requested; }
 
 bool do_campaigns(const RunOptions& options, const RunEvents& events, const Context& context,
                   const NightState& night, const ReleaseDesk& desk,

@@ -28,6 +28,4 @@ bool do_campaigns(const RunOptions& options, const RunEvents& events, const Cont
                   const NightState& night, const ReleaseDesk& desk,
                   std::vector<CampaignState>& campaigns);
 
-bool is_stop_requested();
-
 }  // namespace nonio::host

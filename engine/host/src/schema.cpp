@@ -8,7 +8,7 @@
 
 #include "json_writer.h"
 #include "keys.h"
-#include "model_fit.h"
+#include "names.h"
 #include "nonio/host/plugins.h"
 
 namespace nonio::host {

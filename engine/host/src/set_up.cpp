@@ -6,10 +6,13 @@
 
 #include <ctime>
 
-#include "context.h"
+#include "site_files.h"
+#include "names.h"
 #include "plausibility.h"
 #include "read_apart.h"
 #include "runner.h"
+#include "secret_files.h"
+#include "nonio/host/template_files.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;

@@ -24,7 +24,7 @@
 #include "child.h"
 #include "guarded.h"
 #include "nonio/host/files.h"
-#include "runner.h"
+#include "nonio/host/stop.h"
 #include "watched.h"
 
 namespace nonio::host {
@@ -228,16 +228,6 @@ void Signer::revive() {
 void Signer::leave_to_worker() const {
   ::close(from_);
   if (!signing_.password_env.empty()) ::unsetenv(signing_.password_env.c_str());
-}
-
-std::vector<fs::path> secret_files(const Signing& s, const fs::path& site) {
-  std::vector<fs::path> files;
-  for (const std::string& file : {s.pkcs12, s.password_file})
-    if (!file.empty()) files.push_back(site / file);
-  const char* folder = std::getenv("CREDENTIALS_DIRECTORY");
-  if (!s.password_credential.empty() && folder != nullptr)
-    files.push_back(fs::path(folder) / s.password_credential);
-  return files;
 }
 
 Expected<sign::Signed> Signer::sign(const std::string& bytes) const { return ask(to_, bytes); }

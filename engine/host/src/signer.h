@@ -13,10 +13,6 @@
 
 namespace nonio::host {
 
-/// The files in which key and password lie, wherever they are.
-std::vector<std::filesystem::path> secret_files(const Signing& signing,
-                                                const std::filesystem::path& site);
-
 /// The one process that holds the key of a night. Workers send it finished bytes and get them back
 /// signed. It is made before plugins are loaded, so that nothing of theirs is in it, and opens the
 /// key once; if that does not succeed, it says why to everyone who asks.

@@ -12,7 +12,7 @@
 #include <map>
 #include <optional>
 
-#include "nonio/host/evaluate.h"
+#include "nonio/host/manifest.h"
 #include "nonio/host/files.h"
 #include "watched.h"
 

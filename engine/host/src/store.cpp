@@ -16,29 +16,6 @@
 namespace nonio::host {
 namespace fs = std::filesystem;
 
-std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates) {
-  std::vector<KnownFinding> out;
-  const auto take = [&](const std::vector<Finding>& findings) {
-    for (const Finding& f : findings) {
-      KnownFinding known{f.measurement, f.id, finding_text(templates, "en", f, "title"),
-                         f.attention};
-      const auto same = std::find_if(out.begin(), out.end(),
-                                     [&](const KnownFinding& k) { return k.same(known); });
-      if (same == out.end())
-        out.push_back(std::move(known));
-      else
-        same->attention |= known.attention;
-    }
-  };
-  for (const auto& a : results.analyses) take(a.evaluation.findings);
-  for (const auto& o : results.outputs) take(o.result.findings);
-  for (const Conformity& c : results.conformity)
-    if (c.decision != Decision::conforms)
-      out.push_back({c.measurement, "tolerance." + c.axis + "." + c.name + "." + c.plugin,
-                     c.name + " of axis " + c.axis + ": " + to_text(c.decision), true});
-  return out;
-}
-
 namespace {
 
 RecordedFile recorded(const Artifact& a) { return {a.name, a.bytes.size(), sha256(a.bytes)}; }

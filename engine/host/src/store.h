@@ -46,7 +46,4 @@ Expected<void> store(const std::filesystem::path& out, const Evaluated& evaluate
 /// storing them. An error names what cannot be removed.
 Expected<void> tidy(const std::filesystem::path& folder);
 
-/// The findings of all analyses and outputs, each once, with their English titles.
-std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates);
-
 }  // namespace nonio::host

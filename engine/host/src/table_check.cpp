@@ -8,7 +8,6 @@
 #include "guarded.h"
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
-#include "nonio/host/plan.h"
 #include "nonio/math/loaded_table.h"
 #include "nonio/sdk/format.h"
 
@@ -153,36 +152,7 @@ void say_what_was_on(Campaign& campaign, const Settings& options, const Tables& 
   }
 }
 
-template <class Read>
-Expected<std::vector<Artifact>> read_list(const std::string& list, const Read& read) {
-  std::vector<Artifact> files;
-  for (std::size_t from = 0; from <= list.size();) {
-    const std::size_t comma = std::min(list.find(',', from), list.size());
-    const std::filesystem::path path = list.substr(from, comma - from);
-    auto bytes = read(path);
-    if (!bytes) return tl::unexpected<Error>(bytes.error());
-    files.push_back({path.filename().string(), std::move(*bytes)});
-    from = comma + 1;
-  }
-  return files;
-}
-
 }  // namespace
-
-Expected<std::vector<Artifact>> read_table_files(const std::string& list) {
-  return read_list(list, [](const std::filesystem::path& path) { return read_file(path); });
-}
-
-Expected<std::vector<Artifact>> read_table_files(const std::string& list,
-                                                 const std::filesystem::path& base) {
-  return read_list(list, [&](const std::filesystem::path& path) -> Expected<std::string> {
-    const auto inside = path_inside(base, path.string());
-    if (!inside) return fail(inside.error());
-    auto bytes = read_small_file(*inside);
-    if (!bytes) return fail(path.string() + ": " + bytes.error().message);
-    return bytes;
-  });
-}
 
 Expected<Tables> tables_in(const Output& o, const std::vector<Artifact>& files, const Campaign& c,
                            const Settings& options) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/host/template_check.h"
+#include "nonio/host/plugins.h"
+#include "nonio/host/template_files.h"
 
-#include "context.h"
+#include "site_files.h"
 #include "guarded.h"
 
 namespace nonio::host {

@@ -2,21 +2,10 @@
 #include "twins.h"
 
 #include <algorithm>
-#include <charconv>
+
+#include "nonio/host/digest.h"
 
 namespace nonio::host {
-namespace {
-
-constexpr std::size_t digits = 16;
-
-}  // namespace
-
-std::uint64_t short_digest(std::string_view sha256) {
-  std::uint64_t value = 0;
-  std::from_chars(sha256.data(), sha256.data() + std::min(sha256.size(), digits), value, 16);
-  return value;
-}
-
 void find_twins(std::vector<CampaignState>& campaigns) {
   using File = std::pair<std::uint64_t, std::uint32_t>;  // digest, campaign
   std::vector<File> files;

@@ -8,9 +8,6 @@
 
 namespace nonio::host {
 
-/// The first 64 bits of a SHA-256 in hexadecimal digits: there may be very many.
-std::uint64_t short_digest(std::string_view sha256);
-
 /// Files of readings that several campaigns have: each campaign gets the one with the smallest id
 /// that is not its own. Campaigns are in the order of their ids; takes their `readings`. One sort,
 /// whatever is shared.

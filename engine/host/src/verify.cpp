@@ -6,9 +6,10 @@
 #include <fstream>
 
 #include "content_check.h"
-#include "context.h"
+#include "site_files.h"
 #include "nonio/host/files.h"
 #include "nonio/host/record.h"
+#include "nonio/host/template_files.h"
 #include "recomputed.h"
 #include "register_check.h"
 

@@ -14,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-#include "context.h"
+#include "site_files.h"
 #include "nonio/host/evaluate.h"
 #include "nonio/host/register.h"
 #include "nonio/sdk/plugin.h"

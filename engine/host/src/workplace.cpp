@@ -2,10 +2,11 @@
 #include <optional>
 
 #include "apart.h"
-#include "context.h"
+#include "site_files.h"
 #include "nonio/host/campaign_reader.h"
 #include "nonio/host/files.h"
-#include "signer.h"
+#include "nonio/host/template_files.h"
+#include "secret_files.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;

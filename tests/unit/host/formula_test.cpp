@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "formula_copy.h"
 #include "nonio/host/formula.h"
 
 #include <gtest/gtest.h>

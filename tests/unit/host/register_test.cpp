@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "nonio/host/number_pattern.h"
 #include "nonio/host/register.h"
 
 #include <gtest/gtest.h>

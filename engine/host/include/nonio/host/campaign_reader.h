@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "nonio/host/evaluate.h"
+#include "nonio/host/context.h"
 
 namespace nonio::host {
 
@@ -32,30 +32,6 @@ ReadCampaign read_campaign(const std::filesystem::path& folder, const Context& c
 
 /// Takes away the rows whose flag is 0.
 void keep_rows(Observations& observations, const std::vector<char>& kept);
-
-/// Templates that were read already: names below the folder, and bytes.
-struct TemplateFiles {
-  std::filesystem::path folder{};
-  std::map<std::string, std::string> files{};
-};
-
-/// All template folders laid over each other, the later ones winning, and one digest of them.
-/// `json`, if wanted: all of them in one text, from which `templates_from` has them again.
-/// `own` wins over all folders. `below`: only files whose names begin so.
-Expected<Templates> read_templates(const std::vector<std::filesystem::path>& folders,
-                                   std::string& digest, std::string* json = nullptr,
-                                   const TemplateFiles& own = {}, std::string_view below = {});
-
-/// Templates that travelled in a signed file.
-struct CarriedTemplates {
-  Templates templates;
-  std::string sha256;                ///< as `read_templates` gives it
-  std::vector<std::string> strange;  ///< names of those that differ from the installed ones
-  std::string missing{};  ///< a font (they do not travel) that is not installed as it was then
-};
-/// An error if the text is not as `read_templates` writes it.
-Expected<CarriedTemplates> templates_from(std::string_view json, const Templates& installed,
-                                          std::string_view installed_json);
 
 /// What a verb about one campaign works with.
 struct Workplace {

@@ -19,20 +19,8 @@
 /// units in which it is computed is refused: that is the check of its units.
 namespace nonio::host {
 
-/// The quantity that is printed in this unit; none if no quantity is.
-std::optional<Quantity> quantity_of(std::string_view unit);
-/// "um (deviation), mm (position), ...": what `quantity_of` knows.
-std::string known_units();
-
 /// Parameters without a range must enter linearly and become columns; those with one are shapes,
 /// searched over it. Errors carry the formula's line.
 Expected<Effect> formula_effect(const Formula& formula, const Axis& axis);
-
-/// Name of the effect of the catalogue that says the same as `own` on these readings: its columns
-/// span the same space once every line has its own zero. "zero" if nothing but that is left; "" if
-/// `own` is new. Shapes of the catalogue are searched, those of
-/// `own` are in the middle of their grids.
-Expected<std::string> copy_of(const Observations& observations, const Axis& axis, const Effect& own,
-                              const std::vector<Effect>& catalogue);
 
 }  // namespace nonio::host

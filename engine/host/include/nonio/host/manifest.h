@@ -14,6 +14,12 @@
 
 namespace nonio::host {
 
+inline constexpr const char* manifest_name = "campaign.toml";
+inline constexpr const char* site_name = "site.toml";
+
+/// Stands for the SHA-256 of a file that cannot be read.
+inline constexpr const char* absent = "absent";
+
 /// `[options.<plugin>]` as written, with the line of each key.
 struct RawOption {
   Setting value;
@@ -112,5 +118,9 @@ Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
 
 /// A TOML file of templates/ as flat settings.
 Expected<Settings> parse_settings(std::string_view text, const std::string& file);
+
+/// The options of a plugin from the texts of a command line, "axes" with commas between entries;
+/// the others have their defaults.
+Checked<Settings> options_from(const Info& plugin, const std::map<std::string, std::string>& texts);
 
 }  // namespace nonio::host

@@ -29,8 +29,4 @@ Checked<std::vector<Artifact>> write_programs(const Plugins& plugins, const std:
                                               const Machine& machine, const PointTable& rows,
                                               const std::map<std::string, std::string>& options);
 
-/// The options of a plugin from the texts of a command line, "axes" with commas between entries;
-/// the others have their defaults.
-Checked<Settings> options_from(const Info& plugin, const std::map<std::string, std::string>& texts);
-
 }  // namespace nonio::host

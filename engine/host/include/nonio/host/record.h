@@ -75,4 +75,7 @@ Expected<std::optional<LastRecord>> last_record(const std::filesystem::path& cam
 /// Of results that are written under temporary names.
 Expected<std::optional<Record>> staged_record(const std::filesystem::path& campaign_output);
 
+/// The findings of all analyses and outputs, each once, with their English titles.
+std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates);
+
 }  // namespace nonio::host

@@ -139,9 +139,4 @@ class Register {
 Expected<std::filesystem::path> register_path(const std::filesystem::path& site,
                                               const Numbering& numbering);
 
-/// `[certificate] numbering` with its places filled. An error if that cannot be a number: it names
-/// files, and stands on paper.
-Expected<std::string> number_text(const std::string& pattern, const std::string& year,
-                                  std::uint64_t number);
-
 }  // namespace nonio::host

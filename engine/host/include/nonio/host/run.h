@@ -12,6 +12,7 @@
 #include "nonio/host/evaluate.h"
 #include "nonio/host/record.h"
 #include "nonio/host/register.h"
+#include "nonio/host/stop.h"
 
 namespace nonio::host {
 
@@ -81,8 +82,5 @@ struct Night {
 /// The nightly run over a site. Returns when every campaign is done, or after a call of
 /// `request_stop`, or at once with `refused` if the site or the output folder cannot be used.
 Night run_site(const RunOptions& options, const RunEvents& events);
-
-/// Safe in a signal handler.
-void request_stop();
 
 }  // namespace nonio::host

@@ -12,12 +12,6 @@
 /// Tables that are in a control, or are to come into it.
 namespace nonio::host {
 
-/// "a.ini,b.ini": the files of one table.
-Expected<std::vector<Artifact>> read_table_files(const std::string& list);
-/// The same from inside of a folder, each of at most 1 MB.
-Expected<std::vector<Artifact>> read_table_files(const std::string& list,
-                                                 const std::filesystem::path& base);
-
 /// The controller plugin of this name; without one that after which the files are called, or the
 /// only one that can read them.
 Expected<const Output*> control_of(const Plugins&, const std::string& name,

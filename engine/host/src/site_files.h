@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "nonio/host/campaign_reader.h"
+#include "nonio/host/manifest.h"
+#include "nonio/host/template_files.h"
 
 namespace nonio::host {
 
