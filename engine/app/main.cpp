@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "nonio/host/apart.h"
+#include "nonio/host/keep_apart.h"
 #include "verbs.h"
 
 namespace {

@@ -14,9 +14,9 @@
 
 #include "child.h"
 #include "confine.h"
-#include "nonio/host/apart.h"
+#include "nonio/host/keep_apart.h"
 #include "process_state.h"
-#include "worker.h"
+#include "shared_words.h"
 
 namespace nonio::host {
 
