@@ -36,13 +36,13 @@ bool read_all(int fd, char* to, std::size_t size) {
 }
 
 /// One byte with room for what travels beside it.
-struct Parcel {
+struct Packet {
   char byte = 0;
   iovec part{&byte, 1};
   alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int) * most_descriptors) +
                                         CMSG_SPACE(sizeof(ucred))> control{};
   msghdr header{};
-  Parcel() {
+  Packet() {
     header.msg_iov = &part;
     header.msg_iovlen = 1;
     header.msg_control = control.data();
@@ -79,7 +79,7 @@ bool read_text(int stream, std::string& bytes) {
 
 bool send_descriptors(int channel, char word, const std::vector<int>& descriptors) {
   if (descriptors.size() > most_descriptors) return false;
-  Parcel parcel;
+  Packet parcel;
   parcel.byte = word;
   const std::size_t size = descriptors.size() * sizeof(int);
   parcel.header.msg_controllen = descriptors.empty() ? 0 : CMSG_SPACE(size);
@@ -98,7 +98,7 @@ bool send_descriptors(int channel, char word, const std::vector<int>& descriptor
 }
 
 Expected<Received> receive_descriptors(int channel) {
-  Parcel parcel;
+  Packet parcel;
   ssize_t n = 0;
   do n = ::recvmsg(channel, &parcel.header, MSG_CMSG_CLOEXEC);
   while (n < 0 && errno == EINTR);

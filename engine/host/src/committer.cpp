@@ -20,14 +20,14 @@ namespace {
 /// So many at once: a crash costs no more campaigns than that, and answers fit into the channel.
 constexpr std::size_t largest_batch = 64;
 
-struct Message {
+struct StoredMessage {
   std::size_t campaign = 0;
   bool stored = false;
   std::array<char, 500> why{};
 };
 
-Message message_of(std::size_t campaign, const Expected<void>& result) {
-  Message message{campaign, result.has_value()};
+StoredMessage message_of(std::size_t campaign, const Expected<void>& result) {
+  StoredMessage message{campaign, result.has_value()};
   if (!result) result.error().message.copy(message.why.data(), message.why.size() - 1);
   return message;
 }
@@ -42,7 +42,7 @@ Message message_of(std::size_t campaign, const Expected<void>& result) {
       batch.push_back(given);
     const auto results = task(batch);
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      const Message message = message_of(batch[i].campaign, results[i]);
+      const StoredMessage message = message_of(batch[i].campaign, results[i]);
       if (::write(channel, &message, sizeof message) != sizeof message) ::_exit(0);
     }
   }
@@ -90,7 +90,7 @@ Expected<void> Committer::give(Given campaign) {
 std::vector<Committer::Done> Committer::done() {
   std::vector<Done> out;
   while (channel_ >= 0 && !pending_.empty()) {
-    Message message;
+    StoredMessage message;
     const ssize_t n = ::recv(channel_, &message, sizeof message, MSG_DONTWAIT);
     if (n == sizeof message) {
       const auto it = std::find_if(pending_.begin(), pending_.end(),

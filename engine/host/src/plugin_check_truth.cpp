@@ -18,7 +18,7 @@ namespace nonio::host::kit {
 namespace {
 
 /// A row of a table: its fields by their columns. Blank ones are left out.
-struct Row {
+struct TableRow {
   std::string where;  ///< "readings.csv:3"
   std::map<std::string, std::string> fields;
 
@@ -39,8 +39,8 @@ const Artifact* file_of(const Source& source, const std::string& name) {
 }
 
 /// The rows of a file of a case; none where there is no such file.
-std::vector<Row> rows_of_table(const Source& source, const std::string& name) {
-  std::vector<Row> rows;
+std::vector<TableRow> rows_of_table(const Source& source, const std::string& name) {
+  std::vector<TableRow> rows;
   const Artifact* file = file_of(source, name);
   if (file == nullptr) return rows;
   std::vector<std::string> columns;
@@ -58,7 +58,7 @@ std::vector<Row> rows_of_table(const Source& source, const std::string& name) {
       for (const std::string_view f : fields) columns.emplace_back(reading::trimmed(f));
       continue;
     }
-    Row row{name + ":" + std::to_string(line), {}};
+    TableRow row{name + ":" + std::to_string(line), {}};
     for (std::size_t i = 0; i < std::min(fields.size(), columns.size()); ++i)
       if (const std::string_view f = reading::trimmed(fields[i]); !f.empty())
         row.fields[columns[i]] = std::string(f);
@@ -116,7 +116,7 @@ constexpr Compared compared_columns[] = {
     {"air_degC", 1.0, air_of}};
 
 /// The first column that is not as the row has it; "" if all are.
-std::string other_column(const Row& row, const Observations& o, std::size_t i) {
+std::string other_column(const TableRow& row, const Observations& o, std::size_t i) {
   if (const std::string* run = row.find("run"); run != nullptr)
     if (o.run.empty() || std::to_string(o.run[i]) != *run) return "run";
   if (const std::string* direction = row.find("direction"); direction != nullptr)
@@ -133,7 +133,7 @@ std::string other_column(const Row& row, const Observations& o, std::size_t i) {
   return {};
 }
 
-std::string shown_row(const Row& row) {
+std::string shown_row(const TableRow& row) {
   std::string out;
   for (const auto& [column, text] : row.fields)
     if (column != "measurement") out += (out.empty() ? "" : ", ") + column + " " + text;
@@ -146,7 +146,7 @@ std::string differs_from_truth(const Observations& o, const Measurement& m, cons
                                std::size_t& compared) {
   std::vector<char> used(o.size());
   std::size_t rows = 0;
-  for (const Row& row : rows_of_table(source, "readings.csv")) {
+  for (const TableRow& row : rows_of_table(source, "readings.csv")) {
     if (const std::string id = row.text("measurement"); !id.empty() && id != m.id) continue;
     ++rows, ++compared;
     std::string nearest;
@@ -174,7 +174,7 @@ Verdict truth(const Analysis& a, const Bench& bench) {
   for (const Sample& s : bench.samples)
     for (const Source& source : bench.sources) {
       if (source.name != s.name) continue;
-      for (const Row& row : rows_of_table(source, "expected/values.csv")) {
+      for (const TableRow& row : rows_of_table(source, "expected/values.csv")) {
         if (row.text("plugin") != a.info.name) continue;
         bench.stage("sample " + s.name + ", expected/" + row.where);
         const auto measured =
@@ -293,7 +293,7 @@ Verdict truth(const Effect& e, const Bench& bench) {
 namespace {
 
 /// What a row of table.csv has of one direction; "" if the table has it.
-std::string other_entry(const Row& row, const LoadedTable& t, std::size_t i, bool plus) {
+std::string other_entry(const TableRow& row, const LoadedTable& t, std::size_t i, bool plus) {
   const std::string* text = row.find(plus ? (t.rotary ? "plus_arcsec" : "plus_um")
                                           : (t.rotary ? "minus_arcsec" : "minus_um"));
   if (text == nullptr) return {};
@@ -304,7 +304,7 @@ std::string other_entry(const Row& row, const LoadedTable& t, std::size_t i, boo
   return row.where + ": the control would add " + short_text(found, 6) + ", expected " + *text;
 }
 
-std::string other_point(const Row& row, const std::vector<LoadedTable>& tables) {
+std::string other_point(const TableRow& row, const std::vector<LoadedTable>& tables) {
   const std::string* text = row.find("position_mm");
   if (text == nullptr) text = row.find("position_deg");
   const auto wanted = text == nullptr ? std::nullopt : told(*text);
@@ -328,9 +328,9 @@ Verdict truth(const Output& o, const Bench& bench) {
   for (const Sample& s : bench.samples)
     for (const Source& source : bench.sources) {
       const auto rows =
-          source.name == s.name ? rows_of_table(source, "table.csv") : std::vector<Row>();
-      std::map<std::string, std::vector<Row>> by_file;
-      for (const Row& row : rows) by_file[row.text("file")].push_back(row);
+          source.name == s.name ? rows_of_table(source, "table.csv") : std::vector<TableRow>();
+      std::map<std::string, std::vector<TableRow>> by_file;
+      for (const TableRow& row : rows) by_file[row.text("file")].push_back(row);
       for (const auto& [name, points] : by_file) {
         const std::string where = "sample " + s.name + ", " + name + ": ";
         const Artifact* file = file_of(source, name);
@@ -341,7 +341,7 @@ Verdict truth(const Output& o, const Bench& bench) {
         std::size_t entries = 0;
         for (const LoadedTable& t : *tables)
           entries += t.position.size() == 1 ? t.position.front().size() : 0;
-        for (const Row& row : points)
+        for (const TableRow& row : points)
           if (const std::string why = other_point(row, *tables); !why.empty())
             return failed(where + why);
         if (entries != points.size())

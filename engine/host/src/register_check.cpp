@@ -17,14 +17,14 @@ namespace {
 
 using State = sign::Check::State;
 
-struct Stated {
+struct StatedNumber {
   std::string number, register_id;
   bool by_register = true;  ///< no: it may be a number of somebody else's
 };
 
 /// Of a DCC: its identifier, which need not come from a register. What output `certificate` makes
 /// always does.
-Stated stated_in_dcc(std::string_view xml) {
+StatedNumber stated_in_dcc(std::string_view xml) {
   constexpr std::string_view open = "<dcc:uniqueIdentifier>", close = "</dcc:uniqueIdentifier>";
   const std::size_t begin = xml.find(open);
   const std::size_t end = xml.find(close);
@@ -35,7 +35,7 @@ Stated stated_in_dcc(std::string_view xml) {
           xml.find(numbered) != std::string_view::npos};
 }
 
-Stated stated_in_pdf(const sign::Verified& v) {
+StatedNumber stated_in_pdf(const sign::Verified& v) {
   const sign::Attachment* results = find_attachment(v, results_name);
   if (results == nullptr) return {};
   const Json json = Json::parse(results->bytes, nullptr, false);
@@ -62,7 +62,7 @@ std::string words_of(const RegisterEntry& e) {
 
 std::optional<sign::Check> check_register(const sign::Verified& verified, std::string_view bytes,
                                           const fs::path& site) {
-  Stated stated = bytes.starts_with("%PDF-") ? stated_in_pdf(verified) : stated_in_dcc(bytes);
+  StatedNumber stated = bytes.starts_with("%PDF-") ? stated_in_pdf(verified) : stated_in_dcc(bytes);
   if (stated.number.empty()) return std::nullopt;
   sign::Check check{"register.state", State::fails, {}};
   const auto says = [&](State state, std::string words) {

@@ -11,24 +11,6 @@
 namespace nonio::host {
 namespace fs = std::filesystem;
 
-fs::path site_of(const fs::path& campaign) {
-  std::error_code error;
-  const fs::path start = fs::canonical(campaign, error);
-  // One that cannot be looked at is not none: reading it says what is wrong.
-  const auto has = [](const char* name) {
-    return [name](const fs::path& folder) { return is_there(folder / name).value_or(true); };
-  };
-  const auto nearest = [&](const auto& is_it) -> std::optional<fs::path> {
-    for (fs::path folder = start; !error && !folder.empty(); folder = folder.parent_path()) {
-      if (is_it(folder)) return folder;
-      if (folder == folder.parent_path()) break;
-    }
-    return std::nullopt;
-  };
-  if (const auto site = nearest(has(site_name))) return *site;
-  return nearest(has(machines_folder)).value_or(campaign);
-}
-
 Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
                                                     const std::vector<fs::path>& plugin_folders,
                                                     const std::vector<fs::path>& template_folders,
