@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "common.h"
-#include "nonio/host/campaign_model.h"
-#include "nonio/host/model_words.h"
+#include "host/modelling/campaign_model.h"
+#include "host/modelling/model_words.h"
 
 namespace nonio::app {
 
 /// The campaign that a verb is about.
 struct OpenCampaign {
   std::filesystem::path folder;
-  std::unique_ptr<host::Workplace> place;
-  host::ReadCampaign read;
+  std::unique_ptr<host::reading::Workplace> place;
+  host::reading::ReadCampaign read;
   const Campaign& campaign() const { return read.manifest->campaign; }
 };
 
@@ -25,10 +25,10 @@ struct OpenCampaign {
 /// single measurements stay in `read.errors` and leave the others.
 tl::expected<OpenCampaign, int> open_campaign(
     const char* verb, const std::string& folder, const Common& common,
-    host::TemplatesFor what = host::TemplatesFor::documents);
+    host::reading::TemplatesFor what = host::reading::TemplatesFor::documents);
 
 /// Sentences in the language of the site, or English for JSON.
-host::ModelWords words_for(const OpenCampaign& open, const Common& common);
+host::modelling::ModelWords words_for(const OpenCampaign& open, const Common& common);
 
 /// "CAMPAIGN", --templates and the common options.
 std::vector<Argument> campaign_arguments(std::string& folder, Common& common);

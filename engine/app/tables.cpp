@@ -58,29 +58,31 @@ const char* head_of(const model::Part& part) {
   return "head.balls";
 }
 
-void print_head(std::ostream& out, const host::PartModel& part, const host::ModelWords& words) {
-  const host::TerminalWords say = words.terminal();
-  const std::string effects = host::listed(part.names());
+void print_head(std::ostream& out, const host::modelling::PartModel& part,
+                const host::modelling::ModelWords& words) {
+  const host::config::TerminalWords say = words.terminal();
+  const std::string effects = host::storage::listed(part.names());
   out << say(head_of(part.part)) << " " << part.part.name << " ("
-      << host::listed(part.part.measurements) << "): "
+      << host::storage::listed(part.part.measurements) << "): "
       << say("head.readings", {{"count", std::to_string(part.part.table.size())},
                                {"model", effects.empty() ? say("head.empty") : effects}})
       << "\n";
 }
 
 /// Curves by what they say, everything else by its parameters.
-void print_parameters(std::ostream& out, const model::Fit& fit, const host::PartModel& part,
-                      const host::ModelWords& words) {
+void print_parameters(std::ostream& out, const model::Fit& fit,
+                      const host::modelling::PartModel& part,
+                      const host::modelling::ModelWords& words) {
   if (fit.parameters.empty()) return;
   out << "  " << words.terminal()("parameters") << "\n";
   std::string told;
   for (const model::Parameter& p : fit.parameters) {
     const auto term = std::find_if(fit.terms.begin(), fit.terms.end(),
                                    [&](const model::Term& t) { return t.name() == p.effect; });
-    const auto curve =
-        term == fit.terms.end()
-            ? std::nullopt
-            : host::curve_of(part, fit, static_cast<std::size_t>(term - fit.terms.begin()));
+    const auto curve = term == fit.terms.end()
+                           ? std::nullopt
+                           : host::modelling::curve_of(
+                                 part, fit, static_cast<std::size_t>(term - fit.terms.begin()));
     if (curve && !p.shape) {
       if (told != p.effect)
         out << "    " << padded(p.effect, 20) << " " << words.curve(*curve, part) << "\n";
@@ -98,27 +100,29 @@ void print_parameters(std::ostream& out, const model::Fit& fit, const host::Part
 }
 
 /// One after the other: each beside those above it.
-void print_places(std::ostream& out, const model::Comparison& c, const host::ModelWords& words,
-                  Quantity deviation) {
-  const host::TerminalWords say = words.terminal();
+void print_places(std::ostream& out, const model::Comparison& c,
+                  const host::modelling::ModelWords& words, Quantity deviation) {
+  const host::config::TerminalWords say = words.terminal();
   if (!c.fails()) return line(out, say("fails"), say("fails.nowhere"));
   out << "  " << say("fails") << "\n";
   for (const model::Place& place : c.seats)
-    out << "    " << padded(place.where + host::on_line(place), 24) << " "
+    out << "    " << padded(place.where + host::modelling::on_line(place), 24) << " "
         << words.place(place, deviation) << "\n";
 }
 
-void print_suspects(std::ostream& out, const model::Comparison& c, const host::PartModel& part,
-                    const Campaign& campaign, const host::ModelWords& words) {
+void print_suspects(std::ostream& out, const model::Comparison& c,
+                    const host::modelling::PartModel& part, const Campaign& campaign,
+                    const host::modelling::ModelWords& words) {
   for (const model::Suspect& s : c.suspects)
     out << "  " << words.terminal()("suspect") << ": "
-        << words.suspect(s, host::place_of(part, campaign, s.row), part.deviation()) << "\n";
+        << words.suspect(s, host::modelling::place_of(part, campaign, s.row), part.deviation())
+        << "\n";
 }
 
-std::string largest_text(const host::Compared& compared, const Campaign& campaign,
-                         const host::TerminalWords& say) {
-  const host::PartModel& part = compared.part;
-  const auto at = host::place_of(part, campaign, compared.comparison.largest_row);
+std::string largest_text(const host::modelling::Compared& compared, const Campaign& campaign,
+                         const host::config::TerminalWords& say) {
+  const host::modelling::PartModel& part = compared.part;
+  const auto at = host::modelling::place_of(part, campaign, compared.comparison.largest_row);
   const std::string direction = at.direction > 0 ? "+" : "-";
   std::string text =
       say("largest.at", {{"value", with_unit(compared.comparison.largest, part.deviation())},
@@ -130,16 +134,17 @@ std::string largest_text(const host::Compared& compared, const Campaign& campaig
   return at.line == 0 ? text : text + ":" + std::to_string(at.line);
 }
 
-void print_candidates(std::ostream& out, const host::Explained& e, const host::TerminalWords& say) {
+void print_candidates(std::ostream& out, const host::modelling::Explained& e,
+                      const host::config::TerminalWords& say) {
   const Quantity q = e.part.deviation();
   double best = 0.0;
   for (const model::Candidate& c : e.explanation.candidates)
-    if (host::is_ranked(c)) best = std::max(best, c.score);
+    if (host::modelling::is_ranked(c)) best = std::max(best, c.score);
   if (best > 0.0)
     out << "  " << padded(say("candidate"), 22) << padded(say("evidence"), 32)
         << padded(say("rms-after"), 14) << padded(say("left-out"), 15) << "p\n";
   for (const model::Candidate& c : e.explanation.candidates) {
-    if (!host::is_ranked(c) || !(c.score > 0.0)) continue;
+    if (!host::modelling::is_ranked(c) || !(c.score > 0.0)) continue;
     out << "  " << padded(c.term.name(), 22) << bar(c.score, best, 20) << " "
         << padded(fixed_text(c.score, 1), 11) << padded(with_unit(c.rms, q), 14)
         << padded(c.cv_rms ? with_unit(*c.cv_rms, q) : "-", 15) << p_text(c.p) << "\n";
@@ -148,21 +153,23 @@ void print_candidates(std::ostream& out, const host::Explained& e, const host::T
 
 /// What the best explanation adds; where it is none, what of it is not certain.
 void print_together(std::ostream& out, const model::Explanation& x,
-                    const host::TerminalWords& say) {
+                    const host::config::TerminalWords& say) {
   const bool unknown = x.verdict.kind == model::Verdict::Kind::unknown;
   std::vector<std::string> names;
   for (const std::string& name : x.together)
     if (!unknown || std::find(x.certain.begin(), x.certain.end(), name) == x.certain.end())
       names.push_back(name);
   if (names.size() > (unknown ? 0U : 1U))
-    out << "    " << say(unknown ? "together.unknown" : "together") << ": " << host::listed(names)
-        << "\n";
+    out << "    " << say(unknown ? "together.unknown" : "together") << ": "
+        << host::storage::listed(names) << "\n";
 }
 
-void print_verdict(std::ostream& out, const host::Explained& e, const host::ModelWords& words) {
+void print_verdict(std::ostream& out, const host::modelling::Explained& e,
+                   const host::modelling::ModelWords& words) {
   const model::Explanation& x = e.explanation;
-  const host::TerminalWords say = words.terminal();
-  out << "  " << say("verdict") << ": " << say.of("verdict", host::to_text(x.verdict.kind))
+  const host::config::TerminalWords say = words.terminal();
+  out << "  " << say("verdict") << ": "
+      << say.of("verdict", host::modelling::to_text(x.verdict.kind))
       << (x.verdict.effect.empty() ? "" : " " + x.verdict.effect) << "\n    "
       << words.verdict(x, e.part) << "\n";
   print_together(out, x, say);
@@ -176,7 +183,8 @@ void print_verdict(std::ostream& out, const host::Explained& e, const host::Mode
   if (x.verdict.trials > 0) out << "    " << words.false_alarms(x.verdict) << "\n";
 }
 
-void print_bars(std::ostream& out, const host::ModelStep& step, const host::TerminalWords& say) {
+void print_bars(std::ostream& out, const host::modelling::ModelStep& step,
+                const host::config::TerminalWords& say) {
   const double whole = std::max(
       {step.rms_before.value_or(0.0), step.rms_after.value_or(0.0), step.floor.value_or(0.0)});
   const Quantity q = step.quantity;
@@ -195,12 +203,12 @@ std::string with_unit(double value, Quantity q) {
   return short_text(printed(value, q)) + " " + std::string(unit_of(q).symbol);
 }
 
-void print_comparison(std::ostream& out, const host::Compared& compared, const Campaign& campaign,
-                      const host::ModelWords& words) {
+void print_comparison(std::ostream& out, const host::modelling::Compared& compared,
+                      const Campaign& campaign, const host::modelling::ModelWords& words) {
   const model::Comparison& c = compared.comparison;
-  const host::PartModel& part = compared.part;
+  const host::modelling::PartModel& part = compared.part;
   const Quantity q = part.deviation();
-  const host::TerminalWords say = words.terminal();
+  const host::config::TerminalWords say = words.terminal();
   print_head(out, part, words);
   line(out, "RMS", with_unit(c.fit.rms, q));
   line(out, say("left-out"), c.cv_rms ? with_unit(*c.cv_rms, q) : say("left-out.one-run"));
@@ -210,7 +218,7 @@ void print_comparison(std::ostream& out, const host::Compared& compared, const C
   if (c.lack_of_fit && std::isfinite(c.lack_of_fit->F))
     line(out, say("lack-of-fit"), words.lack_of_fit(c, q));
   print_parameters(out, c.fit, part, words);
-  for (const host::Correlated& pair : host::correlated(c.fit))
+  for (const host::modelling::Correlated& pair : host::modelling::correlated(c.fit))
     line(out, say("correlated"),
          say("correlated.pair", {{"one", pair.one->effect + " " + pair.one->name},
                                  {"other", pair.other->effect + " " + pair.other->name}}) +
@@ -218,28 +226,29 @@ void print_comparison(std::ostream& out, const host::Compared& compared, const C
   print_places(out, c, words, part.deviation());
   if (c.means > 0) line(out, "", say("means", {{"count", std::to_string(c.means)}}));
   print_suspects(out, c, part, campaign, words);
-  for (const std::string& warning : host::warnings_of(part, c.fit, words))
+  for (const std::string& warning : host::modelling::warnings_of(part, c.fit, words))
     out << "  " << say("warning") << ": " << warning << "\n";
 }
 
-void print_model(std::ostream& out, const host::Compared& compared, const host::ModelWords& words) {
+void print_model(std::ostream& out, const host::modelling::Compared& compared,
+                 const host::modelling::ModelWords& words) {
   const model::Comparison& c = compared.comparison;
   const Quantity q = compared.part.deviation();
-  const host::TerminalWords say = words.terminal();
+  const host::config::TerminalWords say = words.terminal();
   print_head(out, compared.part, words);
   line(out, "RMS", with_unit(c.fit.rms, q));
   if (c.cv_rms) line(out, say("left-out"), with_unit(*c.cv_rms, q));
   if (c.floor) line(out, say("floor"), floor_text(*c.floor, q));
   print_parameters(out, c.fit, compared.part, words);
-  for (const std::string& warning : host::warnings_of(compared.part, c.fit, words))
+  for (const std::string& warning : host::modelling::warnings_of(compared.part, c.fit, words))
     out << "  " << say("warning") << ": " << warning << "\n";
 }
 
-void print_explanation(std::ostream& out, const host::Explained& e, const Campaign& campaign,
-                       const host::ModelWords& words) {
+void print_explanation(std::ostream& out, const host::modelling::Explained& e,
+                       const Campaign& campaign, const host::modelling::ModelWords& words) {
   const model::Comparison& c = e.explanation.comparison;
   const Quantity q = e.part.deviation();
-  const host::TerminalWords say = words.terminal();
+  const host::config::TerminalWords say = words.terminal();
   print_head(out, e.part, words);
   line(out, "RMS", with_unit(c.fit.rms, q));
   if (c.floor) line(out, say("floor"), floor_text(*c.floor, q));
@@ -248,22 +257,24 @@ void print_explanation(std::ostream& out, const host::Explained& e, const Campai
     out << "  " << text << "\n";
   for (const model::Candidate& candidate : e.explanation.candidates)
     // A test of an hour is not meant to show the day: only the JSON says so.
-    if (!host::is_ranked(candidate) && candidate.why != "short-test")
-      out << "  " << words.unseen(candidate, host::place_of(e.part, campaign, candidate.rows))
+    if (!host::modelling::is_ranked(candidate) && candidate.why != "short-test")
+      out << "  "
+          << words.unseen(candidate, host::modelling::place_of(e.part, campaign, candidate.rows))
           << "\n";
   print_verdict(out, e, words);
   print_suspects(out, c, e.part, campaign, words);
-  for (const std::string& warning : host::warnings_of(e.part, c.fit, words))
+  for (const std::string& warning : host::modelling::warnings_of(e.part, c.fit, words))
     out << "  " << say("warning") << ": " << warning << "\n";
 }
 
-void print_change(std::ostream& out, const host::Change& change, const host::ModelWords& words) {
-  const host::ModelStep& step = change.step;
-  const host::TerminalWords say = words.terminal();
+void print_change(std::ostream& out, const host::modelling::Change& change,
+                  const host::modelling::ModelWords& words) {
+  const host::modelling::ModelStep& step = change.step;
+  const host::config::TerminalWords say = words.terminal();
   out << say(step.added ? "added" : "dropped",
              {{"effect", step.effect},
-              {"model",
-               change.effects.empty() ? say("model.empty") : host::listed(change.effects)}})
+              {"model", change.effects.empty() ? say("model.empty")
+                                               : host::storage::listed(change.effects)}})
       << "\n";
   if (!change.no_before.empty()) out << "  " << say("before") << ": " << change.no_before << "\n";
   const Quantity q = step.quantity;
@@ -280,18 +291,18 @@ void print_change(std::ostream& out, const host::Change& change, const host::Mod
   if (!change.after) return;
   print_parameters(out, change.after->comparison.fit, change.after->part, words);
   for (const std::string& warning :
-       host::warnings_of(change.after->part, change.after->comparison.fit, words))
+       host::modelling::warnings_of(change.after->part, change.after->comparison.fit, words))
     out << "  " << say("warning") << ": " << warning << "\n";
 }
 
-void print_history(std::ostream& out, const std::vector<host::ModelStep>& history,
-                   const host::TerminalWords& say) {
+void print_history(std::ostream& out, const std::vector<host::modelling::ModelStep>& history,
+                   const host::config::TerminalWords& say) {
   if (history.empty()) return;
   out << say("history") << "\n";
   double whole = 0.0;
-  for (const host::ModelStep& step : history)
+  for (const host::modelling::ModelStep& step : history)
     whole = std::max({whole, step.rms_before.value_or(0.0), step.rms_after.value_or(0.0)});
-  for (const host::ModelStep& step : history)
+  for (const host::modelling::ModelStep& step : history)
     out << "  " << padded((step.added ? "+ " : "- ") + step.effect, 24)
         << (step.rms_after ? bar(*step.rms_after, whole, bar_width, step.floor) + " " +
                                  with_unit(*step.rms_after, step.quantity)
