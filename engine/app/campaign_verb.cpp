@@ -29,8 +29,8 @@ tl::expected<OpenCampaign, int> open_campaign(const char* verb, const std::strin
   return tl::unexpected(exit_failed);
 }
 
-host::ModelWords words_for(const OpenCampaign& open, const Common& common) {
-  const host::Context& context = open.place->context;
+host::modelling::ModelWords words_for(const OpenCampaign& open, const Common& common) {
+  const host::reading::Context& context = open.place->context;
   return {context.templates, common.json ? "en" : context.site.language};
 }
 
