@@ -11,6 +11,7 @@
 
 namespace nonio::math {
 bool matters(const AxisTest& test, double size) {
+  // docs/constants.md, A2.
   constexpr double share = 0.2;
   const Iso230Result iso = evaluate_iso230_2(test, 2.0);
   const double whole = std::isnan(iso.A) ? iso.E : iso.A;

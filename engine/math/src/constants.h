@@ -7,8 +7,9 @@
 namespace nonio::math {
 
 inline constexpr double full_turn = 2.0 * std::numbers::pi;  // rad
-inline constexpr double significance = 0.01;                 // of the tests behind findings
-inline constexpr double rounding = 1e-10;  // m or rad: less is no machine's scatter
+// docs/constants.md, A1.
+inline constexpr double significance = 0.01;  // of the tests behind findings
+inline constexpr double rounding = 1e-10;     // m or rad: less is no machine's scatter
 inline constexpr double none = std::numeric_limits<double>::quiet_NaN();  // not given
 
 }  // namespace nonio::math

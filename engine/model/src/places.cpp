@@ -26,6 +26,7 @@ struct Factor {
 
 namespace {
 
+// docs/constants.md, M23.
 constexpr Index most_bins = 40;
 
 MatrixXd dummies(const std::vector<std::size_t>& level, std::size_t levels) {
@@ -248,6 +249,7 @@ MatrixXd orthonormal(MatrixXd columns) {
 /// in the cells, even where a wave of time describes it with fewer columns.
 bool tells_repeats_apart(const Repeats& r, const VectorXd& root, const MatrixXd& basis,
                          const VectorXd& residual) {
+  // docs/constants.md, M19.
   constexpr double least = 0.1;  // of its squares; of a line in time over two runs, a fifth
   MatrixXd said = basis * (basis.transpose() * residual);
   const double all = said.squaredNorm();

@@ -13,6 +13,7 @@ namespace nonio::model {
 
 namespace {
 
+// docs/constants.md, M13.
 constexpr double enough = 4.0;  // standard deviations between two explanations
 
 struct Course {  // one further measurement

@@ -294,6 +294,7 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
   std::vector<double> weight(n, 1.0);
   std::vector<std::uint32_t> high, flagged;
   for (std::uint32_t i = 0; i < n; ++i)
+    // docs/constants.md, M11.
     if (std::fabs(e[i]) > 3.5 * s_rough) high.push_back(i);
   const std::vector<double> apart = apart_from_others(r, high, e);
   for (std::size_t k = 0; k < high.size(); ++k) {
@@ -310,6 +311,7 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
   std::vector<double> in_cell(r.cells, 0.0);
   for (std::size_t i = 0; i < n; ++i) in_cell[r.cell[i]] += weight[i];
   double least = 3.0;  // smallest t that would be named
+  // docs/constants.md, M12.
   while (math::t_two_sided(least, dof) * static_cast<double>(n) > 0.01) least += 0.01;
   std::vector<Suspect> out;
   for (const auto i : flagged) {

@@ -114,6 +114,7 @@ struct Comparison {
 };
 
 /// A place is said to fail below this p.
+// docs/constants.md, M1.
 inline constexpr double place_p = 0.01;
 
 struct Candidate {
