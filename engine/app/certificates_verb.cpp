@@ -119,7 +119,7 @@ Verb certificates_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "certificates",
-      .summary = "The site's register of certificates: numbers, what became of them, files",
+      .summary = "Shows the certificate register of a site: numbers, states, files",
       .arguments = joined(
           {required(existing(Takes::folder, {"SITE", &wanted->site, "Site whose register it is"})),
            takes(Takes::folder,

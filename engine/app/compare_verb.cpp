@@ -45,17 +45,18 @@ int compare(const std::string& folder, const Common& common) {
 
 Verb compare_verb(Common& common) {
   auto folder = std::make_shared<std::string>();
-  return {.name = "compare",
-          .summary = "The model in campaign.toml against the measurements",
-          .arguments = campaign_arguments(*folder, common),
-          .footer =
-              "For each axis: what the model leaves (RMS, largest residual, RMS on left-out runs), "
-              "the\n"
-              "noise floor of repeated readings, the parameters with their uncertainty, and where\n"
-              "something is left: with direction, position, run, time, temperature, screw or "
-              "angle.\n\n"
-              "Example: nonio compare samples/site/02-constant-reversal",
-          .run = [folder, &common] { return compare(*folder, common); }};
+  return {
+      .name = "compare",
+      .summary = "Compares the model in campaign.toml with the measurements",
+      .arguments = campaign_arguments(*folder, common),
+      .footer =
+          "Shows for each axis the residuals (RMS, largest residual, RMS of left-out runs), the "
+          "noise\n"
+          "floor of repeated readings, the parameters with their uncertainty, and the factors that "
+          "the\n"
+          "residuals depend on: direction, position, run, time, temperature, screw or angle.\n\n"
+          "Example: nonio compare samples/site/02-constant-reversal",
+      .run = [folder, &common] { return compare(*folder, common); }};
 }
 
 }  // namespace nonio::app

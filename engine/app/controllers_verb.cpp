@@ -143,10 +143,10 @@ int list_controls(const std::vector<std::string>& names, const Common& common) {
 Verb controllers_verb(Common& common) {
   auto names = std::make_shared<std::vector<std::string>>();
   return {.name = "controllers",
-          .summary = "The controls that tables are written for, and what each can take",
-          .arguments =
-              joined({{"NAME", names.get(), "Only these, with how sure each fact about them is"}},
-                     common_arguments(common)),
+          .summary = "Lists the controls that tables are written for, and what each supports",
+          .arguments = joined(
+              {{"NAME", names.get(), "Only these controls, with the confidence of each fact"}},
+              common_arguments(common)),
           .footer =
               "points: of one table. both ways: a table for each direction of travel. straight, "
               "square:\n"

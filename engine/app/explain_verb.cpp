@@ -125,23 +125,25 @@ Verb explain_verb(Common& common) {
   auto options = std::make_shared<ExplainOptions>();
   return {
       .name = "explain",
-      .summary = "Which effect is missing from the model: candidates, ranked, and a verdict",
+      .summary = "Finds the effect that is missing from the model: ranked candidates and a verdict",
       .arguments = joined(
           campaign_arguments(options->folder, common),
           {{"--auto", &options->automatic,
             "While an effect is missing or certain, add it to campaign.toml; show each step"},
            {.name = "--seed",
             .target = &options->seed,
-            .help = "Of the shuffles behind the false-alarm rate",
+            .help = "Random seed of the false-alarm estimate",
             .shows_default = true}}),
       .footer =
-          "Every effect of the catalogue (`nonio plugins`) that is not in the model is tried on "
-          "top\n"
-          "of it. Verdicts: missing (an effect belongs into the model), nothing (the model is "
-          "good\n"
-          "down to the noise), unknown (something is left that no effect explains; it says "
-          "where),\n"
-          "unrepeatable (the readings contradict each other: look at the machine first).\n\n"
+          "Tries every effect of the catalogue (`nonio plugins`) that is not in the model. "
+          "Verdicts:\n"
+          "missing (an effect belongs in the model), complete (nothing missing: the model "
+          "explains\n"
+          "everything down to the noise; `nothing` in JSON), unknown (no effect explains the "
+          "remaining\n"
+          "error; it states where), unrepeatable (the readings contradict each other: check the "
+          "machine\n"
+          "first).\n\n"
           "Example: nonio explain samples/site/02-constant-reversal",
       .run = [options, &common] { return Explain(*options, common).run(); }};
 }

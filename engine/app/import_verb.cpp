@@ -140,7 +140,7 @@ Verb import_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "import",
-      .summary = "Campaigns from a folder of instrument files, by a rule for their names",
+      .summary = "Makes campaigns from a folder of instrument files, by a rule for their names",
       .arguments = joined(
           {required(existing(Takes::folder, {"FOLDER", &arguments->folder,
                                              "Folder with the files, and folders in it"})),

@@ -92,7 +92,8 @@ Verb merge_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "merge",
-      .summary = "A control's backup with the table of one axis renewed, all else as it was",
+      .summary =
+          "Inserts a new table into a backup of a control and leaves everything else unchanged",
       .arguments = joined(
           {required(takes(
                Takes::file,

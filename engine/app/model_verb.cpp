@@ -79,17 +79,18 @@ int change(const ModelOptions& options, const Common& common, bool add) {
 
 Verb change_verb(const std::shared_ptr<ModelOptions>& options, Common& common, bool add) {
   const std::string name = add ? "add" : "drop";
-  return {.name = name,
-          .summary = add ? "Puts an effect into the model; what is left before and after"
-                         : "Takes an effect out of the model: the reverse of add",
-          .arguments = joined(campaign_arguments(options->folder, common),
-                              {required({"EFFECT", &options->effect,
-                                         "kind:axis, such as backlash:X (`nonio plugins`)"})}),
-          .footer =
-              "campaign.toml keeps its comments and every other byte; the change is noted in\n"
-              "model-history.jsonl beside it.\n\nExample: nonio model " +
-              name + " samples/site/02-constant-reversal backlash:X",
-          .run = [options, &common, add] { return change(*options, common, add); }};
+  return {
+      .name = name,
+      .summary = add ? "Adds an effect to the model and shows the residuals before and after"
+                     : "Removes an effect from the model",
+      .arguments = joined(campaign_arguments(options->folder, common),
+                          {required({"EFFECT", &options->effect,
+                                     "kind:axis, such as backlash:X (`nonio plugins`)"})}),
+      .footer =
+          "campaign.toml keeps its comments and everything else; model-history.jsonl next to it\n"
+          "records the change.\n\nExample: nonio model " +
+          name + " samples/site/02-constant-reversal backlash:X",
+      .run = [options, &common, add] { return change(*options, common, add); }};
 }
 
 }  // namespace
@@ -99,7 +100,7 @@ Verb model_verb(Common& common) {
   return {.name = "model",
           .summary = "Shows or changes the model of a campaign, in its campaign.toml",
           .verbs = {{.name = "show",
-                     .summary = "The effects with their values, and the history",
+                     .summary = "Shows the effects with their values, and the history",
                      .arguments = campaign_arguments(options->folder, common),
                      .run = [options, &common] { return show_model(*options, common); }},
                     change_verb(options, common, true),

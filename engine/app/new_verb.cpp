@@ -421,7 +421,7 @@ Verb new_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "new",
-      .summary = "A site or a campaign that runs at once, with an example to be replaced",
+      .summary = "Makes a site or a campaign with an example that runs immediately",
       .arguments = joined(
           {required(offering({"site", "campaign", "machine"},
                              {"WHAT", &wish->what,
@@ -452,8 +452,9 @@ Verb new_verb(Common& common) {
            {"--defaults", &wish->defaults, "Ask nothing, also on a terminal"}},
           common_arguments(common)),
       .footer =
-          "On a terminal what the options do not say is asked for, with the default in brackets;\n"
-          "an empty line takes it, and ^D or ^C ends without writing anything.\n"
+          "On a terminal the command asks for missing options, with the default in brackets; an "
+          "empty\n"
+          "line accepts it, and ^D or ^C ends without writing anything.\n"
           "Example readings are marked: EXAMPLE, NOT MEASURED stands with the customer and the\n"
           "machine, in every report. Nothing that exists is written over.\n\n"
           "Examples: nonio new site lab\n"

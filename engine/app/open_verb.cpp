@@ -152,7 +152,7 @@ Verb open_verb(Common& common) {
   auto wish = std::make_shared<OpenWish>();
   using Takes = Argument::Takes;
   return {.name = "open",
-          .summary = "Opens a report on the desktop, and prints where it is",
+          .summary = "Opens a report on the desktop and prints its path",
           .arguments =
               joined({existing(Takes::folder, {"OUT|OUT/ID|CAMPAIGN", &wish->folder,
                                                "Results of a night, of one campaign, or a campaign "
@@ -164,8 +164,7 @@ Verb open_verb(Common& common) {
                                             .shows_default = true})},
                      common_arguments(common)),
           .footer =
-              "Of a night: the first campaign that asks for attention, or "
-              "else summary.txt. Of a "
+              "Of a night: the first campaign that needs attention, or else summary.txt. Of a "
               "campaign:\nits report, or else a page for the browser, or "
               "else results.json.\n\n"
               "Example: nonio open out/09-tolerances",

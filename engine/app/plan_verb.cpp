@@ -254,7 +254,8 @@ Verb triples_verb(Common& common) {
           "The same n stops serve the pitch of X and Y, both straightnesses and the diagonals.\n"
           "First comes the plan that covers the worse axis furthest; the others say why they are\n"
           "there and what they give up.\n\n"
-          "Exit status: 0 plans were found; 1 nothing fits, and which limit to ease; 2 usage.\n\n"
+          "Exit status: 0 plans were found; 1 nothing fits (the limits to relax are named); 2 "
+          "usage.\n\n"
           "Example: nonio plan triples --x 12000 --y 9000 --max-step 500 --max-points 31",
       .run = [plan, &common] { return plan_triples(*plan, common); }};
 }

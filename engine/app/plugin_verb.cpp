@@ -139,7 +139,7 @@ std::string all_checks() {
 Verb new_plugin_verb(Common& common) {
   auto options = std::make_shared<SkeletonOptions>();
   return {.name = "new",
-          .summary = "Writes a folder that builds, is tested, and does something useful at once",
+          .summary = "Writes a plugin folder that builds, has tests, and works",
           .arguments = joined(
               {required(offering(
                    {"reader", "analysis", "effect", "output", "controller"},
@@ -156,7 +156,7 @@ Verb check_plugin_verb(Common& common) {
   auto options = std::make_shared<CheckOptions>();
   using Takes = Argument::Takes;
   return {.name = "check",
-          .summary = "Holds plugins against the laws of their kind, each in a process with limits",
+          .summary = "Runs the conformance checks for a plugin type, each in a process with limits",
           .arguments = joined(
               {required(existing(
                    Takes::path,
@@ -182,7 +182,7 @@ Verb check_plugin_verb(Common& common) {
 
 Verb plugin_verb(Common& common) {
   return {.name = "plugin",
-          .summary = "A plugin of your own: begin it, hold it against the laws",
+          .summary = "Your own plugin: start it, check it",
           .verbs = {new_plugin_verb(common), check_plugin_verb(common)}};
 }
 

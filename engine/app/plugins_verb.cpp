@@ -92,7 +92,7 @@ int list_plugins(const Common& common) {
 
 Verb plugins_verb(Common& common) {
   return {.name = "plugins",
-          .summary = "What is loaded, with its options, and what was refused",
+          .summary = "Lists loaded plugins with their options, and rejected ones with the reason",
           .arguments = common_arguments(common),
           .run = [&common] { return list_plugins(common); }};
 }

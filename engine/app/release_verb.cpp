@@ -167,7 +167,7 @@ Verb release_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "release",
-      .summary = "Issues the certificate that a night has left as a draft",
+      .summary = "Issues a certificate from the draft of a nightly run",
       .arguments = joined(
           {required(existing(Takes::folder, {"CAMPAIGN", &wanted->folder,
                                              "Folder of the campaign; with --list also a site"})),

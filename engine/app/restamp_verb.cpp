@@ -70,7 +70,7 @@ Verb restamp_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "restamp",
-      .summary = "Keep signed certificates provable when keys and time servers run out",
+      .summary = "Keeps signed certificates verifiable after keys and time servers expire",
       .arguments = joined(
           {required(takes(Takes::file, {"FILE", &wanted->files, "Signed certificates (PDF)"})),
            existing(Takes::folder,

@@ -155,7 +155,7 @@ Verb run_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "run",
-      .summary = "The nightly job: every campaign below SITE through its analyses and outputs",
+      .summary = "The nightly job: evaluates every campaign in SITE and writes its outputs",
       .arguments = joined(
           {required(existing(Takes::folder,
                              {"SITE", &wish->site,
@@ -179,9 +179,9 @@ Verb run_verb(Common& common) {
            templates_argument(common)},
           common_arguments(common)),
       .footer =
-          "A campaign is done again only if something it depends on has changed: its files, "
-          "site.toml,\n"
-          "a plugin, a template, the program. A run that was killed goes on where it stopped.\n\n"
+          "A campaign is evaluated again only if its files, site.toml, a plugin, a template or "
+          "the\n"
+          "program have changed. A run that was killed resumes where it stopped.\n\n"
           "Example: nonio run samples/site --out out",
       .run = [wish, &common] { return run_night(*wish, common); }};
 }

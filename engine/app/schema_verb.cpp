@@ -55,7 +55,7 @@ Verb schema_of(const std::string& file, Schema schema, Common& common) {
 
 Verb schema_verb(Common& common) {
   return {.name = "schema",
-          .summary = "JSON schemas, with which editors complete and check the files of a site",
+          .summary = "Writes JSON schemas, so that editors complete and check the files of a site",
           .verbs = {schema_of("campaign", host::tools::campaign_schema, common),
                     schema_of("site", host::tools::site_schema, common),
                     schema_of("machine", host::tools::machine_schema, common)}};

@@ -363,16 +363,13 @@ int show(const ShowWish& wish, const Common& common) {
 Verb show_verb(Common& common) {
   auto wish = std::make_shared<ShowWish>();
   return {.name = "show",
-          .summary =
-              "Values, decisions and findings of one campaign, here in the "
-              "terminal",
-          .arguments =
-              joined({required(existing(Argument::Takes::folder,
-                                        {"CAMPAIGN|OUT/ID", &wish->folder,
-                                         "A campaign, to be evaluated now (nothing is written); or "
-                                         "what a night left of one"})),
-                      templates_argument(common)},
-                     common_arguments(common)),
+          .summary = "Shows values, decisions and findings of one campaign in the terminal",
+          .arguments = joined({required(existing(Argument::Takes::folder,
+                                                 {"CAMPAIGN|OUT/ID", &wish->folder,
+                                                  "A campaign (evaluated now, nothing is written), "
+                                                  "or its results from a nightly run"})),
+                               templates_argument(common)},
+                              common_arguments(common)),
           .footer =
               "--json: the text of results.json.\n\n"
               "Exit status: 0 shown; 1 shown, and the campaign failed; 2 usage or "

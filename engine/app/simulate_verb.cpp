@@ -71,7 +71,8 @@ Verb simulate_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "simulate",
-      .summary = "Makes a campaign from a machine with known effects, and keeps the truth apart",
+      .summary =
+          "Makes a campaign from a machine with known effects and stores the truth separately",
       .arguments = joined(
           {required(existing(Takes::file, {"SPEC", &wish->specification,
                                            "A campaign.toml with [simulation], [[cycle]] and "

@@ -97,7 +97,7 @@ Verb status_verb(Common& common) {
   age.shows_default = true;
   return {
       .name = "status",
-      .summary = "Whether the last night was done: a dead man's switch for another machine's cron",
+      .summary = "Checks that the last nightly run was done; for the monitoring of another machine",
       .arguments = {required(existing(Takes::folder,
                                       {"OUT", &wish->out, "Output folder of `nonio run`"})),
                     age,

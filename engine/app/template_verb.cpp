@@ -46,7 +46,9 @@ Verb template_verb(Common& common) {
   auto site = std::make_shared<std::string>();
   Verb check{
       .name = "check",
-      .summary = "Layouts, words of every language, places in braces, letters that the fonts lack",
+      .summary =
+          "Checks layouts, the texts of every language, their places in braces, and missing "
+          "characters",
       .arguments =
           joined({existing(Argument::Takes::folder,
                            {"SITE", site.get(),
@@ -56,11 +58,11 @@ Verb template_verb(Common& common) {
       .footer =
           "To change the look or the words for one site, copy the file from the installed "
           "templates to\n"
-          "SITE/templates, edit it, and check it here before the night does.\n\n"
+          "SITE/templates, edit it, and check it with this command before the nightly run.\n\n"
           "Example: nonio template check site",
       .run = [site, &common] { return check_template(*site, common); }};
   return {.name = "template",
-          .summary = "Templates of reports and certificates: are they whole?",
+          .summary = "Checks the templates of reports and certificates",
           .verbs = {std::move(check)}};
 }
 

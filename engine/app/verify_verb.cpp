@@ -79,8 +79,7 @@ Verb verify_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "verify",
-      .summary =
-          "Whether signed certificates are what their signer signed, and their numbers right",
+      .summary = "Checks the signature of certificates and recalculates their values",
       .arguments = joined(
           {required(
                takes(Takes::file, {"FILE", &wanted->files, "Certificates (PDF) and DCC (XML)"})),
