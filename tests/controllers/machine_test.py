@@ -220,9 +220,9 @@ class WhatWasOn(MachineTest):
     def test_where_nobody_says_it_results_and_files_carry_the_sentence(self):
         self.record(["X", "Y", "Z"])
         for said, note, sentences in (
-                ("", "that no table and no backlash value was", 2),
-                ('table_on = "none"\n', "that it was 0", 1),
-                ('backlash_on_mm = 0.01\n', "that none was", 1),
+                ("", "No table and no backlash value is assumed", 2),
+                ('table_on = "none"\n', "0 is assumed", 1),
+                ('backlash_on_mm = 0.01\n', "No table is assumed", 1),
                 ('table_on = "none"\nbacklash_on_mm = "none"\n', None, 0)):
             self.measured("siemens-840d", machine='asset = "S-1"\n', of_axis=said)
             table, _ = self.tables("siemens-840d")

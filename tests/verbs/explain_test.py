@@ -77,7 +77,7 @@ class Explain(VerbTest):
 
     def test_nothing_says_how_far_it_goes(self):
         self.campaign(manifest(["scale:X", "backlash:X"]), x=readings(scale=20, backlash=-6))
-        self.assertIn("nothing more, as far as these readings go", self.explain()["verdict"]["says"])
+        self.assertIn("the model is complete as far as these readings show", self.explain()["verdict"]["says"])
 
     def real_like(self, drift, runs=5):
         """Five targets, each with an error and a reversal of its own, far above the scatter."""
@@ -151,7 +151,7 @@ class Explain(VerbTest):
         self.campaign(manifest([]), x=readings(backlash=-6))
         shown = self.nonio("explain", self.folder, "--auto").stdout
         self.assertIn("step 1: backlash:X added", shown)
-        self.assertIn("verdict: nothing", shown)
+        self.assertIn("verdict: complete (nothing missing)", shown)
 
     def grouped(self, **effects):
         """As spreadsheets list them: all runs towards +, then all towards -, ascending, without times."""
@@ -268,7 +268,7 @@ class Explain(VerbTest):
         unseen = {u["effect"]: u for u in self.explain()["unseen"]}
         self.assertEqual(unseen["temperature:X"]["why_not"], "temperature-gaps")
         self.assertEqual(unseen["temperature:X"]["lines"], list(range(22, 62)))
-        self.assertIn("would help", unseen["temperature:X"]["says"])
+        self.assertIn("Add the temperature for these rows", unseen["temperature:X"]["says"])
         self.assertIn("temperature:X: 40 readings (x.csv, lines 22, 23", self.nonio("explain", self.folder).stdout)
         self.campaign(manifest([]), x=readings(directions="+", times=False))
         unseen = {u["effect"]: u["why_not"] for u in self.explain()["unseen"]}
@@ -333,7 +333,7 @@ class Explain(VerbTest):
         shutil.copytree(sample, self.folder, dirs_exist_ok=True)
         shown = self.nonio("explain", self.folder, "--auto").stdout
         self.assertIn("verdict: unknown", shown)  # a wave of 2.6 m that no effect of the catalogue says
-        self.assertIn("Nothing was repeated", shown)
+        self.assertIn("There are no repeated readings", shown)
         self.assertNotIn("in every run", shown)
 
     def test_a_mistake_in_the_model_names_line_and_nearest(self):

@@ -117,7 +117,7 @@ class Nightly(VerbTest):
         self.campaign(manifest(["zero-drift:X"], run, 'compensate = "model"\n'), x=readings(drift=9))
         results = self.night(expect=None)
         self.assertEqual([o["file"] for o in results["outputs"]], [])
-        self.assertIn("no effect that a table can take away", json.dumps(results))
+        self.assertIn("no effect that a table can compensate", json.dumps(results))
 
 
 if __name__ == "__main__":

@@ -63,7 +63,7 @@ class Space(VerbTest):
         self.assertEqual(float(re.search(r'"period":\s*([\d.]+)', straight)[1]), 10.0)
         for text in pages("17-straight-or-square", ["squareness:XY"]).values():
             self.assertNotIn("Screw pitch not stated", text)
-            self.assertIn("Several axes move: no phase of one screw.", text)
+            self.assertIn("Several axes move: no phase of a single screw.", text)
 
     def test_on_one_column_it_is_yaw(self):
         self.sample("18-one-column")

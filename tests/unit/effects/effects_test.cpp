@@ -224,7 +224,7 @@ TEST(Effects, DescriptionsAreNoCandidatesAndSayEachTargetByItself) {
 }
 
 TEST(Effects, EveryOneHasACardInEveryLanguage) {
-  for (const char* language : {"en", "it"}) {
+  for (const char* language : {"de", "en", "it"}) {
     const std::string file = std::string(NONIO_WORDS) + "/" + language + "/effects.toml";
     std::ostringstream text;
     text << std::ifstream(file).rdbuf();

@@ -58,7 +58,7 @@ MadeModel turn() { return {true, true, true, false, true, 25, 3, true}; }
 
 TEST_F(ModelReport, NinePicturesStandOnOnePageInBothLanguagesWhateverTheDataAre) {
   for (const MadeModel& made : {MadeModel{}, bare(), turn()})
-    for (const char* language : {"en", "it"}) {
+    for (const char* language : {"de", "en", "it"}) {
       const std::string page = pictures(made_model(made), language);
       const reports::Wording words(templates, language, {"pictures"});
       for (const auto& said : reports::picture_words(made_model(made), words))
@@ -73,8 +73,8 @@ TEST_F(ModelReport, APictureWithoutDataSaysWhy) {
     EXPECT_TRUE(has(page, why)) << why << "\n" << page;
   ModelFit aliased = made_model();
   for (double& p : aliased.target) p = aliased.period.value() * std::round(p / *aliased.period);
-  EXPECT_TRUE(has(pictures(aliased), "All targets lie at one phase of 12 mm"));
-  EXPECT_FALSE(has(pictures(made_model()), "All targets lie at one phase"));
+  EXPECT_TRUE(has(pictures(aliased), "All targets are at the same phase of 12 mm"));
+  EXPECT_FALSE(has(pictures(made_model()), "All targets are at the same phase"));
 }
 
 TEST_F(ModelReport, GivesParametersWithUAndNamesThoseThatGoTogether) {

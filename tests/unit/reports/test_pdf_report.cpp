@@ -54,11 +54,12 @@ std::size_t occurrences(const std::string& text, const std::string& what) {
 
 // What is for the customer; what follows is for the laboratory.
 TEST_F(PdfReport, AnOrdinaryAxisTakesTwoPages) {
-  for (const char* language : {"en", "it"}) {
+  for (const char* language : {"de", "en", "it"}) {
     const auto result = write(usual(), language);
     ASSERT_TRUE(result) << result.error().message;
     const Artifact& file = result->artifacts.front();
-    EXPECT_EQ(file.name, std::string("it") == language ? "report-it.pdf" : "report.pdf");
+    EXPECT_EQ(file.name, std::string("en") == language ? "report.pdf"
+                                                       : "report-" + std::string(language) + ".pdf");
     const auto pages = read_pdf(file.bytes).pages;
     ASSERT_EQ(pages.size(), 3U) << language;
     const char* advice = "→ ";
@@ -109,9 +110,9 @@ TEST_F(PdfReport, WhatIsForTheLaboratoryStandsInItsPartAlone) {
   ASSERT_NE(part, std::string::npos);
   const std::string customer = all.substr(0, part), laboratory = all.substr(part);
   EXPECT_TRUE(has(customer, "Nothing in the results needs attention.")) << customer;
-  for (const char* what : {"fanuc", "no table", "contradict each other", "Look at the machine"}) {
+  for (const char* what : {"fanuc", "no table", "contradict each other", "Check the set-up"}) {
     EXPECT_FALSE(has(customer, what)) << what;
-    if (what != std::string("Look at the machine")) {
+    if (what != std::string("Check the set-up")) {
       EXPECT_TRUE(has(laboratory, what)) << what;
     }
   }
@@ -147,8 +148,8 @@ TEST_F(PdfReport, NoCellOfAValuesTableWithTolerancesIsDivided) {
   decide(c, "vdi-dgq-3441", "U_max", 3.25e-6, Decision::cannot_be_decided);
   for (auto& a : c.results.analyses)
     for (Value& v : a.evaluation.values) v.U = 0.19e-6;
-  for (const std::string language : {"en", "it"}) {
-    const std::string report = text(c, language), mark = language == "it" ? "," : ".";
+  for (const std::string language : {"de", "en", "it"}) {
+    const std::string report = text(c, language), mark = language == "en" ? "." : ",";
     for (const std::string n : {"1|25", "20|75", "3|25", "0|19"}) {
       std::string number = n;
       number.replace(number.find('|'), 1, mark);
@@ -177,12 +178,12 @@ TEST_F(PdfReport, NothingNeedsAttentionOnlyWhereSomethingWasJudged) {
   const std::string green = "Nothing needs attention.";
   // No tolerance: nothing was judged.
   EXPECT_FALSE(has(text(quiet), green));
-  EXPECT_TRUE(has(text(quiet), "nothing was judged"));
+  EXPECT_TRUE(has(text(quiet), "conformity was not assessed"));
   // A tolerance that is kept is.
   Case judged = quiet;
   decide(judged, "iso230-2", "A", 50e-6, Decision::conforms);
   EXPECT_TRUE(has(text(judged), green));
-  EXPECT_FALSE(has(text(judged), "nothing was judged"));
+  EXPECT_FALSE(has(text(judged), "conformity was not assessed"));
   // Beside it a measurement that nobody looked at: not green.
   Case part = judged;
   part.results.notes.push_back({"measurement.not-evaluated", {}, {{"kind", "angle"}}, "yaw"});

@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     Case c = simple_case();
     c.results.models = models;
     for (const Output& output : plugins.outputs)
-      for (const char* language : {"en", "it"}) {
+      for (const char* language : {"de", "en", "it"}) {
         Settings options = defaults(output.info);
         options.values["language"] = std::string(language);
         const auto result =
