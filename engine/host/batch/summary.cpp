@@ -160,8 +160,8 @@ struct Lists {
   /// With how long it has been so, and where results are that still stand.
   void add_failed(const CampaignState& c, const fs::path& out) {
     std::string line = c.id + ": " + first_error(c, words);
-    Json entry = entry_json(c, first_error(c, {words.templates(), "en"}));
-    const fs::path results = results_folder(out, c.id);
+    storage::Json entry = entry_json(c, first_error(c, {words.templates(), "en"}));
+    const fs::path results = storage::results_folder(out, c.id);
     const auto record = evaluation::read_record(results);
     if (record && record->failed_since) {
       const evaluation::NightOf& since = *record->failed_since;
@@ -298,7 +298,7 @@ std::size_t Night::failed() const {
 Expected<void> write_summary(const Night& night, const fs::path& out, const std::string& version,
                              const config::TerminalWords& words) {
   const std::vector<std::string> names{"summary.txt", "summary.json"};
-  remove_leftovers(out);
+  storage::remove_leftovers(out);
   storage::Spool text = storage::Spool::at(storage::temporary_path(out, names[0]));
   storage::Spool json = storage::Spool::at(storage::temporary_path(out, names[1]));
   Lists lists(out / state_folder, words);
