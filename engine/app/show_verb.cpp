@@ -268,7 +268,7 @@ class Page {
          << "\n";
   }
 
-  std::string text_of(const Finding& f, const char* part) const {
+  std::string said_of(const Finding& f, const char* part) const {
     return finding_text(say_.templates(), say_.language(), f, part);
   }
 
@@ -281,11 +281,11 @@ class Page {
     out_ << "    "
          << (f.attention ? paint(to_width(say_("severity.attention"), 9), Colour::yellow)
                          : to_width(say_("severity.info"), 9))
-         << "  " << of << text_of(f, "title") << (again ? ": " + say_("as-above") : "") << "\n";
+         << "  " << of << said_of(f, "title") << (again ? ": " + say_("as-above") : "") << "\n";
     if (again) return;
-    if (const std::string says = text_of(f, "says"); !says.empty())
+    if (const std::string says = said_of(f, "says"); !says.empty())
       wrapped("               ", says);
-    if (const std::string advice = text_of(f, "advice"); !advice.empty())
+    if (const std::string advice = said_of(f, "advice"); !advice.empty())
       wrapped("               ", say_("advice") + ": " + advice);
   }
 
