@@ -11,7 +11,7 @@ namespace {
 
 int compare(const std::string& folder, const Common& common) {
   const char* const verb = "nonio compare";
-  auto opened = open_campaign(verb, folder, common, host::TemplatesFor::terminal);
+  auto opened = open_campaign(verb, folder, common, host::reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   auto parts = host::modelling::part_models(open.read, open.campaign().model);

@@ -23,8 +23,8 @@ class Explain {
       : options_(options), common_(common) {}
 
   int run() {
-    auto opened =
-        open_campaign("nonio explain", options_.folder, common_, host::TemplatesFor::terminal);
+    auto opened = open_campaign("nonio explain", options_.folder, common_,
+                                host::reading::TemplatesFor::terminal);
     if (!opened) return opened.error();
     open_ = std::move(*opened);
     words_.emplace(words_for(open_, common_));

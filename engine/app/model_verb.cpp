@@ -18,8 +18,8 @@ struct ModelOptions {
 const char* const model_name = "nonio model";
 
 int show_model(const ModelOptions& options, const Common& common) {
-  auto opened =
-      open_campaign("nonio model show", options.folder, common, host::TemplatesFor::terminal);
+  auto opened = open_campaign("nonio model show", options.folder, common,
+                              host::reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   auto parts = host::modelling::part_models(open.read, open.campaign().model);
@@ -62,7 +62,7 @@ std::string refusal(const OpenCampaign& open, const std::string& effect, bool ad
 
 int change(const ModelOptions& options, const Common& common, bool add) {
   auto opened = open_campaign(add ? "nonio model add" : "nonio model drop", options.folder, common,
-                              host::TemplatesFor::terminal);
+                              host::reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   if (const std::string why = refusal(open, options.effect, add); !why.empty())
