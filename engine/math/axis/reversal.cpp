@@ -16,10 +16,10 @@
 #include <limits>
 
 #include "common/constants.h"
-#include "statistics/harmonic.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/statistics.h"
 #include "pass_model.h"
+#include "statistics/harmonic.h"
 
 namespace nonio::math {
 namespace {

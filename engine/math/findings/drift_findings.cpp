@@ -14,12 +14,12 @@
 #include <cmath>
 #include <vector>
 
+#include "axis/pass_model.h"
 #include "common/constants.h"
 #include "common/finding_builder.h"
 #include "nonio/math/axis_findings.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/statistics.h"
-#include "axis/pass_model.h"
 
 namespace nonio::math {
 namespace {

@@ -19,13 +19,13 @@
 #include <limits>
 #include <vector>
 
+#include "axis/pass_model.h"
 #include "common/constants.h"
 #include "common/finding_builder.h"
 #include "nonio/math/axis_findings.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/iso230_2.h"
 #include "nonio/math/statistics.h"
-#include "axis/pass_model.h"
 
 namespace nonio::math {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "search/candidates.h"
 #include "describe.h"
+#include "search/candidates.h"
 #include "verdict.h"
 
 namespace nonio::model {

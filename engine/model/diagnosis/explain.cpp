@@ -2,10 +2,10 @@
 #include "nonio/model/explain.h"
 
 #include "beside.h"
-#include "search/candidates.h"
-#include "fit/compare.h"
-#include "search/finding.h"
 #include "data/thin.h"
+#include "fit/compare.h"
+#include "search/candidates.h"
+#include "search/finding.h"
 #include "verdict.h"
 
 namespace nonio::model {

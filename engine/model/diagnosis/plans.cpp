@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "data/design.h"
-#include "nonio/sdk/axis_readings.h"
 #include "fit/workbench.h"
+#include "nonio/sdk/axis_readings.h"
 
 namespace nonio::model {
 

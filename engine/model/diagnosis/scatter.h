@@ -2,8 +2,8 @@
 #pragma once
 
 #include "data/design.h"
-#include "nonio/model/explain.h"
 #include "data/repeats.h"
+#include "nonio/model/explain.h"
 
 /// How what an explanation leaves scatters: what no effect can be blamed for, or named beside.
 namespace nonio::model {

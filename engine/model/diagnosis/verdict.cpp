@@ -8,8 +8,8 @@
 #include <random>
 
 #include "fit/compare.h"
-#include "nonio/sdk/axis_readings.h"
 #include "fit/places.h"
+#include "nonio/sdk/axis_readings.h"
 #include "plans.h"
 #include "scatter.h"
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <map>
 
+#include "data/thin.h"
 #include "nonio/math/distributions.h"
 #include "places.h"
-#include "data/thin.h"
 
 namespace nonio::model {
 

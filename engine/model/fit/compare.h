@@ -2,8 +2,8 @@
 #pragma once
 
 #include "data/design.h"
-#include "nonio/model/explain.h"
 #include "data/repeats.h"
+#include "nonio/model/explain.h"
 
 namespace nonio::model {
 

@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "data/design.h"
-#include "nonio/sdk/axis_readings.h"
 #include "data/thin.h"
+#include "nonio/sdk/axis_readings.h"
 #include "workbench.h"
 
 namespace nonio::model {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "data/design.h"
-#include "nonio/model/explain.h"
 #include "data/repeats.h"
+#include "nonio/model/explain.h"
 
 namespace nonio::model {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "nonio/model/explain.h"
 #include "data/repeats.h"
-#include "search.h"
 #include "fit/workbench.h"
+#include "nonio/model/explain.h"
+#include "search.h"
 
 namespace nonio::model {
 
