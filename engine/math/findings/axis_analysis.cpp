@@ -21,15 +21,16 @@ Expected<AxisAnalysis> begin_axis_analysis(const AnalysisInput& in) {
   const Observations& o = in.observations;
   if (o.axes.empty() || o.axes.front().axis != in.measurement.axis)
     return fail(
-        "wanted the readings of axis '" + in.measurement.axis + "', found " +
+        "expected the readings of axis '" + in.measurement.axis + "', found " +
         (o.axes.empty() ? std::string("no axis") : "those of '" + o.axes.front().axis + "'"));
   if (o.angular != o.axes.front().rotary)
-    return fail(o.angular ? "wanted deviations of length on the linear axis '" +
+    return fail(o.angular ? "expected deviations of length on the linear axis '" +
                                 in.measurement.axis + "', found angles"
-                          : "wanted deviations of angle on the rotary axis '" +
+                          : "expected deviations of angle on the rotary axis '" +
                                 in.measurement.axis + "', found lengths");
   const AxisTest all = AxisTest::arrange(o);
-  if (all.targets.empty()) return fail("wanted readings with a direction of approach, found none");
+  if (all.targets.empty())
+    return fail("expected readings with a direction of approach, found none");
 
   AxisAnalysis a;
   a.axis = in.measurement.axis;

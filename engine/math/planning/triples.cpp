@@ -325,13 +325,13 @@ void explain_nothing(const TripleWish& wish, TriplePlans& out) {
 std::string wrong_length(const char* what, double m, double least, double most) {
   // Written so that NaN is wrong; 0.000001 mm is a nanometre, whatever its binary value.
   if (m >= least * (1.0 - 1e-9) && m <= most) return {};
-  return std::string(what) + ": wanted " + mm(least) + " to " + mm(most) + ", found " +
+  return std::string(what) + ": expected " + mm(least) + " to " + mm(most) + ", found " +
          (std::isfinite(m) ? mm(m) : "no number");
 }
 
 std::string wrong_count(const char* what, std::int64_t n, std::int64_t least, std::int64_t most) {
   if (n >= least && n <= most) return {};
-  return std::string(what) + ": wanted " + std::to_string(least) + " to " + std::to_string(most) +
+  return std::string(what) + ": expected " + std::to_string(least) + " to " + std::to_string(most) +
          ", found " + std::to_string(n);
 }
 
@@ -398,7 +398,7 @@ Expected<TriplePlans> plan_triples(const TripleWish& wish) {
   out.tried = work(search);
   if (out.tried > most_tried)
     return fail("the search would look at " + std::to_string(out.tried) +
-                " plans, wanted at most " + std::to_string(most_tried) +
+                " plans, expected at most " + std::to_string(most_tried) +
                 ": give a coarser resolution, fewer points or a smaller hypotenuse");
   out.plans = chosen(search, wish);
   if (out.plans.empty()) explain_nothing(wish, out);

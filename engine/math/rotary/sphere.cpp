@@ -58,14 +58,14 @@ Expected<SphereFit> fit_sphere(std::span<const std::array<double, 3>> touches,
   const auto n = static_cast<Index>(touches.size());
   const Index unknowns = radius ? 3 : 4;
   if (n <= unknowns || n < 4)
-    return fail("wanted at least " + std::to_string(std::max<Index>(unknowns + 1, 4)) +
+    return fail("expected at least " + std::to_string(std::max<Index>(unknowns + 1, 4)) +
                 " touches for a centre and its uncertainty, found " + std::to_string(n));
   MatrixXd points(n, 3);
   for (Index i = 0; i < n; ++i)
     for (Index k = 0; k < 3; ++k)
       points(i, k) = touches[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
   if (!(points.cwiseAbs().maxCoeff() <= largest_coordinate) || points.hasNaN())
-    return fail("wanted coordinates of at most 1000 km, found others");
+    return fail("expected coordinates of at most 1000 km, found others");
   const Vector3d mean = points.colwise().mean();
   points.rowwise() -= mean.transpose();
   auto sphere = start(points);

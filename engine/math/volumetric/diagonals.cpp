@@ -24,18 +24,18 @@ constexpr double closure_limit = 4.0;     ///< closure, in standard uncertaintie
 
 Expected<void> check_curve(const MeanCurve& curve, std::size_t length, const std::string& what) {
   if (curve.mean.size() != length)
-    return fail(what + ": wanted " + std::to_string(length) + " means, found " +
+    return fail(what + ": expected " + std::to_string(length) + " means, found " +
                 std::to_string(curve.mean.size()));
   for (const double v : curve.mean)
-    if (!std::isfinite(v)) return fail(what + ": wanted numbers, found one that is not finite");
-  if (!(curve.u >= 0.0)) return fail(what + ": wanted an uncertainty that is not negative");
+    if (!std::isfinite(v)) return fail(what + ": expected numbers, found one that is not finite");
+  if (!(curve.u >= 0.0)) return fail(what + ": expected an uncertainty that is not negative");
   return {};
 }
 
 Expected<void> check_line(const GridLine& line, std::size_t n, const std::string& what) {
   if (auto ok = check_curve(line, line.ix.size(), what); !ok) return ok;
   if (line.iy.size() != line.ix.size() || line.ix.size() < 2)
-    return fail(what + ": wanted two stops or more, each with a place in x and in y");
+    return fail(what + ": expected two stops or more, each with a place in x and in y");
   for (const auto* places : {&line.ix, &line.iy})
     for (const std::size_t i : *places)
       if (i > n) return fail(what + ": a stop lies outside the grid");
@@ -55,23 +55,24 @@ std::vector<std::size_t> of_direction(const std::vector<T>& curves, int directio
 Expected<void> check_positioning(const DiagonalReadings& r, const GridLine& line,
                                  const std::string& what) {
   const auto X = of_direction(r.X, line.x_direction);
-  if (X.empty() || X.size() > 2) return fail(what + ": wanted positioning of X on one line or two");
+  if (X.empty() || X.size() > 2)
+    return fail(what + ": expected positioning of X on one line or two");
   if (X.size() == 2 && !(std::fabs(r.X[X[1]].across - r.X[X[0]].across) > 0.0))
-    return fail(what + ": wanted two different lines of X");
+    return fail(what + ": expected two different lines of X");
   if (of_direction(r.Y, line.y_direction).size() != 1)
-    return fail(what + ": wanted one positioning of Y");
+    return fail(what + ": expected one positioning of Y");
   if (!r.ECX.empty() && of_direction(r.ECX, line.x_direction).size() != 1)
-    return fail(what + ": wanted one yaw of X");
+    return fail(what + ": expected one yaw of X");
   return {};
 }
 
 Expected<void> check(const DiagonalReadings& r) {
-  if (!(r.Lx > 0.0 && r.Ly > 0.0)) return fail("wanted lengths above 0");
+  if (!(r.Lx > 0.0 && r.Ly > 0.0)) return fail("expected lengths above 0");
   if (r.n < 3 || r.n > most_stops)
-    return fail("wanted 3 to " + std::to_string(most_stops) + " steps, found " +
+    return fail("expected 3 to " + std::to_string(most_stops) + " steps, found " +
                 std::to_string(r.n));
   if (r.D1.mean.size() != r.n + 1 || r.D2.mean.size() != r.n + 1)
-    return fail("wanted " + std::to_string(r.n + 1) + " stops on each diagonal");
+    return fail("expected " + std::to_string(r.n + 1) + " stops on each diagonal");
   std::vector<std::pair<const GridLine*, std::string>> lines{{&r.D1, "D1"}, {&r.D2, "D2"}};
   for (const GridLine& line : r.third) lines.emplace_back(&line, "third line");
   for (const auto& [line, what] : lines) {
@@ -439,7 +440,7 @@ Expected<DiagonalResult> solve_diagonals(const DiagonalReadings& r, const Readin
   if (auto ok = check(r); !ok) return fail(ok.error());
   const System system(r);
   if (model != nullptr && at(model->readings()) != system.N().cols())
-    return fail("wanted a model of " + std::to_string(system.N().cols()) + " readings, found " +
+    return fail("expected a model of " + std::to_string(system.N().cols()) + " readings, found " +
                 std::to_string(model->readings()));
   const Solution s(system, model);
   const double L = std::hypot(r.Lx, r.Ly);

@@ -212,7 +212,7 @@ Expected<StepSolution> average_step_diagonals(const StepDiagonals& d, const Step
     for (std::size_t t = 0; t < each; ++t)
       readings[static_cast<Index>(k * each + t)] = read(d, k, t);
   if (!readings.allFinite())
-    return fail("averaging needs every reading; wanted " +
+    return fail("averaging needs every reading; expected " +
                 std::to_string(3 * d.n * d.passes.size()) + ", some are missing");
   StepSolution out;
   const StepChecks checks = check_step_diagonals(d);
@@ -225,7 +225,7 @@ Expected<StepSolution> average_step_diagonals(const StepDiagonals& d, const Step
   slopes_from_totals(d, 1, 2, W);
   const bool known = choices.set_up_known;
   if (model != nullptr && model->readings() != each * d.passes.size())
-    return fail("wanted a model of the readings of all passes");
+    return fail("expected a model of the readings of all passes");
   present(d, W * readings, out.u_reading * out.u_reading * (W * W.transpose()), {model, W},
           {known, known, known}, out);
   return out;

@@ -356,7 +356,7 @@ Expected<StepSolution> solve_step_diagonals(const StepDiagonals& d,
   }
   const Sensitivity sensitivity = sensitivity_of(d, design, f, model);
   if (model != nullptr && static_cast<Index>(model->readings()) != sensitivity.of_readings.cols())
-    return fail("wanted a model of the readings of all passes and series");
+    return fail("expected a model of the readings of all passes and series");
   present(d, x.head(l.functions),
           out.u_reading * out.u_reading * f.inverse.topLeftCorner(l.functions, l.functions),
           sensitivity, known, out);

@@ -240,7 +240,7 @@ Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
     if (!term) {
       if (!effect->of && machine.axis(of) == nullptr)
         return fail("effect \"" + name + "\": the machine has no axis \"" + of +
-                    "\"; wanted kind:axis, such as backlash:X");
+                    "\"; expected kind:axis, such as backlash:X");
       continue;
     }
     if (!effect->applies(part.table, term->axis))

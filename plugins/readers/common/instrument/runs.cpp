@@ -40,7 +40,7 @@ Expected<double> Numbers::reading(std::string_view text, std::uint64_t line,
                                   std::string_view what) {
   const Field field = parse_number(text, comma_allowed_);
   if (field.kind == Field::Kind::bad)
-    return fail(at_line(line, "wanted " + std::string(what) + ", found " + shown(text)));
+    return fail(at_line(line, "expected " + std::string(what) + ", found " + shown(text)));
   if (field.mark != DecimalMark::none) {
     const bool point = field.mark == DecimalMark::point;
     std::uint64_t& first = point ? first_point_ : first_comma_;
@@ -50,7 +50,7 @@ Expected<double> Numbers::reading(std::string_view text, std::uint64_t line,
       return fail(at_line(line, "found " + shown(text) + " with a decimal " +
                                     (point ? "point" : "comma") + ", but a decimal " +
                                     (point ? "comma" : "point") + " in line " +
-                                    std::to_string(other) + "; wanted the same everywhere"));
+                                    std::to_string(other) + "; expected the same everywhere"));
   }
   return field.kind == Field::Kind::taken ? field.value : std::numeric_limits<double>::quiet_NaN();
 }
@@ -58,7 +58,7 @@ Expected<double> Numbers::reading(std::string_view text, std::uint64_t line,
 Expected<double> Numbers::number(std::string_view text, std::uint64_t line, std::string_view what) {
   auto value = reading(text, line, what);
   if (value && std::isnan(*value))
-    return fail(at_line(line, "wanted " + std::string(what) + ", found " + shown(text)));
+    return fail(at_line(line, "expected " + std::string(what) + ", found " + shown(text)));
   return value;
 }
 
@@ -89,7 +89,7 @@ Expected<const Axis*> axis_of(const ReadInput& input) {
   const Measurement& m = input.measurement;
   const Axis* const axis = input.campaign.machine.axis(m.axis);
   if (axis == nullptr)
-    return fail("wanted the axis of measurement \"" + m.id + "\" in [machine.axes], found " +
+    return fail("expected the axis of measurement \"" + m.id + "\" in [machine.axes], found " +
                 (m.axis.empty() ? "none" : "\"" + m.axis + "\""));
   return axis;
 }
@@ -109,7 +109,7 @@ Expected<void> Runs::add(const Reading& r) {
   const auto [known, first] = lines_.try_emplace({r.run, r.approach, r.target}, r.line);
   if (!first)
     return fail(at_line(r.line, "a reading of the same run, direction and target as in line " +
-                                    std::to_string(known->second) + "; wanted each once"));
+                                    std::to_string(known->second) + "; expected each once"));
   if (std::isnan(r.deviation)) {
     ++obs_.missing;
     return {};
@@ -125,7 +125,7 @@ Expected<void> Runs::add(const Reading& r) {
 
 Expected<Observations> Runs::finish() {
   if (obs_.size() == 0)
-    return fail("wanted readings, found " + std::to_string(obs_.missing) +
+    return fail("expected readings, found " + std::to_string(obs_.missing) +
                 " of which not one was taken");
   return std::move(obs_);
 }

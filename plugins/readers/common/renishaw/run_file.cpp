@@ -66,7 +66,7 @@ std::string_view type_of(std::string_view head) {
 }
 
 Error other_type(std::string_view found, std::string_view wanted) {
-  std::string text = "wanted a file of type " + std::string(wanted) + ", found " + shown(found);
+  std::string text = "expected a file of type " + std::string(wanted) + ", found " + shown(found);
   if (same_letters(found, "rtl")) return Error{text + "; reader renishaw-rtl takes it"};
   if (same_letters(found, "rta"))
     return Error{text + "; reader renishaw-rta takes it once its unit is confirmed"};
@@ -89,18 +89,18 @@ Expected<Blocks> blocks_of(std::string_view bytes) {
   bool ended = false;
   while (lines.next(line)) {
     if (line.size() > longest_line)
-      return fail(at_line(lines.number(), "wanted lines of at most " +
+      return fail(at_line(lines.number(), "expected lines of at most " +
                                               std::to_string(longest_line) + " bytes, found " +
                                               std::to_string(line.size())));
     if (trimmed(line).empty()) continue;
     if (ended)
-      return fail(at_line(lines.number(), "wanted nothing behind EOF::, found " + shown(line)));
+      return fail(at_line(lines.number(), "expected nothing behind EOF::, found " + shown(line)));
     if (line.find('\0') != line.npos)
-      return fail(at_line(lines.number(), "wanted text, found a NUL byte; is the file UTF-16?"));
+      return fail(at_line(lines.number(), "expected text, found a NUL byte; is the file UTF-16?"));
     const std::string_view name = block_name(line);
     if (name.empty()) {
       if (block == nullptr)
-        return fail(at_line(lines.number(), "wanted HEADER::, found " + shown(line)));
+        return fail(at_line(lines.number(), "expected HEADER::, found " + shown(line)));
       block->lines.push_back({lines.number(), line});
       continue;
     }
@@ -114,14 +114,15 @@ Expected<Blocks> blocks_of(std::string_view bytes) {
   }
   if (!ended)
     return fail(at_line(lines.number(),
-                        "wanted EOF:: at the end, found the end of the file; was "
+                        "expected EOF:: at the end, found the end of the file; was "
                         "it cut?"));
   return blocks;
 }
 
 Expected<const Block*> block(const Blocks& blocks, std::string_view name) {
   const auto found = blocks.find(name);
-  if (found == blocks.end()) return fail("wanted a block " + std::string(name) + "::, found none");
+  if (found == blocks.end())
+    return fail("expected a block " + std::string(name) + "::, found none");
   return &found->second;
 }
 
@@ -129,14 +130,14 @@ Expected<FileLine> value_of(const Block& in, std::string_view key) {
   for (const FileLine& line : in.lines)
     if (const auto [k, value] = split_key(line.text); same_letters(k, key))
       return FileLine{line.number, value};
-  return fail(at_line(in.line, "wanted a line \"" + std::string(key) + ":\" in this block"));
+  return fail(at_line(in.line, "expected a line \"" + std::string(key) + ":\" in this block"));
 }
 
 Expected<std::uint32_t> count_of(const Block& in, std::string_view key, std::uint32_t most) {
   const auto value = value_of(in, key);
   if (!value) return fail(value.error());
   if (const std::uint32_t n = whole_number(value->text, most); n != 0) return n;
-  return fail(at_line(value->number, std::string(key) + ": wanted a whole number from 1 to " +
+  return fail(at_line(value->number, std::string(key) + ": expected a whole number from 1 to " +
                                          std::to_string(most) + ", found " + shown(value->text)));
 }
 
@@ -166,8 +167,8 @@ class Parser {
     }
     if (!owner) return fail(owner.error());
     if (!wanted_owner.empty() && owner->text != wanted_owner)
-      return fail(at_line(owner->number, "Owner: wanted " + std::string(wanted_owner) + ", found " +
-                                             shown(owner->text) +
+      return fail(at_line(owner->number, "Owner: expected " + std::string(wanted_owner) +
+                                             ", found " + shown(owner->text) +
                                              ". Needed: such a file with the values that the "
                                              "instrument's program shows for it"));
     file_.type = type->text;
@@ -196,11 +197,11 @@ class Parser {
       }
     }
     if (file_.targets.size() != *count)
-      return fail(at_line(last, "wanted " + std::to_string(*count) +
+      return fail(at_line(last, "expected " + std::to_string(*count) +
                                     " targets (Target-count), found " +
                                     std::to_string(file_.targets.size())));
     if (sense_of(file_.targets) == 0)
-      return fail(at_line(last, "wanted two targets or more that only rise or only fall"));
+      return fail(at_line(last, "expected two targets or more that only rise or only fall"));
     return {};
   }
 
@@ -226,7 +227,7 @@ class Parser {
     if (found == blocks_.end()) return {};
     const Block& in = found->second;
     if (in.lines.size() != user_lines)
-      return fail(at_line(in.line, "wanted " + std::to_string(user_lines) +
+      return fail(at_line(in.line, "expected " + std::to_string(user_lines) +
                                        " lines in USER-TEXT, found " +
                                        std::to_string(in.lines.size())));
     file_.user = in.lines;
@@ -246,7 +247,7 @@ class Parser {
     if (!lines.empty() && same_letters(split_key(lines[0].text).key, "Run Target Data"))
       lines.erase(lines.begin());
     if (lines.size() != wanted)
-      return fail(at_line((*in)->line, "wanted " + std::to_string(wanted) + " rows (" +
+      return fail(at_line((*in)->line, "expected " + std::to_string(wanted) + " rows (" +
                                            std::to_string(*count) + " runs of " +
                                            std::to_string(n) + " targets), found " +
                                            std::to_string(lines.size())));
@@ -260,17 +261,18 @@ class Parser {
     const auto fields = by_blanks(line.text);
     if (fields.size() != 3)
       return fail(at_line(line.number,
-                          "wanted run, target number and deviation, found " + shown(line.text)));
+                          "expected run, target number and deviation, found " + shown(line.text)));
     const std::size_t n = file_.targets.size();
     RunFile::Row row;
     row.line = line.number;
     row.run = whole_number(fields[0], file_.run_count);
     row.target = whole_number(fields[1], static_cast<std::uint32_t>(n));
     if (row.run == 0)
-      return fail(at_line(line.number, "wanted a run from 1 to " + std::to_string(file_.run_count) +
-                                           ", found " + shown(fields[0])));
+      return fail(at_line(line.number, "expected a run from 1 to " +
+                                           std::to_string(file_.run_count) + ", found " +
+                                           shown(fields[0])));
     if (row.target == 0)
-      return fail(at_line(line.number, "wanted a target number from 1 to " + std::to_string(n) +
+      return fail(at_line(line.number, "expected a target number from 1 to " + std::to_string(n) +
                                            ", found " + shown(fields[1])));
     const auto value = numbers_.reading(fields[2], line.number, "a deviation");
     if (!value) return fail(value.error());
@@ -288,7 +290,7 @@ class Parser {
   Expected<Environment::Pair> pair(const FileLine& line, std::string_view value) {
     const auto fields = by_blanks(value);
     if (fields.size() < 2)
-      return fail(at_line(line.number, "wanted a value at the start and one at the end, found " +
+      return fail(at_line(line.number, "expected a value at the start and one at the end, found " +
                                            shown(line.text)));
     const auto start = numbers_.reading(fields[0], line.number, "a number"),
                end = numbers_.reading(fields[1], line.number, "a number");

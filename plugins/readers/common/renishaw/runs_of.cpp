@@ -35,9 +35,9 @@ Expected<std::vector<Pass>> passes_of(const RunFile& file) {
     }
     pass.direction = static_cast<std::int8_t>(sense_of(targets));
     if (pass.direction == 0)
-      return fail(at_line(
-          pass.rows.front()->line,
-          "run " + std::to_string(i + 1) + ": wanted target numbers that only rise or only fall"));
+      return fail(at_line(pass.rows.front()->line,
+                          "run " + std::to_string(i + 1) +
+                              ": expected target numbers that only rise or only fall"));
   }
   return passes;
 }
@@ -51,7 +51,7 @@ Expected<bool> bidirectional(const std::vector<Pass>& passes) {
   }
   if (same) return false;
   if (alternate) return true;
-  return fail("wanted runs to and fro, or all in one direction, found another order");
+  return fail("expected runs to and fro, or all in one direction, found another order");
 }
 
 Remark run_note(const char* id, std::size_t run) { return {id, {counted("run", run)}}; }
@@ -130,7 +130,8 @@ Expected<void> add_runs(const RunFile& file, const Units& units, Runs& runs) {
   std::vector<Remark>& notes = runs.observations().notes;
   const bool all_zero =
       std::all_of(passes->begin(), passes->end(), [](const Pass& p) { return p.zero || !p.taken; });
-  if (all_zero) return fail("wanted readings, found runs that were not taken or are 0 everywhere");
+  if (all_zero)
+    return fail("expected readings, found runs that were not taken or are 0 everywhere");
   for (std::size_t i = 0; i < passes->size(); ++i) {
     const Pass& pass = (*passes)[i];
     if (!pass.taken) notes.push_back(run_note("renishaw.run-not-taken", i + 1));
@@ -163,7 +164,7 @@ Expected<void> add_user_text(const RunFile& file, const ReadInput& input, Observ
     const std::size_t colon = line.find(':');
     if (colon == line.npos)
       return fail(at_line(file.user[i].number,
-                          "wanted \"name: value\" in USER-TEXT, found " + shown(line)));
+                          "expected \"name: value\" in USER-TEXT, found " + shown(line)));
     if (trimmed(line.substr(colon + 1)).empty()) continue;
     const auto text = decoded(line, code_page);
     unreadable = unreadable || !text;
