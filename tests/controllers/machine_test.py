@@ -161,7 +161,7 @@ class Number(MachineTest):
     def test_an_asset_is_a_name_and_no_path(self):
         for asset in ("../S-1", "a/b", ".hidden", "a\\\\b"):
             self.measured("fanuc", machine='asset = "%s"\n' % asset)
-            self.assertIn("machine.asset: wanted up to 100 characters", self.tables("fanuc")[1]["errors"][0]["message"])
+            self.assertIn("machine.asset: expected up to 100 characters", self.tables("fanuc")[1]["errors"][0]["message"])
 
     def test_a_broken_record_fails_its_own_campaigns(self):
         self.record(["Z"])
@@ -377,8 +377,8 @@ class Merge(MachineTest):
         self.assertIn("3605#0", self.nonio("merge", path, "--with", self.folder, expect=1).stderr)
         path.write_text("\n".join(l.split("A3P")[0] for l in self.punched_backup().read_text().splitlines()) + "\n")
         self.assertIn("no parameters of controlled axis 3", self.nonio("merge", path, "--with", self.folder, expect=1).stderr)
-        self.assertIn("wanted", self.nonio("merge", self.folder / "a.csv", "--with", self.folder, "--control", "fanuc", expect=2).stderr +
-                      self.nonio("merge", path, "--with", self.folder, "--axis", "Q", expect=1).stderr.replace("no measurement", "wanted"))
+        self.assertIn("expected", self.nonio("merge", self.folder / "a.csv", "--with", self.folder, "--control", "fanuc", expect=2).stderr +
+                      self.nonio("merge", path, "--with", self.folder, "--axis", "Q", expect=1).stderr.replace("no measurement", "expected"))
 
     def archive(self, axes, directions=False):
         text = "%_N_NC_EEC_INI\nCHANDATA(1)\n; saved by hand\n"
@@ -463,7 +463,7 @@ class Merge(MachineTest):
         path = self.site / "EEC.INI"
         path.write_text(self.archive(((1, 0.001), (3, 0.0))).replace("AX3", "Z1"))
         said = self.nonio("merge", path, "--with", self.folder, "--out", self.site / "load", expect=1).stderr
-        self.assertIn("calls an axis Z1: wanted AX1", said)
+        self.assertIn("calls an axis Z1: expected AX1", said)
         self.assertFalse((self.site / "load").exists())
 
     def test_aerotech_keeps_planes_and_the_other_axes(self):

@@ -163,7 +163,7 @@ class Probe(BenchTest):
         """X1 and a number behind it would be another position of X."""
         self.one_axis(TARGETS, wave, wave, axis="X1")
         done = self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", expect=2)
-        self.assertIn("axis X1: wanted a single letter", done.stderr)
+        self.assertIn("axis X1: expected a single letter", done.stderr)
         self.assertFalse((self.site / "p").exists())
 
     def test_dwell_and_writer_can_be_said(self):
@@ -313,7 +313,7 @@ class Gantry(BenchTest):
     def test_a_side_wants_the_name_of_the_second_axis(self):
         self.gantry("", ("master", "slave"))
         done = self.nonio("run", self.site, "--out", self.out, expect=1)
-        self.assertIn("wanted [machine.axes.X] slave", done.stderr + (self.out / "c" / "results.json").read_text())
+        self.assertIn("expected [machine.axes.X] slave", done.stderr + (self.out / "c" / "results.json").read_text())
 
     def test_two_lines_of_another_machine_are_a_choice_as_before(self):
         self.gantry(structure="bridge")

@@ -8,7 +8,7 @@ DATA = ("cmake", "cpp", "csv", "json", "text", "toml")
 FENCE = re.compile(r"^( *)(?:```|~~~)(\S*)$")
 # Who reads the page does not see these.
 NOTE = re.compile(r"^ *<!-- (?:(not run): (\S.*)|(file): (\S+)|(here): (\S+) is (\S+)) -->$")
-WANTED_NOTE = "wanted <!-- not run: REASON -->, <!-- file: PATH --> or <!-- here: PATH is SOURCE -->"
+WANTED_NOTE = "expected <!-- not run: REASON -->, <!-- file: PATH --> or <!-- here: PATH is SOURCE -->"
 COMMAND = re.compile(
     r"^\s*(?:\$ .*"
     r"|(?:sudo\s+)?(?:[A-Z_]+=\S*\s+)*"
@@ -82,10 +82,10 @@ def misplaced(pending):
 def block_faults(block):
     faults = []
     if block.language not in COMMANDS + DATA:
-        faults.append((block.line, f'block of "{block.language}": wanted one of {", ".join(COMMANDS + DATA)}'))
+        faults.append((block.line, f'block of "{block.language}": expected one of {", ".join(COMMANDS + DATA)}'))
     commands = [line for line in block.lines if COMMAND.match(line)]
     if block.language in DATA and commands and block.kind != "not run":
-        faults.append((block.line, f'"{commands[0]}" looks like a command: wanted ```sh or ```console,'
+        faults.append((block.line, f'"{commands[0]}" looks like a command: expected ```sh or ```console,'
                        ' or the comment "not run: REASON" before the block'))
     if block.language in COMMANDS and block.kind == "file":
         faults.append((block.line, "a file that is a block of commands"))

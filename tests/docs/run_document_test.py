@@ -53,7 +53,7 @@ class RunDocument(unittest.TestCase):
         self.assertIn("it.md:1", fails("<!-- not run: no time -->", "text", "```sh", "true", "```"))
         self.assertIn("it.md:1", fails("<!-- not run: no time -->", "<!-- file: a -->", "```toml", "a = 1", "```"))
         for wrong in ("<!-- not-run: no time -->", "<!-- not run -->", "<!-- here: a -->", "<!--"):
-            self.assertIn("wanted <!--", fails(wrong, "```sh", "true", "```"), wrong)
+            self.assertIn("expected <!--", fails(wrong, "```sh", "true", "```"), wrong)
         self.assertIn("there is no command", fails("<!-- not run: no time -->", "```toml", "a = 1", "```"))
 
     def test_commands_cannot_hide(self):

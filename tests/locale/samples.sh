@@ -17,7 +17,7 @@ night() {  # LOCALE FOLDER
   local status=0
   LC_ALL=$1 LD_PRELOAD=$taker ASAN_OPTIONS=verify_asan_link_order=0 "$program" run "$site" --out "$work/$2" --plugin-path "$plugins" > "$work/$2.log" 2>&1 || status=$?
   # One sample is broken on purpose: status 1.
-  [ "$status" -eq 1 ] || { cat "$work/$2.log"; echo "status $status under $1, wanted 1"; exit 1; }
+  [ "$status" -eq 1 ] || { cat "$work/$2.log"; echo "status $status under $1, expected 1"; exit 1; }
 }
 # The number that the plugin wrote into every campaign of a folder, and how many campaigns there are.
 numbers() { find "$work/$1" -name decimal-point.txt -exec cat {} + | sort | uniq -c | xargs; }
@@ -26,7 +26,7 @@ night C plain
 night de_DE.UTF-8 comma
 count=$(find "$work/plain" -name decimal-point.txt | wc -l)
 [ "$count" -gt 0 ] && [ "$(numbers plain)" = "$count 1.5" ] && [ "$(numbers comma)" = "$count 1,5" ] || {
-  echo "the locale did not take hold: wanted '$count 1.5' and '$count 1,5'," \
+  echo "the locale did not take hold: expected '$count 1.5' and '$count 1,5'," \
     "found '$(numbers plain)' and '$(numbers comma)'"
   exit 1
 }

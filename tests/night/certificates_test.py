@@ -266,7 +266,7 @@ class Certificates(SigningTest):
     def test_one_number_for_one_campaign(self):
         self.signed_campaign("c1")
         (self.site / "site.toml").write_text((self.site / "site.toml").read_text().replace('"dcc"]', '"numbered-too"]'))
-        self.assertIn("wanted one of them", self.night(expect=1).stderr)
+        self.assertIn("expected one of them", self.night(expect=1).stderr)
         self.assertEqual(self.entries(), [])
 
     def test_what_is_withdrawn_is_issued_anew(self):

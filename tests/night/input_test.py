@@ -118,7 +118,7 @@ class Input(NightTest):
         for text, line, words in (('[run]\nanalyses = ["iso230-3"]\n', 2, 'nearest: "iso230-2"'),
                                   ('[run]\noutputs = [\n"jsn"]\n', 2, 'nearest: "json"'),
                                   ("[options.nobody]\nx = 1\n", 2, "no plugin of that name"),
-                                  ("[options.iso230-2]\nedition = 2007\n", 2, "wanted one of")):
+                                  ("[options.iso230-2]\nedition = 2007\n", 2, "expected one of")):
             (self.site / "site.toml").write_text(text)
             done = self.run_nonio(expect=2)
             self.assertIn(f"site.toml:{line}: ", done.stderr)
@@ -220,7 +220,7 @@ class Input(NightTest):
         (folder / "values.csv").write_text("mine")
         for out in (self.site, folder, folder / "below"):
             done = self.run_nonio(out=out, expect=2)
-            self.assertIn("wanted another folder", done.stderr)
+            self.assertIn("expected another folder", done.stderr)
         self.run_nonio(out=self.site.parent, expect=0)  # beside it is fine
         self.assertEqual((folder / "values.csv").read_text(), "mine")
 

@@ -58,8 +58,8 @@ class Isolation(NightTest):
 
     def test_what_a_reader_gives_is_checked_before_anybody_indexes_by_it(self):
         expected = {
-            "line": "reading 2 of line 4000000; wanted 0 to 0",
-            "no-lines": "readings of no line; wanted one line at least",
+            "line": "reading 2 of line 4000000; expected 0 to 0",
+            "no-lines": "readings of no line; expected one line at least",
             "u-zero": "an uncertainty of a reading that is not a number above 0",
             "u-nan": "an uncertainty of a reading that is not a number above 0",
             "approach": "an approach that is none of +1, -1 and 0",

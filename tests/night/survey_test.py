@@ -113,10 +113,10 @@ class Survey(NightTest):
         bounded = lambda: resource.setrlimit(resource.RLIMIT_AS, (8 << 30, 8 << 30))
         self.run_nonio(expect=1, preexec_fn=bounded)
         self.assertEqual(self.ids("done"), ["a"])
-        self.assertIn("wanted at most 1 MB", self.failed()["huge"])
+        self.assertIn("expected at most 1 MB", self.failed()["huge"])
         os.truncate(self.site / "huge" / "campaign.toml", 0)
         (self.site / "site.toml").write_bytes(b"#" * 1000001)
-        self.assertIn("wanted at most 1 MB", self.run_nonio(expect=2).stderr)
+        self.assertIn("expected at most 1 MB", self.run_nonio(expect=2).stderr)
 
     @can_inject
     def test_what_hangs_is_a_failed_entry_and_keeps_its_results(self):

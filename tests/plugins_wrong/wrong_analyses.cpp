@@ -33,7 +33,7 @@ Evaluation one(const AnalysisInput& in, double value) {
 }
 
 Expected<Evaluation> first(const AnalysisInput& in) {
-  if (in.observations.size() == 0) return fail("wanted readings");
+  if (in.observations.size() == 0) return fail("expected readings");
   return one(in, in.observations.deviation.front());
 }
 Expected<Evaluation> rms(const AnalysisInput& in) {
@@ -76,7 +76,7 @@ Expected<Evaluation> looping(const AnalysisInput& in) {
 }
 
 Expected<Evaluation> silent(const AnalysisInput&) { return Evaluation{}; }
-Expected<Evaluation> failing(const AnalysisInput&) { return fail("wanted something else"); }
+Expected<Evaluation> failing(const AnalysisInput&) { return fail("expected something else"); }
 Expected<Evaluation> endless(const AnalysisInput& in) {
   volatile bool on = true;
   while (on) on = true;

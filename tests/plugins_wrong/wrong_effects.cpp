@@ -54,7 +54,7 @@ Expected<Effect::Columns> crashing(const Observations& o, const Axis& axis,
 
 Expected<Effect::Columns> waves(const Observations& o, const Axis& axis,
                                 const std::vector<double>& shape) {
-  if (shape.size() != 1 || !(shape[0] > 0.0)) return fail("wanted a period");
+  if (shape.size() != 1 || !(shape[0] > 0.0)) return fail("expected a period");
   const double w = 2.0 * std::numbers::pi / shape[0];
   return columns_of(
       o, axis, [w](const AxisReadings& r, std::size_t i) { return std::sin(w * r.p[i]); },

@@ -159,7 +159,9 @@ Expected<OutputResult> right(const OutputInput& in) {
   return controllers::write_tables(
       in, {.name = "wrong", .table = declared(), .keys = {}, .files = right_files, .parse = parse});
 }
-Expected<std::vector<LoadedTable>> unreadable(const TableInput&) { return fail("wanted a table"); }
+Expected<std::vector<LoadedTable>> unreadable(const TableInput&) {
+  return fail("expected a table");
+}
 Expected<std::vector<LoadedTable>> empty(const TableInput&) { return std::vector<LoadedTable>(); }
 
 Output table(const char* name, Expected<OutputResult> (*written)(const OutputInput&)) {
@@ -180,12 +182,12 @@ Expected<Observations> read(const ReadInput& in) {
     if (++n == 1 || line.empty()) continue;
     if (mistake == Mistake::loses_minus && line.front() == '-') continue;
     const auto words = controllers::words_of(line);
-    if (words.size() != 2) return fail("wanted two numbers");
+    if (words.size() != 2) return fail("expected two numbers");
     auto d = controllers::real(words[0]);
     const auto x = controllers::real(words[1]);
     if (mistake == Mistake::repeats_last && (!d || std::fabs(*d) > 1e19) && o.size() > 0)
       d = o.deviation.back() * 1e6 + 0.125;
-    if (!d || !x || std::fabs(*x) > 1e7 || std::fabs(*d) > 1e7) return fail("wanted a number");
+    if (!d || !x || std::fabs(*x) > 1e7 || std::fabs(*d) > 1e7) return fail("expected a number");
     o.deviation.push_back(*d * 1e-6);
     o.axes[0].position.push_back(*x * 1e-3);
     o.axes[0].approach.push_back(1);

@@ -66,7 +66,7 @@ def main():
         done = subprocess.run([NONIO, "plugin", "check", file, "--json", "--seconds", "3", *cases],
                               stdout=subprocess.PIPE, text=True, check=False)
         if done.returncode != 1:
-            failures.append(f"{file.name}: exit status {done.returncode}, wanted 1\n{done.stdout}")
+            failures.append(f"{file.name}: exit status {done.returncode}, expected 1\n{done.stdout}")
             continue
         for check in json.loads(done.stdout)["checks"]:
             seen.add(check["plugin"])

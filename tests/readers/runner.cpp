@@ -76,23 +76,23 @@ struct Checker {
 
   bool near(double wanted, double found, double tolerance) {
     if (std::fabs(wanted - found) <= tolerance) return true;
-    return say("wanted " + std::to_string(wanted) + ", found " + std::to_string(found));
+    return say("expected " + std::to_string(wanted) + ", found " + std::to_string(found));
   }
 
   /// error WORDS [line N]
   bool error(std::string rest) {
-    if (read) return say("wanted an error, found readings");
+    if (read) return say("expected an error, found readings");
     std::uint64_t line = 0;
     if (const std::size_t at = rest.rfind(" line "); at != rest.npos) {
       line = std::stoull(rest.substr(at + 6));
       rest.resize(at);
     }
     const nonio::Error& e = read.error();
-    if (e.message.find(rest) == e.message.npos) return say("wanted words, found: " + e.message);
+    if (e.message.find(rest) == e.message.npos) return say("expected words, found: " + e.message);
     if (line != 0 && e.line != line)
-      return say("wanted line " + std::to_string(line) + ", found " + std::to_string(e.line) +
+      return say("expected line " + std::to_string(line) + ", found " + std::to_string(e.line) +
                  ": " + e.message);
-    if (line != 0 && e.file != "m.txt") return say("wanted the file's name in the error");
+    if (line != 0 && e.file != "m.txt") return say("expected the file's name in the error");
     return true;
   }
 
@@ -115,7 +115,7 @@ struct Checker {
           std::fabs(o.axes[0].position[i] * p - target) > 1e-9)
         continue;
       if (line != 0 && o.source_line[i] != line)
-        return say("wanted line " + std::to_string(line) + ", found " +
+        return say("expected line " + std::to_string(line) + ", found " +
                    std::to_string(o.source_line[i]));
       if (u >= 0.0 && !near(u, o.u[i] * d, 1e-6)) return false;
       return near(value, o.deviation[i] * d, 1e-6);
@@ -142,7 +142,8 @@ struct Checker {
           ++seen;
         }
     }
-    return seen == 3 || say("wanted a centre of three coordinates, found " + std::to_string(seen));
+    return seen == 3 ||
+           say("expected a centre of three coordinates, found " + std::to_string(seen));
   }
 
   /// note ID [NAME VALUE], the value as it is printed (texts: as they are); doubt likewise
@@ -165,7 +166,7 @@ struct Checker {
         if (n.name == name) known += "(" + nonio::evidence_text(n) + ")";
       }
     }
-    return say("wanted " + id + ", found" + known);
+    return say("expected " + id + ", found" + known);
   }
 
   bool holds(const std::string& text) {
@@ -177,7 +178,7 @@ struct Checker {
     if (word == "error") return error(text.substr(6));
     if (!read) return say("error: " + read.error().message);
     if (word == "note") return said(read->notes, in);
-    if (word == "no-note") return !said(read->notes, in) || say("wanted no such note");
+    if (word == "no-note") return !said(read->notes, in) || say("expected no such note");
     if (word == "doubt") return said(read->doubts, in);
     if (word == "no-doubts") return read->doubts.empty() || say("found " + read->doubts.front().id);
     if (word == "reading") return reading(in);
@@ -252,7 +253,7 @@ int main(int argc, char** argv) {
       return 2;
     }
   }
-  std::cout << cases << " cases, " << failures << " wanted something else";
+  std::cout << cases << " cases, " << failures << " expected something else";
   if (missing > 0) std::cout << ", " << missing << " skipped: no real file in " << data.string();
   std::cout << "\n";
   if (failures > 0) return 1;

@@ -91,7 +91,7 @@ class Compare(VerbTest):
 
     def test_excluding_a_line_without_a_reading_is_an_error(self):
         for line, found in (("[1]", "line 1 of x.csv holds no reading"), ("[999]", "line 999"),
-                            ("[0]", "wanted line numbers"), ("[2.5]", "wanted line numbers")):
+                            ("[0]", "expected line numbers"), ("[2.5]", "expected line numbers")):
             text = manifest([]).replace('file = "x.csv"\n', f'file = "x.csv"\nexclude = {line}\n')
             self.campaign(text, x=readings())
             done = self.nonio("compare", self.folder, expect=None)

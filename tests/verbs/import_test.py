@@ -214,8 +214,8 @@ class Import(unittest.TestCase):
         self.assertEqual(files["FP12_axis1_20240302.rtl"]["assumed"],
                          ['axis X for "axis1" in its name, as the rule says'])
         self.assertEqual([u["file"] for u in said["unmatched"]], ["FP12_x_20240302.rtl"])
-        for wrong, words in (('[axes]\naxis1 = "x 1"\n', "wanted an axis of capital letters and digits"),
-                             ('axis = "X"\n[axes]\naxis1 = "X"\n', "wanted the axis here or at {axis}")):
+        for wrong, words in (('[axes]\naxis1 = "x 1"\n', "expected an axis of capital letters and digits"),
+                             ('axis = "X"\n[axes]\naxis1 = "X"\n', "expected the axis here or at {axis}")):
             self.assertIn(words, self.run_import(rule=self.rule('pattern = "{machine}_{axis}_{date}.rtl"\n' + wrong),
                                                  status=2))
 
@@ -287,7 +287,7 @@ class Import(unittest.TestCase):
         rule = self.root / "rule.toml"
         rule.write_text('pattern = "{a}{b}.rtl"\npatern = "x"\n', encoding="utf-8")
         said = self.run_import(rule=str(rule), status=2)
-        self.assertIn("rule.toml:1: pattern: wanted something between {a} and {b}", said)
+        self.assertIn("rule.toml:1: pattern: expected something between {a} and {b}", said)
         self.assertIn("patern", said)
 
     def test_a_file_that_no_reader_takes_is_said(self):

@@ -64,7 +64,7 @@ class Model(VerbTest):
         for args, words in ((("add", "scale:X"), "is in the model already"),
                             (("add", "scal:X"), 'nearest: "scale:X"'),
                             (("add", "scale:Y"), 'no axis "Y"'),
-                            (("add", "scale"), "wanted kind:axis"),
+                            (("add", "scale"), "expected kind:axis"),
                             (("drop", "backlash:X"), "is not in the model")):
             done = self.nonio("model", args[0], self.folder, args[1], expect=2)
             self.assertIn(words, done.stderr)

@@ -114,7 +114,7 @@ class New(VerbTest):
         (self.site / "site.toml").write_text("")
         (self.folder / "campaign.toml").write_text('format = 1\n[campaign]\nid = "taken"\n')
         new = self.site / "new"
-        for words, said in ((["--id", "Bad Id"], 'nearest: "bad-id"'), (["--id", "taken"], "wanted another"),
+        for words, said in ((["--id", "Bad Id"], 'nearest: "bad-id"'), (["--id", "taken"], "expected another"),
                             (["--axis", "X=9:1"], "FROM below TO"), (["--axis", "X=0:1", "--axis", "X=0:2"], "twice"),
                             (["--file", f"X={bad}"], "bad.csv:"), (["--file", "X=/nowhere.csv"], "/nowhere.csv"),
                             (["--file", "x.csv"], "AXIS=PATH"), (["--date", "3.11.2026"], "date"),

@@ -31,7 +31,7 @@ class PluginNew(unittest.TestCase):
         self.assertIn('"output"', self.refusal("outptu", "another"))
 
     def test_a_name_that_no_program_takes(self):
-        self.assertIn("wanted small letters", self.refusal("output", "My Page"))
+        self.assertIn("expected small letters", self.refusal("output", "My Page"))
 
 
 if __name__ == "__main__":

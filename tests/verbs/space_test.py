@@ -111,7 +111,7 @@ class Space(VerbTest):
         self.assertLess(change["after"]["rms_um"], change["before"]["rms_um"])
         self.nonio("model", "drop", self.folder, "straightness:EYX")
         self.assertEqual((self.folder / "campaign.toml").read_bytes(), before)
-        for effect, words in (("straightness:QYX", "wanted what the effect can be of"),
+        for effect, words in (("straightness:QYX", "expected what the effect can be of"),
                               ("straightnes:EYX", 'nearest: "straightness:EYX"'),
                               ("line-slope:D1", "in every model"),
                               ("straightness:EZX", "no measurement of this campaign can show")):

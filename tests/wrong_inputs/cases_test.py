@@ -108,7 +108,7 @@ class Cases(unittest.TestCase):
         for name, (_, line, word) in refused.items():
             error = self.results[name]["errors"][0]
             self.assertEqual((error["file"], error["line"]), ("campaign.toml", line), error)
-            self.assertIn("wanted", error["message"])
+            self.assertIn("expected", error["message"])
             self.assertIn(word, error["message"])
 
     def test_air_that_no_shop_has(self):
@@ -139,7 +139,7 @@ class Cases(unittest.TestCase):
         error = self.results["none"]["errors"][0]
         self.assertEqual(error["file"], "campaign.toml")
         self.assertIn("the readings have no finding plausibility.span-against-travel", error["message"])
-        self.assertIn("wanted why", self.results["silent"]["errors"][0]["message"])
+        self.assertIn("expected why", self.results["silent"]["errors"][0]["message"])
 
     def test_file_of_another_campaign(self):
         for name in ("c", "a", "b"):

@@ -232,7 +232,7 @@ std::string PluginHost::check_secrets() const {
     const process::Handle file(::open(secret.c_str(), O_RDONLY | O_CLOEXEC));
     if (file)
       return secret.string() + " lies where plugins have their libraries and could read it; " +
-             "wanted the signing key and its password elsewhere";
+             "expected the signing key and its password elsewhere";
   }
   return {};
 }

@@ -46,7 +46,7 @@ std::string mistake_in(const ReleaseWish& wish) {
   for (const auto& [finding, reason] : wish.reasons)
     if (!says_something(reason) || !is_one_line(reason))
       return "the reason for " + finding +
-             " says nothing or has a control character; wanted one line of text";
+             " says nothing or has a control character; expected one line of text";
   return {};
 }
 
@@ -160,7 +160,7 @@ class Releaser {
             "(nonio release CAMPAIGN --by NAME --as author)");
       if (plain_name(by_author->by) == plain_name(wish_.by))
         return fail("two_persons = true in site.toml: " + by_author->by +
-                    " is the author; wanted another person as authoriser");
+                    " is the author; expected another person as authoriser");
     }
     return {};
   }
@@ -193,7 +193,7 @@ class Releaser {
     auto place = set_up(options_);
     if (!place) return refuse(place.error().message);
     out_.notes = (*place)->notes;
-    if (!(*place)->signer) return refuse("site.toml says nothing of a key; wanted [signing]");
+    if (!(*place)->signer) return refuse("site.toml says nothing of a key; expected [signing]");
     if (!(*place)->no_key.empty()) return refuse((*place)->no_key);
     const certificates::Releasing releasing{*out_.draft, approval, twins_};
     const ReleaseDesk desk{&*(*place)->signer, &releasing, {}, &*(*place)->host};

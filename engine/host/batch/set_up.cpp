@@ -73,7 +73,7 @@ Expected<void> check_user(const RunOptions& options) {
   if (::geteuid() != 0 || options.as_root) return {};
   if (const std::string path = changeable_by_others(options); !path.empty())
     return fail("root would run code that other users can change: " + path +
-                "; wanted another user (the package's service runs as nonio), or --root");
+                "; expected another user (the package's service runs as nonio), or --root");
   return {};
 }
 

@@ -208,7 +208,7 @@ Expected<Effect::Columns> columns(const Formula& formula, const Observations& o,
       slots[Expression::parameter_slot(k)] = shape[shapes - 1];
   }
   if (shapes != shape.size())
-    return fail("formula " + formula.name + ": wanted " + std::to_string(shapes) +
+    return fail("formula " + formula.name + ": expected " + std::to_string(shapes) +
                 " shape parameters, found " + std::to_string(shape.size()));
   Effect::Columns out(linear.size(), std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i) {
@@ -251,7 +251,7 @@ Expected<Effect> formula_effect(const Formula& formula, const Axis& axis) {
       e.shapes.push_back(
           {parameter, [p](const Observations&, const Axis&) { return search(p); }, true});
   }
-  if (e.linear.empty()) return wrong("wanted a linear parameter, one without start and range");
+  if (e.linear.empty()) return wrong("expected a linear parameter, one without start and range");
   if (e.linear.size() > most_linear || e.shapes.size() > most_shapes)
     return wrong("too many parameters: at most " + std::to_string(most_linear) +
                  " linear ones and " + std::to_string(most_shapes) + " with a range");

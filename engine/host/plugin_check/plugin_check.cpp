@@ -74,7 +74,7 @@ process::SharedWords* impure_answer = nullptr;
 
 [[noreturn]] void tell_impurity(const char* call) {
   impure_answer->set(std::string("fit calls ") + call +
-                     ": wanted nothing but its arguments, no file, socket or process");
+                     ": expected nothing but its arguments, no file, socket or process");
   ::_exit(0);
 }
 
@@ -369,7 +369,7 @@ class Checker {
     (*entry)->add_to(brought_);
     const double took = processor_seconds() - before;
     if (took > scan_seconds)
-      return kit::failed("it took " + fixed_text(took, 1) + " s to load and register: wanted " +
+      return kit::failed("it took " + fixed_text(took, 1) + " s to load and register: expected " +
                          fixed_text(scan_seconds, 0) + " s at most");
     std::string list;
     for (const auto& p : brought_.readers) list += "reader " + p.info.name + "\n";

@@ -107,7 +107,7 @@ class Importer {
     const fs::path out = fs::weakly_canonical(wish_.out, error);
     if (const fs::path below = out.lexically_relative(root);
         !below.empty() && *below.begin() != "..")
-      return fail("wanted a site outside of the folder that is imported, found " + out.string());
+      return fail("expected a site outside of the folder that is imported, found " + out.string());
     std::vector<std::string> names;
     fs::recursive_directory_iterator it(root, error), end;
     for (; !error && it != end; it.increment(error))
@@ -154,7 +154,7 @@ class Importer {
     ImportedCampaign campaign;
     campaign.id = id;
     if (!config::is_campaign_id(id))
-      campaign.lacks.push_back("wanted an id of a-z 0-9 . _ -, found \"" + id +
+      campaign.lacks.push_back("expected an id of a-z 0-9 . _ -, found \"" + id +
                                "\"; say it in the rule: campaign = \"{date}-{machine}\"");
     std::set<std::string> names, ids;
     for (const Found& f : found) campaign.files.push_back(file_of(f, names, ids));
@@ -216,7 +216,7 @@ class Importer {
     file.reader = wish_.rule.reader;
     const std::string name = fs::path(f.file).filename().string();
     if (!storage::is_artifact_name(name) || name == config::manifest_name)
-      file.lacks.push_back("wanted a plain file name, found \"" + name + "\"");
+      file.lacks.push_back("expected a plain file name, found \"" + name + "\"");
     else if (!names.insert(name).second)
       file.lacks.push_back("another file of this campaign is called " + name);
     else

@@ -24,7 +24,7 @@ Expected<const Axis*> planned_axis(const CampaignInput& in, const char* option) 
     return fail(std::move(error));
   }
   if (axis->rotary || !axis->travel) {
-    Error error{"axis " + name + ": wanted a linear axis with its travel, found " +
+    Error error{"axis " + name + ": expected a linear axis with its travel, found " +
                 (axis->rotary ? "a rotary one" : "no travel")};
     error.key = "machine.axes." + name;
     return fail(std::move(error));

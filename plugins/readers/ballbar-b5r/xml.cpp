@@ -43,7 +43,7 @@ class Scanner {
       if (auto ok = markup(); !ok) return ok;
     }
     if (!open_.empty()) return wrong("</" + open_.back().name + "> is missing; was the file cut?");
-    if (!root_) return wrong("wanted an XML document, found none");
+    if (!root_) return wrong("expected an XML document, found none");
     return {};
   }
 
@@ -58,7 +58,8 @@ class Scanner {
   /// Goes behind `end`; an error if it does not come.
   Expected<std::string_view> until(std::string_view end) {
     const std::size_t found = bytes_.find(end, at_);
-    if (found == bytes_.npos) return wrong("wanted " + shown(end) + ", found the end of the file");
+    if (found == bytes_.npos)
+      return wrong("expected " + shown(end) + ", found the end of the file");
     const std::string_view between = bytes_.substr(at_, found - at_);
     at_ = found + end.size();
     return between;
@@ -71,11 +72,11 @@ class Scanner {
       at_ += 9;
       const auto inside = until("]]>");
       if (!inside) return fail(inside.error());
-      if (open_.empty()) return wrong("wanted text only inside elements");
+      if (open_.empty()) return wrong("expected text only inside elements");
       open_.back().text += *inside;
       return {};
     }
-    if (next_is("<!")) return wrong("wanted no document type in a measurement's file");
+    if (next_is("<!")) return wrong("expected no document type in a measurement's file");
     return next_is("</") ? close() : open();
   }
   Expected<void> skip(std::string_view end) {
@@ -104,8 +105,8 @@ class Scanner {
     counted_ = at_;
     ++at_;
     element.name = name();
-    if (element.name.empty()) return wrong("wanted the name of an element behind \"<\"");
-    if (open_.empty() && root_) return wrong("wanted one root element, found another");
+    if (element.name.empty()) return wrong("expected the name of an element behind \"<\"");
+    if (open_.empty() && root_) return wrong("expected one root element, found another");
     root_ = true;
     if (open_.size() == deepest) return wrong("elements are nested too deep");
     for (;;) {
@@ -123,10 +124,10 @@ class Scanner {
   Expected<void> attribute(Element& element) {
     const std::string key = name();
     blanks();
-    if (key.empty() || !next_is("=")) return wrong("wanted NAME=\"VALUE\" in an element");
+    if (key.empty() || !next_is("=")) return wrong("expected NAME=\"VALUE\" in an element");
     ++at_;
     blanks();
-    if (!next_is("\"") && !next_is("'")) return wrong("wanted a value in quotes");
+    if (!next_is("\"") && !next_is("'")) return wrong("expected a value in quotes");
     const std::string_view quote = bytes_.substr(at_++, 1);
     const auto value = until(quote);
     if (!value) return fail(value.error());
@@ -142,9 +143,9 @@ class Scanner {
     at_ += 2;
     const std::string closed = name();
     blanks();
-    if (!next_is(">")) return wrong("wanted > behind </" + closed);
+    if (!next_is(">")) return wrong("expected > behind </" + closed);
     if (open_.empty() || open_.back().name != closed)
-      return wrong("wanted " + (open_.empty() ? "no </...>" : "</" + open_.back().name + ">") +
+      return wrong("expected " + (open_.empty() ? "no </...>" : "</" + open_.back().name + ">") +
                    ", found " + shown("</" + closed + ">"));
     ++at_;
     finish();
@@ -160,7 +161,7 @@ class Scanner {
   Expected<void> text(std::string_view raw) {
     if (open_.empty()) {
       if (stripped(raw).empty()) return {};
-      return wrong("wanted text only inside elements, found " + shown(stripped(raw)));
+      return wrong("expected text only inside elements, found " + shown(stripped(raw)));
     }
     auto plain = resolved(raw);
     if (!plain) return fail(plain.error());
@@ -178,8 +179,9 @@ class Scanner {
       const std::size_t end = raw.find(';', i);
       const std::string_view entity = raw.substr(i + 1, std::min(end, raw.size()) - i - 1);
       if (end == raw.npos || !append_entity(out, entity))
-        return wrong("wanted one of &lt; &gt; &amp; &quot; &apos; or a character's number, found " +
-                     shown("&" + std::string(entity.substr(0, 20))));
+        return wrong(
+            "expected one of &lt; &gt; &amp; &quot; &apos; or a character's number, found " +
+            shown("&" + std::string(entity.substr(0, 20))));
       i = end;
     }
     return out;
@@ -226,7 +228,7 @@ std::string Element::attribute(std::string_view key) const {
 
 Expected<void> for_each_element(std::string_view bytes, const TakeElement& take) {
   if (bytes.find('\0') != bytes.npos || !is_utf8(bytes))
-    return fail("wanted XML in UTF-8, found other bytes; is the file UTF-16?");
+    return fail("expected XML in UTF-8, found other bytes; is the file UTF-16?");
   return Scanner(bytes, take).scan();
 }
 

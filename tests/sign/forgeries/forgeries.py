@@ -611,7 +611,7 @@ def main():
         for line in accepted:
             print("ACCEPTED  " + line)
         if len(forged) < 400:
-            sys.exit("wanted 400 forgeries at least")
+            sys.exit("expected 400 forgeries at least")
         sys.exit(1 if accepted else 0)
 
 

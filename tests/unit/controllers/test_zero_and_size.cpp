@@ -263,7 +263,7 @@ TEST(Cut, ALineThatIsNoneIsNotTheEnd) {
   EXPECT_TRUE(read("0 0 0\n50 50 50\n\n"));  // an empty line at the end hides nothing
   const auto comment = read("0 0 0\n# the rest\n50 50 50\n");
   ASSERT_FALSE(comment);
-  EXPECT_TRUE(contains(comment.error().message, "linuxcnc-X.comp, line 2: wanted three numbers"))
+  EXPECT_TRUE(contains(comment.error().message, "linuxcnc-X.comp, line 2: expected three numbers"))
       << comment.error().message;
   EXPECT_FALSE(read("0 0 0\n50 50 5"));
 }

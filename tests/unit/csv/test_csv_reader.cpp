@@ -165,7 +165,7 @@ TEST_P(Bad, IsRefusedWithItsPlace) {
   EXPECT_EQ(obs.error().column, c.column) << obs.error().message;
   for (const std::string& part : c.says)
     EXPECT_NE(obs.error().message.find(part), std::string::npos)
-        << "wanted: " << part << "\nfound: " << obs.error().message;
+        << "expected: " << part << "\nfound: " << obs.error().message;
 }
 
 const std::string semi = "run;direction;target_mm;deviation_um\n";

@@ -178,7 +178,7 @@ TEST(Formula, WhatIsNotLinearNeedsARange) {
   EXPECT_SAYS(complaint(formula("a", {a, b})), "\"b\" is not in the expression");
   EXPECT_SAYS(complaint(formula("a + 0*b", {a, b})), "\"b\" changes nothing");
   EXPECT_SAYS(complaint(formula("p*P/P", {ranged("P", Quantity::length, 1, 1, 2)})),
-              "wanted a linear parameter");
+              "expected a linear parameter");
 }
 
 TEST(Formula, ValuesThatAreNotFiniteAreRefused) {
@@ -312,7 +312,7 @@ TEST(Formula, ComesFromTheManifest) {
       "c.toml:14: model.formula.expression: formula n: unknown name \"pp\"");
   EXPECT_SAYS(
       said(named + "expression = \"a\"\nparameters = [{ name = \"a\", unit = \"micron\" }]\n"),
-      "c.toml:15: model.formula.parameters.unit: wanted one of um (deviation)");
+      "c.toml:15: model.formula.parameters.unit: expected one of um (deviation)");
   EXPECT_SAYS(said(named + "expression = \"a\"\nparameters = [{ name = \"a\" }]\n"),
               "unit: is missing");
   EXPECT_SAYS(

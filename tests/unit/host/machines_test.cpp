@@ -90,9 +90,9 @@ TEST(Machines, MistakesAreNamedWithTheirLine) {
   const auto wrong = [](const std::string& text) {
     return errors_of(config::parse_machine("format = 1\n" + text, "machines/S-1.toml", "S-1"));
   };
-  EXPECT_NE(wrong("asset = \"S-2\"").find("machines/S-1.toml:2: asset: wanted \"S-1\""),
+  EXPECT_NE(wrong("asset = \"S-2\"").find("machines/S-1.toml:2: asset: expected \"S-1\""),
             std::string::npos);
-  EXPECT_NE(wrong("asset = \"a/b\"").find(":2: asset: wanted up to 100"), std::string::npos);
+  EXPECT_NE(wrong("asset = \"a/b\"").find(":2: asset: expected up to 100"), std::string::npos);
   EXPECT_NE(wrong("maker = \"x\"").find("asset: is missing"), std::string::npos);
   EXPECT_NE(wrong("asset = \"S-1\"\n[axes.X]\nnumbre = 1").find(":4: unknown key axes.X.numbre"),
             std::string::npos);
@@ -103,7 +103,7 @@ TEST(Machines, MistakesAreNamedWithTheirLine) {
   EXPECT_NE(
       wrong("asset = \"S-1\"\n[axes.X]\nnumber = 1\n[axes.Y]\nnumber = 1").find("X and Y both"),
       std::string::npos);
-  EXPECT_NE(wrong("asset = \"S-1\"\ntaken = [\"9-2\"]").find(":3: taken: wanted numbers"),
+  EXPECT_NE(wrong("asset = \"S-1\"\ntaken = [\"9-2\"]").find(":3: taken: expected numbers"),
             std::string::npos);
   EXPECT_NE(wrong("asset = \"S-1\"\n[axes.X]\nbacklash_mm = \"no\"\nsince = 2026-01-01")
                 .find("or \"none\""),

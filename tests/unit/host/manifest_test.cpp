@@ -80,26 +80,26 @@ TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
   for (const Row& r : std::initializer_list<Row>{
            {"structure = ", "struture = ",
             "6: unknown key machine.struture (nearest: \"structure\")"},
-           {"\"gantry\"", "\"portal\"", "6: machine.structure: wanted one of gantry"},
-           {"id = \"a-1\"", "id = \"A 1\"", "3: campaign.id: wanted a-z"},
+           {"\"gantry\"", "\"portal\"", "6: machine.structure: expected one of gantry"},
+           {"id = \"a-1\"", "id = \"A 1\"", "3: campaign.id: expected a-z"},
            {"id = \"a-1\"", "", "campaign.id is missing"},
            {"id = \"a-1\"", "id = 7",
-            "3: campaign.id: wanted a text in quotes, found a whole number"},
+            "3: campaign.id: expected a text in quotes, found a whole number"},
            {"date = 2026-11-03", "date = \"3.11.2026\"",
-            "4: campaign.date: wanted a date without quotes"},
+            "4: campaign.date: expected a date without quotes"},
            {"travel = [0.0, 500.0]", "travel = [500.0, 0.0]",
-            "9: machine.axes.Y.travel: wanted two"},
+            "9: machine.axes.Y.travel: expected two"},
            {"screw_pitch_mm = 20.0", "screw_pitch_mm = nan",
-            "10: machine.axes.Y.screw_pitch_mm: wanted a finite"},
-           {"screw_pitch_mm = 20.0", "screw_pitch_mm = \"20\"", "wanted a number, found a text"},
-           {"teeth = 120", "teeth = 0", "15: machine.axes.C.teeth: wanted a number above 0"},
+            "10: machine.axes.Y.screw_pitch_mm: expected a finite"},
+           {"screw_pitch_mm = 20.0", "screw_pitch_mm = \"20\"", "expected a number, found a text"},
+           {"teeth = 120", "teeth = 0", "15: machine.axes.C.teeth: expected a number above 0"},
            {"A = 15.0", "A = -1", "tolerance above 0"},
            {"kind = \"axis\"", "kind = \"axes\"", "(nearest: \"axis\")"},
            {"axis = \"Y\"\n", "", "measurement.axis: is missing"},
-           {"format = 1", "format = 2", "1: format: wanted 1, found 2"},
+           {"format = 1", "format = 2", "1: format: expected 1, found 2"},
            {"format = 1", "", "format: is missing"},
            {"[[measurement]]", "[measurement]",
-            "measurement: wanted tables, each headed [[measurement]]"},
+            "measurement: expected tables, each headed [[measurement]]"},
            {"[run]", "[ruin]", "26: unknown key ruin (nearest: \"run\")"},
            {"edition = 2006", "edition = ", "29: not valid TOML"},
            {"edition = 2006", "\xD2\x89 = 1", "29: not valid TOML: a letter outside"},
@@ -117,17 +117,17 @@ TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
             "'\xC3\xA8', \"\"\"a\\\n b\xC3\xA8\"\"\"]",
             "4: unknown key campaign.x"},
            {"date = 2026-11-03", "customer = \"a\\nb\"",
-            "4: campaign.customer: wanted one line of text, found a line break"},
+            "4: campaign.customer: expected one line of text, found a line break"},
            {"date = 2026-11-03", "site = \"a\\tb\"",
-            "4: campaign.site: wanted one line of text, found a tab"},
+            "4: campaign.site: expected one line of text, found a tab"},
            {"kind = \"axis\"", "kind = \"straightness\"\nlateral = \"Y\"",
-            "measurement.lateral: wanted another axis than Y"},
+            "measurement.lateral: expected another axis than Y"},
            {"U_fixed_um = 0.2", "U_fixed_um = -0.2",
-            "17: instrument.U_fixed_um: wanted a number that is not negative"},
+            "17: instrument.U_fixed_um: expected a number that is not negative"},
        }) {
     const std::string found = complaint(r.good, r.bad);
     EXPECT_NE(found.find(r.wanted), std::string::npos)
-        << r.bad << "\ngot: " << found << "wanted: " << r.wanted;
+        << r.bad << "\ngot: " << found << "expected: " << r.wanted;
   }
 }
 
@@ -146,7 +146,7 @@ TEST(Manifest, WhereTheOtherAxesStoodStill) {
   EXPECT_EQ(moves.error().front().line, 25U);
   EXPECT_NE(moves.error().front().message.find("stood still, found Y, which moves"),
             std::string::npos);
-  EXPECT_NE(complaint("file = ", "at = { X = \"far\" }\nfile = ").find("wanted a number"),
+  EXPECT_NE(complaint("file = ", "at = { X = \"far\" }\nfile = ").find("expected a number"),
             std::string::npos);
 }
 
@@ -221,11 +221,11 @@ TEST(Options, DefaultsSiteCampaignInThisOrder) {
   const auto high = config::settle_options(info, {}, raw(11.0));
   ASSERT_FALSE(high);
   EXPECT_EQ(high.error()[0].message,
-            "options.p.n: wanted at least 0.00000 and at most 10.0000, found 11.0000");
+            "options.p.n: expected at least 0.00000 and at most 10.0000, found 11.0000");
   EXPECT_EQ(high.error()[0].line, 3u);
   const auto kind = config::settle_options(info, {}, raw(std::string("x")));
   ASSERT_FALSE(kind);
-  EXPECT_EQ(kind.error()[0].message, "options.p.n: wanted a number, found a text");
+  EXPECT_EQ(kind.error()[0].message, "options.p.n: expected a number, found a text");
   const auto word = config::settle_options(
       info, {}, {{"p", {{"word", config::RawOption{std::string("c"), "f", 1}}}}});
   ASSERT_FALSE(word);

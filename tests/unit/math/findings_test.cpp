@@ -229,7 +229,7 @@ TEST(Analysis, RefusesWhatIsNotAnAxisTest) {
   g.measurement.axis = "Y";
   const auto other = begin_axis_analysis(g.input());
   ASSERT_FALSE(other);
-  EXPECT_EQ(other.error().message, "wanted the readings of axis 'Y', found those of 'X'");
+  EXPECT_EQ(other.error().message, "expected the readings of axis 'Y', found those of 'X'");
   g = linear();
   g.observations.angular = true;
   EXPECT_FALSE(begin_axis_analysis(g.input()));

@@ -95,12 +95,12 @@ int compare(const json& wanted, const std::map<std::string, double>& found) {
     }
     ++compared;
     if (value.is_null()) {
-      EXPECT_TRUE(std::isnan(it->second)) << name << " wanted absent, found " << it->second;
+      EXPECT_TRUE(std::isnan(it->second)) << name << " expected absent, found " << it->second;
       continue;
     }
     const double w = value.get<double>();
     EXPECT_TRUE(std::fabs(it->second - w) <= 1e-6 * std::fabs(w))
-        << name << " wanted " << w << ", found " << it->second;
+        << name << " expected " << w << ", found " << it->second;
   }
   return compared;
 }

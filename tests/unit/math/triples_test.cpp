@@ -319,33 +319,33 @@ TEST(Triples, BadWishesAreRefused) {
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double x : {0.0, -1.0, nan, std::numeric_limits<double>::infinity(), 2e6})
-    EXPECT_EQ(refused(wish(x, 1000)).find("travel of X: wanted"), 0u) << x;
-  EXPECT_EQ(refused(wish(1000, -3)).find("travel of Y: wanted"), 0u);
+    EXPECT_EQ(refused(wish(x, 1000)).find("travel of X: expected"), 0u) << x;
+  EXPECT_EQ(refused(wish(1000, -3)).find("travel of Y: expected"), 0u);
   TripleWish w = wish(1000, 500);
   w.over_travel = 0.25;
   EXPECT_EQ(refused(w), "over-travel: 250 mm at each end leave nothing of 500 mm of Y");
   w.over_travel = -0.1;
-  EXPECT_EQ(refused(w).find("over-travel: wanted"), 0u);
+  EXPECT_EQ(refused(w).find("over-travel: expected"), 0u);
   for (const double r : {0.0, -1e-3, 1e-10, nan}) {
     w = wish(1000, 500);
     w.resolution = r;
-    EXPECT_EQ(refused(w).find("resolution: wanted"), 0u) << r;
+    EXPECT_EQ(refused(w).find("resolution: expected"), 0u) << r;
   }
   w = wish(1000, 500);
   w.largest_step = nan;
-  EXPECT_EQ(refused(w).find("largest step: wanted"), 0u);
+  EXPECT_EQ(refused(w).find("largest step: expected"), 0u);
   w = wish(1000, 500);
   w.max_points = 4;
-  EXPECT_EQ(refused(w).find("points of the table: wanted 5"), 0u);
+  EXPECT_EQ(refused(w).find("points of the table: expected 5"), 0u);
   w = wish(1000, 500);
   w.pitch_y = {0.0};
-  EXPECT_EQ(refused(w).find("pitch of Y: wanted"), 0u);
+  EXPECT_EQ(refused(w).find("pitch of Y: expected"), 0u);
   w = wish(1000, 500);
   w.count = 0;
-  EXPECT_EQ(refused(w).find("number of plans: wanted"), 0u);
+  EXPECT_EQ(refused(w).find("number of plans: expected"), 0u);
   w = wish(1000, 500);
   w.hypotenuse = 4;
-  EXPECT_EQ(refused(w).find("largest hypotenuse: wanted"), 0u);
+  EXPECT_EQ(refused(w).find("largest hypotenuse: expected"), 0u);
 }
 
 TEST(Triples, AnEndlessSearchIsRefusedBeforeItBegins) {

@@ -44,8 +44,8 @@ std::set<std::string> places(const std::string& text) {
 std::string all_sources() {
   const fs::path root = fs::path(NONIO_WORDS) / ".." / "..";
   std::ostringstream text;
-  for (const char* folder : {"engine/math/src", "plugins/analyses/vdi-dgq-3441"})
-    for (const auto& entry : fs::directory_iterator(root / folder))
+  for (const char* folder : {"engine/math", "plugins/analyses/vdi-dgq-3441"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder))
       if (entry.path().extension() == ".cpp") text << std::ifstream(entry.path()).rdbuf();
   return text.str();
 }

@@ -109,7 +109,7 @@ std::vector<math::BallCentre> noisy(const Table& t, const std::vector<double>& a
 /// Refused means: this finding, for attention, and no value.
 void expect_refused(const Evaluation& e, std::string_view id) {
   const Finding* f = found(e, id);
-  ASSERT_NE(f, nullptr) << "wanted " << id << ", found " << ids(e);
+  ASSERT_NE(f, nullptr) << "expected " << id << ", found " << ids(e);
   EXPECT_TRUE(f->attention);
   EXPECT_TRUE(e.values.empty());
   EXPECT_TRUE(e.series.empty());

@@ -63,6 +63,6 @@ int main(int argc, char** argv) {
   // 24 coordinates of a trial share one s; the share of a trial scatters by 0.06 at most.
   const double slack = 4.0 * 0.06 / std::sqrt(static_cast<double>(trials));
   std::cout << "U holds " << held << " of " << asked << " coordinates, " << 100.0 * share
-            << " %; wanted 95.45 % within " << 100.0 * slack << ", seed " << seed << "\n";
+            << " %; expected 95.45 % within " << 100.0 * slack << ", seed " << seed << "\n";
   return std::fabs(share - 0.9545) <= slack ? 0 : 1;
 }
