@@ -48,7 +48,7 @@ CampaignState Look::at(const CampaignState& known, bool rough) {
   }
   const std::string digest = storage::sha256(*text);
   // Parsed in full only where a full reading did not say the same before.
-  if (state.id.empty()) state.id = config::salvage_id(*text);
+  if (state.id.empty()) state.id = config::extract_id(*text);
   Last last = last_of(state.id);
   const bool as_before = last && *last &&
                          (*last)->record.folder == storage::path_text(known.folder) &&
