@@ -100,7 +100,7 @@ Expected<loader::Catalogue> PluginHost::start() {
 
 Expected<loader::Catalogue> PluginHost::load_once() {
   end();
-  process::SharedWords progress;
+  process::SharedStatus progress;
   if (!progress.valid()) return fail("no memory for " + std::string(loading_process));
   auto control = process::channel_pair(SOCK_SEQPACKET, loading_process);
   auto answers = process::channel_pair(SOCK_STREAM, loading_process);
@@ -139,7 +139,7 @@ Expected<loader::Catalogue> PluginHost::load_once() {
 }
 
 /// Every step has a limit of its own.
-Expected<std::string> PluginHost::answer(int stream, process::SharedWords& progress,
+Expected<std::string> PluginHost::answer(int stream, process::SharedStatus& progress,
                                          std::string& hung) {
   std::string last;
   auto deadline = Steady::now() + std::chrono::duration<double>(load_seconds);
@@ -172,7 +172,7 @@ void PluginHost::leave_out(const std::string& progress, const std::string& why) 
 }
 
 Expected<pid_t> PluginHost::make_process(process::Handle stream,
-                                         const process::SharedWords& stage) {
+                                         const process::SharedStatus& stage) {
   constexpr int most_deaths = 5;
   for (; deaths_ <= most_deaths; ++deaths_) {
     if (pid_ < 0 || !control_)
@@ -191,7 +191,7 @@ Expected<pid_t> PluginHost::make_process(process::Handle stream,
         if (hello->descriptors.size() == 1)
           last_words_.push_back(
               {hello->sender, std::move(hello->descriptors.front()),
-               process::SharedWords(::fcntl(stage.descriptor(), F_DUPFD_CLOEXEC, 3))});
+               process::SharedStatus(::fcntl(stage.descriptor(), F_DUPFD_CLOEXEC, 3))});
         return hello->sender;
       }
     }
@@ -250,7 +250,7 @@ bool is_prepared(const Output& output, const Templates& templates) {
 
 }  // namespace
 
-loader::Plugins& PluginHost::load_all(process::SharedWords& progress,
+loader::Plugins& PluginHost::load_all(process::SharedStatus& progress,
                                       std::vector<std::string>& said, Prints& prints) const {
   auto* plugins = new loader::Plugins;  // never unloaded
   for (const fs::path& path : plugins->files_in(wish_.folders)) {
@@ -278,8 +278,8 @@ loader::Plugins& PluginHost::load_all(process::SharedWords& progress,
 }
 
 void PluginHost::serve(int control, int catalogue, int prints,
-                       process::SharedWords& progress) noexcept {
-  process::settle_child();
+                       process::SharedStatus& progress) noexcept {
+  process::init_child();
   take_input();
   Prints own(prints);
   if (!own.valid()) ::_exit(1);
@@ -314,8 +314,8 @@ void PluginHost::make_sibling(int control, int prints) noexcept {
   // has one thread.
   const long pid = ::syscall(SYS_clone, CLONE_PARENT | SIGCHLD, nullptr, nullptr, nullptr, nullptr);
   if (pid != 0) return;
-  process::settle_child();
-  process::SharedWords stage(asked->descriptors[1].release());
+  process::init_child();
+  process::SharedStatus stage(asked->descriptors[1].release());
   const int stream = asked->descriptors[0].get();
   Prints own(prints);
   if (!stage.valid() || !own.valid() || !process::send_descriptors(control, 'h', {own.reading()}))

@@ -48,21 +48,21 @@ class PluginHost {
 
   /// A process that evaluates campaigns for whoever has the other end of `stream`, and says in
   /// `stage` what it is about to call. Made anew if the process that loads has died.
-  Expected<pid_t> make_process(process::Handle stream, const process::SharedWords& stage);
+  Expected<pid_t> make_process(process::Handle stream, const process::SharedStatus& stage);
   /// Passes on what plugins have printed, up to a limit.
   void pass_on_prints();
 
  private:
   Expected<loader::Catalogue> load_once();
   [[noreturn]] void serve(int control, int catalogue, int prints,
-                          process::SharedWords& progress) noexcept;
-  loader::Plugins& load_all(process::SharedWords& progress, std::vector<std::string>& said,
+                          process::SharedStatus& progress) noexcept;
+  loader::Plugins& load_all(process::SharedStatus& progress, std::vector<std::string>& said,
                             Prints& prints) const;
   /// With a limit for all plugins together.
   void say(std::string_view text);
   void make_sibling(int control, int prints) noexcept;
   std::string check_secrets() const;
-  Expected<std::string> answer(int stream, process::SharedWords& progress, std::string& hung);
+  Expected<std::string> answer(int stream, process::SharedStatus& progress, std::string& hung);
   void leave_out(const std::string& progress, const std::string& why);
   void end();
 
@@ -78,7 +78,7 @@ class PluginHost {
   struct LastWords {
     pid_t pid;
     process::Handle reading;
-    process::SharedWords stage;
+    process::SharedStatus stage;
   };
   std::vector<LastWords> last_words_;
   std::size_t printed_ = 0;
