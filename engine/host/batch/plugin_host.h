@@ -25,7 +25,7 @@ std::vector<std::filesystem::path> library_folders(const std::filesystem::path& 
 /// while it is loaded or prepared is left out the next time; one that hangs costs its limit once.
 class PluginHost {
  public:
-  struct Wish {
+  struct Request {
     std::vector<std::filesystem::path> folders;  ///< of plugins
     /// Where libraries of plugins lie besides.
     std::vector<std::filesystem::path> readable;
@@ -35,7 +35,7 @@ class PluginHost {
     bool (*stopped)();          ///< may be null
     bool confine = true;
   };
-  explicit PluginHost(Wish wish);
+  explicit PluginHost(Request request);
   PluginHost(const PluginHost&) = delete;
   PluginHost& operator=(const PluginHost&) = delete;
   /// Ends it, and whatever plugins have left running.
@@ -66,7 +66,7 @@ class PluginHost {
   void leave_out(const std::string& progress, const std::string& why);
   void end();
 
-  Wish wish_;
+  Request request_;
   std::vector<std::string> notes_;
   std::map<std::filesystem::path, std::string> refused_;  ///< and why
   std::map<std::string, std::string> unprepared_;         ///< outputs, and why
