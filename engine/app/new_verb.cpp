@@ -98,7 +98,7 @@ fs::path holder_of(const std::string& id, const fs::path& site) {
     if (it->path().filename().string().starts_with('.')) it.disable_recursion_pending();
     if (it->path().filename() != host::config::manifest_name) continue;
     if (const auto text = host::storage::read_file(it->path());
-        text && host::config::salvage_id(*text) == id)
+        text && host::config::extract_id(*text) == id)
       return it->path().parent_path();
   }
   return {};

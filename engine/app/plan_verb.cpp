@@ -32,7 +32,7 @@ struct Programs {
 
 struct Plan {
   Lengths mm;
-  math::TripleWish wish;
+  math::TripleRequest wish;
   std::string even = "any";
   std::int64_t count = 5, choose = 1;
   Programs programs;
@@ -45,7 +45,7 @@ struct ProgramWish {
 };
 
 Expected<void> settle(Plan& plan) {
-  math::TripleWish& w = plan.wish;
+  math::TripleRequest& w = plan.wish;
   const auto one = [](const char* option, const std::string& text, double& to) -> Expected<void> {
     const auto length = length_of(option, text);
     if (!length) return fail(length.error());
@@ -93,7 +93,7 @@ void print_plan(std::size_t number, const math::TriplePlan& p, const math::Tripl
 }
 
 void print_plans(const Plan& plan, const math::TriplePlans& found) {
-  const math::TripleWish& w = plan.wish;
+  const math::TripleRequest& w = plan.wish;
   std::cout << "X " << mm_text(w.x) << " mm, Y " << mm_text(w.y) << " mm, over-travel "
             << mm_text(w.over_travel) << " mm at each end; steps are multiples of "
             << mm_text(w.resolution) << " mm" << (w.largest_step > 0.0 ? ", at most " : "")

@@ -80,7 +80,7 @@ Expected<void> check_user(const RunOptions& options) {
 /// In a process of their own.
 Expected<void> load_plugins(SetUp& place, const RunOptions& options) {
   const auto& signing = place.context.site.signing;
-  PluginHost& host = place.host.emplace(PluginHost::Wish{
+  PluginHost& host = place.host.emplace(PluginHost::Request{
       options.plugin_folders, library_folders(options.own_plugins),
       signing ? config::secret_files(*signing, options.site) : std::vector<fs::path>(),
       place.context, process::is_stop_requested, options.confine});

@@ -176,7 +176,7 @@ Expected<void> Signer::fork_process() {
 }
 
 void Signer::serve() const noexcept {
-  process::settle_child();
+  process::init_child();
   process::keep_silent();
   ::prctl(PR_SET_DUMPABLE, 0);  // nobody may look into its memory
   ::close(to_);

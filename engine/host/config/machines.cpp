@@ -32,7 +32,7 @@ void read_settings(TableReader& reader, RecordedAxis& axis) {
   const auto keep = [&](const char* key, std::optional<double> value) {
     if (value) axis.settings[key] = *value;
   };
-  if (const auto number = reader.whole("number")) axis.settings["number"] = *number;
+  if (const auto number = reader.integer("number")) axis.settings["number"] = *number;
   const auto travel = reader.span("travel");
   if (axis.rotary) {
     keep("reference_deg", reader.number("reference_deg"));
@@ -144,7 +144,7 @@ Checked<MachineRecord> parse_machine(std::string_view text, const std::string& f
   MachineRecord record;
   record.file = file;
   TableReader top(*root, machine_file(), file, errors);
-  top.whole("format");
+  top.integer("format");
   record.asset = top.text("asset");
   if (!record.asset.empty() && record.asset != asset)
     top.error("asset",

@@ -82,7 +82,7 @@ Axis read_axis(const std::string& name, TableReader& reader) {
   reader.settle("kind", axis.rotary ? "rotary" : "linear");
   axis.travel = reader.span("travel", axis.rotary ? deg : mm);
   if (axis.rotary) {
-    axis.teeth = reader.whole("teeth");
+    axis.teeth = reader.integer("teeth");
   } else {
     axis.screw_pitch = reader.number("screw_pitch_mm", mm);
     axis.fixed_point = reader.number("fixed_point_mm", mm);
@@ -206,7 +206,7 @@ Signing read_signing(TableReader& reader) {
   s.signer = reader.text("signer");
   s.time_stamp = reader.text("time_stamp");
   s.time_stamp_required = reader.text("time_stamp_missing") != "sign";
-  s.time_stamp_seconds = reader.whole("time_stamp_seconds").value_or(s.time_stamp_seconds);
+  s.time_stamp_seconds = reader.integer("time_stamp_seconds").value_or(s.time_stamp_seconds);
   check_signing(reader, s);
   reader.finish();
   return s;
@@ -249,7 +249,7 @@ Measurement read_measurement(TableReader& reader) {
     reader.error("lateral", "expected another axis than " + m.axis +
                                 ", which moves: along it the deviation is one of positioning");
   if (m.kind == "angle") m.lateral = reader.text("about");
-  m.exclude = reader.wholes("exclude");
+  m.exclude = reader.integers("exclude");
   m.exclude_reason = reader.text("exclude_reason");
   for (const auto& [axis, position] : reader.number_table("from", mm)) m.from[axis] = position;
   for (const auto& [axis, position] : reader.number_table("to", mm)) m.to[axis] = position;
@@ -346,7 +346,7 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
   Manifest manifest;
   Campaign& campaign = manifest.campaign;
   TableReader top(*root, campaign_file(), file, errors);
-  top.whole("format");
+  top.integer("format");
   read_campaign(top, campaign);
   campaign.machine = read_machine(top);
   restore_axis_order(*root, campaign.machine);
@@ -405,7 +405,7 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   std::vector<Error> errors;
   SiteFile site;
   TableReader top(*root, site_file(), file, errors);
-  top.whole("format");
+  top.integer("format");
   if (auto reader = top.table("laboratory")) {
     site.laboratory = {reader->text("name"),       reader->text("address"),
                        reader->text("country"),    reader->text("accreditation"),
@@ -454,7 +454,7 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   return site;
 }
 
-std::string salvage_id(std::string_view text) {
+std::string extract_id(std::string_view text) {
   std::size_t at = text.find("[campaign]");
   if (at == std::string_view::npos) return {};
   at = text.find('\n', at);

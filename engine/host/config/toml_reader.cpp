@@ -355,7 +355,7 @@ std::optional<double> TableReader::number_at(const Found& found, double scale) {
   return *value * scale;
 }
 
-std::optional<int> TableReader::whole(std::string_view name) {
+std::optional<int> TableReader::integer(std::string_view name) {
   const Found found = find(name, {Key::Holds::whole});
   if (found.node == nullptr) return std::nullopt;
   const auto value = found.node->value_exact<std::int64_t>();
@@ -438,7 +438,7 @@ std::optional<std::vector<double>> TableReader::numbers(std::string_view name) {
   return number_list(find(name, {Key::Holds::numbers}));
 }
 
-std::vector<std::uint32_t> TableReader::wholes(std::string_view name) {
+std::vector<std::uint32_t> TableReader::integers(std::string_view name) {
   const Found found = find(name, {Key::Holds::wholes});
   std::vector<std::uint32_t> list;
   for (const double value : number_list(found).value_or(std::vector<double>{}))

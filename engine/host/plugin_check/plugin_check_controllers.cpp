@@ -191,7 +191,7 @@ std::string wrong_table(const Output& o, const KnownError& k, const Settings& op
   if (!w.files.empty() && !w.refused.empty()) return w.refused;
   if (!w.refused.empty()) return {};
   for (const LoadedTable& t : w.tables)
-    if (const auto sound = math::sound(t); !sound) return sound.error().message;
+    if (const auto sound = math::validate_table(t); !sound) return sound.error().message;
   const auto after = left(k, w.tables);
   if (!after) {
     refused = "no table of that axis alone";

@@ -126,7 +126,7 @@ class CycleReader {
     if (!direction.empty() && c_.pendulum)
       reader_.error("direction", "stands only beside order = \"unidirectional\"");
     c_.direction = direction == "-" ? -1.0 : 1.0;
-    if (const auto runs = reader_.whole("runs")) c_.runs = static_cast<std::uint32_t>(*runs);
+    if (const auto runs = reader_.integer("runs")) c_.runs = static_cast<std::uint32_t>(*runs);
   }
 
   void read_times() {

@@ -157,7 +157,7 @@ class EffectReader {
 std::vector<Formula> read_simulation(config::TableReader& top, Specification& s) {
   auto reader = top.table("simulation");
   if (!reader) return {};
-  const auto seed = reader->whole("seed");
+  const auto seed = reader->integer("seed");
   if (!seed)
     reader->error("seed", "expected a whole number: the same seed gives the same readings");
   s.seed = static_cast<std::uint64_t>(seed.value_or(1));

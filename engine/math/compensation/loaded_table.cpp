@@ -84,7 +84,7 @@ std::optional<Correction> correction_of(const std::vector<LoadedTable>& tables,
   };
 }
 
-Expected<void> sound(const LoadedTable& t) {
+Expected<void> validate_table(const LoadedTable& t) {
   const auto finite = [](const std::vector<double>& v) {
     return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
   };

@@ -26,7 +26,8 @@ double rounded(double value, const AxisTargets& wish) {
 /// There and back over the stops as often as asked; `before` and `after` are the points of turning.
 std::vector<MeasuringMove> to_and_fro(const std::vector<std::vector<double>>& stops,
                                       const std::vector<double>& before,
-                                      const std::vector<double>& after, const MeasuringWish& wish) {
+                                      const std::vector<double>& after,
+                                      const MeasuringRequest& wish) {
   std::vector<MeasuringMove> moves{{before}};
   for (int run = 0; run < wish.runs; ++run) {
     for (const auto& stop : stops) moves.push_back({stop, wish.dwell});
@@ -41,7 +42,7 @@ std::vector<MeasuringMove> to_and_fro(const std::vector<std::vector<double>>& st
 
 /// Along a straight line of evenly spaced stops.
 MeasuringPath line_path(std::string name, const Rectangle& r, double y0, double step_x,
-                        double step_y, int steps, const MeasuringWish& wish) {
+                        double step_y, int steps, const MeasuringRequest& wish) {
   MeasuringPath path{std::move(name), {r.x, r.y}, {false, false}, {}};
   const double further = std::max(std::fabs(step_x), std::fabs(step_y));
   const auto at = [&](double i) { return std::vector{r.from_x + i * step_x, y0 + i * step_y}; };
@@ -59,7 +60,7 @@ MeasuringPath line_path(std::string name, const Rectangle& r, double y0, double 
   return path;
 }
 
-MeasuringPath step_path(const std::string& name, const Volume& v, const MeasuringWish& wish) {
+MeasuringPath step_path(const std::string& name, const Volume& v, const MeasuringRequest& wish) {
   MeasuringPath path{name, v.axes, std::vector(3, false), {}};
   std::vector<double> start(3), sign(3);
   for (std::size_t a = 0; a < 3; ++a) {
@@ -130,7 +131,7 @@ Expected<std::vector<double>> axis_targets(const AxisTargets& wish) {
 }
 
 MeasuringPath axis_path(const std::string& axis, bool rotary, const std::vector<double>& targets,
-                        const MeasuringWish& wish) {
+                        const MeasuringRequest& wish) {
   std::vector<std::vector<double>> stops;
   for (const double t : targets) stops.push_back({t});
   return {axis,
@@ -141,23 +142,23 @@ MeasuringPath axis_path(const std::string& axis, bool rotary, const std::vector<
 }
 
 MeasuringPath probe_path(const std::string& axis, bool rotary, double start, double from, double to,
-                         const MeasuringWish& wish) {
+                         const MeasuringRequest& wish) {
   return {"sign-probe-" + axis,
           {axis},
           {rotary},
           {{{start}}, {{from}, wish.dwell, true}, {{to}, wish.dwell, true}}};
 }
 
-std::vector<MeasuringPath> diagonal_paths(const Rectangle& r, const MeasuringWish& wish) {
+std::vector<MeasuringPath> diagonal_paths(const Rectangle& r, const MeasuringRequest& wish) {
   return {line_path("D1", r, r.from_y, r.step_x, r.step_y, r.n, wish),
           line_path("D2", r, r.from_y + r.n * r.step_y, r.step_x, -r.step_y, r.n, wish)};
 }
 
-MeasuringPath half_diagonal_path(const Rectangle& r, const MeasuringWish& wish) {
+MeasuringPath half_diagonal_path(const Rectangle& r, const MeasuringRequest& wish) {
   return line_path("D3", r, r.from_y, 2.0 * r.step_x, r.step_y, r.n / 2, wish);
 }
 
-std::vector<MeasuringPath> step_diagonal_paths(const Volume& v, const MeasuringWish& wish) {
+std::vector<MeasuringPath> step_diagonal_paths(const Volume& v, const MeasuringRequest& wish) {
   std::vector<MeasuringPath> paths;
   for (const char* name : {"PPP", "NPP", "PNP", "PPN"}) paths.push_back(step_path(name, v, wish));
   return paths;

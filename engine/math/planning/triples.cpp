@@ -59,7 +59,7 @@ bool is_sampling(std::int64_t n, double step, double length) {
   return n >= s.steps && nanometres(step) <= nanometres(s.largest_step);
 }
 
-Search search_of(const TripleWish& w) {
+Search search_of(const TripleRequest& w) {
   Search s;
   const double ux = w.x - 2.0 * w.over_travel, uy = w.y - 2.0 * w.over_travel;
   s.ux = nanometres(ux);
@@ -131,13 +131,13 @@ void for_each_plan(const Search& s, const Take& take) {
   }
 }
 
-bool anything(const TripleWish& wish) {
+bool anything(const TripleRequest& wish) {
   bool any = false;
   for_each_plan(search_of(wish), [&](const Found&) { return any = true; });
   return any;
 }
 
-TriplePlan plan_of(const Found& f, const TripleWish& w) {
+TriplePlan plan_of(const Found& f, const TripleRequest& w) {
   TriplePlan p;
   p.a = f.triple->a, p.b = f.triple->b, p.c = f.triple->c;
   p.q = f.q, p.n = f.n;
@@ -244,7 +244,7 @@ void list(std::vector<TriplePlan>& plans, const TriplePlan& p, TripleReason why,
   plans.back().reasons = {why};
 }
 
-std::vector<TriplePlan> chosen(const Search& s, const TripleWish& w) {
+std::vector<TriplePlan> chosen(const Search& s, const TripleRequest& w) {
   Leaders leaders(w.count, w.even);
   for_each_plan(s, [&](const Found& f) {
     leaders.see(plan_of(f, w));
@@ -270,7 +270,7 @@ std::vector<TriplePlan> chosen(const Search& s, const TripleWish& w) {
 }
 
 /// The wish without one of its limits; nothing if the wish does not have it.
-std::optional<TripleWish> without(TripleWish w, TripleLimit limit) {
+std::optional<TripleRequest> without(TripleRequest w, TripleLimit limit) {
   bool had = true;
   switch (limit) {
     case TripleLimit::largest_step:
@@ -304,8 +304,8 @@ std::optional<TripleWish> without(TripleWish w, TripleLimit limit) {
   return had ? std::optional(w) : std::nullopt;
 }
 
-void explain_nothing(const TripleWish& wish, TriplePlans& out) {
-  TripleWish free = wish;
+void explain_nothing(const TripleRequest& wish, TriplePlans& out) {
+  TripleRequest free = wish;
   std::vector<TripleLimit> active;
   for (const auto limit : {TripleLimit::largest_step, TripleLimit::max_points, TripleLimit::pitch,
                            TripleLimit::density, TripleLimit::even, TripleLimit::hypotenuse}) {
@@ -335,7 +335,7 @@ std::string wrong_count(const char* what, std::int64_t n, std::int64_t least, st
          ", found " + std::to_string(n);
 }
 
-std::string wrong(const TripleWish& w) {
+std::string wrong(const TripleRequest& w) {
   const double finest = 1.0 / per_metre;
   std::vector<std::string> all = {
       wrong_length("travel of X", w.x, finest, longest_travel),
@@ -391,7 +391,7 @@ bool stands_before(const TriplePlan& one, const TriplePlan& other, EvenSteps eve
   return key(one) < key(other);
 }
 
-Expected<TriplePlans> plan_triples(const TripleWish& wish) {
+Expected<TriplePlans> plan_triples(const TripleRequest& wish) {
   if (std::string complaint = wrong(wish); !complaint.empty()) return fail(std::move(complaint));
   TriplePlans out;
   const Search search = search_of(wish);

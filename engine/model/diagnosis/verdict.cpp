@@ -311,7 +311,7 @@ class Judge {
   }
 
   void count_false_alarms(Verdict& v) const {
-    const Shuffles shuffles =
+    const SignFlips shuffles =
         shuffled(*f_.bench, f_.best, noise(), f_.part.table, f_.repeats.pass, f_.seed);
     const std::vector<char> named = named_in(*f_.bench, f_.best, shuffles, f_.chance);
     const PlaceTests tests(f_.part, f_.repeats, f_.bench->root_weight(), f_.bench->basis(f_.best),

@@ -358,7 +358,7 @@ std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
   return places;
 }
 
-std::vector<Place> seats_of(const Leftover& left) {
+std::vector<Place> seats_of(const Residuals& left) {
   const Factors factors(left.part, left.repeats);
   const double n = static_cast<double>(left.residual.size());
   const double squares = left.residual.squaredNorm();

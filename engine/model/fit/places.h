@@ -10,7 +10,7 @@
 
 namespace nonio::model {
 
-struct Leftover {
+struct Residuals {
   const Part& part;
   const Repeats& repeats;
   const VectorXd& root_weight;
@@ -38,7 +38,7 @@ class PlaceTests {
 /// The fewest places that hold what is left: one after the other, each with all that its factors
 /// say together ("direction x time" with what is constant in time), as long as the evidence pays
 /// for their columns. For structure that no effect explains.
-std::vector<Place> seats_of(const Leftover&);
+std::vector<Place> seats_of(const Residuals&);
 
 /// The factors that a term's part varies with ("direction", "position", "time", ...), by the share
 /// of its sum of squares: those whose own share is at least a twentieth, or whose product with

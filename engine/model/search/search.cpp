@@ -108,9 +108,9 @@ double Chance::corrected(double p) const {
   return -std::expm1(trials * std::log1p(-std::min(p, 1.0)));
 }
 
-Shuffles shuffled(const Workbench& bench, const State& complete, const VectorXd& residual,
-                  const Observations& o, const std::vector<std::uint32_t>& pass,
-                  std::uint64_t seed) {
+SignFlips shuffled(const Workbench& bench, const State& complete, const VectorXd& residual,
+                   const Observations& o, const std::vector<std::uint32_t>& pass,
+                   std::uint64_t seed) {
   constexpr std::size_t stretch = 5;  // readings whose sign is flipped together
   constexpr Index shuffles = 200;
   std::vector<Index> block(pass.size());
@@ -125,7 +125,7 @@ Shuffles shuffled(const Workbench& bench, const State& complete, const VectorXd&
   std::mt19937_64 random(seed);
   MatrixXd sign(blocks, shuffles);
   for (double& x : sign.reshaped()) x = (random() >> 63) != 0 ? 1.0 : -1.0;
-  Shuffles out;
+  SignFlips out;
   out.noise.resize(residual.size(), shuffles);
   for (Index s = 0; s < shuffles; ++s)
     for (Index i = 0; i < residual.size(); ++i)
@@ -159,7 +159,7 @@ struct Added {
 
 class ChanceOf {
  public:
-  ChanceOf(const Workbench& bench, const State& complete, const Shuffles& shuffles)
+  ChanceOf(const Workbench& bench, const State& complete, const SignFlips& shuffles)
       : bench_(bench),
         shuffles_(shuffles),
         dof_(bench.readings() - static_cast<double>(bench.zeros() + complete.parameters)) {}
@@ -212,13 +212,13 @@ class ChanceOf {
   }
 
   const Workbench& bench_;
-  const Shuffles& shuffles_;
+  const SignFlips& shuffles_;
   double dof_;
 };
 
 }  // namespace
 
-Chance measure_chance(const Workbench& bench, const State& complete, const Shuffles& shuffles) {
+Chance measure_chance(const Workbench& bench, const State& complete, const SignFlips& shuffles) {
   const ChanceOf of(bench, complete, shuffles);
   // Largest fall for each number of parameters: an F-test costs more than all else.
   std::vector<std::map<double, double>> largest(static_cast<std::size_t>(shuffles.squares.size()));
@@ -241,7 +241,7 @@ Chance measure_chance(const Workbench& bench, const State& complete, const Shuff
   return {std::max(static_cast<double>(largest.size()) / std::max(sum, 1e-12), 1.0)};
 }
 
-std::vector<char> named_in(const Workbench& bench, const State& complete, const Shuffles& shuffles,
+std::vector<char> named_in(const Workbench& bench, const State& complete, const SignFlips& shuffles,
                            const Chance& chance) {
   const ChanceOf of(bench, complete, shuffles);
   std::vector<char> named(static_cast<std::size_t>(shuffles.squares.size()), 0);

@@ -23,22 +23,22 @@ struct Chance {
 
 /// Noise made of `residual`: the signs of short stretches of its passes flipped at random (what
 /// neighbours share within a pass stays), less what the zeros and a state's columns say of it.
-struct Shuffles {
+struct SignFlips {
   MatrixXd noise;        ///< a column for each shuffle
   MatrixXd products;     ///< a row for each shuffle: with all columns of the bench
   MatrixXd in_complete;  ///< of all columns, what they have in the directions of the state
   VectorXd squares;      ///< of each shuffle
 };
-Shuffles shuffled(const Workbench& bench, const Workbench::State& complete,
-                  const VectorXd& residual, const Observations& o,
-                  const std::vector<std::uint32_t>& pass, std::uint64_t seed);
+SignFlips shuffled(const Workbench& bench, const Workbench::State& complete,
+                   const VectorXd& residual, const Observations& o,
+                   const std::vector<std::uint32_t>& pass, std::uint64_t seed);
 
 Chance measure_chance(const Workbench& bench, const Workbench::State& complete,
-                      const Shuffles& shuffles);
+                      const SignFlips& shuffles);
 
 /// Of each shuffle, whether an effect would be named.
 std::vector<char> named_in(const Workbench& bench, const Workbench::State& complete,
-                           const Shuffles& shuffles, const Chance& chance);
+                           const SignFlips& shuffles, const Chance& chance);
 
 /// F-test of one effect of a state against the rest; not corrected for any search.
 double p_of(const Workbench& bench, const Workbench::State& state, std::size_t effect);

@@ -12,7 +12,7 @@ namespace nonio::programs {
 namespace {
 
 using math::MeasuringPath;
-using math::MeasuringWish;
+using math::MeasuringRequest;
 
 constexpr double mm = 1e-3;
 constexpr double deg = 1.0 / deg_per_rad;
@@ -327,7 +327,7 @@ class Requests {
   const OutputInput& in_;
   const Settings& o_;
   std::optional<Plan> plan_;
-  MeasuringWish wish_;
+  MeasuringRequest wish_;
   std::vector<Program> programs_;
 };
 

@@ -70,7 +70,7 @@ TEST(TenThousandCurves, EveryEntryIsWithinHalfAStep) {
     ASSERT_TRUE(read) << rebuilt(k, seed, round) << ": " << read.error().message;
     ASSERT_EQ(read->size(), 1U);
     const LoadedTable& t = read->front();
-    ASSERT_TRUE(math::sound(t));
+    ASSERT_TRUE(math::validate_table(t));
     const auto curve = curve_of(b);
     const bool both = !t.minus.empty();
     const auto error_at = [&](double x) {

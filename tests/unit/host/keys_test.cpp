@@ -59,7 +59,7 @@ TEST(Keys, WhatIsReadIsDeclaredAndTheReverse) {
   const auto kind = [](config::TableReader& r) { r.text("kind"); };
   const auto both = [](config::TableReader& r) {
     r.text("kind");
-    r.whole("teeth");
+    r.integer("teeth");
   };
   EXPECT_EQ(read("kind = \"linear\"", kind), "");
   EXPECT_EQ(read("kind = \"rotary\"\nteeth = 3", both), "");
@@ -79,7 +79,7 @@ TEST(Keys, KnownOnlyUnderACondition) {
   const auto settled = [](config::TableReader& r) {
     r.text("kind");
     r.settle("kind", "rotary");
-    r.whole("teeth");
+    r.integer("teeth");
   };
   EXPECT_EQ(read("teeth = 3", settled), "");
 }

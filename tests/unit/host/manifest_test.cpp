@@ -168,10 +168,10 @@ TEST(Manifest, AllErrorsAtOnce) {
 }
 
 TEST(Manifest, SalvagesTheIdOfABrokenFile) {
-  EXPECT_EQ(config::salvage_id("format = 1\n[campaign]\n  id = \"x.1\" # c\n[machine\n"), "x.1");
-  EXPECT_EQ(config::salvage_id("[campaign]\ndate = 1\n[other]\nid = \"x\"\n"), "");
-  EXPECT_EQ(config::salvage_id("[campaign]\nid = \"../x\"\n"), "");
-  EXPECT_EQ(config::salvage_id(""), "");
+  EXPECT_EQ(config::extract_id("format = 1\n[campaign]\n  id = \"x.1\" # c\n[machine\n"), "x.1");
+  EXPECT_EQ(config::extract_id("[campaign]\ndate = 1\n[other]\nid = \"x\"\n"), "");
+  EXPECT_EQ(config::extract_id("[campaign]\nid = \"../x\"\n"), "");
+  EXPECT_EQ(config::extract_id(""), "");
 }
 
 TEST(Manifest, SiteFile) {

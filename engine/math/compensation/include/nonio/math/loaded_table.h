@@ -30,6 +30,6 @@ std::optional<Correction> correction_of(const std::vector<LoadedTable>& tables,
                                         std::string_view axis, double present = 0.0);
 
 /// Whether positions rise, numbers are finite and there are as many as the points need.
-Expected<void> sound(const LoadedTable& table);
+Expected<void> validate_table(const LoadedTable& table);
 
 }  // namespace nonio::math

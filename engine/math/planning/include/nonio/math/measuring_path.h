@@ -24,7 +24,7 @@ struct MeasuringPath {
   std::vector<MeasuringMove> moves;
 };
 
-struct MeasuringWish {
+struct MeasuringRequest {
   int runs = 5;
   double dwell = 5.0;        ///< s
   double over_travel = 0.0;  ///< beyond both ends, so that every target is reached from one side
@@ -59,11 +59,11 @@ std::vector<double> cardinal_angles(double first, double last);
 
 /// Each run: all targets upwards, and downwards if both directions are asked for.
 MeasuringPath axis_path(const std::string& axis, bool rotary, const std::vector<double>& targets,
-                        const MeasuringWish& wish);
+                        const MeasuringRequest& wish);
 
 /// Two stops of an axis at which a person reads the instrument, both reached from `start`'s side.
 MeasuringPath probe_path(const std::string& axis, bool rotary, double start, double from, double to,
-                         const MeasuringWish& wish);
+                         const MeasuringRequest& wish);
 
 /// A rectangle with n equal steps.
 struct Rectangle {
@@ -73,9 +73,9 @@ struct Rectangle {
 };
 /// D1: both axes upwards; D2: X upwards while Y goes down. The over-travel is that of the axis
 /// which goes further, on the diagonal itself.
-std::vector<MeasuringPath> diagonal_paths(const Rectangle& r, const MeasuringWish& wish);
+std::vector<MeasuringPath> diagonal_paths(const Rectangle& r, const MeasuringRequest& wish);
 /// D3, from the start of D1 to half of Y at the end of X, with every second stop along X. n even.
-MeasuringPath half_diagonal_path(const Rectangle& r, const MeasuringWish& wish);
+MeasuringPath half_diagonal_path(const Rectangle& r, const MeasuringRequest& wish);
 
 /// Step diagonals: X, then Y, then Z, a reading after each, n times; PPP NPP PNP PPN (P: the axis
 /// goes upwards, N: downwards). Three axes in the order of the steps. Always from the start to the
@@ -85,6 +85,6 @@ struct Volume {
   std::vector<double> from, step;
   int n = 0;
 };
-std::vector<MeasuringPath> step_diagonal_paths(const Volume& v, const MeasuringWish& wish);
+std::vector<MeasuringPath> step_diagonal_paths(const Volume& v, const MeasuringRequest& wish);
 
 }  // namespace nonio::math

@@ -45,7 +45,7 @@ enum class EvenSteps : std::uint8_t {
   require,
 };
 
-struct TripleWish {
+struct TripleRequest {
   double x = 0.0, y = 0.0;    ///< travel, m
   double over_travel = 0.0;   ///< kept free at each end of both axes, m
   double resolution = 1e-3;   ///< r, m; steps are whole multiples of it
@@ -112,7 +112,7 @@ struct TriplePlans {
 /// A search of more than this many plans is refused, before it begins.
 inline constexpr std::int64_t most_tried = 20'000'000;
 
-Expected<TriplePlans> plan_triples(const TripleWish& wish);
+Expected<TriplePlans> plan_triples(const TripleRequest& wish);
 
 /// A row a plan, with the names of the contract and the noise gains.
 PointTable triple_table(const std::vector<TriplePlan>& plans);

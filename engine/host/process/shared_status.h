@@ -7,15 +7,15 @@
 namespace nonio::host::process {
 
 /// What a worker is doing, readable by its parent after its death.
-class SharedWords {
+class SharedStatus {
  public:
-  SharedWords();
+  SharedStatus();
   /// Those behind the descriptor of others.
-  explicit SharedWords(int descriptor);
-  SharedWords(const SharedWords&) = delete;
-  SharedWords(SharedWords&& other) noexcept;
-  SharedWords& operator=(SharedWords&& other) noexcept;
-  ~SharedWords();
+  explicit SharedStatus(int descriptor);
+  SharedStatus(const SharedStatus&) = delete;
+  SharedStatus(SharedStatus&& other) noexcept;
+  SharedStatus& operator=(SharedStatus&& other) noexcept;
+  ~SharedStatus();
   bool valid() const { return data_ != nullptr; }
   void set(const std::string& words_now);
   std::string get() const;
