@@ -13,7 +13,7 @@ namespace {}
 
 // The second pass takes away what rounding left of the first: sum(x - m)/n is 0 only in exact sums.
 double mean(std::span<const double> x) {
-  if (x.empty()) return none;
+  if (x.empty()) return not_given;
   const double n = static_cast<double>(x.size());
   double sum = 0.0;
   for (const double v : x) sum += v;
@@ -25,7 +25,7 @@ double mean(std::span<const double> x) {
 
 // s^2 = (sum d^2 - (sum d)^2/n)/(n - 1), d = x - mean; the second term is 0 but for rounding.
 double standard_deviation(std::span<const double> x) {
-  if (x.size() < 2) return none;
+  if (x.size() < 2) return not_given;
   const double n = static_cast<double>(x.size());
   const double m = mean(x);
   double squares = 0.0, rest = 0.0;
@@ -37,9 +37,9 @@ double standard_deviation(std::span<const double> x) {
 }
 
 double median(std::span<const double> x) {
-  if (x.empty()) return none;
+  if (x.empty()) return not_given;
   std::vector<double> v(x.begin(), x.end());
-  if (std::any_of(v.begin(), v.end(), [](double a) { return std::isnan(a); })) return none;
+  if (std::any_of(v.begin(), v.end(), [](double a) { return std::isnan(a); })) return not_given;
   const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
   std::nth_element(v.begin(), middle, v.end());
   if (v.size() % 2 == 1) return *middle;
