@@ -17,7 +17,7 @@ std::string dropped(const std::string& text, const std::string& effect) {
   return out ? *out : "refused: " + out.error().message;
 }
 
-TEST(ModelEdit, OneLine) {
+TEST(ModelEdit, AnEffectIsAddedToAListOnOneLine) {
   EXPECT_EQ(added("[model]\neffects = [\"a:X\"]\n"),
             "[model]\neffects = [\"a:X\", \"backlash:X\"]\n");
   EXPECT_EQ(added("[model]\neffects = [ 'a:X' , ] # why\n"),
@@ -59,7 +59,7 @@ TEST(ModelEdit, LettersOutsideAsciiBeforeTheList) {
             "model = { note = \"più µm\", effects = [\"a:X\", \"backlash:X\"] } # è\n");
 }
 
-TEST(ModelEdit, WithoutATable) {
+TEST(ModelEdit, AModelTableIsAddedWhereThereIsNone) {
   EXPECT_EQ(added("format = 1"), "format = 1\n\n[model]\neffects = [\"backlash:X\"]\n");
   EXPECT_EQ(added(""), "\n[model]\neffects = [\"backlash:X\"]\n");
   EXPECT_EQ(added("[model]\ncompensate = \"model\"\n[run]\n"),
@@ -83,7 +83,7 @@ TEST(ModelEdit, RefusesWhatItCannotDoExactly) {
   EXPECT_FALSE(without_effect("format = 1\n", "a:X"));
 }
 
-TEST(ModelEdit, Drops) {
+TEST(ModelEdit, AnEffectIsTakenOutOfTheList) {
   const std::string three = "effects = [\"a:X\", \"b:X\",  'c:X']\n";
   EXPECT_EQ(dropped("[model]\n" + three, "a:X"), "[model]\neffects = [\"b:X\",  'c:X']\n");
   EXPECT_EQ(dropped("[model]\n" + three, "b:X"), "[model]\neffects = [\"a:X\", 'c:X']\n");

@@ -203,7 +203,7 @@ TEST_F(RegisterTest, TheSequenceBeginsAnewWithTheYearOnlyIfItIsInThePattern) {
   EXPECT_EQ(drawn(strange, "c9", first_data).issue.number, "2026-04");
 }
 
-TEST(Number, Text) {
+TEST(Number, FollowsThePatternOrIsRefused) {
   EXPECT_EQ(*number_text("{year}-{number:4}", "2026", 12), "2026-0012");
   EXPECT_EQ(*number_text("{number}", "2026", 12), "12");
   EXPECT_EQ(*number_text("LAT 123-{year}{number:3}", "2026", 12345), "LAT 123-202612345");
