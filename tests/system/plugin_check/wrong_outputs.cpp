@@ -39,7 +39,8 @@ Expected<OutputResult> named(const OutputInput& in) {
 }
 Expected<OutputResult> crashing(const OutputInput& in) {
   volatile int* nowhere = nullptr;
-  if (in.results.analyses.empty()) *nowhere = 1;  // NOLINT(clang-analyzer-core.NullDereference): the fault is the test
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): the fault is the test
+  if (in.results.analyses.empty()) *nowhere = 1;
   return file("a.txt", "a");
 }
 Expected<OutputResult> choosing(const OutputInput& in) {

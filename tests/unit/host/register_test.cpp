@@ -144,6 +144,16 @@ TEST_F(RegisterTest, ANumberThatWasNotIssuedIsUsedAgainAndSaysWhy) {
   EXPECT_EQ(entry("2026-0001").reason, "");
 }
 
+TEST_F(RegisterTest, AClockThatWasSetBackDrawsNoNumber) {
+  Register r = open();
+  issued(r, "c1", first_data);
+  const auto earlier = r.draw("c2", other_readings, "2026-11-20");
+  ASSERT_FALSE(earlier);
+  EXPECT_NE(earlier.error().message.find("2026-0001 was issued on 2026-11-21"), std::string::npos)
+      << earlier.error().message;
+  EXPECT_EQ(drawn(r, "c2", other_readings).issue.number, "2026-0002");
+}
+
 TEST_F(RegisterTest, OtherDataAreAnAmendmentThatNamesWhatItReplaces) {
   Register r = open();
   issued(r, "c1", first_data);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "nonio/reports/document.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,7 +9,6 @@
 
 #include "fixtures.h"
 #include "font_reader.h"
-#include "nonio/reports/document.h"
 #include "nonio/reports/text.h"
 #include "pdf_reader.h"
 

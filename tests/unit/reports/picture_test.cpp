@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "nonio/reports/picture.h"
+
 #include "fixtures.h"
 #include "nonio/reports/document.h"
-#include "nonio/reports/picture.h"
 #include "pdf_reader.h"
 #include "png_file.h"
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "nonio/sdk/text.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +9,6 @@
 #include "nonio/sdk/column_map.h"
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/json.h"
-#include "nonio/sdk/text.h"
 
 using namespace nonio;
 

@@ -72,6 +72,15 @@ TEST(RotaryFit, ResidualsHaveTheirSigns) {
   EXPECT_NEAR(fit_rotary(centres, false)->axial[7], -3 * um, 0.05 * um);
 }
 
+TEST(RotaryFit, ABallAheadOfItsAngleHasAPositiveTangentialResidual) {
+  const Table t;
+  auto centres = t.at(full_turn(12));
+  centres[5].at = t.at(centres[5].angle + 3 * um / t.radius).at;
+  EXPECT_NEAR(fit_rotary(centres, false)->tangential[5], 3 * um * (1 - 1.0 / 12), 0.05 * um);
+  for (auto& c : centres) c.angle = -c.angle;  // the encoder counts the other way
+  EXPECT_NEAR(fit_rotary(centres, false)->tangential[5], -3 * um * (1 - 1.0 / 12), 0.05 * um);
+}
+
 TEST(RotaryFit, WeightsAreReadings) {
   const Table t;
   auto centres = t.at(full_turn(6));
@@ -165,6 +174,9 @@ TEST(RotaryFit, DoubleWaveIsTheEllipse) {
   EXPECT_NEAR(wave.amplitude, 0.5 * 40 * urad / 2, 0.4 * um);
   EXPECT_LT(wave.p, 1e-4);
   EXPECT_LT(wave.left, 0.5 * um);
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    EXPECT_NEAR(fit->radial[i], wave.amplitude * std::cos(2 * (fit->around[i] - wave.phase)),
+                1.0 * um);
   EXPECT_GT(math::double_wave(*fit, centres, fit->axial).p, 0.01);
   // An arc cannot tell an ellipse from a shift.
   const auto part = t.at(arc(0, 150 * deg, 11));

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "nonio/math/sphere.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "nonio/math/distributions.h"
-#include "nonio/math/sphere.h"
 
 namespace nonio::math {
 namespace {

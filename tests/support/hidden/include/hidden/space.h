@@ -8,8 +8,9 @@
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/observations.h"
 
-/// Campaigns of machines with several axes, read on an exact machine (tests/support/machine): homogeneous
-/// transforms, errors that are waves and not splines. One error is left out of the model.
+/// Campaigns of machines with several axes, read on an exact machine (tests/support/machine):
+/// homogeneous transforms, errors that are waves and not splines. One error is left out of the
+/// model.
 namespace nonio::hidden {
 
 enum class Story {
