@@ -4,7 +4,7 @@
 
 NONIO_MUTANT in the environment says which one is alive; without it the copy does what the source does. `change` is a
 list of [from, to]: each place of the text `from` becomes a choice between both expressions; `statement` the same for
-statements."""
+statements; `insert` puts the statement `to` behind `from`. A mutant with `source` is of that file only."""
 import pathlib
 import sys
 import tomllib
@@ -24,8 +24,11 @@ def main():
     declared, source, copy = map(pathlib.Path, sys.argv[1:])
     text = source.read_text()
     for name, mutant in tomllib.loads(declared.read_text())["mutant"].items():
+        if mutant.get("source", source.name) != source.name:
+            continue
         for kind, form in (("change", '(alive("{name}") ? ({new}) : ({old}))'),
-                           ("statement", 'if (alive("{name}")) {{ {new}; }} else {{ {old}; }}')):
+                           ("statement", 'if (alive("{name}")) {{ {new}; }} else {{ {old}; }}'),
+                           ("insert", '{old} if (alive("{name}")) {{ {new}; }}')):
             for old, new in mutant.get(kind, []):
                 if old not in text:
                     sys.exit(f"{declared}: mutant {name}: expected \"{old}\" in {source}, not found; it needs the new text")
