@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <stdexcept>
 
 namespace nonio::sign_tests {
 
@@ -19,7 +20,8 @@ TimeServer::TimeServer(Holder holder, sign::Time time, Mood mood)
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   socklen_t size = sizeof address;
-  ::bind(socket_, reinterpret_cast<sockaddr*>(&address), size);
+  if (::bind(socket_, reinterpret_cast<sockaddr*>(&address), size) != 0)
+    throw std::runtime_error("a port for the time server");
   ::listen(socket_, 8);
   ::getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size);
   port_ = ntohs(address.sin_port);

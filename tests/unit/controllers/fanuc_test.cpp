@@ -240,13 +240,13 @@ TEST(Fanuc, SumsFollowTheCurveWithinHalfAUnit) {
     int sum = 0;
     for (int k = 101; k <= n.at(3622); ++k) {
       sum += n.at(10000 + k);
-      const double wanted = -(curve.mean[static_cast<std::size_t>(k - 100 + 10)] - zero);
+      const double wanted = -(curve.mean.at(static_cast<std::size_t>(k) - 90) - zero);
       ASSERT_LE(std::fabs(sum * um - wanted), 0.5 * um * (1 + 1e-9)) << "seed " << seed;
     }
     sum = 0;
     for (int k = 100; k >= n.at(3621); --k) {
       sum -= n.at(10000 + k);
-      const double wanted = -(curve.mean[static_cast<std::size_t>(k - 1 - 100 + 10)] - zero);
+      const double wanted = -(curve.mean.at(static_cast<std::size_t>(k) - 91) - zero);
       ASSERT_LE(std::fabs(sum * um - wanted), 0.5 * um * (1 + 1e-9)) << "seed " << seed;
     }
     ASSERT_LT(prediction(*r, "M").after, 1.1 * um);

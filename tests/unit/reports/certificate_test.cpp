@@ -347,10 +347,9 @@ TEST_F(Certificate, AnAmendmentNamesWhatItReplacesAndWhy) {
   issue.why = "wrong file";
   const std::string page = text(c);
   for (const char* what :
-       {"This document replaces 2026-0003 of 2026-10-01, which is no longer valid. "
-        "Reason: wrong file",
-        "x.csv, line 7", "1,+,50,4.1 → 1,+,50,4.3", "2,-,0,1 → (nothing)", "and 12 more places",
-        "campaign.toml, machine.serial", "S-1 → S-2", "y.bin"})
+       {"This document replaces 2026-0003 of 2026-10-01, which is no longer valid.",
+        "Reason: wrong file", "x.csv, line 7", "1,+,50,4.1 → 1,+,50,4.3", "2,-,0,1 → (nothing)",
+        "and 12 more places", "campaign.toml, machine.serial", "S-1 → S-2", "y.bin"})
     EXPECT_TRUE(says(page, what)) << what << "\n" << page;
   issue.changes.clear();
   EXPECT_TRUE(says(text(c), "Its data are unchanged."));

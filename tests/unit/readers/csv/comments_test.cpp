@@ -105,8 +105,7 @@ TEST(Comments, NothingElseIsDoubted) {
                               "target 5 in",
                               "1 unit = 1 nm",
                               "a\tb\tc [m]",
-                              "Pr\xfc"
-                              "fung in mm"})
+                              "Pr\374fung in mm"})
     EXPECT_TRUE(doubts(with(comment)).empty()) << comment;
   EXPECT_TRUE(doubts(with("deviations in mm", "target_mm,position_mm")).empty());
 }
