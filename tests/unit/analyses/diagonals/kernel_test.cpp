@@ -179,6 +179,9 @@ TEST(Diagonals, ABowOfASingleColumnNeedsItsYaw) {
   EXPECT_LT(blind.closure.S_odd, 0.01 * um);
   const auto seen = solved(read(e, rect, {0.5, 8.5}));
   EXPECT_NEAR(seen.EYX_even.value[15], 40 * um, 0.05 * um);
+  ASSERT_EQ(seen.ECX.value.size(), rect.n + 1);
+  for (std::size_t i = 0; i <= rect.n; ++i)
+    EXPECT_NEAR(seen.ECX.value[i], e.ECX(12.0 * static_cast<double>(i) / 30.0), 0.01e-6);
 }
 
 // The 7.8 um of the derivation: pitch of the sides +-16 um, yaw ignored, X read at mid-beam.
