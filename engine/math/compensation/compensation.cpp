@@ -272,14 +272,6 @@ Expected<Grid> choose_grid(const std::vector<double>& position, const GridRule& 
   return grid;
 }
 
-std::vector<double> sampled(const std::vector<double>& position, const std::vector<double>& value,
-                            const Grid& grid, double zero) {
-  std::vector<double> out(grid.points);
-  for (std::size_t i = 0; i < grid.points; ++i)
-    out[i] = ErrorCurve::at(position, value, grid.position(i)) - zero;
-  return out;
-}
-
 std::vector<std::int64_t> quantised(std::span<const double> value, double unit) {
   std::vector<std::int64_t> out;
   for (double v : value) out.push_back(std::llround(rounded_by_digits(v / unit)));

@@ -8,6 +8,7 @@
 
 #include "data/design.h"
 #include "data/thin.h"
+#include "nonio/math/golden_section.h"
 #include "nonio/sdk/axis_readings.h"
 #include "workbench.h"
 
@@ -144,7 +145,7 @@ class SquaresOf {
   MatrixXd others_;
 };
 
-/// Golden section between the neighbours of a grid's best value.
+/// Between the neighbours of a grid's best value.
 void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std::size_t k,
             const VectorXd& root, const VectorXd& y) {
   const std::vector<double> grid = terms[t].effect->shapes[k].grid(o, terms[t].axis);
@@ -161,19 +162,11 @@ void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std:
     value = x;
     return squares_of(terms[t]);
   };
-  constexpr double golden = 0.6180339887498949;  // (sqrt(5) - 1)/2
   const double start = value, squares = at(start);
-  double a = high - golden * (high - low), b = low + golden * (high - low);
-  double fa = at(a), fb = at(b);
   const double fine = 1e-7 * std::max(std::fabs(low), std::fabs(high));
-  for (int step = 0; step < 40 && high - low > fine; ++step) {
-    if (fa < fb) {
-      high = b, b = a, fb = fa, a = high - golden * (high - low), fa = at(a);
-    } else {
-      low = a, a = b, fa = fb, b = low + golden * (high - low), fb = at(b);
-    }
-  }
-  value = at((low + high) / 2.0) <= squares ? (low + high) / 2.0 : start;
+  const math::Bracket bracket = math::golden_section(at, low, high, 40, fine);
+  const double middle = (bracket.low + bracket.high) / 2.0;
+  value = at(middle) <= squares ? middle : start;
 }
 
 /// Shapes that were not given: the grid's best.

@@ -157,7 +157,7 @@ TEST(Findings, TargetsOutsideTheTravelAreNamed) {
 }
 
 // ISO R+ 4.516 against R- 1.756 and the like: s of one direction more than twice the other's.
-TEST(Findings, OneWildReadingIsNoDirection) {
+TEST(Findings, OneOutlierMakesNoDirectionScatterMore) {
   made::Random random(3);
   made::Plan plan{{0.0, 0.11, 0.19, 0.31, 0.43, 0.5}, 5};
   auto o = made::observe(

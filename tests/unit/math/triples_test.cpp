@@ -97,7 +97,7 @@ std::vector<Row> rows() {
           {"12 x 9 m", table31, 4, 3, 5, 125, 24, 1, 1}};
 }
 
-TEST(Triples, TheTable) {
+TEST(Triples, PlansAreThoseOfTheTable) {
   for (const Row& row : rows()) {
     const auto plans = planned(row.wish).plans;
     ASSERT_FALSE(plans.empty()) << row.name;
@@ -272,7 +272,7 @@ TEST(Triples, AnEvenPlanIsPreferredToALittleMore) {
   EXPECT_EQ(planned(w).plans.front().n, 33);
 }
 
-TEST(Triples, WhyNothingFits) {
+TEST(Triples, WhatBlocksEveryPlanIsNamed) {
   const auto blocked = [](const TripleRequest& w) {
     const TriplePlans plans = planned(w);
     EXPECT_TRUE(plans.plans.empty());

@@ -25,7 +25,7 @@ std::map<std::string, std::string> sections(const fs::path& file) {
   for (std::string line; std::getline(in, line);) {
     if (line.rfind("[finding.\"", 0) == 0)
       id = line.substr(10, line.find("\"]") - 10);
-    else if (line.rfind("[", 0) == 0)
+    else if (line.starts_with('['))
       id.clear();
     else if (!id.empty())
       out[id] += line + "\n";

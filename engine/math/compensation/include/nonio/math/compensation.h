@@ -64,10 +64,6 @@ struct GridRule {
 /// interpolated. More points than the control takes are an error with a suggestion.
 Expected<Grid> choose_grid(const std::vector<double>& position, const GridRule& rule);
 
-/// The curve at the points of the grid, less `zero`.
-std::vector<double> sampled(const std::vector<double>& position, const std::vector<double>& value,
-                            const Grid& grid, double zero = 0.0);
-
 /// Whole numbers of `unit`, each nearest to its value (half away from zero, to 12 digits: 2.5 um
 /// are a tie).
 std::vector<std::int64_t> quantised(std::span<const double> value, double unit);
