@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the tests that claim to see a mistake against each mutant: run_mutants.py MUTANTS.toml NAME=PROGRAM...
 
-First without a mutant, where they must pass; then with each, where they must fail (exit status 1: a crash or a
-time-out shows nothing). The environment (LD_PRELOAD, NONIO_TEST_PLUGINS) puts the mutants in place."""
+First without a mutant, where they must pass; then with each, where they must fail (exit status 1, or a test that
+failed before the program crashed: a crash or a time-out alone shows nothing). The environment (LD_PRELOAD, NONIO_TEST_PLUGINS) puts the mutants in place."""
 import os
 import pathlib
 import subprocess
@@ -41,6 +41,8 @@ def main():
             print(f"without a mutant: expected the tests to run and pass, found status {status}\n{' '.join(arguments)}\n{said}")
     for name, arguments in killers.items():
         status, said = run(arguments, name)
+        if status < 0 and "[  FAILED  ]" in said:
+            status = 1
         verdict = {0: "survived", 1: "killed"}.get(status, f"stopped with status {status}, which no test saw")
         print(f"{name}: {verdict}")
         if status != 1:

@@ -30,7 +30,7 @@ namespace {
 // 1 - Phi^n - (1 - Phi)^n (L. H. C. Tippett 1925, Biometrika 17, p. 364); tests/unit/math computes
 // it again. Tables print three digits: 1.128, 1.693, 2.059, 2.326, ...
 constexpr std::array<double, 11> d_n = {
-    not_given,           not_given,           1.128379167096, 1.692568750643, 2.058750746008, 2.325928947281,
+    not_given,      not_given,      1.128379167096, 1.692568750643, 2.058750746008, 2.325928947281,
     2.534412721223, 2.704356751214, 2.847200612091, 2.970026324418, 3.077505461670};
 
 double deviation_of_side(const std::vector<double>& x, StandardDeviation how) {

@@ -91,10 +91,12 @@ void on_error(void* data, xmlErrorPtr found) {
   if (h.error || found->level < XML_ERR_ERROR || found->domain == XML_FROM_NAMESPACE) return;
   const bool cut = found->code == XML_ERR_TAG_NOT_FINISHED || found->code == XML_ERR_DOCUMENT_END ||
                    found->code == XML_ERR_DOCUMENT_EMPTY;
-  h.error = at_line(static_cast<std::uint64_t>(std::max(found->line, 1)),
-                    "expected well-formed XML, found: " +
-                        std::string(stripped(found->message == nullptr ? "" : found->message)) +
-                        (cut ? "; was the file cut?" : ""));
+  std::string what(stripped(found->message == nullptr ? "" : found->message));
+  std::replace_if(
+      what.begin(), what.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  h.error =
+      at_line(static_cast<std::uint64_t>(std::max(found->line, 1)),
+              "expected well-formed XML, found: " + what + (cut ? "; was the file cut?" : ""));
 }
 
 xmlSAXHandler callbacks() {

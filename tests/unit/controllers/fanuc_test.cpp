@@ -250,5 +250,14 @@ TEST(Fanuc, SumsFollowTheCurveWithinHalfAUnit) {
       ASSERT_LE(std::fabs(sum * um - wanted), 0.5 * um * (1 + 1e-9)) << "seed " << seed;
     }
     ASSERT_LT(prediction(*r, "M").after, 1.1 * um);
+    // Read back, the increments are their sums again, zero at the reference.
+    const auto back = control(fanuc_plugin(), r->artifacts,
+                              {{"extended", true}, {"reference_number", std::int64_t{100}}});
+    ASSERT_TRUE(back) << back.error().message;
+    for (std::size_t i = 0; i < curve.mean.size(); ++i) {
+      const double at = (static_cast<double>(i) * 25 - 250) * mm;
+      ASSERT_NEAR(((*back)(at, 1) + (*back)(at, -1)) / 2.0, -(curve.mean[i] - zero), 0.51 * um)
+          << "seed " << seed;
+    }
   }
 }

@@ -163,6 +163,12 @@ TEST(RotaryFit, SquarenessOfTheThirdAxisTiltsTheDirection) {
   EXPECT_LT(distance(fit->direction, expected.normalized()), 0.01 * urad);
 }
 
+TEST(RotaryFit, TheFactorOfExpansionIsThatOfTheTDistribution) {
+  // GUM, table G.2, p = 95.45 %
+  for (const auto& [dof, k] : {std::pair(1, 13.97), {2, 4.53}, {3, 3.31}, {10, 2.28}, {50, 2.05}})
+    EXPECT_NEAR(math::expansion_factor(dof), k, 0.005) << dof;
+}
+
 TEST(RotaryFit, DoubleWaveIsTheEllipse) {
   Table t;
   t.radius = 0.5;
@@ -178,6 +184,20 @@ TEST(RotaryFit, DoubleWaveIsTheEllipse) {
     EXPECT_NEAR(fit->radial[i], wave.amplitude * std::cos(2 * (fit->around[i] - wave.phase)),
                 1.0 * um);
   EXPECT_GT(math::double_wave(*fit, centres, fit->axial).p, 0.01);
+  // Angles that are not even: the long axis of the ellipse is no axis of the points.
+  std::vector<double> angles;
+  for (const double a : {0, 15, 30, 45, 60, 75, 120, 180, 240, 300}) angles.push_back(a * deg);
+  const auto uneven = t.at(angles);
+  const auto turned = fit_rotary(uneven, false);
+  const auto its = math::double_wave(*turned, uneven, turned->radial);
+  EXPECT_GT(std::fabs(its.phase), 5 * deg);
+  double product = 0.0, square = 0.0;
+  for (std::size_t i = 0; i < uneven.size(); ++i) {
+    const double wave_here = std::cos(2 * (turned->around[i] - its.phase));
+    product += turned->radial[i] * wave_here;
+    square += wave_here * wave_here;
+  }
+  EXPECT_NEAR(product / square, its.amplitude, 0.4 * its.amplitude);
   // An arc cannot tell an ellipse from a shift.
   const auto part = t.at(arc(0, 150 * deg, 11));
   EXPECT_EQ(math::double_wave(*fit_rotary(part, false), part, fit->radial).p, 1.0);
