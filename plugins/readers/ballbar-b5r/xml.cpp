@@ -6,6 +6,7 @@
 #include <libxml/xmlerror.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -59,7 +60,7 @@ void on_start(void* data, const xmlChar* name, const xmlChar* prefix, const xmlC
   element.number = ++h.elements;
   element.line = static_cast<std::uint64_t>(xmlSAX2GetLineNumber(h.parser));
   for (int i = 0; i < count; ++i) {  // five pointers each: name, prefix, URI, value from and to
-    const xmlChar** const a = attributes + 5 * i;
+    const xmlChar** const a = attributes + std::ptrdiff_t{5} * i;
     element.attributes.emplace_back(
         qualified(a[1], a[0]), std::string(view(a[3]), 0, static_cast<std::size_t>(a[4] - a[3])));
   }
