@@ -41,10 +41,10 @@ PARTS_OF_ROOMS = {"reading": {"model"}, "modelling": {"model"}, "evaluation": {"
 SHARED = {"common"}
 # third-party header -> the parts that are its home
 HOMES = {
-    "Poco/": {"engine/host"}, "boost/dll": {"engine/host"}, "boost/math": {"engine/math"},
+    "Poco/": {"engine/host", "plugins/readers"}, "boost/dll": {"engine/host"}, "boost/math": {"engine/math"},
     "boost/": {"engine/host", "engine/math"}, "toml++": {"engine/host"}, "muParser": {"engine/host"}, "hpdf": {"reports"}, "qrencode": {"reports"},
     "libdeflate": {"reports", "engine/sign"}, "openssl/": {"engine/sign", "engine/host", "reports"}, "xmlsec/": {"engine/sign"},
-    "libxml/": {"engine/sign"}, "CLI/": {"engine/app"}, "nlohmann": {"engine/host", "engine/app", "plugins/outputs"},
+    "libxml/": {"engine/sign", "plugins/readers"}, "utf8proc": {"reports"}, "CLI/": {"engine/app"}, "nlohmann": {"engine/host", "engine/app", "plugins/outputs"},
     "Eigen": {"engine/math", "engine/model", "plugins/analyses", "plugins/effects"}, "tl/": {"engine/sdk"}, "sqlite3": {"engine/host"},
 }
 

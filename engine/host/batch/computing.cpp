@@ -66,7 +66,7 @@ std::string unsound_answer(const evaluation::Evaluated& e, const std::string& id
 
 }  // namespace
 
-void evaluate_for(int stream, const reading::Context& context, process::SharedWords& stage,
+void evaluate_for(int stream, const reading::Context& context, process::SharedStatus& stage,
                   Prints& prints) {
   storage::open_files_with([stream](const fs::path& path) { return ask_for_file(stream, path); });
   process::keep_freed_memory();

@@ -12,7 +12,7 @@ namespace nonio::host::batch {
 
 /// In the process with the plugins: evaluates the campaigns that the other side names, until it is
 /// gone. It can open no file: the other side hands it those of the campaign.
-void evaluate_for(int stream, const reading::Context& context, process::SharedWords& stage,
+void evaluate_for(int stream, const reading::Context& context, process::SharedStatus& stage,
                   Prints& prints);
 
 /// In the process that has files, register and signer, and no plugin code.

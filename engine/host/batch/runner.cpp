@@ -110,7 +110,7 @@ class Runner {
 
   void start(std::size_t campaign) {
     const auto task = [this](int stream) {
-      return [this, stream](std::size_t c, bool first, process::SharedWords& stage) {
+      return [this, stream](std::size_t c, bool first, process::SharedStatus& stage) {
         Evaluator evaluator(stream, secrets_);
         const Answer answer = work_guarded(c, first, stage, evaluator);
         return Outcome(answer, evaluator.grown());
@@ -186,7 +186,7 @@ class Runner {
 
   /// Evaluated and, where it is to be, signed and entered. `locked`: not yet, since the register
   /// is.
-  Expected<evaluation::Evaluated> certified(const CampaignState& c, process::SharedWords& stage,
+  Expected<evaluation::Evaluated> certified(const CampaignState& c, process::SharedStatus& stage,
                                             bool& locked, Evaluator& evaluator) const {
     const fs::path folder = options_.site / c.folder;
     const auto try_it = [&](bool as_draft) {
@@ -217,7 +217,7 @@ class Runner {
   }
 
   /// What plugins throw is caught where they are called.
-  Answer work_guarded(std::size_t index, bool first, process::SharedWords& stage,
+  Answer work_guarded(std::size_t index, bool first, process::SharedStatus& stage,
                       Evaluator& evaluator) const {
     try {
       return work(index, first, stage, evaluator);
@@ -232,7 +232,7 @@ class Runner {
   }
 
   /// In the worker's process, which has no plugin code: that runs at the other end of the stream.
-  Answer work(std::size_t index, bool first, process::SharedWords& stage,
+  Answer work(std::size_t index, bool first, process::SharedStatus& stage,
               Evaluator& evaluator) const {
     if (first && signer_ != nullptr) signer_->leave_to_worker();
     const CampaignState& c = campaigns_[index];

@@ -18,7 +18,7 @@
 #include "host/evaluation/results_json.h"
 #include "host/process/child.h"
 #include "host/process/guarded.h"
-#include "host/process/shared_words.h"
+#include "host/process/shared_status.h"
 #include "host/reading/campaign_reader.h"
 #include "host/reading/plausibility.h"
 #include "host/storage/digest.h"
@@ -346,13 +346,13 @@ Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view 
     if (find_attachment(v, name) == nullptr)
       return fail(std::string("cannot be recomputed: ") + name + " is not attached");
   const ScratchFolder scratch;
-  process::SharedWords words;
+  process::SharedStatus words;
   if (scratch.path().empty()) return fail("no folder for temporary files");
   if (!words.valid()) return fail("no memory");
   if (auto unpacked = unpack(v, scratch.path()); !unpacked) return fail(unpacked.error());
   const pid_t child = ::fork();
   if (child == 0) {
-    process::settle_child();
+    process::init_child();
     process::limit_memory(context.site.limits.memory_MB);
     const auto content = process::guarded(
         "the evaluation", [&] { return Again(v, pdf, scratch.path(), context).run(); });

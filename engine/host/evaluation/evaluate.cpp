@@ -417,7 +417,7 @@ class CampaignRun {
       if (numbered != nullptr)
         report(at("run.outputs", "both " + numbered->output.info.name + " and " +
                                      w.output.info.name +
-                                     " are issued under a number; wanted one of them"));
+                                     " are issued under a number; expected one of them"));
       numbered = &w;
     }
     return failed() ? nullptr : numbered;
@@ -598,7 +598,7 @@ class CampaignRun {
     for (const Artifact& a : result.artifacts) {
       if (!storage::is_artifact_name(a.name))
         return fail("the file name \"" + a.name +
-                    "\": wanted a plain name inside the output folder");
+                    "\": expected a plain name inside the output folder");
       if (names_.contains(a.name) || !own.insert(a.name).second)
         return fail("the file name \"" + a.name + "\", which is already taken");
     }
