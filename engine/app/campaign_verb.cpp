@@ -35,11 +35,11 @@ host::modelling::ModelWords words_for(const OpenCampaign& open, const Common& co
 }
 
 std::vector<Argument> campaign_arguments(std::string& folder, Common& common) {
-  return joined({required(existing(
-                     Argument::Takes::folder,
-                     {"CAMPAIGN", &folder, "Folder of one campaign: that of its campaign.toml"})),
-                 templates_argument(common)},
-                common_arguments(common));
+  return joined(
+      {required(existing(Argument::Takes::folder,
+                         {"CAMPAIGN", &folder, "Folder of one campaign, with its campaign.toml"})),
+       templates_argument(common)},
+      common_arguments(common));
 }
 
 }  // namespace nonio::app

@@ -121,36 +121,38 @@ Verb certificates_verb(Common& common) {
       .name = "certificates",
       .summary = "Shows the certificate register of a site: numbers, states, files",
       .arguments = joined(
-          {required(existing(Takes::folder, {"SITE", &wanted->site, "Site whose register it is"})),
-           takes(Takes::folder,
-                 {"--out", &wanted->out,
-                  "Write the files of all issued numbers into this folder, as they were issued:\n"
-                  "NUMBER.pdf and NUMBER-dcc.xml"}),
+          {required(existing(Takes::folder, {"SITE", &wanted->site, "Site of the register"})),
+           takes(Takes::folder, {"--out", &wanted->out,
+                                 "Write the issued files of all numbers into this folder: "
+                                 "NUMBER.pdf and NUMBER-dcc.xml"}),
            {"--withdraw", &wanted->withdraw,
-            "This number is not in force any more; the next run makes a draft of the campaign's\n"
-            "certificate, which gets a new number and names this one and the reason"},
-           {"--why", &wanted->why, "Why it is withdrawn: stays in the register"},
-           {"--by", &wanted->by, "Who withdraws it: stays in the register"},
+            "Withdraw this number. The next nightly run makes a draft of a new certificate, which\n"
+            "states this number and the reason"},
+           {"--why", &wanted->why, "Reason of the withdrawal, kept in the register"},
+           {"--by", &wanted->by, "Name of the person who withdraws it, kept in the register"},
            {"--audit", &wanted->audit,
-            "Prove that nothing was changed in the register and nothing taken out: the chain of\n"
-            "digests, every file, and what signed certificates say of it. Status 1 if not"}},
+            "Check that nothing in the register was changed or removed: the chain of digests, "
+            "every\n"
+            "file, and the digests in signed certificates. Status 1 if a check fails"}},
           common_arguments(common)),
       .footer =
-          "A line for each number that was ever drawn: number, state, campaign, date, reason, who\n"
-          "released or withdrew it. The name is what that person stated, the account is the "
-          "operating\n"
-          "system's (user@host): a record, not a proof of the person.\n"
+          "Prints one line per number: number, state, campaign, date, reason, who released or "
+          "withdrew\n"
+          "it. The name is the stated name; the account is that of the operating system "
+          "(user@host). Neither\n"
+          "authenticates the person.\n"
           "  issued     in force\n"
           "  amended    replaced by another number, because the data changed\n"
-          "  withdrawn  taken back, with the reason\n"
-          "  drawn      not issued, with the reason; the next run uses it for the same campaign\n"
-          "Nothing is ever deleted, and the same data are never issued twice: if a certificate is\n"
-          "lost, --out gives it back. What is cut off at the end of a register shows only in what "
-          "is\n"
-          "outside of it: note the last entry that --audit prints. Keep the register "
-          "(certificates.sqlite in the site) with "
-          "your\n"
-          "backups: without it numbers would be used twice, and a run refuses.\n\n"
+          "  withdrawn  no longer in force, with the reason\n"
+          "  drawn      not issued, with the reason; the next run uses it for the same "
+          "campaign\n"
+          "Entries are never deleted, and the same data are never issued twice. --out restores "
+          "a lost\n"
+          "certificate. --audit cannot detect that the last entries were removed: note the "
+          "last entry\n"
+          "that it prints. Include the register (certificates.sqlite in the site) in your "
+          "backups:\n"
+          "without it, numbers would be used twice, so the nightly run stops.\n\n"
           "Example: nonio certificates site --withdraw 2026-0012 --why \"wrong serial number\"",
       .run = [wanted, &common] { return certificates(*wanted, common); }};
 }

@@ -43,19 +43,20 @@ std::vector<fs::path> Common::template_folders() const {
 std::vector<Argument> common_arguments(Common& common) {
   using Takes = Argument::Takes;
   return {
-      existing(Takes::folder,
-               {"--plugin-path", &common.plugin_paths,
-                "A folder with more plugins; may be given several times. NONIO_PLUGIN_PATH holds\n"
-                "such folders too, with ':' between them."}),
+      existing(
+          Takes::folder,
+          {"--plugin-path", &common.plugin_paths,
+           "A folder with more plugins; may be given several times. NONIO_PLUGIN_PATH lists such\n"
+           "folders too, separated by ':'."}),
       {"--json", &common.json, "Machine-readable output on stdout"},
-      {"--quiet", &common.quiet, "No progress; only what went wrong"}};
+      {"--quiet", &common.quiet, "No progress; only errors"}};
 }
 
 Argument templates_argument(Common& common) {
   return existing(
       Argument::Takes::folder,
       {"--templates", &common.template_paths,
-       "A folder laid over the installed templates; SITE/templates is, without being named"});
+       "A folder whose files replace installed templates; SITE/templates is used automatically"});
 }
 
 Argument settings_argument(std::vector<std::string>& settings, std::string help) {

@@ -148,13 +148,15 @@ Verb controllers_verb(Common& common) {
               {{"NAME", names.get(), "Only these controls, with the confidence of each fact"}},
               common_arguments(common)),
           .footer =
-              "points: of one table. both ways: a table for each direction of travel. straight, "
-              "square:\n"
-              "an axis by the position of another. volume: all errors of the machine in one file.\n"
-              "sign: whether an entry is the measured error (actual - nominal) or the correction. "
-              "Where\n"
-              "nobody knows it, nothing is written before a sign probe has shown it (`nonio plan\n"
-              "sign-probe`). A control comes into a campaign by its name:\n"
+              "points: of one table. both ways: a table for each direction of travel. "
+              "straight, square:\n"
+              "an axis by the position of another. volume: all errors of the machine in one "
+              "file.\n"
+              "sign: whether an entry is the measured error (actual - nominal) or the "
+              "correction. If\n"
+              "it is undocumented, no table is written before a sign probe has shown it "
+              "(`nonio plan\n"
+              "sign-probe`). Name the control in the campaign:\n"
               "    [machine]\n"
               "    control = \"fagor-8055\"\n\n"
               "Example: nonio controllers pmac ecmc",

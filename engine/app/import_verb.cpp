@@ -143,37 +143,37 @@ Verb import_verb(Common& common) {
       .summary = "Makes campaigns from a folder of instrument files, by a rule for their names",
       .arguments = joined(
           {required(existing(Takes::folder, {"FOLDER", &arguments->folder,
-                                             "Folder with the files, and folders in it"})),
-           required(
-               takes(Takes::file,
-                     {"--rule", &arguments->rule,
-                      "How names are made: a pattern such as {machine}_{axis}_{date}.rtl, or a "
-                      "file\n"
-                      "RULE.toml with pattern, campaign, kind, reader, exclude, axis, [axes] and "
-                      "[manifest]"})),
+                                             "Folder with the files; subfolders are included"})),
+           required(takes(
+               Takes::file,
+               {"--rule", &arguments->rule,
+                "Rule for the names: a pattern such as {machine}_{axis}_{date}.rtl, or a file "
+                "RULE.toml\n"
+                "with pattern, campaign, kind, reader, exclude, axis, [axes] and [manifest]"})),
            required(takes(Takes::folder,
-                          {"--out", &arguments->out, "Site that gets a folder for each campaign"})),
-           {"--reader", &arguments->reader, "Reader of all files; else chosen by content"},
+                          {"--out", &arguments->out, "Site in which each campaign gets a folder"})),
+           {"--reader", &arguments->reader, "Reader for all files (default: chosen by content)"},
            {"--campaign", &arguments->campaign, "Id of the campaigns, such as {date}-{machine}"},
            {"--partial", &arguments->partial,
-            "Write campaigns that lack something too, with comments for what is to be filled"},
-           {"--dry-run", &arguments->dry_run, "Say what would be done; write nothing"}},
+            "Write incomplete campaigns too, with comments for missing data"},
+           {"--dry-run", &arguments->dry_run, "Print what would be done; write nothing"}},
           common_arguments(common)),
       .footer =
-          "Places in a pattern: {axis} (capital letters and digits; x or y2 is X or Y2), {date} "
-          "(20240302\n"
-          "or 2024-03-02), {machine}, {id} (of the measurement), any other name of small letters, "
-          "{*} for\n"
-          "what does not count and may be nothing. A place that is there twice has one text. A "
-          "pattern\n"
-          "with / is for the path below FOLDER, else for the file's name. A name that\n"
-          "can be read in two ways is not imported; neither is a second file with the same "
-          "content.\n"
-          "Every file is read as a night would read it; a campaign is written when nothing is "
-          "missing.\n"
-          "Nothing that is there is touched; what was imported before needs nothing, and is no "
-          "error.\n\n"
-          "Example: nonio import laser --rule '{machine}_{axis}_{date}.rtl' --out site --dry-run",
+          "Placeholders of a pattern: {axis} (capital letters and digits; x or y2 is X or Y2), "
+          "{date}\n"
+          "(20240302 or 2024-03-02), {machine}, {id} (of the measurement), any other name in "
+          "small\n"
+          "letters, {*} for any text, also empty. A placeholder that occurs twice must match "
+          "the same text.\n"
+          "A pattern with / applies to the path below FOLDER, otherwise to the file name. A "
+          "name that can\n"
+          "be read in two ways is not imported, nor is a second file with the same content. "
+          "Every file\n"
+          "is read as in a nightly run; a campaign is written if nothing is missing. Existing "
+          "files are\n"
+          "never changed; files that were imported before are skipped without an error.\n\n"
+          "Example: nonio import laser --rule '{machine}_{axis}_{date}.rtl' --out site "
+          "--dry-run",
       .run = [arguments, &common] { return import_files(*arguments, common); }};
 }
 

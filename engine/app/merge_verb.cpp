@@ -95,29 +95,28 @@ Verb merge_verb(Common& common) {
       .summary =
           "Inserts a new table into a backup of a control and leaves everything else unchanged",
       .arguments = joined(
-          {required(takes(
-               Takes::file,
-               {"BACKUP", &w->backup, "What was saved from the control: FILE, or FILE,FILE,..."})),
+          {required(takes(Takes::file, {"BACKUP", &w->backup,
+                                        "Files saved from the control: FILE, or FILE,FILE,..."})),
            required(takes(Takes::folder, {"--with", &w->folder, "Folder of the campaign"})),
-           {"--axis", &w->axis, "The axis; may be left out where one was measured"},
-           takes(Takes::folder,
-                 {"--out", &w->out,
-                  "Folder for the files that change; without it, only what changes"}),
-           {"--control", &w->control, "The control that the files are of (`nonio controllers`)"},
+           {"--axis", &w->axis, "The axis (default: the measured axis, if there is only one)"},
+           takes(Takes::folder, {"--out", &w->out,
+                                 "Folder for the changed files (default: only print the changes)"}),
+           {"--control", &w->control, "The control of the files (`nonio controllers`)"},
            settings_argument(w->settings,
                              "NAME=VALUE: an option of that control; may be given\n"
                              "several times")},
           common_arguments(common)),
       .footer =
-          "For files that hold several axes: FANUC's parameters and pitch data, SINUMERIK's "
+          "For files with several axes: FANUC's parameters and pitch data, SINUMERIK's "
           "archives,\n"
           "HEIDENHAIN's CONFIG.CMA. The new table gets the numbers that the axis has in the "
           "backup, or\n"
-          "free ones. Everything else stays byte for byte. What the control would read is held "
-          "against\n"
-          "what it reads now: where a table of another axis would change, nothing is written.\n\n"
+          "free ones. Every other byte stays unchanged. If the control would read a different "
+          "table for\n"
+          "another axis, nothing is written.\n\n"
           "Exit status: 0 merged; 1 refused; 2 usage or configuration.\n\n"
-          "Example: nonio merge backup/CNCPARAM.TXT --with site/2026-11-rossi --axis Z --out load",
+          "Example: nonio merge backup/CNCPARAM.TXT --with site/2026-11-rossi --axis Z --out "
+          "load",
       .run = [w, &common] { return merge(*w, common); }};
 }
 

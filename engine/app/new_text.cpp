@@ -59,7 +59,8 @@ std::string test_text(const NewAxis& a) {
 
 /// What else a certificate wants of a campaign.
 std::string certificate_text() {
-  return "\n# What its certificate says, beside what is above: docs/howto-certificate.md\n"
+  return "\n"
+         "# Further statements of the certificate: docs/howto-certificate.md\n"
          "# [certificate]\n" +
          offered("certificate", "conditions", "\"No cutting for four hours before the test.\"") +
          offered("certificate", "customer_data", "[\"machine.serial\"]") +
@@ -86,12 +87,12 @@ std::string axis_text(const NewAxis& a) {
   text += axis.travel
               ? "travel = [" + number(axis.travel->first) + ", " + number(axis.travel->second) + "]"
               : "# travel = [0, " + std::string(axis.rotary ? "360" : "1000") + "]";
-  text += "  # " + unit + "; targets outside of it get a finding\n";
+  text += "  # " + unit + "; targets outside get a finding\n";
   if (axis.rotary)
     return text +
-           "# teeth = 180  # periods of the drive or scale in a revolution\n"
-           "# tolerance_arcsec = { A = 10.0, B = 6.0 }  # limits; each gets a decision (needs U, "
-           "[instrument])\n";
+           "# teeth = 180  # periods of the drive or scale per revolution\n"
+           "# tolerance_arcsec = { A = 10.0, B = 6.0 }  # limits; each gets a decision (needs "
+           "U, [instrument])\n";
   return text +
          "# screw_pitch_mm = 10.0  # period of the drive or scale\n"
          "# expansion_um_per_m_K = 11.5  # coefficient of expansion of the scale\n"
@@ -101,17 +102,20 @@ std::string axis_text(const NewAxis& a) {
 
 std::string instrument_text(const NewCampaign& c) {
   std::string text =
-      "\n# What measured. With its uncertainty every value gets one, and tolerances get "
-      "decisions.\n";
+      "\n"
+      "# The instrument. With its uncertainty every value gets U, and every tolerance a "
+      "decision.\n";
   const bool given = !c.instrument.empty();
   text += given ? "[instrument]\n" : "# [instrument]\n";
   text += text_line("model", c.instrument, "Laser interferometer");
   text +=
-      "# maker = \"...\"\n# serial = \"...\"\n"
-      "# calibrated = 2026-01-12\n# certificate = \"...\"  # of its calibration\n"
+      "# maker = \"...\"\n"
+      "# serial = \"...\"\n"
+      "# calibrated = 2026-01-12\n"
+      "# certificate = \"...\"  # of its calibration\n"
       "# U_fixed_um = 0.1  # expanded uncertainty, k = 2: fixed part\n"
-      "# U_per_m_um = 0.5  # and for each metre\n"
-      "# U_arcsec = 0.5  # of an angle\n";
+      "# U_per_m_um = 0.5  # part per metre\n"
+      "# U_arcsec = 0.5  # of angles\n";
   text += offered("instrument", "issuer", "\"LAT 000\"") +
           offered("instrument", "valid_until", "2027-01-12") +
           offered("instrument", "sphere_um", "0.5") + offered("instrument", "probe_um", "1.0");
@@ -120,13 +124,14 @@ std::string instrument_text(const NewCampaign& c) {
           offered("sensor", "calibrated", "2026-01-12") +
           offered("sensor", "certificate", "\"SO-2026-0009\"");
   text +=
-      "\n# The surroundings: the other parts of the uncertainty.\n"
+      "\n"
+      "# The environment: the other contributions to the uncertainty.\n"
       "# [environment]\n"
-      "# misalignment_mm = 1.0  # largest distance of beam and axis over the travel\n"
-      "# temperature_range_K = 0.2  # range of the reading of the machine's temperature\n"
-      "# temperature_difference_K = 1.5  # largest distance from 20 degC\n"
+      "# misalignment_mm = 1.0  # largest lateral distance of beam and axis over the travel\n"
+      "# temperature_range_K = 0.2  # range of the reading error of the machine's temperature\n"
+      "# temperature_difference_K = 1.5  # largest difference from 20 degC\n"
       "# expansion_range_um_per_m_K = 1.0  # range of the coefficient of expansion\n"
-      "# drift_um = 1.0  # range of the drift test, axis at rest\n";
+      "# drift_um = 1.0  # range of the drift test with the axis at rest\n";
   return text + offered("environment", "warm_up", "\"30 min at half feed\"") +
          offered("environment", "sensors", "\"on the table and on the column\"");
 }
@@ -151,9 +156,10 @@ bool NewCampaign::example() const {
 
 std::string site_text(const NewSite& site) {
   std::string text =
-      "# What holds for every campaign of this site. A campaign is a folder below with a\n"
-      "# campaign.toml. All keys: docs/manifest.md.\n"
-      "\n# Stands in reports and certificates.\n[laboratory]\n";
+      "# Settings for every campaign of this site. A campaign is a folder below with a\n"
+      "# campaign.toml. All keys: docs/site.md.\n\n"
+      "# Printed in reports and certificates.\n"
+      "[laboratory]\n";
   text += text_line("name", site.laboratory, "Sample Calibration Laboratory");
   text += text_line("address", site.address, "Via dell'Esempio 1, 10100 Torino");
   text += text_line("country", site.country, "IT", "two letters, ISO 3166");
@@ -161,19 +167,21 @@ std::string site_text(const NewSite& site) {
   text += text_line("accreditation", "", "LAT 000", "number of the accreditation");
   text += text_line("authoriser", "", "B. Sample", "who authorises certificates");
   return text +
-         "\n# Which analyses and outputs a night makes, if the campaign does not say. Without "
-         "this\n"
+         "\n"
+         "# Analyses and outputs for campaigns that do not select their own. Without this\n"
          "# section: all that apply. `nonio plugins` lists them.\n"
          "# [run]\n"
          "# analyses = [\"iso230-2\", \"vdi-dgq-3441\"]\n"
-         "# outputs = [\"pdf-report\", \"csv\"]\n"
-         "\n# Options of one plugin, for all campaigns. `nonio plugins` lists them with their "
+         "# outputs = [\"pdf-report\", \"csv\"]\n\n"
+         "# Options of one plugin, for all campaigns. `nonio plugins` lists them with their "
          "defaults.\n"
          "# [options.pdf-report]\n"
-         "# language = \"it\"\n"
-         "\n# What one campaign may take; it fails beyond. These are the defaults.\n"
-         "[limits]\nseconds = 600\nmemory_MB = 4096\n"
-         "\n# What certificates say and how they are numbered: docs/howto-certificate.md\n"
+         "# language = \"it\"\n\n"
+         "# Limits for one campaign; beyond them it fails. These are the defaults.\n"
+         "[limits]\n"
+         "seconds = 600\n"
+         "memory_MB = 4096\n\n"
+         "# Content and numbering of certificates: docs/howto-certificate.md\n"
          "# [certificate]\n"
          "# languages = [\"it\", \"en\"]\n"
          "# numbering = \"{year}-{number:4}\"\n" +
@@ -187,33 +195,37 @@ std::string site_text(const NewSite& site) {
 
 std::string machine_text(const NewMachine& m) {
   std::string text =
-      "# What the house knows of this machine, whoever measures it; campaigns name it by\n"
-      "# asset in [machine]. All keys: docs/manifest.md.\nformat = 1\n";
-  text += text_line("asset", m.asset, "", "as this file is called");
+      "# The record of this machine. Campaigns refer to it by asset in [machine].\n"
+      "# All keys: docs/site.md.\n"
+      "format = 1\n";
+  text += text_line("asset", m.asset, "", "equal to the name of this file");
   text += text_line("maker", "", "Sample Machines");
   text += text_line("model", m.model, "VM 12");
   text += text_line("serial", m.serial, "S-0001");
   text += text_line("control", m.control, "siemens-840d",
-                    "the numbers below are of this one: `nonio controllers`");
+                    "the numbers below refer to it: `nonio controllers`");
   text += text_line("control_version", "", "4.95");
-  text += "# taken = [\"0\", \"100-227\"]  # numbers in use: of CEC tables, of FANUC's points\n";
+  text += "# taken = [\"0\", \"100-227\"]  # numbers in use, of CEC tables or FANUC's points\n";
   int number = 0;
   for (const Axis& a : m.axes) {
     const std::string unit = a.rotary ? "deg" : "mm", small = a.rotary ? "arcsec" : "um";
     const double per = a.rotary ? deg_per_rad : 1e3;
     text += "\n[axes." + a.name + "]\n# number = " + std::to_string(++number) +
-            "  # as the control counts, not the place here\n# reference_" + unit +
-            " = 0.0  # position of the reference point\n";
+            "  # number in the control, not the place in this file\n"
+            "# reference_" +
+            unit + " = 0.0  # position of the reference point\n";
     if (a.travel)
       text += "travel = [" + short_text(a.travel->first * per, 9) + ", " +
               short_text(a.travel->second * per, 9) + "]\n";
     text += "# largest_" + small +
-            " = 100.0  # of the maker: largest entry of a table, largest slope\n# slope_" +
+            " = 100.0  # limits of the maker: largest entry of a table, largest slope\n"
+            "# slope_" +
             std::string(a.rotary ? "arcsec_per_deg" : "um_per_m") + " = 200.0\n" +
-            "# table = \"none\"  # what is in the control now: \"machines/backup/x.ini\", or "
+            "# table = \"none\"  # the table in the control: \"machines/backup/x.ini\", or "
             "\"none\"\n" +
             "# backlash_" + unit +
-            " = \"none\"\n# since = 2026-11-03  # the day on which they came into it\n";
+            " = \"none\"\n"
+            "# since = 2026-11-03  # day on which table and backlash value were loaded\n";
   }
   return text;
 }
@@ -223,12 +235,13 @@ std::string campaign_text(const NewCampaign& c) {
   std::string text;
   if (example)
     text +=
-        "# EXAMPLE READINGS: nobody measured them. Put your own into the CSV files named below,\n"
-        "# and then take the words \"EXAMPLE, NOT MEASURED\" out of customer and model.\n";
+        "# EXAMPLE READINGS, not measured. Replace the CSV files named below by your own, "
+        "then\n"
+        "# remove the words \"EXAMPLE, NOT MEASURED\" from customer and model.\n";
   text += "# One campaign. All keys: docs/manifest.md.\nformat = 1\n\n[campaign]\n";
   text += text_line("id", c.id, "", "unique in the site: a-z 0-9 . _ -");
   text += text_line("customer", marked(c.customer, example), "Officine Esempio S.r.l.");
-  text += text_line("site", "", "Torino", "where the machine stands");
+  text += text_line("site", "", "Torino", "location of the machine");
   text += text_line("operator", c.operator_name, "A. Sample");
   text += "date = " + c.date + "\n\n[machine]\n";
   text += text_line("asset", "", "S-0001", "its record: machines/S-0001.toml of the site");
@@ -247,14 +260,14 @@ std::string campaign_text(const NewCampaign& c) {
     text += test_text(a);
   }
   return text +
-         "# exclude = [57]  # lines of the file whose readings do not count\n"
-         "# exclude_reason = \"beam interrupted, see the record of the test\"\n"
-         "\n# The error model, for `nonio compare` and `nonio explain`.\n"
+         "# exclude = [57]  # lines of the file with excluded readings\n"
+         "# exclude_reason = \"beam interrupted, see the record of the test\"\n\n"
+         "# The error model, for `nonio compare` and `nonio explain`.\n"
          "# [model]\n"
          "# effects = [\"scale:" +
          c.axes.front().axis.name + "\", \"backlash:" + c.axes.front().axis.name +
-         "\"]\n"
-         "\n# Analyses and outputs of this campaign, if others than those of the site.\n"
+         "\"]\n\n"
+         "# Analyses and outputs of this campaign, if different from those of the site.\n"
          "# [run]\n"
          "# analyses = [\"iso230-2\"]\n"
          "# outputs = [\"pdf-report\", \"certificate\"]\n" +

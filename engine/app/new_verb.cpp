@@ -426,40 +426,43 @@ Verb new_verb(Common& common) {
       .arguments = joined(
           {required(offering({"site", "campaign", "machine"},
                              {"WHAT", &wish->what,
-                              "site, campaign or machine; may be left out: a campaign inside of a "
-                              "site or beside\n"
-                              "campaigns, else a site"})),
-           takes(Takes::folder, {"FOLDER", &wish->folder,
-                                 "The folder; new, or empty. Of a machine the file of its "
-                                 "record,\nSITE/machines/<asset>.toml"}),
+                              "site, campaign or machine. Default: a campaign inside a site or "
+                              "beside campaigns,\n"
+                              "otherwise a site"})),
+           takes(Takes::folder,
+                 {"FOLDER", &wish->folder,
+                  "The folder; new, or empty. For a machine the file of its record,\n"
+                  "SITE/machines/<asset>.toml"}),
            {"--id", &wish->id, "Id of the campaign (default: from the folder's name)"},
            {"--customer", &wish->customer, "Customer"},
-           {"--operator", &wish->operator_name, "Who measured"},
+           {"--operator", &wish->operator_name, "Name of the operator"},
            {"--date", &wish->date, "Day of the measurement, such as 2026-11-03 (default: today)"},
            {"--machine", &wish->machine, "Model of the machine"},
            {"--serial", &wish->serial, "Its serial number"},
            {"--control", &wish->control, "Its control (`nonio controllers`)"},
            {"--instrument", &wish->instrument, "Model of the instrument"},
            {"--axis", &wish->axes,
-            "NAME=FROM:TO, travel in mm, of A, B, C in deg; may be given several times\n"
+            "NAME=FROM:TO, travel in mm, for A, B and C in deg; may be given several times\n"
             "(default: X=0:500)"},
            takes(Takes::file, {"--file", &wish->files,
                                "AXIS=PATH: readings of that axis, copied; may be given several "
                                "times.\nAn axis without a file gets example readings"}),
-           {"--laboratory", &wish->laboratory, "Of a site: name of the laboratory"},
-           {"--address", &wish->address, "Of a site: its address"},
-           {"--country", &wish->country, "Of a site: two letters"},
+           {"--laboratory", &wish->laboratory, "For a site: name of the laboratory"},
+           {"--address", &wish->address, "For a site: its address"},
+           {"--country", &wish->country, "For a site: country, two letters"},
            {"--empty", &wish->empty, "A site without a first campaign"},
-           {"--defaults", &wish->defaults, "Ask nothing, also on a terminal"}},
+           {"--defaults", &wish->defaults, "Do not ask for missing options"}},
           common_arguments(common)),
       .footer =
-          "On a terminal the command asks for missing options, with the default in brackets; an "
-          "empty\n"
+          "On a terminal the command asks for missing options, with the default in brackets; "
+          "an empty\n"
           "line accepts it, and ^D or ^C ends without writing anything.\n"
-          "Example readings are marked: EXAMPLE, NOT MEASURED stands with the customer and the\n"
-          "machine, in every report. Nothing that exists is written over.\n\n"
+          "Example readings are marked: every report prints EXAMPLE, NOT MEASURED beside the "
+          "customer\n"
+          "and the machine. Existing files are never overwritten.\n\n"
           "Examples: nonio new site lab\n"
-          "          nonio new machine site/machines/S-0042.toml --axis X=0:800 --axis C=0:360\n"
+          "          nonio new machine site/machines/S-0042.toml --axis X=0:800 --axis "
+          "C=0:360\n"
           "          nonio new campaign site/2026-11-rossi --axis X=0:800 --file X=laser/x.csv",
       .run = [wish, &common] { return make_new(*wish, common); }};
 }

@@ -151,24 +151,27 @@ int open(const OpenWish& wish, const Common& common) {
 Verb open_verb(Common& common) {
   auto wish = std::make_shared<OpenWish>();
   using Takes = Argument::Takes;
-  return {.name = "open",
-          .summary = "Opens a report on the desktop and prints its path",
-          .arguments =
-              joined({existing(Takes::folder, {"OUT|OUT/ID|CAMPAIGN", &wish->folder,
-                                               "Results of a night, of one campaign, or a campaign "
-                                               "(default: this folder "
-                                               "if it\nis one of these, else the one of --out)"}),
-                      takes(Takes::folder, {.name = "--out",
-                                            .target = &wish->out,
-                                            .help = "Where the results of CAMPAIGN are",
-                                            .shows_default = true})},
-                     common_arguments(common)),
-          .footer =
-              "Of a night: the first campaign that needs attention, or else summary.txt. Of a "
-              "campaign:\nits report, or else a page for the browser, or "
-              "else results.json.\n\n"
-              "Example: nonio open out/09-tolerances",
-          .run = [wish, &common] { return open(*wish, common); }};
+  return {
+      .name = "open",
+      .summary = "Opens a report on the desktop and prints its path",
+      .arguments = joined(
+          {existing(
+               Takes::folder,
+               {"OUT|OUT/ID|CAMPAIGN", &wish->folder,
+                "Results of a nightly run or of one campaign, or a campaign (default: the current\n"
+                "folder if it is one of these, otherwise that of --out)"}),
+           takes(Takes::folder, {.name = "--out",
+                                 .target = &wish->out,
+                                 .help = "Folder of the results of CAMPAIGN",
+                                 .shows_default = true})},
+          common_arguments(common)),
+      .footer =
+          "For a nightly run it opens the first campaign that needs attention, otherwise "
+          "summary.txt.\n"
+          "For a campaign it opens the report, otherwise the page for the browser, "
+          "otherwise results.json.\n\n"
+          "Example: nonio open out/09-tolerances",
+      .run = [wish, &common] { return open(*wish, common); }};
 }
 
 }  // namespace nonio::app

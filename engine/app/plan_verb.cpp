@@ -219,78 +219,80 @@ Verb triples_verb(Common& common) {
   Argument even = one_of({"any", "prefer", "require"},
                          {"--even", &plan->even,
                           "An even number of steps, for a third diagonal to half of Y;\n"
-                          "--even=prefer takes it where it costs at most 1 % of coverage"});
+                          "--even=prefer uses it if it costs at most 1 % of coverage"});
   even.bare = "require";
-  return {
-      .name = "triples",
-      .summary = "Stops for X, Y and both diagonals of their rectangle, with equal whole steps",
-      .arguments = joined(
-          {required({"--x", &plan->mm.x, "Travel of X, mm"}),
-           required({"--y", &plan->mm.y, "Travel of Y, mm"}),
-           {"--over-travel", &plan->mm.over_travel,
-            "Kept free at each end of both axes, mm (default 0)"},
-           {"--resolution", &plan->mm.resolution,
-            "Steps are whole multiples of it, mm (default 1)"},
-           {"--max-step", &plan->mm.max_step, "Largest step of either axis, mm (default any)"},
-           {"--max-points", &plan->wish.max_points,
-            "Entries of the control's compensation table (default 1500)"},
-           {"--pitch-x", &plan->mm.pitch_x, pitch},
-           {"--pitch-y", &plan->mm.pitch_y, pitch},
-           {"--density", &plan->wish.density,
-            "Only stops that ISO 230-2 accepts: five a metre on axes of up to 2 m,\n"
-            "no more than 250 mm apart on longer ones"},
-           even,
-           {"--hypotenuse", &plan->wish.hypotenuse,
-            "Largest c of the triples a-b-c (default 5000)"},
-           {"--count", &plan->count, "Plans to show (default 5)"},
-           takes(Argument::Takes::folder,
-                 {"--program", &plan->programs.out,
-                  "Folder for the part programs of one plan: X, Y and both diagonals"}),
-           {"--choose", &plan->choose, "Which plan --program writes (default 1)"}},
-          program_arguments(plan->programs), common_arguments(common)),
-      .footer =
-          "A diagonal whose steps are whole needs a right triangle with whole sides: 3-4-5,\n"
-          "5-12-13, ... Step = q (a, b, c) x resolution; n steps cover n q a of X and n q b of Y.\n"
-          "The same n stops serve the pitch of X and Y, both straightnesses and the diagonals.\n"
-          "First comes the plan that covers the worse axis furthest; the others say why they are\n"
-          "there and what they give up.\n\n"
-          "Exit status: 0 plans were found; 1 nothing fits (the limits to relax are named); 2 "
-          "usage.\n\n"
-          "Example: nonio plan triples --x 12000 --y 9000 --max-step 500 --max-points 31",
-      .run = [plan, &common] { return plan_triples(*plan, common); }};
+  return {.name = "triples",
+          .summary = "Stops for X, Y and both diagonals of their rectangle, with equal whole steps",
+          .arguments = joined(
+              {required({"--x", &plan->mm.x, "Travel of X, mm"}),
+               required({"--y", &plan->mm.y, "Travel of Y, mm"}),
+               {"--over-travel", &plan->mm.over_travel,
+                "Range kept free at each end of both axes, mm (default 0)"},
+               {"--resolution", &plan->mm.resolution,
+                "Steps are whole multiples of this value, mm (default 1)"},
+               {"--max-step", &plan->mm.max_step, "Largest step of either axis, mm (default any)"},
+               {"--max-points", &plan->wish.max_points,
+                "Entries of the control's compensation table (default 1500)"},
+               {"--pitch-x", &plan->mm.pitch_x, pitch},
+               {"--pitch-y", &plan->mm.pitch_y, pitch},
+               {"--density", &plan->wish.density,
+                "Only stops that ISO 230-2 accepts: five per metre on axes of up to 2 m,\n"
+                "no more than 250 mm apart on longer ones"},
+               even,
+               {"--hypotenuse", &plan->wish.hypotenuse,
+                "Largest c of the triples a-b-c (default 5000)"},
+               {"--count", &plan->count, "Plans to show (default 5)"},
+               takes(Argument::Takes::folder,
+                     {"--program", &plan->programs.out,
+                      "Folder for the part programs of one plan: X, Y and both diagonals"}),
+               {"--choose", &plan->choose, "Which plan --program writes (default 1)"}},
+              program_arguments(plan->programs), common_arguments(common)),
+          .footer =
+              "A diagonal whose steps are whole needs a right triangle with whole sides: 3-4-5,\n"
+              "5-12-13, ... Step = q (a, b, c) x resolution; n steps cover n q a of X and n q b of "
+              "Y.\n"
+              "The same n stops serve the pitch of X and Y, both straightnesses and the "
+              "diagonals.\n"
+              "The first plan has the best coverage of the worse axis. The others are listed with "
+              "their\n"
+              "advantage and their disadvantage.\n\n"
+              "Exit status: 0 plans were found; 1 no plan fits (prints which limits to relax); 2 "
+              "usage.\n\n"
+              "Example: nonio plan triples --x 12000 --y 9000 --max-step 500 --max-points 31",
+          .run = [plan, &common] { return plan_triples(*plan, common); }};
 }
 
 Verb program_verb(Common& common) {
   auto program = std::make_shared<ProgramWish>();
-  return {
-      .name = "program",
-      .summary = "Part programs of axis runs, diagonals and step diagonals, without a campaign",
-      .arguments =
-          joined({required({"--axis", &program->axes,
-                            "NAME=FROM:TO, travel in mm, of A, B, C in deg; may be given several "
-                            "times"}),
-                  {"--n", &program->n, "Steps of the diagonals (from `nonio plan triples`)"},
-                  {"--step-x", &program->step_x, "Step of X on the diagonals, mm"},
-                  {"--step-y", &program->step_y, "Step of Y on the diagonals, mm"},
-                  {"--machine", &program->machine, "Name of the machine, for the comments"},
-                  required(takes(Argument::Takes::folder,
-                                 {"--out", &program->programs.out, "Folder for the programs"}))},
-                 program_arguments(program->programs), common_arguments(common)),
-      .footer =
-          "Axis runs have random offsets of the targets, as ISO 230-2 asks; the same seed\n"
-          "(--set seed=7) gives the same targets. With --n, --step-x and --step-y the diagonals "
-          "are\n"
-          "written too, and X and Y have the same stops as they.\n\n"
-          "Example: nonio plan program --axis X=0:800 --axis Y=0:600 --axis Z=0:600 \\\n"
-          "           --control siemens --set programs=axes,step-diagonals --set steps=40 --out p",
-      .run = [program, &common] { return plan_program(*program, common); }};
+  return {.name = "program",
+          .summary = "Part programs of axis runs, diagonals and step diagonals, without a campaign",
+          .arguments = joined(
+              {required({"--axis", &program->axes,
+                         "NAME=FROM:TO, travel in mm, for A, B and C in deg; may be given "
+                         "several times"}),
+               {"--n", &program->n, "Steps of the diagonals (from `nonio plan triples`)"},
+               {"--step-x", &program->step_x, "Step of X on the diagonals, mm"},
+               {"--step-y", &program->step_y, "Step of Y on the diagonals, mm"},
+               {"--machine", &program->machine, "Name of the machine, for the comments"},
+               required(takes(Argument::Takes::folder,
+                              {"--out", &program->programs.out, "Folder for the programs"}))},
+              program_arguments(program->programs), common_arguments(common)),
+          .footer =
+              "Axis runs have random offsets of the targets, as ISO 230-2 requires; the same seed\n"
+              "(--set seed=7) gives the same targets. With --n, --step-x and --step-y the "
+              "diagonals are\n"
+              "written too, and X and Y have the same stops as the diagonals.\n\n"
+              "Example: nonio plan program --axis X=0:800 --axis Y=0:600 --axis Z=0:600 \\\n"
+              "           --control siemens --set programs=axes,step-diagonals --set steps=40 "
+              "--out p",
+          .run = [program, &common] { return plan_program(*program, common); }};
 }
 
 }  // namespace
 
 Verb plan_verb(Common& common) {
   return {.name = "plan",
-          .summary = "What to measure: stops, and the part programs",
+          .summary = "Plans measurements: stops and part programs",
           .verbs = {triples_verb(common), program_verb(common), sign_probe_verb(common)}};
 }
 

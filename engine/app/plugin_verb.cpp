@@ -163,15 +163,14 @@ Verb check_plugin_verb(Common& common) {
                    {"FILE|FOLDER", &options->subject,
                     "A plugin; or a folder: every .so below it, and cases/*/campaign.toml as "
                     "samples"})),
-               {"--seed", &options->request.seed, "Of the samples that are made (default: 1)"},
-               {"--seeds", &options->request.seeds,
-                "So many seeds, each one more than the last (default: 3)"},
-               {"--only", &options->request.only, "One check of those below"},
-               existing(Takes::folder, {"--cases", &options->cases,
-                                        "A folder with campaigns below it: more samples"}),
+               {"--seed", &options->request.seed, "Seed of the generated samples (default: 1)"},
+               {"--seeds", &options->request.seeds, "Number of seeds, in steps of 1 (default: 3)"},
+               {"--only", &options->request.only, "Only this check of the list below"},
+               existing(Takes::folder,
+                        {"--cases", &options->cases, "A folder with campaigns as further samples"}),
                within(1.0, 3600.0,
                       {"--seconds", &options->request.seconds,
-                       "Processor time that one check may take (default: 20)"}),
+                       "Processor time limit of one check (default: 20)"}),
                templates_argument(common)},
               common_arguments(common)),
           .footer = all_checks(),
@@ -182,7 +181,7 @@ Verb check_plugin_verb(Common& common) {
 
 Verb plugin_verb(Common& common) {
   return {.name = "plugin",
-          .summary = "Your own plugin: start it, check it",
+          .summary = "Creates and checks your own plugin",
           .verbs = {new_plugin_verb(common), check_plugin_verb(common)}};
 }
 

@@ -216,34 +216,35 @@ int probe(const ProbeWish& w, const Common& common) {
 
 Verb sign_probe_verb(Common& common) {
   auto w = std::make_shared<ProbeWish>();
-  return {
-      .name = "sign-probe",
-      .summary = "Two moves that show on the machine whether a table has the right sign",
-      .arguments = joined(
-          campaign_arguments(w->folder, common),
-          {{"--axis", &w->axis, "Only this axis"},
-           takes(Argument::Takes::folder, {"--out", &w->out, "Folder for the part programs"}),
-           {"--feed", &w->feed, "Feed of the programs, mm/min or deg/min (default 1000)"},
-           {"--control", &w->control,
-            "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name "
-            "(default:\n"
-            "that of the campaign's control)"},
-           settings_argument(w->settings,
-                             "NAME=VALUE: an option of that writer, such as dwell_s=3; may be "
-                             "given several\n"
-                             "times")}),
-      .footer =
-          "The two stops are the targets between which the error changed most, both reached "
-          "towards\n"
-          "plus. Load the table, reference the axis, run the program, set the instrument to zero "
-          "at\n"
-          "the first stop (M0) and read it at the second. Near zero: the sign is right. Twice the\n"
-          "error: it is wrong. The error itself: no table is active. DRY RUN FIRST: the program "
-          "moves\n"
-          "the axis in coordinates of the machine.\n\n"
-          "Exit status: 0 every axis shows it; 1 an axis is too good or too short; 2 usage.\n\n"
-          "Example: nonio plan sign-probe site/2026-11-rossi --out p",
-      .run = [w, &common] { return probe(*w, common); }};
+  return {.name = "sign-probe",
+          .summary = "Two moves that show on the machine whether a table has the right sign",
+          .arguments = joined(
+              campaign_arguments(w->folder, common),
+              {{"--axis", &w->axis, "Only this axis"},
+               takes(Argument::Takes::folder, {"--out", &w->out, "Folder for the part programs"}),
+               {"--feed", &w->feed, "Feed of the programs, mm/min or deg/min (default 1000)"},
+               {"--control", &w->control,
+                "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name "
+                "(default:\n"
+                "that of the campaign's control)"},
+               settings_argument(w->settings,
+                                 "NAME=VALUE: an option of that writer, such as dwell_s=3; may be "
+                                 "given several\n"
+                                 "times")}),
+          .footer =
+              "The two stops are the targets between which the error changed most, both reached "
+              "towards\n"
+              "plus. Load the table, reference the axis, run the program, set the instrument to "
+              "zero at\n"
+              "the first stop (M0) and read it at the second. Near zero: the sign is right. Twice "
+              "the\n"
+              "error: it is wrong. The error itself: no table is active. DRY RUN FIRST: the "
+              "program moves\n"
+              "the axis in coordinates of the machine.\n\n"
+              "Exit status: 0 the test works for every axis; 1 the error of an axis is too small "
+              "for it; 2 usage.\n\n"
+              "Example: nonio plan sign-probe site/2026-11-rossi --out p",
+          .run = [w, &common] { return probe(*w, common); }};
 }
 
 }  // namespace nonio::app

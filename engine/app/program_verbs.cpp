@@ -63,9 +63,10 @@ int version(const Common& common) {
 Verb help_verb(const Program& program) {
   auto wish = std::make_shared<HelpWish>();
   return {.name = "help",
-          .summary = "The help of a verb, or of the program; --man for man(1)",
+          .summary = "Prints the help of a verb or of the program; --man for man(1)",
           .arguments = {offering(names_of(program), {"VERB", &wish->words,
-                                                     "A verb, and the one below it: plan triples"}),
+                                                     "A verb with its sub-verb, such as plan "
+                                                     "triples"}),
                         {"--man", &wish->man, "The manual page of all verbs, as man(1) reads it"}},
           .footer =
               "Examples: nonio help plan triples\n"
@@ -75,7 +76,9 @@ Verb help_verb(const Program& program) {
 
 Verb version_verb(Common& common) {
   return {.name = "version",
-          .summary = "Version, ABI tag, where plugins and templates are looked for",
+          .summary =
+              "Prints the version, the ABI tag, and the search paths of plugins and "
+              "templates",
           .arguments = joined({templates_argument(common)}, common_arguments(common)),
           .run = [&common] { return version(common); }};
 }
@@ -83,7 +86,7 @@ Verb version_verb(Common& common) {
 Verb completion_verb(const Program& program) {
   auto shell = std::make_shared<std::string>();
   return {.name = "completion",
-          .summary = "What a shell needs to complete verbs, options and files",
+          .summary = "Prints the shell script that completes verbs, options and files",
           .arguments = {required(one_of({"bash", "zsh"}, {"SHELL", shell.get(), "bash or zsh"}))},
           .footer =
               "Examples: nonio completion bash > "

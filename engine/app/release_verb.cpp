@@ -172,32 +172,35 @@ Verb release_verb(Common& common) {
           {required(existing(Takes::folder, {"CAMPAIGN", &wanted->folder,
                                              "Folder of the campaign; with --list also a site"})),
            {"--by", &wanted->by,
-            "Who releases it: this name stands on the certificate. It is a statement, not an\n"
-            "authentication; the register also keeps the account (user@host)"},
-           one_of({"author", "authoriser"},
-                  {"--as", &wanted->role,
-                   "author: approves it, and an authoriser releases it. Without --as the author\n"
-                   "where the site wants two persons, else the authoriser"}),
+            "Name of the person who releases it, printed on the certificate. It is a statement, "
+            "not\n"
+            "an authentication; the register also keeps the account (user@host)"},
+           one_of({"author", "authoriser"}, {"--as", &wanted->role,
+                                             "author: approves the draft; an authoriser then "
+                                             "releases it. Default: author if the\n"
+                                             "site requires two persons, otherwise authoriser"}),
            {"--reason", &wanted->reasons,
-            "FINDING=TEXT: why the certificate may be issued although this finding asks for\n"
-            "attention. FINDING as --list has it, or its id for all measurements"},
-           {"--list", &wanted->list, "Say what waits, with its findings; release nothing"},
-           takes(Takes::folder, {"--out", &wanted->out,
-                                 "Output folder of the night, if it is not any more where it was"}),
+            "FINDING=TEXT: reason why the certificate may be issued in spite of this finding.\n"
+            "FINDING as printed by --list, or its id for all measurements"},
+           {"--list", &wanted->list,
+            "List the drafts that wait, with their findings; release "
+            "nothing"},
+           takes(Takes::folder,
+                 {"--out", &wanted->out, "Output folder of the nightly run, if it was moved"}),
            templates_argument(common)},
           common_arguments(common)),
       .footer =
-          "A night makes a draft: OUT/CAMPAIGN/certificate-draft.pdf, marked on every page, "
-          "without\n"
-          "number and signature. Read it, look at the findings, and release it: a number is "
-          "drawn,\n"
-          "the certificate is signed and entered into the site's register, with your name, the "
-          "time\n"
-          "and the reasons. Nothing but the draft itself is released: if data, plugins or "
-          "templates\n"
-          "have changed since, run the night again. Exit status 1 if a reason is missing.\n\n"
-          "Example: nonio release site/c1 --by \"B. Sample\" --reason \"X: drift=agreed with the "
-          "customer\"",
+          "The nightly run makes a draft: OUT/CAMPAIGN/certificate-draft.pdf, marked on every "
+          "page, without\n"
+          "number and signature. Read the draft, check the findings, and release it. The "
+          "certificate\n"
+          "then gets a number, is signed, and is entered into the register of the site with "
+          "your name,\n"
+          "the time and the reasons. If data, plugins or templates have changed since the "
+          "draft was\n"
+          "made, repeat the nightly run first. Exit status 1 if a reason is missing.\n\n"
+          "Example: nonio release site/c1 --by \"B. Sample\" --reason \"X: drift=agreed with "
+          "the customer\"",
       .run = [wanted, &common] { return release(*wanted, common); }};
 }
 

@@ -73,37 +73,42 @@ Verb restamp_verb(Common& common) {
       .summary = "Keeps signed certificates verifiable after keys and time servers expire",
       .arguments = joined(
           {required(takes(Takes::file, {"FILE", &wanted->files, "Signed certificates (PDF)"})),
-           existing(Takes::folder,
-                    {"--site", &wanted->site,
-                     "Site whose site.toml, [signing], says whom to trust and expect, the time\n"
-                     "server and the revocation lists"}),
-           takes(Takes::file, {"--trust", &wanted->trust,
-                               "PEM file with the roots that certificates must lead to"}),
-           takes(Takes::file, {"--revoked", &wanted->revoked,
-                               "PEM file with revocation lists that are at hand"}),
+           existing(Takes::folder, {"--site", &wanted->site,
+                                    "Site whose site.toml, [signing], names trusted roots, "
+                                    "expected signer, time server and\n"
+                                    "revocation lists"}),
            takes(Takes::file,
-                 {"--ocsp", &wanted->answers,
-                  "File with an answer by OCSP (DER) that is at hand; may be repeated"}),
+                 {"--trust", &wanted->trust, "PEM file with the trusted root certificates"}),
+           takes(Takes::file, {"--revoked", &wanted->revoked, "PEM file with revocation lists"}),
+           takes(Takes::file,
+                 {"--ocsp", &wanted->answers, "File with an OCSP response (DER); may be repeated"}),
            {"--signer", &wanted->signer,
-            "Who should have signed: subject of the certificate, or its SHA-256"},
+            "Expected signer: subject of the certificate, or its SHA-256"},
            {"--time-stamp", &wanted->time_stamp, "Address of the time-stamp server, http://..."},
            {"--no-time-stamp", &wanted->no_time_stamp,
-            "Only put revocation data in (PAdES B-LT): who stamps later finds them"},
+            "Add only revocation data (PAdES B-LT), for a later time stamp"},
            {"--no-fetch", &wanted->no_fetch,
-            "Ask no address that stands in a certificate; only what is at hand"},
-           takes(Takes::folder,
-                 {"--out", &wanted->out, "Write the files here; without it over themselves"})},
+            "Do not contact addresses in certificates; use only the given data"},
+           takes(Takes::folder, {"--out", &wanted->out,
+                                 "Folder for the files (default: overwrite the given "
+                                 "files)"})},
           common_arguments(common)),
       .footer =
-          "Puts into each file the certificates of its signer and time servers, and what their\n"
-          "authorities say of them (revocation lists, answers by OCSP), then a time stamp over\n"
-          "all of it (PAdES B-LTA). What was issued stays as it is at the beginning of the file;\n"
-          "`nonio verify` accepts exactly this addition and no other. Do it some days after the\n"
-          "issue, and again before the certificate of the last time server runs out: a later\n"
-          "stamp protects the earlier ones. The register keeps the file as it was issued.\n"
-          "Lists come from --revoked and --ocsp, else from the addresses (http) in the\n"
-          "certificates. Where nobody says whether a certificate was revoked, nothing is written.\n"
-          "Exit status 0 only if all files were written.\n\n"
+          "Adds to each file the certificates of its signer and time servers with their "
+          "revocation data\n"
+          "(revocation lists, OCSP responses), then a time stamp over the whole file (PAdES "
+          "B-LTA).\n"
+          "The issued bytes stay unchanged at the beginning of the file; `nonio verify` "
+          "accepts this\n"
+          "addition and no other. Restamp some days after the issue, and again before the "
+          "certificate\n"
+          "of the last time server expires: a later stamp protects the earlier ones. The "
+          "register keeps\n"
+          "the file as it was issued. Revocation data come from --revoked and --ocsp, "
+          "otherwise from the\n"
+          "addresses (http) in the certificates. If the status of a certificate cannot be "
+          "determined,\n"
+          "nothing is written. Exit status 0 only if all files were written.\n\n"
           "Example: nonio certificates site --out archive && nonio restamp --site site "
           "archive/*.pdf",
       .run = [wanted, &common] { return restamp(*wanted, common); }};

@@ -162,19 +162,19 @@ Verb run_verb(Common& common) {
                               "Folder in which every folder with a campaign.toml is a campaign"})),
            required(takes(Takes::folder,
                           {"--out", &wish->out,
-                           "Folder for the results: one folder a campaign, and the summary"})),
+                           "Folder for the results: one folder per campaign, and the summary"})),
            within(1, 1024,
                   {"--jobs", &options.jobs, "Campaigns at a time (default: one for each core)"}),
            {"--force", &options.force, "Do every campaign again, changed or not"},
            {"--verify-results", &options.verify_results,
-            "Compare the digests of all files given out, not only of those that look touched;\n"
-            "a campaign with a file that was changed is done again"},
+            "Compare the digests of all result files, not only of those that look modified; a\n"
+            "campaign with a modified file is evaluated again"},
            {"--date", &options.date,
-            "Date of the night, YYYY-MM-DD, for the summary (default: today; a run that goes on\n"
-            "where another stopped keeps its date)"},
-           {"--dry-run", &options.dry_run, "Say what would be done and why; do nothing"},
+            "Date of the night, YYYY-MM-DD, for the summary (default: today; a resumed run keeps\n"
+            "its date)"},
+           {"--dry-run", &options.dry_run, "Print what would be done and why; do nothing"},
            {"--root", &options.as_root,
-            "Root may run it, even with plugins that other users can change; or set "
+            "Permit root, even with plugins that other users can change; or set "
             "NONIO_ALLOW_ROOT"},
            templates_argument(common)},
           common_arguments(common)),

@@ -38,17 +38,17 @@ int write_schema(const std::string& verb, Schema schema, const std::string& out,
 Verb schema_of(const std::string& file, Schema schema, Common& common) {
   auto out = std::make_shared<std::string>();
   const std::string verb = "nonio schema " + file;
-  return {.name = file,
-          .summary = "Of " + file + ".toml",
-          .arguments =
-              joined({takes(Argument::Takes::file,
-                            {"--out", out.get(), "File for the schema; without it, on stdout"})},
-                     common_arguments(common)),
-          .footer = "An editor finds it by the first line of " + file +
-                    ".toml, with the path from there:\n\n    #:schema ../" + file +
-                    ".schema.json\n\nExample: nonio schema " + file + " --out site/" + file +
-                    ".schema.json",
-          .run = [=, &common] { return write_schema(verb, schema, *out, common); }};
+  return {
+      .name = file,
+      .summary = "JSON schema of " + file + ".toml",
+      .arguments = joined({takes(Argument::Takes::file,
+                                 {"--out", out.get(), "File for the schema (default: stdout)"})},
+                          common_arguments(common)),
+      .footer = "An editor finds the schema by the first line of " + file +
+                ".toml, with the path from there:\n\n    #:schema ../" + file +
+                ".schema.json\n\nExample: nonio schema " + file + " --out site/" + file +
+                ".schema.json",
+      .run = [=, &common] { return write_schema(verb, schema, *out, common); }};
 }
 
 }  // namespace

@@ -371,7 +371,7 @@ Verb show_verb(Common& common) {
                                templates_argument(common)},
                               common_arguments(common)),
           .footer =
-              "--json: the text of results.json.\n\n"
+              "--json prints the text of results.json.\n\n"
               "Exit status: 0 shown; 1 shown, and the campaign failed; 2 usage or "
               "configuration.\n\n"
               "Examples: nonio show samples/site/09-tolerances\n"

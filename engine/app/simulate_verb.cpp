@@ -69,30 +69,31 @@ int simulate(const SimulateWish& w, const Common& common) {
 Verb simulate_verb(Common& common) {
   auto wish = std::make_shared<SimulateWish>();
   using Takes = Argument::Takes;
-  return {
-      .name = "simulate",
-      .summary =
-          "Makes a campaign from a machine with known effects and stores the truth separately",
-      .arguments = joined(
-          {required(existing(Takes::file, {"SPEC", &wish->specification,
-                                           "A campaign.toml with [simulation], [[cycle]] and "
-                                           "[[effect]] (docs/simulate.md)"})),
-           required(takes(Takes::folder,
-                          {"--out", &wish->out, "Folder for campaign.toml and the readings"})),
-           takes(Takes::file,
-                 {"--truth", &wish->truth,
-                  "File for what was put in (default: OUT.truth.json, beside the folder)"})},
-          common_arguments(common)),
-      .footer =
-          "The specification is a manifest with three things more:\n"
-          "  [simulation]           seed = 7             the same seed gives the same bytes\n"
-          "  [[cycle]]              measurement = \"X\"    targets, runs, noise of one "
-          "measurement\n"
-          "  [[effect]]             name = \"backlash:X\"  b_um = -6.0\n"
-          "Effects are those of `nonio plugins`, and formulas under [[model.formula]] or, to stay\n"
-          "hidden, [[simulation.formula]]; each parameter has its unit in its name.\n\n"
-          "Example: nonio simulate samples/simulate/worn-screw.toml --out site/worn-screw",
-      .run = [wish, &common] { return simulate(*wish, common); }};
+  return {.name = "simulate",
+          .summary =
+              "Makes a campaign from a machine with known effects and stores the truth separately",
+          .arguments = joined(
+              {required(existing(Takes::file, {"SPEC", &wish->specification,
+                                               "A campaign.toml with [simulation], [[cycle]] and "
+                                               "[[effect]] (docs/simulate.md)"})),
+               required(takes(Takes::folder,
+                              {"--out", &wish->out, "Folder for campaign.toml and the readings"})),
+               takes(Takes::file,
+                     {"--truth", &wish->truth,
+                      "File for the true values (default: OUT.truth.json, beside the folder)"})},
+              common_arguments(common)),
+          .footer =
+              "The specification is a manifest with three additional tables:\n"
+              "  [simulation]           seed = 7             the same seed gives the same bytes\n"
+              "  [[cycle]]              measurement = \"X\"    targets, runs, noise of one "
+              "measurement\n"
+              "  [[effect]]             name = \"backlash:X\"  b_um = -6.0\n"
+              "Effects are those of `nonio plugins`, and formulas under [[model.formula]] or, if "
+              "they shall\n"
+              "not appear in the campaign, [[simulation.formula]]. The name of a parameter ends "
+              "with its unit.\n\n"
+              "Example: nonio simulate samples/simulate/worn-screw.toml --out site/worn-screw",
+          .run = [wish, &common] { return simulate(*wish, common); }};
 }
 
 }  // namespace nonio::app

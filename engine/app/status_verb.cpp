@@ -93,7 +93,7 @@ Verb status_verb(Common& common) {
   using Takes = Argument::Takes;
   Argument age = within(
       0, 1e6,
-      {"--max-age", &wish->max_age, "Greatest age of the last complete night, in hours; 0: any"});
+      {"--max-age", &wish->max_age, "Largest age of the last complete night, in hours; 0: any"});
   age.shows_default = true;
   return {
       .name = "status",
@@ -102,11 +102,13 @@ Verb status_verb(Common& common) {
                                       {"OUT", &wish->out, "Output folder of `nonio run`"})),
                     age,
                     {"--json", &common.json, "Machine-readable output on stdout"},
-                    {"--quiet", &common.quiet, "Nothing unless something is wrong"}},
+                    {"--quiet", &common.quiet, "No output unless something is wrong"}},
       .footer =
-          "One line: the last night's number, date, age, campaigns. Exit status: 0 the last night\n"
-          "is complete and young enough, or one is running and the last is; 1 a night began and\n"
-          "did not end, or the last one is too old; 2 there was none, or it cannot be read.\n"
+          "One line: the last night's number, date, age, campaigns. Exit status: 0 the last "
+          "night\n"
+          "is complete and recent enough, also while another one is running; 1 a night began "
+          "and did\n"
+          "not end, or the last one is too old; 2 there was none, or it cannot be read.\n"
           "The age is that of OUT/summary.json.\n\n"
           "Example: nonio status out --max-age 26",
       .run = [wish, &common] { return status(*wish, common); }};

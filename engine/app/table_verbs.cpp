@@ -268,7 +268,7 @@ int apply(const TableWish& w, const Common& common) {
 
 std::vector<Argument> table_arguments(TableWish& w) {
   return {{"--control", &w.control,
-           "The control that the files are of (`nonio controllers`); else as the files are\n"
+           "The control of the files (`nonio controllers`); else as the files are\n"
            "called, or the only one that can read them"},
           settings_argument(w.settings,
                             "NAME=VALUE: an option of that control, such as type=1 or\n"
@@ -282,29 +282,30 @@ Verb diff_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "diff",
-      .summary = "Two tables of one control against each other",
+      .summary = "Compares two tables of one control",
       .arguments = joined(
           {required(takes(
                Takes::file,
-               {"PRESENT", &w->table, "The table that is in the control: FILE, or FILE,FILE,..."})),
-           required(takes(Takes::file,
-                          {"NEW", &w->other,
-                           "The table that is to come into it; or a campaign, whose tables it is\n"
-                           "held against, of the axes that were measured"}))},
+               {"PRESENT", &w->table, "The present table of the control: FILE, or FILE,FILE,..."})),
+           required(takes(
+               Takes::file,
+               {"NEW", &w->other,
+                "The new table; or a campaign, whose tables of the measured axes are compared"}))},
           table_arguments(*w),
           {{"--axis", &w->axes,
-            "Name of an axis, in the order of their numbers; A, B, C are in deg;\n"
-            "may be given several times"}},
+            "Name of an axis, in the order of the axis numbers; A, B and C are in deg; may be "
+            "given\n"
+            "several times"}},
           common_arguments(common)),
       .footer =
-          "Both are read as the control reads them: what they add to the position, whatever sign "
-          "or\n"
-          "increments their files have. For each axis: where they differ most, and of each table "
+          "Both tables are read as the control reads them, whatever sign or increments the "
+          "files have.\n"
+          "For each axis it prints the largest difference and where it is, and for each table "
           "the\n"
-          "largest entry, the largest step from one point to the next and the largest slope. A "
-          "step\n"
-          "or slope that is much larger than in the present table deserves a look before "
-          "loading.\n\n"
+          "largest entry, the largest step between neighbouring points and the largest slope. "
+          "If a step\n"
+          "or slope is much larger than in the present table, find out why before you load "
+          "it.\n\n"
           "Exit status: 0 compared; 2 a file cannot be read.\n\n"
           "Example: nonio diff backup/linuxcnc-X.comp out/c/linuxcnc-X.comp --axis X",
       .run = [w, &common] { return diff(*w, common); }};
@@ -313,37 +314,37 @@ Verb diff_verb(Common& common) {
 Verb apply_verb(Common& common) {
   auto w = std::make_shared<TableWish>();
   using Takes = Argument::Takes;
-  return {
-      .name = "apply",
-      .summary = "What a table does to the error that a campaign has measured",
-      .arguments = joined(
-          {required(takes(Takes::file, {"TABLE", &w->table,
-                                        "The table: FILE, or FILE,FILE,... with its backlash"}))},
-          campaign_arguments(w->folder, common), table_arguments(*w),
-          {{"--was-on", &w->was_on,
-            "TABLE was in force while the campaign was measured: it is taken off the "
-            "readings,\n"
-            "and the new table is the whole of what is needed"},
-           {"--backlash-was", &w->backlash_was,
-            "With --was-on: what was in the backlash parameter, in mm or deg, where TABLE does "
-            "not\n"
-            "hold it: VALUE, none, or AXIS=VALUE; may be given several times"},
-           takes(Takes::folder,
-                 {"--out", &w->out, "With --was-on: the folder for the files of the new table"})}),
-      .footer =
-          "Without --was-on: E, B and M as measured, and after this table is loaded into a "
-          "control\n"
-          "that had none (the backlash parameter of the axis: option axes, backlash_mm).\n"
-          "With --was-on: the difference from this table to the new one, and E, B and M after the "
-          "new\n"
-          "one is loaded in its place. Tables of one axis by another are not taken off.\n\n"
-          "Exit status: 0 no axis becomes worse; 1 one does, or nothing could be predicted; 2 "
-          "usage\n"
-          "or configuration.\n\n"
-          "Example: nonio apply backup/siemens-840d-X-EEC.ini,backup/siemens-840d-X-backlash.ini "
-          "\\\n"
-          "           site/2026-11-rossi --was-on --out new",
-      .run = [w, &common] { return apply(*w, common); }};
+  return {.name = "apply",
+          .summary = "Predicts the error of a campaign after a table is loaded",
+          .arguments = joined(
+              {required(takes(Takes::file, {"TABLE", &w->table,
+                                            "The table: FILE, or FILE,FILE,... with the file of "
+                                            "its backlash value"}))},
+              campaign_arguments(w->folder, common), table_arguments(*w),
+              {{"--was-on", &w->was_on,
+                "TABLE was active during the measurement: it is removed from the readings, so that "
+                "the\n"
+                "new table is complete"},
+               {"--backlash-was", &w->backlash_was,
+                "With --was-on: active backlash value in mm or deg, if TABLE does not contain it:\n"
+                "VALUE, none, or AXIS=VALUE; may be given several times"},
+               takes(Takes::folder,
+                     {"--out", &w->out, "With --was-on: folder for the files of the new table"})}),
+          .footer =
+              "Without --was-on it prints E, B and M as measured, and after this table is loaded "
+              "into a\n"
+              "control without a table (backlash parameter of the axis: option axes, "
+              "backlash_mm).\n"
+              "With --was-on it prints the difference between this table and the new one, and E, B "
+              "and M\n"
+              "after the new one replaces it. Cross tables are not removed from the readings.\n\n"
+              "Exit status: 0 no axis gets worse; 1 an axis gets worse, or no prediction was "
+              "possible; 2 usage\n"
+              "or configuration.\n\n"
+              "Example: nonio apply "
+              "backup/siemens-840d-X-EEC.ini,backup/siemens-840d-X-backlash.ini \\\n"
+              "           site/2026-11-rossi --was-on --out new",
+          .run = [w, &common] { return apply(*w, common); }};
 }
 
 }  // namespace nonio::app

@@ -47,14 +47,13 @@ Verb template_verb(Common& common) {
   Verb check{
       .name = "check",
       .summary =
-          "Checks layouts, the texts of every language, their places in braces, and missing "
+          "Checks layouts, the texts of every language and their placeholders, and missing "
           "characters",
-      .arguments =
-          joined({existing(Argument::Takes::folder,
-                           {"SITE", site.get(),
-                            "Site whose own templates/ folder is laid over the installed one"}),
-                  templates_argument(common)},
-                 common_arguments(common)),
+      .arguments = joined({existing(Argument::Takes::folder,
+                                    {"SITE", site.get(),
+                                     "Site whose templates/ folder replaces installed templates"}),
+                           templates_argument(common)},
+                          common_arguments(common)),
       .footer =
           "To change the look or the words for one site, copy the file from the installed "
           "templates to\n"

@@ -83,24 +83,24 @@ Verb verify_verb(Common& common) {
       .arguments = joined(
           {required(
                takes(Takes::file, {"FILE", &wanted->files, "Certificates (PDF) and DCC (XML)"})),
-           existing(Takes::folder,
-                    {"--site", &wanted->site,
-                     "Site whose site.toml, [signing], says whom to trust and expect, and whose\n"
-                     "register says which numbers are in force"}),
+           existing(Takes::folder, {"--site", &wanted->site,
+                                    "Site whose site.toml, [signing], names trusted roots and the "
+                                    "expected signer, and\n"
+                                    "whose register lists the numbers in force"}),
            takes(Takes::file,
                  {"--trust", &wanted->trust,
-                  "PEM file with the roots that certificates must lead to (nobody else is "
-                  "trusted)"}),
+                  "PEM file with the trusted root certificates (no others are trusted)"}),
            takes(Takes::file, {"--revoked", &wanted->revoked, "PEM file with revocation lists"}),
            {"--signer", &wanted->signer,
-            "Who should have signed: subject of the certificate, or its SHA-256"},
+            "Expected signer: subject of the certificate, or its SHA-256"},
            templates_argument(common)},
           common_arguments(common)),
       .footer =
-          "The verdict, then one line for each check; exit status 0 only if all hold. Without "
-          "--trust and --signer "
-          "(or\n"
-          "--site) a signature proves nothing, and the answer is no. Needs no network.\n\n"
+          "Prints the verdict, then one line per check; exit status 0 only if all hold. "
+          "Without --trust\n"
+          "and --signer (or --site) a signature proves nothing, and the verdict is negative. "
+          "No network\n"
+          "is needed.\n\n"
           "Example: nonio verify --site site out/c1/certificate.pdf",
       .run = [wanted, &common] { return verify(*wanted, common); }};
 }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What holds for the documents: lines fit 120 columns, tables and code apart; links point at pages that are
-there; the rows of docs/constants.md are those that the code names.
+"""What holds for the documents: lines fit 120 columns, tables and code apart; links point at pages and headings that
+are there, and so do the pages that the sources name; the rows of docs/constants.md are those that the code names;
+no page, no help and no English text has the phrases that readers stumbled over.
 
 docs_test.py SOURCE_FOLDER"""
 import pathlib
@@ -23,7 +24,36 @@ def wide_lines(text):
             yield number
 
 
+# Each was read by somebody who had to read it twice.
+RIDDLES = re.compile(r"""predecessors | \bhas\ a\ say\b | what\ comes\ of\ it | \bto\ be\ had\b | \bbad\ record\b
+    | (held|hold|holds|holding)\ (\w+\ )?against\b | laws\ of\ (its|their|each)\ kind | verdict:\ nothing
+    | deserves?\ (a\ look|their\ trust) | what\ is\ left\b | nobody\ (knows|says|pays|fills)
+    | tell(s)?\ them\ apart | told\ apart | the\ whole\ of\ what | left\ unsaid | is\ not\ content\ with
+    | as\ far\ as\ these\ readings\ go | \bone\ a\ (row|file|line|campaign|check|kind)\b""",
+    re.X | re.I)
+
+
+def joined(text):
+    """The text on one line, literals of C++ that follow one another as one."""
+    return re.sub(r"\s+", " ", re.sub(r'"\s*\n\s*"', "", text).replace("\\n", " "))
+
+
+def headings(text):
+    """The names under which a page's headings are linked to."""
+    text = re.sub(r"^```.*?^```", "", text, flags=re.S | re.M)
+    return {re.sub(r"[^\w\- ]", "", line.strip().lower()).replace(" ", "-")
+            for line in re.findall(r"^#+ (.*)$", text, re.M)}
+
+
+def sources():
+    for folder in ("engine", "plugins", "reports", "templates", "tests", "samples", "bench", "scripts", "cmake"):
+        for path in (ROOT / folder).rglob("*"):
+            if path.suffix in (".cpp", ".h", ".py", ".md", ".toml", ".txt", ".cmake", ".in") and path.is_file():
+                yield path
+
+
 class Documents(unittest.TestCase):
+    maxDiff = None
     def test_a_line_that_is_too_long_is_seen(self):
         self.assertEqual([1], list(wide_lines("x " * 61)))
         self.assertEqual([], list(wide_lines("| " + "x " * 61)))
@@ -38,6 +68,32 @@ class Documents(unittest.TestCase):
                 for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text())
                 if "://" not in target and not (page.parent / target).exists()]
         self.assertEqual([], lost)
+
+    def test_links_lead_to_headings_that_are_there(self):
+        lost = []
+        for page in PAGES:
+            for target, heading in re.findall(r"\]\(([^)#\s]*)#([^)]+)\)", page.read_text()):
+                there = page.parent / target if target else page
+                if "://" not in target and heading not in headings(there.read_text()):
+                    lost.append(f"{page.relative_to(ROOT)}: {target}#{heading}")
+        self.assertEqual([], lost)
+
+    def test_pages_that_the_sources_name_are_there(self):
+        lost = {f"{path.relative_to(ROOT)}: {page}" for path in sources()
+                for page in re.findall(r"\bdocs/[a-z-]+\.md\b", path.read_text(errors="replace"))
+                if not (ROOT / page).exists()}
+        self.assertEqual(set(), lost)
+
+    def test_no_phrase_that_readers_stumbled_over(self):
+        texts = [*PAGES, *(ROOT / "templates/words/en").glob("*.toml"),
+                 *(ROOT / "engine/app").glob("*.cpp"), *(ROOT / "engine/host/plugin_check").glob("*.cpp")]
+        found = [f"{path.relative_to(ROOT)}: {phrase.group(0)!r}" for path in texts
+                 for phrase in RIDDLES.finditer(joined(path.read_text()))]
+        self.assertEqual("", "\n".join(found))
+
+    def test_a_phrase_over_two_lines_or_two_strings_is_seen(self):
+        for text in ("what\ncomes of it", 'a = "what comes "\n      "of it";'):
+            self.assertTrue(RIDDLES.search(joined(text)), text)
 
     def test_rows_of_the_constants_are_those_that_the_code_names(self):
         rows = set(re.findall(r"^\| ([AM]\d+) \|", (ROOT / "docs/constants.md").read_text(), re.M))

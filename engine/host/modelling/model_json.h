@@ -22,7 +22,7 @@ std::size_t most_severe(const std::vector<Explained>& all);
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
                                      const ModelWords& words);
 
-/// docs/formats.md: nonio-compare/1, nonio-explain/1 and nonio-model/1. `all` is not empty;
+/// docs/json.md: nonio-compare/1, nonio-explain/1 and nonio-model/1. `all` is not empty;
 /// `warnings` and `errors` are those of the campaign.
 std::string compare_json(const std::vector<Compared>& all, const Campaign& campaign,
                          const ModelWords& words, const std::vector<std::string>& warnings,

@@ -45,8 +45,8 @@ constexpr const char* of_files[][2] = {
     {"loads", "The library loads, its ABI is the program's, it registers within a second."},
     {"symbols", "One symbol is exported, nonio_plugin."},
     {"cases", "Every campaign of its cases can be read."},
-    {"pure", "Elsewhere and later the same comes out, without files, sockets or processes."},
-    {"time", "Not two of its checks hang; the others are not tried then."}};
+    {"pure", "The result depends on the input only; no file, socket or process is used."},
+    {"time", "At most one of its checks hangs; after two the others are skipped."}};
 
 /// All that one file registers.
 struct Brought final : Registry {

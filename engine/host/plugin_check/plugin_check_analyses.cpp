@@ -458,18 +458,19 @@ const std::vector<Check<Analysis>>& analysis_checks() {
       {"truth", "It gives the values of expected/values.csv.",
        [](const Analysis& x, const Bench& bench) { return truth(x, bench); }},
       {"again", "The same input gives the same bytes.", analysis_again},
-      {"says", "Of a sample that it applies to it says something.", analysis_says},
-      {"finite", "What cannot be given is absent.", analysis_finite},
-      {"rows", "The order of rows changes nothing.", analysis_rows},
-      {"shift", "The unknown zero of the readings is in no result, or in it as it is.",
+      {"says", "It gives results for a sample that it applies to.", analysis_says},
+      {"finite", "A value that cannot be given is absent.", analysis_finite},
+      {"rows", "The order of rows does not change the result.", analysis_rows},
+      {"shift",
+       "The unknown zero of the readings leaves a result unchanged, or shifts it by "
+       "itself.",
        analysis_shift},
-      {"scale", "Twice the deviations are twice the results.", analysis_scale},
-      {"mirror", "An axis counted the other way round gives results of the same size.",
-       analysis_mirror},
+      {"scale", "Doubled deviations double the results.", analysis_scale},
+      {"mirror", "A reversed axis gives results of the same size.", analysis_mirror},
       {"renamed", "Results do not depend on the name of the axis.", analysis_renamed},
-      {"inch", "Inches give what millimetres give.",
+      {"inch", "Inches give the same readings as millimetres.",
        [](const Analysis&, const Bench&) { return skipped("an analysis gets SI"); }},
-      {"hostile", "Odd readings neither crash nor hang it nor give what is no number.",
+      {"hostile", "Unusual readings cause no crash, no hang and no invalid number.",
        analysis_hostile}};
   return checks;
 }

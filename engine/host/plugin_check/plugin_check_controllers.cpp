@@ -382,16 +382,17 @@ Verdict table_inch(const Output& o, const Bench& bench) {
 
 const std::vector<Check<Output>>& controller_checks() {
   static const std::vector<Check<Output>> checks = {
-      {"declared", "Name, units, steps and how well each fact is known are declared.",
+      {"declared", "Name, units, steps and the confidence of each fact are declared.",
        table_declared},
       {"truth", "Files of the maker do what table.csv says.",
        [](const Output& x, const Bench& bench) { return truth(x, bench); }},
-      {"cancels", "Its table, read back, takes a planted error away.", table_cancels},
-      {"sign", "Over an error that rises the control adds what falls as much.", table_sign},
-      {"rounding", "No point is off by more than half a step.", table_rounding},
-      {"limits", "An error that it cannot hold is refused, and never wrapped.", table_limits},
-      {"rotary", "A table of a whole turn ends where it begins.", table_rotary},
-      {"inch", "Inches give what millimetres give.", table_inch}};
+      {"cancels", "Its table, read back, removes a planted error.", table_cancels},
+      {"sign", "Where the error rises, the control adds a correction that falls equally.",
+       table_sign},
+      {"rounding", "No point deviates by more than half a step.", table_rounding},
+      {"limits", "An error beyond its range is rejected and never wraps around.", table_limits},
+      {"rotary", "A table over a full turn ends with the value that it begins with.", table_rotary},
+      {"inch", "Inches give the same readings as millimetres.", table_inch}};
   return checks;
 }
 

@@ -464,21 +464,19 @@ Verdict fingerprint(const Effect& e, const Bench& bench) {
 
 const std::vector<Check<Effect>>& effect_checks() {
   static const std::vector<Check<Effect>> checks = {
-      {"columns", "A column for each parameter, an entry for each reading, all of them numbers.",
-       effect_columns},
+      {"columns", "One column per parameter, one entry per reading, only numbers.", effect_columns},
       {"truth", "Its columns are those of the formula beside it.",
        [](const Effect& x, const Bench& bench) { return truth(x, bench); }},
       {"again", "The same input gives the same bytes.", effect_again},
-      {"still", "Columns are 0 where the axis stood still.", effect_still},
-      {"rows", "The order of rows changes nothing.", effect_rows},
-      {"grid", "The grid of a shape rises.", effect_grid},
-      {"neighbours", "Columns of neighbours of a grid look alike.", effect_neighbours},
+      {"still", "Columns are 0 for readings with the axis at rest.", effect_still},
+      {"rows", "The order of rows does not change the result.", effect_rows},
+      {"grid", "The grid values of a shape increase.", effect_grid},
+      {"neighbours", "Neighbouring grid values give similar columns.", effect_neighbours},
       {"independent", "Columns are independent of each other and of a constant.",
        effect_independent},
-      {"planted", "Least squares find a planted effect again.", effect_planted},
-      {"explained", "Explain names a planted effect, or one that cannot be told from it.",
-       effect_explained},
-      {"hostile", "Odd readings neither crash nor hang it nor give what is no number.",
+      {"planted", "Least squares recover a planted effect.", effect_planted},
+      {"explained", "explain names a planted effect, or an alias of it.", effect_explained},
+      {"hostile", "Unusual readings cause no crash, no hang and no invalid number.",
        effect_hostile}};
   return checks;
 }

@@ -89,9 +89,8 @@ Verdict check_options(const Info& info, const Bench&) {
 
 const std::vector<Check<Info>>& info_checks() {
   static const std::vector<Check<Info>> checks = {
-      {"names", "Names are plain, none is there twice, version and summary are there.",
-       check_names},
-      {"options", "Options have help and units; defaults are in their ranges and choices.",
+      {"names", "Names are plain and unique; version and summary are present.", check_names},
+      {"options", "Options have help and units; defaults are within ranges and choices.",
        check_options}};
   return checks;
 }

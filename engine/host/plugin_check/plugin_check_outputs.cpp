@@ -282,13 +282,13 @@ Verdict fingerprint(const Output& o, const Bench& bench) {
 
 const std::vector<Check<Output>>& output_checks() {
   static const std::vector<Check<Output>> checks = {
-      {"writes", "It writes files with plain names, of numbers.", output_writes},
+      {"writes", "It writes files with plain names and valid numbers.", output_writes},
       {"again", "The same input gives the same bytes.", output_again},
       {"empty", "No results or no readings: an error, or less.", output_empty},
       {"hostile", "Texts of any kind do not crash it, and lead to no other folder.",
        output_hostile},
-      {"choices", "Every choice and both ends of each option.", output_options},
-      {"templates", "Its own templates are without mistakes.", output_templates}};
+      {"choices", "Every choice and both ends of each option work.", output_options},
+      {"templates", "Its own templates have no errors.", output_templates}};
   return checks;
 }
 

@@ -367,19 +367,18 @@ Verdict fingerprint(const Reader& r, const Bench& bench) {
 
 const std::vector<Check<Reader>>& reader_checks() {
   static const std::vector<Check<Reader>> checks = {
-      {"reads", "It reads its samples: columns of one length, of numbers.", reader_reads},
-      {"truth", "Reading by reading it finds what readings.csv says.", reader_truth},
+      {"reads", "It reads its samples: columns of equal length, only numbers.", reader_reads},
+      {"truth", "Each reading equals that of readings.csv.", reader_truth},
       {"again", "The same input gives the same bytes.", reader_again},
-      {"empty", "Nothing is found in an empty file.", reader_empty},
-      {"foreign", "It knows no file of another kind.", reader_foreign},
-      {"truncated", "Cut off, a file is refused or gives readings of the whole one.",
+      {"empty", "An empty file gives no readings.", reader_empty},
+      {"foreign", "It does not accept files of other kinds.", reader_foreign},
+      {"truncated", "A truncated file is rejected or gives readings of the whole file.",
        reader_truncated},
-      {"damaged", "Damaged bytes neither crash nor hang it nor give what is no number.",
-       reader_damaged},
-      {"sentinels", "NaN, -1e20 and 1e20 are missing or an error, and touch no other reading.",
+      {"damaged", "Damaged bytes cause no crash, no hang and no invalid number.", reader_damaged},
+      {"sentinels", "NaN, -1e20 and 1e20 are missing or an error, and change no other reading.",
        reader_sentinels},
-      {"signs", "A sign before a number loses no reading.", reader_signs},
-      {"inch", "Inches give what millimetres give.", reader_inch}};
+      {"signs", "No reading is lost because of a sign before a number.", reader_signs},
+      {"inch", "Inches give the same readings as millimetres.", reader_inch}};
   return checks;
 }
 

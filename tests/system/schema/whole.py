@@ -68,6 +68,7 @@ def machine():
 def site():
     return {
         "format": 1,
+        "language": "de",
         "laboratory": {"name": "L", "address": "A", "country": "IT", "accreditation": "N", "authoriser": "B",
                        "contact": "C", "cmc": {"fixed_um": 0.3, "per_m_um": 0.5, "arcsec": 0.1}},
         "limits": {"seconds": 60, "memory_MB": 2000.5, "disk_seconds": 5},

@@ -90,7 +90,7 @@ class Mistyped(VerbTest):
             shown = " ".join(self.nonio("show", self.folder, expect=1).stdout.split())
             self.assertIn(f'nearest: "{nearest}"', shown)
             if key == "analyses":
-                self.assertIn("measurement X: No analysis", shown)
+                self.assertIn("measurement X: None of the selected analyses evaluates", shown)
 
 
 class Pages(VerbTest):

@@ -39,7 +39,7 @@ class Compare(VerbTest):
         self.assertGreater(len(part["left"]), 1)
         shown = self.nonio("compare", self.folder).stdout
         self.assertNotIn("%", shown)
-        self.assertRegex(shown, r"lack of fit +What is left is far more than noise: [\d.]+ um beyond it\.")
+        self.assertRegex(shown, r"lack of fit +The residuals far exceed the noise, by [\d.]+ um\.")
         for place in part["left"]:
             self.assertGreaterEqual(place["share"], 0.02)
             self.assertIn(place["says"], shown)

@@ -67,12 +67,12 @@ class Explain(VerbTest):
         self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
         shown = self.nonio("explain", self.folder).stdout
         line = next(l for l in shown.splitlines() if l.startswith("  No sign of: "))
-        self.assertRegex(line, r"No sign of: \S+:X \(would be seen from [\d.]+ um\), \S+:X \([\d.]+ um\)")
+        self.assertRegex(line, r"No sign of: \S+:X \(would be detected from [\d.]+ um\), \S+:X \([\d.]+ um\)")
         e = self.explain()
         self.assertEqual(line.strip(), e["no_sign"])
         for c in e["candidates"]:
             self.assertEqual(c["score"] <= 0, f" {c['effect']} (" in line, c)
-        self.assertRegex(shown, r"If nothing were missing, this test would still name something (about|less than) 1 time in \d+\.")
+        self.assertRegex(shown, r"with nothing missing, this test would still report an effect (about|less than) once in \d+ cases\.")
         self.assertNotIn(" of 200 shuffles", shown)
 
     def test_nothing_says_how_far_it_goes(self):
@@ -165,7 +165,7 @@ class Explain(VerbTest):
         e = self.explain()
         self.assertEqual(e["verdict"].get("effect"), "backlash:X")
         self.assertEqual(e["together"], ["backlash:X"])  # not a drift, nor a jump in the middle of the file
-        self.assertIn("there and back", " ".join(e["warnings"]))
+        self.assertIn("Forward and back", " ".join(e["warnings"]))
         self.campaign(manifest([]), x=self.grouped(drift=8))
         self.assertEqual(self.explain()["verdict"].get("effect"), "zero-drift:X")
 

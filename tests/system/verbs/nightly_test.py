@@ -108,7 +108,7 @@ class Nightly(VerbTest):
             self.assertLess(max(abs(x - y) for x, y in zip(a, b)), 0.0003, (a, b))
         raw, _ = self.columns("", 30.0)
         self.assertGreater(max(abs(x - y) for a, b in zip(still, raw) for x, y in zip(a, b)), 0.002)
-        self.assertIn("Tables hold what the model says of scale:X, backlash:X", " ".join(results["notes"]))
+        self.assertIn("Tables contain the values of the model for scale:X, backlash:X", " ".join(results["notes"]))
         before = next(p for p in results["tables"][0]["predictions"] if p["name"] == "E")
         self.assertGreater(before["before"], 10.0)
 

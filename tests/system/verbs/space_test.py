@@ -45,7 +45,7 @@ class Space(VerbTest):
         self.assertEqual(square["unit"], "urad")
         self.assertLess(abs(square["value"] - 12.0), 0.5)  # slopes of both curves belong to it
         # Odd parts of both on two diagonals: what is not in the data is not claimed.
-        self.assertTrue(any("cannot be told" in w and "straightness" in w for w in said["warnings"]))
+        self.assertTrue(any("cannot separate" in w and "straightness" in w for w in said["warnings"]))
 
     def test_the_pitch_of_the_axis_that_moves_is_not_called_unstated(self):
         """A straightness has the phase of the one screw that turns; diagonals have none, and are not told to state one."""
