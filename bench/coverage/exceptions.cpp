@@ -73,8 +73,8 @@ const std::vector<Exception>& exceptions() {
        "step diagonals;rotary", "instrument dominates;ball and probe dominate;short artefact",
        "positioning;squareness;straightness;direction;radius;centre"},
       {'j',
-       "the table has no run-out, and its residuals are held against the scatter that they are\n"
-       "   themselves (Thompson's tau is less than Student's t); one k for the curve",
+       "the table has no run-out, and its residuals are compared with the scatter that they\n"
+       "   determine (Thompson's tau is less than Student's t); one k for the curve",
        "rotary axis", "*", "axial;radial"},
       {'k',
        "the bound of the linear axes, and their scales, show in the residuals too; no more than\n"

@@ -43,8 +43,7 @@ constexpr Words an_asset =
 constexpr Key axis_keys[] = {
     {.name = "kind",
      .holds = text,
-     .help = "Whether the axis moves along a line or turns; without it by its name: A, B and C "
-             "turn (ISO 841).",
+     .help = "Linear or rotary axis. Default: from the name; A, B and C are rotary (ISO 841).",
      .choices = axis_kinds},
     {.name = "travel",
      .holds = span,
@@ -55,7 +54,7 @@ constexpr Key axis_keys[] = {
      .most = most_mm},
     {.name = "teeth",
      .holds = whole,
-     .help = "Periods of the drive or scale in a revolution.",
+     .help = "Periods of the drive or scale per revolution.",
      .only = if_rotary,
      .wanted = above_0,
      .least = 1},
@@ -70,8 +69,8 @@ constexpr Key axis_keys[] = {
      .above = true},
     {.name = "fixed_point_mm",
      .holds = number,
-     .help = "Where screw or scale is held, so that it does not move when it grows (the fixed "
-             "bearing, the clamp); without it the readings are asked.",
+     .help = "Position at which screw or scale is fixed and does not move when it expands (the "
+             "fixed bearing, the clamp). Default: determined from the readings.",
      .unit = "mm",
      .only = if_linear,
      .wanted = "expected a position within 1000000 mm",
@@ -87,19 +86,17 @@ constexpr Key axis_keys[] = {
      .most = most_expansion},
     {.name = "slave",
      .holds = text,
-     .help = "Of a gantry axis: name of the control's axis that drives the second side; its table "
-             "is made of the measurement with side = \"slave\".",
+     .help = "For a gantry axis: name of the control's axis that drives the second side; its "
+             "table is made from the measurement with side = \"slave\".",
      .only = if_linear},
     {.name = "table_on",
      .holds = text,
-     .help =
-         "The table that was on in the control while this axis was measured: its file below the "
-         "campaign's folder, \"backup/x.ini\", with others of one table behind commas; or "
-         "\"none\". The new table takes its place. Not said, nothing is taken to have been on."},
+     .help = "The table that was active in the control during the measurement: its file below the "
+             "campaign's folder, \"backup/x.ini\", further files of the same table separated by "
+             "commas; or \"none\". The new table replaces it. Default: no table was active."},
     {.name = "backlash_on_mm",
      .holds = number_or_none,
-     .help =
-         "What the control's backlash parameter held while this axis was measured, or \"none\".",
+     .help = "Value of the control's backlash parameter during the measurement, or \"none\".",
      .unit = "mm",
      .only = if_linear,
      .wanted = some_backlash,
@@ -107,8 +104,7 @@ constexpr Key axis_keys[] = {
      .most = most_backlash},
     {.name = "backlash_on_deg",
      .holds = number_or_none,
-     .help =
-         "What the control's backlash parameter held while this axis was measured, or \"none\".",
+     .help = "Value of the control's backlash parameter during the measurement, or \"none\".",
      .unit = "deg",
      .only = if_rotary,
      .wanted = some_backlash,
@@ -135,7 +131,7 @@ constexpr Key axis_keys[] = {
 constexpr Key machine_keys[] = {
     {.name = "asset",
      .holds = text,
-     .help = "The machine's own number in the house; its record is machines/<asset>.toml of the "
+     .help = "The customer's number of the machine; its record is machines/<asset>.toml of the "
              "site. Without it the record is found by maker and serial.",
      .wanted = an_asset,
      .text = asset_rule},
@@ -144,23 +140,24 @@ constexpr Key machine_keys[] = {
     {.name = "serial", .holds = text, .help = "Serial number of the machine."},
     {.name = "description",
      .holds = text,
-     .help = "What the machine is, for the certificate: \"gantry milling machine\"."},
+     .help = "Description of the machine for the certificate: \"gantry milling machine\"."},
     {.name = "condition",
      .holds = text,
-     .help = "State of the machine, for the certificate, where it matters."},
+     .help = "Condition of the machine for the certificate, if it matters."},
     {.name = "control",
      .holds = text,
-     .help = "Output plugin that writes the tables of the machine's control; without it tables "
-             "for all controls are written.",
+     .help = "Output plugin that writes the tables of the machine's control. Default: tables "
+             "for four controls are written.",
      .named = Named::control},
     {.name = "structure",
      .holds = text,
-     .help = "How the machine is built; on it depends what the angles of its carriages do.",
+     .help = "Structure of the machine. The effect of angular errors of its carriages depends "
+             "on it.",
      .choices = structures},
     {.name = "axes",
      .holds = named_tables,
-     .help = "The axes of the machine by their names, [machine.axes.X]. How the control counts "
-             "them stands in the record of the machine.",
+     .help = "The axes of the machine by their names, [machine.axes.X]. Their numbers in the "
+             "control are in the record of the machine.",
      .keys = axis_keys,
      .initials = "ABC",
      .by_name = "kind",
@@ -176,16 +173,19 @@ constexpr Key campaign_keys[] = {
                "\"{}\"",
      .text = campaign_id_rule},
     {.name = "customer", .holds = text, .help = "Name of the customer."},
-    {.name = "site", .holds = text, .help = "Where the machine stands."},
-    {.name = "operator", .holds = text, .help = "Who measured."},
+    {.name = "site", .holds = text, .help = "Location of the machine."},
+    {.name = "operator", .holds = text, .help = "Name of the operator."},
     {.name = "customer_address",
      .holds = text,
      .help = "Address or contact of the customer, for the certificate."},
     {.name = "date", .holds = date, .help = "Day of the measurements, or the first of them."},
     {.name = "end_date",
      .holds = date,
-     .help = "Last day of the measurements, if there were several."},
-    {.name = "received", .holds = date, .help = "Day on which the item came, for the certificate."},
+     .help = "Last day of the measurements, if there was more than one."},
+    {.name = "received",
+     .holds = date,
+     .help = "Day on which the item was received, for the "
+             "certificate."},
 };
 
 constexpr Key instrument_keys[] = {
@@ -203,8 +203,8 @@ constexpr Key instrument_keys[] = {
      .help = "Laboratory that issued the calibration certificate of the measuring instrument."},
     {.name = "valid_until",
      .holds = date,
-     .help = "Last day on which that calibration holds; without it two years from its day. A "
-             "certificate needs it to hold on the day of the measurement."},
+     .help = "Last day on which the calibration is valid. Default: two years after it. A "
+             "certificate requires a valid calibration on the day of the measurement."},
     {.name = "U_fixed_um",
      .holds = number,
      .help = "Expanded uncertainty (k = 2) of the instrument: the part that does not depend on "
@@ -215,7 +215,7 @@ constexpr Key instrument_keys[] = {
      .most = most_um},
     {.name = "U_per_m_um",
      .holds = number,
-     .help = "Expanded uncertainty (k = 2) of the instrument: the part for each metre of length.",
+     .help = "Expanded uncertainty (k = 2) of the instrument: the part per metre of length.",
      .unit = "um",
      .wanted = some_um,
      .least = 0.0,
@@ -229,36 +229,36 @@ constexpr Key instrument_keys[] = {
      .most = most_arcsec},
     {.name = "sphere_um",
      .holds = number,
-     .help = "Range of the form of the ball that is probed.",
+     .help = "Range of the form error of the probed ball.",
      .unit = "um",
      .wanted = some_um,
      .least = 0.0,
      .most = most_um},
     {.name = "probe_um",
      .holds = number,
-     .help = "Range of what the probe adds to a centre: form of its tip, pre-travel.",
+     .help = "Range of the probe's contribution to a centre: form of its tip, pre-travel.",
      .unit = "um",
      .wanted = some_um,
      .least = 0.0,
      .most = most_um},
     {.name = "expansion_um_per_m_K",
      .holds = number,
-     .help = "Coefficient of thermal expansion of an instrument that has a length of its own: a "
-             "scale, a step gauge. Without it: a laser, whose U_per_m_um has the air in it.",
+     .help = "Coefficient of thermal expansion of a material measure (scale, step gauge). "
+             "Without it the instrument is a laser, whose U_per_m_um includes the air.",
      .unit = "um/(m K)",
      .wanted = an_expansion,
      .least = least_expansion,
      .most = most_expansion},
     {.name = "temperature_range_K",
      .holds = number,
-     .help = "Range in which the reading of that instrument's temperature lies.",
+     .help = "Range of the reading error of the instrument's temperature.",
      .unit = "K",
      .wanted = some_K,
      .least = 0.0,
      .most = most_K},
     {.name = "expansion_range_um_per_m_K",
      .holds = number,
-     .help = "Range in which that instrument's coefficient of thermal expansion lies.",
+     .help = "Range of the instrument's coefficient of thermal expansion.",
      .unit = "um/(m K)",
      .wanted = an_expansion_range,
      .least = 0.0,
@@ -280,66 +280,66 @@ constexpr Key sensor_keys[] = {
     {.name = "calibrated", .holds = date, .help = "Day on which the sensor was calibrated."},
     {.name = "valid_until",
      .holds = date,
-     .help = "Last day on which that calibration holds; without it two years from its day."},
+     .help = "Last day on which the calibration is valid. Default: two years after it."},
     {.name = "certificate",
      .holds = text,
      .help = "Number of the calibration certificate of the sensor."},
-    {.name = "issuer", .holds = text, .help = "Laboratory that issued that certificate."},
+    {.name = "issuer", .holds = text, .help = "Laboratory that issued the certificate."},
 };
 
 constexpr Key environment_keys[] = {
     {.name = "misalignment_mm",
      .holds = number,
-     .help = "Largest distance of beam and axis over the travel.",
+     .help = "Largest lateral distance between beam and axis over the travel.",
      .unit = "mm",
      .wanted = "expected a number that is not negative, at most 10000 mm",
      .least = 0.0,
      .most = 1e4},
     {.name = "temperature_range_K",
      .holds = number,
-     .help = "Range in which the reading of the machine's temperature lies.",
+     .help = "Range of the reading error of the machine's temperature.",
      .unit = "K",
      .wanted = some_K,
      .least = 0.0,
      .most = most_K},
     {.name = "temperature_difference_K",
      .holds = number,
-     .help = "Largest distance of the machine's temperature from 20 degC.",
+     .help = "Largest difference of the machine's temperature from 20 degC.",
      .unit = "K",
      .wanted = some_K,
      .least = 0.0,
      .most = most_K},
     {.name = "expansion_range_um_per_m_K",
      .holds = number,
-     .help = "Range in which the coefficient of thermal expansion lies.",
+     .help = "Range of the coefficient of thermal expansion.",
      .unit = "um/(m K)",
      .wanted = an_expansion_range,
      .least = 0.0,
      .most = most_expansion_range},
     {.name = "drift_um",
      .holds = number,
-     .help = "Range of the drift test, axis at rest.",
+     .help = "Range of the drift test with the axis at rest.",
      .unit = "um",
      .wanted = some_um,
      .least = 0.0,
      .most = most_um},
     {.name = "drift_arcsec",
      .holds = number,
-     .help = "Range of the drift test of a rotary axis, at rest.",
+     .help = "Range of the drift test with the rotary axis at rest.",
      .unit = "arcsec",
      .wanted = some_arcsec,
      .least = 0.0,
      .most = most_arcsec},
     {.name = "warm_up",
      .holds = text,
-     .help = "What the machine did before the test, for the certificate: \"30 min at half feed\"."},
+     .help = "Warm-up of the machine before the test, for the certificate: \"30 min at half "
+             "feed\"."},
     {.name = "sensors",
      .holds = text,
-     .help = "Where the sensors of temperature were, for the certificate."},
+     .help = "Positions of the temperature sensors, for the certificate."},
     {.name = "drift_minutes",
      .holds = number,
-     .help = "How long the drift test took; of a measurement that took longer, the drift counts "
-             "so much more.",
+     .help = "Duration of the drift test; for a longer measurement the drift is scaled up.",
      .unit = "min",
      .wanted = "expected a number above 0",
      .least = 0.0,
@@ -361,14 +361,14 @@ constexpr Words an_end = "the axis positions of that end, { X = 0, Y = 0 }";
 constexpr Key measurement_keys[] = {
     {.name = "id",
      .holds = text,
-     .help = "Name of the measurement, unique in the campaign; what follows its first space is "
-             "the state of the machine.",
+     .help = "Name of the measurement, unique in the campaign; the text after its first space "
+             "is the state of the machine.",
      .required = true,
      .wanted = "expected up to 60 characters without / and \\, not starting with a point",
      .text = {.not_letters = "/\\\n\t", .not_first = ". ", .longest = 60}},
     {.name = "kind",
      .holds = text,
-     .help = "What was measured; the kind says which columns the file has.",
+     .help = "Kind of the measurement; it determines the columns of the file.",
      .required = true,
      .choices = measurement_kinds},
     {.name = "file",
@@ -377,56 +377,56 @@ constexpr Key measurement_keys[] = {
      .required = true},
     {.name = "reader",
      .holds = text,
-     .help = "Reader plugin for the file; without it one is chosen by the file's content.",
+     .help = "Reader plugin for the file. Default: chosen by the content.",
      .named = Named::reader},
     {.name = "axis",
      .holds = text,
-     .help = "The axis that moves, or the rotary axis whose balls were measured.",
+     .help = "The axis that moves, or the rotary axis with the measured balls.",
      .needed = {"kind", of_one_axis},
      .missing = "which axis of the machine was measured"},
     {.name = "lateral",
      .holds = text,
-     .help = "The axis in whose direction a straightness is sensed.",
+     .help = "The axis in whose direction a straightness deviation is sensed.",
      .needed = {"kind", straightness},
      .missing = "the axis in whose direction the deviation was measured"},
     {.name = "adjustment",
      .holds = text,
-     .help = "Which of two tests was made before and which after the machine was adjusted, for "
-             "the certificate.",
+     .help = "Whether the test was made before or after the adjustment of the machine, for the "
+             "certificate.",
      .choices = adjustments},
     {.name = "order",
      .holds = text,
-     .help = "In which order the readings of a file without times were taken: there and back run "
-             "by run (pendulum), as its rows stand, or nobody knows: then nothing is concluded "
-             "from time.",
+     .help = "Order of the readings in a file without times: forward and back, run by run "
+             "(pendulum), in the order of the rows (as-listed), or unknown: then nothing is "
+             "concluded from time.",
      .only = {"kind", axis_runs},
      .choices = listed_orders},
     {.name = "side",
      .holds = text,
-     .help = "Of a gantry axis with a scale on each side: on which one this line lies. Each side "
-             "has a table of its own.",
+     .help = "For a gantry axis with a scale on each side: the side of this line. Each side "
+             "has its own table.",
      .only = {"kind", axis_runs},
      .choices = sides},
     {.name = "about",
      .holds = text,
-     .help = "The direction about which the axis turns while it moves (yaw of X: Z), right-handed "
-             "positive.",
+     .help = "The axis of the rotation (yaw of X: Z), right-handed positive.",
      .required = true,
      .only = {"kind", angle},
      .choices = linear_axes},
     {.name = "exclude",
      .holds = wholes,
-     .help = "Lines of the file whose readings do not count for any analysis; each is noted in "
-             "the results.",
+     .help = "Lines of the file whose readings are excluded from all analyses; the results "
+             "list each of them.",
      .wanted = "expected line numbers of the file, whole and from 1",
      .least = 1.0,
      .most = 4e9},
     {.name = "exclude_reason",
      .holds = text,
-     .help = "Why the lines of exclude do not count; without it there is no certificate."},
+     .help = "Reason why the lines of exclude are excluded; without it no certificate is "
+             "issued."},
     {.name = "from",
      .holds = number_table,
-     .help = "Axis positions at the begin of a diagonal, { X = 0, Y = 0 }.",
+     .help = "Axis positions at the start of a diagonal, { X = 0, Y = 0 }.",
      .unit = "mm",
      .needed = {"kind", diagonals},
      .missing = an_end},
@@ -438,7 +438,7 @@ constexpr Key measurement_keys[] = {
      .missing = an_end},
     {.name = "at",
      .holds = number_table,
-     .help = "Where the axes that stood still were, { Y = 500 }: on which line this axis was "
+     .help = "Positions of the axes at rest, { Y = 500 }: the line on which this axis was "
              "measured.",
      .unit = "mm"},
     {.name = "feed_mm_per_min",
@@ -457,31 +457,31 @@ constexpr Key measurement_keys[] = {
      .above = true},
     {.name = "dwell_s",
      .holds = number,
-     .help = "Rest at a target before it is read, for the certificate.",
+     .help = "Dwell at a target before the reading, for the certificate.",
      .unit = "s",
      .wanted = not_negative,
      .least = 0.0},
     {.name = "over_travel_mm",
      .holds = number,
-     .help = "How far a linear axis went beyond the last target, for the certificate.",
+     .help = "Travel of a linear axis beyond the last target, for the certificate.",
      .unit = "mm",
      .wanted = not_negative,
      .least = 0.0},
     {.name = "over_travel_deg",
      .holds = number,
-     .help = "How far a rotary axis went beyond the last target, for the certificate.",
+     .help = "Travel of a rotary axis beyond the last target, for the certificate.",
      .unit = "deg",
      .wanted = not_negative,
      .least = 0.0},
     {.name = "tool_offset",
      .holds = number_table,
-     .help = "Offset from the tool's reference to the place that was measured, { Z = -120 }, for "
-             "the certificate.",
+     .help = "Offset from the tool's reference to the measured point, { Z = -120 }, for the "
+             "certificate.",
      .unit = "mm"},
     {.name = "workpiece_offset",
      .holds = number_table,
-     .help = "Offset from the work-piece's reference to the place that was measured, { X = 40 }, "
-             "for the certificate.",
+     .help = "Offset from the workpiece's reference to the measured point, { X = 40 }, for the "
+             "certificate.",
      .unit = "mm"},
     {.name = "compensation",
      .holds = text,
@@ -510,26 +510,22 @@ constexpr Key parameter_keys[] = {
      .choices = unit_choices},
     {.name = "start",
      .holds = number,
-     .help = "Value in the parameter's unit with which the search begins; it stands beside "
-             "range."},
+     .help = "Start value of the search, in the parameter's unit; required with range."},
     {.name = "range",
      .holds = span,
-     .help = "Where to search, two values in the parameter's unit; without start and range the "
-             "parameter must enter linearly and is fitted.",
+     .help = "Range of the search, two values in the parameter's unit. Without start and range "
+             "the parameter must enter linearly and is fitted.",
      .wanted = two_numbers},
 };
 
 constexpr Key formula_keys[] = {
     {.name = "name",
      .holds = text,
-     .help = "Name of the effect, up to 40 of a-z 0-9 -; [model] effects has it as name:axis.",
+     .help = "Name of the effect, up to 40 of a-z 0-9 -; [model] effects lists it as name:axis.",
      .required = true,
      .wanted = "expected up to 40 of a-z 0-9 -; found \"{}\"",
      .text = {.letters = "a-z0-9-", .longest = 40}},
-    {.name = "axis",
-     .holds = text,
-     .help = "The axis whose deviation the formula is.",
-     .required = true},
+    {.name = "axis", .holds = text, .help = "The axis of the deviation.", .required = true},
     {.name = "expression",
      .holds = text,
      .help = "The deviation as a formula, \"a*sin(2*_pi*p/P)\".",
@@ -554,24 +550,24 @@ constexpr Key model_keys[] = {
      .named = Named::effect},
     {.name = "compensate",
      .holds = text,
-     .help = "What tables take: the means of the readings, or what the model's compensable "
-             "effects say, so that drift and noise stay out.",
+     .help = "Basis of tables: the means of the readings, or the compensable effects of the "
+             "model, without drift and noise.",
      .otherwise = "readings",
      .choices = compensated},
     {.name = "formula",
      .holds = tables,
-     .help = "An effect of your own, as a formula.",
+     .help = "Your own effect, as a formula.",
      .keys = formula_keys},
 };
 
 constexpr Key run_keys[] = {
     {.name = "analyses",
      .holds = texts,
-     .help = "Analyses that are made; without it all that apply, but those on request only.",
+     .help = "Analyses of the campaign. Default: all that apply, except those on request.",
      .named = Named::analysis},
     {.name = "outputs",
      .holds = texts,
-     .help = "Outputs that are written; without it all that apply, but those on request only.",
+     .help = "Outputs of the campaign. Default: all that apply, except those on request.",
      .named = Named::output},
 };
 
@@ -586,7 +582,7 @@ constexpr Key languages_key = {.name = "languages",
                                .holds = texts,
                                .help =
                                    "One or two languages of the certificate: de, en, es, it, "
-                                   "zh. Without it en.",
+                                   "zh. Default: en.",
                                .wanted = "expected one or two languages, [\"it\", \"en\"]",
                                .text = language,
                                .longest_list = 2,
@@ -600,12 +596,14 @@ constexpr Key template_key = {
     .text = {.letters = "a-z0-9_-"}};
 constexpr Key location_key = {.name = "location",
                               .holds = text,
-                              .help = "Where the calibration was made.",
+                              .help = "Place of the calibration.",
                               .otherwise = "customer",
                               .choices = locations};
 constexpr Key procedure_key = {.name = "procedure",
                                .holds = text,
-                               .help = "The laboratory's own procedure, beside the standards."};
+                               .help =
+                                   "The laboratory's own procedure, in addition to the "
+                                   "standards."};
 constexpr Key title_key = {
     .name = "title",
     .holds = translations,
@@ -616,7 +614,7 @@ constexpr Key title_key = {
     .text = language};
 constexpr Key decision_rule_key = {.name = "decision_rule",
                                    .holds = text,
-                                   .help = "The rule by which results conform to a tolerance.",
+                                   .help = "The decision rule for conformity with a tolerance.",
                                    .otherwise = "iso14253-1",
                                    .choices = decision_rules};
 
@@ -629,25 +627,25 @@ constexpr Key certificate_of_campaign[] = {
     decision_rule_key,
     {.name = "deviations",
      .holds = text,
-     .help =
-         "Additions to the method, deviations from it, exclusions, beside those that the program "
-         "finds by itself."},
+     .help = "Additions to the method, deviations from it and exclusions, in addition to those "
+             "that the program finds."},
     {.name = "nothing_else_by",
      .holds = text,
-     .help =
-         "The person who states that, beyond what the certificate says, nothing was added to the "
-         "method, changed in it or left out of it. Without it no such statement is printed."},
+     .help = "The person who states that, apart from the departures listed in the certificate, the "
+             "method was followed. Without it no such statement is printed."},
     {.name = "conditions",
      .holds = text,
-     .help =
-         "Conditions that influence the results; expected where no readings have temperatures."},
+     .help = "Conditions that influence the results; required if no readings have temperatures."},
     {.name = "opinions",
      .holds = text,
      .help = "Opinions and interpretations; the certificate marks them as such."},
-    {.name = "amendment", .holds = text, .help = "Why an earlier certificate is replaced."},
+    {.name = "amendment",
+     .holds = text,
+     .help = "Reason why an earlier certificate is "
+             "replaced."},
     {.name = "customer_data",
      .holds = texts,
-     .help = "Keys of this file whose values the customer stated, [\"machine.serial\"]; the "
+     .help = "Keys of this file with values stated by the customer, [\"machine.serial\"]; the "
              "certificate marks them."},
 };
 
@@ -657,14 +655,15 @@ constexpr Choice releases[] = {{"by-hand", "a person, with nonio release"},
 constexpr Key standing_keys[] = {
     {.name = "finding",
      .holds = text,
-     .help = "Id of a finding, \"plan.few-runs\"; with \".*\" at its end all of a kind.",
+     .help = "Id of a finding, \"plan.few-runs\"; with \".*\" at its end a group of findings.",
      .required = true,
      .missing = "expected the id of a finding",
      .wanted = "expected the id of a finding, or of a kind, \"tolerance.*\"; found \"{}\"",
      .text = {.letters = "a-zA-Z0-9.*+_-"}},
     {.name = "reason",
      .holds = text,
-     .help = "Why a certificate may be issued although it is there; kept in the register.",
+     .help = "Reason why a certificate may be issued in spite of the finding; kept in the "
+             "register.",
      .required = true,
      .missing = "expected why a certificate may be issued although the finding is there"},
 };
@@ -678,17 +677,16 @@ constexpr Key certificate_of_site[] = {
     decision_rule_key,
     {.name = "numbering",
      .holds = text,
-     .help = "How certificates are numbered; with {year} the sequence begins anew with each year.",
+     .help = "Format of the certificate numbers; with {year} the sequence restarts each year.",
      .otherwise = "{year}-{number:4}"},
     {.name = "register",
      .holds = text,
-     .help = "File inside the site that keeps all numbers and what was issued under them; it "
-             "belongs into the backup.",
+     .help = "File inside the site with all numbers and issued files; include it in the backup.",
      .otherwise = "certificates.sqlite"},
     {.name = "register_seconds",
      .holds = number,
-     .help = "How long a night waits, with the campaigns that need a number, for a register that "
-             "another process keeps locked; what waits in vain is done again in the next night.",
+     .help = "Waiting time for a register that another process has locked. Campaigns that "
+             "still need a number are evaluated again in the next night.",
      .unit = "s",
      .otherwise = "60",
      .wanted = "expected a number from 0 to 86400",
@@ -696,19 +694,18 @@ constexpr Key certificate_of_site[] = {
      .most = 86400.0},
     {.name = "release",
      .holds = text,
-     .help = "Who releases a certificate: a person, or the night itself where no finding asks for "
-             "attention but those of may_stand.",
+     .help = "Release of certificates: by a person, or by the nightly run if every finding "
+             "with severity attention is listed in may_stand.",
      .otherwise = "by-hand",
      .choices = releases},
     {.name = "may_stand",
      .holds = tables,
-     .help = "Findings that ask for attention and do not hold up an automatic release, each with "
-             "the reason; [] for none.",
+     .help = "Findings with severity attention that do not prevent an automatic release, each "
+             "with the reason; [] for none.",
      .keys = standing_keys},
     {.name = "two_persons",
      .holds = flag,
-     .help = "A certificate is approved by its author and released by an authoriser who is another "
-             "person.",
+     .help = "The author approves a certificate, and another person releases it.",
      .otherwise = "false"},
 };
 
@@ -726,10 +723,8 @@ constexpr Key required_format() {
   key.missing = "expected format = 1 as the first line";
   return key;
 }
-constexpr Key run_key = {.name = "run",
-                         .holds = table,
-                         .help = "Which analyses are made and which outputs written.",
-                         .keys = run_keys};
+constexpr Key run_key = {
+    .name = "run", .holds = table, .help = "Selected analyses and outputs.", .keys = run_keys};
 constexpr Key options_key = {.name = "options",
                              .holds = options,
                              .help =
@@ -747,7 +742,7 @@ constexpr Key table_standing_keys[] = {
      .text = {.letters = "a-z.-", .begins = "plausibility."}},
     {.name = "reason",
      .holds = text,
-     .help = "Why a table may be written from these readings all the same.",
+     .help = "Reason why tables may be written from these readings.",
      .required = true,
      .missing = "expected why a table may be written although the finding is there"},
 };
@@ -755,8 +750,8 @@ constexpr Key table_standing_keys[] = {
 constexpr Key tables_keys[] = {
     {.name = "may_stand",
      .holds = tables,
-     .help = "Findings that make readings implausible and do not hold up the controller tables, "
-             "each with the reason.",
+     .help = "Findings plausibility.* that do not prevent controller tables, each with the "
+             "reason.",
      .keys = table_standing_keys},
 };
 
@@ -764,37 +759,34 @@ constexpr Key campaign_file_keys[] = {
     required_format(),
     {.name = "campaign",
      .holds = table,
-     .help = "Who had what measured, where and when.",
+     .help = "Customer, place, operator and date.",
      .required = true,
      .missing = "[campaign] with at least an id",
      .keys = campaign_keys},
-    {.name = "machine",
-     .holds = table,
-     .help = "The machine that was measured.",
-     .keys = machine_keys},
+    {.name = "machine", .holds = table, .help = "The measured machine.", .keys = machine_keys},
     {.name = "instrument",
      .holds = table,
      .help = "The measuring instrument.",
      .keys = instrument_keys},
     {.name = "sensor",
      .holds = tables,
-     .help = "A sensor of temperature, pressure or humidity: an instrument of its own, with a "
-             "calibration of its own.",
+     .help = "A sensor of temperature, pressure or humidity: a separate instrument with its "
+             "own calibration.",
      .keys = sensor_keys},
     {.name = "environment",
      .holds = table,
-     .help = "What the uncertainty budget needs beside the instrument: full ranges of what "
-             "disturbs the measurement (ISO/TR 230-9).",
+     .help = "Contributions to the uncertainty other than the instrument, as full ranges "
+             "(ISO/TR 230-9).",
      .keys = environment_keys},
     {.name = "certificate",
      .holds = table,
-     .help = "What this campaign's certificate says.",
+     .help = "Settings and texts of this campaign's certificate.",
      .keys = certificate_of_campaign},
     run_key,
     {.name = "measurement",
      .holds = tables,
-     .help = "A file of readings. One at least; none where [run] names analyses and outputs: a "
-             "campaign that only plans.",
+     .help = "A file of readings. At least one, unless [run] names analyses and outputs (a "
+             "campaign that only plans).",
      .keys = measurement_keys},
     {.name = "model",
      .holds = table,
@@ -802,7 +794,7 @@ constexpr Key campaign_file_keys[] = {
      .keys = model_keys},
     {.name = "tables",
      .holds = table,
-     .help = "What is said of controller tables from implausible readings.",
+     .help = "Controller tables from implausible readings.",
      .keys = tables_keys},
     options_key,
 };
@@ -816,13 +808,13 @@ constexpr Key cmc_keys[] = {
      .least = 0.0},
     {.name = "per_m_um",
      .holds = number,
-     .help = "The part b of a + b L, for each metre of length.",
+     .help = "The part b of a + b L, per metre of length.",
      .unit = "um",
      .wanted = not_negative,
      .least = 0.0},
     {.name = "arcsec",
      .holds = number,
-     .help = "That of angles: rotary axes, squareness, directions.",
+     .help = "The smallest uncertainty of angles: rotary axes, squareness, directions.",
      .unit = "arcsec",
      .wanted = not_negative,
      .least = 0.0},
@@ -834,9 +826,12 @@ constexpr Key laboratory_keys[] = {
     {.name = "country", .holds = text, .help = "Country of the laboratory, two letters: \"IT\"."},
     {.name = "accreditation",
      .holds = text,
-     .help = "Number of the accreditation; only for a laboratory that has one."},
-    {.name = "authoriser", .holds = text, .help = "Who authorises certificates."},
-    {.name = "contact", .holds = text, .help = "How to reach the laboratory."},
+     .help = "Number of the accreditation; for accredited laboratories only."},
+    {.name = "authoriser",
+     .holds = text,
+     .help = "Name of the person who authorises "
+             "certificates."},
+    {.name = "contact", .holds = text, .help = "Contact of the laboratory."},
     {.name = "cmc",
      .holds = table,
      .help = "The smallest expanded uncertainty (k = 2) that the accreditation covers, a + b L: no "
@@ -847,7 +842,7 @@ constexpr Key laboratory_keys[] = {
 constexpr Key limits_keys[] = {
     {.name = "seconds",
      .holds = number,
-     .help = "Time that one campaign may take.",
+     .help = "Time limit for one campaign.",
      .unit = "s",
      .otherwise = "600",
      .wanted = "expected a number above 0 and at most 1000000",
@@ -856,7 +851,7 @@ constexpr Key limits_keys[] = {
      .above = true},
     {.name = "memory_MB",
      .holds = number,
-     .help = "Memory that one campaign may take.",
+     .help = "Memory limit for one campaign.",
      .unit = "MB",
      .otherwise = "4096",
      .wanted = "expected 64 or more, and at most 1000000000",
@@ -864,9 +859,8 @@ constexpr Key limits_keys[] = {
      .most = 1e9},
     {.name = "disk_seconds",
      .holds = number,
-     .help =
-         "Time that a folder or file of the site may give no sign of life while the night looks "
-         "what there is to do; after that it is a failed one.",
+     .help = "Time without a response after which a folder or file of the site counts as failed "
+             "during the survey.",
      .unit = "s",
      .otherwise = "60",
      .wanted = "expected a number above 0 and at most 1000000",
@@ -880,9 +874,9 @@ constexpr Choice result_folders[] = {{"flat", "OUT/<id>"}, {"hashed", "OUT/ab/<i
 constexpr Key results_keys[] = {
     {.name = "folders",
      .holds = text,
-     .help =
-         "How the results lie in the output folder: each campaign in OUT/<id>, or in OUT/ab/<id>, "
-         "ab the first two digits of the SHA-256 of the id, for sites of a million.",
+     .help = "Layout of the output folder: each campaign in OUT/<id>, or in OUT/ab/<id>, where ab "
+             "are the first two digits of the SHA-256 of the id; for sites with a million "
+             "campaigns.",
      .otherwise = "flat",
      .choices = result_folders},
 };
@@ -892,23 +886,19 @@ constexpr Choice fail_or_sign[] = {{"fail"}, {"sign"}};
 constexpr Key signing_keys[] = {
     {.name = "pkcs12",
      .holds = text,
-     .help = "The key as a file, relative to the site; or else pkcs11."},
+     .help = "The key as a file, relative to the site; alternative to pkcs11."},
     {.name = "pkcs11",
      .holds = text,
-     .help = "The key on a token, \"pkcs11:token=lab;object=calib\"; or else pkcs12."},
+     .help = "The key on a token, \"pkcs11:token=lab;object=calib\"; alternative to pkcs12."},
     {.name = "module", .holds = text, .help = "PKCS#11 library of the token."},
-    {.name = "certificates",
-     .holds = text,
-     .help = "PEM file with what lies between the certificate and the root."},
+    {.name = "certificates", .holds = text, .help = "PEM file with the intermediate certificates."},
     {.name = "password_file",
      .holds = text,
-     .help = "File that holds the password; or else password_env or password_credential."},
-    {.name = "password_env",
-     .holds = text,
-     .help = "Variable of the environment that holds the password."},
+     .help = "File with the password; alternative to password_env and password_credential."},
+    {.name = "password_env", .holds = text, .help = "Environment variable with the password."},
     {.name = "password_credential",
      .holds = text,
-     .help = "Credential of systemd that holds the password."},
+     .help = "Credential of systemd with the password."},
     {.name = "trust",
      .holds = text,
      .help = "PEM file with roots, for time stamps and for `nonio verify`."},
@@ -917,7 +907,7 @@ constexpr Key signing_keys[] = {
      .help = "PEM file with revocation lists, for `nonio verify`."},
     {.name = "signer",
      .holds = text,
-     .help = "Whom `nonio verify` expects: subject, or SHA-256 of the certificate."},
+     .help = "Signer that `nonio verify` expects: subject, or SHA-256 of the certificate."},
     {.name = "time_stamp",
      .holds = text,
      .help = "Address of a time-stamp server, http://...",
@@ -925,13 +915,13 @@ constexpr Key signing_keys[] = {
      .text = {.begins = "http://"}},
     {.name = "time_stamp_missing",
      .holds = text,
-     .help = "What happens if the time-stamp server does not answer: the campaign fails, or the "
-             "certificate is signed without time stamp and the summary says so.",
+     .help = "Behaviour if the time-stamp server does not answer: the campaign fails, or the "
+             "certificate is signed without time stamp, and the summary says so.",
      .otherwise = "fail",
      .choices = fail_or_sign},
     {.name = "time_stamp_seconds",
      .holds = whole,
-     .help = "How long to wait for the time-stamp server.",
+     .help = "Time limit for the time-stamp server.",
      .unit = "s",
      .otherwise = "10",
      .wanted = "expected 1 to 300",
@@ -951,27 +941,24 @@ constexpr Key site_file_keys[] = {
      .choices = terminal_languages},
     {.name = "laboratory",
      .holds = table,
-     .help = "The laboratory that measures.",
+     .help = "The calibration laboratory.",
      .keys = laboratory_keys},
-    {.name = "limits",
-     .holds = table,
-     .help = "What one campaign may take of the computer.",
-     .keys = limits_keys},
+    {.name = "limits", .holds = table, .help = "Limits for one campaign.", .keys = limits_keys},
     {.name = "results",
      .holds = table,
-     .help = "How results lie in the output folder.",
+     .help = "Layout of the output folder.",
      .keys = results_keys},
     run_key,
     options_key,
     {.name = "signing",
      .holds = table,
-     .help = "The key that signs certificates, and time stamps.",
+     .help = "Key and time stamps for signed certificates.",
      .keys = signing_keys},
     {.name = "certificate",
      .holds = table,
-     .help = "What certificates say and how they are numbered.",
+     .help = "Content and numbering of certificates.",
      .keys = certificate_of_site},
-    {.name = "database", .holds = anything, .help = "Without effect in this version."},
+    {.name = "database", .holds = anything, .help = "Reserved; no effect in this version."},
 };
 
 constexpr Words from_0 = "expected a number from 0";
@@ -987,7 +974,7 @@ constexpr Key misreading_keys[] = {
 };
 
 constexpr Key temperature_keys[] = {
-    {.name = "start_c", .holds = number, .help = "At the begin.", .unit = "degC"},
+    {.name = "start_c", .holds = number, .help = "Temperature at the start.", .unit = "degC"},
     {.name = "drift_K_per_h", .holds = number, .help = "Drift.", .unit = "K/h"},
     {.name = "swing_K", .holds = number, .help = "Amplitude of the swing.", .unit = "K"},
     {.name = "period_s",
@@ -1027,7 +1014,7 @@ constexpr Key noise(std::string_view name) {
 constexpr Key cycle_keys[] = {
     {.name = "measurement",
      .holds = text,
-     .help = "Id of the measurement that is taken so.",
+     .help = "Id of the simulated measurement.",
      .required = true},
     of_axis({.name = "targets_mm", .holds = numbers, .help = "Targets, ascending."}, "mm"),
     of_axis({.name = "targets_deg", .holds = numbers, .help = "Targets, ascending."}, "deg"),
@@ -1039,13 +1026,13 @@ constexpr Key cycle_keys[] = {
     of_axis({.name = "step_deg", .holds = number, .help = "Distance of targets."}, "deg"),
     {.name = "random_offset_pct",
      .holds = number,
-     .help = "Part of the step by which a target is shifted at most.",
+     .help = "Largest shift of a target, as a part of the step.",
      .unit = "%",
      .wanted = from_0,
      .least = 0.0},
     {.name = "order",
      .holds = text,
-     .help = "Each run upwards and then downwards, or all in one direction.",
+     .help = "Each run upwards and then downwards, or all runs in one direction.",
      .choices = orders},
     {.name = "direction",
      .holds = text,
@@ -1061,7 +1048,7 @@ constexpr Key cycle_keys[] = {
     of_axis(feed("feed_deg_per_min"), "deg/min"),
     {.name = "dwell_s",
      .holds = number,
-     .help = "Rest at a target.",
+     .help = "Dwell at a target.",
      .unit = "s",
      .wanted = from_0,
      .least = 0.0},
@@ -1077,7 +1064,7 @@ constexpr Key cycle_keys[] = {
     {.name = "misreadings", .holds = table, .help = "Misreadings.", .keys = misreading_keys},
     {.name = "temperature",
      .holds = table,
-     .help = "Course of the temperature.",
+     .help = "Temperature over time.",
      .keys = temperature_keys},
 };
 
@@ -1101,7 +1088,7 @@ constexpr Key specification_keys[] = {
      .required = true,
      .missing = "[simulation] with a seed",
      .keys = simulation_keys},
-    {.name = "cycle", .holds = tables, .help = "How a measurement is taken.", .keys = cycle_keys},
+    {.name = "cycle", .holds = tables, .help = "Test cycle of a measurement.", .keys = cycle_keys},
     {.name = "effect", .holds = tables, .help = "A known effect.", .keys = effect_keys},
 };
 
@@ -1112,16 +1099,15 @@ constexpr Words taken_numbers = "expected numbers or ranges of them, [\"0\", \"1
 constexpr Key recorded_axis_keys[] = {
     {.name = "kind",
      .holds = text,
-     .help = "Whether the axis moves along a line or turns; without it by its name: A, B and C "
-             "turn (ISO 841).",
+     .help = "Linear or rotary axis. Default: from the name; A, B and C are rotary (ISO 841).",
      .choices = axis_kinds},
     {.name = "number",
      .holds = whole,
-     .help = "The axis' number as the control counts: n of AXn, controlled axis, joint, motor.",
+     .help = "Number of the axis in the control: n of AXn, controlled axis, joint, motor.",
      .wanted = "expected a whole number from 0 to 99",
      .least = 0,
      .most = 99},
-    {.name = "name", .holds = text, .help = "What the control calls the axis, where it is not so."},
+    {.name = "name", .holds = text, .help = "Name of the axis in the control, if different."},
     {.name = "reference_mm",
      .holds = number,
      .help = "Position of the reference point.",
@@ -1147,7 +1133,7 @@ constexpr Key recorded_axis_keys[] = {
      .most = most_mm},
     {.name = "resolution_um",
      .holds = number,
-     .help = "Smallest step that the control counts.",
+     .help = "Smallest increment of the control.",
      .unit = "um",
      .only = if_linear,
      .wanted = a_limit,
@@ -1155,7 +1141,7 @@ constexpr Key recorded_axis_keys[] = {
      .above = true},
     {.name = "resolution_arcsec",
      .holds = number,
-     .help = "Smallest step that the control counts.",
+     .help = "Smallest increment of the control.",
      .unit = "arcsec",
      .only = if_rotary,
      .wanted = a_limit,
@@ -1163,10 +1149,10 @@ constexpr Key recorded_axis_keys[] = {
      .above = true},
     {.name = "gear",
      .holds = text,
-     .help = "Ratio between motor and screw or table, \"2:1\"; for people."},
+     .help = "Ratio between motor and screw or table, \"2:1\" (information only)."},
     {.name = "largest_um",
      .holds = number,
-     .help = "Largest entry of a table that the machine's maker allows.",
+     .help = "Largest entry of a table according to the machine's maker.",
      .unit = "um",
      .only = if_linear,
      .wanted = a_limit,
@@ -1174,7 +1160,7 @@ constexpr Key recorded_axis_keys[] = {
      .above = true},
     {.name = "largest_arcsec",
      .holds = number,
-     .help = "Largest entry of a table that the machine's maker allows.",
+     .help = "Largest entry of a table according to the machine's maker.",
      .unit = "arcsec",
      .only = if_rotary,
      .wanted = a_limit,
@@ -1182,7 +1168,7 @@ constexpr Key recorded_axis_keys[] = {
      .above = true},
     {.name = "slope_um_per_m",
      .holds = number,
-     .help = "Largest slope of a table that the machine's maker allows.",
+     .help = "Largest slope of a table according to the machine's maker.",
      .unit = "um/m",
      .only = if_linear,
      .wanted = a_limit,
@@ -1190,7 +1176,7 @@ constexpr Key recorded_axis_keys[] = {
      .above = true},
     {.name = "slope_arcsec_per_deg",
      .holds = number,
-     .help = "Largest slope of a table that the machine's maker allows.",
+     .help = "Largest slope of a table according to the machine's maker.",
      .unit = "arcsec/deg",
      .only = if_rotary,
      .wanted = a_limit,
@@ -1198,11 +1184,11 @@ constexpr Key recorded_axis_keys[] = {
      .above = true},
     {.name = "table",
      .holds = text,
-     .help = "The table that is in the control: its file below the site, with others of one table "
-             "behind commas; or \"none\"."},
+     .help = "The table in the control: its file below the site, further files of the same "
+             "table separated by commas; or \"none\"."},
     {.name = "backlash_mm",
      .holds = number_or_none,
-     .help = "What the control's backlash parameter holds, or \"none\".",
+     .help = "Value of the control's backlash parameter, or \"none\".",
      .unit = "mm",
      .only = if_linear,
      .wanted = some_backlash,
@@ -1210,7 +1196,7 @@ constexpr Key recorded_axis_keys[] = {
      .most = most_backlash},
     {.name = "backlash_deg",
      .holds = number_or_none,
-     .help = "What the control's backlash parameter holds, or \"none\".",
+     .help = "Value of the control's backlash parameter, or \"none\".",
      .unit = "deg",
      .only = if_rotary,
      .wanted = some_backlash,
@@ -1218,15 +1204,15 @@ constexpr Key recorded_axis_keys[] = {
      .most = most_backlash},
     {.name = "since",
      .holds = date,
-     .help = "The day on which table and backlash came into the control. They count for "
-             "measurements of later days only."},
+     .help = "The day on which table and backlash value were loaded. They apply only to "
+             "measurements of later days."},
 };
 
 constexpr Key machine_file_keys[] = {
     required_format(),
     {.name = "asset",
      .holds = text,
-     .help = "The machine's own number in the house; the file is called so.",
+     .help = "The customer's number of the machine, equal to the name of the file.",
      .required = true,
      .missing = "the name of this file without .toml",
      .wanted = an_asset,
@@ -1236,14 +1222,14 @@ constexpr Key machine_file_keys[] = {
     {.name = "serial", .holds = text, .help = "Serial number of the machine."},
     {.name = "control",
      .holds = text,
-     .help = "Output plugin that writes the tables of the machine's control. The axes' numbers are "
-             "for this control only.",
+     .help = "Output plugin that writes the tables of the machine's control. The numbers of "
+             "the axes refer to this control.",
      .named = Named::control},
     {.name = "control_version", .holds = text, .help = "Version of the control's software."},
     {.name = "taken",
      .holds = texts,
-     .help = "Numbers that are in use in the control: of CEC tables, of Fanuc's points. New tables "
-             "take others.",
+     .help = "Numbers in use in the control, of CEC tables or FANUC's points. New tables use "
+             "others.",
      .wanted = taken_numbers,
      .text = {.letters = "0-9-", .not_first = "-", .shortest = 1, .longest = 13}},
     {.name = "axes",
@@ -1265,7 +1251,7 @@ constexpr Key campaign_toml = {.name = "campaign.toml",
                                .keys = campaign_file_keys};
 constexpr Key site_toml = {.name = "site.toml",
                            .holds = table,
-                           .help = "What holds for all campaigns of a site.",
+                           .help = "Settings for all campaigns of a site.",
                            .keys = site_file_keys};
 constexpr Key specification_toml = {.name = "specification",
                                     .holds = table,

@@ -214,7 +214,7 @@ class Checker {
          [this, kind, index](Bench& b) { return kit::fingerprint((brought_.*kind)[index], b); });
   }
 
-  /// The same work twice, the second time elsewhere and later, with nothing to be had.
+  /// The same work twice, the second time elsewhere and later, without files, sockets or processes.
   void pure(const std::string& plugin, const std::function<Verdict(Bench&)>& digest) {
     if ((!request_.only.empty() && request_.only != "pure") || hung_ >= most_hanging) return;
     zone_ = first_zone;

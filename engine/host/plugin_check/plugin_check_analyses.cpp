@@ -95,7 +95,7 @@ bool of_deviations(const Sample& s) {
   return only_kinds(s, {"axis", "straightness", "angle", "diagonal", "step-diagonal"});
 }
 
-/// Those whose zero nobody knows: step diagonals count from their start.
+/// Those with an unknown zero: step diagonals count from their start.
 bool of_unknown_zero(const Sample& s) {
   return only_kinds(s, {"axis", "straightness", "angle", "diagonal"});
 }

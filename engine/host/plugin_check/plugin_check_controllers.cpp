@@ -104,7 +104,7 @@ Written written_table(const Output& o, const Sample& s, const Settings& options,
   return {r->artifacts, std::move(*tables), {}};
 }
 
-/// Ways to set the plugin up: nobody knows the sign of some controls, which the user then says; a
+/// Ways to set the plugin up: the user states the sign of a control if it is undocumented; a
 /// table for each direction.
 std::vector<Settings> set_ups(const Output& o, const Sample& s) {
   const Settings defaults = settings_for(o, s);
@@ -146,8 +146,8 @@ std::vector<SetUp> settings_that_write(const Output& o, const Bench& bench, Writ
   return all;
 }
 
-/// Range of what is left at the targets once the control adds the table; both directions together
-/// where the files have a word about the reversal. Nothing where there is no table.
+/// Range of the remaining error at the targets once the control adds the table; both directions
+/// together where the files have a word about the reversal. Nothing where there is no table.
 std::optional<double> left(const KnownError& k, const std::vector<LoadedTable>& tables) {
   const std::string axis = k.rotary ? "C" : "X";
   const auto c = math::correction_of(tables, axis);
@@ -274,7 +274,7 @@ Verdict table_sign(const Output& o, const Bench& bench) {
   });
 }
 
-/// Range of what is left at the points of its tables.
+/// Range of the remaining error at the points of its tables.
 double left_at_points(const KnownError& k, const std::vector<LoadedTable>& tables,
                       const math::Correction& added, int direction) {
   double low = 1e9, high = -1e9;

@@ -73,7 +73,7 @@ double norm(const std::vector<double>& v) {
   return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
 }
 
-/// Less the mean of each line, whose zero nobody knows.
+/// Less the mean of each line, with an unknown zero.
 std::vector<double> without_zeros(const Observations& o, std::vector<double> v) {
   std::vector<double> sum(std::max<std::size_t>(o.lines.size(), 1)), count(sum.size());
   const auto line = [&](std::size_t i) { return o.line.empty() ? 0U : o.line[i]; };

@@ -169,6 +169,7 @@ std::string data_of(const Source& source, const Kept& kept) {
   };
   Object out;
   out.text("language", source.words.language());
+  out.raw("comma", localised(".", source.words.language()) == "," ? "true" : "false");
   out.text("axis", fit.axis);
   out.text("unit", unit_text(up));
   out.text("position_unit", unit_text(along));

@@ -14,7 +14,7 @@
     template.replace(/\{(\w+)\}/g, (all, name) => (name in places ? places[name] : all));
   const number = (v, digits) => {
     const s = v.toFixed(digits).replace("-", "\u2212");
-    return data.language === "it" ? s.replace(".", ",") : s;
+    return data.comma ? s.replace(".", ",") : s;
   };
   const finite = (v) => typeof v === "number" && isFinite(v);
   const counts = (i) => data.weight[i] >= 0.5;

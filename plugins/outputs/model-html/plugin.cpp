@@ -40,10 +40,11 @@ Expected<OutputResult> write(const OutputInput& in) {
 
 NONIO_PLUGIN(registry) {
   nonio::Output output;
-  output.info = {"model-html",
-                 "1.0.0",
-                 "The error model as an interactive page for a browser, in one file.",
-                 {{"language", std::string("en"), "", "Language of the page.", {"de", "en", "it"}}}};
+  output.info = {
+      "model-html",
+      "1.0.0",
+      "The error model as an interactive page for a browser, in one file.",
+      {{"language", std::string("en"), "", "Language of the page.", {"de", "en", "it"}}}};
   output.stage = nonio::Output::Stage::document;
   output.applies = nonio::model_html::applies;
   output.write = nonio::model_html::write;

@@ -71,7 +71,7 @@ class New(VerbTest):
         self.assertEqual(results["campaign"]["machine"]["model"], "FP 12 (EXAMPLE, NOT MEASURED)")
         self.assertEqual(done["rossi"], "ok")
         self.assertIn("nobody measured", (folder / "EXAMPLE-x.csv").read_text())
-        self.assertIn("nobody measured", (folder / "campaign.toml").read_text())
+        self.assertIn("EXAMPLE READINGS, not measured", (folder / "campaign.toml").read_text())
         self.assertIn("EXAMPLE", self.nonio("show", folder).stdout)
 
     def test_readings_of_ones_own(self):

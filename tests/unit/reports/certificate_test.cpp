@@ -85,7 +85,7 @@ TEST_F(Certificate, SaysWhatTheStandardAsksFor) {
                            "ISO 14253-1",
                            "coverage factor k = 2",
                            "relate only to the machine",
-                           "reproduced in full only",
+                           "reproduced only in full",
                            "Authorised by",
                            "B. Verdi",
                            "nonio verify",
@@ -201,7 +201,7 @@ TEST_F(Certificate, TheBudgetStandsInIt) {
                            "environment.drift_um", "rectangular"})
     EXPECT_TRUE(says(page, what)) << what;
   EXPECT_FALSE(has(page, "230-9")) << "its text was not read";
-  const std::string said = "Its budget stands with each measurement.";
+  const std::string said = "Its budget is given with each measurement.";
   EXPECT_TRUE(says(page, said));
   const auto result = write(c);
   ASSERT_TRUE(result);

@@ -75,7 +75,8 @@ TEST_F(Truth, NobodyStatesByDefaultThatNothingWasChanged) {
   EXPECT_FALSE(has(page(c), unchanged));
   EXPECT_TRUE(has(page(c), "The evaluation of the readings found none."));
   c.campaign.certificate.nothing_else_by = "B. Verdi";
-  EXPECT_TRUE(has(page(c), "B. Verdi states: beyond what stands here, nothing was added"));
+  EXPECT_TRUE(
+      has(page(c), "B. Verdi states: apart from the departures listed here, nothing was added"));
   EXPECT_TRUE(has(dcc(c), "B. Verdi states: beyond"));
 }
 
@@ -152,9 +153,9 @@ TEST_F(Truth, ATestWithTargetsLeftOutIsOneToAPlanOfItsOwn) {
     EXPECT_FALSE(has(page(c), of_vdi)) << of_vdi;
   analyse_with(c, "incomplete_targets", std::string("leave-out"));
   for (const std::string& text : {page(c), dcc(c)}) {
-    EXPECT_TRUE(has(text, "20 of 21 targets are evaluated; ISO 230-2 asks all of them."));
+    EXPECT_TRUE(has(text, "20 of 21 targets are evaluated; ISO 230-2 requires all of them."));
     EXPECT_TRUE(has(text, "the plan of ISO 230-2 was not followed"));
-    EXPECT_TRUE(has(text, "Positioning, to a test plan of its own"));
+    EXPECT_TRUE(has(text, "Positioning, with a non-standard test plan"));
     EXPECT_FALSE(has(text, "ISO 230-2:2014, accuracy"));
     EXPECT_FALSE(has(text, "VDI/DGQ 3441:1977, statistical"));
   }
@@ -168,9 +169,9 @@ TEST_F(Truth, APlanThatIsNotTheStandardsHasNoTitleWithItsName) {
   two_runs.runs = 2;
   Case c = made(two_runs);
   for (const std::string& text : {page(c), dcc(c)}) {
-    EXPECT_TRUE(has(text, "approached 2 times from one direction; ISO 230-2 asks 5."));
+    EXPECT_TRUE(has(text, "approached 2 times from one direction; ISO 230-2 requires 5."));
     EXPECT_TRUE(has(text, "the plan of ISO 230-2 was not followed"));
-    EXPECT_TRUE(has(text, "Positioning, to a test plan of its own"));
+    EXPECT_TRUE(has(text, "Positioning, with a non-standard test plan"));
     EXPECT_FALSE(has(text, "ISO 230-2:2014, accuracy"));
     EXPECT_FALSE(has(text, "ISO 230-2: mean"));
     EXPECT_FALSE(has(text, "VDI/DGQ 3441:1977, statistical"));
@@ -202,7 +203,7 @@ TEST_F(Truth, ASuspectThatCountsIsSaid) {
   Case c = whole_case(plugins);
   c.observations[0].deviation[50] += 30e-6;
   analyse(c);
-  EXPECT_TRUE(has(page(c), "A suspected misreading counts in the results: run "));
+  EXPECT_TRUE(has(page(c), "The results include a suspected misreading: run "));
 }
 
 TEST_F(Truth, HowTheTestWasMadeIsSaidAndWhatNobodySaidToo) {
@@ -217,11 +218,10 @@ TEST_F(Truth, HowTheTestWasMadeIsSaidAndWhatNobodySaidToo) {
   c.campaign.environment.warm_up = "30 min at half feed";
   c.campaign.environment.sensors = "bed, ball nut";
   const std::string text = page(c);
-  for (const char* what :
-       {"Feed 1200 mm/min.", "Dwell 3 s.", "Over-travel 2 mm.", "Other axes at Y 500 mm.",
-        "Offset to the tool Z -120 mm.", "Offset to the work-piece X 40 mm.",
-        "Compensation in the control: on.", "Warm-up: 30 min at half feed.",
-        "Sensors of temperature: bed, ball nut."})
+  for (const char* what : {"Feed 1200 mm/min.", "Dwell 3 s.", "Over-travel 2 mm.",
+                           "Other axes at Y 500 mm.", "Offset to the tool Z -120 mm.",
+                           "Offset to the workpiece X 40 mm.", "Compensation in the control: on.",
+                           "Warm-up: 30 min at half feed.", "Temperature sensors: bed, ball nut."})
     EXPECT_TRUE(has(text, what)) << what;
   EXPECT_FALSE(has(text, "Not stated"));
 }
@@ -314,7 +314,7 @@ TEST_F(Truth, TheDccSpeaksTheLanguagesOfThePages) {
         "refType=\"basic_metrologicallyTraceableToSI\"",
         "refType=\"basic_methodMeasurementUncertainty\"", "refType=\"basic_measurementStandard\"",
         "refType=\"basic_temperature\"", "<si:value>20.1</si:value>", "PT-07", "Good enough.",
-        "M. Bianchi", "info@example.org", "reproduced in full only", "Condition: in use",
+        "M. Bianchi", "info@example.org", "reproduced only in full", "Condition: in use",
         "Deviation = actual position"})
     EXPECT_TRUE(has(xml, what)) << what;
 }

@@ -95,10 +95,10 @@ TEST_F(ModelHtml, NeedsNothingFromOutside) {
 
 TEST_F(ModelHtml, CandidatesCardsSizesAndWhatToMeasureStandOnIt) {
   const std::string text = page(with_candidates(made_model()));
-  for (const char* what :
-       {"scale:X <b>certain</b>", "0.150 \u00b5m", "<summary>scale:X</summary>",
-        "No sign of: warm-up:X (would be seen from 1.10 \u00b5m), temperature:X (0.250 \u00b5m).",
-        "<li>Record the material temperature"})
+  for (const char* what : {"scale:X <b>certain</b>", "0.150 \u00b5m", "<summary>scale:X</summary>",
+                           "No sign of: warm-up:X (would be detected from 1.10 \u00b5m), "
+                           "temperature:X (0.250 \u00b5m).",
+                           "<li>Record the material temperature"})
     EXPECT_TRUE(has(text, what)) << what;
   EXPECT_TRUE(has(page(made_model()), "There is no evidence for any further effect."));
   EXPECT_TRUE(has(page(with_candidates(made_model()), "it"), "Nessun segno di: warm-up:X"));
@@ -114,6 +114,9 @@ TEST_F(ModelHtml, TheSameBytesTwice) {
   EXPECT_EQ(page(made_model()), page(made_model()));
   EXPECT_NE(page(made_model()), page(made_model(), "it"));
   EXPECT_TRUE(has(page(made_model(), "it"), "<html lang=\"it\">"));
+  for (const char* language : {"de", "it"})
+    EXPECT_TRUE(has(page(made_model(), language), "\"comma\":true")) << language;
+  EXPECT_TRUE(has(page(made_model()), "\"comma\":false"));
 }
 
 TEST_F(ModelHtml, ManyReadingsAreThinnedWithAWordAndTheLargestStays) {
@@ -124,7 +127,7 @@ TEST_F(ModelHtml, ManyReadingsAreThinnedWithAWordAndTheLargestStays) {
   ModelFit fit = made_model(many);
   fit.residual[4321] = 40.125e-6;
   const std::string text = page(fit);
-  EXPECT_TRUE(has(text, "Of 40020 readings The page contains "));
+  EXPECT_TRUE(has(text, "of 40020 readings: a sample"));
   EXPECT_TRUE(has(text, "40.125"));
   EXPECT_LT(text.size(), 3000000U);
   EXPECT_FALSE(has(page(made_model()), "The page contains"));

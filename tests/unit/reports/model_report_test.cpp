@@ -41,7 +41,9 @@ struct ModelReport : testing::Test {
   /// The text of the page of pictures.
   std::string pictures(const ModelFit& fit, const std::string& language = "en") {
     const auto read = read_pdf(pdf(fit, language));
-    const char* first = language == "it" ? "1 Per posizione" : "1 By position";
+    const std::string first = language == "de"   ? "1 Über der Position"
+                              : language == "it" ? "1 Per posizione"
+                                                 : "1 By position";
     for (const auto& page : read.pages)
       if (page.find(first) != std::string::npos) return flat(page);
     ADD_FAILURE() << "no page of pictures";
@@ -120,7 +122,7 @@ TEST_F(ModelReport, PlacesAreSaidInTheLanguageOfTheReport) {
                                   {"p", 1e-9, Quantity::probability}},
                                  {{"where", "direction x time"}, {"line", ""}}}};
   for (const auto& [language, says] :
-       {std::pair("en", "goes with the direction of approach together with the time (p < 0.0001)"),
+       {std::pair("en", "depends on the direction of approach together with the time (p < 0.0001)"),
         std::pair("it", "dipende dalla direzione di avvicinamento e insieme dal tempo")}) {
     const std::string text = flat(read_pdf(pdf(made_model(), language, fitted)).all());
     EXPECT_TRUE(has(text, says)) << text;
@@ -145,8 +147,8 @@ TEST_F(ModelReport, CandidatesTheSizesOfOthersAndWhatToMeasureStandInIt) {
   const std::string text = flat(read_pdf(pdf(with_candidates(made_model()))).all());
   for (const char* what :
        {"scale:X – certain 81.5 0.600 µm 0.620 µm 0.150 µm",
-        "No sign of: warm-up:X (would be seen from 1.10 µm), temperature:X (0.250 µm).",
-        "What to measure next: Note the temperature"})
+        "No sign of: warm-up:X (would be detected from 1.10 µm), temperature:X (0.250 µm).",
+        "What to measure next: Record the material temperature"})
     EXPECT_TRUE(has(text, what)) << what << "\n" << text;
 }
 

@@ -58,15 +58,17 @@ TEST_F(PdfReport, AnOrdinaryAxisTakesTwoPages) {
     const auto result = write(usual(), language);
     ASSERT_TRUE(result) << result.error().message;
     const Artifact& file = result->artifacts.front();
-    EXPECT_EQ(file.name, std::string("en") == language ? "report.pdf"
-                                                       : "report-" + std::string(language) + ".pdf");
+    EXPECT_EQ(file.name, std::string("en") == language
+                             ? "report.pdf"
+                             : "report-" + std::string(language) + ".pdf");
     const auto pages = read_pdf(file.bytes).pages;
     ASSERT_EQ(pages.size(), 3U) << language;
     const char* advice = "→ ";
     EXPECT_FALSE(has(pages[0] + pages[1], advice)) << language;
     EXPECT_TRUE(has(pages[2], advice)) << language;
-    EXPECT_TRUE(
-        has(pages[2], std::string("it") == language ? "Per il laboratorio" : "For the laboratory"));
+    EXPECT_TRUE(has(pages[2], std::string("it") == language   ? "Per il laboratorio"
+                              : std::string("de") == language ? "Für das Laboratorium"
+                                                              : "For the laboratory"));
     EXPECT_LT(file.bytes.size(), 100000U);
   }
 }
@@ -85,7 +87,7 @@ TEST_F(PdfReport, LimitsOfAxesThatWereNotMeasuredAreNamedOnce) {
   }
   std::string all = text(c);
   std::replace(all.begin(), all.end(), '\n', ' ');
-  EXPECT_TRUE(has(all, "not measured; nothing is decided of them: V, W.")) << all;
+  EXPECT_TRUE(has(all, "not measured; no decisions are given for them: V, W.")) << all;
   EXPECT_FALSE(has(all, "can neither be accepted")) << all;
 }
 
@@ -297,7 +299,7 @@ TEST_F(PdfReport, RemarksSpeakTheLanguageOfTheReport) {
   c.results.outputs.push_back(table);
   c.results.notes = {{"csv.empty-rows", {{"rows", 3.0, Quantity::count}}, {}, "X"}};
   const std::string en = text(c), it = text(c, "it");
-  for (const char* what : {"Inferred: the sign", "X: Rows of the file", "computed directly"})
+  for (const char* what : {"Inferred: the sign", "X: Empty rows of the file", "computed directly"})
     EXPECT_TRUE(has(en, what)) << what;
   for (const char* what :
        {"Dedotto: il segno", "X: Righe del file", "calcolati direttamente", "As it came."})
@@ -467,7 +469,7 @@ TEST_F(PdfReport, DiagonalsShowTheEarlierSetAndThePlaneWithItsFactor) {
   const Case c = spatial(
       "diagonal", {{"D1 00", diagonals(4e-6, true)}, {"D1 final", diagonals(0.4e-6, false)}});
   const std::string en = text(c), it = text(c, "it");
-  EXPECT_EQ(occurrences(en, "Both diagonals as read"), 2U);
+  EXPECT_EQ(occurrences(en, "Readings of both diagonals"), 2U);
   EXPECT_EQ(occurrences(en, "D1, D1 00"), 1U) << "the first set in the figure of the later one";
   EXPECT_EQ(occurrences(en, "D2, D1 00"), 1U);
   EXPECT_EQ(occurrences(en, "The plane, errors × 20000"), 1U)
@@ -500,11 +502,11 @@ TEST_F(PdfReport, TheVolumeSaysItsFactorAndItsLargestError) {
   const std::string en = on_one_line(text(c)), it = on_one_line(text(c, "it"));
   // A fifth of 800 mm is 6667 times 24 um; the factor is 1, 2 or 5 times a power of ten.
   EXPECT_TRUE(has(en, "The volume, errors × 5000")) << en;
-  EXPECT_TRUE(has(en, "Errors are drawn 5000 times as large as they are"));
+  EXPECT_TRUE(has(en, "Errors relative to the corner are enlarged 5000 times."));
   EXPECT_TRUE(has(en, "The largest is 24.0 µm, at X 800, Y")) << en;
   EXPECT_TRUE(has(en, "X 0 – 800, Y 0 – 600,")) << en;
   EXPECT_FALSE(has(en, "Without E"));
-  EXPECT_TRUE(has(it, "disegnati 5000 volte"));
+  EXPECT_TRUE(has(it, "ingranditi 5000 volte"));
   const std::string shapes =
       on_one_line(text(spatial("step-diagonal", {{"SD", step_diagonals(false)}})));
   EXPECT_TRUE(has(shapes, "Without EXX, EYY, EZZ: these scales are not known."));
