@@ -37,8 +37,8 @@
 ///
 /// Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (Welch-Satterthwaite); the excess: the
 /// fourth cumulants of independent parts add (derived); the inputs are
-/// those of uncertainty.h; their correlations are ours (docs/uncertainty.md), checked by Monte Carlo
-/// after JCGM 101 (bench/coverage.cpp).
+/// those of uncertainty.h; their correlations are ours (docs/uncertainty.md), checked by Monte
+/// Carlo after JCGM 101 (bench/coverage.cpp).
 namespace nonio::math {
 
 /// Readings that share a zero, in the order of the walk.
