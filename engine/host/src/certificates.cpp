@@ -175,7 +175,7 @@ class Desk {
   }
 
   Expected<void> sign_pdf(Draft& d) {
-    auto reserved = sign::reserve(d.artifact.bytes, attachments_, now_);
+    auto reserved = pdf::reserve(d.artifact.bytes, attachments_, now_);
     if (!reserved) return fail(d.artifact.name + " " + reserved.error().message);
     d.artifact.bytes = std::move(*reserved);
     return sign(d.artifact, d.output);
@@ -187,7 +187,7 @@ class Desk {
   const SignWith& how_;
   const sign::Time now_;
   std::vector<Draft> drafts_;
-  std::vector<sign::Attachment> attachments_;
+  std::vector<pdf::Attachment> attachments_;
   std::vector<IssuedFile> signed_;
 };
 

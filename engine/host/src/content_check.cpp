@@ -28,8 +28,8 @@
 namespace nonio::host {
 namespace fs = std::filesystem;
 
-const sign::Attachment* find_attachment(const sign::Verified& v, std::string_view name) {
-  for (const sign::Attachment& a : v.attachments)
+const pdf::Attachment* find_attachment(const sign::Verified& v, std::string_view name) {
+  for (const pdf::Attachment& a : v.attachments)
     if (a.name == name) return &a;
   return nullptr;
 }
@@ -59,7 +59,7 @@ class ScratchFolder {
 
 /// The campaign's folder as it was, from what is attached.
 Expected<void> unpack(const sign::Verified& v, const fs::path& folder) {
-  for (const sign::Attachment& a : v.attachments) {
+  for (const pdf::Attachment& a : v.attachments) {
     const fs::path name = fs::path(a.name).lexically_normal();
     if (a.name.find('\0') != std::string::npos || name.is_absolute() || name.empty() ||
         *name.begin() == "..")
@@ -133,13 +133,13 @@ class Again {
         stated_(stated_in(results_)) {}
 
   Expected<Content> run() {
-    if (const sign::Attachment* settings = find_attachment(v_, settings_name)) {
+    if (const pdf::Attachment* settings = find_attachment(v_, settings_name)) {
       auto site = parse_site(settings->bytes, settings_name);
       if (!site) return fail(site.error().front());
       context_.site = std::move(*site);
     }
     context_.machines.clear();
-    if (const sign::Attachment* machine = find_attachment(v_, machine_record_name)) {
+    if (const pdf::Attachment* machine = find_attachment(v_, machine_record_name)) {
       auto record = unpacked_record(machine->bytes);
       if (!record) return fail(record.error());
       context_.machines.push_back(std::move(*record));
@@ -167,7 +167,7 @@ class Again {
   Twins shared() const {
     Twins twins;
     for (const auto& [file, campaign] : stated_.shared)
-      if (const sign::Attachment* a = find_attachment(v_, file))
+      if (const pdf::Attachment* a = find_attachment(v_, file))
         twins.emplace_back(short_digest(sha256(a->bytes)), campaign);
     return twins;
   }
@@ -178,7 +178,7 @@ class Again {
     constexpr const char* id = "content.templates";
     if (stated_.nonio != context_.version)
       return not_checked(id, "the file was made by another version");
-    const sign::Attachment* carried = find_attachment(v_, templates_name);
+    const pdf::Attachment* carried = find_attachment(v_, templates_name);
     if (carried == nullptr) return {id, State::fails, "none are attached"};
     auto own = templates_from(carried->bytes, installed_.templates, installed_.templates_json);
     if (!own) return {id, State::fails, own.error().message};
@@ -223,11 +223,11 @@ class Again {
         wanted.push_back(input.starts_with(prefix) ? input.substr(prefix.size()) : input);
     for (const char* name : {settings_name, templates_name, machine_record_name})
       if (find_attachment(v_, name) != nullptr) wanted.emplace_back(name);
-    for (const sign::Attachment& a : v_.attachments)
+    for (const pdf::Attachment& a : v_.attachments)
       if (is_document(a) && is_listed(a)) wanted.push_back(a.name);
     std::sort(wanted.begin(), wanted.end());
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-    for (const sign::Attachment& a : v_.attachments)
+    for (const pdf::Attachment& a : v_.attachments)
       if (!std::binary_search(wanted.begin(), wanted.end(), a.name))
         return fail("the attachment \"" + a.name + "\" belongs to nothing");
     for (const std::string& name : wanted)
@@ -236,7 +236,7 @@ class Again {
   }
 
   /// With the digest that it has.
-  bool is_listed(const sign::Attachment& a) const {
+  bool is_listed(const pdf::Attachment& a) const {
     const Json json = Json::parse(results_, nullptr, false);
     if (!json.is_object() || !json.contains("outputs") || !json["outputs"].is_array()) return false;
     return std::any_of(json["outputs"].begin(), json["outputs"].end(), [&](const Json& file) {
@@ -251,25 +251,25 @@ class Again {
     if (again.status == "failed")
       return fail("the attached readings cannot be evaluated: " +
                   again.results.errors.front().message);
-    const auto time = sign::stated_time(pdf_);
+    const auto time = pdf::stated_time(pdf_);
     if (!time) return fail(time.error());
     std::size_t pages = 0;
     std::string difference;
     SignWith how;
     how.sign = [&](const Artifact& a) -> Expected<sign::Signed> {
       if (!a.bytes.starts_with("%PDF-")) return same_dcc(a);
-      const auto same = sign::same_pdf(pdf_, a.bytes);
+      const auto same = pdf::same_pdf(pdf_, a.bytes);
       if (!same)
         difference += (difference.empty() ? "" : "; ") + a.name +
                       " from the attached readings: " + where_pages_differ(a.bytes) +
                       same.error().message;
-      else if (const auto drawn = sign::page_contents(a.bytes))
+      else if (const auto drawn = pdf::page_contents(a.bytes))
         pages = drawn->size();
       return sign::Signed{a.bytes};
     };
     how.results = [&](const std::string& made) -> Expected<std::string> {
       std::vector<std::string> names;
-      for (const sign::Attachment& a : v_.attachments) names.push_back(a.name);
+      for (const pdf::Attachment& a : v_.attachments) names.push_back(a.name);
       if (auto same = same_results(results_, made, names); !same) return fail(same.error());
       return results_;
     };
@@ -283,7 +283,7 @@ class Again {
   }
 
   Expected<sign::Signed> same_dcc(const Artifact& made) const {
-    const sign::Attachment* attached = find_attachment(v_, made.name);
+    const pdf::Attachment* attached = find_attachment(v_, made.name);
     if (attached == nullptr) return fail("it is not attached");
     if (auto same = sign::same_document(attached->bytes, made.bytes); !same)
       return fail(same.error());
@@ -291,7 +291,7 @@ class Again {
   }
 
   std::string where_pages_differ(std::string_view made) const {
-    const auto now = sign::page_contents(made), then = sign::page_contents(pdf_);
+    const auto now = pdf::page_contents(made), then = pdf::page_contents(pdf_);
     if (!now || !then) return {};
     const auto differ = std::mismatch(now->begin(), now->end(), then->begin(), then->end());
     if (differ.first == now->end() && differ.second == then->end()) return {};
@@ -363,7 +363,7 @@ Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view 
 
 }  // namespace
 
-bool is_document(const sign::Attachment& a) {
+bool is_document(const pdf::Attachment& a) {
   return a.name.ends_with(".xml") && a.type == "application/xml";
 }
 

@@ -59,7 +59,7 @@ Expected<Files> attached_files(const std::vector<IssuedFile>& issued) {
     if (!f.bytes.starts_with("%PDF-")) continue;
     auto attached = sign::unverified_attachments(f.bytes);
     if (!attached) return fail(f.name + " in the register: " + attached.error().message);
-    for (sign::Attachment& a : *attached)
+    for (pdf::Attachment& a : *attached)
       if (a.relation == source_relation && a.name != templates_name &&
           a.name != machine_record_name)
         files.emplace_back(a.name == settings_name ? site_name : std::move(a.name),

@@ -117,7 +117,7 @@ class Auditor {
       if (!row[0].starts_with("%PDF-")) continue;
       const auto attached = sign::unverified_attachments(row[0]);
       if (!attached) return wrong(number + ": " + attached.error().message);
-      for (const sign::Attachment& a : *attached) {
+      for (const pdf::Attachment& a : *attached) {
         if (a.name != results_name) continue;
         const Json results = Json::parse(a.bytes, nullptr, false);
         const Json certificate = results.is_object() && results.contains("certificate")

@@ -36,7 +36,7 @@ Stated stated_in_dcc(std::string_view xml) {
 }
 
 Stated stated_in_pdf(const sign::Verified& v) {
-  const sign::Attachment* results = find_attachment(v, results_name);
+  const pdf::Attachment* results = find_attachment(v, results_name);
   if (results == nullptr) return {};
   const Json json = Json::parse(results->bytes, nullptr, false);
   if (!json.is_object() || !json.contains("certificate")) return {};
