@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <functional>
+#include <string>
 
+#include "campaign_files.h"
 #include "nonio/host/evaluate.h"
 #include "nonio/sign/sign.h"
 #include "signer.h"
@@ -27,8 +28,8 @@ inline constexpr const char* no_key =
 /// pages are kept, unsigned; what else would be signed waits with it. Of a failed campaign nothing
 /// is signed: these artifacts are taken away. `signer` is null where site.toml has no
 /// [signing].
-Expected<void> sign_artifacts(Evaluated& evaluated, const std::filesystem::path& folder,
-                              const Context& context, const Signer* signer, sign::Time now);
+Expected<void> sign_artifacts(Evaluated& evaluated, CampaignFiles& files, const Context& context,
+                              const Signer* signer, sign::Time now);
 
 /// "certificate.pdf" -> "certificate-draft.pdf".
 std::string draft_name(const std::string& pdf);
@@ -40,16 +41,15 @@ struct SignWith {
   /// What is attached as results.json, from what was made of it now; none: that.
   std::function<Expected<std::string>(std::string made)> results{};
 };
-Expected<void> sign_artifacts(Evaluated& evaluated, const std::filesystem::path& folder,
-                              const Context& context, const SignWith& how, sign::Time now);
+Expected<void> sign_artifacts(Evaluated& evaluated, CampaignFiles& files, const Context& context,
+                              const SignWith& how, sign::Time now);
 
 /// Takes away what is to be signed and is not, and all of a certificate that is not issued.
 void remove_unsigned(Evaluated& evaluated);
 
 /// Adds a finding to what one of its outputs found.
-void note_finding(Evaluated& evaluated, const std::string& output, Finding finding,
-                  const Templates& templates);
+void note_finding(Evaluated& evaluated, const std::string& output, Finding finding);
 /// That a file was signed without time stamp, if it was.
-void note_time_stamp(Evaluated& evaluated, const IssuedFile& file, const Templates& templates);
+void note_time_stamp(Evaluated& evaluated, const IssuedFile& file);
 
 }  // namespace nonio::host

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "nonio/host/evaluate.h"
@@ -21,10 +23,19 @@ class Evaluator {
   Evaluator(int stream, std::vector<std::filesystem::path> secrets)
       : stream_(stream), secrets_(std::move(secrets)) {}
 
-  /// As `evaluate`, done by the other side. Where it is gone, this process ends too: its parent
-  /// knows why. An error: it says what no process of ours says.
-  Expected<Evaluated> evaluate(const std::filesystem::path& folder, const std::string& id,
-                               const Draw& draw, const Twins& twins);
+  /// What the other side has made of a campaign before its number is known.
+  struct Analysed {
+    Evaluated evaluated;                              ///< only where a number is wanted
+    std::optional<std::vector<std::string>> missing;  ///< for a number; none: none is wanted
+  };
+
+  /// `read_campaign` and `analyse`, done by the other side. Where that is gone, this process ends
+  /// too: its parent knows why. An error: it says what no process of ours says.
+  Expected<Analysed> analyse(const std::filesystem::path& folder, const std::string& id,
+                             const Twins& twins);
+  /// `write_documents` of the same campaign. `assigned`: where a number was wanted.
+  Expected<Evaluated> write_documents(const std::string& id,
+                                      std::optional<AssignedNumber> assigned);
   /// Whether the memory of the other side has grown noticeably.
   bool grown() const { return grown_; }
 

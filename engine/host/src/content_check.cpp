@@ -11,6 +11,7 @@
 
 #include "certificates.h"
 #include "child.h"
+#include "evaluation.h"
 #include "guarded.h"
 #include "issue_json.h"
 #include "json_values.h"
@@ -144,15 +145,18 @@ class Again {
       if (!record) return fail(record.error());
       context_.machines.push_back(std::move(*record));
     }
-    auto manifest = parse_manifest(find_attachment(v_, manifest_name)->bytes, manifest_name);
-    if (!manifest) return fail(manifest.error().front());
     Content content;
     content.templates = take_templates();
     const std::string why = why_not_drawn(content.templates);
-    const auto draw = [this](const Evaluated& e, std::vector<std::string>&) { return drawn(e); };
-    Evaluated again = evaluate(
-        folder_, manifest->campaign.id, context_, [](const std::string&) {},
-        stated_.certificate && why.empty() ? Draw(draw) : Draw(), shared());
+    const auto quiet = [](const std::string&) {};
+    ReadCampaign read = read_campaign(folder_, context_, quiet);
+    if (!read.manifest) return fail(read.errors.front());
+    const std::string id = read.manifest->campaign.id;
+    AnalysedCampaign analysed = analyse(std::move(read), id, context_, quiet, shared());
+    std::optional<AssignedNumber> number;
+    if (analysed.number && stated_.certificate && why.empty()) number = stated_number(analysed);
+    Evaluated again =
+        write_documents(std::move(analysed), number ? &*number : nullptr, context_, quiet);
     content.attachments = answered("content.attachments", check_names(again));
     Evaluated numbers = again;
     numbers.results.outputs.clear();
@@ -205,12 +209,14 @@ class Again {
     return {};
   }
 
-  Expected<Certificate> drawn(const Evaluated& e) const {
-    Certificate certificate = *stated_.certificate;
-    const auto readings = readings_digest(e.inputs, folder_);
-    if (!readings) return fail(readings.error());
-    certificate.issue.readings_sha256 = *readings;
-    return certificate;
+  AssignedNumber stated_number(const AnalysedCampaign& analysed) {
+    AssignedNumber number{stated_.certificate, analysed.number->missing, std::nullopt};
+    auto readings = files_.readings_sha256(analysed.evaluated.inputs);
+    if (readings)
+      number.certificate->issue.readings_sha256 = std::move(*readings);
+    else
+      number.error = readings.error();
+    return number;
   }
 
   /// The manifest, the readings that it names, what the host adds, and documents that results.json
@@ -247,7 +253,7 @@ class Again {
 
   /// The night's own way up to the signature, which holds what is to be signed against what is
   /// there.
-  Expected<std::string> same_file(Evaluated& again) const {
+  Expected<std::string> same_file(Evaluated& again) {
     if (again.status == "failed")
       return fail("the attached readings cannot be evaluated: " +
                   again.results.errors.front().message);
@@ -273,7 +279,7 @@ class Again {
       if (auto same = same_results(results_, made, names); !same) return fail(same.error());
       return results_;
     };
-    if (const auto done = sign_artifacts(again, folder_, context_, how, *time); !done)
+    if (const auto done = sign_artifacts(again, files_, context_, how, *time); !done)
       return fail(done.error());
     if (pages != 0)
       return "the attached readings give this file and the same " + std::to_string(pages) +
@@ -301,6 +307,7 @@ class Again {
   const sign::Verified& v_;
   std::string_view pdf_;
   const fs::path& folder_;
+  CampaignFiles files_{folder_};
   const Context& installed_;
   Context context_;
   const std::string& results_;

@@ -70,17 +70,14 @@ Expected<Files> attached_files(const std::vector<IssuedFile>& issued) {
 }
 
 Expected<Files> current_files(const Evaluated& evaluated, const Context& context,
-                              const fs::path& folder) {
+                              CampaignFiles& of_campaign) {
   Files files;
-  const std::string prefix = input_name("");
   for (const auto& [input, digest] : evaluated.inputs) {
-    if (is_foreign(input)) continue;
-    const std::string name = input.starts_with(prefix) ? input.substr(prefix.size()) : input;
-    const auto path = path_inside(folder, name);
-    if (!path) return fail(path.error());
-    auto bytes = read_file(*path);
+    const std::string name = file_of_input(input);
+    if (name.empty()) continue;
+    const auto bytes = of_campaign.bytes(name, digest);
     if (!bytes) return fail(bytes.error());
-    files.emplace_back(name, std::move(*bytes));
+    files.emplace_back(name, *bytes);
   }
   if (!context.site.settings.empty()) files.emplace_back(site_name, context.site.settings);
   return files;
@@ -115,22 +112,6 @@ void take_issued(Evaluated& evaluated) {
 }
 
 }  // namespace
-
-Expected<std::string> readings_digest(const Inputs& inputs, const fs::path& folder) {
-  std::string all;
-  const std::string prefix = input_name("");
-  for (const auto& [input, digest] : inputs) {
-    if (!input.starts_with(prefix)) continue;
-    const auto path = path_inside(folder, input.substr(prefix.size()));
-    if (!path) return fail(path.error());
-    const auto bytes = read_file(*path);
-    if (!bytes) return fail(bytes.error());
-    if (sha256(*bytes) != digest)
-      return fail(path->filename().string() + " was changed while the campaign was evaluated");
-    all += *bytes;
-  }
-  return sha256(all);
-}
 
 const StandingRule* rule_for(const Numbering& numbering, const KnownFinding& finding) {
   if (finding.id.starts_with(plausibility_prefix)) return nullptr;  // a person says why, each time
@@ -193,8 +174,7 @@ void Numbers::hold_unreleased(Evaluated& evaluated) const {
     note_finding(evaluated, w.plugin,
                  {.id = "signature.not-released",
                   .attention = true,
-                  .texts = {{"file", files}, {"output", w.plugin}}},
-                 context_.templates);
+                  .texts = {{"file", files}, {"output", w.plugin}}});
   }
 }
 
@@ -218,14 +198,14 @@ Expected<void> Numbers::check_release(const Inputs& now) const {
 }
 
 Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
-                              const Evaluated& evaluated, const fs::path& folder, Issue& issue,
+                              const Evaluated& evaluated, CampaignFiles& files, Issue& issue,
                               std::vector<std::string>& missing) const {
   const auto old_files = opened.files(before.number);
   if (!old_files) return fail(old_files.error());
   auto attached = attached_files(*old_files);
   if (!attached) return fail(attached.error());
   const Files then = std::move(*attached);
-  const auto now = current_files(evaluated, context_, folder);
+  const auto now = current_files(evaluated, context_, files);
   if (!now) return fail(now.error());
   issue.replaces = before.number;
   issue.replaces_date = before.date;
@@ -244,8 +224,21 @@ Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
   return {};
 }
 
-Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& folder,
-                                    std::vector<std::string>& missing, bool as_draft) const {
+AssignedNumber Numbers::assign(const Evaluated& evaluated, CampaignFiles& files,
+                               std::vector<std::string> missing, bool as_draft) const {
+  auto certificate = find_or_draw(evaluated, files, missing, as_draft);
+  AssignedNumber assigned;
+  assigned.missing = std::move(missing);
+  if (!certificate)
+    assigned.error = certificate.error();
+  else if (certificate->draft || !certificate->issue.number.empty())
+    assigned.certificate = std::move(*certificate);
+  return assigned;
+}
+
+Expected<Certificate> Numbers::find_or_draw(const Evaluated& evaluated, CampaignFiles& files,
+                                            std::vector<std::string>& missing,
+                                            bool as_draft) const {
   for (std::string& key : days_to_come(evaluated.campaign, where_.today))
     missing.push_back(std::move(key));
   if (!missing.empty()) {
@@ -271,11 +264,11 @@ Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& 
   Certificate certificate;
   Issue& issue = certificate.issue;
   if (*before)
-    if (auto done = amend(*opened, **before, evaluated, folder, issue, missing); !done)
+    if (auto done = amend(*opened, **before, evaluated, files, issue, missing); !done)
       return fail(done.error());
   if (!missing.empty()) return Certificate{};
   if (!where_.can_sign) return fail(no_key);
-  const auto readings = readings_digest(evaluated.inputs, folder);
+  auto readings = files.readings_sha256(evaluated.inputs);
   if (!readings) return fail(readings.error());
   issue.readings_sha256 = *readings;
   certificate.templates_sha256 = context_.templates_sha256;
@@ -377,8 +370,7 @@ Expected<void> Numbers::issue(Evaluated& evaluated, const std::string& folder) c
   } else if (auto done = issue_new(evaluated); !done) {
     return done;
   }
-  for (const IssuedFile& file : evaluated.certificate->files)
-    note_time_stamp(evaluated, file, context_.templates);
+  for (const IssuedFile& file : evaluated.certificate->files) note_time_stamp(evaluated, file);
   return {};
 }
 
@@ -393,8 +385,7 @@ void Numbers::note_differences(Evaluated& evaluated) const {
       evaluated, evaluated.certificate->output,
       {.id = "certificate.differs",
        .attention = true,
-       .texts = {{"number", evaluated.certificate->issue.number}, {"why", same.error().message}}},
-      context_.templates);
+       .texts = {{"number", evaluated.certificate->issue.number}, {"why", same.error().message}}});
 }
 
 void Numbers::note_failure(const std::string& campaign, const std::string& why) const {

@@ -4,13 +4,11 @@
 #include <filesystem>
 #include <string>
 
+#include "campaign_files.h"
 #include "nonio/host/evaluate.h"
 #include "nonio/host/register.h"
 
 namespace nonio::host {
-
-/// SHA-256 of the files of readings, one behind the other, as they were evaluated.
-Expected<std::string> readings_digest(const Inputs& inputs, const std::filesystem::path& folder);
 
 /// Whether a rule of the site lets this finding stand.
 const StandingRule* rule_for(const Numbering& numbering, const KnownFinding& finding);
@@ -35,9 +33,10 @@ class Numbers {
   Numbers(Where where, const Context& context, const Releasing* releasing)
       : where_(std::move(where)), context_(context), releasing_(releasing) {}
 
-  /// See `Draw`. `as_draft`: no number, whatever the rules say.
-  Expected<Certificate> draw(const Evaluated& evaluated, const std::filesystem::path& folder,
-                             std::vector<std::string>& missing, bool as_draft) const;
+  /// What was issued for what is evaluated here, whatever is `missing` for it today; else, if
+  /// nothing is, a draft or a number; else neither. `as_draft`: no number, whatever the rules say.
+  AssignedNumber assign(const Evaluated& evaluated, CampaignFiles& files,
+                        std::vector<std::string> missing, bool as_draft) const;
   /// Whether a finding that no rule lets stand came after a number was drawn by the rules.
   bool held_up(const Evaluated& evaluated) const;
   /// After signing: enters what is issued into the register, and gives the campaign what the
@@ -56,9 +55,11 @@ class Numbers {
   Expected<Register> open() const;
   Expected<bool> has_register() const;
   bool may_issue(const Evaluated& evaluated) const;
+  /// No number: `missing` says what for.
+  Expected<Certificate> find_or_draw(const Evaluated& evaluated, CampaignFiles& files,
+                                     std::vector<std::string>& missing, bool as_draft) const;
   Expected<void> amend(Register& opened, const RegisterEntry& before, const Evaluated& evaluated,
-                       const std::filesystem::path& folder, Issue& issue,
-                       std::vector<std::string>& missing) const;
+                       CampaignFiles& files, Issue& issue, std::vector<std::string>& missing) const;
   Expected<void> check_release(const Inputs& now) const;
   Expected<void> enter_draft(const Evaluated& evaluated, const std::string& folder) const;
   Expected<void> issue_new(Evaluated& evaluated) const;

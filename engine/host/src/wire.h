@@ -240,6 +240,7 @@ NONIO_ON_THE_WIRE(Campaign, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r
 
 NONIO_ON_THE_WIRE(IssuedFile, a, b, c, d)
 NONIO_ON_THE_WIRE(Certificate, a, b, c, d, e, f, g, h)
+NONIO_ON_THE_WIRE(AssignedNumber, a, b, c)
 NONIO_ON_THE_WIRE(Evaluated, a, b, c, d, e, f)
 
 NONIO_ON_THE_WIRE(TemplateFiles, a, b)

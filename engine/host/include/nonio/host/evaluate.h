@@ -78,21 +78,22 @@ struct Evaluated {
 /// Told what is about to be called, for the case that it does not come back.
 using Stage = std::function<void(const std::string&)>;
 
-/// What was issued for what is evaluated here, whatever is `missing` for it today; else, if nothing
-/// is, a draft or a number; else neither. Adds to `missing` what only the day and the register
-/// tell.
-using Draw =
-    std::function<Expected<Certificate>(const Evaluated&, std::vector<std::string>& missing)>;
+/// What has become of a campaign's wish to be issued under a number.
+struct AssignedNumber {
+  /// What was issued for the same data already, else a draft, else what has a new number.
+  std::optional<Certificate> certificate{};
+  std::vector<std::string> missing{};  ///< why there is none; what day and register tell, too
+  std::optional<Error> error{};        ///< the register could not be asked: to be tried again
+};
 
 /// Files of readings (the first 64 bits of their SHA-256) that another campaign has too, and its
 /// id.
 using Twins = std::vector<std::pair<std::uint64_t, std::string>>;
 
-/// One campaign from its folder to its artifacts; writes nothing. Without `draw` there is no
-/// certificate.
+/// One campaign from its folder to its artifacts, without a number; writes nothing. For verbs: a
+/// night does it in four steps (evaluation.h).
 Evaluated evaluate(const std::filesystem::path& folder, const std::string& id,
-                   const Context& context, const Stage& stage, const Draw& draw = {},
-                   const Twins& twins = {});
+                   const Context& context, const Stage& stage);
 
 /// What is wrong with the names and options of site.toml: it would be wrong in every campaign.
 std::vector<Error> site_mistakes(const Context& context);
