@@ -8,8 +8,8 @@
 #include <map>
 #include <numeric>
 
+#include "host/loader/plugins.h"
 #include "machine.h"
-#include "nonio/host/plugins.h"
 
 /// Tables of lines in space, and what the exact machine reads on them.
 namespace nonio::space {

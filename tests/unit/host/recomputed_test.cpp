@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recomputed.h"
+#include "host/certificates/recomputed.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/evaluation/evaluate.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "host/evaluation/evaluation.h"
+#include "host/modelling/model_fit.h"
+#include "host/process/guarded.h"
+#include "host/reading/names.h"
+#include "host/reading/plausibility.h"
+
+namespace nonio::host::evaluation {
+namespace fs = std::filesystem;
+
+void Work::report(Error error) const {
+  if (read.manifest) reading::give_line(error, read.manifest->lines, {"campaign"});
+  errors.push_back(std::move(error));
+}
+
+void Work::locate_error(Error& error, const std::string& plugin) const {
+  reading::locate(error, read.manifest->lines, context.site.lines, plugin);
+}
+
+Error Work::error_at(std::string key, const std::string& message) const {
+  Error error{key + ": " + message};
+  error.key = std::move(key);
+  locate_error(error);
+  return error;
+}
+
+std::optional<Settings> Work::settle(const Info& info) const {
+  auto options = config::settle_options(info, context.site.options, read.manifest->options);
+  if (options) return std::move(*options);
+  for (Error& e : options.error()) report(std::move(e));
+  return std::nullopt;
+}
+
+bool Work::asks_to_apply(const std::string& who, const std::string& where,
+                         const std::function<bool()>& ask) const {
+  stage(who + where + ", asked whether it applies");
+  const auto said = process::guarded_answer(who, ask);
+  if (!said) report(said.error());
+  return said && *said;
+}
+
+bool Work::is_chosen_by_itself(const Info& info) const {
+  return !info.on_request || read.manifest->options.contains(info.name) ||
+         campaign().machine.control == info.name;
+}
+
+template <class Plugin>
+std::vector<const Plugin*> chosen_plugins(
+    const Work& work, const std::vector<Plugin>& all, const char* kind, const char* key,
+    const std::optional<std::vector<std::string>>& of_campaign,
+    const std::optional<std::vector<std::string>>& of_site) {
+  std::vector<const Plugin*> out;
+  const auto& names = of_campaign ? of_campaign : of_site;
+  if (!names) {
+    for (const Plugin& p : all)
+      if (work.is_chosen_by_itself(p.info)) out.push_back(&p);
+    return out;
+  }
+  for (const std::string& name : *names) {
+    if (name == reading::model_fit_name) continue;
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const Plugin& p) { return p.info.name == name; });
+    if (found == all.end())
+      work.report(work.error_at(key, work.context.plugins->absence(kind, name)));
+    else if (std::find(out.begin(), out.end(), &*found) == out.end())
+      out.push_back(&*found);
+  }
+  return out;
+}
+
+template std::vector<const Analysis*> chosen_plugins(
+    const Work&, const std::vector<Analysis>&, const char*, const char*,
+    const std::optional<std::vector<std::string>>&, const std::optional<std::vector<std::string>>&);
+template std::vector<const Output*> chosen_plugins(const Work&, const std::vector<Output>&,
+                                                   const char*, const char*,
+                                                   const std::optional<std::vector<std::string>>&,
+                                                   const std::optional<std::vector<std::string>>&);
+
+namespace {
+
+void append_analyses(std::vector<Results::Analysed>& to, std::vector<Results::Analysed> more) {
+  to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+/// The campaign as it was read; false if there is nothing to evaluate.
+bool begin_results(reading::ReadCampaign& read, const std::string& id, const reading::Twins& twins,
+                   Evaluated& out) {
+  out.campaign.id = id;
+  out.inputs = std::move(read.inputs);
+  reading::note_shared(twins, out.inputs);
+  out.results.errors = std::move(read.errors);
+  out.results.notes = std::move(read.notes);
+  if (!read.manifest) return false;
+  out.campaign = read.manifest->campaign;
+  if (out.campaign.id == id) return true;
+  Error error{"the id changed while the campaign was read", config::manifest_name};
+  reading::give_line(error, read.manifest->lines, {"campaign"});
+  out.results.errors.push_back(std::move(error));
+  out.campaign.id = id;
+  return false;
+}
+
+}  // namespace
+
+AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
+                         const reading::Context& context, const reading::Stage& stage,
+                         const reading::Twins& twins) {
+  AnalysedCampaign out{std::move(read), {}, {}, {}};
+  Results& results = out.evaluated.results;
+  if (!begin_results(out.read, id, twins, out.evaluated)) return out;
+  const Work work{context, stage, out.read, results.errors};
+  const auto failed = [&] { return !results.errors.empty(); };
+  results.analyses = run_analyses(work);
+  append_analyses(results.analyses, fit_models(work, results.models));
+  std::vector<std::string> doubts;
+  if (!failed()) {
+    stage("analysis " + std::string(reading::plausibility_name));
+    append_analyses(results.analyses, reading::implausible(out.read, context, out.evaluated.inputs,
+                                                           results.analyses));
+    doubts = open_doubts(work, results.analyses);
+  }
+  for (Remark& note : unevaluated(out.read, results)) results.notes.push_back(std::move(note));
+  if (failed()) return out;
+  results.conformity = held_against_tolerances(work.campaign(), results.analyses);
+  out.documents = wanted_outputs(work);
+  write_tables(work, out.documents, doubts, results);
+  const auto is_document = [](const WantedOutput& w) {
+    return w.output->stage == Output::Stage::document;
+  };
+  if (std::any_of(out.documents.begin(), out.documents.end(), is_document))
+    out.number = number_request(work, out.documents, results);
+  std::erase_if(out.documents, [&](const WantedOutput& w) { return !is_document(w); });
+  return out;
+}
+
+Evaluated evaluate(const fs::path& folder, const std::string& id, const reading::Context& context,
+                   const reading::Stage& stage) {
+  return write_documents(
+      analyse(reading::read_campaign(folder, context, stage), id, context, stage, {}), nullptr,
+      context, stage);
+}
+
+}  // namespace nonio::host::evaluation
