@@ -179,6 +179,25 @@ pdf::Font as_embedded(const Font& font, bool common_only, int stem) {
           stem};
 }
 
+/// Without pages and the font for what the other two lack.
+pdf::NewFile new_file(const Document& document, const Fonts& fonts, Used& used) {
+  pdf::NewFile file;
+  file.title = document.title;
+  file.author = document.author;
+  file.subject = document.subject;
+  file.language = document.language;
+  file.date = document.date;
+  file.width = document.style.page_width;
+  file.height = document.style.page_height;
+  file.see_through = document.style.see_through;
+  file.fonts[0] = as_embedded(fonts.regular, used.common_only, 80);
+  file.fonts[1] = as_embedded(fonts.bold, used.common_only, 140);
+  file.fonts[2] = as_embedded(fonts.wide, used.common_only, 80);
+  file.pictures = std::move(used.pictures);
+  file.profile = document.profile;
+  return file;
+}
+
 }  // namespace
 
 double page_room(const Style& style) {
@@ -235,21 +254,8 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
   if (!used.wide.empty() && wide.name.empty())
     return fail(
         Error{"a TrueType font was expected, but no part of it can be taken out", fonts.wide.name});
-  pdf::NewFile file;
-  file.title = document.title;
-  file.author = document.author;
-  file.subject = document.subject;
-  file.language = document.language;
-  file.date = document.date;
-  file.width = style.page_width;
-  file.height = style.page_height;
-  file.see_through = style.see_through;
-  file.fonts[0] = as_embedded(fonts.regular, used.common_only, 80);
-  file.fonts[1] = as_embedded(fonts.bold, used.common_only, 140);
-  file.fonts[2] = as_embedded(fonts.wide, used.common_only, 80);
+  pdf::NewFile file = new_file(document, fonts, used);
   file.fonts[2].embedded = used.wide.empty() ? nullptr : &wide;
-  file.pictures = std::move(used.pictures);
-  file.profile = document.profile;
   file.signature = pages.signature();
   for (Canvas& canvas : drawn) file.pages.push_back(std::move(canvas.ops));
   return pdf::write(std::move(file));
