@@ -17,14 +17,14 @@ namespace nonio {
 
 TEST(Decision, UpperLimitAfterIso14253) {
   using host::evaluation::decide;
-  EXPECT_EQ(evaluation::decide(8.0, 1.0, 10.0), Decision::conforms);
-  EXPECT_EQ(evaluation::decide(9.0, 1.0, 10.0), Decision::conforms);  // y = USL - U
-  EXPECT_EQ(evaluation::decide(9.5, 1.0, 10.0), Decision::cannot_be_decided);
-  EXPECT_EQ(evaluation::decide(11.0, 1.0, 10.0), Decision::cannot_be_decided);  // y = USL + U
-  EXPECT_EQ(evaluation::decide(11.1, 1.0, 10.0), Decision::does_not_conform);
+  EXPECT_EQ(decide(8.0, 1.0, 10.0), Decision::conforms);
+  EXPECT_EQ(decide(9.0, 1.0, 10.0), Decision::conforms);  // y = USL - U
+  EXPECT_EQ(decide(9.5, 1.0, 10.0), Decision::cannot_be_decided);
+  EXPECT_EQ(decide(11.0, 1.0, 10.0), Decision::cannot_be_decided);  // y = USL + U
+  EXPECT_EQ(decide(11.1, 1.0, 10.0), Decision::does_not_conform);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(evaluation::decide(nan, 1.0, 10.0), Decision::cannot_be_decided);
-  EXPECT_EQ(evaluation::decide(8.0, nan, 10.0), Decision::cannot_be_decided);
+  EXPECT_EQ(decide(nan, 1.0, 10.0), Decision::cannot_be_decided);
+  EXPECT_EQ(decide(8.0, nan, 10.0), Decision::cannot_be_decided);
 }
 
 TEST(Decision, UpperLimitAfterIlacG8) {
@@ -33,12 +33,12 @@ TEST(Decision, UpperLimitAfterIlacG8) {
   for (const char* rule : {"ilac-g8-simple", "ilac-g8-guarded"}) {
     const bool guarded = std::string(rule) == "ilac-g8-guarded";
     const Decision inside_guard = guarded ? Decision::does_not_conform : Decision::conforms;
-    EXPECT_EQ(evaluation::decide(9.0, 1.0, 10.0, rule), Decision::conforms) << rule;
-    EXPECT_EQ(evaluation::decide(9.5, 1.0, 10.0, rule), inside_guard) << rule;
-    EXPECT_EQ(evaluation::decide(10.0, 1.0, 10.0, rule), inside_guard) << rule;
-    EXPECT_EQ(evaluation::decide(10.1, 1.0, 10.0, rule), Decision::does_not_conform) << rule;
-    EXPECT_EQ(evaluation::decide(nan, 1.0, 10.0, rule), Decision::cannot_be_decided) << rule;
-    EXPECT_EQ(evaluation::decide(8.0, nan, 10.0, rule), Decision::cannot_be_decided) << rule;
+    EXPECT_EQ(decide(9.0, 1.0, 10.0, rule), Decision::conforms) << rule;
+    EXPECT_EQ(decide(9.5, 1.0, 10.0, rule), inside_guard) << rule;
+    EXPECT_EQ(decide(10.0, 1.0, 10.0, rule), inside_guard) << rule;
+    EXPECT_EQ(decide(10.1, 1.0, 10.0, rule), Decision::does_not_conform) << rule;
+    EXPECT_EQ(decide(nan, 1.0, 10.0, rule), Decision::cannot_be_decided) << rule;
+    EXPECT_EQ(decide(8.0, nan, 10.0, rule), Decision::cannot_be_decided) << rule;
   }
 }
 
