@@ -173,7 +173,7 @@ TEST(WideFont, APartThatIsLargerThanShortOffsetsAllowKeepsItsOutlines) {
   const Font& font = fonts().wide;
   std::vector<std::uint16_t> used = {0};
   for (char32_t c = 0x4E00; c < 0x5A00; ++c) used.push_back(font.glyph(c));
-  const Embedded part = embedded_part(font, used);
+  const pdf::EmbeddedFont part = embedded_part(font, used);
   const std::string file = fixtures::inflated(part.file_deflated);
   ASSERT_EQ(file.size(), part.size);
   const FontReader small(file), whole(font.bytes);

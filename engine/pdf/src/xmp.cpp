@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "xmp.h"
 
-namespace nonio::reports {
+namespace nonio::pdf {
 namespace {
 
 std::string escaped(std::string_view text) {
@@ -36,7 +36,7 @@ std::string element(std::string_view name, std::string_view text, std::string_vi
 }  // namespace
 
 // No pdfaid schema: it would claim a conformance that no validator has seen.
-std::string xmp_packet(const PdfFile& file, std::string_view producer) {
+std::string xmp_packet(const NewFile& file, std::string_view producer) {
   const std::string date = file.date.empty() ? "" : file.date + "T00:00:00Z";
   return "<?xpacket begin=\"\xEF\xBB\xBF\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n"
          "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\">\n"
@@ -51,4 +51,4 @@ std::string xmp_packet(const PdfFile& file, std::string_view producer) {
          "  </rdf:Description>\n </rdf:RDF>\n</x:xmpmeta>\n<?xpacket end=\"r\"?>\n";
 }
 
-}  // namespace nonio::reports
+}  // namespace nonio::pdf

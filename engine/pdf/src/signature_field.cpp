@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pdf_signature.h"
+#include "nonio/pdf/signature_field.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <chrono>
 
-namespace nonio::sign {
-
-using pdf::File;
-using pdf::Value;
+namespace nonio::pdf {
 
 Expected<const Value*> find_signature(const File& file) {
   const Value* form = file.find(file.catalog(), "AcroForm");
@@ -24,7 +20,7 @@ Expected<const Value*> find_signature(const File& file) {
   const Value* value = file.find(field, "V");
   if (value == nullptr || !value->is(Value::Kind::dictionary)) return fail("is not signed");
   std::size_t dictionaries = 0;
-  for (const pdf::Object& object : file.objects)
+  for (const Object& object : file.objects)
     if (object.value.find("ByteRange") != nullptr) ++dictionaries;
   if (dictionaries != 1)
     return fail("has " + std::to_string(dictionaries) + " signature dictionaries, expected one");
@@ -38,30 +34,6 @@ namespace {
 
 bool is_lower_hexadecimal(std::string_view text) {
   return text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-}
-
-/// (D:20261121150007Z), in UTC as `reserve` writes it.
-Expected<Time> time_in(std::string_view text) {
-  constexpr std::string_view form = "(D:00000000000000Z)";
-  const bool fits = text.size() == form.size() &&
-                    std::equal(text.begin(), text.end(), form.begin(), [](char c, char f) {
-                      return f == '0' ? c >= '0' && c <= '9' : c == f;
-                    });
-  if (!fits) return fail("does not say when it was signed as Nonio says it");
-  const auto number = [&](std::size_t at, std::size_t count) {
-    int value = 0;
-    for (const char c : text.substr(at, count)) value = value * 10 + (c - '0');
-    return value;
-  };
-  namespace chrono = std::chrono;
-  const chrono::year_month_day date{chrono::year(number(3, 4)),
-                                    chrono::month(static_cast<unsigned>(number(7, 2))),
-                                    chrono::day(static_cast<unsigned>(number(9, 2)))};
-  const int hours = number(11, 2), minutes = number(13, 2), seconds = number(15, 2);
-  if (!date.ok() || hours > 23 || minutes > 59 || seconds > 60)
-    return fail("says that it was signed at a time that does not exist");
-  return chrono::sys_seconds(chrono::sys_days(date)).time_since_epoch().count() +
-         hours * Time{3600} + minutes * Time{60} + seconds;
 }
 
 }  // namespace
@@ -140,4 +112,4 @@ Expected<PdfSignature> signature_of(const File& file, const Value& dictionary) {
   return signature;
 }
 
-}  // namespace nonio::sign
+}  // namespace nonio::pdf

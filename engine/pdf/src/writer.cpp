@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pdf_file.h"
+#include "nonio/pdf/writer.h"
 
 #include <hpdf.h>
 #include <hpdf_conf.h>
@@ -7,7 +7,6 @@
 #include <hpdf_objects.h>
 #include <hpdf_pages.h>
 #include <hpdf_streams.h>
-#include <openssl/sha.h>
 
 #include <algorithm>
 #include <array>
@@ -18,15 +17,14 @@
 #include <deque>
 #include <optional>
 
-#include "bytes.h"
-#include "font_subset.h"
-#include "nonio/reports/document.h"
+#include "nonio/pdf/bytes.h"
+#include "nonio/pdf/text.h"
 #include "xmp.h"
 
 // The one place that knows libharu. Its own text functions are not used: libharu 2.3.0 would parse
 // and compress both fonts again for each document, lose glyphs in silence and write a 128 kB
 // CIDToGIDMap. Here the fonts are built from its objects, with streams that were compressed once.
-namespace nonio::reports {
+namespace nonio::pdf {
 namespace {
 
 /// The first error of a document; libharu repeats it in every later call.
@@ -104,7 +102,7 @@ HPDF_STATUS write_jpeg_filter(HPDF_Dict, HPDF_Stream stream) {
 }
 
 HPDF_STATUS write_widths(HPDF_Dict dict, HPDF_Stream stream) {
-  const auto* font = static_cast<const Embedded*>(dict->attr);
+  const auto* font = static_cast<const EmbeddedFont*>(dict->attr);
   HPDF_STATUS status = HPDF_Stream_WriteStr(stream, "/W ");
   if (status == HPDF_OK) status = HPDF_Stream_WriteStr(stream, font->widths.c_str());
   return status == HPDF_OK ? HPDF_Stream_WriteStr(stream, "\012") : status;
@@ -135,8 +133,9 @@ HPDF_Dict new_object(HPDF_Doc doc, const char* type) {
   return dict;
 }
 
-HPDF_Dict add_descriptor(HaruDocument& pdf, const Font& font, const Embedded& embedded, bool bold) {
+HPDF_Dict add_descriptor(HaruDocument& pdf, const Font& font) {
   HPDF_Doc doc = pdf.doc;
+  const EmbeddedFont& embedded = *font.embedded;
   HPDF_Dict file = new_stream(pdf, embedded.file_deflated);
   HPDF_Dict descriptor = new_object(doc, "FontDescriptor");
   if (file == nullptr || descriptor == nullptr) return nullptr;
@@ -150,15 +149,16 @@ HPDF_Dict add_descriptor(HaruDocument& pdf, const Font& font, const Embedded& em
   HPDF_Dict_AddNumber(descriptor, "Ascent", font.ascent);
   HPDF_Dict_AddNumber(descriptor, "Descent", font.descent);
   HPDF_Dict_AddNumber(descriptor, "CapHeight", font.cap_height);
-  HPDF_Dict_AddNumber(descriptor, "StemV", bold ? 140 : 80);
+  HPDF_Dict_AddNumber(descriptor, "StemV", font.stem);
   HPDF_Dict_Add(descriptor, "FontFile2", file);
   return descriptor;
 }
 
-/// `embedded` outlives the document.
-HPDF_Dict add_font(HaruDocument& pdf, const Font& font, const Embedded& embedded, bool bold) {
+/// What it embeds outlives the document.
+HPDF_Dict add_font(HaruDocument& pdf, const Font& font) {
   HPDF_Doc doc = pdf.doc;
-  HPDF_Dict descriptor = add_descriptor(pdf, font, embedded, bold);
+  const EmbeddedFont& embedded = *font.embedded;
+  HPDF_Dict descriptor = add_descriptor(pdf, font);
   HPDF_Dict to_unicode = new_stream(pdf, embedded.to_unicode_deflated);
   HPDF_Dict cid_font = new_object(doc, "Font"), type0 = new_object(doc, "Font");
   if (descriptor == nullptr || to_unicode == nullptr || cid_font == nullptr || type0 == nullptr)
@@ -172,7 +172,7 @@ HPDF_Dict add_font(HaruDocument& pdf, const Font& font, const Embedded& embedded
   HPDF_Dict_AddNumber(system, "Supplement", 0);
   HPDF_Dict_Add(cid_font, "FontDescriptor", descriptor);
   HPDF_Dict_AddName(cid_font, "CIDToGIDMap", "Identity");
-  cid_font->attr = const_cast<Embedded*>(&embedded);
+  cid_font->attr = const_cast<EmbeddedFont*>(&embedded);
   cid_font->write_fn = write_widths;
 
   HPDF_Dict_AddName(type0, "Subtype", "Type0");
@@ -209,15 +209,10 @@ HPDF_Dict add_picture(HaruDocument& pdf, const Picture& picture) {
 }
 
 /// One dictionary that all pages share.
-HPDF_Dict add_resources(HaruDocument& pdf, const Fonts& fonts, const PdfFile& file,
-                        const Embedded& wide) {
+HPDF_Dict add_resources(HaruDocument& pdf, const NewFile& file) {
   HPDF_Doc doc = pdf.doc;
   HPDF_Dict resources = new_object(doc, nullptr);
-  const auto with = [&](const Font& font) -> const Embedded& {
-    return file.common_only ? font.with_common : font.with_all;
-  };
-  HPDF_Dict regular = add_font(pdf, fonts.regular, with(fonts.regular), false),
-            bold = add_font(pdf, fonts.bold, with(fonts.bold), true);
+  HPDF_Dict regular = add_font(pdf, file.fonts[0]), bold = add_font(pdf, file.fonts[1]);
   HPDF_Dict state = new_object(doc, "ExtGState");
   if (resources == nullptr || regular == nullptr || bold == nullptr || state == nullptr)
     return nullptr;
@@ -225,7 +220,7 @@ HPDF_Dict add_resources(HaruDocument& pdf, const Fonts& fonts, const PdfFile& fi
   HPDF_Dict_Add(resources, "Font", by_font);
   HPDF_Dict_Add(by_font, "F1", regular);
   HPDF_Dict_Add(by_font, "F2", bold);
-  if (!file.wide.empty()) HPDF_Dict_Add(by_font, "F3", add_font(pdf, fonts.wide, wide, false));
+  if (file.fonts[2].embedded != nullptr) HPDF_Dict_Add(by_font, "F3", add_font(pdf, file.fonts[2]));
   if (!file.pictures.empty()) {
     HPDF_Dict by_picture = HPDF_Dict_New(doc->mmgr);
     HPDF_Dict_Add(resources, "XObject", by_picture);
@@ -240,25 +235,9 @@ HPDF_Dict add_resources(HaruDocument& pdf, const Fonts& fonts, const PdfFile& fi
   return resources;
 }
 
-/// Text of the document's properties: UTF-16 with a byte-order mark, from UTF-8 that was checked.
-std::string utf16(std::string_view text) {
-  std::string out = "\xFE\xFF";
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    const std::size_t size = lead < 0x80 ? 1 : lead < 0xE0 ? 2 : 3;
-    std::uint32_t c = size == 1 ? lead : lead & (size == 2 ? 0x1FU : 0x0FU);
-    for (std::size_t k = 1; k < size && i + k < text.size(); ++k)
-      c = c << 6 | (static_cast<unsigned char>(text[i + k]) & 0x3FU);
-    out += static_cast<char>(c >> 8);
-    out += static_cast<char>(c & 0xFF);
-    i += size;
-  }
-  return out;
-}
-
 void add_property(HPDF_Doc doc, const char* key, std::string_view text) {
   if (text.empty()) return;
-  std::string bytes = utf16(text);
+  std::string bytes = utf16(text).value_or("");  // it was checked where it is drawn
   HPDF_Dict_Add(doc->info, key,
                 HPDF_Binary_New(doc->mmgr, reinterpret_cast<HPDF_BYTE*>(bytes.data()),
                                 static_cast<HPDF_UINT>(bytes.size())));
@@ -292,7 +271,7 @@ std::optional<HPDF_Date> date_of(const std::string& text) {
   return {};
 }
 
-void add_properties(HPDF_Doc doc, const PdfFile& file) {
+void add_properties(HPDF_Doc doc, const NewFile& file) {
   add_property(doc, "Title", file.title);
   add_property(doc, "Author", file.author);
   add_property(doc, "Subject", file.subject);
@@ -308,15 +287,13 @@ struct Kept {
 };
 
 /// `contents`: the pages, compressed.
-Kept kept_of(HPDF_Doc doc, const PdfFile& file, const std::vector<std::string>& contents,
+Kept kept_of(HPDF_Doc doc, const NewFile& file, const std::vector<std::string>& contents,
              const Deflater& fast) {
   const char* producer = HPDF_GetInfoAttr(doc, HPDF_INFO_PRODUCER);
   Kept kept{fast(file.profile), xmp_packet(file, producer != nullptr ? producer : ""), {}};
   std::string content = kept.xmp;
   for (const std::string& page : contents) content += page;
-  std::array<unsigned char, SHA256_DIGEST_LENGTH> digest{};
-  SHA256(reinterpret_cast<const unsigned char*>(content.data()), content.size(), digest.data());
-  kept.identifier.assign(digest.begin(), digest.begin() + 16);
+  kept.identifier = sha256(content).substr(0, 16);
   return kept;
 }
 
@@ -347,7 +324,7 @@ void add_kept(HaruDocument& pdf, const Kept& kept) {
   }
 }
 
-void add_page(HaruDocument& pdf, const PdfFile& file, std::size_t number,
+void add_page(HaruDocument& pdf, const NewFile& file, std::size_t number,
               const std::string& compressed, HPDF_Dict resources) {
   HPDF_Page page = HPDF_AddPage(pdf.doc);
   if (page == nullptr) return;
@@ -367,25 +344,20 @@ void add_page(HaruDocument& pdf, const PdfFile& file, std::size_t number,
 
 }  // namespace
 
-Expected<std::string> write_pdf(PdfFile file, const Fonts& fonts) {
+Expected<std::string> write(NewFile file) {
   for (std::string* text : {&file.title, &file.author, &file.subject})
     *text = label(std::move(*text));
   if (!date_of(file.date)) file.date.clear();
   std::vector<std::string> contents;
   const Deflater fast(1);  // 6 takes three times as long for a few per cent of the file
   for (const std::string& content : file.pages) contents.push_back(fast(content));
-  Embedded wide;
-  if (!file.wide.empty()) wide = embedded_part(fonts.wide, file.wide);
-  if (!file.wide.empty() && wide.name.empty())
-    return fail(
-        Error{"a TrueType font was expected, but no part of it can be taken out", fonts.wide.name});
   Kept kept;  // outlives the document, as all that it is written from
   HaruDocument pdf;
   if (pdf.doc == nullptr) return fail("the PDF could not be begun: out of memory");
   pdf.doc->pdf_version = HPDF_VER_17;
   add_properties(pdf.doc, file);
   if (!file.profile.empty()) add_kept(pdf, kept = kept_of(pdf.doc, file, contents, fast));
-  if (HPDF_Dict resources = add_resources(pdf, fonts, file, wide)) {
+  if (HPDF_Dict resources = add_resources(pdf, file)) {
     for (std::size_t i = 0; i < contents.size(); ++i)
       add_page(pdf, file, i, contents[i], resources);
     pdf.doc->stream = HPDF_CallbackWriter_New(pdf.doc->mmgr, append, &pdf.bytes);
@@ -401,4 +373,4 @@ Expected<std::string> write_pdf(PdfFile file, const Fonts& fonts) {
   return std::move(pdf.bytes);
 }
 
-}  // namespace nonio::reports
+}  // namespace nonio::pdf

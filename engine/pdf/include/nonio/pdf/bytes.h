@@ -6,7 +6,7 @@
 
 struct libdeflate_compressor;
 
-namespace nonio::reports {
+namespace nonio::pdf {
 
 /// Into zlib's format; level 1 (fast) to 12 (small).
 class Deflater {
@@ -22,10 +22,13 @@ class Deflater {
 };
 inline std::string deflated(std::string_view bytes, int level) { return Deflater(level)(bytes); }
 
+/// 32 bytes.
+std::string sha256(std::string_view bytes);
+
 /// Decimal digits of an integer.
 void append_int(std::string& out, long long value);
 
 /// With at most two decimals, as PDF operands; the size is limited to 30000, as PDF readers do.
 void append_real(std::string& out, double value, char behind);
 
-}  // namespace nonio::reports
+}  // namespace nonio::pdf

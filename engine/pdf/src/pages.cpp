@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nonio/sign/verify.h"
-#include "pdf_reader.h"
+#include "nonio/pdf/attachments.h"
 
-namespace nonio::sign {
+namespace nonio::pdf {
 
 namespace {
-
-using pdf::Value;
 
 /// Pages in their order, each as what is drawn on it.
 class Pages {
  public:
-  explicit Pages(const pdf::File& file) : file_(file) {}
+  explicit Pages(const File& file) : file_(file) {}
 
   Expected<std::vector<std::string>> read() {
     if (auto done = read_node(file_.find(file_.catalog(), "Pages"), 0); !done)
@@ -46,16 +43,16 @@ class Pages {
   }
 
   Expected<void> add(const Value* reference) {
-    const pdf::Object* object = file_.object(reference);
+    const Object* object = file_.object(reference);
     if (object == nullptr) return fail("a page has no content");
-    auto bytes = pdf::content_up_to(file_, *object, most_bytes - used_);
+    auto bytes = content_up_to(file_, *object, most_bytes - used_);
     if (!bytes) return fail("the content of a page " + bytes.error().message);
     used_ += bytes->size();
     pages_.back() += *bytes + "\n";
     return {};
   }
 
-  const pdf::File& file_;
+  const File& file_;
   std::vector<std::string> pages_;
   std::size_t nodes_ = 0, used_ = 0;
 };
@@ -63,9 +60,9 @@ class Pages {
 }  // namespace
 
 Expected<std::vector<std::string>> page_contents(std::string_view bytes) {
-  const auto file = pdf::parse(bytes);
+  const auto file = parse(bytes);
   if (!file) return fail(file.error());
   return Pages(*file).read();
 }
 
-}  // namespace nonio::sign
+}  // namespace nonio::pdf

@@ -5,13 +5,13 @@
 #include <string_view>
 #include <vector>
 
+#include "nonio/pdf/reader.h"
 #include "nonio/sdk/error.h"
-#include "pdf_reader.h"
 
 /// What may be added to a signed file: revocation data and time stamps over all that stands before
 /// (EN 319 142-1, B-LT and B-LTA), each time as an incremental update of one form. What is read is
 /// written again and compared byte by byte, so that an update holds nothing else.
-namespace nonio::sign {
+namespace nonio::pdf {
 
 /// DER, as the document security store holds them.
 struct Store {
@@ -40,7 +40,7 @@ std::vector<std::size_t> ends_of_parts(std::string_view bytes);
 class Updater {
  public:
   /// `signed_file` must outlive it. An error if it is not as `reserve` makes it.
-  static Expected<Updater> of(const pdf::File& signed_file);
+  static Expected<Updater> of(const File& signed_file);
 
   /// What follows at this place of the file. An error if there is nothing to write, or too much.
   Expected<Update> write(const Store& more, bool has_stamp);
@@ -50,14 +50,14 @@ class Updater {
 
  private:
   class Objects;
-  explicit Updater(const pdf::File& file);
+  explicit Updater(const File& file);
   Expected<Store> read_store(std::string_view bytes, std::size_t& at) const;
   std::string object_of_catalogue() const;
   std::string object_of_page() const;
   std::string table(const std::vector<std::pair<std::size_t, std::size_t>>& places, std::size_t at,
                     const std::string& body) const;
 
-  const pdf::File* file_;
+  const File* file_;
   std::size_t catalogue_ = 0, page_ = 0;
   std::size_t end_ = 0, last_table_ = 0;  ///< of what stands before the next update
   std::size_t size_ = 0;                  ///< the first number that is free
@@ -65,4 +65,4 @@ class Updater {
   std::vector<std::size_t> certificates_, answers_, lists_, fields_;
 };
 
-}  // namespace nonio::sign
+}  // namespace nonio::pdf

@@ -4,11 +4,11 @@
 #include <string>
 #include <string_view>
 
-#include "pdf_file.h"
+#include "nonio/pdf/writer.h"
 
-namespace nonio::reports {
+namespace nonio::pdf {
 
 /// The document's properties as XMP (ISO 16684-1), equal to those of its Info dictionary.
-std::string xmp_packet(const PdfFile&, std::string_view producer);
+std::string xmp_packet(const NewFile&, std::string_view producer);
 
-}  // namespace nonio::reports
+}  // namespace nonio::pdf

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bytes.h"
+#include "nonio/pdf/bytes.h"
 
 #include <libdeflate.h>
+#include <openssl/sha.h>
 
 #include <algorithm>
 #include <array>
@@ -9,7 +10,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace nonio::reports {
+namespace nonio::pdf {
 
 Deflater::Deflater(int level) : compressor_(libdeflate_alloc_compressor(level)) {}
 Deflater::~Deflater() { libdeflate_free_compressor(compressor_); }
@@ -20,6 +21,12 @@ std::string Deflater::operator()(std::string_view bytes) const {
   out.resize(
       libdeflate_zlib_compress(compressor_, bytes.data(), bytes.size(), out.data(), out.size()));
   return out;
+}
+
+std::string sha256(std::string_view bytes) {
+  std::array<unsigned char, SHA256_DIGEST_LENGTH> digest{};
+  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest.data());
+  return {digest.begin(), digest.end()};
 }
 
 void append_int(std::string& out, long long value) {
@@ -49,4 +56,4 @@ void append_real(std::string& out, double value, char behind) {
   out.append(at, text.data() + text.size());
 }
 
-}  // namespace nonio::reports
+}  // namespace nonio::pdf

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "pdf_signature.h"
-#include "verify_parts.h"
+#include "nonio/pdf/signature_field.h"
 
-namespace nonio::sign {
+namespace nonio::pdf {
 
 namespace {
-
-using pdf::File;
-using pdf::Object;
-using pdf::Value;
 
 /// Two files of `reserve`, object by object. How a stream is packed is of no account: that may be
 /// another version of the library that packs.
@@ -41,8 +36,7 @@ class Comparison {
                                           : same(a.value, b.value);
     if (a.has_stream != b.has_stream || !same_head) return differs(number);
     if (!b.has_stream || a.stream == b.stream) return {};
-    const auto one = pdf::content_up_to(a_, a, max_file),
-               other = pdf::content_up_to(b_, b, max_file);
+    const auto one = content_up_to(a_, a, max_file), other = content_up_to(b_, b, max_file);
     if (!one || !other || *one != *other) return differs(number);
     return {};
   }
@@ -85,11 +79,11 @@ class Comparison {
 }  // namespace
 
 Expected<void> same_pdf(std::string_view signed_pdf, std::string_view reserved) {
-  const auto a = pdf::parse(signed_pdf), b = pdf::parse(reserved);
+  const auto a = parse(signed_pdf), b = parse(reserved);
   if (!a || !b) return fail(a ? b.error() : a.error());
   const auto signature = find_signature(*b);
   if (!signature) return fail(signature.error());
   return Comparison(*a, *b, *signature).run();
 }
 
-}  // namespace nonio::sign
+}  // namespace nonio::pdf

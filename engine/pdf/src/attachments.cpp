@@ -1,36 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pdf_signature.h"
-#include "verify_parts.h"
+#include "nonio/pdf/attachments.h"
 
-namespace nonio::sign {
+#include "nonio/pdf/signature_field.h"
 
-using pdf::File;
-using pdf::Value;
+namespace nonio::pdf {
 
 namespace {
-
-/// UTF-16 with a byte-order mark as UTF-8; an error for anything else.
-Expected<std::string> utf8(std::string_view text) {
-  if (!text.starts_with("\xFE\xFF") || text.size() % 2 != 0) return fail("expected text in UTF-16");
-  const auto unit = [&](std::size_t i) {
-    return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]) << 8 |
-                                      static_cast<unsigned char>(text[i + 1]));
-  };
-  std::string out;
-  for (std::size_t i = 2; i < text.size(); i += 2) {
-    std::uint32_t c = unit(i);
-    if (c >= 0xD800 && c < 0xDC00 && i + 3 < text.size() && (unit(i + 2) & 0xFC00U) == 0xDC00) {
-      i += 2;
-      c = 0x10000 + ((c - 0xD800) << 10) + (unit(i) - 0xDC00);
-    }
-    if (c < 0x20 || (c >= 0xD800 && c < 0xE000)) return fail("expected text in UTF-16");
-    const int more = c < 0x80 ? 0 : c < 0x800 ? 1 : c < 0x10000 ? 2 : 3;
-    constexpr unsigned char lead[] = {0, 0xC0, 0xE0, 0xF0};
-    out += static_cast<char>(lead[more] | c >> (6 * more));
-    for (int k = more - 1; k >= 0; --k) out += static_cast<char>(0x80 | ((c >> (6 * k)) & 0x3F));
-  }
-  return out;
-}
 
 std::string text_at(const File& file, const Value* dictionary, const char* key) {
   const Value* value = file.find(dictionary, key);
@@ -59,7 +34,7 @@ Expected<Attachment> attachment_of(const File& file, const std::string& key, con
   const auto name = utf8(text_at(file, specification, "UF"));
   if (!name || name->empty()) return fail("an attachment without a name");
   if (auto sound = check_form(file, specification, key, *name); !sound) return fail(sound.error());
-  const pdf::Object* stream = file.object(file.find(specification, "EF")->find("F"));
+  const Object* stream = file.object(file.find(specification, "EF")->find("F"));
   const Value* parameters = stream == nullptr ? nullptr : file.find(&stream->value, "Params");
   const Value* size = file.find(parameters, "Size");
   if (stream == nullptr || size == nullptr || !size->is(Value::Kind::integer) || size->integer < 0)
@@ -67,9 +42,9 @@ Expected<Attachment> attachment_of(const File& file, const std::string& key, con
   const auto bytes = static_cast<std::size_t>(size->integer);
   if (bytes > max_file - total) return fail("attachments of more than 100 MB");
   total += bytes;
-  auto content = pdf::content(file, *stream, bytes);
-  if (!content) return fail("the attachment " + quoted(*name) + " " + content.error().message);
-  return Attachment{*name, std::move(*content), text_at(file, &stream->value, "Subtype"),
+  auto unpacked = content(file, *stream, bytes);
+  if (!unpacked) return fail("the attachment " + quoted(*name) + " " + unpacked.error().message);
+  return Attachment{*name, std::move(*unpacked), text_at(file, &stream->value, "Subtype"),
                     text_at(file, specification, "AFRelationship"),
                     utf8(text_at(file, specification, "Desc")).value_or("")};
 }
@@ -77,7 +52,7 @@ Expected<Attachment> attachment_of(const File& file, const std::string& key, con
 /// Files that are in the PDF by any way: as many as are listed, or some are hidden.
 std::size_t embedded_in(const File& file) {
   std::size_t n = 0;
-  for (const pdf::Object& object : file.objects) {
+  for (const Object& object : file.objects) {
     const Value* type = object.value.find("Type");
     if (type != nullptr && type->is_name("EmbeddedFile")) ++n;
   }
@@ -121,4 +96,4 @@ Expected<std::vector<Attachment>> attachments_of(const File& file) {
   return out;
 }
 
-}  // namespace nonio::sign
+}  // namespace nonio::pdf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pdf_update.h"
+#include "nonio/pdf/update.h"
 
 #include <algorithm>
 #include <array>
@@ -7,15 +7,11 @@
 #include <cstdio>
 #include <optional>
 
-#include "nonio/sign/sign.h"
-#include "openssl.h"
-#include "pdf_lexer.h"
-#include "pdf_signature.h"
+#include "nonio/pdf/bytes.h"
+#include "nonio/pdf/lexer.h"
+#include "nonio/pdf/signature_field.h"
 
-namespace nonio::sign {
-
-using pdf::File;
-using pdf::Value;
+namespace nonio::pdf {
 
 namespace {
 
@@ -96,17 +92,15 @@ Expected<Updater> Updater::of(const File& file) {
 
 namespace {
 
-std::string reference_to(std::size_t number) { return std::to_string(number) + " 0 R"; }
-
 std::string list_of(const char* key, const std::vector<std::size_t>& numbers) {
   if (numbers.empty()) return {};
   std::string out = std::string("/") + key + " [ ";
-  for (const std::size_t n : numbers) out += reference_to(n) + " ";
+  for (const std::size_t n : numbers) out += reference(n) + " ";
   return out + "]\n";
 }
 
 /// An object as it stands in the signed file, with more text at these places of the file.
-std::string with(const File& file, const pdf::Object& object,
+std::string with(const File& file, const Object& object,
                  const std::vector<std::pair<std::size_t, std::string>>& more) {
   std::string out;
   std::size_t at = object.begin;
@@ -127,23 +121,23 @@ std::string entry(std::size_t place) {
 /// What the form and the page get for each time stamp.
 std::string fields_text(const std::vector<std::size_t>& fields) {
   std::string out;
-  for (const std::size_t n : fields) out += " " + reference_to(n);
+  for (const std::size_t n : fields) out += " " + reference(n);
   return out;
 }
 
 }  // namespace
 
 std::string Updater::object_of_catalogue() const {
-  const pdf::Object& object = file_->objects[catalogue_];
+  const Object& object = file_->objects[catalogue_];
   const Value& value = object.value;
   std::vector<std::pair<std::size_t, std::string>> more = {
       {value.find("AcroForm")->find("Fields")->end - 1, fields_text(fields_)}};
-  if (store_ != 0) more.emplace_back(value.end - 2, "/DSS " + reference_to(store_) + "\n");
+  if (store_ != 0) more.emplace_back(value.end - 2, "/DSS " + reference(store_) + "\n");
   return with(*file_, object, more);
 }
 
 std::string Updater::object_of_page() const {
-  const pdf::Object& object = file_->objects[page_];
+  const Object& object = file_->objects[page_];
   const Value* annotations = object.value.find("Annots");
   if (annotations != nullptr)
     return with(*file_, object, {{annotations->end - 1, fields_text(fields_)}});
@@ -169,8 +163,8 @@ std::string Updater::table(const std::vector<std::pair<std::size_t, std::size_t>
     if (const Value* value = trailer.find(key))
       out += std::string("/") + key + " " + text_of_value(*value) + "\n";
   return out + "/Size " + std::to_string(size_) + "\n/Prev " + std::to_string(last_table_) +
-         "\n/ID [ " + text_of_value(trailer.find("ID")->items.front()) + " <" +
-         hex(sha256(body).substr(0, 16)) + "> ]\n>>\nstartxref\n" + std::to_string(at) +
+         "\n/ID [ " + text_of_value(trailer.find("ID")->items.front()) + " " +
+         hexadecimal(sha256(body).substr(0, 16)) + " ]\n>>\nstartxref\n" + std::to_string(at) +
          "\n%%EOF\n";
 }
 
@@ -204,7 +198,7 @@ class Updater::Objects {
     to_.fields_.push_back(to_.size_);
     add("<<\n/Type /Annot\n/Subtype /Widget\n/FT /Sig\n/T (TimeStamp" +
         std::to_string(to_.fields_.size()) + ")\n/F 132\n/Rect [0 0 0 0]\n/P " +
-        reference_to(to_.page_) + "\n/V " + reference_to(signature) + "\n>>");
+        reference(to_.page_) + "\n/V " + reference(signature) + "\n>>");
     put(to_.page_, to_.object_of_page());
   }
   /// With the table, and the range of the time stamp filled in.
@@ -271,7 +265,7 @@ Expected<Store> Updater::read_store(std::string_view bytes, std::size_t& at) con
   std::vector<std::string> streams;
   std::size_t number = size_;
   for (;; ++number) {
-    pdf::Lexer in(bytes, at);
+    Lexer in(bytes, at);
     std::size_t length = 0;
     if (!in.take(std::to_string(number) + " 0 obj\n<<\n/Length ") || !in.take_number(length, 8) ||
         !in.take("\n>>\nstream\n"))
@@ -285,7 +279,7 @@ Expected<Store> Updater::read_store(std::string_view bytes, std::size_t& at) con
   }
   Store out;
   if (streams.empty()) return out;
-  pdf::Lexer in(bytes, at);
+  Lexer in(bytes, at);
   if (!in.take(std::to_string(number) + " 0 obj\n")) return fail("streams that belong to nothing");
   const auto store = in.value();
   if (!store || !in.take("\nendobj\n")) return fail("streams that belong to nothing");
@@ -334,4 +328,4 @@ Expected<Update> Updater::read(std::string_view bytes, std::size_t end) {
   return again;
 }
 
-}  // namespace nonio::sign
+}  // namespace nonio::pdf

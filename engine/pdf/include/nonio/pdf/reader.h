@@ -10,10 +10,16 @@
 
 #include "nonio/sdk/error.h"
 
+/// A security boundary. Bytes of strangers come in here in two places: what somebody hands to
+/// `verify`, and what the process with the plugins hands over to be signed (`reserve`). A library
+/// that repairs what it reads takes a file that two readers read differently: with an update that
+/// hides an object, or a second table. So this reader is our own, repairs nothing, and costs no
+/// more than the size of the file allows. Nothing else of Nonio reads a PDF.
+///
 /// PDF as narrowly as a certificate needs it: one revision, one plain cross-reference table, whole
 /// objects one after the other with nothing between them. Whatever is more is refused, because what
 /// a reader would have to guess, two readers may guess differently.
-namespace nonio::sign::pdf {
+namespace nonio::pdf {
 
 struct Value {
   enum class Kind : std::uint8_t {
@@ -72,4 +78,4 @@ Expected<std::string> content(const File& file, const Object& object, std::size_
 /// Of a stream whose size is not known; `most` bytes at the most.
 Expected<std::string> content_up_to(const File& file, const Object& object, std::size_t most);
 
-}  // namespace nonio::sign::pdf
+}  // namespace nonio::pdf

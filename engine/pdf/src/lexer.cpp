@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pdf_lexer.h"
+#include "nonio/pdf/lexer.h"
 
 #include <algorithm>
 #include <charconv>
 
-namespace nonio::sign::pdf {
+namespace nonio::pdf {
 
 namespace {
 
@@ -201,4 +201,4 @@ Expected<void> Lexer::read_hexadecimal(Value& value) {
   return {};
 }
 
-}  // namespace nonio::sign::pdf
+}  // namespace nonio::pdf

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "pdf_reader.h"
+#include "nonio/pdf/reader.h"
 
-namespace nonio::sign::pdf {
+namespace nonio::pdf {
 
 /// Reads tokens and values from front to back. Comments are refused: nothing that signs or is
 /// signed here writes any behind the head of a file.
@@ -46,4 +46,4 @@ class Lexer {
   std::size_t* budget_ = &own_budget_;
 };
 
-}  // namespace nonio::sign::pdf
+}  // namespace nonio::pdf

@@ -1,97 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <libdeflate.h>
-#include <openssl/sha.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdio>
-#include <memory>
 #include <set>
 
-#include "nonio/sign/sign.h"
-#include "pdf_reader.h"
-#include "pdf_signature.h"
+#include "nonio/pdf/bytes.h"
+#include "nonio/pdf/signature_field.h"
+#include "nonio/pdf/writer.h"
 
-namespace nonio::sign {
-
-using pdf::File;
-using pdf::Object;
-using pdf::Value;
+namespace nonio::pdf {
 
 namespace {
-
-template <class... Numbers>
-std::string formatted(const char* format, Numbers... numbers) {
-  std::array<char, 64> text{};
-  const int n = std::snprintf(text.data(), text.size(), format, numbers...);
-  return {text.data(), static_cast<std::size_t>(n)};
-}
-
-struct Calendar {
-  int year;
-  unsigned month, day;
-  int hours, minutes, seconds;
-};
-
-Calendar calendar(Time time) {
-  namespace chrono = std::chrono;
-  const chrono::sys_seconds at{chrono::seconds(time)};
-  const auto day = chrono::floor<chrono::days>(at);
-  const chrono::year_month_day date(day);
-  const chrono::hh_mm_ss clock(at - day);
-  return {static_cast<int>(date.year()),
-          static_cast<unsigned>(date.month()),
-          static_cast<unsigned>(date.day()),
-          static_cast<int>(clock.hours().count()),
-          static_cast<int>(clock.minutes().count()),
-          static_cast<int>(clock.seconds().count())};
-}
-
-std::string pdf_date(Time time) {
-  const Calendar c = calendar(time);
-  return formatted("(D:%04d%02u%02u%02d%02d%02dZ)", c.year, c.month, c.day, c.hours, c.minutes,
-                   c.seconds);
-}
-
-std::string hexadecimal(std::string_view bytes) {
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string out = "<";
-  for (const char c : bytes) {
-    out += digits[static_cast<unsigned char>(c) >> 4];
-    out += digits[static_cast<unsigned char>(c) & 15];
-  }
-  return out + ">";
-}
-
-/// UTF-16 with a byte-order mark, from UTF-8; an error if it is none.
-Expected<std::string> utf16(std::string_view text) {
-  std::string out = "\xFE\xFF";
-  const auto put = [&](std::uint32_t unit) {
-    out += static_cast<char>(unit >> 8);
-    out += static_cast<char>(unit & 0xFF);
-  };
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    const std::size_t more = lead < 0x80 ? 0 : lead < 0xE0 ? 1 : lead < 0xF0 ? 2 : 3;
-    if ((lead >= 0x80 && lead < 0xC2) || lead > 0xF4 || i + more >= text.size())
-      return fail("expected text in UTF-8");
-    std::uint32_t c = more == 0 ? lead : lead & (0x3FU >> more);
-    for (std::size_t k = 1; k <= more; ++k) {
-      const auto next = static_cast<unsigned char>(text[i + k]);
-      if ((next & 0xC0) != 0x80) return fail("expected text in UTF-8");
-      c = c << 6 | (next & 0x3FU);
-    }
-    i += more + 1;
-    if (c < 0x10000) {
-      put(c);
-    } else {
-      put(0xD800 + ((c - 0x10000) >> 10));
-      put(0xDC00 + ((c - 0x10000) & 0x3FF));
-    }
-  }
-  return out;
-}
 
 /// Of a MIME type: "text/csv" becomes /text#2Fcsv.
 std::string name_of(std::string_view text) {
@@ -104,18 +24,12 @@ std::string name_of(std::string_view text) {
   return out;
 }
 
-std::string deflated(std::string_view bytes) {
-  constexpr int level = 6;
-  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
-      libdeflate_alloc_compressor(level), &libdeflate_free_compressor);
-  if (!compressor) return {};
-  std::string out(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
-  out.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), out.data(),
-                                      out.size()));
-  return out;
+template <class... Numbers>
+std::string formatted(const char* format, Numbers... numbers) {
+  std::array<char, 64> text{};
+  const int n = std::snprintf(text.data(), text.size(), format, numbers...);
+  return {text.data(), static_cast<std::size_t>(n)};
 }
-
-std::string reference(std::size_t number) { return std::to_string(number) + " 0 R"; }
 
 /// The file written anew: its own objects as they stand, two of them with more entries, then those
 /// of the attachments and of the signature.
@@ -153,7 +67,7 @@ class Reservation {
  private:
   /// The frame that the document has for its signature: four whole numbers, as they stand there.
   std::string frame_of(std::size_t page) const {
-    const Value* frame = file_.objects[page].value.find("NonioSignature");
+    const Value* frame = file_.objects[page].value.find(signature_key);
     if (frame == nullptr || !frame->is(Value::Kind::array) || frame->items.size() != 4) return {};
     std::string text = "[";
     for (const Value& number : frame->items) {
@@ -203,13 +117,13 @@ class Reservation {
     if (!name || !says || a.name.empty() || a.name.size() > 255)
       return fail("the attachment \"" + a.name + "\": expected a name and a description in UTF-8");
     if (!names_.insert(a.name).second) return fail("two attachments are called " + a.name);
-    const std::string packed = deflated(a.bytes);
+    const std::string packed = deflated(a.bytes, 6);
     if (packed.empty()) return fail("no memory for the attachment " + a.name);
     const std::size_t stream = offsets_.size(), specification = stream + 1;
     offsets_.resize(specification + 1);
     attached_.emplace_back(
         stream, "<<\n/Type /EmbeddedFile\n/Subtype " + name_of(a.type) + "\n/Params << /Size " +
-                    std::to_string(a.bytes.size()) + " /ModDate " + pdf_date(time_) +
+                    std::to_string(a.bytes.size()) + " /ModDate " + date_text(time_) +
                     " >>\n/Filter /FlateDecode\n/Length " + std::to_string(packed.size()) +
                     "\n>>\nstream\n" + packed + "\nendstream");
     attached_.emplace_back(specification,
@@ -256,7 +170,7 @@ class Reservation {
 
   void put_signature(std::size_t number) {
     const std::string head = "<<\n/Type /Sig\n/Filter /Adobe.PPKLite\n/SubFilter /" +
-                             std::string(sub_filter) + "\n/M " + pdf_date(time_) + "\n/ByteRange ";
+                             std::string(sub_filter) + "\n/M " + date_text(time_) + "\n/ByteRange ";
     const std::string range = "[0 0000000000 0000000000 0000000000]";
     range_ = out_.size() + std::to_string(number).size() + 7 + head.size();
     gap_ = range_ + range.size() + std::string_view("\n/Contents ").size();
@@ -276,16 +190,9 @@ class Reservation {
                 std::string(file_.bytes.substr(value.begin, value.end - value.begin)) + "\n";
     }
     out_ += "/Size " + std::to_string(offsets_.size()) + "\n";
-    const std::string id = hexadecimal(identifier());
+    // Of what went in, not of the time.
+    const std::string id = hexadecimal(sha256(file_.bytes).substr(0, 16));
     out_ += "/ID [ " + id + " " + id + " ]\n>>\nstartxref\n" + std::to_string(table) + "\n%%EOF\n";
-  }
-
-  /// Of what went in, not of the time.
-  std::string identifier() const {
-    std::array<unsigned char, SHA256_DIGEST_LENGTH> digest{};
-    SHA256(reinterpret_cast<const unsigned char*>(file_.bytes.data()), file_.bytes.size(),
-           digest.data());
-    return {reinterpret_cast<const char*>(digest.data()), 16};
   }
 
   void fill_range() {
@@ -307,25 +214,9 @@ class Reservation {
 
 }  // namespace
 
-std::string text_of(Time time) {
-  const Calendar c = calendar(time);
-  return formatted("%04d-%02u-%02u %02d:%02d:%02d UTC", c.year, c.month, c.day, c.hours, c.minutes,
-                   c.seconds);
-}
-
-std::string plain_name(std::string_view name) {
-  std::string out;
-  for (const char c : name) {
-    const bool kept = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                      std::string_view("-_./ ").find(c) != std::string_view::npos;
-    out += kept ? c : '_';
-  }
-  return out;
-}
-
 Expected<std::string> reserve(std::string_view bytes, const std::vector<Attachment>& attachments,
                               Time time, std::size_t room) {
-  const auto file = pdf::parse(bytes);
+  const auto file = parse(bytes);
   if (!file)
     return fail("cannot be signed, since it is no PDF as Nonio writes it: " + file.error().message);
   std::size_t total = bytes.size();
@@ -334,4 +225,4 @@ Expected<std::string> reserve(std::string_view bytes, const std::vector<Attachme
   return Reservation(*file, time, room).make(attachments);
 }
 
-}  // namespace nonio::sign
+}  // namespace nonio::pdf

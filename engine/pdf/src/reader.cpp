@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pdf_reader.h"
+#include "nonio/pdf/reader.h"
 
 #include <libdeflate.h>
 
@@ -7,9 +7,9 @@
 #include <charconv>
 #include <memory>
 
-#include "pdf_lexer.h"
+#include "nonio/pdf/lexer.h"
 
-namespace nonio::sign::pdf {
+namespace nonio::pdf {
 
 const Value* Value::find(std::string_view key) const {
   if (kind != Kind::dictionary) return nullptr;
@@ -276,4 +276,4 @@ Expected<std::string> content_up_to(const File& file, const Object& object, std:
   }
 }
 
-}  // namespace nonio::sign::pdf
+}  // namespace nonio::pdf
