@@ -126,6 +126,7 @@ AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
   }
   for (Remark& note : unevaluated(out.read, results)) results.notes.push_back(std::move(note));
   if (failed()) return out;
+  out.evaluated.followed = followed_of(out.read, results);
   results.conformity = held_against_tolerances(work.campaign(), results.analyses);
   out.documents = wanted_outputs(work);
   write_tables(work, out.documents, doubts, results);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/evaluation/followed.h"
 #include "host/reading/context.h"
 #include "nonio/sdk/results.h"
 
@@ -39,6 +40,7 @@ struct Evaluated {
   std::string status;      ///< ok, attention, failed
   std::optional<Certificate> certificate{};
   bool retry = false;  ///< it failed for a reason that does not lie in its files
+  std::vector<FollowedGroup> followed{};
 };
 
 /// What has become of a campaign's wish to be issued under a number.

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <utility>
 
+#include "host/evaluation/followed.h"
 #include "host/evaluation/issue_json.h"
 #include "host/storage/json_writer.h"
 #include "nonio/sdk/format.h"
@@ -53,6 +54,7 @@ void put_campaign(storage::JsonWriter& json, const Campaign& c) {
             {{"maker", c.machine.maker},
              {"model", c.machine.model},
              {"serial", c.machine.serial},
+             {"asset", c.machine.asset},
              {"structure", c.machine.structure},
              {"control", c.machine.control}});
   put_texts(json, "instrument",
@@ -344,6 +346,7 @@ std::string results_json(const Evaluated& e, const reading::Context& context,
     put_analysis(json, a, e.results.conformity, context.templates);
   json.end_array();
   put_conformity(json, e.results.conformity);
+  put_followed(json, e.followed);
   if (e.certificate) put_certificate(json, *e.certificate);
   put_files(json, e.results.outputs, files);
   put_tables(json, e.results.outputs, context.templates);

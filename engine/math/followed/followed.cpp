@@ -204,7 +204,9 @@ void add_scatter(Following& work) {
     for (std::size_t j = 0; j < n; ++j) larger[i * (n + 1) + j] = work.out.covariance[i * n + j];
   larger.back() = scatter.u_ln * scatter.u_ln;
   work.out.covariance = std::move(larger);
-  work.out.quantities.push_back({"ln_s", std::log(scatter.s), Quantity::number, scatter.u_ln});
+  work.out.quantities.push_back({"ln_s",
+                                 std::log(scatter.s * unit_of(deviation_along(work.test)).per_si),
+                                 Quantity::number, scatter.u_ln});
 }
 
 }  // namespace
