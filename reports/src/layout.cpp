@@ -204,7 +204,7 @@ double page_room(const Style& style) {
   return style.page_height - style.top - style.bottom - head_room - foot_room;
 }
 
-Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
+Expected<std::string> pdf_bytes(const Document& document, const Fonts& fonts) {
   const Style& style = document.style;
   const double width = style.page_width - style.left - style.right;
   const double room = page_room(style);

@@ -92,6 +92,9 @@ std::optional<FollowedGroup> of_axis(const reading::ReadCampaign& read, std::siz
     q.u = std::sqrt(variance);
     q.state = state_of(m);
     put_conditions(q, test, campaign, m);
+    const Axis* axis = campaign.machine.axis(m.axis);
+    if (f.name.starts_with("cyclic") && axis != nullptr && axis->screw_pitch)
+      q.numbers.emplace_back("period", printed(*axis->screw_pitch, Quantity::length));
     if (f.name == "scale") q.not_stated = found.not_stated;
     out.quantities.push_back(std::move(q));
   }

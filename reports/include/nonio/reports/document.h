@@ -229,6 +229,6 @@ struct Document {
 double page_room(const Style&);
 
 /// The same document and fonts give the same bytes.
-Expected<std::string> pdf(const Document&, const Fonts&);
+Expected<std::string> pdf_bytes(const Document&, const Fonts&);
 
 }  // namespace nonio::reports
