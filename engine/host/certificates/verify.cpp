@@ -24,7 +24,7 @@ void check_documents(sign::Verified& v, const sign::Verifier& verifier) {
   bool any = false;
   sign::Verifier inside = verifier;
   inside.existed = v.existed;
-  for (const sign::Attachment& a : v.attachments) {
+  for (const pdf::Attachment& a : v.attachments) {
     if (!is_document(a)) continue;
     any = true;
     for (sign::Check& c : sign::verify_xml(a.bytes, inside, v.certificate).checks) {

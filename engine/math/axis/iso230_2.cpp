@@ -8,9 +8,9 @@
 //   s_i+-           = sqrt(sum_j (x_ij - xm_i)^2 / (n - 1))
 //   R_i+-           = 2 k s_i;  R_i = max(k s_i+ + k s_i- + |B_i|; R_i+; R_i-)
 //   R+, R-, R       = the largest over the targets
-//   E+, E-          = max xm_i - min xm_i in one direction; E the same over both directions
-//   together M               = max xm_i - min xm_i of the bidirectional means A+, A-          =
-//   max(xm_i + k s_i) - min(xm_i - k s_i); A the same over both directions together
+//   E+, E-          = max xm_i - min xm_i in one direction; E: over both directions together
+//   M               = max xm_i - min xm_i of the bidirectional means
+//   A+, A-          = max(xm_i + k s_i) - min(xm_i - k s_i); A: over both directions together
 //
 // Source: ISO 230-2:2014 clause 2 (symbols; k = 2 since 1997); 1988 with k = 3: its forms 6 s and
 // 3 s. The text of the standards was not available; see docs/formulas.md for what each rests on.

@@ -4,16 +4,15 @@
 //
 // repeatability.asymmetric: F tests between the directions, two-sided, of the scatter of single
 //   readings (about the means of their target and pass) and of the scatter of the passes (what
-//   their readings share; P - 1 degrees of freedom, whatever the number of targets). 0.5 % each, 1
-//   % in all; the ratio of the whole standard deviations >= 1.5; both also without the largest
+//   their readings share; P - 1 degrees of freedom, whatever the number of targets). 0.5 % each,
+//   1 % in all; the ratio of the whole standard deviations >= 1.5; both also without the largest
 //   residual of each direction.
 // reading.suspect: externally studentized residual t = e/(s sqrt(1 - h)), s without that reading,
-// of
-//   the model of pass_model.h; R. D. Cook, S. Weisberg 1982, Residuals and Influence in Regression,
+//   of the model of pass_model.h; R. D. Cook, S. Weisberg 1982, Residuals and Influence in Regression,
 //   section 2.1. 1 % over all readings (Bonferroni). At least three readings at the target.
 // target.worst: q_i = distance of the mean at i from the line between its neighbours, scaled to the
 //   variance of one mean. A single target that stands out leaves the pattern (-w, 1, -w) in q; its
-//   height is held against the q_j that it does not touch: t, 1 % over all targets.
+//   height is compared with the q_j that it does not touch: t, 1 % over all targets.
 #include <algorithm>
 #include <cmath>
 #include <limits>

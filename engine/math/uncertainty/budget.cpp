@@ -25,6 +25,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "common/constants.h"
 #include "common/finding_builder.h"
 #include "nonio/math/distributions.h"
 
@@ -42,9 +43,6 @@ double k_of(double dof) { return dof < as_if_known ? coverage_factor(dof) : 2.0;
 double k_of(double dof, double excess) { return k_of(dof) * shape_factor(excess); }
 
 constexpr double of_rectangle = -1.2;  // excess
-
-const double of_full_range = 1.0 / (2.0 * std::numbers::sqrt3),
-             of_limit = 1.0 / std::numbers::sqrt3;
 
 bool along(const BudgetLine& line) {
   return line.kind == LineKind::length || line.kind == LineKind::coordinate;

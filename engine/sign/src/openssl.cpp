@@ -8,6 +8,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstdio>
 #include <ctime>
 
 namespace nonio::sign {
@@ -23,6 +24,14 @@ std::string_view bytes_of(const ASN1_STRING* text) {
   if (text == nullptr) return {};
   return {reinterpret_cast<const char*>(ASN1_STRING_get0_data(text)),
           static_cast<std::size_t>(ASN1_STRING_length(text))};
+}
+
+std::string text_of(Time time) {
+  const pdf::Calendar c = pdf::calendar(time);
+  std::array<char, 64> text{};
+  const int n = std::snprintf(text.data(), text.size(), "%04d-%02u-%02u %02d:%02d:%02d UTC", c.year,
+                              c.month, c.day, c.hours, c.minutes, c.seconds);
+  return {text.data(), static_cast<std::size_t>(n)};
 }
 
 std::string sha256(std::string_view one, std::string_view other) {

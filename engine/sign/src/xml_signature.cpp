@@ -16,7 +16,7 @@
 #include <algorithm>
 
 #include "key.h"
-#include "pdf_signature.h"
+#include "nonio/pdf/signature_field.h"
 #include "time_stamp.h"
 #include "verify_parts.h"
 #include "xml_document.h"
@@ -46,7 +46,7 @@ bool started() {
 
 Expected<DocumentPtr> parse_xml(std::string_view bytes) {
   if (!started()) return fail("xmlsec does not start");
-  if (bytes.size() > max_file) return fail(too_large);
+  if (bytes.size() > pdf::max_file) return fail(too_large);
   DocumentPtr document(xmlReadMemory(bytes.data(), static_cast<int>(bytes.size()), "document.xml",
                                      nullptr,
                                      XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING));
@@ -167,7 +167,7 @@ Expected<Signed> sign_xml(const Key::Impl& key, std::string_view bytes, Time now
     return fail(stamped.error());
   content->insert(content->rfind("</"), signature.text());
   out.bytes = std::string(xml_head) + *content + "\n";
-  if (out.bytes.size() > max_file) return fail(too_large);
+  if (out.bytes.size() > pdf::max_file) return fail(too_large);
   return out;
 }
 
@@ -180,7 +180,7 @@ struct Parts {
   XmlSignature signature;
 
   static Expected<Parts> of(std::string_view bytes) {
-    if (bytes.size() > max_file) return fail(too_large);
+    if (bytes.size() > pdf::max_file) return fail(too_large);
     if (!bytes.starts_with(xml_head) || !bytes.ends_with(">\n"))
       return fail(
           "expected it to begin with <?xml version=\"1.0\" encoding=\"UTF-8\"?> and to end "

@@ -93,7 +93,7 @@ Expected<OutputResult> write(const OutputInput& in) {
     return fail(sound.error());
   const auto document = document_of(in, *look, **fonts);
   if (!document) return fail(document.error());
-  auto bytes = pdf(*document, **fonts);
+  auto bytes = pdf_bytes(*document, **fonts);
   if (!bytes) return fail(bytes.error());
   OutputResult result;
   result.artifacts.push_back({"certificate.pdf", std::move(*bytes), true});

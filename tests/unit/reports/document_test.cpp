@@ -36,7 +36,7 @@ Document of(std::vector<Block> blocks) {
 }
 
 fixtures::PdfText pages_of(const Document& document) {
-  const auto bytes = pdf(document, *fonts());
+  const auto bytes = pdf_bytes(document, *fonts());
   EXPECT_TRUE(bytes) << bytes.error().message;
   return bytes ? fixtures::read_pdf(*bytes) : fixtures::PdfText{};
 }
@@ -88,9 +88,9 @@ TEST(Fonts, TheCommonSubsetDrawsItsGlyphsAndNoOther) {
 TEST(Fonts, ARareCharacterTakesTheWholeFont) {
   Document document = of({});
   document.blocks = {{Paragraph{"Torino, 20 \u00B5m, e cos\u00EC via"}, "text"}};
-  const auto common = pdf(document, *fonts());
+  const auto common = pdf_bytes(document, *fonts());
   document.blocks = {{Paragraph{"\u0141\u00F3d\u017A"}, "text"}};
-  const auto rare = pdf(document, *fonts());
+  const auto rare = pdf_bytes(document, *fonts());
   ASSERT_TRUE(common && rare);
   EXPECT_LT(common->size() + 20000, rare->size());
   EXPECT_NE(fixtures::read_pdf(*rare).all().find("\u0141\u00F3d\u017A"), std::string::npos);
@@ -115,7 +115,7 @@ TEST(Text, WhatCannotBePrintedNamesCharacterAndField) {
                         {"a\xffz", "byte 0xFF"},  {"a\xc0\x80", "byte 0xC0"},
                         {"e\u0323", "U+1EB9"},    {"\U0001F600", "U+1F600"}};
   for (const Line& l : lines) {
-    const auto bytes = pdf(of({{Paragraph{l.text}, "campaign.customer"}}), *fonts());
+    const auto bytes = pdf_bytes(of({{Paragraph{l.text}, "campaign.customer"}}), *fonts());
     ASSERT_FALSE(bytes) << l.text;
     EXPECT_NE(bytes.error().message.find(l.says), std::string::npos) << bytes.error().message;
     EXPECT_NE(bytes.error().message.find("campaign.customer"), std::string::npos);
@@ -233,7 +233,7 @@ TEST(Plots, BearEveryNumber) {
       curve.marker = Marker::up;
       plot.curves.push_back(curve);
     }
-    const auto bytes = pdf(of({{plot}}), *fonts());
+    const auto bytes = pdf_bytes(of({{plot}}), *fonts());
     ASSERT_TRUE(bytes) << bytes.error().message;
     for (const std::string& content : fixtures::streams(*bytes)) {
       if (content.find(" Tj ET") == std::string::npos) continue;
@@ -245,7 +245,7 @@ TEST(Plots, BearEveryNumber) {
 
 /// The operators of the dots of a plot of points: each a line of no length.
 std::string dots(const Plot& plot) {
-  const auto bytes = pdf(of({{plot}}), *fonts());
+  const auto bytes = pdf_bytes(of({{plot}}), *fonts());
   EXPECT_TRUE(bytes) << bytes.error().message;
   for (const std::string& content : fixtures::streams(*bytes))
     if (const std::size_t from = content.find("1 J\n"); from != std::string::npos)
@@ -279,7 +279,7 @@ TEST(Plots, ManyPointsAreThinnedByPlaceAndExtremesStay) {
 
 /// Lower edge and height of each frame of a plot, from the origin of its piece.
 std::set<std::pair<std::string, std::string>> frames(const Document& document) {
-  const auto bytes = pdf(document, *fonts());
+  const auto bytes = pdf_bytes(document, *fonts());
   EXPECT_TRUE(bytes) << bytes.error().message;
   std::set<std::pair<std::string, std::string>> out;
   static const std::regex frame("(\\S+) (\\S+) (\\S+) (\\S+) re\\s+S");
@@ -338,7 +338,7 @@ TEST(Charts, BarsSayTheirValuesAndBearWhatIsNone) {
     EXPECT_NE(text.find(word), std::string::npos) << word;
   chart.rows.clear();
   chart.line.reset();
-  EXPECT_TRUE(pdf(of({{chart}}), *fonts()));
+  EXPECT_TRUE(pdf_bytes(of({{chart}}), *fonts()));
 }
 
 TEST(Layout, APageBreakBeginsAPageAndMakesNoEmptyOne) {
@@ -377,13 +377,13 @@ TEST(Pdf, TheSameBytesTwice) {
   const auto f = fonts();
   Document document = of({{Heading{"Heading"}}, {Paragraph{"text"}}});
   document.date = "2026-11-03";
-  const auto one = pdf(document, *f), two = pdf(document, *f);
+  const auto one = pdf_bytes(document, *f), two = pdf_bytes(document, *f);
   ASSERT_TRUE(one && two);
   EXPECT_EQ(*one, *two);
   EXPECT_NE(one->find("D:20261103"), std::string::npos);
   EXPECT_EQ(one->find("/ID"), std::string::npos);
   document.date = "2026-13-45";  // no date: none is written
-  EXPECT_TRUE(pdf(document, *f));
+  EXPECT_TRUE(pdf_bytes(document, *f));
 }
 
 TEST(Pdf, KeptForLongItSaysColoursPropertiesAndIdentifier) {
@@ -392,7 +392,7 @@ TEST(Pdf, KeptForLongItSaysColoursPropertiesAndIdentifier) {
   document.author = "R&D";
   document.date = "2026-11-03";
   document.profile = "an ICC profile";
-  const auto one = pdf(document, *fonts()), again = pdf(document, *fonts());
+  const auto one = pdf_bytes(document, *fonts()), again = pdf_bytes(document, *fonts());
   ASSERT_TRUE(one && again);
   EXPECT_EQ(*one, *again);
   for (const char* says :
@@ -409,14 +409,14 @@ TEST(Pdf, KeptForLongItSaysColoursPropertiesAndIdentifier) {
   ASSERT_GE(id.size(), 2 * 34U);
   EXPECT_EQ(id.substr(id.find('<'), 34), id.substr(id.rfind('<'), 34));
   document.blocks.push_back({Paragraph{"more"}});
-  EXPECT_NE(identifier(*pdf(document, *fonts())), id);
+  EXPECT_NE(identifier(*pdf_bytes(document, *fonts())), id);
 }
 
 TEST(Pdf, ALabelIsCutBetweenCharacters) {
   Document document = of({{Paragraph{"text"}}});
   for (int i = 0; i < 1500; ++i) document.title += "é";
   document.profile = "an ICC profile";
-  const auto bytes = pdf(document, *fonts());
+  const auto bytes = pdf_bytes(document, *fonts());
   ASSERT_TRUE(bytes);
   EXPECT_EQ(count(*bytes, "é"), 999U) << "after the letter T 1999 bytes are left";
 }

@@ -75,7 +75,7 @@ TEST(Pictures, ADocumentHoldsEachOnce) {
       mark{jpeg(300, 10), "mark.jpg", 400, 1};
   Document document;
   document.blocks = {{Columns{{{{logo}}, {{mark}}}}}, {logo}, {Paragraph{"text"}}};
-  const auto one = pdf(document, **fonts), two = pdf(document, **fonts);
+  const auto one = pdf_bytes(document, **fonts), two = pdf_bytes(document, **fonts);
   ASSERT_TRUE(one && two) << one.error().message;
   EXPECT_EQ(*one, *two);
   const auto times = [&](std::string_view what, const std::string& in) {
@@ -93,7 +93,7 @@ TEST(Pictures, ADocumentHoldsEachOnce) {
   EXPECT_EQ(times("/P1 Do", all), 1U);
   EXPECT_EQ(times(" 0 0 400 ", all), 0U) << "no wider than its column";
   document.blocks = {{Image{"none", "templates/x.png", 20, 0}}};
-  const auto broken = pdf(document, **fonts);
+  const auto broken = pdf_bytes(document, **fonts);
   ASSERT_FALSE(broken);
   EXPECT_EQ(broken.error().file, "templates/x.png");
 }

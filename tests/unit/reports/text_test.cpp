@@ -160,8 +160,9 @@ Document page(const std::string& text) {
 }
 
 TEST(WideFont, ADocumentEmbedsWhatItUsesAndNothingElse) {
-  const auto plain = pdf(page("Torino"), fonts()), chinese = pdf(page("校准证书"), fonts()),
-             again = pdf(page("校准证书"), fonts());
+  const auto plain = pdf_bytes(page("Torino"), fonts()),
+             chinese = pdf_bytes(page("校准证书"), fonts()),
+             again = pdf_bytes(page("校准证书"), fonts());
   ASSERT_TRUE(plain && chinese && again);
   EXPECT_EQ(*chinese, *again);
   EXPECT_EQ(plain->find("DroidSansFallback"), std::string::npos);
@@ -173,7 +174,7 @@ TEST(WideFont, APartThatIsLargerThanShortOffsetsAllowKeepsItsOutlines) {
   const Font& font = fonts().wide;
   std::vector<std::uint16_t> used = {0};
   for (char32_t c = 0x4E00; c < 0x5A00; ++c) used.push_back(font.glyph(c));
-  const Embedded part = embedded_part(font, used);
+  const pdf::EmbeddedFont part = embedded_part(font, used);
   const std::string file = fixtures::inflated(part.file_deflated);
   ASSERT_EQ(file.size(), part.size);
   const FontReader small(file), whole(font.bytes);

@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
                                   file("DroidSansFallback"));
   if (!fonts) return std::cerr << fonts.error().message << '\n', 1;
   const auto write = [&](const std::string& name, const Document& document, const Fonts& with) {
-    const auto bytes = pdf(document, with);
+    const auto bytes = pdf_bytes(document, with);
     if (!bytes) return std::cerr << bytes.error().message << '\n', false;
     std::ofstream(folder / (name + ".pdf"), std::ios::binary) << *bytes;
     return true;

@@ -47,7 +47,7 @@ class LongTerm : public testing::Test {
   std::string issued(bool is_stamped = true) {
     const TimeServer server(time, now);
     const auto done = open(ada, root).sign(
-        *sign::reserve(small_pdf(), {{"x.csv", "1,2\n", "text/csv", "Source", "readings"}}, now),
+        *pdf::reserve(small_pdf(), {{"x.csv", "1,2\n", "text/csv", "Source", "readings"}}, now),
         now, is_stamped ? server.stamping(pem(root)) : sign::TimeStamping{});
     EXPECT_TRUE(done) << done.error().message;
     return done->bytes;

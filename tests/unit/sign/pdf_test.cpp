@@ -8,9 +8,9 @@ namespace nonio::sign_tests {
 namespace {
 
 TEST(Reserve, IsReproducibleAndKeepsThePages) {
-  const std::vector<sign::Attachment> files = {{"a.csv", "1", "text/csv", "Source", "a"}};
-  const auto one = sign::reserve(small_pdf(), files, now),
-             two = sign::reserve(small_pdf(), files, now);
+  const std::vector<pdf::Attachment> files = {{"a.csv", "1", "text/csv", "Source", "a"}};
+  const auto one = pdf::reserve(small_pdf(), files, now),
+             two = pdf::reserve(small_pdf(), files, now);
   ASSERT_TRUE(one) << one.error().message;
   EXPECT_EQ(*one, *two);
   EXPECT_NE(one->find("BT /F1 12 Tf 50 800 Td (E = 4.5 um) Tj ET"), std::string::npos);
@@ -18,26 +18,26 @@ TEST(Reserve, IsReproducibleAndKeepsThePages) {
 }
 
 TEST(Reserve, ShowsTheSignatureInTheFrameThatThePageHasForIt) {
-  const auto plain = sign::reserve(small_pdf(), {}, now);
+  const auto plain = pdf::reserve(small_pdf(), {}, now);
   ASSERT_TRUE(plain);
   EXPECT_NE(plain->find("/Rect [0 0 0 0]"), std::string::npos);
   EXPECT_EQ(plain->find("/AP"), std::string::npos);
   const auto framed =
-      sign::reserve(small_pdf("a", "/NonioSignature [ 300 100 450 160 ]\n"), {}, now);
+      pdf::reserve(small_pdf("a", "/NonioSignature [ 300 100 450 160 ]\n"), {}, now);
   ASSERT_TRUE(framed) << framed.error().message;
   EXPECT_NE(framed->find("/Rect [300 100 450 160]\n/AP << /N "), std::string::npos);
   EXPECT_NE(framed->find("/Subtype /Form\n/BBox [300 100 450 160]"), std::string::npos);
   for (const char* odd : {"[ 1 2 3 ]", "[ 1 2 3 /X ]", "(text)", "[ 1 2 3 4.5 ]"}) {
     const auto other =
-        sign::reserve(small_pdf("a", "/NonioSignature " + std::string(odd) + "\n"), {}, now);
+        pdf::reserve(small_pdf("a", "/NonioSignature " + std::string(odd) + "\n"), {}, now);
     ASSERT_TRUE(other) << odd;
     EXPECT_NE(other->find("/Rect [0 0 0 0]"), std::string::npos) << odd;
   }
 }
 
 TEST(Reserve, RefusesWhatItWouldHaveToGuess) {
-  const auto why = [](const std::string& pdf, const std::vector<sign::Attachment>& files = {}) {
-    const auto done = sign::reserve(pdf, files, now);
+  const auto why = [](const std::string& pdf, const std::vector<pdf::Attachment>& files = {}) {
+    const auto done = pdf::reserve(pdf, files, now);
     return done ? "" : done.error().message;
   };
   EXPECT_EQ(why(small_pdf()), "");
@@ -57,19 +57,19 @@ TEST(Reserve, RefusesWhatItWouldHaveToGuess) {
 }
 
 TEST(Pages, AreWhatWasDrawn) {
-  const auto plain = sign::page_contents(small_pdf("a")),
-             reserved = sign::page_contents(*sign::reserve(small_pdf("a"), {}, now));
+  const auto plain = pdf::page_contents(small_pdf("a")),
+             reserved = pdf::page_contents(*pdf::reserve(small_pdf("a"), {}, now));
   ASSERT_TRUE(plain && reserved);
   EXPECT_EQ(*plain, *reserved);
   EXPECT_EQ(*plain, std::vector<std::string>{"BT /F1 12 Tf 50 800 Td (a) Tj ET\n"});
-  EXPECT_NE(*plain, *sign::page_contents(small_pdf("b")));
+  EXPECT_NE(*plain, *pdf::page_contents(small_pdf("b")));
   std::string broken = small_pdf();
   broken.replace(broken.find("/Kids [ 4 0 R ]"), 15, "/Kids [ 2 0 R ]");
-  EXPECT_FALSE(sign::page_contents(broken));
+  EXPECT_FALSE(pdf::page_contents(broken));
   broken = small_pdf();
   broken.replace(broken.find("/Contents 5 0 R"), 15, "/Contents 9 0 R");
-  EXPECT_FALSE(sign::page_contents(broken));
-  EXPECT_FALSE(sign::page_contents("hello"));
+  EXPECT_FALSE(pdf::page_contents(broken));
+  EXPECT_FALSE(pdf::page_contents("hello"));
 }
 
 TEST(Verify, SaysNoToWhatIsNoSignedPdf) {
@@ -77,7 +77,7 @@ TEST(Verify, SaysNoToWhatIsNoSignedPdf) {
   verifier.now = now;
   const std::string brackets = "%PDF-1.7\n" + std::string(1000, '[');
   for (const std::string& bytes :
-       {std::string(), std::string("hello"), small_pdf(), *sign::reserve(small_pdf(), {}, now),
+       {std::string(), std::string("hello"), small_pdf(), *pdf::reserve(small_pdf(), {}, now),
         std::string(1000, '('), brackets}) {
     const auto verified = sign::verify_pdf(bytes, verifier);
     EXPECT_FALSE(verified.holds());

@@ -23,14 +23,14 @@ sign::Verifier trusting(const std::string& signer = "CN=Ada Bianchi,O=Laboratori
   return v;
 }
 
-const std::vector<sign::Attachment> files = {
+const std::vector<pdf::Attachment> files = {
     {"x.csv", "run,direction\n1,+\n", "text/csv", "Source", "readings"},
     {"data/città.csv", std::string(100000, '7'), "text/csv", "Source", "readings"},
     {"results.json", "{}", "application/json", "Data", "results"}};
 
 std::string signed_by(const Holder& holder, const sign::TimeStamping& stamping = {},
-                      std::size_t room = sign::usual_room) {
-  auto reserved = sign::reserve(small_pdf(), files, now, room);
+                      std::size_t room = pdf::usual_room) {
+  auto reserved = pdf::reserve(small_pdf(), files, now, room);
   EXPECT_TRUE(reserved) << reserved.error().message;
   auto done = open(holder, root()).sign(*reserved, now, stamping);
   EXPECT_TRUE(done) << done.error().message;
@@ -93,7 +93,7 @@ TEST(Sign, WithoutAnExpectedSignerOrTrustedRootsTheSignatureDoesNotHold) {
 
 TEST(Sign, TheSignerMayBeGivenAsFingerprint) {
   const Holder ada = issue({}, &root());
-  auto reserved = sign::reserve(small_pdf(), {}, now);
+  auto reserved = pdf::reserve(small_pdf(), {}, now);
   const auto key = open(ada, root());
   const std::string bytes = key.sign(*reserved, now)->bytes;
   EXPECT_TRUE(sign::verify_pdf(bytes, trusting(key.identity().sha256)).holds());
@@ -147,19 +147,19 @@ TEST(Sign, SignsOnlyWhatIsReservedAndOnlyOnce) {
   const auto key = open(issue({}, &root()), root());
   EXPECT_FALSE(key.sign(small_pdf(), now));
   EXPECT_FALSE(key.sign("hello", now));
-  const auto once = key.sign(*sign::reserve(small_pdf(), {}, now), now);
+  const auto once = key.sign(*pdf::reserve(small_pdf(), {}, now), now);
   ASSERT_TRUE(once);
   const auto twice = key.sign(once->bytes, now);
   ASSERT_FALSE(twice);
   EXPECT_NE(twice.error().message.find("signed already"), std::string::npos);
-  EXPECT_FALSE(sign::reserve(once->bytes, {}, now));
+  EXPECT_FALSE(pdf::reserve(once->bytes, {}, now));
 }
 
 TEST(Sign, ASignatureThatDoesNotFitIsAnError) {
   const auto key = open(issue({}, &root()), root());
   const TimeServer server(issue(time_server_wish(), &root()));
   const auto done =
-      key.sign(*sign::reserve(small_pdf(), {}, now, 1000), now, server.stamping(pem(root())));
+      key.sign(*pdf::reserve(small_pdf(), {}, now, 1000), now, server.stamping(pem(root())));
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().message.find("does not fit"), std::string::npos) << done.error().message;
 }
@@ -186,7 +186,7 @@ TEST(TimeStamp, WithoutOneAnExpiredCertificateProvesNothing) {
 TEST(TimeStamp, NoAnswerFailsOrIsSaidAsConfigured) {
   using Mood = TimeServer::Mood;
   const auto key = open(issue({}, &root()), root());
-  const std::string reserved = *sign::reserve(small_pdf(), {}, now);
+  const std::string reserved = *pdf::reserve(small_pdf(), {}, now);
   for (const Mood mood :
        {Mood::silent, Mood::refuses, Mood::other_imprint, Mood::other_nonce, Mood::nonsense}) {
     const TimeServer server(issue(time_server_wish(), &root()), now, mood);
@@ -202,7 +202,7 @@ TEST(TimeStamp, NoAnswerFailsOrIsSaidAsConfigured) {
 
 TEST(TimeStamp, IsTakenOnlyFromAServerThatIsTrustedAndCertifiedForTime) {
   const auto key = open(issue({}, &root()), root());
-  const std::string reserved = *sign::reserve(small_pdf(), {}, now);
+  const std::string reserved = *pdf::reserve(small_pdf(), {}, now);
   Wish not_for_time = time_server_wish();
   not_for_time.extended = "emailProtection";
   const Holder stranger = authority("Stranger");
@@ -309,7 +309,7 @@ TEST(Revocation, OfATimeServer) {
 TEST(TimeStamp, ATimeInTheFutureIsRefused) {
   const TimeServer server(issue(time_server_wish(), &root()), now + 7200);
   const auto key = open(issue({}, &root()), root());
-  const std::string reserved = *sign::reserve(small_pdf(), {}, now);
+  const std::string reserved = *pdf::reserve(small_pdf(), {}, now);
   EXPECT_FALSE(key.sign(reserved, now, server.stamping(pem(root())))) << "signed with it";
   const auto later = key.sign(reserved, now + 7200, server.stamping(pem(root())));
   ASSERT_TRUE(later) << later.error().message;

@@ -36,8 +36,8 @@ struct Scene {
   }
   std::string make(const sign::Key& key, const sign::TimeStamping& stamping) const {
     const auto reserved =
-        sign::reserve(small_pdf(), {{"x.csv", "1,2\n", "text/csv", "Source", "readings"}}, now,
-                      stamping.url.empty() ? 1500 : 4500);
+        pdf::reserve(small_pdf(), {{"x.csv", "1,2\n", "text/csv", "Source", "readings"}}, now,
+                     stamping.url.empty() ? 1500 : 4500);
     const auto done = key.sign(*reserved, now, stamping);
     EXPECT_TRUE(done) << done.error().message;
     return done ? done->bytes : "";
@@ -298,7 +298,7 @@ TEST(Tamper, RandomDamageIsAlwaysRefused) {
     }
     if (bytes == s.stamped) continue;
     ASSERT_NE(s.fails(bytes), "none");
-    [[maybe_unused]] const auto pages = sign::page_contents(bytes);
+    [[maybe_unused]] const auto pages = pdf::page_contents(bytes);
   }
 }
 

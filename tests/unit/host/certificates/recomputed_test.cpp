@@ -56,7 +56,7 @@ std::string dcc(const std::string& value, const std::string& unit,
 }
 
 sign::Check::State state(const std::string& xml, const std::string& json) {
-  const sign::Attachment with{"results.json", json, {}, {}, {}};
+  const pdf::Attachment with{"results.json", json, {}, {}, {}};
   return certificates::check_dcc({"dcc.xml", xml, {}, {}, {}}, &with).state;
 }
 

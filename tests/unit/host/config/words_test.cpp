@@ -67,6 +67,24 @@ TEST(WordFiles, LanguagesAgree) {
   }
 }
 
+// A sentence that is the English one was copied and not translated.
+TEST(WordFiles, GermanAndItalianSentencesAreTranslated) {
+  static const std::regex place("\\{[^}]*\\}"), three_words("[a-z]+ [a-z]+ [a-z]+");
+  const auto english = files_of("en");
+  std::size_t count = 0;
+  for (const char* language : {"de", "it"}) {
+    const auto other = files_of(language);
+    for (const auto& [file, words] : english)
+      for (const auto& [key, value] : words.values) {
+        const std::string text = words.text(key);
+        if (!std::regex_search(std::regex_replace(text, place, ""), three_words)) continue;
+        ++count;
+        EXPECT_NE(other.at(file).text(key), text) << language << "/" << file << " " << key;
+      }
+  }
+  EXPECT_GE(count, 1000U);
+}
+
 /// The sources of everything that speaks.
 std::string sources() {
   std::ostringstream text;

@@ -16,10 +16,10 @@
 ///     travel X, Y, Z; L = sqrt(X^2 + Y^2 + Z^2)      m
 ///     a = X/L, b = Y/L, c = Z/L                       direction cosines
 ///     e = (ex, ey, ez), each +1 or -1                 direction of a pass; u = (ex a, ey b, ez c)
-///     E_a(i) = (EXa, EYa, EZa)                        errors of axis a at its position i of 0..n,
-///     m nu                                              set-up angle, rad: nu.u = 0 R = u.sum_a
-///     [E_a(j_a) - E_a(start)] + nu.p      reading less the nominal one, m p nominal displacement
-///     so far, m
+///     E_a(i) = (EXa, EYa, EZa)                        errors of axis a at its position i = 0..n, m
+///     p                                               nominal displacement so far, m
+///     nu                                              set-up angle of a pass, rad: nu.u = 0
+///     R = u.sum_a [E_a(j_a) - E_a(start)] + nu.p      reading minus the nominal one, m
 ///
 /// Least squares: 9n function values, two set-up angles a pass, the zero of each pass, and the
 /// zero of each axis series d(x) = E_aa(x) + zero. A rotation of the frame moves no reading: EYX,
