@@ -226,7 +226,7 @@ class WhatWasOn(MachineTest):
                 ('table_on = "none"\nbacklash_on_mm = "none"\n', None, 0)):
             self.measured("siemens-840d", machine='asset = "S-1"\n', of_axis=said)
             table, _ = self.tables("siemens-840d")
-            said_so = [n for n in table.get("notes", []) if "nobody says" in n]
+            said_so = [n for n in table.get("notes", []) if "not stated" in n and "assumed" in n]
             self.assertEqual(len(said_so), 1 if note else 0, said)
             self.assertTrue(note is None or note in said_so[0], said_so)
             self.assertEqual(self.file("siemens-840d-Z-EEC.ini").count("ASSUMED, nobody says it"), sentences, said)
