@@ -127,6 +127,7 @@ def campaign_files(laboratory, machine, plan, set_up, measured, known):
         analyses.append("model-fit")
     if machine.centre:
         analyses.append("rotary-kinematics")
+        options["rotary-kinematics"] = {"linear_axes_urad": "5.0"}
     more = analyses if len(analyses) > 2 else None
     text = manifest(machine.story, plan.ident, machine.customer, machine.place, date_of(plan.day), record, axes_of(machine, plan),
                     [measurement(m, plan) for m in measured], instrument=instrument_of(plan, machine.centre),

@@ -151,7 +151,7 @@ def spelling(told, number, noise):
     m = told.machine(number, "VM 12", ["Without a number of the house: known by its serial, which once was typed with the letter O. One campaign was sent a year",
                                        "late, one was never made. In February 2026 the machine was moved to another hall: squareness changed by 25 urad. Its",
                                        "folder was moved, too."],
-                     [axis(noise, "X", 600.0), axis(noise, "Y", 500.0)], HALF_YEARS[:3] + HALF_YEARS[4:], serial="INV-0012", squareness=square)
+                     [axis(noise, "X", 600.0, cyclic=0.0), axis(noise, "Y", 500.0, cyclic=0.0)], HALF_YEARS[:3] + HALF_YEARS[4:], serial="INV-0012", squareness=square)
     m.asset, m.folder = None, "INV-0012"
     for p in m.plans:
         p.ident = p.ident.replace("lab-12", "inv-0012")
