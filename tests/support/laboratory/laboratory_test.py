@@ -18,7 +18,6 @@ sys.path.insert(0, str(HERE))
 import life  # noqa: E402 (this folder is no package)
 import make_laboratory  # noqa: E402
 import oracle  # noqa: E402
-import parts  # noqa: E402
 import physics  # noqa: E402
 import presets  # noqa: E402
 import quantities  # noqa: E402
@@ -151,14 +150,10 @@ class Laboratories(Temporary):
         self.assertAlmostEqual(comparators[0]["size"], 4.8)
 
 
-def some_targets(count):
-    return parts.targets(physics.Noise(11), 0.0, 1000.0, count)
-
-
 class OfQuantities(unittest.TestCase):
     def test_weights_give_back_what_a_curve_is_made_of(self):
         """Each coefficient comes back, and of what is not in the curve nothing: sinusoids are fitted beside all four shapes."""
-        targets = some_targets(21)
+        targets = [50.0 * i + 10.0 * (0.37 * i % 1.0) for i in range(21)]  # all phases of a period of 10 mm
         w = quantities.weights(targets, period=10.0)
         self.assertEqual(set(w), {"scale", "curve_2", "curve_3", "cyclic_cos", "cyclic_sin", "B_mean"})
         middle, length = (targets[0] + targets[-1]) / 2, targets[-1] - targets[0]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Machines, what happens to them, and the campaigns in which they are measured."""
+import functools
 import math
 
 import physics
@@ -173,10 +174,15 @@ def ball_centres(own, machine, when, plan):
     return [Measured(centre.name + " centre", centre, when, "as-found", rows, [], 1, kind="ball-centres")]
 
 
+@functools.lru_cache(maxsize=100)  # targets stay from campaign to campaign
+def named_weights(places, rotary, period, lateral):
+    out = quantities.weights(places, rotary, period, across=bool(lateral))
+    return {("straightness:%s.%s" % (lateral, n) if lateral else n): w for n, w in out.items()}
+
+
 def quantities_of(axis, places):
     """{name: weights} under the names of results.json."""
-    out = quantities.weights(places, axis.rotary, axis.period, across=bool(axis.lateral))
-    return {("straightness:%s.%s" % (axis.lateral, n) if axis.lateral else n): w for n, w in out.items()}
+    return named_weights(tuple(places), axis.rotary, axis.period, axis.lateral)
 
 
 def true_values(axis, weights, places, day, without=(), warmer=0.0):
