@@ -180,6 +180,25 @@ class OfQuantities(unittest.TestCase):
             s = (sum(v * v for v in values) / len(values)) ** 0.5
             self.assertAlmostEqual(s / quantities.repetition(w[name], 5, 0.5, 0.2, 0.3), 1.0, delta=0.06, msg=name + ", seed 5")
 
+    def test_readings_scatter_around_what_is_true_as_the_truth_says(self):
+        lab, pulls = presets.build("quiet", 6, machines=9), {}
+        for machine in lab.machines:
+            for _, set_up, measured in life.realise(lab.seed, machine):
+                for m in measured:
+                    if m.axis.new["rho"]:  # of these u is a rule of thumb
+                        continue
+                    w = life.quantities_of(m.axis, m.places)
+                    true = life.true_values(m.axis, w, m.places, m.day, warmer=set_up.warmer)
+                    seen = {n: quantities.value(v, *physics.means(m.readings, m.places)) for n, v in w.items()}
+                    seen["scale"] -= set_up.slope(m.axis, m.axis.travel[1] - m.axis.travel[0])
+                    s = m.axis.state(m.day)
+                    for name, value in seen.items():
+                        u = quantities.repetition(w[name], m.runs, s["s"], s["own"], s["shared"])
+                        pulls.setdefault(name, []).append((value - true[name]) / u)
+        for name in ("scale", "B_mean", "curve_2", "curve_3", "cyclic_cos"):
+            rms = (sum(p * p for p in pulls[name]) / len(pulls[name])) ** 0.5
+            self.assertAlmostEqual(rms, 1.0, delta=4.0 / (2 * len(pulls[name])) ** 0.5, msg="%s of %d, seed 6" % (name, len(pulls[name])))
+
     def test_wear_begins_again_with_new_parts(self):
         axis = life.Axis("X", (0.0, 1000.0), 11, b=-2.0)
         axis.installed, axis.wear = 0.0, {"b": life.linear(-1.0), "s": life.linear(0.1)}

@@ -34,6 +34,12 @@ class Squareness:
     def __init__(self, value, runs=3, count=11):
         self.value, self.runs, self.count, self.happened = value, runs, count, []
 
+    def repetition(self, machine, day):
+        """Standard uncertainty: c = (e2 - e1) l/(2 a b), e the error of a diagonal of length l at its end."""
+        a, b = (machine.axis(n).travel[1] / 1000.0 for n in "XY")
+        of_an_end = machine.axis("X").state(day)["s"] * math.sqrt(12.0 / (2.0 * self.runs * self.count))
+        return of_an_end * math.sqrt(2.0) * math.hypot(a, b) / (2.0 * a * b)
+
     def happens(self, day, kind, size):
         self.happened.append({"day": day, "kind": kind, "size": size})
         self.happened.sort(key=lambda h: h["day"])

@@ -162,6 +162,48 @@ def crash_of(noise, machine, axis, size):
     return {"bump": {"size": sign * size * 0.6, "at": axis.travel[0] + length * noise.uniform(0.3, 0.7), "width": 0.12 * length}}, "curve"
 
 
+def squareness_machine(lab, k):
+    """X and Y with two diagonals, without errors of a period: no model of it has any."""
+    noise, machine = common_machine(lab, k, calm=True, models=(("VM", (("X", 800.0), ("Y", 600.0))),))
+    for axis in machine.axes:
+        axis.new["cyclic"] = 0.0
+    machine.squareness = Squareness(noise.uniform(-20.0, 20.0))
+    return noise, machine, machine.squareness, lambda size: size * 1.42 * machine.squareness.repetition(machine, lab.start)
+
+
+def rotary_machine(lab, k):
+    noise, machine = common_machine(lab, k, calm=True, models=(("UM", (("X", 500.0),)),))
+    machine.axes = [Axis("C", (0.0, 330.0), 12, rotary=True, b=-noise.uniform(0.5, 3.0), s=noise.uniform(0.3, 0.5), waves=(0.0, 0.0, 0.0),
+                         cyclic=0.0, turn=(noise.uniform(-3.0, 3.0), noise.uniform(-3.0, 3.0)))]
+    machine.tolerance = {"rotary": {"A": 20.0, "B": 8.0}}
+    machine.centre, machine.structure = Centre("C", (412.3, 305.1, -130.0)), "bridge"
+    return noise, machine, machine.centre, lambda size: (size * 0.0012 * 1000.0, -size * 0.0012 * 500.0, 0.0)
+
+
+def gantry_machine(lab, k):
+    noise, machine = common_machine(lab, k, calm=True, models=(("PG", (("X1", 2000.0), ("X2", 2000.0))),))
+    across = linear_axis(noise, "X-in-Z", 2000.0, True, lateral="Z", pitch=None, b=-0.3, cyclic=0.0)
+    machine.axes.append(across)
+    machine.structure = "gantry"
+    machine.axis("X2").wear = {"b": linear(-noise.uniform(0.2, 0.8))}
+    return noise, machine, across, lambda size: {"size": size * 0.5, "at": 1000.0, "width": 400.0}
+
+
+def special_machine(lab, k, instruments, count):
+    """What few machines have: squareness, the centre of a rotary axis, two sides and a straightness; half of them are hit there."""
+    noise, machine, hit, size = (squareness_machine, rotary_machine, gantry_machine)[k % 3](lab, k)
+    for axis in machine.axes:
+        axis.installed = lab.start
+    campaigns(lab, machine, noise, count, count + 1, instruments)
+    if noise.random.random() < 0.5:
+        day, by = between_plans(noise, machine, 3, 3), size(noise.uniform(3.0, 30.0))
+        if isinstance(hit, Axis):
+            hit.happens(day, "crash", bump=by)
+        else:
+            hit.happens(day, "crash", by)
+    return machine
+
+
 def mixed(seed, machines=12, count=8):
     """A small site of everything: crashes of 3 to 30 standard uncertainties in any quantity, repairs, tables, instruments that jump,
     editions, spans, numbers of targets, spellings, folders that vanish or move."""
@@ -199,6 +241,7 @@ def mixed(seed, machines=12, count=8):
             machine.plans[-1].serial = machine.serial.replace("0", "O", 1)
             lab.aliases.append((machine.plans[-1].serial, machine.serial, "a letter O for a zero"))
         lab.machines.append(machine)
+    lab.machines += [special_machine(lab, machines + k, good, count) for k in range(3)]
     gone = lab.machines[int(noise.uniform(0, machines))]
     gone.vanishes = lab.night
     moved = lab.machines[int(noise.uniform(0, machines))]

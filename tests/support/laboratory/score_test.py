@@ -13,6 +13,7 @@ import unittest
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import make_laboratory  # noqa: E402 (this folder is no package)
 import presets  # noqa: E402
+import pulls  # noqa: E402
 import score  # noqa: E402
 import truth as truths  # noqa: E402
 from parts import Noise  # noqa: E402
@@ -215,6 +216,35 @@ class OfDrift(unittest.TestCase):
         self.assertIsNone(score.true_slope(t, order, {"from": "a", "to": "b"}))
         self.assertEqual(score.true_slope(t, order, {"from": "d", "to": "e"}), 0.0)
         self.assertIsNone(score.true_slope(t, order, {"from": "b", "to": "e"}))
+
+
+class OfPulls(unittest.TestCase):
+    """Made-up results.json of campaigns that share an instrument: u that is right, too small, and what is shared left out."""
+
+    def rms(self, factor, keep_common):
+        truth = truth_of("quiet", 4, machines=6)
+        noise, shared, found = Noise("pulls"), Noise("instrument").normal(), {}
+        for s in (s for s in truth["series"] if s["quantity"] == "B_mean"):
+            for p in s["points"]:
+                found.setdefault(p["campaign"], []).append(
+                    {"measurement": p["measurement"], "axis": s["axis"], "quantity": "B_mean", "u": factor * 0.1,
+                     "value": p["value"] + 0.1 * noise.normal() + 0.5 * shared, "common": [{"source": "i", "u": 0.5}] if keep_common else []})
+        with tempfile.TemporaryDirectory() as folder:
+            for campaign, of in found.items():
+                (pathlib.Path(folder) / campaign).mkdir()
+                (pathlib.Path(folder) / campaign / "results.json").write_text(json.dumps({"followed": of}))
+            alone, pairs, absent = pulls.compare(folder, truth)
+        self.assertNotIn("B_mean", absent)
+        self.assertIn("scale", absent)
+        return [(sum(v * v for v in p.values["B_mean"]) / len(p.values["B_mean"])) ** 0.5 for p in (alone, pairs)]
+
+    def test_u_is_judged_and_what_is_shared_cancels(self):
+        alone, pairs = self.rms(1.0, True)
+        self.assertAlmostEqual(pairs, 1.0, delta=0.2)
+        self.assertLess(alone, 2.0)
+        self.assertAlmostEqual(self.rms(0.5, True)[1] / pairs, 2.0)
+        self.assertAlmostEqual(self.rms(1.0, False)[1] / pairs, 1.0)
+        self.assertGreater(self.rms(1.0, False)[0], 1.3 * alone)
 
 
 class Arithmetic(unittest.TestCase):

@@ -3,7 +3,7 @@
 
 truth.json:
   preset, seed, until
-  machines   machine (its own name), names (as which a program may call it)
+  machines   machine (its own name), names (as which a program may call it), interval_days, due after the last campaign, overdue
   series     of each machine, axis and quantity: points (campaign, measurement, date, state, value of the machine at 20 degC, u of what
              is new in each campaign as the generator makes it, instrument, conditions), segments between changes (from, to, law none,
              linear or other, slope_per_year), later: (date, value) if nothing more happens
@@ -22,8 +22,7 @@ from life import Centre, Squareness
 from physics import LEFT, YEAR, date_of
 
 LATER, EVERY = 732, 61  # days
-SQUARENESS_U = 0.15  # urad: 2 diagonals of some metres, about
-CENTRE_U = 0.0004  # mm
+CENTRE_U = 0.0003  # mm: twelve places of the ball, 0.0007 mm each
 
 
 class Truth:
@@ -38,7 +37,9 @@ class Truth:
                 "breaks": self.breaks, "vanished": self.vanished, "moved": self.moved}
 
     def add(self, machine, done, folders):
-        self.machines.append({"machine": machine.names[0], "names": machine.names})
+        last = max((p.day for p, _, _ in done), default=None)
+        self.machines.append({"machine": machine.names[0], "names": machine.names, "interval_days": machine.interval,
+                              "due": last and date_of(last + machine.interval), "overdue": last and last + machine.interval < self.until})
         if machine.vanishes is not None and machine.vanishes <= self.until:
             self.vanished += [{"campaign": p.ident, "folder": folders[p.ident]} for p, _, _ in done]
         elif machine.moves and machine.moves[0] <= self.until:
@@ -61,7 +62,7 @@ class Truth:
             if definition(p, m) != first:
                 first = definition(p, m)
                 self.breaks.append({"machine": machine.names[0], "axis": axis.name, "campaign": p.ident})
-            values, u = values_of(axis, m, m.day), noise_of(axis, m)
+            values, u = values_of(axis, m, m.day), noise_of(machine, axis, m)
             for name, value in values.items():
                 points.setdefault(name, []).append({"campaign": p.ident, "measurement": m.name, "date": date_of(p.day), "state": m.state,
                                                     "value": value, "u": u[name], "instrument": p.instrument.key(p.day),
@@ -82,7 +83,7 @@ class Truth:
             (p, m), (q, n) = taken[k], taken[k + 1]
             at = together[-1]["day"]
             now, before = values_of(axis, n, at), values_of(axis, n, at, tuple(together))
-            ua, ub = noise_of(axis, m), noise_of(axis, n)
+            ua, ub = noise_of(machine, axis, m), noise_of(machine, axis, n)
             sizes = {}
             for name, value in now.items():
                 u = math.hypot(ua.get(name, ub[name]), ub[name])
@@ -122,9 +123,9 @@ def values_of(axis, m, day, without=()):
     return life.true_values(axis, life.quantities_of(axis, m.places), m.places, day, without)
 
 
-def noise_of(axis, m):
+def noise_of(machine, axis, m):
     if isinstance(axis, Squareness):
-        return {"squareness:XY": SQUARENESS_U}
+        return {"squareness:XY": axis.repetition(machine, m.day)}
     if isinstance(axis, Centre):
         return {"centre_x": CENTRE_U, "centre_y": CENTRE_U}
     return life.noise_of(axis, life.quantities_of(axis, m.places), m.places, m.runs, m.day)
