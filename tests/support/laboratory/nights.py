@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nights of many made-up laboratories, and how a program did on them.
 
-    nights.py PROGRAM FOLDER [--preset mixed] [--sites 200] [--seed 1] [--nights 1] [--machines N] [--count N] [--known] [--keep]
+    nights.py PROGRAM FOLDER [--preset mixed] [--sites 200] [--seed 1] [--nights 2] [--machines N] [--count N] [--known] [--plain]
 
 For each site (seed, seed + 1, ...): its last nights, one month apart, each made as it was then and run (PROGRAM run SITE --out OUT), and
-`PROGRAM history OUT --json` after each. FOLDER/<seed>/ has truth.json and history-<night>.json; sites and results are removed unless --keep.
-Prints what score.py says of all of them. FOLDER must be empty or not there.
+`PROGRAM history OUT --json` after each (--plain: plain.py judges instead). FOLDER/<seed>/ has truth.json and history-<night>.json; sites
+and results are removed. Prints what score.py says of all of them. FOLDER must be empty or not there. What vanishes does so in the last night:
+it takes two to see it.
 """
 import argparse
 import json
@@ -15,9 +16,11 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import tomllib
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import make_laboratory  # noqa: E402 (this folder is no package)
+import plain  # noqa: E402
 import presets  # noqa: E402
 import score  # noqa: E402
 import truth as truths  # noqa: E402
@@ -38,6 +41,11 @@ def nights_of(program, folder, given, seed):
                               capture_output=True, text=True)
         if done.returncode not in (0, 1):
             raise SystemExit("seed %d, night %d: run ended with %d\n%s" % (seed, night + 1, done.returncode, done.stderr))
+        if given.plain:
+            events = tomllib.loads((folder / "site" / "events.toml").read_text()).get("event", [])
+            histories.append(plain.history(folder / "out", events, line=True))
+            (folder / ("history-%02d.json" % (night + 1))).write_text(json.dumps(histories[-1]))
+            continue
         told = subprocess.run([program, "history", str(folder / "out"), "--json"], capture_output=True, text=True)
         if told.returncode not in (0, 1):
             raise SystemExit("seed %d, night %d: history ended with %d\n%s" % (seed, night + 1, told.returncode, told.stderr))
@@ -53,9 +61,9 @@ def main():
     parser.add_argument("program")
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--preset", choices=("lab", "quiet", "drifting", "mixed", "small"), default="mixed")
-    for name, value in (("sites", 200), ("seed", 1), ("nights", 1), ("machines", None), ("count", None)):
+    for name, value in (("sites", 200), ("seed", 1), ("nights", 2), ("machines", None), ("count", None)):
         parser.add_argument("--" + name, type=int, default=value)
-    for name in ("known", "keep"):
+    for name in ("known", "plain"):
         parser.add_argument("--" + name, action="store_true")
     given = parser.parse_args()
     if given.folder.exists() and any(given.folder.iterdir()):
@@ -66,9 +74,8 @@ def main():
         folder.mkdir(parents=True)
         truth, histories = nights_of(given.program, folder, given, seed)
         total.add(truths.rounded(truth), histories)
-        if not given.keep:
-            shutil.rmtree(folder / "site")
-            shutil.rmtree(folder / "out")
+        shutil.rmtree(folder / "site")
+        shutil.rmtree(folder / "out")
     print("preset %s, seeds %d to %d, %d nights each" % (given.preset, given.seed, given.seed + given.sites - 1, given.nights))
     print(total.text())
     return 1 if total.fails() else 0

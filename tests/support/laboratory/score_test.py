@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The scorer on histories that are right, and on ones that are wrong in one way each: it must see each of them, and only it."""
 import copy
+import datetime
 import json
 import os
 import pathlib
@@ -12,6 +13,7 @@ import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import make_laboratory  # noqa: E402 (this folder is no package)
+import plain  # noqa: E402
 import presets  # noqa: E402
 import pulls  # noqa: E402
 import score  # noqa: E402
@@ -245,6 +247,45 @@ class OfPulls(unittest.TestCase):
         self.assertAlmostEqual(self.rms(0.5, True)[1] / pairs, 2.0)
         self.assertAlmostEqual(self.rms(1.0, False)[1] / pairs, 1.0)
         self.assertGreater(self.rms(1.0, False)[0], 1.3 * alone)
+
+
+class OfThePlainJudgement(unittest.TestCase):
+    # Eight campaigns, um and years: a line by generalised least squares, computed elsewhere with numpy.
+    T = (0.0, 0.5, 1.1, 1.6, 2.0, 2.6, 3.1, 3.5)
+    Y = (-4.1, -4.3, -4.6, -4.5, -5.0, -5.3, -5.2, -5.6)
+    U = (0.25, 0.25, 0.30, 0.25, 0.20, 0.20, 0.25, 0.20)
+
+    def test_a_line_and_its_uncertainty(self):
+        for sources, wanted in (([{}] * 8, ("-4.07657", "-0.42385", "0.16354", "0.07140", "2.2180", "-5.9839", "0.1973")),
+                                ([{"a": 0.3}] * 8, ("-4.07657", "-0.42385", "0.34168", "0.07140", "2.2180", "-5.9839", "0.3591")),
+                                ([{"a": 0.3}] * 4 + [{"b": 0.3}] * 4,
+                                 ("-4.19257", "-0.35534", "0.31080", "0.11733", "1.6766", "-5.7916", "0.3901"))):
+            points = [{"u": u, "common": c} for u, c in zip(self.U, sources)]
+            inverse = plain.solve(plain.covariance(points), [[float(i == j) for j in range(8)] for i in range(8)])
+            fit = plain.Fit(inverse, [[1.0] * 8, list(self.T)], self.Y)
+            at = fit.at([1.0, 4.5])
+            found = (*fit.b, fit.cov[0][0] ** 0.5, fit.cov[1][1] ** 0.5, fit.chi2, *at)
+            self.assertEqual(tuple("%.*f" % (len(w.rpartition(".")[2]), f) for f, w in zip(found, wanted)), wanted)
+
+    def judged(self, values, sources, left=(), events=()):
+        points = [{"day": 738000 + 200 * k, "left": k in left, "campaign": "c%d" % k, "value": v, "u": 0.1, "common": {s: 1.0} if s else {}}
+                  for k, (v, s) in enumerate(zip(values, sources))]
+        return plain.judge(("M", "X", "scale", "{}", "um/m"), points, events, 0.001, line=False)["changes"]
+
+    def test_a_step_is_found_and_that_of_an_instrument_is_not(self):
+        values = [1.0, 1.1, 0.9, 1.0, 3.0, 3.1, 2.9, 3.0]
+        found = self.judged(values, [None] * 8)
+        self.assertEqual([(c["after"], c["before"], c["cause"]) for c in found], [("c3", "c4", "undeclared")])
+        self.assertAlmostEqual(found[0]["size"], 2.0)
+        self.assertEqual(self.judged(values, ["a"] * 4 + ["b"] * 4), [])
+        self.assertEqual(len(self.judged(values, ["a"] * 8)), 1)
+
+    def test_an_event_is_the_cause_of_its_step_and_of_no_other(self):
+        event = {"machine": "M", "axis": "X", "kind": "crash", "date": datetime.date.fromordinal(738000 + 700)}
+        values = [1.0, 1.1, 0.9, 1.0, 3.0, 3.1, 2.9, 3.0]
+        self.assertEqual([c["cause"] for c in self.judged(values, [None] * 8, events=[event])], ["event"])
+        self.assertEqual([c["cause"] for c in self.judged(values, [None] * 8, events=[event | {"axis": "Y"}])], ["undeclared"])
+        self.assertEqual(self.judged([1.0] * 8, [None] * 8, events=[event]), [])
 
 
 class Arithmetic(unittest.TestCase):
