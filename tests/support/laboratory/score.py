@@ -90,11 +90,11 @@ class Site:
         return [c for c in self.truth["changes"] if (c["machine"], c["after"], c["before"]) == (machine, after, before)]
 
     def is_real(self, s, change):
-        """Something was done to this quantity within the campaigns that the change names. Of a quantity that the truth does not know (a
-        parameter of a model): to this machine."""
+        """Something was done to this quantity within the campaigns that the change names. Of a parameter of a model (effect:axis.name),
+        which the truth does not know: to this machine."""
         true = self.true_series(s)
         if true is None:
-            return bool(self.changes_at(self.names.get(s["machine"]), change["after"], change["before"]))
+            return "." in s["quantity"] and bool(self.changes_at(self.names.get(s["machine"]), change["after"], change["before"]))
         return any(c["axis"] == true["axis"] and c["quantities"].get(true["quantity"], {"in_u": 0.0})["in_u"] >= NOTHING
                    for c in self.changes_at(true["machine"], change["after"], change["before"]))
 

@@ -110,6 +110,14 @@ class OfKnownSites(unittest.TestCase):
                 self.assertEqual(result.missed, {"no such series": n})
                 self.assertEqual(len(result.false), n)
 
+    def test_a_parameter_of_a_model_may_tell_what_happened_to_the_machine_and_nothing_else(self):
+        s, change = self.first_change()
+        ids = self.neighbours(s)
+        for at, false in (((change["after"], change["before"]), 0), ((ids[0], ids[1]), 1)):
+            history = told(self.truth)
+            history["series"].append(s | {"quantity": "backlash:X.b", "changes": [change | {"after": at[0], "before": at[1]}]})
+            self.assertEqual(len(scored(self.truth, history).false), false)
+
     def test_a_change_that_is_not_told_is_missed(self):
         s, _ = self.first_change()
         s["changes"], s["model"] = [], "level"
