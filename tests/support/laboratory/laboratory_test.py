@@ -221,7 +221,8 @@ class OfQuantities(unittest.TestCase):
 class WithTheProgram(Temporary):
     def run_night(self, site):
         out = self.folder / "out"
-        done = subprocess.run([PROGRAM, "run", str(site), "--out", str(out), "--jobs", "2", "--quiet"], capture_output=True, text=True)
+        done = subprocess.run([PROGRAM, "run", str(site), "--out", str(out), "--jobs", "2", "--quiet"], capture_output=True, text=True,
+                              env=dict(os.environ, NONIO_ALLOW_ROOT="1", LC_ALL="C"))
         self.assertEqual(done.returncode, 0, done.stderr)
         counts = json.loads((out / "summary.json").read_text())["counts"]
         self.assertEqual(counts["failed"], 0)
@@ -233,8 +234,25 @@ class WithTheProgram(Temporary):
             self.skipTest("no program given")
 
     def test_the_sample_is_done_without_errors(self):
-        _, counts = self.run_night(SAMPLE)
+        out, counts = self.run_night(SAMPLE)
         self.assertEqual((counts["campaigns"], counts["done"]), (104, 104))
+        # Figures of its README.
+        for campaign, measurement, name, figure in (
+                ("2023-02-lab-03", "Z", "B_mean", "-1.61"), ("2024-02-lab-03", "Z", "B_mean", "-2.71"), ("2024-06-lab-03", "Z", "B_mean", "-5.31"),
+                ("2025-06-lab-03", "Z", "B_mean", "-1.69"), ("2025-07-lab-02", "X", "B_mean", "-3.10"), ("2026-01-lab-02", "X", "B_mean", "-7.52"),
+                ("2023-02-lab-04", "X", "B_mean", "-1.62"), ("2026-10-lab-04", "X", "B_mean", "-7.46"), ("2025-01-lab-05", "X found", "A", "15.49"),
+                ("2025-01-lab-05", "X left", "A", "3.57"), ("2025-01-lab-08", "Y", "A", "5.78"), ("2025-07-lab-08", "Y", "A", "11.54"),
+                ("2023-07-lab-10", "X2", "B_mean", "-2.66"), ("2026-07-lab-10", "X2", "B_mean", "-5.39"), ("2024-07-lab-11", "C", "A", "10.57"),
+                ("2025-01-lab-11", "C", "A", "18.16"), ("2026-01-inv-0012", "X", "squareness:XY.c", "7.7"),
+                ("2026-07-inv-0012", "X", "squareness:XY.c", "33.0")):
+            result = json.loads((out / campaign / "results.json").read_text())
+            found = [a["values"][name]["value"] for a in result["analyses"] if a["measurement"] == measurement and name in a["values"]]
+            self.assertEqual(["%.*f" % (len(figure.partition(".")[2]), v) for v in found], [figure], (campaign, measurement, name))
+            self.assertIn(figure, (SAMPLE / "README.md").read_text())
+        found = oracle.series(out)
+        for axis, figures in (("X", ("-1.80", "-1.53")), ("Y", ("-1.70", "-1.42"))):
+            values = [p[3] for machine in ("LAB-01", "INVENTED-01") for p in found.get((machine, axis), [])]
+            self.assertEqual(tuple("%.2f" % f(values) for f in (min, max)), figures)
 
     def test_the_crashes_of_the_laboratory_are_in_its_results(self):
         _, truth = made(self.folder / "site", "lab", 1)
