@@ -107,6 +107,8 @@ class Site:
 class Score:
     def __init__(self):
         self.steps = {"all": Count()} | {b: Count() for b in zip(BINS, BINS[1:])}
+        self.levels = {b: Count() for b in zip(BINS, BINS[1:])}
+        self.by_cause = {"undeclared": Count(), "declared": Count(), "table": Count()}
         self.main, self.causes, self.sizes = Count(), Count(), Count()
         self.slopes, self.forecasts, self.forecasts_bent = Count(), Count(), Count()
         self.quiet_nights, self.instruments = Count(), Count()
@@ -134,7 +136,9 @@ class Score:
                     continue
                 found, why = look_for(site, c, quantity)
                 self.steps["all"].add(found)
-                self.steps[next(b for b in zip(BINS, BINS[1:]) if b[0] <= step["in_u"] < b[1])].add(found)
+                for bins, size in ((self.steps, step["in_u"]), (self.levels, step["in_u_of_levels"])):
+                    bins[next(b for b in zip(BINS, BINS[1:]) if b[0] <= max(size, LEAST) < b[1])].add(found)
+                self.by_cause["table" if c["compensated"] else "declared" if c["declared"] else "undeclared"].add(found)
                 named.append(found)
                 if not found:
                     self.missed[why] = self.missed.get(why, 0) + 1
@@ -219,7 +223,10 @@ class Score:
 
     def document(self):
         bins = {"%g to %g u" % b: c.document() for b, c in self.steps.items() if b != "all"}
-        return {"sites": self.sites, "steps": self.steps["all"].document(), "steps_by_size": bins, "happenings": self.main.document(),
+        levels = {"%g to %g u" % b: c.document() for b, c in self.levels.items()}
+        causes = {name: c.document() for name, c in self.by_cause.items()}
+        return {"sites": self.sites, "steps": self.steps["all"].document(), "steps_by_size": bins, "steps_by_u_of_levels": levels,
+                "steps_by_cause": causes, "happenings": self.main.document(),
                 "missed": self.missed, "sizes": self.sizes.document(), "causes": self.causes.document(), "false": self.false,
                 "quiet_nights": self.quiet_nights.document(), "instruments_blamed": self.blamed, "slopes": self.slopes.document(),
                 "forecasts": self.forecasts.document(), "forecasts_of_bent_wear": self.forecasts_bent.document(),
@@ -228,6 +235,8 @@ class Score:
     def text(self):
         out = ["%d sites" % self.sites, "steps of %g u or more, named by machine, axis, quantity and interval: %s" % (LEAST, self.steps["all"])]
         out += ["  %g to %g u: %s" % (*b, c) for b, c in self.steps.items() if b != "all" and c.of]
+        out += ["  %g to %g u of the levels' difference: %s" % (*b, c) for b, c in self.levels.items() if c.of]
+        out += ["  %s: %s" % (name, c) for name, c in self.by_cause.items() if c.of]
         out += ["  missed, %s: %d" % item for item in sorted(self.missed.items())]
         out += ["happenings with at least one quantity named: %s" % self.main, "size within 1.96 u: %s" % self.sizes, "cause right: %s" % self.causes]
         out += ["changes told of which nothing is true: %d" % len(self.false)] + ["  " + t for t in self.false[:20]]

@@ -8,7 +8,8 @@ truth.json:
              is new in each campaign as the generator makes it, instrument, conditions), segments between changes (from, to, law none,
              linear or other, slope_per_year), later: (date, value) if nothing more happens
   changes    machine, axis, kinds, after and before (campaigns), declared, compensated, quantities: size, u of the difference of these
-             two campaigns, in_u
+             two campaigns, in_u; in_u_of_levels: by the u of the difference of the means of all campaigns from the change before to the
+             next one, which nobody can beat
   instruments   machine, after, before: another instrument or calibration, size of what it makes of a scale (um/m)
   breaks     machine, axis, campaign: first of another definition (edition, span, targets, compensation)
   vanished, moved   campaign, folder
@@ -79,15 +80,19 @@ class Truth:
                                 "later": [[date_of(d), v[name]] for d, v in zip(days, to_come) if name in v]})
 
     def add_changes(self, machine, axis, taken, grouped):
-        for k, together in grouped:
+        cuts = [-1, *(k for k, _ in grouped), len(taken) - 1]
+        for at_cut, (k, together) in enumerate(grouped, 1):
             (p, m), (q, n) = taken[k], taken[k + 1]
+            before_it, after_it = k - cuts[at_cut - 1], cuts[at_cut + 1] - k
             at = together[-1]["day"]
             now, before = values_of(axis, n, at), values_of(axis, n, at, tuple(together))
             ua, ub = noise_of(machine, axis, m), noise_of(machine, axis, n)
             sizes = {}
             for name, value in now.items():
                 u = math.hypot(ua.get(name, ub[name]), ub[name])
-                sizes[name] = {"size": value - before[name], "u": u, "in_u": abs(value - before[name]) / u}
+                levels = math.sqrt(ua.get(name, ub[name]) ** 2 / before_it + ub[name] ** 2 / after_it)
+                sizes[name] = {"size": value - before[name], "u": u, "in_u": abs(value - before[name]) / u,
+                               "in_u_of_levels": abs(value - before[name]) / levels}
             self.changes.append({"machine": machine.names[0], "axis": axis.name, "kinds": [h["kind"] for h in together],
                                  "after": p.ident, "before": q.ident, "declared": declared(machine, axis, p.day, q.day, self.until),
                                  "compensated": any(h["kind"] == "compensation" for h in together),
