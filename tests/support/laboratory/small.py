@@ -23,12 +23,12 @@ class Stories:
         self.first = self.lab.instrument("Linear comparator", "C-001", 6.0, "2022-10-03")
         self.second = self.lab.instrument("Linear comparator", "C-002", 6.0, "2024-09-02")
 
-    def machine(self, number, model, story, axes, months, **more):
+    def machine(self, number, model, axes, months, **more):
         """Campaigns on the days of `months` (2023-02 and so on)."""
         asset, customer = "LAB-%02d" % number, CUSTOMERS[number % len(CUSTOMERS)]
-        keys = {"interval": 182, "tolerance": {"linear": {"A": 18.0, "B": 8.0, "R": 8.0}, "rotary": {"A": 20.0, "B": 8.0}}, "hall": self.lab.hall,
-                "folder": asset, "serial": "INVENTED-%02d" % number} | more
-        machine = Machine(asset, model, keys.pop("serial"), axes, *customer, story=story, **keys)
+        keys = {"interval": 182, "tolerance": {"linear": {"A": 18.0, "B": 8.0, "R": 8.0}, "rotary": {"A": 20.0, "B": 8.0}},
+                "hall": self.lab.hall, "folder": asset, "serial": "INVENTED-%02d" % number} | more
+        machine = Machine(asset, model, keys.pop("serial"), axes, *customer, story=["Its story stands in README.md of this site."], **keys)
         for a in axes:
             a.installed = self.lab.start
         noise = Noise("%s/%s days" % (self.lab.seed, asset))
@@ -51,19 +51,19 @@ def small(seed):
 
 
 def nothing(told, number, noise):
-    told.machine(number, "VM 1", ["Nothing happens to this machine. Nothing may be reported of it."],
-                 [axis(noise, "X", 1000.0), axis(noise, "Y", 600.0)], HALF_YEARS)
+    """Nothing happens to this machine. Nothing may be reported of it."""
+    told.machine(number, "VM 1", [axis(noise, "X", 1000.0), axis(noise, "Y", 600.0)], HALF_YEARS)
 
 
 def reversal(told, number, noise):
-    m = told.machine(number, "VM 2", ["Between July 2025 and January 2026 the reversal of X grew by 4.3 um. Nobody wrote down why."],
-                     [axis(noise, "X", 1000.0, b=-3.2), axis(noise, "Y", 600.0)], HALF_YEARS)
+    """Between July 2025 and January 2026 the reversal of X grew by 4.3 um. Nobody wrote down why."""
+    m = told.machine(number, "VM 2", [axis(noise, "X", 1000.0, b=-3.2), axis(noise, "Y", 600.0)], HALF_YEARS)
     m.axis("X").happens(day_of("2025-10-14"), "crash", add={"b": -4.3})
 
 
 def nut(told, number, noise):
-    m = told.machine(number, "HM 3", ["The nut of Z wears. A crash in March 2024 (written down), a new nut and screw in May 2025: wear begins again."],
-                     [axis(noise, "Z", 800.0)], QUARTERS)
+    """The nut of Z wears. A crash in March 2024 (written down), a new nut and screw in May 2025: wear begins again."""
+    m = told.machine(number, "HM 3", [axis(noise, "Z", 800.0)], QUARTERS)
     z = m.axis("Z")
     z.wear = {"b": linear(-0.8), "s": linear(0.1)}
     z.happens(day_of("2024-03-12"), "crash", add={"b": -2.4})
@@ -73,15 +73,15 @@ def nut(told, number, noise):
 
 
 def wear(told, number, noise):
-    m = told.machine(number, "LT 4", ["The reversal of X wears faster and faster: it will leave its tolerance (B 8 um) soon. It scatters more, too."],
-                     [axis(noise, "X", 300.0, b=-1.5), axis(noise, "Z", 900.0)], QUARTERS, structure="other")
+    """The reversal of X wears faster and faster: it will leave its tolerance (B 8 um) soon. It scatters more, too."""
+    m = told.machine(number, "LT 4", [axis(noise, "X", 300.0, b=-1.5), axis(noise, "Z", 900.0)], QUARTERS, structure="other")
     m.axis("X").wear = {"b": accelerating(-0.35, -0.3), "s": linear(0.12)}
 
 
 def table(told, number, noise):
-    m = told.machine(number, "VM 5", ["In January 2025 a table was loaded: measured as found and as left on one day. The control said off before, on since.",
-                                      "What the table promised, the second measurement shows."],
-                     [axis(noise, "X", 1000.0, scale=6.0, b=-4.5, waves=(2.5, -1.5, 1.0))], HALF_YEARS, control="siemens-840d",
+    """In January 2025 a table was loaded: measured as found and as left on one day. The control said off before, on
+    since. What the table promised, the second measurement shows."""
+    m = told.machine(number, "VM 5", [axis(noise, "X", 1000.0, scale=6.0, b=-4.5, waves=(2.5, -1.5, 1.0))], HALF_YEARS, control="siemens-840d",
                      tolerance={"linear": {"A": 30.0, "B": 8.0, "R": 8.0}})
     m.plans[4].adjust = ("X",)
     m.plans[4].compensation = "off"
@@ -91,8 +91,9 @@ def table(told, number, noise):
 
 
 def comparator(told, number, noise):
-    m = told.machine(number, "HM 6", ["Measured with comparator C-001, since 2025 with C-002. The scale jumps by what their calibrations allow: not the machine."],
-                     [axis(noise, "X", 800.0)], HALF_YEARS)
+    """Measured with comparator C-001, since 2025 with C-002. The scale jumps by what their calibrations allow: not the
+    machine."""
+    m = told.machine(number, "HM 6", [axis(noise, "X", 800.0)], HALF_YEARS)
     for k, p in enumerate(m.plans):
         p.instrument = told.first if k < 4 else told.second
     # One end of its U each: what is drawn might be too small to tell a story.
@@ -101,15 +102,16 @@ def comparator(told, number, noise):
 
 
 def season(told, number, noise):
-    told.machine(number, "VM 7", ["The hall is warm in summer and cold in winter, and the machine expands by 0.4 um/(m K) less than instruments take it to:",
-                                  "the scale follows the season, within its stated uncertainty. The runs of a day hang together, too."],
-                 [axis(noise, "X", 1500.0, expansion=11.1, own=0.15, shared=0.3, rho=0.5, warm_curve=0.02)], QUARTERS).hall = Hall(told.lab.seed, swing=3.5)
+    """The hall is warm in summer and cold in winter, and the machine expands by 0.4 um/(m K) less than instruments take
+    it to: the scale follows the season, within its stated uncertainty. The runs of a day hang together, too."""
+    x = axis(noise, "X", 1500.0, expansion=11.1, own=0.15, shared=0.3, rho=0.5, warm_curve=0.02)
+    told.machine(number, "VM 7", [x], QUARTERS, hall=Hall(told.lab.seed, swing=3.5))
 
 
 def bent(told, number, noise):
-    m = told.machine(number, "HM 8", ["A collision in April 2025 bent a stretch of the screw: the curve of Y changed around 300 mm, the reversal did not.",
-                                      "From 2026 the customer wants B within 5 um, not 8: what conformed then keeps its verdict."],
-                     [axis(noise, "Y", 700.0, b=-1.2), axis(noise, "Z", 500.0)], HALF_YEARS)
+    """A collision in April 2025 bent a stretch of the screw: the curve of Y changed around 300 mm, the reversal did
+    not. From 2026 the customer wants B within 5 um, not 8: what conformed then keeps its verdict."""
+    m = told.machine(number, "HM 8", [axis(noise, "Y", 700.0, b=-1.2), axis(noise, "Z", 500.0)], HALF_YEARS)
     m.axis("Y").happens(day_of("2025-04-22"), "crash", bump={"size": 6.0, "at": 300.0, "width": 90.0})
     m.event(day_of("2025-04-22"), "crash", "Head hit the vice", "Y", entered=day_of("2025-08-01"))
     for p in m.plans[6:]:
@@ -117,9 +119,9 @@ def bent(told, number, noise):
 
 
 def edition(told, number, noise):
-    m = told.machine(number, "VM 9", ["By ISO 230-2:1988 (k = 3) until 2024, by 2014 since; three targets more and two runs fewer since July 2025;",
-                                      "80 % of the travel since 2026. A, R and E jump each time, the machine does not."],
-                     [axis(noise, "X", 1000.0)], HALF_YEARS)
+    """By ISO 230-2:1988 (k = 3) until 2024, by 2014 since; three targets more and two runs fewer since July 2025; 80 %
+    of the travel since 2026. A, R and E jump each time, the machine does not."""
+    m = told.machine(number, "VM 9", [axis(noise, "X", 1000.0)], HALF_YEARS)
     for k, p in enumerate(m.plans):
         p.edition = 1988 if k < 3 else None
         p.targets, p.runs = (14, 3) if k >= 5 else (None, None)
@@ -127,31 +129,33 @@ def edition(told, number, noise):
 
 
 def gantry(told, number, noise):
-    m = told.machine(number, "PG 10", ["A gantry: X1 and X2 are the two sides of X, and only the nut of X2 wears. In May 2025 a beam hit the guide:",
-                                       "X bends across, along Z, by some um more. Nobody wrote it down."],
-                     [axis(noise, "X1", 2000.0), axis(noise, "X2", 2000.0, b=-2.0), axis(noise, "Y", 1600.0),
-                      axis(noise, "X-in-Z", 2000.0, lateral="Z", pitch=None, b=-0.3, cyclic=0.0)], HALF_YEARS[1:], structure="gantry")
+    """A gantry: X1 and X2 are the two sides of X, and only the nut of X2 wears. In May 2025 a beam hit the guide: X
+    bends across, along Z, by some um more. Nobody wrote it down."""
+    axes = [axis(noise, "X1", 2000.0), axis(noise, "X2", 2000.0, b=-2.0), axis(noise, "Y", 1600.0),
+            axis(noise, "X-in-Z", 2000.0, lateral="Z", pitch=None, b=-0.3, cyclic=0.0)]
+    m = told.machine(number, "PG 10", axes, HALF_YEARS[1:], structure="gantry")
     m.axis("X2").wear = {"b": linear(-0.9)}
     m.axis("X-in-Z").happens(day_of("2025-05-20"), "crash", bump={"size": 5.0, "at": 1000.0, "width": 500.0})
 
 
 def five_axis(told, number, noise):
+    """A rotary table: a collision in September 2024 moved its centre by 15 um and left it eccentric. Wanted every six
+    months, last measured in July 2025: long overdue."""
     turn = Axis("C", (0.0, 330.0), 12, rotary=True, teeth=None, b=-2.0, s=0.4, waves=(0.0, 0.0, 0.0), turn=(3.0, 1.0), wound=0.2, cyclic=0.0)
     centre = Centre("C", (412.3, 305.1, -130.0))
-    m = told.machine(number, "UM 11", ["A rotary table: a collision in September 2024 moved its centre by 15 um and left it eccentric. Wanted every six months,",
-                                       "last measured in July 2025: long overdue."],
-                     [turn], HALF_YEARS[:6], structure="bridge", centre=centre)
+    m = told.machine(number, "UM 11", [turn], HALF_YEARS[:6], structure="bridge", centre=centre)
     day = day_of("2024-09-10")
     turn.happens(day, "crash", add={"turn": (4.0, -3.0)})
     centre.happens(day, "crash", (15.0, -6.0, 0.0))
 
 
 def spelling(told, number, noise):
+    """Without a number of the house: known by its serial, which once was typed with the letter O. One campaign was sent
+    a year late, one was never made. In February 2026 the machine was moved to another hall: squareness changed by 25
+    urad. Its folder was moved, too."""
     square = Squareness(8.0)
-    m = told.machine(number, "VM 12", ["Without a number of the house: known by its serial, which once was typed with the letter O. One campaign was sent a year",
-                                       "late, one was never made. In February 2026 the machine was moved to another hall: squareness changed by 25 urad. Its",
-                                       "folder was moved, too."],
-                     [axis(noise, "X", 600.0, cyclic=0.0), axis(noise, "Y", 500.0, cyclic=0.0)], HALF_YEARS[:3] + HALF_YEARS[4:], serial="INV-0012", squareness=square)
+    axes = [axis(noise, "X", 600.0, cyclic=0.0), axis(noise, "Y", 500.0, cyclic=0.0)]
+    m = told.machine(number, "VM 12", axes, HALF_YEARS[:3] + HALF_YEARS[4:], serial="INV-0012", squareness=square)
     m.asset, m.folder = None, "INV-0012"
     for p in m.plans:
         p.ident = p.ident.replace("lab-12", "inv-0012")

@@ -76,7 +76,7 @@ class Truth:
             if self.only and name not in self.only:
                 continue
             self.series.append({"machine": machine.names[0], "axis": axis.name, "quantity": name, "points": of,
-                                "segments": segments(axis, taken, cuts, name),
+                                "segments": segments(axis, taken, cuts, name, {p["campaign"] for p in of}),
                                 "later": [[date_of(d), v[name]] for d, v in zip(days, to_come) if name in v]})
 
     def add_changes(self, machine, axis, taken, grouped):
@@ -136,11 +136,13 @@ def noise_of(machine, axis, m):
     return life.noise_of(axis, life.quantities_of(axis, m.places), m.places, m.runs, m.day)
 
 
-def segments(axis, taken, cuts, name):
+def segments(axis, taken, cuts, name, measured):
+    """`measured`: campaigns whose targets tell this quantity."""
     out, first = [], 0
     for k in range(len(taken)):
         if k in cuts or k == len(taken) - 1:
-            out.append(segment(axis, taken[first:k + 1], name))
+            stretch = [t for t in taken[first:k + 1] if t[0].ident in measured]
+            out.append(stretch and segment(axis, stretch, name))
             first = k + 1
     return [s for s in out if s]
 
