@@ -128,6 +128,17 @@ class Laboratories(Temporary):
             self.assertAlmostEqual(c["quantities"]["B_mean"]["size"], -4.0, delta=0.1)
         self.assertTrue(any(c["declared"] for c in crashes) and not all(c["declared"] for c in crashes))
 
+    def test_a_truth_names_only_campaigns_that_measured_the_quantity(self):
+        for seed in (3, 137):
+            _, truth = made(self.folder / "site", "mixed", seed)
+            for s in truth["series"]:
+                ids = {p["campaign"] for p in s["points"]}
+                for g in s["segments"]:
+                    self.assertLessEqual({g["from"], g["to"]}, ids, (seed, s["machine"], s["axis"], s["quantity"]))
+            everything = {p["campaign"] for s in truth["series"] for p in s["points"]}
+            for c in truth["changes"] + truth["instruments"]:
+                self.assertLessEqual({c["after"], c["before"]}, everything)
+
     def test_nothing_happens_where_all_is_quiet(self):
         _, truth = made(self.folder / "site", "quiet", 1)
         self.assertEqual(truth["changes"], [])
