@@ -59,7 +59,7 @@ foreach(readme IN LISTS readmes)
 endforeach()
 # Named one by one: a key or a register that somebody made here to try things out stays here.
 set(samples ${PROJECT_SOURCE_DIR}/samples)
-install(DIRECTORY ${samples}/site ${samples}/simulate ${samples}/tutorial DESTINATION ${papers}/examples)
+install(DIRECTORY ${samples}/site ${samples}/laboratory ${samples}/simulate ${samples}/tutorial DESTINATION ${papers}/examples)
 install(DIRECTORY ${samples}/certificates/adjusted DESTINATION ${papers}/examples/certificates)
 install(FILES ${samples}/certificates/site.toml DESTINATION ${papers}/examples/certificates)
 install(PROGRAMS ${samples}/certificates/make-key.sh DESTINATION ${papers}/examples/certificates)
