@@ -9,6 +9,7 @@ ROOT = pathlib.Path(sys.argv[1])
 MAY = {
     "engine/sdk": {"sdk"},
     "engine/math": {"sdk", "math"},
+    "engine/history": {"sdk", "history"},
     "engine/model": {"sdk", "math", "model"},
     "engine/pdf": {"sdk", "pdf"},
     "engine/sign": {"sdk", "pdf", "sign"},

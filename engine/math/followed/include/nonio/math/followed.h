@@ -31,7 +31,8 @@
 ///
 ///     u^2 = sum_dir v_dir sum J_k^2 + sum_runs (v_s (G+ + G-)^2 + v_d (G+ - G-)^2 + slopes alike)
 ///
-/// G: sum of J_k over a pass, of J_k (x_k - middle) for slopes. v_s, v_d: variance of the offsets
+/// Where readings of neighbouring targets are alike (their correlation r is estimated), r^|k - l|
+/// joins the readings of a pass in the first sum. G: sum of J_k over a pass, of J_k (x_k - middle) for slopes. v_s, v_d: variance of the offsets
 /// over the runs less what single readings make of it; not below 0. Beside it in the scale, from
 /// the manifest: misalignment, temperature reading, and expansion where the temperature is not in
 /// the file (docs/formulas.md). What campaigns share is apart: an error of the instrument's length,
