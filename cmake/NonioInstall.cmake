@@ -3,7 +3,8 @@
 include(CMakePackageConfigHelpers)
 
 # In a folder of their own: no program but nonio and its plugins is to link with them, and they keep no ABI between versions.
-install(TARGETS nonio_sdk nonio_math EXPORT nonio LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_COMPONENT dev)
+install(TARGETS nonio_sdk EXPORT nonio ARCHIVE DESTINATION ${NONIO_LIBRARY_SUBDIR} COMPONENT dev)
+install(TARGETS nonio_math EXPORT nonio LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_COMPONENT dev)
 install(TARGETS nonio_model nonio_sign nonio_host nonio_reports LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_SKIP)
 foreach(part sdk math)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/${part}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)

@@ -31,6 +31,7 @@ std::vector<Listed> all_of(const host::Plugins& plugins) {
   for (const auto& p : plugins.effects()) all.push_back({"effect", &p.info});
   for (const auto& p : plugins.analyses()) all.push_back({"analysis", &p.info});
   for (const auto& p : plugins.outputs()) all.push_back({"output", &p.info});
+  for (const auto& p : plugins.controllers()) all.push_back({"controller", &p.info});
   return all;
 }
 

@@ -46,7 +46,7 @@ bool runs_no_gcode(const std::string& control) {
 
 /// What options and the record of the machine say of its axes.
 Settings said_of_axes(const OpenCampaign& open) {
-  for (const Output& o : open.place->plugins.outputs())
+  for (const Controller& o : open.place->plugins.controllers())
     if (o.info.name == open.campaign().machine.control)
       if (auto settled = host::settle_table_options(
               o.info, open.place->context.site.options, *open.read.manifest,

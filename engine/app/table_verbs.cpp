@@ -93,8 +93,7 @@ int diff_with_campaign(const std::string& backup, const std::string& folder, con
       load(open.place->plugins, backup, control, open.campaign(), settings, options);
   if (!present) return complain(verb, text_of(present.error()));
   auto next =
-      host::tables_of_campaign(open.read, *present->control, *options(present->control->info),
-                               open.place->context.templates);
+      host::tables_of_campaign(open.read, *present->control, *options(present->control->info));
   if (!next) return complain(verb, text_of(next.error()), exit_failed);
   tell_findings(verb, open, next->findings);
   if (next->tables.empty()) return complain(verb, "the campaign has no table", exit_failed);
@@ -250,8 +249,7 @@ int apply(const TableWish& w, const Common& common) {
   }
   if (auto stated = settle_backlash(w, *table, settled); !stated)
     return complain(verb, stated.error().message);
-  auto renewed = host::renew(open.read, *table->control, settled, open.place->context.templates,
-                             table->tables);
+  auto renewed = host::renew(open.read, *table->control, settled, table->tables);
   if (!renewed) return complain(verb, text_of(renewed.error()), exit_failed);
   a = {host::differences(table->tables, renewed->tables),
        std::move(renewed->forecast),

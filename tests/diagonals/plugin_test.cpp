@@ -26,6 +26,7 @@ const Analysis& the_analysis() {
     void add(Effect) override {}
     void add(Analysis a) override { analysis = std::move(a); }
     void add(Output) override {}
+    void add(Controller) override {}
   };
   static const Taker taker = [] {
     Taker t;

@@ -8,7 +8,6 @@ NONIO_PLUGIN(registry) {
                         [](const Campaign&, const Measurement&) { return true; },
                         [](const AnalysisInput&) { return Expected<Evaluation>(); }});
   registry.add(Output{{"incomplete", "1", "Has no `applies`", {}},
-                      Output::Stage::document,
                       nullptr,
                       [](const OutputInput&) { return Expected<OutputResult>(); }});
 }

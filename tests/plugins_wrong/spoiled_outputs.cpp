@@ -187,7 +187,7 @@ void spoil_lines(Artifact& file, bool rotary) {
   file.bytes = std::move(out);
 }
 
-[[maybe_unused]] Expected<OutputResult> write_table(const OutputInput& in) {
+[[maybe_unused]] Expected<OutputResult> write_table(const ControllerInput& in) {
   if (has("refuses-all")) return fail("expected something else");
   if (has("throws")) throw std::runtime_error("wrong on purpose");
   if (has("writes-nothing")) return OutputResult{};
@@ -209,9 +209,8 @@ NONIO_PLUGIN(registry) {
   spoiled::at_registration();
   if (has("registers-nothing")) return;
 #ifdef SPOILED_TABLE
-  Output o = controllers::controller(spoiled::info("spoiled"), declared(), write_table, parse);
+  Controller o = controllers::controller(spoiled::info("spoiled"), declared(), write_table, parse);
   if (has("without-parse")) o.parse = nullptr;
-  if (has("of-the-wrong-stage")) o.stage = Output::Stage::document;
 #else
   Output o;
   o.info = spoiled::info("spoiled");

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "certificate_reader.h"
-#include "guarded.h"
+#include "checked_read.h"
 #include "names.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/files.h"
@@ -17,7 +17,6 @@
 #include "plausibility.h"
 #include "targets.h"
 #include "unknown_format.h"
-#include "unsound.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -171,18 +170,15 @@ class CampaignReader {
     if (!options) return {};
     const std::string who = "reader " + info.name;
     stage_(who + " (measurement " + m.id + ")");
-    auto observations = guarded(who, [&] {
-      return (*reader)->read({bytes, campaign(), m, *options, [&](std::size_t offset) {
-                                if (!*converted) file->release(offset);
-                              }});
-    });
+    auto observations =
+        checked_read(**reader, {bytes, campaign(), m, *options, [&](std::size_t offset) {
+                                  if (!*converted) file->release(offset);
+                                }});
     if (!observations) {
       Error error = observations.error();
       if (error.message.starts_with(who + ": ")) error.message.erase(0, who.size() + 2);
       return fail(std::move(error));
     }
-    if (const std::string why = unsound(*observations); !why.empty())
-      return fail(who + " gave " + why);
     if (auto possible = possible_air(*observations, m.file); !possible) return possible;
     if (auto excluded = exclude(m, *observations); !excluded) return excluded;
     auto ends = implausible_end(bytes, m.file);
@@ -233,7 +229,7 @@ class CampaignReader {
       if (!reads) return fail(reads.error());
       any = any || *reads;
       const auto recognised =
-          guarded_answer(who, [&] { return *reads && r.recognises(bytes.substr(0, 4096)); });
+          guarded_answer(who, [&] { return *reads && r.recognises(head_of(bytes)); });
       if (!recognised) return fail(recognised.error());
       if (*recognised) return &r;
     }
@@ -333,27 +329,7 @@ class CampaignReader {
   ReadCampaign out_;
 };
 
-template <class Column>
-void keep(Column& column, const std::vector<char>& kept) {
-  if (column.empty()) return;
-  std::size_t to = 0;
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    if (kept[i] != 0) column[to++] = column[i];
-  column.resize(to);
-}
-
 }  // namespace
-
-void keep_rows(Observations& o, const std::vector<char>& kept) {
-  for (auto& axis : o.axes) {
-    keep(axis.position, kept);
-    keep(axis.approach, kept);
-  }
-  for (auto* column : {&o.deviation, &o.u, &o.time, &o.material, &o.air, &o.pressure, &o.humidity})
-    keep(*column, kept);
-  for (auto* column : {&o.run, &o.line, &o.source_line}) keep(*column, kept);
-  keep(o.sense, kept);
-}
 
 ReadCampaign read_campaign(const fs::path& folder, const Context& context, const Stage& stage) {
   return CampaignReader(folder, context, stage).read();

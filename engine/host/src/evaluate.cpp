@@ -14,6 +14,7 @@
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
 #include "nonio/host/table_check.h"
+#include "nonio/sdk/check.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/statement.h"
 #include "plausibility.h"
@@ -84,23 +85,20 @@ class CampaignRun {
     return std::nullopt;
   }
 
-  std::optional<Settings> settle(const Output& output) {
-    if (output.stage != Output::Stage::table) return settle(output.info);
-    auto options = settle_table_options(output.info, context_.site.options, *read_.manifest,
+  std::optional<Settings> settle_controller(const Info& controller) {
+    auto options = settle_table_options(controller, context_.site.options, *read_.manifest,
                                         read_.machine ? &*read_.machine : nullptr);
     if (options) return std::move(*options);
     for (Error& e : options.error()) report(std::move(e));
     return std::nullopt;
   }
 
-  /// The plugins that are asked for, or all; a name that is not there is an error.
+  using Names = std::optional<std::vector<std::string>>;
+
+  /// The plugins that are asked for, in that order; without names all.
   template <class Plugin>
-  std::vector<const Plugin*> chosen(const std::vector<Plugin>& all, const char* kind,
-                                    const char* key,
-                                    const std::optional<std::vector<std::string>>& campaign,
-                                    const std::optional<std::vector<std::string>>& site) {
+  std::vector<const Plugin*> chosen(const std::vector<Plugin>& all, const Names& names) const {
     std::vector<const Plugin*> out;
-    const auto& names = campaign ? campaign : site;
     if (!names) {
       for (const Plugin& p : all)
         if (!p.info.on_request || read_.manifest->options.contains(p.info.name) ||
@@ -108,21 +106,35 @@ class CampaignRun {
           out.push_back(&p);
       return out;
     }
-    for (const std::string& name : *names) {
-      if (name == model_fit_name) continue;
-      const auto found = std::find_if(all.begin(), all.end(),
-                                      [&](const Plugin& p) { return p.info.name == name; });
-      if (found == all.end())
-        report(at(key, context_.plugins->absence(kind, name)));
-      else if (std::find(out.begin(), out.end(), &*found) == out.end())
-        out.push_back(&*found);
-    }
+    for (const std::string& name : *names)
+      for (const Plugin& p : all)
+        if (p.info.name == name && std::find(out.begin(), out.end(), &p) == out.end())
+          out.push_back(&p);
     return out;
   }
 
+  /// A name that no plugin of the kind has is an error.
+  template <class Has>
+  void report_absent(const char* kind, const char* key, const Names& names, const Has& has) {
+    if (names)
+      for (const std::string& name : *names)
+        if (name != model_fit_name && !has(name))
+          report(at(key, context_.plugins->absence(kind, name)));
+  }
+
+  template <class Plugin>
+  static bool has_name(const std::vector<Plugin>& all, const std::string& name) {
+    return std::any_of(all.begin(), all.end(),
+                       [&](const Plugin& p) { return p.info.name == name; });
+  }
+
   void analyse() {
-    const auto analyses = chosen(context_.plugins->analyses(), "analysis", "run.analyses",
-                                 read_.manifest->run.analyses, context_.site.run.analyses);
+    const Names& names =
+        read_.manifest->run.analyses ? read_.manifest->run.analyses : context_.site.run.analyses;
+    const auto& all = context_.plugins->analyses();
+    const auto analyses = chosen(all, names);
+    report_absent("analysis", "run.analyses", names,
+                  [&](const std::string& name) { return has_name(all, name); });
     for (Error& e : ownerless_options(read_.manifest->options, *context_.plugins))
       report(std::move(e));
     for (std::size_t i = 0; i < read_.observations.size(); ++i) {
@@ -230,30 +242,6 @@ class CampaignRun {
     }
   }
 
-  static Expected<void> check(const Evaluation& e) {
-    for (const Value& v : e.values)
-      if (!std::isfinite(v.value) || (v.U && !std::isfinite(*v.U)) || !std::isfinite(v.k) ||
-          (v.repeatability && !std::isfinite(*v.repeatability)))
-        return fail("a value " + v.name + " that is not a number");
-    for (const Finding& f : e.findings)
-      for (const Number& n : f.evidence)
-        if (!std::isfinite(n.value))
-          return fail("evidence " + n.name + " of finding " + f.id + " that is not a number");
-    for (const PointTable* table : {&e.points, &e.rows})
-      for (const PointTable::Column& c : table->columns)
-        if (c.values.size() != table->columns.front().values.size())
-          return fail("a table with columns of different lengths");
-    for (const Series& s : e.series)
-      if (s.value.size() != s.position.size() || (!s.U.empty() && s.U.size() != s.value.size()) ||
-          (!s.repeatability.empty() && s.repeatability.size() != s.value.size()))
-        return fail("a series " + s.name + " with columns of different lengths");
-    if (e.budget)
-      for (const auto& r : e.budget->results)
-        if (r.u.size() != e.budget->contributions.size())
-          return fail("a budget of " + r.name + " with other contributions than it lists");
-    return {};
-  }
-
   /// What looks like a mistake in the files, beside what was evaluated from them.
   void doubt() {
     if (failed()) return;
@@ -351,37 +339,54 @@ class CampaignRun {
         f.advice = finding_text(context_.templates, "en", f, "advice");
   }
 
-  /// An output that is to be written. Without `asked` a table that the control cannot have is worth
-  /// a finding, not the campaign: it was tried only because nobody said which control the machine
-  /// has.
+  /// What is to be written: an output or a controller. Without `asked` a table that the control
+  /// cannot have is worth a finding, not the campaign: it was tried only because nobody said which
+  /// control the machine has.
   struct Wanted {
-    const Output& output;
-    Settings options;
-    bool asked;
+    const Output* output = nullptr;
+    const Controller* controller = nullptr;
+    Settings options{};
+    bool asked = true;
+
+    const Info& info() const { return output != nullptr ? output->info : controller->info; }
+    const Output::Certificate* certificate() const {
+      return output != nullptr && output->certificate ? &*output->certificate : nullptr;
+    }
+    std::string who() const {
+      return (output != nullptr ? "output " : "controller ") + info().name;
+    }
   };
 
+  /// Tables first: documents print what they predict.
   std::vector<Wanted> wanted_outputs() {
-    std::vector<Wanted> wanted;
-    auto outputs = chosen(context_.plugins->outputs(), "output", "run.outputs",
-                          read_.manifest->run.outputs, context_.site.run.outputs);
-    const bool all = !read_.manifest->run.outputs && !context_.site.run.outputs;
+    const Names& names =
+        read_.manifest->run.outputs ? read_.manifest->run.outputs : context_.site.run.outputs;
+    const Plugins& plugins = *context_.plugins;
+    report_absent("output", "run.outputs", names, [&](const std::string& name) {
+      return has_name(plugins.outputs(), name) || has_name(plugins.controllers(), name);
+    });
     check_control();
+    std::vector<Wanted> wanted;
     if (failed()) return wanted;
-    std::stable_partition(outputs.begin(), outputs.end(),
-                          [](const Output* o) { return o->stage == Output::Stage::table; });
-    for (const Output* output : outputs) {
+    for (const Controller* c : chosen(plugins.controllers(), names)) {
       const std::string& control = out_.campaign.machine.control;
-      if (all && output->stage == Output::Stage::table && !control.empty() &&
-          control != output->info.name)
-        continue;
-      if (output->stage == Output::Stage::table && !control_of_record(output->info.name)) continue;
-      if (!applies("output", output->info.name, [&] { return output->applies(out_.campaign); }))
-        continue;
-      const bool asked =
-          !all || output->stage != Output::Stage::table || control == output->info.name;
-      if (auto options = settle(*output)) wanted.push_back({*output, std::move(*options), asked});
+      if (!names && !control.empty() && control != c->info.name) continue;
+      if (!control_of_record(c->info.name) || !applies_to_campaign("controller", *c)) continue;
+      if (auto options = settle_controller(c->info))
+        wanted.push_back({.controller = c,
+                          .options = std::move(*options),
+                          .asked = names.has_value() || control == c->info.name});
     }
+    for (const Output* o : chosen(plugins.outputs(), names))
+      if (applies_to_campaign("output", *o))
+        if (auto options = settle(o->info))
+          wanted.push_back({.output = o, .options = std::move(*options)});
     return wanted;
+  }
+
+  template <class Plugin>
+  bool applies_to_campaign(const char* kind, const Plugin& plugin) {
+    return applies(kind, plugin.info.name, [&] { return plugin.applies(out_.campaign); });
   }
 
   /// A table of another control than the machine's: the manifest that asks for it is wrong, and of
@@ -402,8 +407,7 @@ class CampaignRun {
     word(out_.results.notes);
     bool numbered = false;
     for (const Wanted& w : wanted) {
-      if (w.output.stage == Output::Stage::document && !std::exchange(numbered, true))
-        draw_number(wanted);
+      if (w.output != nullptr && !std::exchange(numbered, true)) draw_number(wanted);
       write_output(w);
     }
   }
@@ -412,10 +416,9 @@ class CampaignRun {
   const Wanted* numbered_output(const std::vector<Wanted>& wanted) {
     const Wanted* numbered = nullptr;
     for (const Wanted& w : wanted) {
-      if (w.output.lacks == nullptr) continue;
+      if (w.certificate() == nullptr) continue;
       if (numbered != nullptr)
-        report(at("run.outputs", "both " + numbered->output.info.name + " and " +
-                                     w.output.info.name +
+        report(at("run.outputs", "both " + numbered->info().name + " and " + w.info().name +
                                      " are issued under a number; wanted one of them"));
       numbered = &w;
     }
@@ -426,11 +429,11 @@ class CampaignRun {
   void draw_number(const std::vector<Wanted>& wanted) {
     const Wanted* numbered = numbered_output(wanted);
     if (numbered == nullptr) return;
-    const Info& info = numbered->output.info;
-    const std::string who = "output " + info.name;
+    const Info& info = numbered->info();
+    const std::string who = numbered->who();
     stage_(who);
     auto missing = guarded(who, [&]() -> Expected<std::vector<std::string>> {
-      return numbered->output.lacks(input(*numbered));
+      return numbered->certificate()->missing_requirements(input(*numbered));
     });
     if (!missing) return report(missing.error());
     OutputResult incomplete;
@@ -466,30 +469,27 @@ class CampaignRun {
   }
 
   OutputInput input(const Wanted& w) const {
-    const bool of_model = w.output.stage == Output::Stage::table && for_tables_ && *for_tables_;
-    return {out_.campaign,
-            of_model ? **for_tables_ : read_.observations,
-            out_.results,
-            w.options,
-            context_.templates,
-            of_model ? &read_.observations : nullptr,
-            out_.certificate ? &out_.certificate->issue : nullptr};
+    return {out_.campaign,      read_.observations,
+            out_.results,       w.options,
+            context_.templates, out_.certificate ? &out_.certificate->issue : nullptr};
   }
 
   /// On top of what was on while the campaign was measured: the new table takes its place.
   Expected<OutputResult> write_table(const Wanted& w) {
-    auto on = what_was_on(read_, w.output, w.options);
+    const Controller& controller = *w.controller;
+    auto on = what_was_on(read_, controller, w.options);
     if (!on) {
       if (w.asked) on.error().key = "machine.axes." + read_.tables_on.begin()->first + ".table_on";
       return fail(on.error());
     }
-    if (!*on) return w.output.write(input(w));
     const bool of_model = for_tables_ && *for_tables_;
+    if (!*on)
+      return controller.write({out_.campaign, of_model ? **for_tables_ : read_.observations,
+                               out_.results, w.options, of_model ? &read_.observations : nullptr});
     const std::vector<Observations> of_curves =
         of_model ? without_tables(out_.campaign, **for_tables_, (*on)->tables) : (*on)->readings;
-    auto written =
-        w.output.write({out_.campaign, of_curves, out_.results, (*on)->options, context_.templates,
-                        of_model ? &(*on)->readings : nullptr, nullptr});
+    auto written = controller.write({out_.campaign, of_curves, out_.results, (*on)->options,
+                                     of_model ? &(*on)->readings : nullptr});
     if (written) compare_with_measured(read_, *written);
     return written;
   }
@@ -497,48 +497,47 @@ class CampaignRun {
   void check_control() {
     const std::string& control = out_.campaign.machine.control;
     std::vector<std::string> tables;
-    for (const Output& o : context_.plugins->outputs())
-      if (o.stage == Output::Stage::table) tables.push_back(o.info.name);
+    for (const Controller& c : context_.plugins->controllers()) tables.push_back(c.info.name);
     if (control.empty() || std::find(tables.begin(), tables.end(), control) != tables.end()) return;
-    report(at("machine.control", "no output writes tables for \"" + control + "\"" +
+    report(at("machine.control", "no controller writes tables for \"" + control + "\"" +
                                      suggestion(control, tables) + "; there are " + list(tables)));
   }
 
-  static OutputResult without_model(const Output& output, const std::string& why) {
+  static OutputResult without_model(const Info& controller, const std::string& why) {
     OutputResult nothing;
     nothing.findings.push_back({.id = "table.no-model",
                                 .attention = true,
-                                .texts = {{"output", output.info.name}, {"why", why}}});
+                                .texts = {{"output", controller.name}, {"why", why}}});
     return nothing;
   }
 
   /// Nobody has said why the readings are right all the same.
-  OutputResult withheld(const Output& output) const {
+  OutputResult withheld(const Info& controller) const {
     OutputResult nothing;
     nothing.findings.push_back({.id = "table.withheld",
                                 .attention = true,
-                                .texts = {{"output", output.info.name},
+                                .texts = {{"output", controller.name},
                                           {"findings", list({doubts_.begin(), doubts_.end()})}}});
     return nothing;
   }
 
   void write_output(const Wanted& w) {
-    const Output& output = w.output;
-    if (output.lacks != nullptr && !out_.certificate) return;
-    if (output.lacks != nullptr && out_.certificate->issued) return keep_issued(output.info);
-    const std::string who = "output " + output.info.name;
+    const Info& info = w.info();
+    if (w.certificate() != nullptr && !out_.certificate) return;
+    if (w.certificate() != nullptr && out_.certificate->issued) return keep_issued(info);
+    const std::string who = w.who();
     stage_(who);
     auto result = guarded(who, [&]() -> Expected<OutputResult> {
-      if (output.stage == Output::Stage::table && !doubts_.empty()) return withheld(output);
-      if (output.stage == Output::Stage::table && for_tables_ && !*for_tables_)
-        return without_model(output, for_tables_->error().message);
-      auto written = output.stage == Output::Stage::table ? write_table(w) : output.write(input(w));
+      if (w.output != nullptr) return w.output->write(input(w));
+      if (!doubts_.empty()) return withheld(info);
+      if (for_tables_ && !*for_tables_) return without_model(info, for_tables_->error().message);
+      auto written = write_table(w);
       if (!written && !w.asked && written.error().key.empty()) {
         const std::string why = std::move(written.error().message);
         written = OutputResult();
         written->findings.push_back({.id = "table.not-written",
                                      .attention = true,
-                                     .texts = {{"output", output.info.name}, {"why", why}}});
+                                     .texts = {{"output", info.name}, {"why", why}}});
       }
       if (written && !w.asked)  // a control that the machine may not even have
         for (Finding& f : written->findings)
@@ -546,18 +545,18 @@ class CampaignRun {
       return written;
     });
     if (result)
-      if (auto sound = check(*result); !sound)
+      if (auto sound = check_files(*result); !sound)
         result = fail(who + " gave " + sound.error().message);
     if (!result) {
       place_at_output(result.error(), w);
       return report(std::move(result.error()));
     }
-    keep(output.info, std::move(*result));
+    keep(info, std::move(*result));
   }
 
   /// Where the manifest asks for the output, if the error does not know better.
   void place_at_output(Error& error, const Wanted& w) const {
-    const std::string& name = w.output.info.name;
+    const std::string& name = w.info().name;
     locate(error, name);
     const bool blamed = error.line != 0;
     if (error.file.empty()) error.file = manifest_name;
@@ -590,7 +589,7 @@ class CampaignRun {
     out_.results.outputs.push_back({output.name, output.version, std::move(result)});
   }
 
-  Expected<void> check(const OutputResult& result) const {
+  Expected<void> check_files(const OutputResult& result) const {
     std::set<std::string> own;
     for (const Artifact& a : result.artifacts) {
       if (!is_artifact_name(a.name))
@@ -599,14 +598,7 @@ class CampaignRun {
       if (names_.contains(a.name) || !own.insert(a.name).second)
         return fail("the file name \"" + a.name + "\", which is already taken");
     }
-    for (const Prediction& p : result.predictions)
-      if (!std::isfinite(p.before) || !std::isfinite(p.after))
-        return fail("a prediction of " + p.name + " that is not a number");
-    for (const Finding& f : result.findings)
-      for (const Number& n : f.evidence)
-        if (!std::isfinite(n.value))
-          return fail("evidence " + n.name + " of finding " + f.id + " that is not a number");
-    return {};
+    return check(result);
   }
 
   bool needs_attention() const {

@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-#include "guarded.h"
+#include "checked_read.h"
 #include "nonio/host/digest.h"
 #include "nonio/host/evaluate.h"
 #include "nonio/host/files.h"
@@ -353,8 +353,7 @@ class Importer {
     const std::string& bytes = *converted ? **converted : found.bytes;
     const Reader* reader = nullptr;
     for (const Reader& r : plugins_.readers()) {
-      if (!name.empty() ? r.info.name == name
-                        : r.reads(m.kind) && r.recognises(std::string_view(bytes).substr(0, 4096)))
+      if (!name.empty() ? r.info.name == name : r.reads(m.kind) && r.recognises(head_of(bytes)))
         reader = reader == nullptr ? &r : reader;
     }
     if (reader == nullptr)
@@ -364,9 +363,7 @@ class Importer {
     name = reader->info.name;
     const auto options = settle_options(reader->info, site_options(), manifest.options);
     if (!options) return fail(options.error().front());
-    return guarded("reader " + name, [&] {
-      return reader->read({bytes, manifest.campaign, m, *options, {}});
-    });
+    return checked_read(*reader, {bytes, manifest.campaign, m, *options, {}});
   }
 
   /// Of site.toml, if the site is there already.

@@ -9,9 +9,15 @@ namespace nonio::host {
 
 namespace {
 
+const std::string& name_of(const Info& info) { return info.name; }
+template <class Plugin>
+const std::string& name_of(const Plugin& plugin) {
+  return plugin.info.name;
+}
+
 template <class Plugin>
 bool has(const std::vector<Plugin>& all, const std::string& name) {
-  return std::any_of(all.begin(), all.end(), [&](const Plugin& p) { return p.info.name == name; });
+  return std::any_of(all.begin(), all.end(), [&](const Plugin& p) { return name_of(p) == name; });
 }
 
 template <class Plugin>
@@ -34,7 +40,7 @@ std::vector<Error> ownerless_options(const RawOptions& options, const Plugins& p
   std::vector<Error> errors;
   for (const auto& [name, values] : options) {
     if (values.empty() || has(plugins.readers(), name) || has(plugins.analyses(), name) ||
-        has(plugins.outputs(), name))
+        has(plugins.outputs(), name) || has(plugins.controllers(), name))
       continue;
     const RawOption& first = values.begin()->second;
     errors.push_back(
@@ -81,8 +87,10 @@ std::vector<Error> site_mistakes(const Context& context) {
   std::vector<Error> errors;
   check_names(plugins.analyses(), "analysis", "run.analyses", context.site.run.analyses, context,
               errors);
-  check_names(plugins.outputs(), "output", "run.outputs", context.site.run.outputs, context,
-              errors);
+  std::vector<Info> outputs;
+  for (const Output& o : plugins.outputs()) outputs.push_back(o.info);
+  for (const Controller& c : plugins.controllers()) outputs.push_back(c.info);
+  check_names(outputs, "output", "run.outputs", context.site.run.outputs, context, errors);
   for (Error& e : ownerless_options(context.site.options, plugins)) errors.push_back(std::move(e));
   const auto check_options = [&](const auto& all) {
     for (const auto& plugin : all)
@@ -92,6 +100,7 @@ std::vector<Error> site_mistakes(const Context& context) {
   check_options(plugins.readers());
   check_options(plugins.analyses());
   check_options(plugins.outputs());
+  check_options(plugins.controllers());
   return errors;
 }
 

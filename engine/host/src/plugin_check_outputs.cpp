@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of outputs of every kind; tables have more of them (plugin_check_controllers.cpp).
+// Laws of all that writes files, outputs and controllers; tables have more of them
+// (plugin_check_controllers.cpp).
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -18,13 +19,22 @@ const Issue issue{"2026-0001", "2026-11-21", "", "", {}, std::string(64, '0')};
 
 Expected<OutputResult> written(const Output& o, const Sample& s, const Results& results,
                                const Settings& options, const Bench& bench) {
-  if (o.lacks) {
-    o.lacks({s.campaign, s.observations, results, options, bench.templates});
-    return o.write(
-        {s.campaign, s.observations, results, options, bench.templates, nullptr, &issue});
-  }
-  return o.write({s.campaign, s.observations, results, options, bench.templates});
+  if (!o.certificate)
+    return o.write({s.campaign, s.observations, results, options, bench.templates});
+  if (o.certificate->missing_requirements)
+    o.certificate->missing_requirements({s.campaign, s.observations, results, options, bench.templates});
+  return o.write({s.campaign, s.observations, results, options, bench.templates, &issue});
 }
+
+Expected<OutputResult> written(const Controller& c, const Sample& s, const Results& results,
+                               const Settings& options, const Bench&) {
+  return c.write({s.campaign, s.observations, results, options});
+}
+
+void prepare(const Output& o, const Bench& bench) {
+  if (o.prepare) o.prepare(bench.templates);
+}
+void prepare(const Controller&, const Bench&) {}
 
 /// What the host would refuse; empty if nothing.
 std::string unsound_output(const OutputResult& r) {
@@ -36,28 +46,23 @@ std::string unsound_output(const OutputResult& r) {
     if (a.name.ends_with(".json") && !nlohmann::json::accept(a.bytes))
       return a.name + " is not JSON";
   }
-  for (const Prediction& p : r.predictions)
-    if (!std::isfinite(p.before) || !std::isfinite(p.after))
-      return "a prediction of " + p.name + " that is not a number";
-  for (const Finding& f : r.findings)
-    for (const Number& n : f.evidence)
-      if (!std::isfinite(n.value))
-        return "evidence " + n.name + " of " + f.id + " that is not a number";
-  return {};
+  return unsound(r);
 }
 
 /// Writes and looks at it; an error is an answer too.
-std::string complaint(const Output& o, const Sample& s, const Results& results,
+template <class Plugin>
+std::string complaint(const Plugin& o, const Sample& s, const Results& results,
                       const Settings& options, const Bench& bench) {
   const auto r = written(o, s, results, options, bench);
   return r ? unsound_output(*r) : std::string();
 }
 
-Verdict each_output(const Output& o, const Bench& bench,
+template <class Plugin>
+Verdict each_output(const Plugin& o, const Bench& bench,
                     const std::function<std::string(const Sample&, const Results&)>& law) {
   if (!o.applies || !o.write) return failed("applies or write is missing");
   std::size_t tried = 0;
-  if (o.prepare) o.prepare(bench.templates);
+  prepare(o, bench);
   for (const Sample& s : bench.samples) {
     if (!o.applies(s.campaign)) continue;
     bench.stage("sample " + s.name);
@@ -89,7 +94,8 @@ bool same(const OutputResult& a, const OutputResult& b) {
                     findings);
 }
 
-Verdict output_again(const Output& o, const Bench& bench) {
+template <class Plugin>
+Verdict output_again(const Plugin& o, const Bench& bench) {
   return each_output(o, bench, [&](const Sample& s, const Results& results) -> std::string {
     const Settings options = settings_for(o, s);
     const auto one = written(o, s, results, options, bench);
@@ -100,7 +106,8 @@ Verdict output_again(const Output& o, const Bench& bench) {
 }
 
 /// Something comes out of at least one sample.
-Verdict output_writes(const Output& o, const Bench& bench) {
+template <class Plugin>
+Verdict output_writes(const Plugin& o, const Bench& bench) {
   std::size_t files = 0;
   std::string first;
   Verdict v = each_output(o, bench, [&](const Sample& s, const Results& results) -> std::string {
@@ -117,13 +124,14 @@ Verdict output_writes(const Output& o, const Bench& bench) {
   return v;
 }
 
-Verdict output_empty(const Output& o, const Bench& bench) {
+template <class Plugin>
+Verdict output_empty(const Plugin& o, const Bench& bench) {
   return each_output(o, bench, [&](const Sample& given, const Results& results) -> std::string {
     const Settings options = settings_for(o, given);
     if (std::string why = complaint(o, given, {}, options, bench); !why.empty())
       return "without results: " + why;
     Sample s = given;
-    for (Observations& one : s.observations) one = rearranged(one, {});
+    for (Observations& one : s.observations) one = in_order(one, {});
     if (std::string why = complaint(o, s, results, options, bench); !why.empty())
       return "without readings: " + why;
     if (std::string why = complaint(o, s, {}, options, bench); !why.empty())
@@ -170,7 +178,8 @@ std::vector<std::pair<std::string, std::string>> hostile_texts() {
           {"bytes that are no UTF-8", std::string("\xff\xfe\x00\x80 x", 6)}};
 }
 
-Verdict output_hostile(const Output& o, const Bench& bench) {
+template <class Plugin>
+Verdict output_hostile(const Plugin& o, const Bench& bench) {
   std::size_t at = 0;
   return each_output(o, bench, [&](const Sample& s, const Results&) -> std::string {
     // each sample takes some of them in turn, so that all together see all
@@ -219,7 +228,8 @@ std::vector<Setting> ends_of(const Option& option) {
 }
 
 /// On the sample in which it writes the most, one option after the other.
-Verdict output_options(const Output& o, const Bench& bench) {
+template <class Plugin>
+Verdict output_options(const Plugin& o, const Bench& bench) {
   if (o.info.options.empty()) return skipped("it has no options");
   const Sample* largest = nullptr;
   Results results;
@@ -252,14 +262,13 @@ Verdict output_templates(const Output& o, const Bench& bench) {
   return passed();
 }
 
-}  // namespace
-
-Verdict fingerprint(const Output& o, const Bench& bench) {
+template <class Plugin>
+Verdict fingerprint_of(const Plugin& o, const Bench& bench) {
   if (!o.applies || !o.write) return skipped("applies or write is missing");
   std::vector<Results> results;
   for (const Sample& s : bench.samples) results.push_back(results_of(s, bench));
   if (bench.only_plugin) bench.only_plugin();
-  if (o.prepare) o.prepare(bench.templates);
+  prepare(o, bench);
   std::string all;
   for (std::size_t i = 0; i < bench.samples.size(); ++i) {
     const Sample& s = bench.samples[i];
@@ -280,16 +289,32 @@ Verdict fingerprint(const Output& o, const Bench& bench) {
                      : Verdict{Verdict::State::passed, sha256(all)};
 }
 
+template <class Plugin>
+std::vector<Check<Plugin>> checks_of_files() {
+  return {{"writes", "It writes files with plain names, of numbers.", output_writes<Plugin>},
+          {"again", "The same input gives the same bytes.", output_again<Plugin>},
+          {"empty", "No results or no readings: an error, or less.", output_empty<Plugin>},
+          {"hostile", "Texts of any kind do not crash it, and lead to no other folder.",
+           output_hostile<Plugin>},
+          {"choices", "Every choice and both ends of each option.", output_options<Plugin>}};
+}
+
+}  // namespace
+
+Verdict fingerprint(const Output& o, const Bench& bench) { return fingerprint_of(o, bench); }
+Verdict fingerprint(const Controller& c, const Bench& bench) { return fingerprint_of(c, bench); }
+
 const std::vector<Check<Output>>& output_checks() {
-  static const std::vector<Check<Output>> checks = {
-      {"writes", "It writes files with plain names, of numbers.", output_writes},
-      {"again", "The same input gives the same bytes.", output_again},
-      {"empty", "No results or no readings: an error, or less.", output_empty},
-      {"hostile", "Texts of any kind do not crash it, and lead to no other folder.",
-       output_hostile},
-      {"choices", "Every choice and both ends of each option.", output_options},
-      {"templates", "Its own templates are without mistakes.", output_templates}};
+  static const std::vector<Check<Output>> checks = [] {
+    auto all = checks_of_files<Output>();
+    all.push_back({"templates", "Its own templates are without mistakes.", output_templates});
+    return all;
+  }();
   return checks;
+}
+
+std::vector<Check<Controller>> controller_checks_of_files() {
+  return checks_of_files<Controller>();
 }
 
 }  // namespace nonio::host::kit

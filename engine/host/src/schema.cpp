@@ -57,9 +57,10 @@ class Loaded {
   explicit Loaded(const Plugins& plugins) {
     for (const Reader& r : plugins.readers()) add(Named::reader, r.info);
     for (const Analysis& a : plugins.analyses()) add(Named::analysis, a.info);
-    for (const Output& o : plugins.outputs()) {
-      add(Named::output, o.info);
-      if (o.stage == Output::Stage::table) names_[Named::control].push_back(o.info.name);
+    for (const Output& o : plugins.outputs()) add(Named::output, o.info);
+    for (const Controller& c : plugins.controllers()) {
+      add(Named::output, c.info);
+      names_[Named::control].push_back(c.info.name);
     }
     if (!names_[Named::analysis].empty()) names_[Named::analysis].emplace_back(model_fit_name);
     for (auto& [kind, names] : names_) std::sort(names.begin(), names.end());

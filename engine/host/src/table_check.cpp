@@ -184,18 +184,17 @@ Expected<std::vector<Artifact>> read_table_files(const std::string& list,
   });
 }
 
-Expected<Tables> tables_in(const Output& o, const std::vector<Artifact>& files, const Campaign& c,
-                           const Settings& options) {
-  return guarded("output " + o.info.name, [&] { return o.parse({files, c, options}); });
+Expected<Tables> tables_in(const Controller& o, const std::vector<Artifact>& files,
+                           const Campaign& c, const Settings& options) {
+  return guarded("controller " + o.info.name, [&] { return o.parse({files, c, options}); });
 }
 
-Expected<const Output*> control_of(const Plugins& plugins, const std::string& name,
-                                   const std::vector<Artifact>& files, const Campaign& campaign,
-                                   const std::map<std::string, std::string>& options) {
-  std::vector<const Output*> all, named, able;
+Expected<const Controller*> control_of(const Plugins& plugins, const std::string& name,
+                                       const std::vector<Artifact>& files, const Campaign& campaign,
+                                       const std::map<std::string, std::string>& options) {
+  std::vector<const Controller*> all, named, able;
   std::vector<std::string> names;
-  for (const Output& o : plugins.outputs()) {
-    if (o.parse == nullptr) continue;
+  for (const Controller& o : plugins.controllers()) {
     all.push_back(&o);
     names.push_back(o.info.name);
     if (o.info.name == name) return &o;
@@ -205,7 +204,7 @@ Expected<const Output*> control_of(const Plugins& plugins, const std::string& na
     return fail("no control \"" + name + "\"" + suggestion(name, names) + "; there are " +
                 listed(names));
   if (named.size() == 1) return named.front();
-  for (const Output* o : all) {
+  for (const Controller* o : all) {
     const auto settled = options_from(o->info, options);
     if (settled && tables_in(*o, files, campaign, *settled)) able.push_back(o);
   }
@@ -267,14 +266,15 @@ std::vector<Observations> without_tables(const Campaign& campaign,
   return raw;
 }
 
-Expected<std::optional<Underlay>> what_was_on(const ReadCampaign& read, const Output& output,
+Expected<std::optional<Underlay>> what_was_on(const ReadCampaign& read,
+                                              const Controller& controller,
                                               const Settings& options) {
-  if (read.tables_on.empty() || output.parse == nullptr) return std::optional<Underlay>();
+  if (read.tables_on.empty()) return std::optional<Underlay>();
   const Campaign& campaign = read.manifest->campaign;
   Underlay on{{}, options, {}};
   for (const auto& [axis, files] : read.tables_on) {
     const std::string who = "what was on while axis " + axis + " was measured: ";
-    auto tables = tables_in(output, files, campaign, options);
+    auto tables = tables_in(controller, files, campaign, options);
     if (!tables) return fail(who + tables.error().message);
     if (!corrects(*tables, axis))
       return fail(who + "its files hold no table of " + axis +
@@ -334,16 +334,16 @@ std::vector<TableForecast> forecast(const ReadCampaign& read, const Tables& tabl
   return out;
 }
 
-Expected<RenewedTables> renew(const ReadCampaign& read, const Output& output, Settings options,
-                              const Templates& templates, const Tables& present) {
+Expected<RenewedTables> renew(const ReadCampaign& read, const Controller& controller,
+                              Settings options, const Tables& present) {
   Campaign campaign = read.manifest->campaign;
   state_backlash_of(options, present);
   say_what_was_on(campaign, options, present);
   const std::vector<Observations> raw = without_tables(campaign, read.observations, present);
   const Results none;
   const auto write = [&](const Campaign& c, const std::vector<Observations>& o) {
-    return guarded("output " + output.info.name, [&] {
-      return output.write({c, o, none, options, templates});
+    return guarded("controller " + controller.info.name, [&] {
+      return controller.write({c, o, none, options});
     });
   };
   auto whole = write(campaign, raw);
@@ -357,7 +357,7 @@ Expected<RenewedTables> renew(const ReadCampaign& read, const Output& output, Se
     const auto files = write(one, {raw[i]});
     if (!files) return tl::unexpected<Error>(files.error());
     if (files->artifacts.empty()) continue;  // refused; the finding says why
-    const auto tables = tables_in(output, files->artifacts, one, options);
+    const auto tables = tables_in(controller, files->artifacts, one, options);
     if (!tables) return tl::unexpected<Error>(tables.error());
     const auto test = math::AxisTest::arrange(read.observations[i]);
     const std::string axis = control_axis(campaign.machine, m);

@@ -252,8 +252,7 @@ NONIO_ON_THE_WIRE(WaitingDraft, a, b, c, d, e, f, g, h, i)
 NONIO_ON_THE_WIRE(Option, a, b, c, d, e, f, g)
 NONIO_ON_THE_WIRE(Info, a, b, c, d, e)
 NONIO_ON_THE_WIRE(PluginFile, a, b, c)
-NONIO_ON_THE_WIRE(Catalogue::Described, a, b)
-NONIO_ON_THE_WIRE(Catalogue, a, b, c, d, e, f, g)
+NONIO_ON_THE_WIRE(Catalogue, a, b, c, d, e, f, g, h)
 #undef NONIO_ON_THE_WIRE
 
 template <class... T>

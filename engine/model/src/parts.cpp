@@ -9,6 +9,7 @@
 #include "lines.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/axis_readings.h"
+#include "nonio/sdk/check.h"
 
 namespace nonio::model {
 
@@ -47,7 +48,7 @@ class Parts {
 
   void sort(std::size_t m) {
     const Observations& o = read_[m];
-    if (o.size() == 0 || o.axes.empty()) return;
+    if (o.size() == 0 || o.axes.empty() || !check(o)) return;
     const std::string& kind = measurement(m).kind;
     if (kind == "ball-centres") {
       kind_[m] = Kind::balls;

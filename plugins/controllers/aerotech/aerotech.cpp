@@ -202,7 +202,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return parser.tables;
 }
 
-Expected<OutputResult> write(const OutputInput& in) {
+Expected<OutputResult> write(const ControllerInput& in) {
   OutputResult result;
   const controllers::Writer writer{.name = "aerotech",
                                    .table = *controllers::chosen(declared(), in.options),
@@ -244,13 +244,13 @@ Expected<OutputResult> write(const OutputInput& in) {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  Output output = controllers::controller(
+  Controller controller = controllers::controller(
       {"aerotech", "1.0.0",
        "Axis calibration files (.cal, one and two dimensions) for Aerotech A3200 and Automation1.",
        controllers::table_options(
            declared(),
            "number (of the axis, from 1), step_mm, backlash_mm and the same with _deg")},
       declared(), nonio::write, parse);
-  output.merge = aerotech::merge;
-  registry.add(std::move(output));
+  controller.merge = aerotech::merge;
+  registry.add(std::move(controller));
 }

@@ -16,7 +16,7 @@ namespace nonio::controllers {
 namespace {
 
 Expected<void> check_names(const std::map<std::string, AxisSettings>& settings,
-                           const OutputInput& input) {
+                           const ControllerInput& input) {
   std::set<std::string> known;
   for (const Axis& a : input.campaign.machine.axes) known.insert(a.name);
   for (const Measurement& m : input.campaign.measurements)
@@ -35,13 +35,13 @@ struct Present {
   bool backlash = false;             ///< somebody says it
 };
 
-const Measurement* measurement_of(const OutputInput& input, const AxisJob& job) {
+const Measurement* measurement_of(const ControllerInput& input, const AxisJob& job) {
   for (const Measurement& m : input.campaign.measurements)
     if (m.id == job.measurement) return &m;
   return nullptr;
 }
 
-Present present_of(const OutputInput& input, const AxisJob& job) {
+Present present_of(const ControllerInput& input, const AxisJob& job) {
   const Axis* axis = input.campaign.machine.axis(job.axis);
   const Measurement* m = measurement_of(input, job);
   const bool off = m != nullptr && m->compensation == "off";
@@ -53,7 +53,7 @@ Present present_of(const OutputInput& input, const AxisJob& job) {
   return p;
 }
 
-std::vector<std::string> present_lines(const OutputInput& input, const AxisJob& job) {
+std::vector<std::string> present_lines(const ControllerInput& input, const AxisJob& job) {
   const Present p = present_of(input, job);
   std::vector<std::string> lines;
   if (!p.table)
@@ -76,7 +76,7 @@ std::vector<std::string> present_lines(const OutputInput& input, const AxisJob& 
 
 /// False with a finding where compensation was on, and nobody says which table: what is left of
 /// the error would be loaded in place of the table that took the rest away.
-bool knows_what_was_on(const OutputInput& input, const AxisJob& job, OutputResult& result) {
+bool knows_what_was_on(const ControllerInput& input, const AxisJob& job, OutputResult& result) {
   const Present p = present_of(input, job);
   const Measurement* m = measurement_of(input, job);
   if (m != nullptr && m->compensation == "on" && !p.table) {
@@ -97,7 +97,7 @@ bool knows_what_was_on(const OutputInput& input, const AxisJob& job, OutputResul
   return true;
 }
 
-std::vector<std::string> about(const OutputInput& input, const AxisJob& job) {
+std::vector<std::string> about(const ControllerInput& input, const AxisJob& job) {
   const Machine& m = input.campaign.machine;
   std::vector<std::string> lines;
   lines.push_back("machine: " + plain(m.maker) + " " + plain(m.model) + ", serial " +
@@ -140,7 +140,7 @@ std::vector<std::string> suspects_of(const math::AxisTest& test, const AxisJob& 
   return readings;
 }
 
-AxisJob job_of(const OutputInput& input, std::size_t index) {
+AxisJob job_of(const ControllerInput& input, std::size_t index) {
   const Measurement& m = input.campaign.measurements[index];
   const math::AxisTest test = math::AxisTest::arrange(input.observations[index]);
   AxisJob job;
@@ -239,7 +239,7 @@ bool number_unsaid(const AxisJob& job, const std::vector<std::string_view>& keys
 
 /// What to write, and where.
 void refuse_number(const std::string& axis, const std::string& measurement,
-                   const OutputInput& input, OutputResult& result) {
+                   const ControllerInput& input, OutputResult& result) {
   const std::string& asset = input.campaign.machine.asset;
   const std::string file = "machines/" + (asset.empty() ? "<asset>" : asset) + ".toml";
   result.findings.push_back({"table.axis-number",
@@ -260,7 +260,7 @@ bool has_tables(const Campaign& campaign) {
       [](const Measurement& m) { return m.kind == "axis" || m.kind == "step-diagonal"; });
 }
 
-bool lacks_number(const std::vector<std::string>& of, const OutputInput& input,
+bool lacks_number(const std::vector<std::string>& of, const ControllerInput& input,
                   const std::vector<KnownAxis>& axes, const std::string& measurement,
                   OutputResult& result) {
   std::set<std::string> unsaid;
@@ -296,7 +296,7 @@ std::optional<double> AxisJob::position_setting(std::string_view name) const {
   return value ? std::optional(*value / per_si()) : std::nullopt;
 }
 
-Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
+Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
                                          const std::vector<std::string_view>& keys,
                                          OutputResult& result) {
   auto settings = settings_of_axes(input.options, keys);

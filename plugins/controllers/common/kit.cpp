@@ -26,7 +26,7 @@ bool anchored(const ControlTable& t) {
   return t.entry == Entry::increment || t.zero == ControlTable::Zero::first;
 }
 
-math::GridRule rule_of(const AxisJob& job, const OutputInput& input, const Writer& w,
+math::GridRule rule_of(const AxisJob& job, const ControllerInput& input, const Writer& w,
                        const ControlTable& t, double reference) {
   math::GridRule rule;
   rule.unit = t.position_step.of(job.rotary);
@@ -205,8 +205,9 @@ Expected<void> set_reference(Sheet& s, OutputResult& result) {
   return {};
 }
 
-Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table, const OutputInput& input,
-                         const Writer& w, bool directions, OutputResult& result) {
+Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table,
+                         const ControllerInput& input, const Writer& w, bool directions,
+                         OutputResult& result) {
   Sheet s{.job = job,
           .table = table,
           .input = input,
@@ -237,7 +238,7 @@ void look_at_reversal(const AxisJob& job, const ControlTable& t, OutputResult& r
 }
 
 /// True with its files, false where the table is refused.
-Expected<bool> write_axis(AxisJob& job, const OutputInput& input, const Writer& w,
+Expected<bool> write_axis(AxisJob& job, const ControllerInput& input, const Writer& w,
                           OutputResult& result) {
   const bool directions =
       w.always_directions ||
@@ -360,7 +361,7 @@ Expected<ControlTable> chosen(ControlTable t, const Settings& options) {
   return t;
 }
 
-Campaign with_axes_of(const OutputInput& input, const std::vector<AxisJob>& jobs) {
+Campaign with_axes_of(const ControllerInput& input, const std::vector<AxisJob>& jobs) {
   Campaign campaign = input.campaign;
   for (const AxisJob& job : jobs) {
     auto& axes = campaign.machine.axes;
@@ -374,7 +375,7 @@ Campaign with_axes_of(const OutputInput& input, const std::vector<AxisJob>& jobs
   return campaign;
 }
 
-Expected<std::vector<AxisJob>> write_axes(const OutputInput& input, const Writer& w,
+Expected<std::vector<AxisJob>> write_axes(const ControllerInput& input, const Writer& w,
                                           OutputResult& result) {
   auto jobs = axis_jobs(input, w.keys, result);
   if (!jobs) return jobs;
@@ -384,7 +385,7 @@ Expected<std::vector<AxisJob>> write_axes(const OutputInput& input, const Writer
   return jobs;
 }
 
-Expected<OutputResult> write_tables(const OutputInput& input, const Writer& w) {
+Expected<OutputResult> write_tables(const ControllerInput& input, const Writer& w) {
   OutputResult result;
   if (auto jobs = write_axes(input, w, result); !jobs) return tl::unexpected<Error>(jobs.error());
   note_facts(w, result);
@@ -432,18 +433,18 @@ Expected<LoadedTable> loaded(const ControlTable& t, const RawTable& raw) {
   return out;
 }
 
-Output controller(Info info, const ControlTable& table,
-                  Expected<OutputResult> (*write)(const OutputInput&),
-                  Expected<std::vector<LoadedTable>> (*parse)(const TableInput&), bool on_request) {
-  Output output;
-  output.info = std::move(info);
-  output.info.on_request = on_request;
-  output.stage = Output::Stage::table;
-  output.applies = has_tables;
-  output.write = write;
-  output.control = table;
-  output.parse = parse;
-  return output;
+Controller controller(Info info, const ControlTable& table,
+                      Expected<OutputResult> (*write)(const ControllerInput&),
+                      Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
+                      bool on_request) {
+  Controller out;
+  out.info = std::move(info);
+  out.info.on_request = on_request;
+  out.table = table;
+  out.applies = has_tables;
+  out.write = write;
+  out.parse = parse;
+  return out;
 }
 
 }  // namespace nonio::controllers

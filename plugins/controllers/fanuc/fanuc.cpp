@@ -201,7 +201,7 @@ std::string words(const Sheet& s, const Parameters& p) {
   return controllers::comments(lines, "");
 }
 
-Expected<OutputResult> write(const OutputInput& input) {
+Expected<OutputResult> write(const ControllerInput& input) {
   Numbering numbering;
   const Settings& o = input.options;
   controllers::Writer writer{
@@ -271,11 +271,11 @@ std::vector<Option> options() {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  Output output = controllers::controller(
+  Controller controller = controllers::controller(
       {"fanuc", "1.1.0",
        "Stored pitch error compensation (3620-3627) and backlash (1851) for FANUC.",
        fanuc::options()},
       fanuc::declared(), fanuc::write, fanuc::parse, false);
-  output.merge = fanuc::merge;
-  registry.add(std::move(output));
+  controller.merge = fanuc::merge;
+  registry.add(std::move(controller));
 }

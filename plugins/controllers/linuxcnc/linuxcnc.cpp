@@ -180,7 +180,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return tables;
 }
 
-Expected<OutputResult> write(const OutputInput& input) {
+Expected<OutputResult> write(const ControllerInput& input) {
   const controllers::Writer writer{.name = "linuxcnc",
                                    .table = table_of(input.options),
                                    .keys = {"joint:", "step", "first", "reference", "backlash"},

@@ -99,7 +99,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return tables;
 }
 
-Expected<OutputResult> write(const OutputInput& in) {
+Expected<OutputResult> write(const ControllerInput& in) {
   return controllers::write_tables(in, {.name = "pmac",
                                         .table = *controllers::chosen(declared(), in.options),
                                         .keys = {"number:", "counts_per", "step", "backlash"},

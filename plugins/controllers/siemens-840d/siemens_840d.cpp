@@ -118,7 +118,7 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
   return out;
 }
 
-Expected<OutputResult> write(const OutputInput& input) {
+Expected<OutputResult> write(const ControllerInput& input) {
   OutputResult result;
   auto table = controllers::chosen(declared(), input.options);
   if (!input.options.flag("directions")) table->facts.pop_back();
@@ -163,11 +163,11 @@ std::vector<Option> options() {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  Output output = controllers::controller(
+  Controller controller = controllers::controller(
       {"siemens-840d", "1.1.0",
        "Leadscrew error tables (EEC), direction tables (CEC) and backlash for SINUMERIK.",
        siemens::options()},
       siemens::declared(), siemens::write, siemens::parse, false);
-  output.merge = siemens::merge;
-  registry.add(std::move(output));
+  controller.merge = siemens::merge;
+  registry.add(std::move(controller));
 }

@@ -147,7 +147,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return tables.empty() ? Expected<std::vector<LoadedTable>>(fail("no block of errors")) : tables;
 }
 
-Expected<OutputResult> write(const OutputInput& in) {
+Expected<OutputResult> write(const ControllerInput& in) {
   OutputResult result;
   const auto table = controllers::chosen(declared(), in.options);
   if (!table) return tl::unexpected<Error>(table.error());

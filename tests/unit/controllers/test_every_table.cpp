@@ -12,7 +12,7 @@ namespace {
 
 struct Kind {
   const char* name;
-  Output (*output)();
+  Controller (*output)();
   Options options;
   double resolution;  // of the table, m
 };
@@ -87,7 +87,7 @@ TEST(EveryTable, TakesTheErrorAway) {
   print_seed(seed);
   for (const Kind& k : kinds()) {
     std::mt19937 random(seed);
-    const Output output = k.output();
+    const Controller output = k.output();
     for (int round = 0; round < 25; ++round) {
       const Bench b(random_axis(random, false));
       const auto r = b.write(output, k.options);
@@ -139,7 +139,7 @@ TEST(EveryTable, DirectionTablesTakeAnElasticReversalAwayToo) {
   print_seed(seed);
   for (const Kind& k : with_directions()) {
     std::mt19937 random(seed);
-    const Output output = k.output();
+    const Controller output = k.output();
     for (int round = 0; round < 25; ++round) {
       const Bench b(random_axis(random, true));
       const auto r = b.write(output, k.options);
@@ -272,7 +272,7 @@ TEST(EveryTable, NumberIsNeverGuessed) {
   std::mt19937 random(11);
   Bench b(random_axis(random, false));
   b.numbered = false;
-  for (const Output& output : {siemens_plugin(), fanuc_plugin()}) {
+  for (const Controller& output : {siemens_plugin(), fanuc_plugin()}) {
     const auto r = b.write(output);
     ASSERT_TRUE(r) << output.info.name;
     EXPECT_TRUE(r->artifacts.empty()) << output.info.name;
@@ -281,7 +281,7 @@ TEST(EveryTable, NumberIsNeverGuessed) {
     EXPECT_TRUE(f->attention);
     EXPECT_TRUE(contains(f->advice, "[axes.X] of machines/<asset>.toml"));
   }
-  for (const Output& output : {heidenhain_plugin(), linuxcnc_plugin()}) {
+  for (const Controller& output : {heidenhain_plugin(), linuxcnc_plugin()}) {
     const auto r = b.write(output);
     ASSERT_TRUE(r) << output.info.name;
     EXPECT_FALSE(r->artifacts.empty()) << output.info.name;

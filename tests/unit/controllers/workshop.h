@@ -22,35 +22,36 @@ using namespace nonio;
 inline constexpr double um = 1e-6, mm = 1e-3;
 inline constexpr double deg = 1.0 / deg_per_rad, arcsec = 1.0 / arcsec_per_rad;
 
-struct OneOutput final : Registry {
-  Output output;
+struct OneController final : Registry {
+  Controller controller;
   void add(Reader) override {}
   void add(Effect) override {}
   void add(Analysis) override {}
-  void add(Output o) override { output = std::move(o); }
+  void add(Output) override {}
+  void add(Controller c) override { controller = std::move(c); }
 };
 
-inline Output plugin(const char* path) {
+inline Controller plugin(const char* path) {
   void* library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw std::runtime_error(dlerror());
   const auto* entry = static_cast<const PluginEntry*>(dlsym(library, "nonio_plugin"));
-  OneOutput registry;
+  OneController registry;
   entry->add_to(registry);
-  return registry.output;
+  return registry.controller;
 }
 
 inline void print_seed(std::uint32_t seed) { std::cout << "seed " << seed << '\n'; }
 
-inline Output siemens_plugin() { return plugin(plugin_siemens_840d); }
-inline Output heidenhain_plugin() { return plugin(plugin_heidenhain_tnc); }
-inline Output fanuc_plugin() { return plugin(plugin_fanuc); }
-inline Output linuxcnc_plugin() { return plugin(plugin_linuxcnc); }
+inline Controller siemens_plugin() { return plugin(plugin_siemens_840d); }
+inline Controller heidenhain_plugin() { return plugin(plugin_heidenhain_tnc); }
+inline Controller fanuc_plugin() { return plugin(plugin_fanuc); }
+inline Controller linuxcnc_plugin() { return plugin(plugin_linuxcnc); }
 
 using Options = std::map<std::string, Setting>;
 
 /// Defaults as declared, then the given ones; an undeclared or differently typed one is a mistake
 /// of the test.
-inline Settings settings(const Output& output, const Options& given) {
+inline Settings settings(const Controller& output, const Options& given) {
   Settings s;
   for (const Option& o : output.info.options) s.values[o.name] = o.otherwise;
   for (const auto& [name, value] : given) {
@@ -62,7 +63,7 @@ inline Settings settings(const Output& output, const Options& given) {
 }
 
 /// As the record of a machine would say it, for the axes whose entries do not: X is the first.
-inline void state_numbers(Settings& s, const Output& output, const std::vector<Axis>& axes) {
+inline void state_numbers(Settings& s, const Controller& output, const std::vector<Axis>& axes) {
   if (!s.has("axes")) return;
   auto entries = s.texts("axes");
   const bool joints = output.info.name == "linuxcnc";  // counts from 0
@@ -79,7 +80,7 @@ inline void state_numbers(Settings& s, const Output& output, const std::vector<A
 
 /// What the control makes of these files, on a machine with these axes.
 inline Expected<std::vector<LoadedTable>> read_back(
-    const Output& output, const std::vector<Artifact>& files, const Options& options = {},
+    const Controller& output, const std::vector<Artifact>& files, const Options& options = {},
     const std::vector<Axis>& axes = {{.name = "X"}, {.name = "Y"}, {.name = "Z"}}) {
   Campaign campaign;
   campaign.machine.axes = axes;
@@ -89,7 +90,7 @@ inline Expected<std::vector<LoadedTable>> read_back(
 }
 
 /// What it adds to one axis by its own position.
-inline Expected<math::Correction> control(const Output& output, const std::vector<Artifact>& files,
+inline Expected<math::Correction> control(const Controller& output, const std::vector<Artifact>& files,
                                           const Options& options = {},
                                           const std::string& axis = "X") {
   const auto tables = read_back(output, files, options);
@@ -100,7 +101,7 @@ inline Expected<math::Correction> control(const Output& output, const std::vecto
 }
 
 /// What it adds to `out` by the position of `in`.
-inline Expected<math::Correction> control_cross(const Output& output,
+inline Expected<math::Correction> control_cross(const Controller& output,
                                                 const std::vector<Artifact>& files,
                                                 const std::string& in, const std::string& out,
                                                 const Options& options = {}) {
@@ -174,10 +175,10 @@ struct Bench {
     observations.push_back(std::move(o));
   }
 
-  Expected<OutputResult> write(const Output& output, const Options& options = {}) const {
+  Expected<OutputResult> write(const Controller& output, const Options& options = {}) const {
     Settings s = settings(output, options);
     if (numbered) state_numbers(s, output, campaign.machine.axes);
-    return output.write({campaign, observations, results, s, templates});
+    return output.write({campaign, observations, results, s});
   }
 };
 

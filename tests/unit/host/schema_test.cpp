@@ -30,10 +30,9 @@ Plugins plugins() {
   Reader reader;
   reader.info = {"both", "1", "A reader.", {{"only-here", false, "", "A flag."}}};
   all.add(reader);
-  Output output;
-  output.info = {"table", "1", "A table."};
-  output.stage = Output::Stage::table;
-  all.add(output);
+  Controller controller;
+  controller.info = {"table", "1", "A table."};
+  all.add(controller);
   Effect effect;
   effect.info = {"lost.motion", "1", "Of an axis"};
   all.add(effect);

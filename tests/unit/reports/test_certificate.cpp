@@ -38,7 +38,7 @@ struct Certificate : testing::Test {
     return {c.campaign, c.observations,          c.results, none, templates,
             nullptr,    drawn ? &issue : nullptr};
   }
-  std::vector<std::string> lacks(const Case& c) const { return output().lacks(input(c, false)); }
+  std::vector<std::string> lacks(const Case& c) const { return output().certificate->missing_requirements(input(c, false)); }
   Expected<OutputResult> write(const Case& c) const { return output().write(input(c)); }
   std::string text(const Case& c) const {
     const auto result = write(c);

@@ -23,6 +23,7 @@ Analysis the_analysis() {
     void add(Reader) override { ADD_FAILURE() << "a reader"; }
     void add(Effect) override { ADD_FAILURE() << "an effect"; }
     void add(Output) override { ADD_FAILURE() << "an output"; }
+    void add(Controller) override { ADD_FAILURE() << "a controller"; }
     void add(Analysis a) override { analysis = std::move(a); }
   } taker;
   nonio_plugin.add_to(taker);

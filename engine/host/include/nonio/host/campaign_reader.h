@@ -30,9 +30,6 @@ struct ReadCampaign {
 ReadCampaign read_campaign(const std::filesystem::path& folder, const Context& context,
                            const Stage& stage);
 
-/// Takes away the rows whose flag is 0.
-void keep_rows(Observations& observations, const std::vector<char>& kept);
-
 /// Templates that were read already: names below the folder, and bytes.
 struct TemplateFiles {
   std::filesystem::path folder{};

@@ -63,13 +63,13 @@ bool has_tables(const Campaign&);
 /// axes without them. `keys` are the settings that
 /// option `axes` takes for one axis: "reference" stands for reference_mm and reference_deg, a
 /// name with ':' at its end for a plain number. Findings and notes go to `result`.
-Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
+Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
                                          const std::vector<std::string_view>& keys,
                                          OutputResult& result);
 
 /// True, with a finding that names the key and the file, where nobody says the number of one of
 /// these axes in the control.
-bool lacks_number(const std::vector<std::string>& of, const OutputInput& input,
+bool lacks_number(const std::vector<std::string>& of, const ControllerInput& input,
                   const std::vector<KnownAxis>& axes, const std::string& measurement,
                   OutputResult& result);
 

@@ -27,7 +27,7 @@ inline constexpr double full_turn = 2.0 * std::numbers::pi;  // rad
 struct Sheet {
   const AxisJob& job;
   const ControlTable& table;  ///< as declared, with what the options change
-  const OutputInput& input;
+  const ControllerInput& input;
   bool directions = false;       ///< there is a table for each direction
   math::Grid grid{};             ///< where evenly spaced
   double reference = 0.0;        ///< where an entry is 0; of two columns, their mean; SI
@@ -93,8 +93,8 @@ Expected<ControlTable> chosen(ControlTable, const Settings&);
 
 /// A sheet of each axis, its files, and what is left when the control has read them back. The jobs
 /// that were written have `loaded`.
-Expected<std::vector<AxisJob>> write_axes(const OutputInput&, const Writer&, OutputResult&);
-Expected<OutputResult> write_tables(const OutputInput&, const Writer&);
+Expected<std::vector<AxisJob>> write_axes(const ControllerInput&, const Writer&, OutputResult&);
+Expected<OutputResult> write_tables(const ControllerInput&, const Writer&);
 
 /// Entries as a file has them, in its units; one for each position. An increment is the change over
 /// the interval that ends at its position, so that of the first position is 0: nothing lies before
@@ -117,12 +117,13 @@ Expected<LoadedTable> loaded(const ControlTable&, const RawTable&);
 /// Notes of all that is not documented.
 void note_facts(const Writer&, OutputResult&);
 
-/// An output of stage `table`; `on_request`: only where the manifest names it.
-Output controller(Info, const ControlTable&, Expected<OutputResult> (*write)(const OutputInput&),
-                  Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
-                  bool on_request = true);
+/// A controller of pitch tables; `on_request`: only where the manifest names it.
+Controller controller(Info, const ControlTable&,
+                      Expected<OutputResult> (*write)(const ControllerInput&),
+                      Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
+                      bool on_request = true);
 
 /// The axes of the manifest, and those that are only in readings, as a parser needs them.
-Campaign with_axes_of(const OutputInput&, const std::vector<AxisJob>&);
+Campaign with_axes_of(const ControllerInput&, const std::vector<AxisJob>&);
 
 }  // namespace nonio::controllers
