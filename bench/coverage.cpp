@@ -71,7 +71,7 @@ Analysis load(const char* path) {
 
 Settings defaults(const Analysis& a) {
   Settings s;
-  for (const Option& o : a.info.options) s.values[o.name] = o.otherwise;
+  for (const Option& o : a.info.options) s.values[o.name] = o.default_value;
   return s;
 }
 

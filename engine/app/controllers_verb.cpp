@@ -52,7 +52,7 @@ Json control_json(const Controller& o) {
                {"version", o.info.version},
                {"summary", o.info.summary},
                {"table", t.name},
-               {"on_request", o.info.on_request},
+               {"on_request", o.info.opt_in},
                {"takes",
                 {{"rotary", t.rotary},
                  {"bidirectional", t.bidirectional},
@@ -72,7 +72,7 @@ Json control_json(const Controller& o) {
   json["facts"] = Json::array();
   for (const ControlTable::Fact& f : t.facts)
     json["facts"].push_back(
-        {{"id", f.id}, {"confidence", to_text(f.confidence)}, {"says", f.says}});
+        {{"id", f.id}, {"confidence", to_text(f.confidence)}, {"says", f.description}});
   return json;
 }
 
@@ -107,7 +107,7 @@ void print_control(const Controller& o, bool facts) {
   std::cout << "    " << o.info.summary << "\n    table: " << t.name
             << "; zero: " << to_text(t.zero) << "\n";
   for (const ControlTable::Fact& f : t.facts)
-    std::cout << "    " << cell(to_text(f.confidence), 11) << f.says << "\n";
+    std::cout << "    " << cell(to_text(f.confidence), 11) << f.description << "\n";
 }
 
 int list_controls(const std::vector<std::string>& names, const Common& common) {

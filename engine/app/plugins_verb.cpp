@@ -13,7 +13,7 @@ namespace {
 
 Json option_json(const Option& o) {
   Json json = {{"name", o.name}};
-  std::visit([&](const auto& v) { json["default"] = v; }, o.otherwise);
+  std::visit([&](const auto& v) { json["default"] = v; }, o.default_value);
   if (!o.unit.empty()) json["unit"] = o.unit;
   if (!o.choices.empty()) json["choices"] = o.choices;
   json["help"] = o.help;
@@ -49,7 +49,7 @@ void print_plugins_json(const host::Plugins& plugins) {
                    {"name", p.info->name},
                    {"version", p.info->version},
                    {"summary", p.info->summary},
-                   {"on_request", p.info->on_request},
+                   {"on_request", p.info->opt_in},
                    {"options", std::move(options)}});
   }
   std::cout << Json{{"abi", NONIO_ABI_TAG},
@@ -62,7 +62,7 @@ void print_plugins_json(const host::Plugins& plugins) {
 void print_plugins(const host::Plugins& plugins, bool with_options) {
   for (const Listed& p : all_of(plugins)) {
     std::cout << p.kind << " " << p.info->name << " " << p.info->version
-              << (p.info->on_request ? " (on request)" : "") << "\n    " << p.info->summary << "\n";
+              << (p.info->opt_in ? " (on request)" : "") << "\n    " << p.info->summary << "\n";
     if (with_options)
       for (const Option& o : p.info->options)
         std::cout << "    [options." << p.info->name << "] " << o.name << " = "

@@ -61,10 +61,9 @@ Campaign machine_of(const std::vector<std::string>& axes) {
 /// Their places are their numbers: `--axis` says so.
 void number_axes(const std::vector<std::string>& names, Settings& options) {
   if (!options.has("axes")) return;
-  auto axes = options.texts("axes");
+  NumberTables axes = options.tables("axes");
   for (std::size_t i = 0; i < names.size(); ++i)
-    axes.insert(axes.begin() + static_cast<std::ptrdiff_t>(i),
-                names[i] + " number=" + std::to_string(i + 1));
+    axes[names[i]].emplace("number", static_cast<double>(i + 1));
   options.values["axes"] = std::move(axes);
 }
 
@@ -206,9 +205,9 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
                     ", its files or the campaign say " + short_text(*known * per, 6));
       if (!known) host::state_backlash(options, t.output, t.rotary, b.value / per);
     }
-    const bool has_parameter = !present.control->control->backlash.empty();
+    const bool has_parameter = !present.control->table.backlash.empty();
     if (has_parameter && !t.backlash && !host::stated_backlash(options, t.output, t.rotary))
-      return fail(w.table + " does not say what was in " + present.control->control->backlash +
+      return fail(w.table + " does not say what was in " + present.control->table.backlash +
                   " of axis " + t.output +
                   " while it was measured: give its file too, or --backlash-was VALUE|none, or "
                   "backlash_on_" +

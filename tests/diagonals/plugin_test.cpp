@@ -148,7 +148,7 @@ struct Workpiece {
   }
   Evaluation evaluate(const std::string& id = "D1") const {
     Settings settings;
-    for (const Option& o : the_analysis().info.options) settings.values[o.name] = o.otherwise;
+    for (const Option& o : the_analysis().info.options) settings.values[o.name] = o.default_value;
     for (const auto& [name, value] : options) {
       EXPECT_EQ(settings.values.count(name), 1U) << name;
       settings.values[name] = value;

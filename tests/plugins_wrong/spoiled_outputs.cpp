@@ -68,7 +68,7 @@ ControlTable declared() {
   t.facts = {{"sign", ControlTable::Confidence::documented, "Wrong on purpose."}};
   if (has("without-facts")) t.facts.clear();
   if (has("fact-twice")) t.facts.push_back(t.facts.front());
-  if (has("fact-without-words")) t.facts.front().says = "";
+  if (has("fact-without-words")) t.facts.front().description = "";
   if (has("step-of-zero")) t.value_step.linear = 0.0;
   if (has("step-of-nan")) t.position_step.rotary = spoiled::nan;
   if (has("increments-of-nothing")) t.increment = {5, 5};

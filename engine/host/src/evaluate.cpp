@@ -85,9 +85,26 @@ class CampaignRun {
     return std::nullopt;
   }
 
+  /// How axes are written now, for a manifest that has them as texts.
+  void note_axes_as_texts(const Info& controller, const Settings& settled) {
+    const auto plugin = read_.manifest->options.find(controller.name);
+    if (plugin == read_.manifest->options.end()) return;
+    const auto axes = plugin->second.find("axes");
+    const NumberTables tables = settled.tables("axes");
+    if (axes == plugin->second.end() || tables.empty() ||
+        !std::holds_alternative<std::vector<std::string>>(axes->second.value))
+      return;
+    out_.results.notes.push_back(
+        {"options.axes-as-texts",
+         {},
+         {{"line", std::to_string(axes->second.line)},
+          {"table", "[options." + controller.name + ".axes." + tables.begin()->first + "]"}}});
+  }
+
   std::optional<Settings> settle_controller(const Info& controller) {
     auto options = settle_table_options(controller, context_.site.options, *read_.manifest,
                                         read_.machine ? &*read_.machine : nullptr);
+    if (options) note_axes_as_texts(controller, *options);
     if (options) return std::move(*options);
     for (Error& e : options.error()) report(std::move(e));
     return std::nullopt;
@@ -101,7 +118,7 @@ class CampaignRun {
     std::vector<const Plugin*> out;
     if (!names) {
       for (const Plugin& p : all)
-        if (!p.info.on_request || read_.manifest->options.contains(p.info.name) ||
+        if (!p.info.opt_in || read_.manifest->options.contains(p.info.name) ||
             out_.campaign.machine.control == p.info.name)
           out.push_back(&p);
       return out;

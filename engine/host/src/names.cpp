@@ -53,9 +53,13 @@ void locate(Error& error, const KeyLines& manifest, const KeyLines& site,
             const std::string& plugin) {
   if (error.key.empty() || !error.file.empty()) return;
   error.file = manifest_name;
-  const std::string option = "options." + plugin + "." + error.key;
-  for (const auto& [lines, file] : {std::pair(&manifest, manifest_name), {&site, site_name}})
-    for (const std::string& key : {option, error.key})
+  const std::string of_plugin = "options." + plugin + ".";
+  std::vector<std::string> keys{of_plugin + error.key};  // then the tables that it stands in
+  while (keys.back().rfind('.') >= of_plugin.size())
+    keys.push_back(keys.back().substr(0, keys.back().rfind('.')));
+  keys.push_back(error.key);
+  for (const std::string& key : keys)
+    for (const auto& [lines, file] : {std::pair(&manifest, manifest_name), {&site, site_name}})
       if (const auto found = lines->find(key); found != lines->end()) {
         error.file = file;
         error.line = found->second;

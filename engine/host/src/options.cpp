@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
 
 #include "nonio/host/manifest.h"
 #include "nonio/host/nearest.h"
@@ -22,14 +25,51 @@ const char* kind_of(const Setting& setting) {
       return "a text";
     case 4:
       return "a list of numbers";
-    default:
+    case 5:
       return "a list of texts";
+    default:
+      return "tables of numbers";
   }
 }
 
-/// The setting as the declared kind; a whole number will do where a number is wanted, and an empty
-/// list for any.
-std::optional<Setting> as_declared(const Setting& found, const Setting& declared) {
+/// "X reference_mm=0 step_mm=50", as manifests said it before there were tables.
+Expected<void> take_entry(const std::string& entry, NumberTables& out) {
+  std::istringstream words(entry);
+  std::string name, word;
+  if (!(words >> name)) return fail("an empty entry");
+  NumberTable& table = out[name];
+  while (words >> word) {
+    const std::size_t equals = std::min(word.find('='), word.size());
+    const std::string key = word.substr(0, equals);
+    const char* const end = word.data() + word.size();
+    const char* from = word.data() + std::min(equals + 1, word.size());
+    if (from != end && *from == '+') ++from;
+    double value = 0.0;
+    const auto read = std::from_chars(from, end, value);
+    if (from == end || read.ec != std::errc() || read.ptr != end || !std::isfinite(value))
+      return fail("\"" + entry + "\": wanted " + key + "=NUMBER, found " + word);
+    const auto [first, fresh] = table.emplace(key, value);
+    if (!fresh && first->second != value)
+      return fail("axis " + name + " has " + key + "=" + short_text(first->second, 9) + " and " +
+                  word + ": which of them?");
+  }
+  return {};
+}
+
+}  // namespace
+
+Expected<NumberTables> number_tables_of(const std::vector<std::string>& entries) {
+  NumberTables tables;
+  for (const std::string& entry : entries)
+    if (auto taken = take_entry(entry, tables); !taken) return fail(taken.error());
+  return tables;
+}
+
+namespace {
+
+/// The setting as the declared kind; a whole number will do where a number is wanted, an empty
+/// list for any, and "X number=1" for a table X. Else why not.
+Expected<Setting> as_declared(const Setting& found, const Setting& declared) {
   if (found.index() == declared.index()) return found;
   if (const auto* i = std::get_if<std::int64_t>(&found);
       i != nullptr && std::holds_alternative<double>(declared))
@@ -37,7 +77,11 @@ std::optional<Setting> as_declared(const Setting& found, const Setting& declared
   if (const auto* list = std::get_if<std::vector<std::string>>(&found);
       list != nullptr && list->empty() && std::holds_alternative<std::vector<double>>(declared))
     return Setting(std::vector<double>{});
-  return std::nullopt;
+  if (list != nullptr && std::holds_alternative<NumberTables>(declared)) {
+    auto tables = number_tables_of(*list);
+    return tables ? Expected<Setting>(Setting(std::move(*tables))) : fail(tables.error());
+  }
+  return fail(std::string("wanted ") + kind_of(declared) + ", found " + kind_of(found));
 }
 
 std::string range_complaint(const Option& option, const Setting& setting) {
@@ -48,12 +92,11 @@ std::string range_complaint(const Option& option, const Setting& setting) {
     value = static_cast<double>(*i);
   else
     return {};
-  if ((!option.least || value >= *option.least) && (!option.most || value <= *option.most))
-    return {};
+  if ((!option.min || value >= *option.min) && (!option.max || value <= *option.max)) return {};
   std::string wanted = "wanted";
-  if (option.least) wanted += " at least " + short_text(*option.least, 6);
-  if (option.most)
-    wanted += std::string(option.least ? " and" : "") + " at most " + short_text(*option.most, 6);
+  if (option.min) wanted += " at least " + short_text(*option.min, 6);
+  if (option.max)
+    wanted += std::string(option.min ? " and" : "") + " at most " + short_text(*option.max, 6);
   return wanted + ", found " + short_text(value, 6);
 }
 
@@ -82,7 +125,7 @@ Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
   std::vector<Error> errors;
   std::vector<std::string> known;
   for (const Option& option : plugin.options) {
-    settings.values[option.name] = option.otherwise;
+    settings.values[option.name] = option.default_value;
     known.push_back(option.name);
   }
   for (const RawOptions* source : {&site, &campaign}) {
@@ -97,10 +140,8 @@ Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
             Error{"unknown option " + place + suggestion(name, known), raw.file, raw.line});
         continue;
       }
-      const auto value = as_declared(raw.value, option->otherwise);
-      std::string complaint = value ? range_complaint(*option, *value)
-                                    : std::string("wanted ") + kind_of(option->otherwise) +
-                                          ", found " + kind_of(raw.value);
+      const auto value = as_declared(raw.value, option->default_value);
+      std::string complaint = value ? range_complaint(*option, *value) : value.error().message;
       if (complaint.empty()) complaint = choice_complaint(*option, *value);
       if (complaint.empty())
         settings.values[name] = *value;

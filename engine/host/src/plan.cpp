@@ -126,10 +126,11 @@ Json row_json(const PointTable& table, std::size_t row, const TriplePlan& p,
 
 /// What was written on a command line, as the kind that the option has.
 Setting setting_of(std::string_view text, const Option* declared) {
-  if (declared != nullptr && std::holds_alternative<std::string>(declared->otherwise))
+  if (declared != nullptr && std::holds_alternative<std::string>(declared->default_value))
     return std::string(text);
   if (declared != nullptr &&
-      std::holds_alternative<std::vector<std::string>>(declared->otherwise)) {
+      (std::holds_alternative<std::vector<std::string>>(declared->default_value) ||
+       std::holds_alternative<NumberTables>(declared->default_value))) {
     std::vector<std::string> list;
     for (std::size_t from = 0; from <= text.size();) {
       const std::size_t comma = std::min(text.find(',', from), text.size());

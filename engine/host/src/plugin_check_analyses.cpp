@@ -436,7 +436,7 @@ Verdict analysis_says(const Analysis& a, const Bench& bench) {
   }
   if (!tried) return skipped(no_sample);
   const std::string nothing = "of no sample that it applies to it says anything" + error;
-  return a.info.on_request
+  return a.info.opt_in
              ? skipped(nothing +
                        "; put a campaign with its options into cases/<name>/campaign.toml")
              : failed(nothing);

@@ -97,25 +97,18 @@ void add_encoders(Settings& settings, const Info& info, const Machine& machine) 
     if (o.name != "axes" || o.help.find("counts_per_mm") == o.help.npos) continue;
     auto entries = settings.values.find(o.name);
     if (entries == settings.values.end()) continue;
-    auto* list = std::get_if<std::vector<std::string>>(&entries->second);
-    for (const Axis& axis : machine.axes) {
-      const std::string counts = axis.rotary ? " counts_per_deg=3600" : " counts_per_mm=62500";
-      if (list == nullptr) continue;
-      const auto own = std::find_if(list->begin(), list->end(), [&](const std::string& entry) {
-        return entry.starts_with(axis.name + " ");
-      });
-      if (own == list->end())
-        list->push_back(axis.name + counts);
-      else if (own->find(" counts_per") == own->npos)
-        *own += counts;
-    }
+    auto* tables = std::get_if<NumberTables>(&entries->second);
+    if (tables == nullptr) continue;
+    for (const Axis& axis : machine.axes)
+      (*tables)[axis.name].emplace(axis.rotary ? "counts_per_deg" : "counts_per_mm",
+                                   axis.rotary ? 3600.0 : 62500.0);
   }
 }
 
 Settings or_defaults(Checked<Settings> settled, const Info& info) {
   if (settled) return std::move(*settled);
   Settings defaults;
-  for (const Option& o : info.options) defaults.values[o.name] = o.otherwise;
+  for (const Option& o : info.options) defaults.values[o.name] = o.default_value;
   return defaults;
 }
 

@@ -230,7 +230,7 @@ Verdict table_declared(const Controller& o, const Bench&) {
   if (t.facts.empty()) return failed("it does not say how well anything is known (facts)");
   std::set<std::string> ids;
   for (const auto& fact : t.facts) {
-    if (fact.id.empty() || fact.says.empty()) return failed("a fact without id or words");
+    if (fact.id.empty() || fact.description.empty()) return failed("a fact without id or words");
     if (!ids.insert(fact.id).second) return failed("two facts are called " + fact.id);
   }
   return passed();

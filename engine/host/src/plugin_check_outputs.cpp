@@ -22,7 +22,8 @@ Expected<OutputResult> written(const Output& o, const Sample& s, const Results& 
   if (!o.certificate)
     return o.write({s.campaign, s.observations, results, options, bench.templates});
   if (o.certificate->missing_requirements)
-    o.certificate->missing_requirements({s.campaign, s.observations, results, options, bench.templates});
+    o.certificate->missing_requirements(
+        {s.campaign, s.observations, results, options, bench.templates});
   return o.write({s.campaign, s.observations, results, options, bench.templates, &issue});
 }
 
@@ -119,7 +120,7 @@ Verdict output_writes(const Plugin& o, const Bench& bench) {
     files += r->artifacts.size();
     return unsound_output(*r);
   });
-  if (v.state == Verdict::State::passed && files == 0 && !o.info.on_request)
+  if (v.state == Verdict::State::passed && files == 0 && !o.info.opt_in)
     return failed("it wrote no file of any sample" + first);
   return v;
 }
@@ -200,8 +201,8 @@ Verdict output_hostile(const Plugin& o, const Bench& bench) {
 /// Every value of an option that is worth trying.
 std::vector<Setting> ends_of(const Option& option) {
   std::vector<Setting> ends;
-  if (std::holds_alternative<bool>(option.otherwise)) return {Setting(true), Setting(false)};
-  const bool whole = std::holds_alternative<std::int64_t>(option.otherwise);
+  if (std::holds_alternative<bool>(option.default_value)) return {Setting(true), Setting(false)};
+  const bool whole = std::holds_alternative<std::int64_t>(option.default_value);
   for (const std::string& choice : option.choices) {
     std::int64_t value = 0;
     if (!whole)
@@ -212,17 +213,21 @@ std::vector<Setting> ends_of(const Option& option) {
   const auto number = [&](double x) {
     whole ? ends.emplace_back(static_cast<std::int64_t>(x)) : ends.emplace_back(x);
   };
-  const bool is_number = whole || std::holds_alternative<double>(option.otherwise);
+  const bool is_number = whole || std::holds_alternative<double>(option.default_value);
   if (is_number && option.choices.empty()) {
-    number(option.least.value_or(-1e9));
-    number(option.most.value_or(1e9));
-    if (!option.least || *option.least <= 0.0) number(0.0);
+    number(option.min.value_or(-1e9));
+    number(option.max.value_or(1e9));
+    if (!option.min || *option.min <= 0.0) number(0.0);
   }
-  if (std::holds_alternative<std::string>(option.otherwise) && option.choices.empty())
+  if (std::holds_alternative<std::string>(option.default_value) && option.choices.empty())
     ends.emplace_back(std::string("../\xf0\x9f\x8f\xad"));
-  if (std::holds_alternative<std::vector<std::string>>(option.otherwise))
+  if (std::holds_alternative<std::vector<std::string>>(option.default_value))
     ends.emplace_back(std::vector<std::string>{"", "X", "../x y=z =", std::string(300, 'q')});
-  if (std::holds_alternative<std::vector<double>>(option.otherwise))
+  if (std::holds_alternative<NumberTables>(option.default_value))
+    ends.emplace_back(NumberTables{{"", {}},
+                                   {"X", {{"", 0.0}, {"step_mm", -1e300}}},
+                                   {"../x", {{std::string(300, 'q'), 1e300}}}});
+  if (std::holds_alternative<std::vector<double>>(option.default_value))
     ends.emplace_back(std::vector<double>{0.0, -1.0, 1e300});
   return ends;
 }

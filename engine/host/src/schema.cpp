@@ -86,8 +86,8 @@ class Loaded {
   void note_effects(const std::vector<Effect>& effects) {
     std::string of_axes, in_space;
     for (const Effect& e : effects) {
-      std::string& list = e.of ? in_space : of_axes;
-      if (!e.always) list += (list.empty() ? "" : "|") + quoted_pattern(e.info.name);
+      std::string& list = e.instances ? in_space : of_axes;
+      if (!e.is_nuisance) list += (list.empty() ? "" : "|") + quoted_pattern(e.info.name);
     }
     if (!of_axes.empty()) effects_ = "(" + of_axes + "):.+";
     if (!in_space.empty())
@@ -467,35 +467,60 @@ class SchemaWriter {
   }
 
   void put_option(const Option& option) {
-    static constexpr std::string_view types[] = {"boolean", "integer", "number",
-                                                 "string",  "array",   "array"};
+    static constexpr std::string_view types[] = {"boolean", "integer", "number", "string",
+                                                 "array",   "array",   "object"};
     json_.key(option.name);
     json_.begin_object();
     json_.member("description",
                  option.help + (option.unit.empty() ? "" : " In " + option.unit + "."));
-    json_.member("type", types[option.otherwise.index()]);
-    if (option.otherwise.index() >= 4) {
+    if (std::holds_alternative<NumberTables>(option.default_value))
+      put_number_tables();
+    else
+      json_.member("type", types[option.default_value.index()]);
+    if (std::holds_alternative<NumberTables>(option.default_value)) {
+    } else if (option.default_value.index() >= 4) {
       json_.key("items");
       json_.begin_object();
-      json_.member("type", option.otherwise.index() == 4 ? "number" : "string");
+      json_.member("type", option.default_value.index() == 4 ? "number" : "string");
       json_.end_object();
     } else {
       put_limits(option);
     }
     json_.key("default");
-    std::visit([this](const auto& value) { put_setting(value); }, option.otherwise);
+    std::visit([this](const auto& value) { put_setting(value); }, option.default_value);
+    json_.end_object();
+  }
+
+  /// Or texts, as such tables were written before.
+  void put_number_tables() {
+    json_.key("type");
+    json_.begin_array();
+    json_.value(std::string_view("object"));
+    json_.value(std::string_view("array"));
+    json_.end_array();
+    json_.key("additionalProperties");
+    json_.begin_object();
+    json_.member("type", "object");
+    json_.key("additionalProperties");
+    json_.begin_object();
+    json_.member("type", "number");
+    json_.end_object();
+    json_.end_object();
+    json_.key("items");
+    json_.begin_object();
+    json_.member("type", "string");
     json_.end_object();
   }
 
   void put_limits(const Option& option) {
-    const bool number = option.otherwise.index() == 1 || option.otherwise.index() == 2;
-    if (number && option.least) json_.member("minimum", *option.least);
-    if (number && option.most) json_.member("maximum", *option.most);
+    const bool number = option.default_value.index() == 1 || option.default_value.index() == 2;
+    if (number && option.min) json_.member("minimum", *option.min);
+    if (number && option.max) json_.member("maximum", *option.max);
     if (option.choices.empty()) return;
     json_.key("enum");
     json_.begin_array();
     for (const std::string& choice : option.choices)
-      if (option.otherwise.index() == 1)
+      if (option.default_value.index() == 1)
         json_.value(std::int64_t{std::strtoll(choice.c_str(), nullptr, 10)});
       else
         json_.value(std::string_view(choice));
@@ -512,6 +537,17 @@ class SchemaWriter {
     json_.begin_array();
     for (const T& value : values) put_setting(value);
     json_.end_array();
+  }
+
+  void put_setting(const NumberTables& tables) {
+    json_.begin_object();
+    for (const auto& [name, table] : tables) {
+      json_.key(name);
+      json_.begin_object();
+      for (const auto& [key, value] : table) json_.member(key, value);
+      json_.end_object();
+    }
+    json_.end_object();
   }
 
   Loaded loaded_;

@@ -234,25 +234,23 @@ std::vector<TableDifference> differences(const Tables& present, const Tables& ne
   return out;
 }
 
+namespace {
+const char* backlash_key(bool rotary) { return rotary ? "backlash_deg" : "backlash_mm"; }
+}  // namespace
+
 std::optional<double> stated_backlash(const Settings& options, const std::string& axis,
                                       bool rotary) {
-  std::optional<double> value;
-  const std::string key = rotary ? " backlash_deg=" : " backlash_mm=";
-  for (const std::string& entry : options.texts("axes")) {
-    const std::size_t at = entry.find(key);
-    double number = 0.0;
-    if (entry.rfind(axis + " ", 0) != 0 || at == std::string::npos) continue;
-    const char* const from = entry.data() + at + key.size();
-    if (std::from_chars(from, entry.data() + entry.size(), number).ec == std::errc())
-      value = number / (rotary ? deg_per_rad : 1e3);
-  }
-  return value;
+  const NumberTables axes = options.tables("axes");
+  const auto table = axes.find(axis);
+  if (table == axes.end()) return std::nullopt;
+  const auto number = table->second.find(backlash_key(rotary));
+  if (number == table->second.end()) return std::nullopt;
+  return number->second / (rotary ? deg_per_rad : 1e3);
 }
 
 void state_backlash(Settings& options, const std::string& axis, bool rotary, double value) {
-  auto axes = options.texts("axes");
-  axes.push_back(axis + (rotary ? " backlash_deg=" : " backlash_mm=") +
-                 fixed_text(value * (rotary ? deg_per_rad : 1e3), 9));
+  NumberTables axes = options.tables("axes");
+  axes[axis][backlash_key(rotary)] = rounded_to_places(value * (rotary ? deg_per_rad : 1e3), 9);
   options.values["axes"] = std::move(axes);
 }
 

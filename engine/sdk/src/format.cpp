@@ -160,4 +160,11 @@ void append_shortest(std::string& out, double value) {
   out.append(buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr);
 }
 
+double rounded_to_places(double value, int decimals) {
+  const std::string text = fixed_text(value, decimals);
+  double rounded = value;
+  std::from_chars(text.data(), text.data() + text.size(), rounded);
+  return rounded;
+}
+
 }  // namespace nonio

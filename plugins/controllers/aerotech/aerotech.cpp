@@ -209,7 +209,7 @@ Expected<OutputResult> write(const ControllerInput& in) {
                                    .keys = {"number:", "step", "backlash"},
                                    .files = files,
                                    .parse = parse,
-                                   .wraps = false};
+                                   .turn_end = controllers::TurnEnd::closed};
   const auto jobs = controllers::write_axes(in, writer, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   const Campaign campaign = controllers::with_axes_of(in, *jobs);
@@ -225,9 +225,10 @@ Expected<OutputResult> write(const ControllerInput& in) {
     for (const CrossCurve& c : set.curves)
       if (c.reference != 0.0)
         return controllers::wrong_axes("axis " + c.input +
-                                       ": a plane counts from home, where its entries are 0: "
-                                       "reference_mm must be 0, found " +
-                                       controllers::decimal(c.reference * 1e3, 4) + " mm");
+                                           ": a plane counts from home, where its entries are 0: "
+                                           "reference_mm must be 0, found " +
+                                           controllers::decimal(c.reference * 1e3, 4) + " mm",
+                                       c.input + ".reference_mm");
     if (controllers::oversized(set, in, result)) continue;
     const std::vector<Artifact> file{
         {"aerotech-plane-" + controllers::file_part(set.measurement) + ".cal", plane(set, *axes)}};

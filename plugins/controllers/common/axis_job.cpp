@@ -15,8 +15,7 @@
 namespace nonio::controllers {
 namespace {
 
-Expected<void> check_names(const std::map<std::string, AxisSettings>& settings,
-                           const ControllerInput& input) {
+Expected<void> check_names(const NumberTables& settings, const ControllerInput& input) {
   std::set<std::string> known;
   for (const Axis& a : input.campaign.machine.axes) known.insert(a.name);
   for (const Measurement& m : input.campaign.measurements)
@@ -25,7 +24,8 @@ Expected<void> check_names(const std::map<std::string, AxisSettings>& settings,
   for (const auto& [axis, of_axis] : settings)
     if (known.count(axis) == 0)
       return wrong_axes("option axes: no axis " + axis + "; there are " +
-                        joined({known.begin(), known.end()}, ", "));
+                            joined({known.begin(), known.end()}, ", "),
+                        axis);
   return {};
 }
 
@@ -181,8 +181,8 @@ void refuse_drift(const AxisJob& job, OutputResult& result) {
        {{"axis", job.axis}, {"drift", joined(job.drift, ", ")}},
        job.measurement,
        "Do not compensate yet: find the cause of the drift and measure the axis again. To have the "
-       "table all the same: axes = [\"" +
-           job.axis + " drifted=1\"] under the options of this output."});
+       "table all the same: drifted = 1 under axes." +
+           job.axis + " in the options of this control."});
 }
 
 // Two measurements of one axis (before, after): each has its own files, and the user chooses.
@@ -195,7 +195,8 @@ Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
     const std::string& owner = numbers.emplace(j.number, j.axis).first->second;
     if (j.number != 0 && owner != j.axis)
       return wrong_axes("axes " + owner + " and " + j.axis + " would both be axis number " +
-                        std::to_string(j.number) + ": set axes = [\"" + j.axis + " number=...\"]");
+                            std::to_string(j.number) + ": set number = ... under axes." + j.axis,
+                        j.axis + ".number");
     if (count[j.axis] > 1) {
       j.stem += "-" + file_part(j.measurement);
       if (told.insert(j.axis).second)
@@ -248,8 +249,8 @@ void refuse_number(const std::string& axis, const std::string& measurement,
                              {{"axis", axis}, {"file", file}},
                              measurement,
                              "Say its number in the control: number = ... under [axes." + axis +
-                                 "] of " + file + ", or axes = [\"" + axis +
-                                 " number=...\"] under the options of this output."});
+                                 "] of " + file + ", or under axes." + axis +
+                                 " in the options of this control."});
 }
 
 }  // namespace
@@ -336,8 +337,9 @@ Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
     if (const auto n = job.setting("number");
         n && std::find(keys.begin(), keys.end(), "number:") != keys.end()) {
       if (!(*n >= 1.0 && *n <= 99.0 && *n == std::floor(*n)))
-        return wrong_axes("option axes, axis " + job.axis +
-                          ": number must be a whole number from 1 to 99");
+        return wrong_axes(
+            "option axes, axis " + job.axis + ": number must be a whole number from 1 to 99",
+            job.axis + ".number");
       job.number = static_cast<std::size_t>(*n);
     }
     if (!job.drift.empty() && !job.takes_drift()) {
@@ -358,8 +360,8 @@ Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
 }
 
 Option axes_option(std::string keys) {
-  return {"axes", std::vector<std::string>{}, "",
-          "Settings of one axis, such as \"X step_mm=50\"; there are " + std::move(keys) + "."};
+  return {"axes", NumberTables{}, "",
+          "A table for each axis, such as X.step_mm = 50; there are " + std::move(keys) + "."};
 }
 
 std::vector<Option> step_options() {
@@ -492,9 +494,10 @@ void doubt_backlash(const AxisJob& job, OutputResult& result) {
        {{"mean", job.reversal.mean, deviation_of(job.rotary)}},
        {{"axis", job.axis}, {"setting", job.rotary ? "backlash_deg" : "backlash_mm"}},
        job.measurement,
-       "The control very likely compensates backlash already. Say how much (axes = [\"" + job.axis +
-           (job.rotary ? " backlash_deg" : " backlash_mm") +
-           "=...\"]), so that the new value is the present one less the excess."});
+       "The control very likely compensates backlash already. Say how much (" +
+           (job.rotary ? "backlash_deg" : "backlash_mm") + " = ... under axes." + job.axis +
+           " in the options of this control), so that the new value is the present one less the "
+           "excess."});
 }
 
 void predict(const AxisJob& job, const math::Correction& whole, OutputResult& result) {

@@ -75,7 +75,7 @@ TableSize size_of_curve(const CrossCurve& curve) {
 
 /// Settings of option `axes`; one that is malformed is said where the axes themselves are read.
 std::map<std::string, AxisSettings> known_settings(const ControllerInput& in) {
-  return settings_of_axes(in.options).value_or(std::map<std::string, AxisSettings>{});
+  return settings_of_axes(in.options).value_or(NumberTables{});
 }
 
 /// Both diagonals as read, at the stops of the curves.

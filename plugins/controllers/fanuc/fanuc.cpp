@@ -127,8 +127,8 @@ struct Numbering {
       if (r.axis != s.job.axis && p.low <= r.high && r.low <= p.high)
         return fail("axes " + r.axis + " and " + s.job.axis + " would share numbers " +
                     std::to_string(std::max(r.low, p.low)) + " to " +
-                    std::to_string(std::min(r.high, p.high)) + ": set axes = [\"" + s.job.axis +
-                    " reference_number=...\"]");
+                    std::to_string(std::min(r.high, p.high)) +
+                    ": set reference_number = ... under [options.fanuc.axes." + s.job.axis + "]");
     taken.push_back({s.job.axis, p.low, p.high, !asked && all < 0});
     next = std::max(next, p.high + 1);
     return {};
@@ -218,7 +218,8 @@ Expected<OutputResult> write(const ControllerInput& input) {
                                      {stem + ".txt", words(s, *p)}};
       },
       .parse = parse,
-      .zero_of = o.text("reference_return", "+") != "-" ? 1 : -1,
+      .zero_of = o.text("reference_return", "+") != "-" ? controllers::ZeroOf::plus
+                                                        : controllers::ZeroOf::minus,
       .coarser = {
           "magnification", o.integer("magnification", 1), 100,
           o.flag("extended") ? "" : ", or set extended = true if the control takes -128..127"}};

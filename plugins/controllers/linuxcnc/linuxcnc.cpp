@@ -59,7 +59,8 @@ std::string section_of(const AxisJob& job) {
   const std::string axis = controllers::plain(job.axis);
   return "# the joint of " + axis +
          " is not stated: put these lines into its section; to have it\n" +
-         "# here say axes = [\"" + axis + " joint=...\"], or number in the machine's record\n";
+         "# here say joint = ... under [options.linuxcnc.axes." + axis +
+         "], or number in the machine's record\n";
 }
 
 /// The table itself has no end that shows: how long it is stands beside it.
@@ -186,9 +187,8 @@ Expected<OutputResult> write(const ControllerInput& input) {
                                    .keys = {"joint:", "step", "first", "reference", "backlash"},
                                    .files = files,
                                    .parse = parse,
-                                   .always_directions = true,
-                                   .replaces_backlash = true,
-                                   .wraps = false};
+                                   .directions = controllers::Directions::always_without_backlash,
+                                   .turn_end = controllers::TurnEnd::closed};
   return controllers::write_tables(input, writer);
 }
 

@@ -235,12 +235,13 @@ Expected<void> write_cross(const ControllerInput& in,
 
 Expected<OutputResult> write(const ControllerInput& in) {
   OutputResult result;
-  const controllers::Writer writer{.name = "twincat-cnc",
-                                   .table = *controllers::chosen(declared(), in.options),
-                                   .keys = {"number:", "step", "first", "reference", "backlash"},
-                                   .files = files,
-                                   .parse = parse,
-                                   .replaces_backlash = true};
+  const controllers::Writer writer{
+      .name = "twincat-cnc",
+      .table = *controllers::chosen(declared(), in.options),
+      .keys = {"number:", "step", "first", "reference", "backlash"},
+      .files = files,
+      .parse = parse,
+      .directions = controllers::Directions::by_option_without_backlash};
   const auto jobs = controllers::write_axes(in, writer, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   if (auto done = write_cross(in, *jobs, result); !done) return tl::unexpected<Error>(done.error());

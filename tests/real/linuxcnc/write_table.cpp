@@ -64,7 +64,7 @@ int main(int argc, char** argv) {
   measurement.kind = "axis";
   campaign.measurements.push_back(measurement);
   nonio::Settings options;
-  for (const auto& o : registry.controller.info.options) options.values[o.name] = o.otherwise;
+  for (const auto& o : registry.controller.info.options) options.values[o.name] = o.default_value;
   options.values["type"] = std::int64_t{std::string(argv[2]) == "1" ? 1 : 0};
   const std::vector<nonio::Observations> observations{measured(std::cin)};
   const auto result = registry.controller.write({campaign, observations, {}, options});

@@ -7,6 +7,7 @@
 #include <functional>
 #include <iostream>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -49,13 +50,34 @@ inline Controller linuxcnc_plugin() { return plugin(plugin_linuxcnc); }
 
 using Options = std::map<std::string, Setting>;
 
+/// "X number=1 step_mm=50": a table X.
+inline NumberTables tables_of(const std::vector<std::string>& texts) {
+  NumberTables tables;
+  for (const std::string& text : texts) {
+    std::istringstream words(text);
+    std::string axis, word;
+    words >> axis;
+    NumberTable& table = tables[axis];
+    while (words >> word) {
+      const std::size_t equals = word.find('=');
+      table[word.substr(0, equals)] = std::stod(word.substr(equals + 1));
+    }
+  }
+  return tables;
+}
+
 /// Defaults as declared, then the given ones; an undeclared or differently typed one is a mistake
 /// of the test.
 inline Settings settings(const Controller& output, const Options& given) {
   Settings s;
-  for (const Option& o : output.info.options) s.values[o.name] = o.otherwise;
+  for (const Option& o : output.info.options) s.values[o.name] = o.default_value;
   for (const auto& [name, value] : given) {
     EXPECT_EQ(s.values.count(name), 1U) << "undeclared option " << name;
+    if (const auto* texts = std::get_if<std::vector<std::string>>(&value);
+        texts != nullptr && std::holds_alternative<NumberTables>(s.values[name])) {
+      s.values[name] = tables_of(*texts);
+      continue;
+    }
     EXPECT_EQ(s.values[name].index(), value.index()) << name;
     s.values[name] = value;
   }
@@ -65,17 +87,13 @@ inline Settings settings(const Controller& output, const Options& given) {
 /// As the record of a machine would say it, for the axes whose entries do not: X is the first.
 inline void state_numbers(Settings& s, const Controller& output, const std::vector<Axis>& axes) {
   if (!s.has("axes")) return;
-  auto entries = s.texts("axes");
+  NumberTables tables = s.tables("axes");
   const bool joints = output.info.name == "linuxcnc";  // counts from 0
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    const std::string begin = axes[i].name + " ";
-    bool said = false;
-    for (const std::string& e : entries)
-      said = said || (e.rfind(begin, 0) == 0 && (e.find(" number=") != std::string::npos ||
-                                                 e.find(" joint=") != std::string::npos));
-    if (!said) entries.push_back(begin + "number=" + std::to_string(joints ? i : i + 1));
+    NumberTable& table = tables[axes[i].name];
+    if (!table.contains("joint")) table.emplace("number", static_cast<double>(joints ? i : i + 1));
   }
-  s.values["axes"] = entries;
+  s.values["axes"] = tables;
 }
 
 /// What the control makes of these files, on a machine with these axes.
@@ -90,7 +108,8 @@ inline Expected<std::vector<LoadedTable>> read_back(
 }
 
 /// What it adds to one axis by its own position.
-inline Expected<math::Correction> control(const Controller& output, const std::vector<Artifact>& files,
+inline Expected<math::Correction> control(const Controller& output,
+                                          const std::vector<Artifact>& files,
                                           const Options& options = {},
                                           const std::string& axis = "X") {
   const auto tables = read_back(output, files, options);

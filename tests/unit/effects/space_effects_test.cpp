@@ -196,9 +196,9 @@ TEST(SpaceEffects, AStraightnessLineOfASingleColumnIsNoYaw) {
 }
 
 TEST(SpaceEffects, OnlySetUpsAreAlwaysThere) {
-  for (const auto& kind : set_up_kinds) EXPECT_TRUE(effect(kind).always) << kind;
+  for (const auto& kind : set_up_kinds) EXPECT_TRUE(effect(kind).is_nuisance) << kind;
   for (const auto* kinds : {&space_kinds, &ball_kinds})
-    for (const auto& kind : *kinds) EXPECT_FALSE(effect(kind).always) << kind;
+    for (const auto& kind : *kinds) EXPECT_FALSE(effect(kind).is_nuisance) << kind;
 }
 
 TEST(SpaceEffects, CrossTablesTakeSquarenessAndStraightnessAway) {

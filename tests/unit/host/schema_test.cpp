@@ -37,11 +37,11 @@ Plugins plugins() {
   effect.info = {"lost.motion", "1", "Of an axis"};
   all.add(effect);
   effect.info.name = "set-up";
-  effect.always = true;
+  effect.is_nuisance = true;
   all.add(effect);
   effect.info.name = "yaw";
-  effect.always = false;
-  effect.of = [](const Observations&) { return std::vector<std::string>{}; };
+  effect.is_nuisance = false;
+  effect.instances = [](const Observations&) { return std::vector<std::string>{}; };
   all.add(effect);
   return all;
 }

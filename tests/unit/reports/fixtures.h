@@ -84,7 +84,7 @@ struct Plugins final : Registry {
 
 inline Settings defaults(const Info& info) {
   Settings settings;
-  for (const Option& option : info.options) settings.values[option.name] = option.otherwise;
+  for (const Option& option : info.options) settings.values[option.name] = option.default_value;
   return settings;
 }
 

@@ -36,7 +36,7 @@ struct Workshop {
   Settings options;
 
   Workshop() {
-    for (const Option& o : the_analysis().info.options) options.values[o.name] = o.otherwise;
+    for (const Option& o : the_analysis().info.options) options.values[o.name] = o.default_value;
   }
   Workshop& measured(const std::string& id, const std::vector<math::BallCentre>& centres) {
     Measurement m;

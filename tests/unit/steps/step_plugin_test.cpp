@@ -67,7 +67,7 @@ struct Bench {
   Settings options;
 
   Bench() {
-    for (const Option& o : the_analysis().info.options) options.values[o.name] = o.otherwise;
+    for (const Option& o : the_analysis().info.options) options.values[o.name] = o.default_value;
     for (const char* name : {"X", "Y", "Z"}) {
       Axis axis;
       axis.name = name;

@@ -38,7 +38,7 @@ struct ControlTable {
   struct Fact {
     std::string id;  ///< "sign"; where it is not documented, tables come with a note <plugin>.<id>
     Confidence confidence = Confidence::documented;
-    std::string says;  ///< one sentence, English
+    std::string description;  ///< one sentence, English
   };
 
   std::string name;  ///< as the maker calls it: "kw.ssfk"

@@ -33,6 +33,9 @@ std::string decimal_text(std::int64_t digits, int places, bool negative);
 /// little less (IEEE 754-2019, 5.12.2: 15 digits survive). Never "-0.0". Empty if it is not finite.
 std::string fixed_text(double value, int decimals);
 
+/// The number that `fixed_text` shows.
+double rounded_to_places(double value, int decimals);
+
 /// What `fixed_text` gives, without its quick way, for every finite value.
 std::string fixed_text_by_digits(double value, int decimals);
 

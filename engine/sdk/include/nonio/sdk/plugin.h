@@ -25,11 +25,11 @@ namespace nonio {
 /// One option of a plugin. The host checks kind, range and choices and fills in the default.
 struct Option {
   std::string name;
-  Setting otherwise;                      ///< the default; it also fixes the kind
-  std::string unit;                       ///< "" if none
-  std::string help;                       ///< one sentence
-  std::vector<std::string> choices{};     ///< of a text option: what is allowed; empty: anything
-  std::optional<double> least{}, most{};  ///< of a number: the allowed range
+  Setting default_value;               ///< it also fixes the kind
+  std::string unit;                    ///< "" if none
+  std::string help;                    ///< one sentence
+  std::vector<std::string> choices{};  ///< of a text option: what is allowed; empty: anything
+  std::optional<double> min{}, max{};  ///< of a number: the allowed range, ends included
 };
 
 struct Info {
@@ -39,7 +39,7 @@ struct Info {
   std::vector<Option> options{};
   /// Of an analysis or output: not among "all that apply", only where `[run]` names it or the
   /// campaign has its `[options.<name>]`.
-  bool on_request = false;
+  bool opt_in = false;
 };
 
 struct ReadInput {
@@ -106,10 +106,10 @@ struct Effect {
   /// are the deviation as it is sensed (`Observations::sense_of`). Without it: of each axis, the
   /// columns are the error along the axis, and the engine takes its component where readings are
   /// sensed in another direction.
-  std::function<std::vector<std::string>(const Observations&)> of{};
+  std::function<std::vector<std::string>(const Observations&)> instances{};
   /// An unknown of the set-up (how a mirror stood): in every model that it applies to, never a
   /// candidate.
-  bool always = false;
+  bool is_nuisance = false;
   /// A curve that says what is left and not why ("a reversal for each target"): never a candidate,
   /// offered where no effect explains. Beside other effects it is what they leave of it.
   bool description = false;
@@ -191,10 +191,10 @@ struct ControllerInput {
 /// readings and results -> the tables of one control, and back. `[run] outputs` names it among the
 /// outputs: no output has the same name.
 struct Controller {
-  /// Where it has an option `axes` of texts, the host puts into it what the record of the machine
-  /// says: "X number=1 reference_mm=0 from_mm=0 to_mm=800 resolution_um=1 largest_um=100
-  /// slope_um_per_m=200", and the same of rotary axes (_deg, _arcsec, slope_arcsec_per_deg). What
-  /// of it the control does not need is passed over.
+  /// Where it has an option `axes` of tables, the host puts into it what the record of the machine
+  /// says of each axis: number, reference_mm, from_mm, to_mm, resolution_um, largest_um,
+  /// slope_um_per_m, and the same of rotary axes (_deg, _arcsec, slope_arcsec_per_deg). What of it
+  /// the control does not need is passed over.
   Info info;
   ControlTable table;  ///< what the control takes
   bool (*applies)(const Campaign&) = nullptr;

@@ -57,6 +57,23 @@ struct Sheet {
   std::vector<std::string> words() const;
 };
 
+/// How a control takes the two directions of travel.
+enum class Directions {
+  by_option,                   ///< a table of the mean; of each direction where option `directions`
+                               ///< says so, and the backlash parameter goes on to count
+  by_option_without_backlash,  ///< the same, but beside direction tables the parameter is dead
+  always_without_backlash,     ///< two columns in any case, no backlash parameter beside them
+};
+
+/// How a table of a whole turn ends.
+enum class TurnEnd {
+  repeats,  ///< the control goes on at its beginning
+  closed,   ///< an entry at the end repeats the first one
+};
+
+/// Of tables for each direction: which of them is 0 at the reference.
+enum class ZeroOf { mean, plus, minus };
+
 /// What a plugin is beside its Info; made for each run, with what its options change.
 struct Writer {
   std::string name;  ///< of the plugin: files begin with it, ids of notes too
@@ -65,12 +82,11 @@ struct Writer {
   std::function<Expected<std::vector<Artifact>>(const Sheet&)> files;
   Expected<std::vector<LoadedTable>> (*parse)(const TableInput&) = nullptr;
 
-  bool always_directions = false;  ///< its tables have two columns in any case
-  bool replaces_backlash = false;  ///< beside direction tables the backlash parameter is dead
-  bool wraps = true;               ///< a turn repeats itself; else it is closed by hand
-  bool power_of_two = false;       ///< the step of linear axes
-  int zero_of = 0;                 ///< the direction whose entry is 0 at the reference; 0: the mean
-  double fixed_step = 0.0;         ///< of a control whose points nobody chooses
+  Directions directions = Directions::by_option;
+  TurnEnd turn_end = TurnEnd::repeats;
+  ZeroOf zero_of = ZeroOf::mean;
+  bool power_of_two = false;  ///< the step of linear axes
+  double fixed_step = 0.0;    ///< of a control whose points nobody chooses
   /// The declaration for one axis, where its units are of the axis.
   std::function<Expected<ControlTable>(const AxisJob&, ControlTable)> of_axis{};
   /// Where the points are wanted; else at the targets.
