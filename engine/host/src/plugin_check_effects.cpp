@@ -408,7 +408,7 @@ Verdict effect_explained(const Effect& e, const Bench& bench) {
 /// Of an axis, or of the first thing that an effect in space would be of.
 std::string survives(const Effect& e, const Observations& o, const Axis& axis) {
   std::vector<std::string> names{axis.name};
-  if (e.instances) names = e.of(o);
+  if (e.instances) names = e.instances(o);
   for (const std::string& name : names) {
     Axis one = axis;
     if (e.instances) one = Axis{.name = name};

@@ -145,7 +145,7 @@ bool concerns(const Part& part, const Axis& axis) {
 /// The term of an effect in this part; none if it is not of anything here.
 std::optional<Term> term_of(const Part& part, const Effect& effect, const std::string& of) {
   if (effect.instances) {
-    const auto places = effect.of(part.table);
+    const auto places = effect.instances(part.table);
     if (std::find(places.begin(), places.end(), of) == places.end()) return std::nullopt;
     Axis place;
     place.name = of;
@@ -157,7 +157,7 @@ std::optional<Term> term_of(const Part& part, const Effect& effect, const std::s
 }
 
 std::vector<std::string> offered_by(const Part& part, const Effect& effect) {
-  if (effect.instances) return effect.of(part.table);
+  if (effect.instances) return effect.instances(part.table);
   std::vector<std::string> names;
   for (const Axis& axis : part.axes)
     if (concerns(part, axis)) names.push_back(axis.name);

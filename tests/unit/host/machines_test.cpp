@@ -158,8 +158,13 @@ TEST(Machines, AMistakeInATableOfAnAxisHasItsLine) {
 }
 
 TEST(Machines, WhatIsNoNumberInATextOfAnAxisIsRefused) {
-  for (const char* entry : {"X step_mm", "X step_mm=", "X step_mm=five", "X step_mm=1e999", ""})
-    EXPECT_FALSE(number_tables_of({entry})) << entry;
+  for (const char* entry :
+       {"X step_mm", "X step_mm=", "X step_mm=5,5", "X step_mm=nan", "X step_mm=1e999"}) {
+    const auto tables = number_tables_of({entry});
+    ASSERT_FALSE(tables) << entry;
+    EXPECT_NE(tables.error().message.find("wanted step_mm=NUMBER"), std::string::npos) << entry;
+  }
+  EXPECT_FALSE(number_tables_of({""}));
   EXPECT_EQ(number_tables_of({"X number=3 number=4"}).error().message,
             "axis X has number=3 and number=4: which of them?");
 }
