@@ -78,8 +78,11 @@ ControlTable declared() {
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (has("unreadable")) return fail("expected a table");
   if (has("reads-nothing")) return std::vector<LoadedTable>();
-  auto tables = controllers::parse_list(
-      in, declared(), "spoiled", in.files.front().bytes.find(" entry_minus") != std::string::npos);
+  auto tables =
+      controllers::parse_list(in, declared(), "spoiled",
+                              in.files.front().bytes.find(" entry_minus") != std::string::npos
+                                  ? controllers::Columns::both
+                                  : controllers::Columns::mean);
   if (!tables) return tables;
   for (LoadedTable& t : *tables) {
     const auto entries = [&](const auto& change) {
@@ -153,7 +156,7 @@ Expected<std::vector<Artifact>> files(const controllers::Sheet& given) {
   if (has("columns-exchanged")) std::swap(s.plus, s.minus);
   if (has("minus-backwards")) std::reverse(s.minus.begin(), s.minus.end());
   if (has("rotary-in-radians") && s.job.rotary) both([](double x) { return x / deg_per_rad; });
-  return controllers::list_file(s, "spoiled", s.directions);
+  return controllers::list_file(s, "spoiled", s.columns());
 }
 
 /// What the kit would not let through: points are changed once it has written and read them.

@@ -374,8 +374,9 @@ double wished_step(const AxisJob& job, const Settings& options) {
   return options.number(job.rotary ? "step_deg" : "step_mm") / job.per_si();
 }
 
-bool refused(const AxisJob& job, bool directions, OutputResult& result) {
-  if (job.reversal.kind != math::Reversal::Kind::not_constant || directions) return false;
+bool refused(const AxisJob& job, Columns columns, OutputResult& result) {
+  if (job.reversal.kind != math::Reversal::Kind::not_constant || columns == Columns::both)
+    return false;
   const auto [low, high] = std::minmax_element(job.curve.mean.begin(), job.curve.mean.end());
   if (low == job.curve.mean.end() || job.reversal.largest_left < *high - *low) return false;
   const Quantity q = deviation_of(job.rotary);
@@ -443,12 +444,12 @@ std::vector<std::string> warnings(const AxisJob& job, OutputResult& result) {
   return lines;
 }
 
-std::string reversal_words(const AxisJob& job, bool directions) {
+std::string reversal_words(const AxisJob& job, Columns columns) {
   if (job.from_diagonals)
     return "from the step diagonals of " + plain(job.measurement) + ": no backlash value";
   if (!job.curve.bidirectional()) return "measured from one direction only: no backlash value";
   const std::string mean = deviation_words(job, job.curve.mean_reversal());
-  if (directions)
+  if (columns == Columns::both)
     return "mean reversal B = " + mean +
            ": contained in the two directions of the table; backlash parameter = " +
            with_unit(job, job.present_backlash(), 6) + ", as while it was measured";

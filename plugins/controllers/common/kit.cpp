@@ -249,7 +249,7 @@ Expected<bool> write_axis(AxisJob& job, const ControllerInput& input, const Writ
   const bool directions =
       w.directions == Directions::always_without_backlash ||
       (w.table.bidirectional && input.options.flag("directions") && job.curve.bidirectional());
-  if (refused(job, directions, result)) return false;
+  if (refused(job, directions ? Columns::both : Columns::mean, result)) return false;
   if (job.rotary && !w.table.rotary)
     return fail("axis " + job.axis + ": these tables are of linear axes only");
   const auto table = w.of_axis ? w.of_axis(job, w.table) : Expected<ControlTable>(w.table);
@@ -319,7 +319,7 @@ std::vector<std::string> Sheet::words() const {
   const bool stays = table.backlash.empty() && !directions && job.curve.bidirectional();
   lines.push_back(stays ? "mean reversal B = " + deviation_words(job, job.curve.mean_reversal()) +
                               ": it stays, the table is of the mean of both directions"
-                        : reversal_words(job, directions));
+                        : reversal_words(job, columns()));
   if (!table.backlash.empty() && job.curve.bidirectional())
     lines.push_back(table.backlash + " = " + with_unit(job, backlash(), 6));
   return lines;
@@ -442,10 +442,10 @@ Expected<LoadedTable> loaded(const ControlTable& t, const RawTable& raw) {
 Controller controller(Info info, const ControlTable& table,
                       Expected<OutputResult> (*write)(const ControllerInput&),
                       Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
-                      bool on_request) {
+                      Offered offered) {
   Controller out;
   out.info = std::move(info);
-  out.info.opt_in = on_request;
+  out.info.opt_in = offered == Offered::by_name;
   out.table = table;
   out.applies = has_tables;
   out.write = write;

@@ -178,7 +178,7 @@ std::string words(const Sheet& s, const Parameters& p) {
   line("unit of a number: " + std::to_string(p.magnification) + " x " +
        short_text(o.number(job.rotary ? "detection_unit_arcsec" : "detection_unit_um"), 4) +
        (job.rotary ? " arcsec" : " um"));
-  line(controllers::reversal_words(job, s.directions));
+  line(controllers::reversal_words(job, s.columns()));
   for (const std::string& zero : s.zero_and_size()) line(zero);
   line("controlled axis number " + std::to_string(job.number) + "; reference position at " +
        controllers::with_unit(job, s.reference, 4));
@@ -276,7 +276,7 @@ NONIO_PLUGIN(registry) {
       {"fanuc", "1.1.0",
        "Stored pitch error compensation (3620-3627) and backlash (1851) for FANUC.",
        fanuc::options()},
-      fanuc::declared(), fanuc::write, fanuc::parse, false);
+      fanuc::declared(), fanuc::write, fanuc::parse, controllers::Offered::always);
   controller.merge = fanuc::merge;
   registry.add(std::move(controller));
 }

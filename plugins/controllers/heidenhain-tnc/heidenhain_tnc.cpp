@@ -126,7 +126,7 @@ std::string words(const Sheet& s, const Crosses& crosses, const Layout& layout,
       std::string(job.unit()));
   for (std::string& line : s.zero_and_size()) lines.push_back(std::move(line));
   for (const CrossCurve* c : crosses) lines.push_back("column " + controllers::cross_words(*c));
-  lines.push_back(controllers::reversal_words(job, s.directions));
+  lines.push_back(controllers::reversal_words(job, s.columns()));
   if (job.curve.bidirectional()) {
     lines.emplace_back(layout.listed ? "CfgAxisComp/backLash (401802), positive where the encoder "
                                        "leads the table:"
@@ -283,7 +283,7 @@ NONIO_PLUGIN(registry) {
       {"heidenhain-tnc", "1.1.0",
        "Non-linear axis error tables (.COM, .CMA) and backlash for HEIDENHAIN TNC.",
        heidenhain::options()},
-      heidenhain::declared(), heidenhain::write, heidenhain::parse, false);
+      heidenhain::declared(), heidenhain::write, heidenhain::parse, controllers::Offered::always);
   controller.merge = heidenhain::merge;
   registry.add(std::move(controller));
 }

@@ -218,5 +218,5 @@ NONIO_PLUGIN(registry) {
   registry.add(nonio::controllers::controller(
       {"linuxcnc", "1.1.0", "Screw compensation files (COMP_FILE, types 0 and 1) for LinuxCNC.",
        nonio::options()},
-      nonio::declared(), nonio::write, nonio::parse, false));
+      nonio::declared(), nonio::write, nonio::parse, nonio::controllers::Offered::always));
 }

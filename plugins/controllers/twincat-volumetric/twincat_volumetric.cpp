@@ -157,7 +157,7 @@ Expected<OutputResult> write(const ControllerInput& in) {
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   std::erase_if(*jobs, [&](const AxisJob& j) {
     return j.axis.size() != 1 || j.axis < "X" || j.axis > "Z" ||
-           controllers::refused(j, false, result);
+           controllers::refused(j, controllers::Columns::mean, result);
   });
   const auto twice =
       [all = *jobs](const AxisJob& j) {  // whose positioning is it? Not told apart here

@@ -28,7 +28,8 @@ struct Sheet {
   const AxisJob& job;
   const ControlTable& table;  ///< as declared, with what the options change
   const ControllerInput& input;
-  bool directions = false;       ///< there is a table for each direction
+  bool directions = false;  ///< there is a table for each direction
+  Columns columns() const { return directions ? Columns::both : Columns::mean; }
   math::Grid grid{};             ///< where evenly spaced
   double reference = 0.0;        ///< where an entry is 0; of two columns, their mean; SI
   std::vector<double> position;  ///< SI
@@ -133,11 +134,14 @@ Expected<LoadedTable> loaded(const ControlTable&, const RawTable&);
 /// Notes of all that is not documented.
 void note_facts(const Writer&, OutputResult&);
 
-/// A controller of pitch tables; `on_request`: only where the manifest names it.
+/// Whether a controller is among all that apply, or only where the manifest names it.
+enum class Offered { by_name, always };
+
+/// A controller of pitch tables.
 Controller controller(Info, const ControlTable&,
                       Expected<OutputResult> (*write)(const ControllerInput&),
                       Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
-                      bool on_request = true);
+                      Offered offered = Offered::by_name);
 
 /// The axes of the manifest, and those that are only in readings, as a parser needs them.
 Campaign with_axes_of(const ControllerInput&, const std::vector<AxisJob>&);
