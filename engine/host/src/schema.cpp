@@ -467,23 +467,23 @@ class SchemaWriter {
   }
 
   void put_option(const Option& option) {
-    static constexpr std::string_view types[] = {"boolean", "integer", "number", "string",
-                                                 "array",   "array",   "object"};
+    static constexpr std::string_view types[] = {"boolean", "integer", "number",
+                                                 "string",  "array",   "array"};
     json_.key(option.name);
     json_.begin_object();
     json_.member("description",
                  option.help + (option.unit.empty() ? "" : " In " + option.unit + "."));
+    const std::size_t kind = option.default_value.index();
     if (std::holds_alternative<NumberTables>(option.default_value))
       put_number_tables();
     else
-      json_.member("type", types[option.default_value.index()]);
-    if (std::holds_alternative<NumberTables>(option.default_value)) {
-    } else if (option.default_value.index() >= 4) {
+      json_.member("type", types[kind]);
+    if (kind == 4 || kind == 5) {
       json_.key("items");
       json_.begin_object();
-      json_.member("type", option.default_value.index() == 4 ? "number" : "string");
+      json_.member("type", kind == 4 ? "number" : "string");
       json_.end_object();
-    } else {
+    } else if (kind < 4) {
       put_limits(option);
     }
     json_.key("default");
