@@ -496,7 +496,8 @@ void doubt_backlash(const AxisJob& job, OutputResult& result) {
        {{"axis", job.axis}, {"setting", job.rotary ? "backlash_deg" : "backlash_mm"}},
        job.measurement,
        "The control very likely compensates backlash already. Say how much (" +
-           (job.rotary ? "backlash_deg" : "backlash_mm") + " = ... under axes." + job.axis +
+           std::string(job.rotary ? "backlash_deg" : "backlash_mm") + " = ... under axes." +
+           job.axis +
            " in the options of this control), so that the new value is the present one less the "
            "excess."});
 }

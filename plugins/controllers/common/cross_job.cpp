@@ -56,7 +56,7 @@ std::optional<CrossCurve> curve_of(const Evaluation& e, const Part& part,
   return curve;
 }
 
-void make_zero(CrossCurve& curve, const std::map<std::string, AxisSettings>& settings) {
+void make_zero(CrossCurve& curve, const NumberTables& settings) {
   curve.reference = std::clamp(0.0, curve.position.front(), curve.position.back());
   if (const auto axis = settings.find(curve.input); axis != settings.end())
     if (const auto said = axis->second.find("reference_mm"); said != axis->second.end()) {
@@ -74,7 +74,7 @@ TableSize size_of_curve(const CrossCurve& curve) {
 }
 
 /// Settings of option `axes`; one that is malformed is said where the axes themselves are read.
-std::map<std::string, AxisSettings> known_settings(const ControllerInput& in) {
+NumberTables known_settings(const ControllerInput& in) {
   return settings_of_axes(in.options).value_or(NumberTables{});
 }
 
