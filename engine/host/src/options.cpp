@@ -74,8 +74,8 @@ Expected<Setting> as_declared(const Setting& found, const Setting& declared) {
   if (const auto* i = std::get_if<std::int64_t>(&found);
       i != nullptr && std::holds_alternative<double>(declared))
     return Setting(static_cast<double>(*i));
-  if (const auto* list = std::get_if<std::vector<std::string>>(&found);
-      list != nullptr && list->empty() && std::holds_alternative<std::vector<double>>(declared))
+  const auto* list = std::get_if<std::vector<std::string>>(&found);
+  if (list != nullptr && list->empty() && std::holds_alternative<std::vector<double>>(declared))
     return Setting(std::vector<double>{});
   if (list != nullptr && std::holds_alternative<NumberTables>(declared)) {
     auto tables = number_tables_of(*list);

@@ -221,7 +221,7 @@ Verdict analysis_rows(const Analysis& a, const Bench& bench) {
   Random random = bench.random(5);
   return each_sample(a, bench, any, [&](const Sample& s) {
     const Sample other = changed(s, [&](Observations& o, const Measurement&) {
-      o = in_order(o, shuffled(o.size(), random));
+      o = rearranged(o, shuffled(o.size(), random));
     });
     return same_values(said_of(a, s), said_of(a, other), size_of(s));
   });
@@ -366,15 +366,15 @@ std::vector<std::pair<std::string, Sample>> odd_samples(const Sample& s) {
   const auto with = [&](const char* name, auto change) {
     all.emplace_back(name, changed(s, [&](Observations& o, const Measurement&) { change(o); }));
   };
-  with("no readings", [](Observations& o) { o = in_order(o, {}); });
+  with("no readings", [](Observations& o) { o = rearranged(o, {}); });
   with("one reading", [](Observations& o) {
-    if (o.size() > 0) o = in_order(o, {0});
+    if (o.size() > 0) o = rearranged(o, {0});
   });
   with("one direction", [](Observations& o) {
     std::vector<std::uint32_t> plus;
     for (std::uint32_t i = 0; i < o.size(); ++i)
       if (o.axes.front().approach.empty() || o.axes.front().approach[i] > 0) plus.push_back(i);
-    o = in_order(o, plus);
+    o = rearranged(o, plus);
   });
   with("one target", [](Observations& o) {
     for (auto& axis : o.axes) axis.position.assign(axis.position.size(), 0.1);
@@ -393,7 +393,7 @@ std::vector<std::pair<std::string, Sample>> odd_samples(const Sample& s) {
     std::vector<std::uint32_t> order(20 * o.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i % n;
     const auto runs = *std::max_element(o.run.begin(), o.run.end());
-    o = in_order(o, order);
+    o = rearranged(o, order);
     for (std::uint32_t i = 0; i < o.size(); ++i) o.run[i] += runs * (i / n);
   });
   return all;

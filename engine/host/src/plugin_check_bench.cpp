@@ -58,13 +58,13 @@ std::vector<std::uint32_t> shuffled(std::size_t n, Random& random) {
 
 std::vector<std::pair<std::string, Observations>> odd_tables(const Observations& o) {
   std::vector<std::pair<std::string, Observations>> all;
-  all.emplace_back("no readings", in_order(o, {}));
-  all.emplace_back("one reading", in_order(o, {0}));
+  all.emplace_back("no readings", rearranged(o, {}));
+  all.emplace_back("one reading", rearranged(o, {0}));
   std::vector<std::uint32_t> same(9, static_cast<std::uint32_t>(o.size() / 2)), plus;
-  all.emplace_back("one target", in_order(o, same));
+  all.emplace_back("one target", rearranged(o, same));
   for (std::uint32_t i = 0; i < o.size(); ++i)
     if (o.axes.front().approach.empty() || o.axes.front().approach[i] > 0) plus.push_back(i);
-  all.emplace_back("one direction", in_order(o, plus));
+  all.emplace_back("one direction", rearranged(o, plus));
   Observations bare = o;
   for_each_measured_column([](auto& column) { column.clear(); }, bare);
   all.emplace_back("positions only", bare);

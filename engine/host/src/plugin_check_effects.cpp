@@ -166,7 +166,7 @@ Verdict effect_still(const Effect& e, const Bench& bench) {
     std::vector<std::uint32_t> order(s.table().size());
     std::iota(order.begin(), order.end(), 0U);
     order.push_back(static_cast<std::uint32_t>(order.size() / 2));
-    Observations o = in_order(s.table(), order);
+    Observations o = rearranged(s.table(), order);
     for (auto& axis : o.axes) {
       if (axis.approach.empty() || axis.axis != s.term.axis.name) continue;
       axis.approach.back() = 0;
@@ -190,9 +190,9 @@ Verdict effect_rows(const Effect& e, const Bench& bench) {
         ++seen;
         const auto order = shuffled(s.table().size(), random);
         const auto one = e.columns(s.table(), s.term.axis, shape);
-        const auto two = e.columns(in_order(s.table(), order), s.term.axis, shape);
+        const auto two = e.columns(rearranged(s.table(), order), s.term.axis, shape);
         if (!one || !two || one->size() != two->size()) return "it gives other columns";
-        const Observations other = in_order(s.table(), order);
+        const Observations other = rearranged(s.table(), order);
         for (std::size_t k = 0; k < one->size(); ++k) {
           // a column may count from the first row of a line: the line's zero takes that
           const auto a = without_zeros(s.table(), (*one)[k]), b = without_zeros(other, (*two)[k]);

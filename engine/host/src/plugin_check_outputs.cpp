@@ -132,7 +132,7 @@ Verdict output_empty(const Plugin& o, const Bench& bench) {
     if (std::string why = complaint(o, given, {}, options, bench); !why.empty())
       return "without results: " + why;
     Sample s = given;
-    for (Observations& one : s.observations) one = in_order(one, {});
+    for (Observations& one : s.observations) one = rearranged(one, {});
     if (std::string why = complaint(o, s, results, options, bench); !why.empty())
       return "without readings: " + why;
     if (std::string why = complaint(o, s, {}, options, bench); !why.empty())

@@ -155,7 +155,7 @@ Verdict reader_truncated(const Reader& r, const Bench& bench) {
         if (o->source_line.empty() ? i + 1 < o->size() : o->source_line[i] != last)
           kept.push_back(i);
       std::size_t lost = 0;
-      if (const std::string why = strangers(base, whole.size(), in_order(*o, kept), lost, placed);
+      if (const std::string why = strangers(base, whole.size(), rearranged(*o, kept), lost, placed);
           !why.empty())
         return cut + "it has " + why + ", which the whole file has not";
     }

@@ -2,6 +2,7 @@
 #include "nonio/host/simulate.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>

@@ -155,7 +155,7 @@ std::vector<std::size_t> coordinates_of(const Observations& o) {
 
 void append_run(Part& part, const Observations& listed, const Measurement& m) {
   const Order order = order_of(listed, m.order);
-  const Observations more = in_order(listed, order.rows);
+  const Observations more = rearranged(listed, order.rows);
   if (order.assumed) part.order_assumed.push_back(m.id);
   Observations& to = part.table;
   to.order_known = to.order_known && order.known;

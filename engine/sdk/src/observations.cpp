@@ -35,7 +35,7 @@ void append_measured(Observations& to, const Observations& more) {
   to.deviation.insert(to.deviation.end(), more.deviation.begin(), more.deviation.end());
 }
 
-Observations in_order(const Observations& o, const std::vector<std::uint32_t>& order) {
+Observations rearranged(const Observations& o, const std::vector<std::uint32_t>& order) {
   Observations out = o;
   for_each_column(out, [&](auto& column) {
     if (column.empty()) return;

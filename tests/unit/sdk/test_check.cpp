@@ -117,7 +117,7 @@ TEST(Check, PredictionsMustBeNumbers) {
 }
 
 TEST(Columns, RowsAreKeptAndArrangedInEveryColumn) {
-  const Observations o = in_order(readings(), {2, 0});
+  const Observations o = rearranged(readings(), {2, 0});
   EXPECT_EQ(o.deviation, (std::vector<double>{3e-6, 1e-6}));
   EXPECT_EQ(o.axes[0].approach, (std::vector<std::int8_t>{-1, 1}));
   EXPECT_EQ(o.line, (std::vector<std::uint32_t>{1, 0}));

@@ -122,6 +122,6 @@ void append_measured(Observations& to, const Observations& more);
 /// The rows that `kept` has something at, in their order, and nothing of the others.
 void keep_rows(Observations& o, const std::vector<char>& kept);
 /// Row `order[i]` as row i; lines and their names stay.
-Observations in_order(const Observations& o, const std::vector<std::uint32_t>& order);
+Observations rearranged(const Observations& o, const std::vector<std::uint32_t>& order);
 
 }  // namespace nonio
