@@ -29,7 +29,7 @@ struct Truth : testing::Test {
   const Output& output() const { return plugins.outputs.front(); }
   OutputInput input(const Case& c) const {
     static const Settings none;
-    return {c.campaign, c.observations, c.results, none, templates, nullptr, &issue};
+    return {c.campaign, c.observations, c.results, none, templates, &issue};
   }
   std::vector<std::string> files(const Case& c) const {
     const auto result = output().write(input(c));
