@@ -19,7 +19,7 @@
 #include <utility>
 
 #include "hidden/generator.h"
-#include "nonio/host/plugins.h"
+#include "host/loader/plugins.h"
 #include "nonio/math/distributions.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
@@ -441,7 +441,7 @@ int main(int argc, char** argv) {
         "[--wrong PERCENT]\n");
     return 2;
   }
-  host::Plugins plugins;
+  host::loader::Plugins plugins;
   plugins.load({a->plugins.lexically_normal()});
   if (plugins.effects().empty()) {
     std::fprintf(stderr, "bench_hidden: no effect in %s\n", a->plugins.c_str());

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "hidden/space.h"
-#include "nonio/host/plugins.h"
+#include "host/loader/plugins.h"
 #include "nonio/model/explain.h"
 #include "tally.h"
 
@@ -145,7 +145,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::error_code error;
-  host::Plugins plugins;
+  host::loader::Plugins plugins;
   plugins.load(
       {(fs::read_symlink("/proc/self/exe", error).parent_path() / NONIO_PLUGINS_FROM_PROGRAM)
            .lexically_normal()});

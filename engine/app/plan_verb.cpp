@@ -9,8 +9,8 @@
 
 #include "axis_argument.h"
 #include "campaign_verb.h"
-#include "nonio/host/files.h"
-#include "nonio/host/plan.h"
+#include "host/storage/files.h"
+#include "host/tools/plan.h"
 #include "nonio/sdk/format.h"
 #include "tables.h"
 #include "verbs.h"
@@ -86,9 +86,9 @@ void print_plan(std::size_t number, const math::TriplePlan& p, const math::Tripl
         fixed_text(100.0 * p.cover_x, 2), fixed_text(100.0 * p.cover_y, 2),
         fixed_text(p.gain_EYX(), 2), fixed_text(p.gain_EXY(), 2)})
     std::cout << padded_left(cell, 10);
-  std::cout << "\n       why: " << host::why_listed(p)
-            << "\n       gives up: " << host::gives_up(p, best) << "\n";
-  if (const std::string warning = host::aspect_warning(p); !warning.empty())
+  std::cout << "\n       why: " << host::tools::why_listed(p)
+            << "\n       gives up: " << host::tools::gives_up(p, best) << "\n";
+  if (const std::string warning = host::tools::aspect_warning(p); !warning.empty())
     std::cout << "       warning: " << warning << "\n";
 }
 
@@ -118,15 +118,15 @@ int write_programs(const char* verb, const Common& common, const Programs& p,
   const auto given = settings_of(p.settings);
   if (!given) return complain(verb, given.error().message);
   for (const auto& [name, value] : *given) settings[name] = value;
-  host::Plugins plugins;
+  host::loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
-  const auto files = host::write_programs(plugins, p.control, machine, rows, settings);
+  const auto files = host::tools::write_programs(plugins, p.control, machine, rows, settings);
   if (!files) {
     for (const Error& e : files.error()) complain(verb, e.message);
     return exit_usage;
   }
-  if (auto done = host::publish(fs::absolute(p.out), *files); !done)
+  if (auto done = host::storage::publish(fs::absolute(p.out), *files); !done)
     return complain(verb, done.error().message, exit_failed);
   for (const Artifact& a : *files) {
     const std::string path = (fs::path(p.out) / a.name).string();
@@ -142,11 +142,11 @@ int plan_triples(Plan plan, const Common& common) {
   const auto found = math::plan_triples(plan.wish);
   if (!found) return complain(verb, found.error().message);
   if (common.json)
-    std::cout << host::triples_json(plan.wish, *found);
+    std::cout << host::tools::triples_json(plan.wish, *found);
   else if (!found->plans.empty())
     print_plans(plan, *found);
   if (found->plans.empty()) {
-    return complain(verb, host::why_nothing(*found), exit_failed);
+    return complain(verb, host::tools::why_nothing(*found), exit_failed);
   }
   if (plan.programs.out.empty() && plan.programs.control.empty()) return exit_done;
   if (plan.choose < 1 || plan.choose > static_cast<std::int64_t>(found->plans.size()))

@@ -4,14 +4,14 @@
 #include <iostream>
 #include <string>
 
-#include "nonio/host/files.h"
-#include "nonio/host/machines.h"
-#include "nonio/host/manifest.h"
+#include "host/config/machines.h"
+#include "host/config/manifest.h"
+#include "host/storage/files.h"
 
 namespace {
 
 template <class File>
-std::string verdict(const nonio::host::Checked<File>& read) {
+std::string verdict(const nonio::host::config::Checked<File>& read) {
   if (read) return "ok";
   const nonio::Error& first = read.error().front();
   return std::to_string(first.line) + ": " + first.message;
@@ -23,12 +23,13 @@ int main(int argc, char** argv) {
   const std::string file = argc == 2 ? argv[1] : "";
   if (file != "campaign" && file != "site" && file != "machine") return 2;
   for (std::string path; std::getline(std::cin, path);) {
-    const auto text = nonio::host::read_file(path);
+    const auto text = nonio::host::storage::read_file(path);
     if (!text) return 1;
-    std::cout << (file == "campaign" ? verdict(nonio::host::parse_manifest(*text, "campaign.toml"))
-                  : file == "site"
-                      ? verdict(nonio::host::parse_site(*text, "site.toml"))
-                      : verdict(nonio::host::parse_machine(*text, "machines/S-1.toml", "S-1")))
+    std::cout << (file == "campaign"
+                      ? verdict(nonio::host::config::parse_manifest(*text, "campaign.toml"))
+                  : file == "site" ? verdict(nonio::host::config::parse_site(*text, "site.toml"))
+                                   : verdict(nonio::host::config::parse_machine(
+                                         *text, "machines/S-1.toml", "S-1")))
               << "\n";
   }
 }

@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "host/tables/table_check.h"
 #include "models.h"
-#include "nonio/host/table_check.h"
 
 using namespace workshop;
 
@@ -251,7 +251,7 @@ std::optional<Renewed> renewed(const Kind& k, const Controller& output, const Bl
   r.old = k.control(first->artifacts, b.axis);
   r.was = r.old.backlash.value_or(b.backlash);
   r.bench = bench_of(under(b.measured, r.old, r.was));
-  host::ReadCampaign read;
+  host::reading::ReadCampaign read;
   read.manifest.emplace();
   read.manifest->campaign = r.bench.campaign;
   read.observations = r.bench.observations;
@@ -259,7 +259,7 @@ std::optional<Renewed> renewed(const Kind& k, const Controller& output, const Bl
   Blind told = b;
   told.backlash = r.was;
   const auto& told_or_read = r.old.backlash ? b.settings : told.stated();
-  const auto on = host::what_was_on(read, output, settings(output, with(k, told_or_read)));
+  const auto on = host::tables::what_was_on(read, output, settings(output, with(k, told_or_read)));
   EXPECT_TRUE(on && *on) << who << (on ? "nothing was on" : on.error().message);
   if (!on || !*on) return std::nullopt;
   const Results none;

@@ -9,14 +9,14 @@
 #include <random>
 #include <string>
 
-#include "nonio/host/evaluate.h"
-#include "nonio/host/nearest.h"
+#include "host/evaluation/evaluate.h"
+#include "host/storage/nearest.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio {
 
 TEST(Decision, UpperLimitAfterIso14253) {
-  using host::decide;
+  using host::evaluation::decide;
   EXPECT_EQ(decide(8.0, 1.0, 10.0), Decision::conforms);
   EXPECT_EQ(decide(9.0, 1.0, 10.0), Decision::conforms);  // y = USL - U
   EXPECT_EQ(decide(9.5, 1.0, 10.0), Decision::cannot_be_decided);
@@ -28,7 +28,7 @@ TEST(Decision, UpperLimitAfterIso14253) {
 }
 
 TEST(Decision, UpperLimitAfterIlacG8) {
-  using host::decide;
+  using host::evaluation::decide;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const char* rule : {"ilac-g8-simple", "ilac-g8-guarded"}) {
     const bool guarded = std::string(rule) == "ilac-g8-guarded";
@@ -100,8 +100,9 @@ TEST(Format, QuickWaysGiveTheSameDigits) {
 }
 
 TEST(Suggestion, NearestOrNothing) {
-  EXPECT_EQ(host::suggestion("struture", {"structure", "serial"}), " (nearest: \"structure\")");
-  EXPECT_EQ(host::suggestion("qqqqqq", {"structure", "serial"}), "");
+  EXPECT_EQ(host::storage::suggestion("struture", {"structure", "serial"}),
+            " (nearest: \"structure\")");
+  EXPECT_EQ(host::storage::suggestion("qqqqqq", {"structure", "serial"}), "");
 }
 
 }  // namespace nonio

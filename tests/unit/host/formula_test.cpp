@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nonio/host/formula.h"
+#include "host/config/formula.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,8 @@
 #include <numbers>
 #include <random>
 
-#include "nonio/host/manifest.h"
+#include "host/config/manifest.h"
+#include "host/reading/formula_copy.h"
 #include "nonio/sdk/axis_readings.h"
 
 namespace nonio::host {
@@ -47,7 +48,7 @@ Observations readings(const Axis& axis) {
 }
 
 std::string complaint(const Formula& f, const Axis& axis = x) {
-  const auto e = formula_effect(f, axis);
+  const auto e = config::formula_effect(f, axis);
   if (e) return "accepted";
   EXPECT_EQ(e.error().line, f.line);
   return e.error().message;
@@ -75,7 +76,7 @@ Effect one_column(const char* name, double (*value)(const AxisReadings&, std::si
 }  // namespace
 
 TEST(Formula, ColumnsAreTheTermsOfTheLinearParameters) {
-  const auto e = formula_effect(
+  const auto e = config::formula_effect(
       formula("a*p/(100*mm) + b*d*exp(-t/tau)", {a, b, ranged("tau", Quantity::time, 60, 20, 600)}),
       x);
   ASSERT_TRUE(e) << e.error().message;
@@ -95,7 +96,7 @@ TEST(Formula, ColumnsAreTheTermsOfTheLinearParameters) {
 }
 
 TEST(Formula, RowsOfAnotherAxisAreZero) {
-  const auto e = formula_effect(formula("a*cos(theta/(1*m))", {a}), x);
+  const auto e = config::formula_effect(formula("a*cos(theta/(1*m))", {a}), x);
   ASSERT_TRUE(e) << e.error().message;
   Observations o = readings(x);
   o.axes[0].approach[5] = 0;
@@ -108,10 +109,11 @@ TEST(Formula, RowsOfAnotherAxisAreZero) {
 
 TEST(Formula, ParametersComeInTheirUnits) {
   // 1 um/m is 1e-6 whatever the expression's own units; an angle is an angle.
-  const auto slope = formula_effect(formula("a*p", {{"a", Quantity::deviation_per_length}}), x);
+  const auto slope =
+      config::formula_effect(formula("a*p", {{"a", Quantity::deviation_per_length}}), x);
   ASSERT_TRUE(slope) << slope.error().message;
   EXPECT_NEAR((*slope->columns(readings(x), x, {}))[0][0], -0.5, 1e-12);
-  const auto turn = formula_effect(
+  const auto turn = config::formula_effect(
       formula("a*sin(2*theta) + b*sin(theta/(0.5*rad))",
               {{"a", Quantity::angular_deviation}, {"b", Quantity::angular_deviation}}, c),
       c);
@@ -122,7 +124,7 @@ TEST(Formula, ParametersComeInTheirUnits) {
 }
 
 TEST(Formula, TheSearchCoversTheRangeAndTheStart) {
-  const auto e = formula_effect(
+  const auto e = config::formula_effect(
       formula("a*sin(2*_pi*p/P)", {a, ranged("P", Quantity::length, 0.0123, 0.005, 0.05)}), x);
   ASSERT_TRUE(e) << e.error().message;
   const auto grid = e->shapes[0].grid(readings(x), x);
@@ -186,9 +188,9 @@ TEST(Formula, ValuesThatAreNotFiniteAreRefused) {
               "tau = 0");
   // Only these readings show it.
   const auto e =
-      formula_effect(formula("a/(1 - floor(t/(600*s)) * (1 - floor(t/(660*s))))", {a}), x);
+      config::formula_effect(formula("a/(1 - floor(t/(600*s)) * (1 - floor(t/(660*s))))", {a}), x);
   ASSERT_FALSE(e);
-  const auto rare = formula_effect(formula("a*m/(p-0.5*m)", {a}), x);
+  const auto rare = config::formula_effect(formula("a*m/(p-0.5*m)", {a}), x);
   ASSERT_TRUE(rare) << rare.error().message;
   const auto columns = rare->columns(readings(x), x, {});
   ASSERT_FALSE(columns);
@@ -206,7 +208,7 @@ TEST(Formula, TooManyParameters) {
 }
 
 TEST(Formula, KNeedsAMeasuredTemperature) {
-  const auto e = formula_effect(formula("a*p*K", {{"a", Quantity::expansion}}), x);
+  const auto e = config::formula_effect(formula("a*p*K", {{"a", Quantity::expansion}}), x);
   ASSERT_TRUE(e);
   Observations o = readings(x);
   EXPECT_TRUE(e->applies(o, x));
@@ -225,9 +227,9 @@ TEST(Formula, ACopyIsNamed) {
                  },
                  {20.0, 60.0, 180.0, 540.0})};
   const auto copy = [&](const std::string& text, std::vector<P> parameters) {
-    const auto e = formula_effect(formula(text, std::move(parameters)), x);
+    const auto e = config::formula_effect(formula(text, std::move(parameters)), x);
     EXPECT_TRUE(e) << e.error().message;
-    const auto name = copy_of(o, x, *e, catalogue);
+    const auto name = reading::copy_of(o, x, *e, catalogue);
     EXPECT_TRUE(name) << name.error().message;
     return *name;
   };
@@ -261,8 +263,8 @@ TEST(Formula, AnyBytesGiveAnEffectOrAnError) {
       text += n % 4 == 0 ? std::string(1, static_cast<char>(random() % 256))
                          : pieces[random() % pieces.size()];
     if (n % 3 == 0) text = "a*(" + text + ")+b*P/m";
-    const auto e =
-        formula_effect(formula(text, {a, b, ranged("P", Quantity::length, 0.02, 0.01, 0.03)}), x);
+    const auto e = config::formula_effect(
+        formula(text, {a, b, ranged("P", Quantity::length, 0.02, 0.01, 0.03)}), x);
     if (!e) {
       EXPECT_FALSE(e.error().message.empty());
       continue;
@@ -281,7 +283,9 @@ TEST(Formula, ComesFromTheManifest) {
       "format = 1\n[campaign]\nid = \"a\"\n[[measurement]]\nid = \"X\"\nkind = \"axis\"\naxis = "
       "\"X\"\n"
       "file = \"x.csv\"\n[model]\neffects = [\"scale:X\"]\n[[model.formula]]\n";
-  const auto parse = [&](const std::string& rest) { return parse_manifest(head + rest, "c.toml"); };
+  const auto parse = [&](const std::string& rest) {
+    return config::parse_manifest(head + rest, "c.toml");
+  };
   const auto good = parse(
       "name = \"sag\"\naxis = \"X\"\nexpression = \"a*sin(_pi*p/P)\"\n"
       "parameters = [{ name = \"a\", unit = \"um\" },\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "keys.h"
+#include "host/config/keys.h"
 
 #include <gtest/gtest.h>
 
@@ -8,30 +8,31 @@
 #include <set>
 #include <stdexcept>
 
-#include "nonio/host/manifest.h"
-#include "toml_reader.h"
+#include "host/config/manifest.h"
+#include "host/config/toml_reader.h"
 
 namespace nonio::host {
 namespace {
 
-using Holds = Key::Holds;
+using Holds = config::Key::Holds;
 
 constexpr std::string_view turning[] = {"rotary"};
-constexpr Choice kinds[] = {{"linear"}, {"rotary"}};
-constexpr Key some_keys[] = {
+constexpr config::Choice kinds[] = {{"linear"}, {"rotary"}};
+constexpr config::Key some_keys[] = {
     {.name = "kind", .holds = Holds::text, .help = "", .choices = kinds},
     {.name = "teeth", .holds = Holds::whole, .help = "", .only = {"kind", turning}},
 };
-constexpr Key some = {.name = "some.toml", .holds = Holds::table, .help = "", .keys = some_keys};
+constexpr config::Key some = {
+    .name = "some.toml", .holds = Holds::table, .help = "", .keys = some_keys};
 
 /// What reading a text with these keys says; "threw: ..." if the reader holds it for a mistake of
 /// the program.
-std::string read(const std::string& text, const std::function<void(TableReader&)>& how) {
-  const auto root = parse_toml(text, "some.toml");
+std::string read(const std::string& text, const std::function<void(config::TableReader&)>& how) {
+  const auto root = config::parse_toml(text, "some.toml");
   if (!root) return root.error().message;
   const std::string file = "some.toml";
   std::vector<Error> errors;
-  TableReader reader(*root, some, file, errors);
+  config::TableReader reader(*root, some, file, errors);
   try {
     how(reader);
     reader.finish();
@@ -43,9 +44,9 @@ std::string read(const std::string& text, const std::function<void(TableReader&)
   return all;
 }
 
-void every_key(const Key& table, const std::string& place,
-               const std::function<void(const Key&, const std::string&)>& look) {
-  for (const Key& key : table.keys) {
+void every_key(const config::Key& table, const std::string& place,
+               const std::function<void(const config::Key&, const std::string&)>& look) {
+  for (const config::Key& key : table.keys) {
     const std::string here = place + "." + std::string(key.name);
     look(key, here);
     every_key(key, here, look);
@@ -55,26 +56,27 @@ void every_key(const Key& table, const std::string& place,
 }  // namespace
 
 TEST(Keys, WhatIsReadIsDeclaredAndTheReverse) {
-  const auto kind = [](TableReader& r) { r.text("kind"); };
-  const auto both = [](TableReader& r) {
+  const auto kind = [](config::TableReader& r) { r.text("kind"); };
+  const auto both = [](config::TableReader& r) {
     r.text("kind");
     r.whole("teeth");
   };
   EXPECT_EQ(read("kind = \"linear\"", kind), "");
   EXPECT_EQ(read("kind = \"rotary\"\nteeth = 3", both), "");
-  EXPECT_EQ(read("", [](TableReader& r) { r.text("kinds"); }),
+  EXPECT_EQ(read("", [](config::TableReader& r) { r.text("kinds"); }),
             "threw: some.toml (kinds): read and not declared");
-  EXPECT_EQ(read("", [](TableReader& r) { r.number("kind"); }),
+  EXPECT_EQ(read("", [](config::TableReader& r) { r.number("kind"); }),
             "threw: some.toml (kind): read not as declared");
-  EXPECT_EQ(read("", [](TableReader&) {}), "threw: some.toml (kind): declared and not read");
+  EXPECT_EQ(read("", [](config::TableReader&) {}),
+            "threw: some.toml (kind): declared and not read");
   EXPECT_EQ(read("kind = \"rotary\"", kind), "threw: some.toml (teeth): declared and not read");
 }
 
 TEST(Keys, KnownOnlyUnderACondition) {
-  const auto kind = [](TableReader& r) { r.text("kind"); };
+  const auto kind = [](config::TableReader& r) { r.text("kind"); };
   EXPECT_EQ(read("kind = \"linear\"\nteeth = 3", kind), "2: unknown key teeth\n");
   EXPECT_EQ(read("teeth = 3", kind), "1: unknown key teeth\n");
-  const auto settled = [](TableReader& r) {
+  const auto settled = [](config::TableReader& r) {
     r.text("kind");
     r.settle("kind", "rotary");
     r.whole("teeth");
@@ -84,7 +86,7 @@ TEST(Keys, KnownOnlyUnderACondition) {
 
 TEST(Keys, DeclarationsAreSound) {
   std::size_t seen = 0;
-  const auto look = [&](const Key& key, const std::string& place) {
+  const auto look = [&](const config::Key& key, const std::string& place) {
     ++seen;
     ASSERT_FALSE(key.help.empty()) << place;
     EXPECT_TRUE(std::isupper(static_cast<unsigned char>(key.help.front()))) << place;
@@ -97,51 +99,56 @@ TEST(Keys, DeclarationsAreSound) {
         !key.keys.empty())
         << place;
     std::set<std::string_view> names;
-    for (const Key& inner : key.keys)
+    for (const config::Key& inner : key.keys)
       EXPECT_TRUE(names.insert(inner.name).second) << place << "." << inner.name;
-    for (const Key& inner : key.keys)
-      for (const When* when : {&inner.only, &inner.needed})
-        EXPECT_TRUE(when->key.empty() || when->key == cycle_axis || names.contains(when->key))
+    for (const config::Key& inner : key.keys)
+      for (const config::When* when : {&inner.only, &inner.needed})
+        EXPECT_TRUE(when->key.empty() || when->key == config::cycle_axis ||
+                    names.contains(when->key))
             << place << "." << inner.name;
     // A unit is a part of the name, unless it depends on something else or needs no telling.
     const bool has_suffix =
         key.unit == "um" || key.unit == "arcsec" || key.unit == "K" || key.unit == "MB";
     EXPECT_TRUE(!has_suffix || key.name.find(key.unit) != std::string_view::npos) << place;
   };
-  for (const Key* file : {&campaign_file(), &site_file(), &machine_file(), &specification_file()})
+  for (const config::Key* file : {&config::campaign_file(), &config::site_file(),
+                                  &config::machine_file(), &config::specification_file()})
     every_key(*file, std::string(file->name), look);
   EXPECT_GT(seen, 120U);
 }
 
 TEST(Keys, DefaultsAreThoseOfAnEmptyFile) {
-  const auto site = parse_site("[limits]\n[certificate]\n", "site.toml");
+  const auto site = config::parse_site("[limits]\n[certificate]\n", "site.toml");
   ASSERT_TRUE(site);
-  const Signing signing;
-  const auto otherwise = [](const Key& file, const char* table, const char* key) {
-    return std::string(find_key(find_key(file.keys, table)->keys, key)->otherwise);
+  const config::Signing signing;
+  const auto otherwise = [](const config::Key& file, const char* table, const char* key) {
+    return std::string(config::find_key(config::find_key(file.keys, table)->keys, key)->otherwise);
   };
-  EXPECT_EQ(std::stod(otherwise(site_file(), "limits", "seconds")), site->limits.seconds);
-  EXPECT_EQ(std::stod(otherwise(site_file(), "limits", "memory_MB")), site->limits.memory_MB);
-  EXPECT_EQ(std::stod(otherwise(site_file(), "limits", "disk_seconds")), site->limits.disk_seconds);
-  EXPECT_EQ(otherwise(site_file(), "certificate", "numbering"), site->numbering.pattern);
-  EXPECT_EQ(otherwise(site_file(), "certificate", "register"), site->numbering.register_file);
-  EXPECT_EQ(std::stoi(otherwise(site_file(), "signing", "time_stamp_seconds")),
+  EXPECT_EQ(std::stod(otherwise(config::site_file(), "limits", "seconds")), site->limits.seconds);
+  EXPECT_EQ(std::stod(otherwise(config::site_file(), "limits", "memory_MB")),
+            site->limits.memory_MB);
+  EXPECT_EQ(std::stod(otherwise(config::site_file(), "limits", "disk_seconds")),
+            site->limits.disk_seconds);
+  EXPECT_EQ(otherwise(config::site_file(), "certificate", "numbering"), site->numbering.pattern);
+  EXPECT_EQ(otherwise(config::site_file(), "certificate", "register"),
+            site->numbering.register_file);
+  EXPECT_EQ(std::stoi(otherwise(config::site_file(), "signing", "time_stamp_seconds")),
             signing.time_stamp_seconds);
-  EXPECT_EQ(otherwise(site_file(), "signing", "time_stamp_missing") == "fail",
+  EXPECT_EQ(otherwise(config::site_file(), "signing", "time_stamp_missing") == "fail",
             signing.time_stamp_required);
-  EXPECT_EQ(otherwise(campaign_file(), "model", "compensate") == "model",
+  EXPECT_EQ(otherwise(config::campaign_file(), "model", "compensate") == "model",
             Campaign().compensate_model);
 }
 
 TEST(Keys, RulesOfTexts) {
-  EXPECT_TRUE(obeys("a-1_b.c", campaign_id_rule));
+  EXPECT_TRUE(config::obeys("a-1_b.c", config::campaign_id_rule));
   for (const char* bad : {"A", ".a", "a/b", "summary.json", "a b", "\xC3\xA8"})
-    EXPECT_FALSE(obeys(bad, campaign_id_rule)) << bad;
-  EXPECT_TRUE(obeys(std::string(100, 'a'), campaign_id_rule));
-  EXPECT_FALSE(obeys(std::string(101, 'a'), campaign_id_rule));
-  EXPECT_TRUE(obeys("b-c", {.letters = "a-c-"}));
-  EXPECT_FALSE(obeys("https://x", {.begins = "http://"}));
-  EXPECT_FALSE(obeys("a\\b", {.not_letters = "/\\"}));
+    EXPECT_FALSE(config::obeys(bad, config::campaign_id_rule)) << bad;
+  EXPECT_TRUE(config::obeys(std::string(100, 'a'), config::campaign_id_rule));
+  EXPECT_FALSE(config::obeys(std::string(101, 'a'), config::campaign_id_rule));
+  EXPECT_TRUE(config::obeys("b-c", {.letters = "a-c-"}));
+  EXPECT_FALSE(config::obeys("https://x", {.begins = "http://"}));
+  EXPECT_FALSE(config::obeys("a\\b", {.not_letters = "/\\"}));
 }
 
 }  // namespace nonio::host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nonio/host/manifest.h"
+#include "host/config/manifest.h"
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ std::string complaint(const std::string& good, const std::string& bad) {
   const std::size_t at = text.find(good);
   EXPECT_NE(at, std::string::npos) << good;
   text.replace(at, good.size(), bad);
-  const auto parsed = parse_manifest(text, "campaign.toml");
+  const auto parsed = config::parse_manifest(text, "campaign.toml");
   if (parsed) return "accepted";
   std::string all;
   for (const Error& e : parsed.error()) all += std::to_string(e.line) + ": " + e.message + "\n";
@@ -56,7 +56,7 @@ std::string complaint(const std::string& good, const std::string& bad) {
 }  // namespace
 
 TEST(Manifest, EverythingArrivesInSi) {
-  const auto m = parse_manifest(whole, "campaign.toml");
+  const auto m = config::parse_manifest(whole, "campaign.toml");
   ASSERT_TRUE(m);
   EXPECT_EQ(m->campaign.id, "a-1");
   EXPECT_EQ(m->campaign.date, "2026-11-03");
@@ -134,8 +134,8 @@ TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
 TEST(Manifest, WhereTheOtherAxesStoodStill) {
   const auto parse = [](const std::string& at) {
     std::string text = whole;
-    return parse_manifest(text.replace(text.find("file = "), 0, "at = " + at + "\n"),
-                          "campaign.toml");
+    return config::parse_manifest(text.replace(text.find("file = "), 0, "at = " + at + "\n"),
+                                  "campaign.toml");
   };
   const auto m = parse("{ X = 300, Z = -50.5, C = 1 }");
   ASSERT_TRUE(m) << m.error().front().message;
@@ -151,7 +151,7 @@ TEST(Manifest, WhereTheOtherAxesStoodStill) {
 }
 
 TEST(Manifest, KeysHaveTheirLines) {
-  const auto m = parse_manifest(whole, "campaign.toml");
+  const auto m = config::parse_manifest(whole, "campaign.toml");
   ASSERT_TRUE(m);
   EXPECT_EQ(m->lines.at("campaign.date"), 4U);
   EXPECT_EQ(m->lines.at("machine.axes.Y.travel"), 9U);
@@ -161,31 +161,32 @@ TEST(Manifest, KeysHaveTheirLines) {
 }
 
 TEST(Manifest, AllErrorsAtOnce) {
-  const auto m = parse_manifest("format = 1\nnonsense = 2\n[campaign]\nid = 3\n", "campaign.toml");
+  const auto m =
+      config::parse_manifest("format = 1\nnonsense = 2\n[campaign]\nid = 3\n", "campaign.toml");
   ASSERT_FALSE(m);
   EXPECT_EQ(m.error().size(), 3u);  // the key, the id, no measurement
 }
 
 TEST(Manifest, SalvagesTheIdOfABrokenFile) {
-  EXPECT_EQ(salvage_id("format = 1\n[campaign]\n  id = \"x.1\" # c\n[machine\n"), "x.1");
-  EXPECT_EQ(salvage_id("[campaign]\ndate = 1\n[other]\nid = \"x\"\n"), "");
-  EXPECT_EQ(salvage_id("[campaign]\nid = \"../x\"\n"), "");
-  EXPECT_EQ(salvage_id(""), "");
+  EXPECT_EQ(config::salvage_id("format = 1\n[campaign]\n  id = \"x.1\" # c\n[machine\n"), "x.1");
+  EXPECT_EQ(config::salvage_id("[campaign]\ndate = 1\n[other]\nid = \"x\"\n"), "");
+  EXPECT_EQ(config::salvage_id("[campaign]\nid = \"../x\"\n"), "");
+  EXPECT_EQ(config::salvage_id(""), "");
 }
 
 TEST(Manifest, SiteFile) {
-  const auto site =
-      parse_site("[limits]\nseconds = 5\nmemory_MB = 512\n[database]\nkey = 1\n", "site.toml");
+  const auto site = config::parse_site(
+      "[limits]\nseconds = 5\nmemory_MB = 512\n[database]\nkey = 1\n", "site.toml");
   ASSERT_TRUE(site);
   EXPECT_EQ(site->limits.seconds, 5.0);
   ASSERT_EQ(site->notes.size(), 1u);
   EXPECT_NE(site->notes[0].find("line 4"), std::string::npos) << site->notes[0];
-  EXPECT_FALSE(parse_site("[limits]\nsecond = 5\n", "site.toml"));
+  EXPECT_FALSE(config::parse_site("[limits]\nsecond = 5\n", "site.toml"));
 }
 
 TEST(Manifest, Signing) {
   const auto parse = [](const std::string& keys) {
-    return parse_site("[run]\noutputs = [\"csv\"]\n[signing]\n" + keys, "site.toml");
+    return config::parse_site("[run]\noutputs = [\"csv\"]\n[signing]\n" + keys, "site.toml");
   };
   const std::string key = "pkcs12 = \"k.p12\"\n", password = "password_env = \"P\"\n";
   const auto good = parse(key + password);
@@ -212,28 +213,29 @@ TEST(Options, DefaultsSiteCampaignInThisOrder) {
             {{"n", 2.0, "mm", "", {}, 0.0, 10.0},
              {"word", std::string("a"), "", "", {"a", "b"}, {}, {}}}};
   const auto raw = [](Setting s) {
-    return RawOptions{{"p", {{"n", RawOption{std::move(s), "f", 3}}}}};
+    return config::RawOptions{{"p", {{"n", config::RawOption{std::move(s), "f", 3}}}}};
   };
-  EXPECT_EQ(settle_options(info, {}, {})->number("n"), 2.0);
-  EXPECT_EQ(settle_options(info, raw(3.0), {})->number("n"), 3.0);
-  EXPECT_EQ(settle_options(info, raw(3.0), raw(std::int64_t{4}))->number("n"), 4.0);
-  const auto high = settle_options(info, {}, raw(11.0));
+  EXPECT_EQ(config::settle_options(info, {}, {})->number("n"), 2.0);
+  EXPECT_EQ(config::settle_options(info, raw(3.0), {})->number("n"), 3.0);
+  EXPECT_EQ(config::settle_options(info, raw(3.0), raw(std::int64_t{4}))->number("n"), 4.0);
+  const auto high = config::settle_options(info, {}, raw(11.0));
   ASSERT_FALSE(high);
   EXPECT_EQ(high.error()[0].message,
             "options.p.n: wanted at least 0.00000 and at most 10.0000, found 11.0000");
   EXPECT_EQ(high.error()[0].line, 3u);
-  const auto kind = settle_options(info, {}, raw(std::string("x")));
+  const auto kind = config::settle_options(info, {}, raw(std::string("x")));
   ASSERT_FALSE(kind);
   EXPECT_EQ(kind.error()[0].message, "options.p.n: wanted a number, found a text");
-  const auto word =
-      settle_options(info, {}, {{"p", {{"word", RawOption{std::string("c"), "f", 1}}}}});
+  const auto word = config::settle_options(
+      info, {}, {{"p", {{"word", config::RawOption{std::string("c"), "f", 1}}}}});
   ASSERT_FALSE(word);
   info.options.push_back({"list", std::vector<double>{1.0}, "", ""});
-  const auto list =
-      settle_options(info, {}, {{"p", {{"list", RawOption{std::vector<std::string>{}, "f", 1}}}}});
+  const auto list = config::settle_options(
+      info, {}, {{"p", {{"list", config::RawOption{std::vector<std::string>{}, "f", 1}}}}});
   ASSERT_TRUE(list) << list.error()[0].message;  // [] has no kind of its own
   EXPECT_TRUE(list->numbers("list").empty());
-  const auto unknown = settle_options(info, {}, {{"p", {{"wort", RawOption{1.0, "f", 1}}}}});
+  const auto unknown =
+      config::settle_options(info, {}, {{"p", {{"wort", config::RawOption{1.0, "f", 1}}}}});
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error()[0].message, "unknown option options.p.wort (nearest: \"word\")");
 }

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nonio/host/model_edit.h"
+#include "host/modelling/model_edit.h"
 
 #include <gtest/gtest.h>
 
-#include "nonio/host/model_history.h"
+#include "host/modelling/model_history.h"
 
 namespace nonio::host {
 namespace {
 
 std::string added(const std::string& text, const std::string& effect = "backlash:X") {
-  const auto out = with_effect(text, effect);
+  const auto out = modelling::with_effect(text, effect);
   return out ? *out : "refused: " + out.error().message;
 }
 std::string dropped(const std::string& text, const std::string& effect) {
-  const auto out = without_effect(text, effect);
+  const auto out = modelling::without_effect(text, effect);
   return out ? *out : "refused: " + out.error().message;
 }
 
@@ -71,16 +71,16 @@ TEST(ModelEdit, WithoutATable) {
 }
 
 TEST(ModelEdit, RefusesWhatItCannotDoExactly) {
-  const auto inline_table = with_effect("model = { compensate = \"model\" }\n", "a:X");
+  const auto inline_table = modelling::with_effect("model = { compensate = \"model\" }\n", "a:X");
   ASSERT_FALSE(inline_table);
   EXPECT_NE(inline_table.error().message.find("nothing was changed"), std::string::npos);
   EXPECT_EQ(inline_table.error().file, "campaign.toml");
-  const auto number = with_effect("\n[model]\neffects = 3\n", "a:X");
+  const auto number = modelling::with_effect("\n[model]\neffects = 3\n", "a:X");
   ASSERT_FALSE(number);
   EXPECT_EQ(number.error().line, 3U);
-  EXPECT_FALSE(with_effect("[model]\neffects = [1]\n[[\n", "a:X"));
-  EXPECT_FALSE(without_effect("[model]\neffects = [\"b:X\"]\n", "a:X"));
-  EXPECT_FALSE(without_effect("format = 1\n", "a:X"));
+  EXPECT_FALSE(modelling::with_effect("[model]\neffects = [1]\n[[\n", "a:X"));
+  EXPECT_FALSE(modelling::without_effect("[model]\neffects = [\"b:X\"]\n", "a:X"));
+  EXPECT_FALSE(modelling::without_effect("format = 1\n", "a:X"));
 }
 
 TEST(ModelEdit, Drops) {
@@ -112,18 +112,18 @@ TEST(ModelEdit, DropIsTheReverseOfAdd) {
 }
 
 TEST(ModelHistory, ReadsWhatItWrites) {
-  ModelStep step{.effect = "backlash:X", .rms_before = 4.1e-6, .rms_after = 0.7e-6};
+  modelling::ModelStep step{.effect = "backlash:X", .rms_before = 4.1e-6, .rms_after = 0.7e-6};
   step.floor = 0.6e-6;
-  const std::string line = history_line(step);
+  const std::string line = modelling::history_line(step);
   EXPECT_EQ(line,
             "{\"action\":\"add\",\"effect\":\"backlash:X\",\"rms_before_um\":4.1,"
             "\"rms_after_um\":0.7,\"noise_floor_um\":0.6}\n");
-  const auto read = parse_history(line + "\n" + line);
+  const auto read = modelling::parse_history(line + "\n" + line);
   ASSERT_TRUE(read);
   ASSERT_EQ(read->size(), 2U);
-  EXPECT_EQ(history_line(read->back()), line);
+  EXPECT_EQ(modelling::history_line(read->back()), line);
   EXPECT_FALSE(read->front().cv_before);
-  const auto broken = parse_history(line + "scale:X\n");
+  const auto broken = modelling::parse_history(line + "scale:X\n");
   ASSERT_FALSE(broken);
   EXPECT_EQ(broken.error().line, 2U);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nonio/host/plugins.h"
+#include "host/loader/plugins.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ Controller controller_named(const char* name) {
 
 // [run] outputs names both kinds in one list.
 TEST(Plugins, AnOutputAndAControllerOfOneNameAreAConflict) {
-  Plugins all;
+  loader::Plugins all;
   all.add(controller_named("fanuc"));
   all.add(output_named("fanuc"));
   ASSERT_EQ(all.conflicts().size(), 1U);
@@ -33,7 +33,7 @@ TEST(Plugins, AnOutputAndAControllerOfOneNameAreAConflict) {
 }
 
 TEST(Plugins, AnAbsentOutputIsLookedForAmongControllersToo) {
-  Plugins all;
+  loader::Plugins all;
   all.add(output_named("json"));
   all.add(controller_named("fanuc"));
   EXPECT_NE(all.absence("output", "fanuk").find("nearest: \"fanuc\""), std::string::npos);
@@ -41,10 +41,10 @@ TEST(Plugins, AnAbsentOutputIsLookedForAmongControllersToo) {
 }
 
 TEST(Plugins, TheCatalogueHasEveryKind) {
-  Plugins all;
+  loader::Plugins all;
   all.add(output_named("json"));
   all.add(controller_named("fanuc"));
-  const Plugins described(all.catalogue());
+  const loader::Plugins described(all.catalogue());
   ASSERT_EQ(described.outputs().size(), 1U);
   ASSERT_EQ(described.controllers().size(), 1U);
   EXPECT_EQ(described.controllers().front().info.name, "fanuc");

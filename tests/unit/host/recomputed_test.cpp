@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "recomputed.h"
+#include "host/certificates/recomputed.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ std::string results(const std::string& value, const std::string& more = {}) {
 }
 
 std::string why(const std::string& attached, const std::string& again) {
-  const auto same = same_values(attached, again);
+  const auto same = certificates::same_values(attached, again);
   return same ? "" : same.error().message;
 }
 
@@ -57,7 +57,7 @@ std::string dcc(const std::string& value, const std::string& unit,
 
 sign::Check::State state(const std::string& xml, const std::string& json) {
   const sign::Attachment with{"results.json", json, {}, {}, {}};
-  return check_dcc({"dcc.xml", xml, {}, {}, {}}, &with).state;
+  return certificates::check_dcc({"dcc.xml", xml, {}, {}, {}}, &with).state;
 }
 
 TEST(Dcc, ItsNumbersAreThoseOfTheResults) {

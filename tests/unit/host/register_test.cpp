@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nonio/host/register.h"
+#include "host/certificates/register.h"
 
 #include <gtest/gtest.h>
 #include <pwd.h>
@@ -12,14 +12,17 @@
 #include <random>
 #include <set>
 
-#include "database.h"
+#include "host/config/number_pattern.h"
+#include "host/storage/database.h"
 
 namespace nonio::host {
 namespace {
 namespace fs = std::filesystem;
 
-const Inputs first_data = {{"campaign.toml", "aa"}, {"file x.csv", "bb"}, {"site.toml", "cc"}};
-const Inputs other_readings = {{"campaign.toml", "aa"}, {"file x.csv", "b2"}, {"site.toml", "cc"}};
+const reading::Inputs first_data = {
+    {"campaign.toml", "aa"}, {"file x.csv", "bb"}, {"site.toml", "cc"}};
+const reading::Inputs other_readings = {
+    {"campaign.toml", "aa"}, {"file x.csv", "b2"}, {"site.toml", "cc"}};
 const std::string day = "2026-11-21";
 
 class RegisterTest : public testing::Test {
@@ -30,20 +33,22 @@ class RegisterTest : public testing::Test {
   }
   ~RegisterTest() override { fs::remove_all(site_); }
 
-  Register open() const {
-    auto opened = Register::open(site_, numbering_);
+  certificates::Register open() const {
+    auto opened = certificates::Register::open(site_, numbering_);
     EXPECT_TRUE(opened) << opened.error().message;
     return std::move(*opened);
   }
-  static Certificate drawn(Register& r, const std::string& campaign, const Inputs& data,
-                           const std::string& today = day) {
+  static evaluation::Certificate drawn(certificates::Register& r, const std::string& campaign,
+                                       const reading::Inputs& data,
+                                       const std::string& today = day) {
     auto c = r.draw(campaign, data, today);
     EXPECT_TRUE(c) << c.error().message;
-    return c ? *c : Certificate{};
+    return c ? *c : evaluation::Certificate{};
   }
-  static Certificate issued(Register& r, const std::string& campaign, const Inputs& data,
-                            const std::string& today = day) {
-    Certificate c = drawn(r, campaign, data, today);
+  static evaluation::Certificate issued(certificates::Register& r, const std::string& campaign,
+                                        const reading::Inputs& data,
+                                        const std::string& today = day) {
+    evaluation::Certificate c = drawn(r, campaign, data, today);
     EXPECT_FALSE(c.issued);
     c.output = "certificate";
     c.templates_sha256 = "tt";
@@ -54,27 +59,27 @@ class RegisterTest : public testing::Test {
         {"dcc", "dcc.xml", "<?xml", "no answer"}};
     auto done = r.issue(c, campaign, data);
     EXPECT_TRUE(done) << done.error().message;
-    return done ? *done : Certificate{};
+    return done ? *done : evaluation::Certificate{};
   }
   static std::vector<std::string> files_of(const Issue& issue) {
     std::vector<std::string> names;
     for (const FileChange& change : issue.changes) names.push_back(change.file);
     return names;
   }
-  std::vector<RegisterEntry> entries() const {
-    auto all = Register::entries(site_, numbering_);
+  std::vector<certificates::RegisterEntry> entries() const {
+    auto all = certificates::Register::entries(site_, numbering_);
     EXPECT_TRUE(all) << all.error().message;
-    return all ? *all : std::vector<RegisterEntry>{};
+    return all ? *all : std::vector<certificates::RegisterEntry>{};
   }
-  RegisterEntry entry(const std::string& number) const {
-    for (const RegisterEntry& e : entries())
+  certificates::RegisterEntry entry(const std::string& number) const {
+    for (const certificates::RegisterEntry& e : entries())
       if (e.number == number) return e;
     ADD_FAILURE() << "no entry " << number;
     return {};
   }
 
   fs::path site_;
-  Numbering numbering_;
+  config::Numbering numbering_;
 };
 
 TEST_F(RegisterTest, NothingIsMadeByLooking) {
@@ -83,13 +88,13 @@ TEST_F(RegisterTest, NothingIsMadeByLooking) {
 }
 
 TEST_F(RegisterTest, WhatWasIssuedComesBackAsItWas) {
-  Register r = open();
-  const Certificate c = issued(r, "c1", first_data);
+  certificates::Register r = open();
+  const evaluation::Certificate c = issued(r, "c1", first_data);
   EXPECT_EQ(c.issue.number, "2026-0001");
   EXPECT_EQ(c.issue.date, day);
   EXPECT_EQ(c.issue.replaces, "");
-  Register later = open();
-  const Certificate again = drawn(later, "c1", first_data, "2027-03-01");
+  certificates::Register later = open();
+  const evaluation::Certificate again = drawn(later, "c1", first_data, "2027-03-01");
   EXPECT_TRUE(again.issued);
   EXPECT_EQ(again.issue.number, c.issue.number);
   EXPECT_EQ(again.issue.date, day);
@@ -108,8 +113,8 @@ TEST_F(RegisterTest, WhatWasIssuedComesBackAsItWas) {
 
 /// The name is stated; the account is the operating system's.
 TEST_F(RegisterTest, TheAccountIsNotedBesideTheName) {
-  Register r = open();
-  Certificate c = drawn(r, "c1", first_data);
+  certificates::Register r = open();
+  evaluation::Certificate c = drawn(r, "c1", first_data);
   c.output = "certificate", c.results = "{}";
   c.released = R"({"released": {"by": "B. Sample"}})";
   ASSERT_TRUE(r.issue(c, "c1", first_data));
@@ -128,7 +133,7 @@ TEST_F(RegisterTest, TheAccountIsNotedBesideTheName) {
 }
 
 TEST_F(RegisterTest, ANumberThatWasNotIssuedIsUsedAgainAndSaysWhy) {
-  Register r = open();
+  certificates::Register r = open();
   EXPECT_EQ(drawn(r, "c1", first_data).issue.number, "2026-0001");
   EXPECT_EQ(drawn(r, "c2", first_data).issue.number, "2026-0002");
   EXPECT_NE(entry("2026-0001").reason, "");
@@ -136,7 +141,7 @@ TEST_F(RegisterTest, ANumberThatWasNotIssuedIsUsedAgainAndSaysWhy) {
   EXPECT_EQ(entry("2026-0001").state, "drawn");
   EXPECT_EQ(entry("2026-0001").reason, "the key is gone");
   EXPECT_NE(entry("2026-0002").reason, "the key is gone");
-  const Certificate c = issued(r, "c1", other_readings, "2026-12-24");
+  const evaluation::Certificate c = issued(r, "c1", other_readings, "2026-12-24");
   EXPECT_EQ(c.issue.number, "2026-0001");
   EXPECT_EQ(entry("2026-0001").date, "2026-12-24");
   EXPECT_EQ(entry("2026-0001").reason, "");
@@ -145,9 +150,9 @@ TEST_F(RegisterTest, ANumberThatWasNotIssuedIsUsedAgainAndSaysWhy) {
 }
 
 TEST_F(RegisterTest, OtherDataAreAnAmendmentThatNamesWhatItReplaces) {
-  Register r = open();
+  certificates::Register r = open();
   issued(r, "c1", first_data);
-  const Certificate second = issued(r, "c1", other_readings, "2026-11-30");
+  const evaluation::Certificate second = issued(r, "c1", other_readings, "2026-11-30");
   EXPECT_EQ(second.issue.number, "2026-0002");
   EXPECT_EQ(second.issue.replaces, "2026-0001");
   EXPECT_EQ(second.issue.replaces_date, day);
@@ -156,22 +161,22 @@ TEST_F(RegisterTest, OtherDataAreAnAmendmentThatNamesWhatItReplaces) {
   EXPECT_EQ(entry("2026-0001").replaced_by, "2026-0002");
   EXPECT_EQ(files_of(drawn(r, "c1", other_readings).issue), files_of(second.issue));
   // The data of the first again: what was replaced does not come back.
-  const Inputs more = {{"campaign.toml", "aa"}, {"file y.csv", "bb"}, {"site.toml", "c2"}};
+  const reading::Inputs more = {{"campaign.toml", "aa"}, {"file y.csv", "bb"}, {"site.toml", "c2"}};
   issued(r, "c1", first_data, "2026-11-30");
-  const Certificate fourth = issued(r, "c1", more, "2026-11-30");
+  const evaluation::Certificate fourth = issued(r, "c1", more, "2026-11-30");
   EXPECT_EQ(fourth.issue.replaces, "2026-0003");
   EXPECT_EQ(files_of(fourth.issue), (std::vector<std::string>{"y.csv", "site.toml", "x.csv"}));
 }
 
 TEST_F(RegisterTest, WhatIsWithdrawnIsIssuedAnew) {
-  Register r = open();
+  certificates::Register r = open();
   issued(r, "c1", first_data);
   issued(r, "c2", first_data);
   drawn(r, "c3", first_data);
   EXPECT_TRUE(r.withdraw("2026-0001", "no time stamp"));
   EXPECT_EQ(entry("2026-0001").state, "withdrawn");
   EXPECT_EQ(entry("2026-0001").reason, "no time stamp");
-  const Certificate anew = issued(r, "c1", first_data);
+  const evaluation::Certificate anew = issued(r, "c1", first_data);
   EXPECT_EQ(anew.issue.number, "2026-0004");
   EXPECT_EQ(anew.issue.replaces, "2026-0001");
   EXPECT_TRUE(anew.issue.changes.empty());
@@ -184,40 +189,40 @@ TEST_F(RegisterTest, WhatIsWithdrawnIsIssuedAnew) {
 }
 
 TEST_F(RegisterTest, TheSequenceBeginsAnewWithTheYearOnlyIfItIsInThePattern) {
-  Register r = open();
+  certificates::Register r = open();
   EXPECT_EQ(drawn(r, "c1", first_data, "2026-12-31").issue.number, "2026-0001");
   EXPECT_EQ(drawn(r, "c2", first_data, "2027-01-01").issue.number, "2027-0001");
   EXPECT_EQ(drawn(r, "c3", first_data, "2026-12-31").issue.number, "2026-0002");
   numbering_.pattern = "LAT 1-{number}";
-  Register other = open();
+  certificates::Register other = open();
   EXPECT_EQ(drawn(other, "c4", first_data, "2026-12-31").issue.number, "LAT 1-1");
   EXPECT_EQ(drawn(other, "c5", first_data, "2027-01-01").issue.number, "LAT 1-2");
   // Another width is the same sequence, and a number that another pattern gave is passed over.
   numbering_.pattern = "{year}-{number:2}";
-  Register narrow = open();
+  certificates::Register narrow = open();
   EXPECT_EQ(drawn(narrow, "c6", first_data).issue.number, "2026-03");
   numbering_.pattern = "2026-0{number}";
-  Register strange = open();
+  certificates::Register strange = open();
   EXPECT_EQ(drawn(strange, "c7", first_data).issue.number, "2026-01");
   EXPECT_EQ(drawn(strange, "c8", first_data).issue.number, "2026-02");
   EXPECT_EQ(drawn(strange, "c9", first_data).issue.number, "2026-04");
 }
 
 TEST(Number, Text) {
-  EXPECT_EQ(*number_text("{year}-{number:4}", "2026", 12), "2026-0012");
-  EXPECT_EQ(*number_text("{number}", "2026", 12), "12");
-  EXPECT_EQ(*number_text("LAT 123-{year}{number:3}", "2026", 12345), "LAT 123-202612345");
+  EXPECT_EQ(*config::number_text("{year}-{number:4}", "2026", 12), "2026-0012");
+  EXPECT_EQ(*config::number_text("{number}", "2026", 12), "12");
+  EXPECT_EQ(*config::number_text("LAT 123-{year}{number:3}", "2026", 12345), "LAT 123-202612345");
   for (const std::string pattern :
        {"", "x", "{number:0}", "{number:12}", "{number}{number}", "{month}-{number}", "../{number}",
         "a/{number}", ".{number}", " {number}", "{number} ", "a\n{number}", "a\x7f{number}",
         "N\xC2\xBA{number}", "{number}{"})
-    EXPECT_FALSE(number_text(pattern, "2026", 1)) << pattern;
-  EXPECT_FALSE(number_text(std::string(60, 'x') + "{number}", "2026", 1));
+    EXPECT_FALSE(config::number_text(pattern, "2026", 1)) << pattern;
+  EXPECT_FALSE(config::number_text(std::string(60, 'x') + "{number}", "2026", 1));
 }
 
 TEST_F(RegisterTest, TwoRunsAtOnceIssueOnce) {
-  Register a = open(), b = open();
-  Certificate of_a = drawn(a, "c1", first_data), of_b = drawn(b, "c1", first_data);
+  certificates::Register a = open(), b = open();
+  evaluation::Certificate of_a = drawn(a, "c1", first_data), of_b = drawn(b, "c1", first_data);
   EXPECT_EQ(of_a.issue.number, of_b.issue.number);
   of_a.files = {{"certificate", "certificate.pdf", "A", ""}};
   of_b.files = {{"certificate", "certificate.pdf", "B", ""}};
@@ -233,20 +238,21 @@ TEST_F(RegisterTest, TwoRunsAtOnceIssueOnce) {
 TEST_F(RegisterTest, OnlyAFileInsideTheSiteThatIsARegister) {
   for (const char* path : {"/tmp/x.sqlite", "../x.sqlite", "a/../../x.sqlite", ""}) {
     numbering_.register_file = path;
-    EXPECT_FALSE(Register::open(site_, numbering_)) << path;
+    EXPECT_FALSE(certificates::Register::open(site_, numbering_)) << path;
   }
   numbering_.register_file = "folder/numbers.sqlite";
-  Register r = open();
+  certificates::Register r = open();
   drawn(r, "c1", first_data);
   EXPECT_TRUE(fs::exists(site_ / "folder/numbers.sqlite"));
-  auto foreign = Database::open(site_ / "foreign.sqlite", Database::Use::create);
+  auto foreign = storage::Database::open(site_ / "foreign.sqlite", storage::Database::Use::create);
   foreign->script("CREATE TABLE t(x)");
   numbering_.register_file = "foreign.sqlite";
-  EXPECT_FALSE(Register::open(site_, numbering_));
-  auto newer = Database::open(site_ / "folder/numbers.sqlite", Database::Use::write);
+  EXPECT_FALSE(certificates::Register::open(site_, numbering_));
+  auto newer =
+      storage::Database::open(site_ / "folder/numbers.sqlite", storage::Database::Use::write);
   newer->script("PRAGMA user_version = 3");
   numbering_.register_file = "folder/numbers.sqlite";
-  EXPECT_FALSE(Register::open(site_, numbering_));
+  EXPECT_FALSE(certificates::Register::open(site_, numbering_));
 }
 
 /// Ends the test program's child in the middle of whatever it does.
@@ -269,7 +275,7 @@ TEST_F(RegisterTest, ProcessesAtOnceAndKilledOnesLoseAndRepeatNothing) {
       const pid_t child = ::fork();
       if (child == 0) {
         for (int i = 0;; ++i) {
-          auto r = Register::open(site_, numbering_);
+          auto r = certificates::Register::open(site_, numbering_);
           const std::string campaign =
               "c" + std::to_string(round) + "-" + std::to_string(w) + "-" + std::to_string(i);
           auto c = r->draw(campaign, first_data, day);
@@ -286,8 +292,8 @@ TEST_F(RegisterTest, ProcessesAtOnceAndKilledOnesLoseAndRepeatNothing) {
   const auto all = entries();
   std::set<std::string> numbers, orders;
   std::size_t issued = 0;
-  Register r = open();
-  for (const RegisterEntry& e : all) {
+  certificates::Register r = open();
+  for (const certificates::RegisterEntry& e : all) {
     numbers.insert(e.number);
     if (e.state == "drawn") {
       EXPECT_NE(e.reason, "");
@@ -306,22 +312,23 @@ TEST_F(RegisterTest, ProcessesAtOnceAndKilledOnesLoseAndRepeatNothing) {
                               [](const auto& a, const auto& b) {
                                 return std::stoul(a.substr(5)) < std::stoul(b.substr(5));
                               }),
-            *number_text(numbering_.pattern, "2026", all.size()));
+            *config::number_text(numbering_.pattern, "2026", all.size()));
   EXPECT_GT(issued, 0U);
   EXPECT_EQ(r.draw("another", first_data, day)->issue.number,
-            *number_text(numbering_.pattern, "2026", all.size() + 1));
+            *config::number_text(numbering_.pattern, "2026", all.size() + 1));
 }
 
 TEST_F(RegisterTest, ATransactionThatWasCutShortDidNotHappen) {
   {
-    Register r = open();
+    certificates::Register r = open();
     issued(r, "c1", first_data);
   }
   const pid_t child = ::fork();
   if (child == 0) {
-    auto file = Database::open(site_ / numbering_.register_file, Database::Use::write);
+    auto file =
+        storage::Database::open(site_ / numbering_.register_file, storage::Database::Use::write);
     file->rows("PRAGMA cache_size = 1");  // so that it is written before the end
-    Database::Transaction transaction(*file);
+    storage::Database::Transaction transaction(*file);
     for (int i = 0; i < 200; ++i)
       file->rows(
           "INSERT INTO certificates(number, campaign, state, date, reason) VALUES(?, ?, "
@@ -334,7 +341,7 @@ TEST_F(RegisterTest, ATransactionThatWasCutShortDidNotHappen) {
   EXPECT_TRUE(fs::exists(site_ / (numbering_.register_file + "-journal")));
   EXPECT_EQ(entries().size(), 1U);
   EXPECT_EQ(entry("2026-0001").campaign, "c1");
-  Register r = open();
+  certificates::Register r = open();
   EXPECT_TRUE(drawn(r, "c1", first_data).issued);
 }
 

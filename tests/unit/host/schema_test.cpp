@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nonio/host/schema.h"
+#include "host/tools/schema.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "nonio/host/plugins.h"
+#include "host/loader/plugins.h"
 
 namespace nonio::host {
 namespace {
@@ -14,8 +14,8 @@ using Json = nlohmann::json;
 
 /// Two kinds of plugins with one name, one option of each kind, an effect of an axis, one in space
 /// and one of the set-up.
-Plugins plugins() {
-  Plugins all;
+loader::Plugins plugins() {
+  loader::Plugins all;
   Analysis analysis;
   analysis.info = {"both",
                    "1",
@@ -49,7 +49,7 @@ Plugins plugins() {
 }  // namespace
 
 TEST(Schema, HoldsTheNamesOfWhatIsLoaded) {
-  const Json s = Json::parse(campaign_schema(plugins()));
+  const Json s = Json::parse(tools::campaign_schema(plugins()));
   const Json& p = s["properties"];
   EXPECT_EQ(p["run"]["properties"]["analyses"]["items"]["enum"], Json({"both", "model-fit"}));
   EXPECT_EQ(p["run"]["properties"]["outputs"]["items"]["enum"], Json({"table"}));
@@ -61,7 +61,7 @@ TEST(Schema, HoldsTheNamesOfWhatIsLoaded) {
 }
 
 TEST(Schema, HoldsTheOptionsOfPlugins) {
-  const Json s = Json::parse(site_schema(plugins()));
+  const Json s = Json::parse(tools::site_schema(plugins()));
   const Json& options = s["properties"]["options"];
   EXPECT_EQ(options["additionalProperties"], false);
   const Json& both = options["properties"]["both"];
@@ -83,7 +83,8 @@ TEST(Schema, HoldsTheOptionsOfPlugins) {
 }
 
 TEST(Schema, IsGoodWithoutPlugins) {
-  for (const std::string& text : {campaign_schema(Plugins()), site_schema(Plugins())}) {
+  for (const std::string& text :
+       {tools::campaign_schema(loader::Plugins()), tools::site_schema(loader::Plugins())}) {
     const Json s = Json::parse(text);
     EXPECT_EQ(s["$schema"], "http://json-schema.org/draft-07/schema#");
     EXPECT_EQ(text.find("\"enum\": []"), std::string::npos);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nonio/host/simulate.h"
+#include "host/tools/simulate.h"
 
 #include <gtest/gtest.h>
 
@@ -90,12 +90,12 @@ struct Row {
   double target = 0.0, deviation = 0.0, time = 0.0;
 };
 
-std::vector<Row> rows(const Simulated& s) {
+std::vector<Row> rows(const tools::Simulated& s) {
   std::istringstream lines(s.campaign.front().bytes);
   std::vector<Row> all;
   std::string line;
   std::getline(lines, line);
-  EXPECT_EQ(line, simulated_mark);
+  EXPECT_EQ(line, tools::simulated_mark);
   std::getline(lines, line);
   while (std::getline(lines, line)) {
     std::istringstream fields(line);
@@ -111,8 +111,8 @@ std::vector<Row> rows(const Simulated& s) {
   return all;
 }
 
-Simulated made(const std::string& text) {
-  auto s = simulate(text, "spec.toml", effects());
+tools::Simulated made(const std::string& text) {
+  auto s = tools::simulate(text, "spec.toml", effects());
   if (s) return std::move(*s);
   ADD_FAILURE() << s.error().front().line << ": " << s.error().front().message;
   return {};
@@ -120,7 +120,7 @@ Simulated made(const std::string& text) {
 
 /// The only complaint.
 Error complaint(const std::string& text) {
-  const auto s = simulate(text, "spec.toml", effects());
+  const auto s = tools::simulate(text, "spec.toml", effects());
   if (s) return Error{"nothing was complained of"};
   EXPECT_EQ(s.error().size(), 1U) << s.error().back().message;
   EXPECT_EQ(s.error().front().file, "spec.toml");
@@ -146,7 +146,7 @@ TEST(Simulate, unidirectional_runs_have_one_direction) {
 
 TEST(Simulate, the_same_seed_gives_the_same_bytes_and_another_one_does_not) {
   const std::string noisy = manifest + cycle + "noise_um = 1\nrandom_offset_pct = 30\n" + lost;
-  const Simulated one = made(noisy), two = made(noisy);
+  const tools::Simulated one = made(noisy), two = made(noisy);
   EXPECT_EQ(one.campaign[0].bytes, two.campaign[0].bytes);
   EXPECT_EQ(one.truth, two.truth);
   std::string other = noisy;
@@ -189,14 +189,14 @@ TEST(Simulate, targets_keep_their_order_and_their_range) {
 }
 
 TEST(Simulate, the_campaign_does_not_tell_the_truth) {
-  const Simulated s = made(manifest + cycle + lost);
+  const tools::Simulated s = made(manifest + cycle + lost);
   const std::string& text = s.campaign.back().bytes;
   EXPECT_EQ(s.campaign.back().name, "campaign.toml");
   EXPECT_EQ(text.find("worn nut"), std::string::npos);
   EXPECT_EQ(text.find("effect"), std::string::npos);
   EXPECT_EQ(text.find("cycle"), std::string::npos);
-  EXPECT_TRUE(text.starts_with(simulated_mark));
-  const auto read = parse_manifest(text, "campaign.toml");
+  EXPECT_TRUE(text.starts_with(tools::simulated_mark));
+  const auto read = config::parse_manifest(text, "campaign.toml");
   ASSERT_TRUE(read) << read.error().front().message;
   EXPECT_EQ(read->campaign.measurements.front().file, "x.csv");
   EXPECT_NE(s.truth.find("\"backlash:X\""), std::string::npos);

@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "nonio/host/manifest.h"
+#include "host/config/manifest.h"
 
 namespace nonio::host {
 namespace {
@@ -21,7 +21,7 @@ std::map<std::string, Settings> files_of(const std::string& language) {
   for (const auto& entry : fs::directory_iterator(fs::path(NONIO_WORDS) / language)) {
     std::ostringstream text;
     text << std::ifstream(entry.path()).rdbuf();
-    auto settings = parse_settings(text.str(), entry.path().string());
+    auto settings = config::parse_settings(text.str(), entry.path().string());
     EXPECT_TRUE(settings) << settings.error().message;
     if (settings) out[entry.path().filename().string()] = std::move(*settings);
   }
