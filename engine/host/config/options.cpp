@@ -49,9 +49,12 @@ Expected<void> take_entry(const std::string& entry, NumberTables& out) {
     if (from == end || read.ec != std::errc() || read.ptr != end || !std::isfinite(value))
       return fail("\"" + entry + "\": wanted " + key + "=NUMBER, found " + word);
     const auto [first, fresh] = table.emplace(key, value);
-    if (!fresh && first->second != value)
-      return fail("axis " + name + " has " + key + "=" + short_text(first->second, 9) + " and " +
-                  word + ": which of them?");
+    if (!fresh && first->second != value) {
+      std::string said;
+      append_shortest(said, first->second);
+      return fail("axis " + name + " has " + key + "=" + said + " and " + word +
+                  ": which of them?");
+    }
   }
   return {};
 }
