@@ -150,8 +150,8 @@ Verdict reader_truncated(const Reader& r, const Bench& bench) {
       const std::string cut = "cut off after " + std::to_string(length) + " bytes: ";
       if (const std::string why = reading::unsound(*o); !why.empty()) return cut + why;
       const std::uint32_t last = o->source_line.empty() ? 0 : o->source_line.back();
-      std::vector<std::size_t> kept;
-      for (std::size_t i = 0; i < o->size(); ++i)
+      std::vector<std::uint32_t> kept;
+      for (std::uint32_t i = 0; i < o->size(); ++i)
         if (o->source_line.empty() ? i + 1 < o->size() : o->source_line[i] != last)
           kept.push_back(i);
       std::size_t lost = 0;

@@ -45,7 +45,8 @@ inline bool stood_somewhere(const Part& part) {
 
 /// What can be explained together, in the order of the measurements: runs of one axis; where
 /// something is sensed across the axes or in several at once, all linear axes and their
-/// measurements in one table; ball centres of a rotary axis. Others are left out.
+/// measurements in one table; ball centres of a rotary axis. Others are left out, and so are
+/// readings that `check` (sdk/check.h) refuses.
 std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observations>& read);
 
 /// All effects that apply to a part, without those that are always in a model.
