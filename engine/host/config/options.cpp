@@ -100,7 +100,7 @@ std::string range_complaint(const Option& option, const Setting& setting) {
   if (option.min) expected += " at least " + short_text(*option.min, 6);
   if (option.max)
     expected += std::string(option.min ? " and" : "") + " at most " + short_text(*option.max, 6);
-  return wanted + ", found " + short_text(value, 6);
+  return expected + ", found " + short_text(value, 6);
 }
 
 std::string choice_complaint(const Option& option, const Setting& setting) {

@@ -51,7 +51,8 @@ TEST(WordFiles, LanguagesAgree) {
     // English and Italian say everything; the others what a certificate needs, and what holds it
     // up.
     const bool whole = language == "en" || language == "it";
-    ASSERT_EQ(other.size(), whole ? english.size() : 3) << language;
+    const std::size_t some = language == "de" ? 4 : 3;  // the pages of a laboratory in German too
+    ASSERT_EQ(other.size(), whole ? english.size() : some) << language;
     for (const auto& [file, words] : english) {
       if (!whole && file != "certificate.toml" && file != "results.toml" &&
           file != "plausibility.toml")
