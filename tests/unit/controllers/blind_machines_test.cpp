@@ -263,8 +263,7 @@ std::optional<Renewed> renewed(const Kind& k, const Controller& output, const Bl
   EXPECT_TRUE(on && *on) << who << (on ? "nothing was on" : on.error().message);
   if (!on || !*on) return std::nullopt;
   const Results none;
-  const Templates templates;
-  auto second = output.write({r.bench.campaign, (*on)->readings, none, (*on)->options, templates});
+  auto second = output.write({r.bench.campaign, (*on)->readings, none, (*on)->options});
   EXPECT_TRUE(second) << who << (second ? "" : second.error().message);
   if (!second || second->artifacts.empty()) return std::nullopt;
   r.control = k.control(second->artifacts, b.axis);
