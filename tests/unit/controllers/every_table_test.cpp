@@ -224,7 +224,7 @@ TEST(EveryTable, RefusesDriftUnlessAskedFor) {
     const Finding* refused = finding(*none, "table.refused-drift");
     ASSERT_NE(refused, nullptr) << k.name;
     EXPECT_TRUE(refused->attention);
-    EXPECT_TRUE(contains(refused->advice, "drifted=1")) << refused->advice;
+    EXPECT_TRUE(contains(refused->advice, "drifted = 1")) << refused->advice;
     Options asked = k.options;
     asked["axes"] = std::vector<std::string>{"X drifted=1"};
     const auto r = b.write(k.output(), asked);
