@@ -328,7 +328,9 @@ Evaluated write_documents(AnalysedCampaign analysed, const AssignedNumber* assig
     take_number(work, std::move(*analysed.number), assigned, analysed.documents, out);
   for (const WantedOutput& w : analysed.documents) write_document(work, w, out);
   const bool attention = !analysed.read.unread.empty() || needs_attention(out.results);
-  out.status = !out.results.errors.empty() ? "failed" : attention ? "attention" : "ok";
+  out.status = !out.results.errors.empty() ? Status::failed
+               : attention                 ? Status::attention
+                                           : Status::ok;
   return out;
 }
 
