@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every later stage relies on: each rule of sdk/check.h, broken once.
+#include "nonio/sdk/check.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
-#include "nonio/sdk/check.h"
 #include "nonio/sdk/plugin.h"
 
 using namespace nonio;
