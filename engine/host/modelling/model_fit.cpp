@@ -70,7 +70,8 @@ class Findings {
     const auto worst = std::find_if(c.places.begin(), c.places.end(),
                                     [](const auto& place) { return place.p < model::place_p; });
     if (worst == c.places.end()) return;
-    Finding f{"model.fails", true, {}, {{"where", to_text(worst->where)}, {"line", on_line(*worst)}}};
+    Finding f{
+        "model.fails", true, {}, {{"where", to_text(worst->where)}, {"line", on_line(*worst)}}};
     f.evidence = {{"share", worst->share, Quantity::ratio},
                   {"percent", std::round(100.0 * worst->share), Quantity::count},
                   {"p", worst->p, Quantity::probability},
