@@ -412,7 +412,7 @@ constexpr Key measurement_keys[] = {
      .help =
          "State of the machine in which it was measured. Diagonals, straightness lines and runs "
          "of one state are evaluated together; \"\": it holds for every state.",
-     .wanted = "wanted up to 60 characters without / and \\, not starting with a point",
+     .wanted = "expected up to 60 characters without / and \\, not starting with a point",
      .text = {.not_letters = "/\\\n\t", .not_first = ". ", .longest = 60}},
     {.name = "about",
      .holds = text,

@@ -42,7 +42,7 @@ Error wrong_option(const std::string& place, const toml::node& value, const std:
       for (const auto& [key, item] : *entries)
         if (const auto number = item.is_number() ? item.value<double>() : std::nullopt;
             !number || !std::isfinite(*number))
-          return {at + "." + std::string(key.str()) + ": wanted a finite number, found " +
+          return {at + "." + std::string(key.str()) + ": expected a finite number, found " +
                       type_name(item),
                   file, item.source().begin.line};
     }

@@ -47,7 +47,7 @@ Expected<void> take_entry(const std::string& entry, NumberTables& out) {
     double value = 0.0;
     const auto read = std::from_chars(from, end, value);
     if (from == end || read.ec != std::errc() || read.ptr != end || !std::isfinite(value))
-      return fail("\"" + entry + "\": wanted " + key + "=NUMBER, found " + word);
+      return fail("\"" + entry + "\": expected " + key + "=NUMBER, found " + word);
     const auto [first, fresh] = table.emplace(key, value);
     if (!fresh && first->second != value) {
       std::string said;
@@ -84,7 +84,7 @@ Expected<Setting> as_declared(const Setting& found, const Setting& declared) {
     auto tables = number_tables_of(*list);
     return tables ? Expected<Setting>(Setting(std::move(*tables))) : fail(tables.error());
   }
-  return fail(std::string("wanted ") + kind_of(declared) + ", found " + kind_of(found));
+  return fail(std::string("expected ") + kind_of(declared) + ", found " + kind_of(found));
 }
 
 std::string range_complaint(const Option& option, const Setting& setting) {

@@ -22,8 +22,7 @@ std::string instrument_source(const Instrument& i) {
 }
 
 std::string found_or_left(const Measurement& m) {
-  if (!m.adjustment.empty()) return m.adjustment == "after" ? "as-left" : "as-found";
-  return state_of(m) == "final" ? "as-left" : "as-found";
+  return m.adjustment == "after" ? "as-left" : "as-found";
 }
 
 std::string compensation_of(const Machine& machine, const Measurement& m) {

@@ -55,10 +55,10 @@ TEST(Check, EveryColumnMustHaveAnEntryForEachReading) {
 TEST(Check, WhatIsReadByIndexMustExist) {
   Observations o = readings();
   o.line[1] = 2;
-  EXPECT_EQ(found(o), "reading 2 of line 2; wanted 0 to 1");
+  EXPECT_EQ(found(o), "reading 2 of line 2; expected 0 to 1");
   o = readings();
   o.lines.clear();
-  EXPECT_EQ(found(o), "readings of no line; wanted one line at least");
+  EXPECT_EQ(found(o), "readings of no line; expected one line at least");
   o = {};
   EXPECT_EQ(found(o), "") << "no readings need no line";
 }
@@ -71,7 +71,7 @@ TEST(Check, NumbersMustBeNumbers) {
       {"an uncertainty of a reading that is not a number above 0", [](auto& o) { o.u[0] = 0.0; }},
       {"a direction of sensing that is not a number", [](auto& o) { o.sense[0][1] = nan; }},
       {"a direction of sensing that is not a number", [](auto& o) { o.lines[0].sense[2] = nan; }},
-      {"the doubt mine; wanted findings plausibility.* of attention",
+      {"the doubt mine; expected findings plausibility.* of attention",
        [](auto& o) { o.doubts.push_back({.id = "mine", .attention = true}); }}};
   for (const auto& [message, spoil] : wrong) {
     Observations o = readings();

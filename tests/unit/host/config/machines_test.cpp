@@ -153,7 +153,7 @@ TEST(Machines, AMistakeInATableOfAnAxisHasItsLine) {
   EXPECT_EQ(settled.error().front().line, 15U) << settled.error().front().message;
   const std::string found = errors_of(config::parse_manifest(
       "format = 1\n[options.fanuc.axes.Z]\nstep_mm = 25\nnumber = \"1\"\n", "campaign.toml"));
-  EXPECT_NE(found.find("campaign.toml:4: options.fanuc.axes.Z.number: wanted a finite number"),
+  EXPECT_NE(found.find("campaign.toml:4: options.fanuc.axes.Z.number: expected a finite number"),
             std::string::npos)
       << found;
 }
@@ -163,7 +163,7 @@ TEST(Machines, WhatIsNoNumberInATextOfAnAxisIsRefused) {
        {"X step_mm", "X step_mm=", "X step_mm=5,5", "X step_mm=nan", "X step_mm=1e999"}) {
     const auto tables = config::number_tables_of({entry});
     ASSERT_FALSE(tables) << entry;
-    EXPECT_NE(tables.error().message.find("wanted step_mm=NUMBER"), std::string::npos) << entry;
+    EXPECT_NE(tables.error().message.find("expected step_mm=NUMBER"), std::string::npos) << entry;
   }
   EXPECT_FALSE(config::number_tables_of({""}));
   EXPECT_EQ(config::number_tables_of({"X number=3 number=4"}).error().message,
