@@ -154,7 +154,7 @@ double drawn_noise(const Hidden& h) {
 /// The place named first; of what is unrepeatable only the verdict counts.
 bool place_is_right(const Hidden& h, const model::Explanation& said) {
   if (h.truth.verdict == "unrepeatable") return true;
-  if (said.fails.empty() || !holds(h.truth.places, said.fails.front().where)) return false;
+  if (said.fails.empty() || !holds(h.truth.places, to_text(said.fails.front().where))) return false;
   if (!h.truth.at || !said.fails.front().at) return true;
   const double reach = 0.5 * h.scenario.length / static_cast<double>(h.scenario.targets);
   return std::fabs(*said.fails.front().at - *h.truth.at) < reach;
@@ -260,7 +260,7 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
       const std::string cause = hidden::to_text(h.scenario.hidden.front().source);
       const bool listed = std::any_of(
           first.fails.begin(), first.fails.end(),
-          [&](const model::Place& place) { return holds(h.truth.places, place.where); });
+          [&](const model::Place& place) { return holds(h.truth.places, to_text(place.where)); });
       score.kind.add(right);
       if (h.truth.verdict == "unknown") score.place.add(right && listed);
       score.named_of[cause].add(named);
@@ -303,7 +303,7 @@ void tell(const Hidden& h, const Followed& f, std::uint64_t seed) {
                   e.candidates[k].rms / s.noise, joined(e.candidates[k].aliases).c_str());
     std::printf("    certain: %s\n", joined(e.certain).c_str());
     for (std::size_t k = 0; k < std::min<std::size_t>(3, e.fails.size()); ++k)
-      std::printf("    left in %-24s share %.2f p %.2g\n", e.fails[k].where.c_str(),
+      std::printf("    left in %-24s share %.2f p %.2g\n", to_text(e.fails[k].where).c_str(),
                   e.fails[k].share, e.fails[k].p);
   }
   if (!f.error.empty()) std::printf("  error: %s\n", f.error.c_str());

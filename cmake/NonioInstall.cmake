@@ -3,10 +3,11 @@
 include(CMakePackageConfigHelpers)
 
 # In a folder of their own: no program but nonio and its plugins is to link with them, and they keep no ABI between versions.
-install(TARGETS nonio_sdk nonio_math EXPORT nonio LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_COMPONENT dev)
+install(TARGETS nonio_sdk EXPORT nonio ARCHIVE DESTINATION ${NONIO_LIBRARY_SUBDIR} COMPONENT dev)
+install(TARGETS nonio_math EXPORT nonio LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_COMPONENT dev)
 install(TARGETS nonio_history nonio_model nonio_pdf nonio_sign nonio_host nonio_reports LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_SKIP)
 set(public sdk)
-foreach(room statistics axis uncertainty planning findings volumetric rotary compensation)
+foreach(room statistics axis uncertainty planning findings followed volumetric rotary compensation)
   list(APPEND public math/${room})
 endforeach()
 foreach(folder IN LISTS public)

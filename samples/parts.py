@@ -157,9 +157,9 @@ def manifest(story, ident, customer, place, date, machine, axes, measurements, i
     counted = {"siemens-840d": 1, "fanuc": 1, "linuxcnc": 0}.get(machine.get("control"))
     if counted is not None:
         number = {"X": 0, "Y": 1, "Z": 2}
-        out += ["", "[options.%s]" % machine["control"],
-                "axes = [%s]" % ", ".join('"%s %s=%d"' % (name, "number" if counted else "joint",
-                                                        number.get(name, 3) + counted) for name in axes)]
+        for name in axes:
+            out += ["", "[options.%s.axes.%s]" % (machine["control"], name),
+                    "%s = %d" % ("number" if counted else "joint", number.get(name, 3) + counted)]
     for plugin, keys in (options or {}).items():
         out += ["", "[options.%s]" % plugin] + ["%s = %s" % item for item in keys.items()]
     if analyses:

@@ -34,8 +34,8 @@ const char* to_text(host::batch::CampaignState::Action action) {
 
 void print_night_plan(const host::batch::Night& night, bool json) {
   for (const host::batch::CampaignState& c : night.campaigns) {
-    const bool collides =
-        c.action == host::batch::CampaignState::Action::todo && c.status == "failed";
+    const bool collides = c.action == host::batch::CampaignState::Action::todo &&
+                          c.status == host::evaluation::Status::failed;
     const std::string reason = collides ? c.errors.front().message : c.reason;
     if (json)
       std::cout << Json{{"id", c.id},
@@ -53,13 +53,13 @@ void print_night_plan(const host::batch::Night& night, bool json) {
 void print_summary(const host::batch::Night& night, const fs::path& out, bool json) {
   std::size_t done = 0, unchanged = 0, attention = 0, failed = 0;
   for (const host::batch::CampaignState& c : night.campaigns) {
-    if (c.status == "failed")
+    if (c.status == host::evaluation::Status::failed)
       ++failed;
     else if (c.action == host::batch::CampaignState::Action::done)
       ++done;
     else
       ++unchanged;
-    if (c.status == "attention") ++attention;
+    if (c.status == host::evaluation::Status::attention) ++attention;
   }
   if (json)
     std::cout << Json{{"event", "end"},

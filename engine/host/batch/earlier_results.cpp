@@ -41,7 +41,8 @@ Expected<std::vector<EarlierResult>> unclaimed_results(
     if (!config::is_campaign_id(id) || std::binary_search(claimed.begin(), claimed.end(), id))
       return;
     if (const auto record = evaluation::read_record(folder))
-      found.push_back({std::move(id), record->folder, record->night, record->status == "failed"});
+      found.push_back({std::move(id), record->folder, record->night,
+                       record->status == evaluation::Status::failed});
   };
   const bool hashed = storage::results_folder(out, "a") != out / "a";
   each_folder_in(out, error, [&](const fs::path& folder) {

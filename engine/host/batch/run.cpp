@@ -45,16 +45,16 @@ void store_refused(const RunOptions& options, const reading::Context& context,
   const storage::Disk disk(options.out);
   const CampaignState* before = nullptr;
   for (CampaignState& c : campaigns) {
-    if (c.action != Action::todo || c.status != "failed") continue;
+    if (c.action != Action::todo || c.status != evaluation::Status::failed) continue;
     const auto record = evaluation::read_record(storage::results_folder(options.out, c.id));
-    const bool stays = c.is_campaign && record && record->status != "failed";
+    const bool stays = c.is_campaign && record && record->status != evaluation::Status::failed;
     if (stays)
       c.errors.front().message +=
           "; the results of night " + std::to_string(record->night) + " stay as they are";
     if (c.is_campaign && !stays && (before == nullptr || before->id != c.id)) {
       evaluation::Evaluated evaluated;
       evaluated.campaign.id = c.id;
-      evaluated.status = "failed";
+      evaluated.status = evaluation::Status::failed;
       evaluated.results.errors = c.errors;
       if (const auto stored =
               store(options.out, evaluated, context, {c.folder, night.of(), c.reason, true}, disk);
@@ -153,7 +153,7 @@ Expected<void> note_certificates(Night& night, const RunOptions& options,
   for (certificates::WaitingDraft& draft : (*known)->drafts) {
     const auto here = std::find_if(night.campaigns.begin(), night.campaigns.end(),
                                    [&](const CampaignState& c) { return c.id == draft.campaign; });
-    if (here != night.campaigns.end() && here->status != "failed")
+    if (here != night.campaigns.end() && here->status != evaluation::Status::failed)
       night.waiting.push_back(std::move(draft));
   }
   return {};

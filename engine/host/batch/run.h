@@ -12,6 +12,7 @@
 #include "host/certificates/register.h"
 #include "host/evaluation/evaluate.h"
 #include "host/evaluation/record.h"
+#include "host/evaluation/status.h"
 #include "host/process/stop.h"
 
 namespace nonio::host::batch {
@@ -38,8 +39,8 @@ struct CampaignState {
   bool named_by_folder = false;  ///< its manifest gives no id
   bool is_campaign = true;       ///< false: a folder of which nobody knows what lies in it
   enum class Action { todo, done, unchanged } action = Action::todo;
-  std::string reason;  ///< why it is to do, or why not
-  std::string status;  ///< ok, attention, failed; empty while it is to do
+  std::string reason;                                    ///< why it is to do, or why not
+  evaluation::Status status = evaluation::Status::none;  ///< none while it is to do
   std::vector<Error> errors;
   std::vector<std::uint64_t> readings{};  ///< of its files' SHA-256 the begin, until compared
   /// Of those that another campaign has too, and where that one stands in the list of campaigns.

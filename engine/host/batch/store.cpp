@@ -41,12 +41,12 @@ Expected<void> write_record(const fs::path& folder, const evaluation::Record& re
 Expected<void> look_back(const fs::path& folder, evaluation::Record& record) {
   const auto last = evaluation::last_record(folder);
   if (!last) return fail(last.error());
-  if (record.status == "failed")
+  if (record.status == evaluation::Status::failed)
     record.failed_since = evaluation::NightOf{record.night, record.date};
   if (!*last) return {};
   const evaluation::Record& old = (*last)->record;
   record.previous = old.night < record.night ? old.findings : old.previous;
-  if (record.status == "failed" && old.status == "failed")
+  if (record.status == evaluation::Status::failed && old.status == evaluation::Status::failed)
     record.failed_since = old.failed_since.value_or(evaluation::NightOf{old.night, old.date});
   return {};
 }
@@ -139,8 +139,8 @@ class Move {
       rename(folder_ / evaluation::record_name, folder_ / evaluation::record_before_name);
     const auto old = evaluation::last_record(folder_);
     if (!old) return give_up(old.error().message);
-    const bool may_pass = record_.status == "failed" && record_.retry;
-    const bool was_good = *old && (*old)->record.status != "failed";
+    const bool may_pass = record_.status == evaluation::Status::failed && record_.retry;
+    const bool was_good = *old && (*old)->record.status != evaluation::Status::failed;
     if (may_pass && was_good) keep((*old)->record);
     if (!may_pass) remove_all(folder_ / evaluation::last_good_name);
     if (!*old) return;

@@ -233,7 +233,7 @@ NONIO_ON_THE_WIRE(Environment, a, b, c, d, e, f, g, h, i)
 NONIO_ON_THE_WIRE(Cmc, a, b, c)
 NONIO_ON_THE_WIRE(Laboratory, a, b, c, d, e, f, g)
 NONIO_ON_THE_WIRE(CertificateTexts, a, b, c, d, e, f, g, h, i, j, k, l)
-NONIO_ON_THE_WIRE(Measurement, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t)
+NONIO_ON_THE_WIRE(Measurement, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u)
 NONIO_ON_THE_WIRE(Formula::Parameter, a, b, c, d)
 NONIO_ON_THE_WIRE(Formula, a, b, c, d, e)
 NONIO_ON_THE_WIRE(Campaign, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
@@ -256,8 +256,7 @@ NONIO_ON_THE_WIRE(certificates::WaitingDraft, a, b, c, d, e, f, g, h, i)
 NONIO_ON_THE_WIRE(Option, a, b, c, d, e, f, g)
 NONIO_ON_THE_WIRE(Info, a, b, c, d, e)
 NONIO_ON_THE_WIRE(loader::PluginFile, a, b, c)
-NONIO_ON_THE_WIRE(loader::Catalogue::Described, a, b)
-NONIO_ON_THE_WIRE(loader::Catalogue, a, b, c, d, e, f, g)
+NONIO_ON_THE_WIRE(loader::Catalogue, a, b, c, d, e, f, g, h)
 #undef NONIO_ON_THE_WIRE
 
 template <class... T>

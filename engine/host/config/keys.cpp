@@ -361,8 +361,8 @@ constexpr Words an_end = "the axis positions of that end, { X = 0, Y = 0 }";
 constexpr Key measurement_keys[] = {
     {.name = "id",
      .holds = text,
-     .help = "Name of the measurement, unique in the campaign; what follows its first space is "
-             "the state of the machine.",
+     .help = "Name of the measurement, unique in the campaign. Without `state`, what follows its "
+             "first space is the state of the machine.",
      .required = true,
      .wanted = "expected up to 60 characters without / and \\, not starting with a point",
      .text = {.not_letters = "/\\\n\t", .not_first = ". ", .longest = 60}},
@@ -407,6 +407,13 @@ constexpr Key measurement_keys[] = {
              "has a table of its own.",
      .only = {"kind", axis_runs},
      .choices = sides},
+    {.name = "state",
+     .holds = text,
+     .help =
+         "State of the machine in which it was measured. Diagonals, straightness lines and runs "
+         "of one state are evaluated together; \"\": it holds for every state.",
+     .wanted = "expected up to 60 characters without / and \\, not starting with a point",
+     .text = {.not_letters = "/\\\n\t", .not_first = ". ", .longest = 60}},
     {.name = "about",
      .holds = text,
      .help = "The direction about which the axis turns while it moves (yaw of X: Z), right-handed "

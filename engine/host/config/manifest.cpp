@@ -30,6 +30,25 @@ RunChoice read_run(TableReader& top) {
   return run;
 }
 
+/// What of an option is no setting: of a table, the first key in it that is no number.
+Error wrong_option(const std::string& place, const toml::node& value, const std::string& file) {
+  if (const toml::table* tables = value.as_table())
+    for (const auto& [name, node] : *tables) {
+      const std::string at = place + "." + std::string(name.str());
+      const toml::table* entries = node.as_table();
+      if (entries == nullptr)
+        return {at + ": wanted a table of numbers, found " + type_name(node), file,
+                node.source().begin.line};
+      for (const auto& [key, item] : *entries)
+        if (const auto number = item.is_number() ? item.value<double>() : std::nullopt;
+            !number || !std::isfinite(*number))
+          return {at + "." + std::string(key.str()) + ": expected a finite number, found " +
+                      type_name(item),
+                  file, item.source().begin.line};
+    }
+  return {place + ": wanted a value, found " + type_name(value), file, value.source().begin.line};
+}
+
 /// Of plugins that only the run knows: what is wrong with them is said there.
 RawOptions read_options(TableReader& top, std::vector<Error>& errors) {
   RawOptions options;
@@ -50,9 +69,8 @@ RawOptions read_options(TableReader& top, std::vector<Error>& errors) {
       if (auto setting = to_setting(value))
         of_plugin[std::string(key.str())] = RawOption{std::move(*setting), file, line};
       else
-        errors.push_back(Error{"options." + name + "." + std::string(key.str()) +
-                                   ": expected a value, found " + type_name(value),
-                               file, line});
+        errors.push_back(
+            wrong_option("options." + name + "." + std::string(key.str()), value, file));
     }
   }
   return options;
@@ -245,6 +263,8 @@ Measurement read_measurement(TableReader& reader) {
   m.adjustment = reader.text("adjustment");
   m.order = reader.text("order");
   if (m.kind == "axis") m.side = reader.text("side");
+  if (std::string state = reader.text("state"); reader.raw().contains("state"))
+    m.state = std::move(state);
   if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
     reader.error("lateral", "expected another axis than " + m.axis +
                                 ", which moves: along it the deviation is one of positioning");

@@ -26,6 +26,9 @@ struct RawOption {
   std::string file;
   std::uint64_t line = 0;
 };
+/// Tables as they were written before there were any: "X number=1 step_mm=50".
+Expected<NumberTables> number_tables_of(const std::vector<std::string>& entries);
+
 using RawOptions = std::map<std::string, std::map<std::string, RawOption>>;
 
 /// Line of each key of a file: "campaign.customer", "measurement.X.file" for the measurement with

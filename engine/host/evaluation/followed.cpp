@@ -21,7 +21,7 @@ std::string instrument_source(const Instrument& i) {
   return out;
 }
 
-std::string state_of(const Measurement& m) {
+std::string found_or_left(const Measurement& m) {
   return m.adjustment == "after" ? "as-left" : "as-found";
 }
 
@@ -90,7 +90,7 @@ std::optional<FollowedGroup> of_axis(const reading::ReadCampaign& read, std::siz
     put_common(q, variance, instrument_source(campaign.instrument), f.of_instrument);
     put_common(q, variance, "expansion of axis " + m.axis, f.of_expansion);
     q.u = std::sqrt(variance);
-    q.state = state_of(m);
+    q.state = found_or_left(m);
     put_conditions(q, test, campaign, m);
     const Axis* axis = campaign.machine.axis(m.axis);
     if (f.name.starts_with("cyclic") && axis != nullptr && axis->screw_pitch)
@@ -155,7 +155,7 @@ std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaig
     put_common(q, variance, instrument_source(campaign.instrument), std::sqrt(shared));
     q.u = std::sqrt(variance);
     for (const Measurement& m : campaign.measurements)
-      if (m.id == a.measurement) q.state = state_of(m);
+      if (m.id == a.measurement) q.state = found_or_left(m);
     if (q.state.empty()) q.state = "as-found";
     variances.push_back(variance);
     if (q.u > 0.0)
@@ -205,7 +205,7 @@ std::optional<FollowedGroup> of_model(const ModelFit& fit, const Campaign& campa
          .texts = {{"model", effects_of(fit)}}});
     FollowedQuantity& q = out.quantities.back();
     for (const Measurement& m : campaign.measurements)
-      if (m.id == q.measurement) q.state = state_of(m);
+      if (m.id == q.measurement) q.state = found_or_left(m);
   }
   if (kept.empty()) return std::nullopt;
   for (const std::size_t i : kept)

@@ -70,7 +70,9 @@ Record record_of(dom::object json) {
   r.night = json["night"];
   if (dom::element e; json["date"].get(e) == simdjson::SUCCESS) r.date = text(e);
   r.reason = text(json["reason"]);
-  r.status = text(json["status"]);
+  const auto status = status_named(std::string_view(json["status"]));
+  if (!status) throw simdjson::simdjson_error(simdjson::INCORRECT_TYPE);
+  r.status = *status;
   r.retry = json["retry"];
   if (dom::object since; json["failed_since"].get(since) == simdjson::SUCCESS)
     r.failed_since = NightOf{since["night"], text(since["date"])};
@@ -96,7 +98,7 @@ std::string to_json(const Record& r) {
   json.member("night", r.night);
   if (!r.date.empty()) json.member("date", r.date);
   json.member("reason", r.reason);
-  json.member("status", r.status);
+  json.member("status", to_text(r.status));
   json.member("retry", r.retry);
   if (r.failed_since) {
     json.key("failed_since");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/evaluation/evaluate.h"
+#include "host/evaluation/status.h"
 #include "nonio/sdk/error.h"
 
 namespace nonio::host::evaluation {
@@ -41,7 +42,7 @@ struct Record {
   std::uint64_t night = 0;
   std::string date;  ///< of that night
   std::string reason;
-  std::string status;
+  Status status = Status::none;
   bool retry = false;  ///< it failed for a reason that does not lie in its content
   std::optional<NightOf> failed_since{};  ///< the first of the nights in which it failed
   reading::Inputs inputs;

@@ -335,7 +335,7 @@ std::string results_json(const Evaluated& e, const reading::Context& context,
   json.member("schema", "nonio-results/1");
   json.member("nonio", context.version);
   put_campaign(json, e.campaign);
-  json.member("status", e.status);
+  json.member("status", to_text(e.status));
   json.key("errors");
   json.begin_array();
   for (const Error& error : e.results.errors) storage::put_error(json, error);

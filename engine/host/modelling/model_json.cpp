@@ -34,7 +34,7 @@ storage::Json places_json(const std::vector<model::Place>& places, const ModelWo
                           Quantity deviation) {
   storage::Json list = storage::Json::array();
   for (const model::Place& place : places) {
-    storage::Json one = {{"where", place.where}};
+    storage::Json one = {{"where", to_text(place.where)}};
     if (!place.line.empty()) one["line"] = place.line;
     storage::put(one, "share", place.share, Quantity::ratio);
     one["says"] = words.place(place, deviation);

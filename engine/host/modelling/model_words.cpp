@@ -13,6 +13,7 @@ namespace nonio::host::modelling {
 namespace {
 
 using Kind = model::Verdict::Kind;
+using model::Factor;
 
 Number percent(const char* name, double share) {
   return {name, std::round(100.0 * share), Quantity::count};
@@ -56,12 +57,12 @@ std::string on_line(const model::Place& place) {
 }
 
 Finding place_finding(const model::Place& place, Quantity deviation) {
-  const std::string of = place.together ? "together" : place.where;
+  const std::string of = place.together ? "together" : to_text(place.where);
   return {.id = (place.line.empty() ? "place." : "place.line.") + of,
           .evidence = {percent("share", place.share),
                        {"rms", place.rms, deviation},
                        {"p", place.p, Quantity::probability}},
-          .texts = {{"where", place.where}, {"line", place.line}}};
+          .texts = {{"where", to_text(place.where)}, {"line", place.line}}};
 }
 
 Finding plan_finding(const model::Plan& plan) {
@@ -122,10 +123,6 @@ class Next {
   }
 
  private:
-  static bool has(const std::string& where, const char* factor) {
-    return where.find(factor) != std::string::npos;
-  }
-
   void add(const char* id, std::vector<Number> numbers = {},
            std::vector<std::pair<std::string, std::string>> texts = {}) {
     const std::string name = std::string("next.") + id;
@@ -148,13 +145,12 @@ class Next {
   }
 
   void at(const model::Place& place) {
-    const bool of_time = has(place.where, "time") || has(place.where, "run");
-    if (of_time) {
+    if (place.where.has(Factor::time) || place.where.has(Factor::run)) {
       time(place);
-    } else if (has(place.where, "temperature")) {
+    } else if (place.where.has(Factor::temperature)) {
       add("settle");
-    } else if (has(place.where, "position") || has(place.where, "phase") ||
-               has(place.where, "angle")) {
+    } else if (place.where.has(Factor::position) || place.where.has(Factor::screw_phase) ||
+               place.where.has(Factor::angle)) {
       position(place);
     } else {
       add("both-sides");
@@ -167,7 +163,7 @@ class Next {
       return column.size() == o.size() &&
              std::any_of(column.begin(), column.end(), [](double v) { return std::isfinite(v); });
     };
-    if (has(place.where, "run") && place.at && std::isfinite(*place.at))
+    if (place.where.has(Factor::run) && place.at && std::isfinite(*place.at))
       add("run", {{"at", *place.at, Quantity::count}});
     if (!known(o.time))
       add("times");
@@ -241,7 +237,7 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
     const auto count = [](std::size_t n) { return static_cast<double>(n); };
     f.evidence.push_back({"count", count(e.comparison.suspects.size()), Quantity::count});
     f.evidence.push_back({"readings", count(part.part.table.size()), Quantity::count});
-    if (!e.fails.empty() && e.fails.front().where == "run")
+    if (!e.fails.empty() && e.fails.front().where == model::Where{Factor::run})
       f.id += "-run";
     else if (e.comparison.suspects.size() <= 2)
       f.id += "-two";
@@ -273,7 +269,7 @@ std::string ModelWords::place(const model::Place& place, Quantity deviation) con
   }
   const std::string at = where_largest(place, language_);
   if (at.empty()) return text;
-  const std::string largest = says("place.largest." + place.where, {}, {{"at", at}});
+  const std::string largest = says("place.largest." + to_text(place.where), {}, {{"at", at}});
   return largest.empty() ? text : text + " " + largest;
 }
 

@@ -266,7 +266,7 @@ namespace {
 std::vector<double> without_set_up(const Observations& o, const std::vector<Term>& model) {
   std::vector<Term> set_up;
   for (const Term& term : model)
-    if (term.effect->always) set_up.push_back(term);
+    if (term.effect->is_nuisance) set_up.push_back(term);
   if (set_up.empty()) return o.deviation;
   std::vector<double> weight(o.size(), 1.0);
   std::vector<double> e = o.deviation;

@@ -103,7 +103,7 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
     // A median knows a scatter as well as 0.37 times as many squares do.
     const double p = math::f_upper(F, 0.37 * k, 0.37 * (n - k)) * runs;
     if (F < 4.0 || p > 1e-4 || (worst && p >= worst->p)) continue;
-    worst = Place{"run", squares / all, p, s, static_cast<double>(run), Quantity::count};
+    worst = Place{{Factor::run}, squares / all, p, s, static_cast<double>(run), Quantity::count};
   }
   return worst;
 }

@@ -30,22 +30,15 @@ constexpr double most_of_one_target = 0.3;
 constexpr double cancels_beyond = 0.95;
 
 /// Whether two places share a factor.
-bool same_factor(const std::string& a, const std::string& b) {
-  const auto factors = [](const std::string& where) {
-    std::vector<std::string> out;
-    const std::size_t x = where.find(" x ");
-    out.push_back(where.substr(0, x));
-    if (x != std::string::npos) out.push_back(where.substr(x + 3));
-    for (std::string& f : out) {
-      if (f == "run") f = "time";
-      if (f == "screw-phase" || f == "angle") f = "position";
-    }
-    return out;
+bool same_factor(const Where& a, const Where& b) {
+  const auto kin = [](Factor f) {
+    if (f == Factor::run) return Factor::time;
+    return f == Factor::screw_phase || f == Factor::angle ? Factor::position : f;
   };
-  const auto of_a = factors(a), of_b = factors(b);
-  return std::any_of(of_a.begin(), of_a.end(), [&](const std::string& f) {
-    return std::find(of_b.begin(), of_b.end(), f) != of_b.end();
-  });
+  const auto in_b = [&](Factor f) {
+    return kin(f) == kin(b.first) || (b.second && kin(f) == kin(*b.second));
+  };
+  return in_b(a.first) || (a.second && in_b(*a.second));
 }
 
 class Judge {
@@ -133,7 +126,7 @@ class Judge {
           f_.bench->readings();
       const auto works_in = places_of(f_.of_best.fit.part[t]);
       for (const Place& place : serious)
-        for (const std::string& where : works_in)
+        for (const Where& where : works_in)
           if (same_factor(place.where, where) && place.rms * place.rms > share * rms2) return true;
     }
     return false;
@@ -221,8 +214,8 @@ class Judge {
       mean /= static_cast<double>(sum.size());
       for (const double x : sum) squares += (x - mean) * (x - mean);
       if (squares / static_cast<double>(sum.size()) < unexplained_share * rms2) continue;
-      for (const std::string& place : places_of(sum))
-        for (const std::string& where : works_in)
+      for (const Where& place : places_of(sum))
+        for (const Where& where : works_in)
           if (same_factor(place, where)) return true;
     }
     return false;
@@ -265,7 +258,7 @@ class Judge {
   }
 
   /// Where something that says so much of each reading works.
-  std::vector<std::string> places_of(const std::vector<double>& says) const {
+  std::vector<Where> places_of(const std::vector<double>& says) const {
     const VectorXd part = Eigen::Map<const VectorXd>(says.data(), static_cast<Index>(says.size()));
     const VectorXd centred = part.array() - part.mean();
     return factors_of(f_.part, f_.repeats, f_.bench->root_weight(),

@@ -163,7 +163,7 @@ std::vector<Place> seats_in(const Part& part, const Repeats& repeats,
   const MatrixXd basis = basis_of(part.table, fit.terms, root);
   auto seats = seats_of({part, repeats, root, residual, basis, static_cast<double>(fit.redundancy),
                          comparison.floor});
-  for (Place& seat : seats) seat.together = seat.where.find(" x ") != std::string::npos;
+  for (Place& seat : seats) seat.together = seat.where.second.has_value();
   std::erase_if(seats, [](const Place& place) { return !(place.share >= least_share); });
   return seats;
 }

@@ -40,10 +40,10 @@ class PlaceTests {
 /// for their columns. For structure that no effect explains.
 std::vector<Place> seats_of(const Residuals&);
 
-/// The factors that a term's part varies with ("direction", "position", "time", ...), by the share
+/// What a term's part varies with (direction, position, direction x time, ...), by the share
 /// of its sum of squares: those whose own share is at least a twentieth, or whose product with
 /// another is.
-std::vector<std::string> factors_of(const Part& part, const Repeats& repeats,
-                                    const VectorXd& root_weight, const VectorXd& signal);
+std::vector<Where> factors_of(const Part& part, const Repeats& repeats, const VectorXd& root_weight,
+                              const VectorXd& signal);
 
 }  // namespace nonio::model

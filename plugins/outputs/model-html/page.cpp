@@ -55,8 +55,8 @@ std::string notes(const Source& source) {
   const auto says = [&](const Finding& f, const char* part) {
     return html(typeset(finding_text(source.in.templates, source.words.language(), f, part)));
   };
-  for (const Finding& f : source.fit.says) {
-    if (&f != &source.fit.says.front()) {
+  for (const Finding& f : source.fit.diagnosis) {
+    if (&f != &source.fit.diagnosis.front()) {
       list += element("li", says(f, "says"));
       continue;
     }

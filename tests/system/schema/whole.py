@@ -33,6 +33,7 @@ def campaign():
         "run": {"analyses": ["iso230-2", "model-fit"], "outputs": ["json"]},
         "measurement": [
             {"id": "X 1", "kind": "axis", "file": "x.csv", "reader": "csv", "axis": "X", "adjustment": "before", "order": "pendulum", "side": "master",
+             "state": "final",
              "exclude": [3, 4], "exclude_reason": "R", "at": {"Y": 300}, "feed_mm_per_min": 1200, "dwell_s": 3,
              "over_travel_mm": 2.5, "tool_offset": {"Z": -120}, "workpiece_offset": {"X": 40}, "compensation": "on"},
             {"id": "S", "kind": "straightness", "file": "s.csv", "axis": "X", "lateral": "Y"},

@@ -67,7 +67,7 @@ TEST_F(ModelHtml, HostileTextStaysText) {
   fit.axis = fit.measurements[0] = hostile;
   fit.effects[0].name = fit.parameters[0].effect = fit.parameters[1].name = hostile;
   fit.steps[1].effect = hostile;
-  fit.says[0].id = fit.says[0].advice = hostile;
+  fit.diagnosis[0].id = fit.diagnosis[0].advice = hostile;
   Measurement m;
   m.id = m.file = hostile;
   made.campaign.measurements = {m};
