@@ -2,7 +2,6 @@
 #include "host/batch/earlier_results.h"
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <string_view>
 
@@ -13,21 +12,6 @@
 namespace nonio::host::batch {
 namespace fs = std::filesystem;
 
-namespace {
-
-/// `take` each folder in a folder, which may be missing.
-void each_folder_in(const fs::path& folder, std::error_code& error,
-                    const std::function<void(const fs::path&)>& take) {
-  std::error_code here;
-  fs::directory_iterator it(folder, here);
-  if (here == std::errc::no_such_file_or_directory) return;
-  for (; !here && it != fs::directory_iterator(); it.increment(here))
-    if (it->is_directory(here)) take(it->path());
-  if (here) error = here;
-}
-
-}  // namespace
-
 Expected<std::vector<EarlierResult>> unclaimed_results(
     const fs::path& out, const std::vector<CampaignState>& campaigns) {
   std::vector<std::string_view> claimed;
@@ -35,7 +19,6 @@ Expected<std::vector<EarlierResult>> unclaimed_results(
     if (!c.named_by_folder) claimed.push_back(c.id);
   std::sort(claimed.begin(), claimed.end());
   std::vector<EarlierResult> found;
-  std::error_code error;
   const auto take = [&](const fs::path& folder) {
     std::string id = folder.filename().string();
     if (!config::is_campaign_id(id) || std::binary_search(claimed.begin(), claimed.end(), id))
@@ -43,14 +26,8 @@ Expected<std::vector<EarlierResult>> unclaimed_results(
     if (const auto record = evaluation::read_record(folder))
       found.push_back({std::move(id), record->folder, record->night, record->status == "failed"});
   };
-  const bool hashed = storage::results_folder(out, "a") != out / "a";
-  each_folder_in(out, error, [&](const fs::path& folder) {
-    if (!hashed)
-      take(folder);
-    else if (folder.filename().string().size() == 2)
-      each_folder_in(folder, error, take);
-  });
-  if (error) return fail("cannot list the output folder " + out.string() + ": " + error.message());
+  if (const auto listed = storage::each_results_folder(out, take); !listed)
+    return fail(listed.error());
   std::sort(found.begin(), found.end(),
             [](const EarlierResult& a, const EarlierResult& b) { return a.id < b.id; });
   return found;

@@ -71,6 +71,7 @@ class CampaignRun {
     out_.results.notes = std::move(read_.notes);
     if (!read_.manifest) return false;
     out_.campaign = read_.manifest->campaign;
+    out_.purpose = read_.manifest->purpose;
     if (out_.campaign.id == id_) return true;
     report(Error{"the id changed while the campaign was read", config::manifest_name});
     out_.campaign.id = id_;

@@ -39,6 +39,7 @@ struct Evaluated {
   std::string status;      ///< ok, attention, failed
   std::optional<Certificate> certificate{};
   bool retry = false;  ///< it failed for a reason that does not lie in its files
+  std::string purpose{};  ///< as the manifest says it
 };
 
 /// What was issued for what is evaluated here, whatever is `missing` for it today; else, if nothing
