@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -117,12 +119,20 @@ void print_rows(const std::vector<std::vector<std::string>>& rows, const std::st
   }
 }
 
+/// Of a standard uncertainty nobody reads more.
+std::string three_digits(const std::string& number) {
+  if (number.empty()) return number;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", std::strtod(number.c_str(), nullptr));
+  return text.data();
+}
+
 void print_table(const std::vector<Point>& points) {
   std::vector<std::vector<std::string>> rows{
       {"machine", "axis", "quantity", "day", "state", "value", "unit", "u", "U", "campaign"}};
   for (const Point& p : points) {
-    rows.push_back({p.machine, p.axis, p.quantity, p.day, p.state, p.value, p.unit, p.u_repeat,
-                    p.expanded, p.campaign + (p.superseded_by.empty() ? "" : " (superseded)")});
+    rows.push_back({p.machine, p.axis, p.quantity, p.day, p.state, p.value, p.unit,
+                    three_digits(p.u_repeat), p.expanded, p.campaign + (p.superseded_by.empty() ? "" : " (superseded)")});
     for (std::string& cell : rows.back()) cell = printable(cell);
   }
   print_rows(rows, "lllllrlrrl");

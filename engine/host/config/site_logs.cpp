@@ -5,13 +5,12 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
+#include <array>
+#include <charconv>
 #include <functional>
 
 #include "host/config/toml_reader.h"
 #include "host/storage/files.h"
-#include "nonio/sdk/format.h"
 #include "nonio/sdk/statement.h"
 
 namespace nonio::host::config {
@@ -103,8 +102,10 @@ class Entry {
     return *this;
   }
   Entry& number(const char* key, const std::optional<double>& value) {
-    constexpr int digits = 12;
-    if (value) text_ += std::string(key) + " = " + short_text(*value, digits) + "\n";
+    if (!value) return *this;
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), *value).ptr;
+    text_ += std::string(key) + " = " + std::string(digits.data(), end) + "\n";
     return *this;
   }
   const std::string& all() const { return text_; }

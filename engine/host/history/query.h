@@ -12,9 +12,9 @@ namespace nonio::host::history {
 
 /// What is wanted; empty: any.
 struct Query {
-  std::string machine, axis, quantity, source;
-  std::string from, to;    ///< days of the campaigns, both included
-  bool superseded = false; ///< also what was replaced since
+  std::string machine{}, axis{}, quantity{}, source{};
+  std::string from{}, to{};  ///< days of the campaigns, both included
+  bool superseded = false;   ///< also what was replaced since
 };
 
 /// One number of a machine's history.

@@ -85,8 +85,7 @@ TEST(SiteLogs, WhatIsWrongIsRefusedAndNothingIsWritten) {
   e = an_event();
   e.machine.clear();
   EXPECT_NE(refused(e).find("machine"), std::string::npos);
-  config::Acknowledgement a{.date = "2026-03-04", .finding = "f", .machine = "S", .until = "2026-03-03",
-                            .by = "B", .why = "because"};
+  config::Acknowledgement a{"2026-03-04", "f", "S", "", "", "2026-03-03", {}, {}, "B", "because"};
   EXPECT_NE(first_error(config::add_acknowledgement(site.root(), a)).find("not before date"),
             std::string::npos);
   a.until = "2026-04-01";
@@ -134,6 +133,7 @@ TEST(SiteLogs, AnyTextComesBackAsItWas) {
   const auto known = config::read_site_logs(site.root());
   ASSERT_TRUE(known);
   ASSERT_EQ(known->acknowledged.size(), 2U);
+  EXPECT_NE(site.read("acknowledged.toml").find("value = -5.25\nU = 0.4\n"), std::string::npos);
   EXPECT_EQ(known->acknowledged[0].value, -5.25);
   EXPECT_EQ(known->acknowledged[1].value, 5.0);
 }
