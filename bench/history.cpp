@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the history of an output folder takes: bench_history rebuild|update OUT NIGHT [CAMPAIGN]...
+// How long the history of an output folder takes: bench_history rebuild|update OUT [CAMPAIGN]...
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -8,15 +8,14 @@
 #include "host/history/store.h"
 
 int main(int argc, char** argv) {
-  if (argc < 4) return 2;
+  if (argc < 3) return 2;
   namespace history = nonio::host::history;
   const std::string what = argv[1];
-  const std::uint64_t night = std::stoull(argv[3]);
-  const std::vector<std::string> campaigns(argv + 4, argv + argc);
+  const std::vector<std::string> campaigns(argv + 3, argv + argc);
   const auto begin = std::chrono::steady_clock::now();
   const auto done = what == "rebuild"
-                        ? history::rebuild(argv[2], night, {}, [] {})
-                        : history::update(argv[2], {night, night - 1}, campaigns, {}, [] {});
+                        ? history::rebuild(argv[2], {}, [] {})
+                        : history::update(argv[2], false, campaigns, {}, [] {});
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   if (!done) {
     std::fprintf(stderr, "%s\n", done.error().message.c_str());

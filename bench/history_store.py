@@ -68,11 +68,11 @@ def main():
             write(out, f"c{i:06}", 1, rng, kinds)
         print(f"seed {SEED}, {count} campaigns", flush=True)
         program = next(p for p in build.rglob("bench_history") if p.is_file())
-        subprocess.run([program, "rebuild", out, "1"], check=True)
+        subprocess.run([program, "rebuild", out], check=True)
         new = [f"n{i:03}" for i in range(100)]
         for campaign in new:
             write(out, campaign, 2, rng, kinds)
-        subprocess.run([program, "update", out, "2", *new], check=True)
+        subprocess.run([program, "update", out, *new], check=True)
         print(f"{(out / 'history.sqlite').stat().st_size / 1e6:.0f} MB")
     finally:
         shutil.rmtree(above)

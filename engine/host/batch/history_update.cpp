@@ -49,30 +49,37 @@ Expected<history::Told> read_told(const RunOptions& options, const reading::Cont
 }
 
 Expected<void> HistoryUpdate::begin() {
-  const auto behind = history::is_behind(options_.out);
-  if (!behind) return fail(behind.error());
-  behind_ = *behind;
-  return history::mark_behind(options_.out);
+  const auto known = history::known_night(options_.out);
+  if (!known) return fail(known.error());
+  known_ = *known;
+  return history::forget_known_night(options_.out);
 }
 
-Expected<std::vector<std::string>> HistoryUpdate::end(const history::Night& night,
+Expected<std::vector<std::string>> HistoryUpdate::end(std::uint64_t last, std::uint64_t night,
                                                       const std::vector<std::string>& campaigns,
                                                       const Expected<history::Told>& told) const {
   if (!told) return fail(told.error());
-  history::Night of = night;
-  of.behind = behind_;
   auto updated = read_apart<history::Updated>(
       "the history", context_.site.limits.disk_seconds,
       [&](process::SignsOfLife& signs) -> Expected<history::Updated> {
         signs.reading((options_.out / history::store_name).string());
-        return history::update(options_.out, of, campaigns, *told, [&] { signs.beat(); });
+        return history::update(options_.out, known_ != last, campaigns, *told,
+                               [&] { signs.beat(); });
       });
   if (!updated) return fail(updated.error());
-  if (updated->left_out.empty()) history::unmark_behind(options_.out);
   std::vector<std::string> notes;
   for (const std::string& left : updated->left_out)
     notes.push_back("not in the history: " + left);
+  if (!notes.empty()) return notes;
+  if (auto noted = history::note_known_night(options_.out, night); !noted)
+    return fail(noted.error());
   return notes;
+}
+
+Expected<std::vector<std::string>> HistoryUpdate::end(const std::vector<std::string>& campaigns,
+                                                      const Expected<history::Told>& told) const {
+  if (!known_) return std::vector<std::string>{};
+  return end(*known_, *known_, campaigns, told);
 }
 
 }  // namespace nonio::host::batch

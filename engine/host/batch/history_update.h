@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,16 +24,20 @@ class HistoryUpdate {
 
   /// Before the first result is stored.
   Expected<void> begin();
-  /// When all are: adds these campaigns. `night`: 0 where no night has passed. Gives what the
-  /// morning should know. An error leaves the store as it was, and the next night makes it again.
-  Expected<std::vector<std::string>> end(const history::Night& night,
+  /// When all are: adds these campaigns. `last` is the night whose end the store ought to know,
+  /// `night` the one that it knows from now on. Gives what the morning should know. An error leaves
+  /// the store as it was, and the next night makes it again.
+  Expected<std::vector<std::string>> end(std::uint64_t last, std::uint64_t night,
                                          const std::vector<std::string>& campaigns,
+                                         const Expected<history::Told>& told) const;
+  /// The same between nights, where a store that is behind is left to the next one.
+  Expected<std::vector<std::string>> end(const std::vector<std::string>& campaigns,
                                          const Expected<history::Told>& told) const;
 
  private:
   const RunOptions& options_;
   const reading::Context& context_;
-  bool behind_ = false;
+  std::optional<std::uint64_t> known_{};  ///< the night that the store knew at the begin
 };
 
 }  // namespace nonio::host::batch

@@ -209,7 +209,7 @@ class Releaser {
       return fail_with("interrupted");
     // What does not come in now does with the next night.
     [[maybe_unused]] const auto entered =
-        history.end({}, {id_}, read_told(options_, (*place)->context));
+        history.end({id_}, read_told(options_, (*place)->context));
     auto opened = certificates::Register::open(options_.site, numbering_);
     if (!opened) return fail_with(opened.error().message);
     auto last = opened->last_number(id_);

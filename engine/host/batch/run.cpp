@@ -208,7 +208,7 @@ void write_history(Night& night, const HistoryUpdate& history, const NightState&
   std::vector<std::string> done;
   for (const CampaignState& c : night.campaigns)
     if (c.action == Action::done && c.is_campaign) done.push_back(c.id);
-  auto notes = history.end({state.number, state.last ? state.last->night.number : 0}, done, told);
+  auto notes = history.end(state.last ? state.last->night.number : 0, state.number, done, told);
   if (!notes) {
     night.history_error = notes.error().message;
     notes = {"this night is not in the history (history.sqlite): " + night.history_error +

@@ -48,8 +48,8 @@ struct CampaignState {
   std::vector<std::pair<std::uint64_t, std::string>> twins_before{};
 };
 
-/// A campaign that has results and is not in the site any more. Its results stay until a person
-/// removes them, which says that this was meant.
+/// A campaign that has results and is not in the site any more. Its results stay; a
+/// person says that this was meant (forgotten.toml).
 struct Vanished {
   std::string id, folder;   ///< folder: where it was, as text
   std::uint64_t night = 0;  ///< in which it was done last

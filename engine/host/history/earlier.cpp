@@ -38,19 +38,18 @@ bool may_pass(const Record& record) { return record.status == "failed" && record
 struct Kept {
   fs::path folder;
   Record record;
-  bool whole = true;  ///< false: others were on their way into their place
 };
 
 Expected<std::optional<Kept>> kept_in(const fs::path& folder) {
   auto last = evaluation::last_record(folder);
   if (!last) return fail(last.error());
   if (!*last) return std::nullopt;
-  if (!may_pass((*last)->record)) return Kept{folder, std::move((*last)->record), (*last)->whole};
+  if (!may_pass((*last)->record)) return Kept{folder, std::move((*last)->record)};
   const fs::path good = folder / evaluation::last_good_name;
   auto record = evaluation::last_record(good);
   if (!record) return fail(record.error());
   if (!*record) return std::nullopt;
-  return Kept{good, std::move((*record)->record), true};
+  return Kept{good, std::move((*record)->record)};
 }
 
 Expected<std::string> earlier_bytes(const fs::path& folder) {
@@ -152,6 +151,48 @@ void add_number(const std::optional<CertificateRow>& more, std::vector<Certifica
   if (!known) numbers.push_back(*more);
 }
 
+/// The results of a record as they were, if that is what still lies there. Where others were on
+/// their way into their place, earlier.json has them already.
+std::optional<std::string> still_there(const Kept& kept) {
+  auto bytes = storage::read_file(kept.folder / evaluation::results_name);
+  if (!bytes) return std::nullopt;
+  const bool is_it =
+      std::any_of(kept.record.files.begin(), kept.record.files.end(), [&](const auto& f) {
+        return f.name == evaluation::results_name && f.sha256 == storage::sha256(*bytes);
+      });
+  if (!is_it) return std::nullopt;
+  return std::move(*bytes);
+}
+
+/// Puts what is kept into earlier.json, where `carried` comes to something else. Its number too,
+/// unless it is `number`.
+Expected<void> put_aside(const Kept& kept, const fs::path& folder, const std::string& id,
+                         const std::string& number, Carried& carried) {
+  const auto before = still_there(kept);
+  if (!before) return {};
+  const auto was = entry_of(*before, kept.record.inputs, id);
+  if (!was) return {};
+  auto history = earlier_in(carried.earlier, folder);
+  if (!history) return fail(history.error());
+  const IndexedSince since = since_of(kept.record, *was);
+  const bool same = carried.indexed && since.sha256 == carried.indexed->sha256;
+  if (same) carried.indexed = since;
+  const auto is_it = [&](const Known& known) {
+    return known.since.sha256 == since.sha256 &&
+           known.since.night.number == since.night.number;
+  };
+  const bool superseded =
+      !same && (history->evaluations.empty() || !is_it(history->evaluations.back()));
+  const std::size_t numbers = history->certificates.size();
+  if (was->certificate && was->certificate->number != number)
+    add_number(was->certificate, history->certificates);
+  if (superseded || history->certificates.size() != numbers)
+    carried.earlier =
+        extended(carried.earlier, history->certificates,
+                 superseded ? text_of(since, kept.record.inputs, *before) : std::string());
+  return {};
+}
+
 }  // namespace
 
 Expected<FolderHistory> history_of(const fs::path& folder, const std::string& id) {
@@ -191,45 +232,28 @@ Expected<std::vector<std::uint64_t>> nights_of(const fs::path& folder) {
 
 Expected<Carried> carry_over(const fs::path& folder, const Record& fresh, std::string_view results,
                              const std::string& id) {
-  const auto bytes = earlier_bytes(folder);
+  auto bytes = earlier_bytes(folder);
   if (!bytes) return fail(bytes.error());
-  Carried carried{{}, *bytes};
-  if (may_pass(fresh)) return carried;
+  Carried carried{{}, std::move(*bytes)};
+  const auto kept = kept_in(folder);
+  if (!kept) return fail(kept.error());
+  if (may_pass(fresh)) {
+    // The store keeps good results in last-good; a failure that stays would be lost.
+    if (*kept && (*kept)->record.status == "failed")
+      if (auto put = put_aside(**kept, folder, id, {}, carried); !put) return fail(put.error());
+    return carried;
+  }
   const auto entry = entry_of(results, fresh.inputs, id);
   if (!entry) return fail(entry.error());
   carried.indexed = IndexedSince{
       {fresh.night, fresh.date}, input(fresh.inputs, "version"), digest_of(*entry)};
-  const auto kept = kept_in(folder);
-  if (!kept) return fail(kept.error());
   if (!*kept) return carried;
   const Record& old = (*kept)->record;
   const bool same = old.indexed && old.indexed->sha256 == carried.indexed->sha256;
   if (same) carried.indexed = old.indexed;
   if (same && (old.certificate.empty() || old.certificate == fresh.certificate)) return carried;
-
-  const auto before = storage::read_file((*kept)->folder / evaluation::results_name);
-  const bool is_it = before && std::any_of(old.files.begin(), old.files.end(), [&](const auto& f) {
-    return f.name == evaluation::results_name && f.sha256 == storage::sha256(*before);
-  });
-  // Where others were on their way, what is here already may be theirs; then earlier.json is, too.
-  if (!is_it) return carried;
-  const auto was = entry_of(*before, old.inputs, id);
-  if (!was) return carried;
-  auto history = earlier_in(*bytes, folder);
-  if (!history) return fail(history.error());
-  const IndexedSince since = since_of(old, *was);
-  if (since.sha256 == carried.indexed->sha256) carried.indexed = since;
-  const bool is_there = !history->evaluations.empty() &&
-                        history->evaluations.back().since.sha256 == since.sha256 &&
-                        history->evaluations.back().since.night.number == since.night.number;
-  const bool superseded = since.sha256 != carried.indexed->sha256 && !is_there;
-  const std::size_t numbers = history->certificates.size();
-  if (!entry->certificate || !was->certificate ||
-      entry->certificate->number != was->certificate->number)
-    add_number(was->certificate, history->certificates);
-  if (superseded || history->certificates.size() != numbers)
-    carried.earlier = extended(*bytes, history->certificates,
-                               superseded ? text_of(since, old.inputs, *before) : std::string());
+  const std::string number = entry->certificate ? entry->certificate->number : std::string();
+  if (auto put = put_aside(**kept, folder, id, number, carried); !put) return fail(put.error());
   return carried;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/history/schema.h"
 
+#include <charconv>
 #include <string>
 
 namespace nonio::host::history {
@@ -96,7 +97,9 @@ std::optional<std::int64_t> version_of(storage::Database& database) {
       database.first("SELECT COUNT(*) FROM sqlite_master WHERE type = 'table' AND name = 'store'");
   if (has != "1") return std::nullopt;
   const std::string text = database.first("SELECT value FROM store WHERE name = 'schema'");
-  return text.empty() || text.size() > 9 ? 0 : std::stoll(text);
+  std::int64_t version = 0;
+  std::from_chars(text.data(), text.data() + text.size(), version);
+  return version;
 }
 
 void make_tables(storage::Database& database) {
@@ -108,17 +111,6 @@ void make_tables(storage::Database& database) {
   sql += "PRAGMA user_version = " + std::to_string(schema_version) + ";\n";
   database.script(sql);
   database.rows("INSERT INTO store VALUES ('schema', ?)", {schema_version});
-  database.rows("INSERT INTO store VALUES ('night', ?)", {std::int64_t{0}});
-}
-
-std::uint64_t known_night(storage::Database& database) {
-  const std::string text = database.first("SELECT value FROM store WHERE name = 'night'");
-  return text.empty() ? 0 : std::stoull(text);
-}
-
-void set_known_night(storage::Database& database, std::uint64_t night) {
-  database.rows("UPDATE store SET value = ? WHERE name = 'night'",
-                {static_cast<std::int64_t>(night)});
 }
 
 }  // namespace nonio::host::history

@@ -18,8 +18,4 @@ std::optional<std::int64_t> version_of(storage::Database& database);
 /// In place of whatever was there, in the transaction that is open.
 void make_tables(storage::Database& database);
 
-/// The night up to which the store knows everything.
-std::uint64_t known_night(storage::Database& database);
-void set_known_night(storage::Database& database, std::uint64_t night);
-
 }  // namespace nonio::host::history

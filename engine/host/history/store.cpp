@@ -2,7 +2,9 @@
 #include "host/history/store.h"
 
 #include <algorithm>
+#include <charconv>
 #include <map>
+#include <string_view>
 #include <tuple>
 
 #include "host/config/manifest.h"
@@ -18,8 +20,8 @@ using storage::Database;
 
 namespace {
 
-constexpr const char* behind_folder = ".nonio";
-constexpr const char* behind_name = "history-behind";
+constexpr const char* known_folder = ".nonio";
+constexpr const char* known_name = "history";
 
 /// Where an evaluation stands in the order of the store.
 struct Place {
@@ -72,7 +74,8 @@ class Filling {
   }
 
   /// What is new of these campaigns. False: the store does not fit what is there.
-  Expected<bool> some(const std::vector<std::string>& campaigns, std::uint64_t known_night) {
+  Expected<bool> some(const std::vector<std::string>& campaigns) {
+    const Place last = last_place();
     std::map<Place, std::pair<Known, Before>> added;
     for (const std::string& campaign : campaigns) {
       alive_();
@@ -87,14 +90,16 @@ class Filling {
           {campaign});
       if (database_.failed()) return fail(database_.take_error().error());
       if (!fits(rows, history->evaluations)) return false;
-      for (std::size_t i = rows.size(); i < history->evaluations.size(); ++i) {
-        const std::uint64_t night = history->evaluations[i].since.night.number;
-        if (night <= known_night) return false;
+      std::uint64_t night = 0;
+      for (std::size_t i = 0; i < history->evaluations.size(); ++i) {
+        night = std::max(night, history->evaluations[i].since.night.number);
+        if (i < rows.size()) continue;
         Before before;
         if (i == rows.size() && i > 0)
           before = {std::stoll(rows.back()[0]), rows.back()[2], rows.back()[3]};
-        added.emplace(Place{night, campaign, i},
-                      std::pair(std::move(history->evaluations[i]), std::move(before)));
+        const Place place{night, campaign, i};
+        if (place < last) return false;
+        added.emplace(place, std::pair(std::move(history->evaluations[i]), std::move(before)));
       }
       insert(database_, campaign, history->certificates);
     }
@@ -107,6 +112,12 @@ class Filling {
     for (std::size_t i = 0; i < rows.size(); ++i)
       if (rows[i][1] != known[i].since.sha256) return false;
     return true;
+  }
+
+  Place last_place() {
+    const auto rows = database_.rows(
+        "SELECT night, campaign FROM evaluation ORDER BY evaluation DESC LIMIT 1");
+    return rows.empty() ? Place{} : Place{std::stoull(rows[0][0]), rows[0][1], 0};
   }
 
   Expected<bool> add(std::map<Place, std::pair<Known, Before>> added) {
@@ -195,9 +206,8 @@ Expected<void> check_version(std::optional<std::int64_t> version, const fs::path
 }
 
 /// In one transaction: all of it or nothing.
-Expected<Updated> write(const fs::path& out, const Night& night,
-                        const std::vector<std::string>& campaigns, const Told& told,
-                        const std::function<void()>& alive) {
+Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::string>& campaigns,
+                        const Told& told, const std::function<void()>& alive) {
   auto opened = open_or_replace(out);
   if (!opened) return fail(opened.error());
   Database& database = *opened;
@@ -205,13 +215,10 @@ Expected<Updated> write(const fs::path& out, const Night& night,
   if (auto fit = check_version(version, out); !fit) return fail(fit.error());
   Updated updated;
   Database::Transaction transaction(database);
-  const std::uint64_t known = version == schema_version ? known_night(database) : 0;
-  const std::uint64_t number = night.number == 0 ? known : night.number;
-  bool again =
-      night.behind || version != schema_version || known < night.before || known > number;
+  bool again = all || version != schema_version;
   Filling filling(out, database, alive, updated);
   if (!again) {
-    const auto added = filling.some(campaigns, known);
+    const auto added = filling.some(campaigns);
     if (!added) return fail(added.error());
     again = !*added;
   }
@@ -221,37 +228,48 @@ Expected<Updated> write(const fs::path& out, const Night& night,
     if (auto filled = filling.all(); !filled) return fail(filled.error());
   }
   replace_logs(database, told.logs, told.aliases, told.of_records);
-  set_known_night(database, number);
   if (auto ended = transaction.end(); !ended) return fail(ended.error());
   return updated;
 }
 
 }  // namespace
 
-Expected<Updated> update(const fs::path& out, const Night& night,
-                         std::vector<std::string> campaigns, const Told& told,
-                         const std::function<void()>& alive) {
+Expected<Updated> update(const fs::path& out, bool behind, std::vector<std::string> campaigns,
+                         const Told& told, const std::function<void()>& alive) {
   std::sort(campaigns.begin(), campaigns.end());
   campaigns.erase(std::unique(campaigns.begin(), campaigns.end()), campaigns.end());
-  return write(out, night, campaigns, told, alive);
+  return write(out, behind, campaigns, told, alive);
 }
 
-Expected<Updated> rebuild(const fs::path& out, std::uint64_t night, const Told& told,
+Expected<Updated> rebuild(const fs::path& out, const Told& told,
                           const std::function<void()>& alive) {
-  return write(out, {night, 0, true}, {}, told, alive);
+  return write(out, true, {}, told, alive);
 }
 
-Expected<void> mark_behind(const fs::path& out) {
-  return storage::publish(out / behind_folder, {{behind_name, "\n"}});
+Expected<std::optional<std::uint64_t>> known_night(const fs::path& out) {
+  const fs::path path = out / known_folder / known_name;
+  const auto there = storage::is_there(path);
+  if (!there) return fail(there.error());
+  if (!*there) return std::nullopt;
+  const auto text = storage::read_small_file(path);
+  if (!text) return fail(text.error());
+  std::uint64_t night = 0;
+  const char* const end = text->data() + text->size();
+  const auto [at, error] = std::from_chars(text->data(), end, night);
+  if (error != std::errc() || std::string_view(at, end) != "\n") return std::nullopt;
+  return night;
 }
 
-Expected<bool> is_behind(const fs::path& out) {
-  return storage::is_there(out / behind_folder / behind_name);
+Expected<void> forget_known_night(const fs::path& out) {
+  const fs::path path = out / known_folder / known_name;
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) return fail("cannot remove " + path.string() + ": " + error.message());
+  return {};
 }
 
-void unmark_behind(const fs::path& out) {
-  std::error_code ignored;
-  fs::remove(out / behind_folder / behind_name, ignored);
+Expected<void> note_known_night(const fs::path& out, std::uint64_t night) {
+  return storage::publish(out / known_folder, {{known_name, std::to_string(night) + "\n"}});
 }
 
 }  // namespace nonio::host::history

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,34 +22,30 @@ struct Told {
   std::vector<config::Event> of_records{};  ///< tables that came into a control
 };
 
-struct Night {
-  std::uint64_t number = 0;  ///< 0: between nights
-  std::uint64_t before = 0;  ///< the last night that ended; the store ought to know it
-  bool behind = false;       ///< results may have changed that the store does not know of
-};
-
 struct Updated {
   std::uint64_t evaluations = 0;  ///< that are new in the store
   bool rebuilt = false;
   std::vector<std::string> left_out{};  ///< campaigns whose results cannot be read, and why
 };
 
-/// Adds to OUT/history.sqlite what these campaigns' results say since the night before, in one
-/// transaction. A store that is not there, is damaged, of an older version, or does not know the
-/// night before is made again from all results. `alive` is called now and then.
-Expected<Updated> update(const std::filesystem::path& out, const Night& night,
+/// Adds to OUT/history.sqlite what is new in these campaigns' results, in one transaction. A store
+/// that is not there, is damaged, of an older version, or does not fit the results is made again
+/// from all of them; so is one that is `behind`. `alive` is called now and then.
+Expected<Updated> update(const std::filesystem::path& out, bool behind,
                          std::vector<std::string> campaigns, const Told& told,
                          const std::function<void()>& alive);
 
 /// Makes it again from nothing but what lies in the output folder: the same rows, in one
 /// transaction.
-Expected<Updated> rebuild(const std::filesystem::path& out, std::uint64_t night, const Told& told,
+Expected<Updated> rebuild(const std::filesystem::path& out, const Told& told,
                           const std::function<void()>& alive);
 
-/// Set before results are stored, taken away when the store knows them. While it is there, the
-/// next update makes the store again.
-Expected<void> mark_behind(const std::filesystem::path& out);
-Expected<bool> is_behind(const std::filesystem::path& out);
-void unmark_behind(const std::filesystem::path& out);
+/// The night up to which the store knows all results, kept in OUT/.nonio. None while results may
+/// be newer than the store.
+Expected<std::optional<std::uint64_t>> known_night(const std::filesystem::path& out);
+/// Before the first result is stored.
+Expected<void> forget_known_night(const std::filesystem::path& out);
+/// When the store knows them.
+Expected<void> note_known_night(const std::filesystem::path& out, std::uint64_t night);
 
 }  // namespace nonio::host::history

@@ -15,7 +15,6 @@ namespace nonio::test {
 namespace {
 
 namespace config = host::config;
-using history::Night;
 
 config::Event crash() {
   return {"2026-02-03", "S-1", "X", "crash", "tool \"T1\" hit the vice; O'Brien", "B. Sample", 3};
@@ -35,7 +34,7 @@ history::Told told() {
 /// `after` sees each night.
 void live(Output& out, const std::function<void(std::uint64_t)>& after = {}) {
   const auto night = [&](std::uint64_t n, const std::vector<std::string>& campaigns) {
-    const auto done = history::update(out.root(), {n, n - 1}, campaigns, told(), nothing);
+    const auto done = history::update(out.root(), false, campaigns, told(), nothing);
     ASSERT_TRUE(done) << done.error().message;
     EXPECT_EQ(done->rebuilt, n == 1) << "night " << n;
     EXPECT_TRUE(done->left_out.empty()) << done->left_out.front();
@@ -70,11 +69,11 @@ TEST(HistoryStore, MadeAgainHasTheSameRows) {
   live(out);
   const std::string grown = rows_of(out.root());
   fs::remove(out.root() / history::store_name);
-  const auto done = history::rebuild(out.root(), 5, told(), nothing);
+  const auto done = history::rebuild(out.root(), told(), nothing);
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(done->evaluations, 10U);
   EXPECT_EQ(rows_of(out.root()), grown);
-  ASSERT_TRUE(history::rebuild(out.root(), 5, told(), nothing)) << "in place of itself";
+  ASSERT_TRUE(history::rebuild(out.root(), told(), nothing)) << "in place of itself";
   EXPECT_EQ(rows_of(out.root()), grown);
   EXPECT_EQ(grown.find("ERROR"), std::string::npos);
 }
@@ -104,7 +103,7 @@ TEST(HistoryStore, HasTheParts) {
   live(out);
   EXPECT_EQ(ask(out.root(), "SELECT quantity, source, u_repeat, u_common, expanded, k, tolerance, "
                             "decision, not_stated FROM result WHERE evaluation = 1 ORDER BY item"),
-            "scale|followed|0.1|0.5|||||a.b, c.d;B_mean|followed|0.2|||||||;"
+            "scale|followed|0.1|0.5|||||a.b, c.d;B_mean|followed|0.2||||||;"
             "A|iso230-2|0.5|0.5|1.9|2|10|conforms|;");
   EXPECT_EQ(ask(out.root(), "SELECT item, part, source, u FROM common_part WHERE evaluation = 1 "
                             "ORDER BY item, part"),
@@ -143,13 +142,13 @@ TEST(HistoryStore, OfAnotherVersionIsMadeAgainOrRefused) {
   ask(out.root(), "UPDATE store SET value = 0 WHERE name = 'schema'");
   ask(out.root(), "DROP VIEW point");
   ask(out.root(), "DROP TABLE finding");
-  auto done = history::update(out.root(), {5, 4}, {}, told(), nothing);
+  auto done = history::update(out.root(), false, {}, told(), nothing);
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_TRUE(done->rebuilt);
   EXPECT_EQ(rows_of(out.root()), before);
   ask(out.root(), "UPDATE store SET value = 99 WHERE name = 'schema'");
   const std::string newer = rows_of(out.root());
-  done = history::update(out.root(), {6, 5}, {}, told(), nothing);
+  done = history::update(out.root(), false, {}, told(), nothing);
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().message.find("is of version 99, this program writes 1"),
             std::string::npos);
@@ -162,17 +161,34 @@ TEST(HistoryStore, DamagedOrBehindIsMadeAgain) {
   live(out);
   const std::string before = rows_of(out.root());
   Output::write(out.root() / history::store_name, "this is no database, though it is long enough");
-  auto done = history::update(out.root(), {5, 4}, {}, told(), nothing);
+  auto done = history::update(out.root(), false, {}, told(), nothing);
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_TRUE(done->rebuilt);
   EXPECT_EQ(rows_of(out.root()), before);
-  // A night went by that could not write; results have changed that nobody names.
-  for (const Night night : {Night{8, 7}, Night{5, 4, true}}) {
-    done = history::update(out.root(), night, {}, told(), nothing);
-    ASSERT_TRUE(done);
-    EXPECT_TRUE(done->rebuilt);
-  }
+  done = history::update(out.root(), true, {}, told(), nothing);
+  ASSERT_TRUE(done);
+  EXPECT_TRUE(done->rebuilt);
   EXPECT_EQ(rows_of(out.root()), before);
+  // A campaign that came in before others that the store has: it would get another number.
+  ASSERT_TRUE(out.store({.id = "aa"}, 2, "r7"));
+  done = history::update(out.root(), false, {"aa"}, told(), nothing);
+  ASSERT_TRUE(done);
+  EXPECT_TRUE(done->rebuilt);
+  EXPECT_EQ(ask(out.root(), "SELECT evaluation FROM evaluation WHERE campaign = 'aa'"), "5;");
+}
+
+TEST(HistoryStore, WhichNightItKnowsIsKeptBesideIt) {
+  Output out("known");
+  EXPECT_EQ(history::known_night(out.root()).value(), std::nullopt);
+  ASSERT_TRUE(history::note_known_night(out.root(), 41));
+  EXPECT_EQ(history::known_night(out.root()).value(), 41U);
+  ASSERT_TRUE(history::forget_known_night(out.root()));
+  EXPECT_EQ(history::known_night(out.root()).value(), std::nullopt);
+  ASSERT_TRUE(history::forget_known_night(out.root()));
+  for (const char* damaged : {"", "x\n", "41", "41 \n", "99999999999999999999\n"}) {
+    Output::write(out.root() / ".nonio" / "history", damaged);
+    EXPECT_EQ(history::known_night(out.root()).value(), std::nullopt) << damaged;
+  }
 }
 
 TEST(HistoryStore, KilledAtAnyMomentItIsTheOldOneOrTheNewOne) {
@@ -188,7 +204,7 @@ TEST(HistoryStore, KilledAtAnyMomentItIsTheOldOneOrTheNewOne) {
     ASSERT_GE(child, 0);
     if (child == 0) {
       int calls = moment / 2;
-      const auto done = history::update(out.root(), {6, 5, again}, {"b", "c"}, told(), [&] {
+      const auto done = history::update(out.root(), again, {"b", "c"}, told(), [&] {
         if (calls-- == 0) ::raise(SIGKILL);
       });
       ::_exit(done ? 0 : 1);
@@ -200,16 +216,16 @@ TEST(HistoryStore, KilledAtAnyMomentItIsTheOldOneOrTheNewOne) {
       ++kept;
     } else {
       ASSERT_EQ(WEXITSTATUS(status), 0);
-      ASSERT_TRUE(history::rebuild(out.root(), 5, told(), nothing));
+      ASSERT_TRUE(history::rebuild(out.root(), told(), nothing));
       // Back to what it was: only the store forgets what the results say already.
       fs::remove(out.root() / history::store_name);
       break;
     }
   }
   EXPECT_GE(kept, 6) << "it was killed while it was at work";
-  ASSERT_TRUE(history::update(out.root(), {6, 5}, {"b", "c"}, told(), nothing));
+  ASSERT_TRUE(history::update(out.root(), false, {"b", "c"}, told(), nothing));
   const std::string grown = rows_of(out.root());
-  ASSERT_TRUE(history::rebuild(out.root(), 6, told(), nothing));
+  ASSERT_TRUE(history::rebuild(out.root(), told(), nothing));
   EXPECT_EQ(rows_of(out.root()), grown);
 }
 
@@ -220,7 +236,7 @@ TEST(HistoryStore, AnErrorLeavesTheOldOne) {
   ASSERT_TRUE(out.store({.id = "b", .scale = 2.5}, 6, "r9"));
   ask(out.root(), "CREATE TRIGGER full BEFORE INSERT ON finding BEGIN SELECT RAISE(ABORT, "
                   "'database or disk is full'); END");
-  const auto done = history::update(out.root(), {6, 5}, {"b"}, told(), nothing);
+  const auto done = history::update(out.root(), false, {"b"}, told(), nothing);
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().message.find("disk is full"), std::string::npos);
   EXPECT_EQ(rows_of(out.root()), before);
@@ -246,12 +262,12 @@ TEST(HistoryStore, LeavesOutWhatCannotBeReadAndSaysIt) {
   Output::write(out.root() / "list" / "results.json", "[]");
   for (std::size_t size = 0; size + 2 < whole.size(); size += 41) {
     Output::write(out.root() / "cut" / "results.json", whole.substr(0, size));
-    const auto done = history::rebuild(out.root(), 1, told(), nothing);
+    const auto done = history::rebuild(out.root(), told(), nothing);
     ASSERT_TRUE(done) << done.error().message;
     EXPECT_EQ(done->left_out.size(), 7U) << size;
     EXPECT_EQ(ask(out.root(), "SELECT campaign FROM campaign"), "good;");
   }
-  const auto done = history::update(out.root(), {2, 1}, {"copy"}, told(), nothing);
+  const auto done = history::update(out.root(), false, {"copy"}, told(), nothing);
   ASSERT_TRUE(done);
   ASSERT_EQ(done->left_out.size(), 1U);
   EXPECT_NE(done->left_out[0].find("expected campaign copy, found \"good\""), std::string::npos)
@@ -262,7 +278,7 @@ TEST(HistoryStore, NamesWithQuotesAndLineBreaksAreNames) {
   Output out("names");
   const std::string serial = R"(0\"417'\n); DROP TABLE result; --)";  // as JSON has it
   ASSERT_TRUE(out.store({.id = "a", .asset = "", .serial = serial}, 1, "r1"));
-  ASSERT_TRUE(history::update(out.root(), {1, 0}, {"a"}, {}, nothing));
+  ASSERT_TRUE(history::update(out.root(), false, {"a"}, {}, nothing));
   const std::string name = "M 0\"417'\n); DROP TABLE result; --";
   EXPECT_EQ(ask(out.root(), "SELECT machine FROM machine"), name + ";");
   const auto found = history::query(out.root(), {.machine = name, .quantity = "A"});
@@ -283,7 +299,7 @@ TEST(HistoryStore, DamagedMemoryIsSaidAndNeverTakenForNone) {
     Output::write(path, damage);
     EXPECT_FALSE(out.store({.id = "a", .scale = 3.0}, 3, "r1"));
     EXPECT_NE(out.why().find("earlier.json is damaged"), std::string::npos) << out.why();
-    const auto done = history::rebuild(out.root(), 3, {}, nothing);
+    const auto done = history::rebuild(out.root(), {}, nothing);
     ASSERT_TRUE(done);
     EXPECT_EQ(done->left_out.size(), 1U);
   }
@@ -295,15 +311,34 @@ TEST(HistoryStore, AFailureThatMayPassChangesNothing) {
   Output out("passing");
   ASSERT_TRUE(out.store({.id = "a"}, 1, "r1"));
   ASSERT_TRUE(out.store({.id = "a", .scale = 2.0}, 2, "r1"));
-  ASSERT_TRUE(history::rebuild(out.root(), 2, {}, nothing));
+  ASSERT_TRUE(history::rebuild(out.root(), {}, nothing));
   const std::string before = rows_of(out.root());
   ASSERT_TRUE(out.store({.id = "a", .status = "failed"}, 3, "r1", "1.0", true));
   ASSERT_TRUE(out.store({.id = "a", .status = "failed"}, 4, "r1", "1.0", true));
-  ASSERT_TRUE(history::rebuild(out.root(), 2, {}, nothing));
+  ASSERT_TRUE(history::rebuild(out.root(), {}, nothing));
   EXPECT_EQ(rows_of(out.root()), before);
   ASSERT_TRUE(out.store({.id = "a", .scale = 2.0}, 5, "r1"));
-  ASSERT_TRUE(history::rebuild(out.root(), 2, {}, nothing));
+  ASSERT_TRUE(history::rebuild(out.root(), {}, nothing));
   EXPECT_EQ(rows_of(out.root()), before);
+}
+
+TEST(HistoryStore, AFailureThatStaysIsKeptBehindOneThatMayPass) {
+  Output out("stays");
+  ASSERT_TRUE(out.store({.id = "a"}, 1, "r1"));
+  ASSERT_TRUE(out.store({.id = "a", .status = "failed"}, 2, "r2"));
+  ASSERT_TRUE(history::rebuild(out.root(), {}, nothing));
+  const std::string before = rows_of(out.root());
+  for (const std::uint64_t night : {3, 4}) {
+    ASSERT_TRUE(out.store({.id = "a", .status = "failed"}, night, "r2", "1.0", true));
+    const auto done = history::update(out.root(), false, {"a"}, {}, nothing);
+    ASSERT_TRUE(done);
+    EXPECT_FALSE(done->rebuilt);
+    EXPECT_EQ(rows_of(out.root()), before);
+  }
+  ASSERT_TRUE(out.store({.id = "a", .scale = 2.0}, 5, "r3"));
+  ASSERT_TRUE(history::update(out.root(), false, {"a"}, {}, nothing));
+  EXPECT_EQ(ask(out.root(), "SELECT night, status, supersedes FROM evaluation ORDER BY evaluation"),
+            "1|ok|;2|failed|1;5|ok|2;");
 }
 
 TEST(HistoryQuery, JoinsAliasesAndOrdersByDay) {
@@ -330,7 +365,7 @@ TEST(HistoryQuery, JoinsAliasesAndOrdersByDay) {
 TEST(HistoryQuery, ACheckIsAStateOfItsOwn) {
   Output out("check");
   ASSERT_TRUE(out.store({.id = "a", .purpose = "check"}, 1, "r1"));
-  ASSERT_TRUE(history::update(out.root(), {1, 0}, {"a"}, {}, nothing));
+  ASSERT_TRUE(history::update(out.root(), false, {"a"}, {}, nothing));
   EXPECT_EQ(ask(out.root(), "SELECT DISTINCT state, purpose FROM point"), "check|check;");
 }
 
@@ -349,7 +384,7 @@ TEST(HistoryIdentity, SpellingsAreProposedAndNeverJoined) {
   Output out("spell");
   ASSERT_TRUE(out.store({.id = "a"}, 1, "r1"));
   ASSERT_TRUE(out.store({.id = "b", .asset = "s1"}, 1, "r1"));
-  ASSERT_TRUE(history::update(out.root(), {1, 0}, {"a", "b"}, {}, nothing));
+  ASSERT_TRUE(history::update(out.root(), false, {"a", "b"}, {}, nothing));
   const auto apart = history::machines_in(out.root());
   ASSERT_TRUE(apart);
   EXPECT_EQ(apart->size(), 2U);
@@ -358,7 +393,7 @@ TEST(HistoryIdentity, SpellingsAreProposedAndNeverJoined) {
   EXPECT_EQ(found->size(), 1U);
   history::Told alias;
   alias.aliases = {{"s1", "S-1", "same plate"}};
-  ASSERT_TRUE(history::update(out.root(), {2, 1}, {}, alias, nothing));
+  ASSERT_TRUE(history::update(out.root(), false, {}, alias, nothing));
   EXPECT_EQ(history::machines_in(out.root())->size(), 1U);
   EXPECT_TRUE(history::spellings_in(out.root())->empty());
 }
