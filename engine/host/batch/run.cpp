@@ -6,6 +6,7 @@
 #include <memory>
 #include <new>
 
+#include "host/batch/history_update.h"
 #include "host/batch/night_state.h"
 #include "host/batch/read_apart.h"
 #include "host/batch/runner.h"
@@ -192,6 +193,35 @@ Expected<void> tidy_all(const Night& night, const fs::path& out, bool resumed) {
   return {};
 }
 
+/// Campaigns that somebody has said to be gone are none that vanished.
+void leave_out_forgotten(Night& night, const Expected<history::Told>& told) {
+  if (!told) return;
+  std::erase_if(night.vanished, [&](const Vanished& v) {
+    return std::any_of(told->logs.forgotten.begin(), told->logs.forgotten.end(),
+                       [&](const config::Forgotten& f) { return f.campaign == v.id; });
+  });
+}
+
+/// An index that cannot be written is no reason to lose a night: it is made again from the results.
+void write_history(Night& night, const HistoryUpdate& history, const NightState& state,
+                   const Expected<history::Told>& told, const RunEvents& events) {
+  std::vector<std::string> done;
+  for (const CampaignState& c : night.campaigns)
+    if (c.action == Action::done && c.is_campaign) done.push_back(c.id);
+  auto notes = history.end(state.last ? state.last->night.number : 0, state.number, done, told);
+  if (!notes) {
+    night.history_error = notes.error().message;
+    notes = {"this night is not in the history (history.sqlite): " + night.history_error +
+             "; the results are all there, and the next night enters them"};
+  } else if (!notes->empty()) {
+    night.history_error = notes->front();
+  }
+  for (std::string& note : *notes) {
+    events.note(note);
+    night.notes.push_back(std::move(note));
+  }
+}
+
 /// First what cannot be left lying; then what the register says; the summary last.
 Expected<void> close_night(Night& night, const RunOptions& options, const reading::Context& context,
                            NightState& state) {
@@ -252,6 +282,9 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
   if (!surveyed) return refuse(surveyed.error().message);
   night.campaigns = std::move(surveyed->campaigns);
   night.vanished = std::move(surveyed->vanished);
+  const auto told = read_told(options, context);
+  leave_out_forgotten(night, told);
+  night.may_vanish = context.site.limits.vanished;
   for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);
   tell_vanished(night, events);
   const auto is_todo = [](const CampaignState& c) { return c.action == Action::todo; };
@@ -260,6 +293,8 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
                      std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));
   if (options.dry_run) return;
 
+  HistoryUpdate history(options, context);
+  if (const auto begun = history.begin(); !begun) return refuse(begun.error().message);
   store_refused(options, context, *state, events, night.campaigns);
   ReleaseDesk desk;
   auto& signer = place.signer;
@@ -275,6 +310,7 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
     tidy_root(options.out);
     return;
   }
+  if (!process::is_stop_requested()) write_history(night, history, *state, told, events);
   // The campaigns are safe; if this fails the night stays open, and the next run ends it.
   const auto closed = close_night(night, options, context, *state);
   if (closed) return;

@@ -49,8 +49,8 @@ struct CampaignState {
   std::vector<std::pair<std::uint64_t, std::string>> twins_before{};
 };
 
-/// A campaign that has results and is not in the site any more. Its results stay until a person
-/// removes them, which says that this was meant.
+/// A campaign that has results and is not in the site any more. Its results stay; a
+/// person says that this was meant (forgotten.toml).
 struct Vanished {
   std::string id, folder;   ///< folder: where it was, as text
   std::uint64_t night = 0;  ///< in which it was done last
@@ -77,8 +77,12 @@ struct Night {
   std::vector<certificates::WaitingDraft> waiting;  ///< for their release
   std::vector<Vanished> vanished;                   ///< ordered by id
   std::size_t failed() const;  ///< campaigns, and folders that could not be listed
-  /// Whether anything failed or vanished.
-  bool any_failed() const { return failed() > 0 || !vanished.empty(); }
+  /// Whether anything failed or vanished, or is not in the history.
+  bool any_failed() const {
+    return failed() > 0 || vanished.size() > may_vanish || !history_error.empty();
+  }
+  std::size_t may_vanish = 0;   ///< so many may, by site.toml
+  std::string history_error{};  ///< why OUT/history.sqlite does not know this night
 };
 
 /// The nightly run over a site. Returns when every campaign is done, or after a call of

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "host/evaluation/results_json.h"
+#include "host/history/earlier.h"
 #include "host/storage/digest.h"
 #include "host/storage/files.h"
 #include "nonio/sdk/format.h"
@@ -80,8 +81,16 @@ Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
     if (a.sign) return fail(a.name + " is not signed; nothing was written");
     record.files.push_back(recorded(a));
   }
+  std::string results = evaluation::results_json(e, context, record.files);
+  auto carried = history::carry_over(folder, record, results, e.campaign.id);
+  if (!carried) return fail(carried.error());
+  record.indexed = carried->indexed;
+  if (!carried->earlier.empty()) {
+    files.push_back({history::earlier_name, std::move(carried->earlier)});
+    record.files.push_back(recorded(files.back()));
+  }
   // Last, so that it never speaks of a file that is not there.
-  files.push_back({evaluation::results_name, evaluation::results_json(e, context, record.files)});
+  files.push_back({evaluation::results_name, std::move(results)});
   record.files.push_back(recorded(files.back()));
 
   if (auto looked = look_back(folder, record); !looked) return looked;
@@ -188,7 +197,8 @@ class Move {
 
  private:
   static bool is_result(const std::string& name) {
-    return storage::is_artifact_name(name) || name == evaluation::results_name;
+    return storage::is_artifact_name(name) || name == evaluation::results_name ||
+           name == history::earlier_name;
   }
   void remove(const fs::path& path) {
     if (std::error_code error; done_ && !fs::remove(path, error) && error)

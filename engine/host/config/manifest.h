@@ -48,6 +48,7 @@ struct StandingFinding {
 
 struct Manifest {
   Campaign campaign;
+  std::string purpose{};  ///< periodic, acceptance, after-repair, check; empty: not said
   std::vector<std::string> undeclared_axes{};  ///< measured, and not among [machine.axes]
   std::vector<StandingFinding> tables_may_stand{};
   RunChoice run;
@@ -59,6 +60,12 @@ struct Limits {
   double seconds = 600.0;
   double memory_MB = 4096.0;
   double disk_seconds = 60.0;  ///< without a sign of life, in the survey
+  std::size_t vanished = 0;    ///< so many campaigns may be gone
+};
+
+/// `[[alias]]` of site.toml: two names of one machine.
+struct Alias {
+  std::string name, asset, why;
 };
 
 /// `[signing]` of site.toml: where the key is, where its password comes from, time stamps, and whom
@@ -96,6 +103,7 @@ struct SiteFile {
   RunChoice run;
   RawOptions options;
   Limits limits;
+  std::vector<Alias> aliases{};  ///< each name once; no asset is a name
   KeyLines lines;
   bool hashed_folders = false;     ///< results in OUT/ab/<id>
   std::string settings;            ///< TOML: what of the file has a say in a certificate

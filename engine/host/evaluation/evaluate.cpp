@@ -73,6 +73,7 @@ bool begin_results(reading::ReadCampaign& read, const std::string& id, const rea
   out.results.notes = std::move(read.notes);
   if (!read.manifest) return false;
   out.campaign = read.manifest->campaign;
+  out.purpose = read.manifest->purpose;
   if (out.campaign.id == id) return true;
   Error error{"the id changed while the campaign was read", config::manifest_name};
   reading::give_line(error, read.manifest->lines, {"campaign"});

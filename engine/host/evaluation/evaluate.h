@@ -42,6 +42,7 @@ struct Evaluated {
   std::optional<Certificate> certificate{};
   bool retry = false;  ///< it failed for a reason that does not lie in its files
   std::vector<FollowedGroup> followed{};
+  std::string purpose{};  ///< as the manifest says it
 };
 
 /// What has become of a campaign's wish to be issued under a number.

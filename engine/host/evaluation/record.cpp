@@ -76,6 +76,9 @@ Record record_of(dom::object json) {
   r.retry = json["retry"];
   if (dom::object since; json["failed_since"].get(since) == simdjson::SUCCESS)
     r.failed_since = NightOf{since["night"], text(since["date"])};
+  if (dom::object since; json["indexed"].get(since) == simdjson::SUCCESS)
+    r.indexed = IndexedSince{
+        {since["night"], text(since["date"])}, text(since["version"]), text(since["sha256"])};
   for (const auto [name, digest] : dom::object(json["inputs"]))
     r.inputs.emplace_back(name, text(digest));
   if (dom::element e; json["certificate"].get(e) == simdjson::SUCCESS) r.certificate = text(e);
@@ -105,6 +108,15 @@ std::string to_json(const Record& r) {
     json.begin_object();
     json.member("night", r.failed_since->number);
     json.member("date", r.failed_since->date);
+    json.end_object();
+  }
+  if (r.indexed) {
+    json.key("indexed");
+    json.begin_object();
+    json.member("night", r.indexed->night.number);
+    json.member("date", r.indexed->night.date);
+    json.member("version", r.indexed->version);
+    json.member("sha256", r.indexed->sha256);
     json.end_object();
   }
   json.key("inputs");

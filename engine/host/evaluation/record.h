@@ -35,6 +35,13 @@ struct NightOf {
   std::string date;  ///< YYYY-MM-DD; empty: of a version that did not note it
 };
 
+/// Since when what the history keeps of a campaign (host/history/entry.h) is as it is.
+struct IndexedSince {
+  NightOf night{};
+  std::string version;  ///< that evaluated it so first
+  std::string sha256;   ///< of what is kept
+};
+
 /// `run.json` beside a campaign's results: from what they were made, when (which night) and why.
 /// It holds no time, so that equal runs leave equal bytes.
 struct Record {
@@ -46,7 +53,8 @@ struct Record {
   bool retry = false;  ///< it failed for a reason that does not lie in its content
   std::optional<NightOf> failed_since{};  ///< the first of the nights in which it failed
   reading::Inputs inputs;
-  std::string certificate;  ///< its number; empty: none
+  std::optional<IndexedSince> indexed{};  ///< none: it failed for a reason that may pass
+  std::string certificate;                ///< its number; empty: none
   bool draft = false;       ///< of a certificate that waits for its release
   std::vector<RecordedFile> files;
   std::vector<Error> errors;

@@ -572,6 +572,18 @@ std::string machine_schema(const loader::Plugins& plugins) {
   return SchemaWriter(plugins).write(config::machine_file());
 }
 
+std::string events_schema(const loader::Plugins& plugins) {
+  return SchemaWriter(plugins).write(config::events_file());
+}
+
+std::string acknowledged_schema(const loader::Plugins& plugins) {
+  return SchemaWriter(plugins).write(config::acknowledged_file());
+}
+
+std::string forgotten_schema(const loader::Plugins& plugins) {
+  return SchemaWriter(plugins).write(config::forgotten_file());
+}
+
 namespace {
 
 std::string help_of(const config::Key& file, std::string_view path) {
