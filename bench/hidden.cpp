@@ -3,11 +3,14 @@
 //   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped|beside COUNT
 //   SEED [--verbose] [--plugins FOLDER]
 //                [--write FOLDER] [--right PERCENT] [--wrong PERCENT]
+//                [--ar RHO] [--run-zero SIZE] [--walk SIZE] [--rough TIMES] [--digit SIZE]
+// Sizes in units of the noise: what makes the noise other than independent (hidden::Unrest).
 // Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio explain --auto` does. Fails
 // if fewer are right, or more named wrongly, than --right and --wrong say.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <map>
@@ -37,9 +40,21 @@ struct Arguments {
   Kind kind = Kind::one;
   std::uint64_t count = 0, seed = 0;
   bool verbose = false;
-  fs::path plugins, write;
+  fs::path plugins{}, write{};
   std::uint64_t least_right = 0, most_wrong = 100;  // %
+  hidden::Unrest unrest{};
 };
+
+/// The number of the noise that an option names.
+double* unrest_of(Arguments& a, const std::string& option) {
+  const std::map<std::string, double*> all = {{"--ar", &a.unrest.correlation},
+                                              {"--run-zero", &a.unrest.run_zero},
+                                              {"--walk", &a.unrest.walk},
+                                              {"--rough", &a.unrest.rough},
+                                              {"--digit", &a.unrest.digit}};
+  const auto at = all.find(option);
+  return at == all.end() ? nullptr : at->second;
+}
 
 struct Step {
   model::Explanation said;
@@ -163,6 +178,7 @@ struct Score {
   std::map<std::string, Tally> of_effect, of_value;
   std::map<std::string, Tally> named_of;                ///< outside: `missing`, by cause
   std::map<std::string, std::uint64_t> certain_beside;  ///< certain, and not hidden
+  std::map<std::string, std::uint64_t> other_words;     ///< complete: verdicts but `nothing`
   double false_alarms = 0.0;
   double above_floor_expected = 0.0;  ///< sum of chances, of those in `above_floor`
   std::vector<double> cpu;            ///< of each explanation, s
@@ -248,6 +264,11 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
     right = to_text(first.verdict.kind) == h.truth.verdict;
     if (h.scenario.kind == Kind::complete) {
       score_fit(score, h, first.comparison);
+      if (!right)
+        ++score.other_words[std::string(to_text(first.verdict.kind)) + " " +
+                            (named                 ? first.verdict.effect
+                             : first.fails.empty() ? ""
+                                                   : first.fails.front().where)];
       for (const std::string& name : h.truth.model)
         score.of_effect[name.substr(0, name.find(':'))].add(right);
     } else {
@@ -314,6 +335,8 @@ void print_score(const Score& s, Kind kind) {
   }
   if (kind == Kind::beside) print("named, by verdict or as certain", s.right);
   if (kind == Kind::complete) print("verdict: nothing", s.right);
+  for (const auto& [words, count] : s.other_words)
+    std::printf("    %-40s %llu\n", words.c_str(), static_cast<unsigned long long>(count));
   if (kind == Kind::outside) {
     print("right verdict", s.kind);
     print("right verdict, and the right place named first", s.right);
@@ -375,7 +398,7 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
   if (words.size() < 3 || kinds.count(words[0]) == 0) return {};
   const auto count = whole(words[1]), seed = whole(words[2]);
   if (!count || !seed) return {};
-  Arguments a{kinds.at(words[0]), *count, *seed, false, {}, {}, 0, 100};
+  Arguments a{kinds.at(words[0]), *count, *seed};
   std::error_code error;
   a.plugins = fs::read_symlink("/proc/self/exe", error).parent_path() / NONIO_PLUGINS_FROM_PROGRAM;
   for (std::size_t i = 3; i < words.size(); ++i) {
@@ -390,6 +413,8 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
       if (!percent) return {};
       (words[i] == "--right" ? a.least_right : a.most_wrong) = *percent;
       ++i;
+    } else if (double* size = unrest_of(a, words[i]); size != nullptr && i + 1 < words.size()) {
+      *size = std::strtod(words[++i].c_str(), nullptr);
     } else
       return {};
   }
@@ -405,7 +430,9 @@ int main(int argc, char** argv) {
                  "bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|\n    "
                  "         grouped|beside COUNT SEED\n"
                  "             [--verbose] [--plugins FOLDER] [--write FOLDER] [--right PERCENT] "
-                 "[--wrong PERCENT]\n");
+                 "[--wrong PERCENT]\n"
+                 "             [--ar RHO] [--run-zero SIZE] [--walk SIZE] [--rough TIMES] "
+                 "[--digit SIZE]\n");
     return 2;
   }
   host::Plugins plugins;
@@ -416,7 +443,9 @@ int main(int argc, char** argv) {
   }
   Score score;
   for (std::uint64_t seed = a->seed; seed < a->seed + a->count; ++seed) {
-    const Hidden h = hidden::generate(hidden::random_scenario(a->kind, seed));
+    hidden::Scenario scenario = hidden::random_scenario(a->kind, seed);
+    scenario.unrest = a->unrest;
+    const Hidden h = hidden::generate(scenario);
     if (!a->write.empty()) {
       const fs::path folder = a->write / h.campaign.id;
       if (const auto done = hidden::write(h, folder, folder.string() + ".truth.json"); !done) {
