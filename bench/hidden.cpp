@@ -264,6 +264,10 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
     right = to_text(first.verdict.kind) == h.truth.verdict;
     if (h.scenario.kind == Kind::complete) {
       score_fit(score, h, first.comparison);
+      // True words on what the runs show.
+      if (h.scenario.unrest.run_zero > 0.0 && first.verdict.kind == Verdict::Kind::unknown &&
+          !first.fails.empty() && first.fails.front().where == "run")
+        right = true;
       if (!right)
         ++score.other_words[std::string(to_text(first.verdict.kind)) + " " +
                             (named                 ? first.verdict.effect
@@ -334,7 +338,8 @@ void print_score(const Score& s, Kind kind) {
     print("ends with: nothing", s.ends);
   }
   if (kind == Kind::beside) print("named, by verdict or as certain", s.right);
-  if (kind == Kind::complete) print("verdict: nothing", s.right);
+  if (kind == Kind::complete)
+    print("verdict: nothing; zeros of runs: or that they differ", s.right);
   for (const auto& [words, count] : s.other_words)
     std::printf("    %-40s %llu\n", words.c_str(), static_cast<unsigned long long>(count));
   if (kind == Kind::outside) {

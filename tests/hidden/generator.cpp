@@ -137,9 +137,9 @@ void measure(Hidden& h, const Cycle& c) {
   Random noise(s.seed, 4), wrong(s.seed, 5);
   const double zero = noise.uniform(-10.0, 10.0) * s.noise;
   const double fine = s.rotary ? pi / 180.0 / 3600.0 * 1e-4 : 1e-10;
-  const double resolution =
-      s.unrest.digit > 0.0 ? std::max(1.0, std::round(s.unrest.digit * s.noise / fine)) * fine
-                           : fine;
+  const double resolution = s.unrest.digit > 0.0
+                                ? std::max(1.0, std::round(s.unrest.digit * s.noise / fine)) * fine
+                                : fine;
   const std::vector<double> wander = wandering(s, c), rough = roughness(s, c);
   const double rho = s.unrest.correlation;
   double before = 0.0;

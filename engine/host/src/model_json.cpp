@@ -87,6 +87,39 @@ void put_floor(Json& json, const model::Comparison& c, Quantity q) {
   put(json, "noise_floor_u", c.floor->u, q);
 }
 
+const char* zero_text(model::Noise::Zero zero) {
+  switch (zero) {
+    case model::Noise::Zero::walks:
+      return "walks";
+    case model::Noise::Zero::of_run:
+      return "of-run";
+    case model::Noise::Zero::of_pass:
+      return "of-pass";
+    case model::Noise::Zero::steady:
+      break;
+  }
+  return "steady";
+}
+
+/// How the noise hangs together, and what the weights and u have of it.
+void put_noise(Json& json, const model::Fit& fit, Quantity q) {
+  const model::Noise& noise = fit.noise;
+  Json one = {{"zero", zero_text(noise.zero)}};
+  put(one, "neighbours", noise.measured, Quantity::number);
+  if (std::isfinite(noise.measured)) put(one, "neighbours_p", noise.p, Quantity::probability);
+  put(one, "neighbours_used", noise.neighbours, Quantity::number);
+  if (noise.zero != model::Noise::Zero::steady) put(one, "zero_s", noise.zero_size * fit.s, q);
+  if (noise.digit > 0.0) put(one, "last_digit", noise.digit, q);
+  if (noise.stretch) {
+    const Quantity at = q == Quantity::deviation ? Quantity::length : Quantity::angle;
+    put(one, "stretch_from", noise.stretch->from, at);
+    put(one, "stretch_to", noise.stretch->to, at);
+    put(one, "stretch_s", noise.stretch->inside * fit.s, q);
+    put(one, "elsewhere_s", noise.stretch->outside * fit.s, q);
+  }
+  json["noise"] = std::move(one);
+}
+
 void put_lack_of_fit(Json& json, const model::Comparison& c) {
   if (!c.lack_of_fit) return;
   Json one = Json::object();
@@ -120,6 +153,7 @@ Json compared_json(const Compared& c, const Campaign& campaign, const ModelWords
   put(json, "rms", comparison.fit.rms, q);
   put(json, "cv_rms", comparison.cv_rms, q);
   put_floor(json, comparison, q);
+  put_noise(json, comparison.fit, q);
   put(json, "s", comparison.fit.s, q);
   json["redundancy"] = comparison.fit.redundancy;
   put_lack_of_fit(json, comparison);
@@ -186,6 +220,7 @@ void put_explained(Json& json, const Explained& e, const Campaign& campaign,
   json["observations"] = e.part.part.table.size();
   json["model"] = model_json(e.part, x.comparison);
   put_floor(json, x.comparison, q);
+  put_noise(json, x.comparison.fit, q);
   put_lack_of_fit(json, x.comparison);
   json["fails"] = places_json(x.fails, words, q);
   Json candidates = Json::array(), unseen = Json::array();
@@ -279,6 +314,7 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
   for (const std::string& measurement : part.part.order_assumed)
     out.push_back(words.order_assumed(measurement));
   if (!part.part.table.order_known) out.push_back(words.order_unknown());
+  for (std::string& said : words.noise(fit, part)) out.push_back(std::move(said));
   return out;
 }
 

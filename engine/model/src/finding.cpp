@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "compare.h"
+#include "noise.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/statistics.h"
 
@@ -34,9 +35,9 @@ class Finder {
       if (auto searched = search(); !searched) return fail(searched.error());
       if (!suspect_again()) break;
     }
-    f_.chance = measure_chance(*f_.bench, f_.best,
-                               shuffled(*f_.bench, f_.best, f_.residual(f_.best), f_.part.table,
-                                        f_.repeats.pass, f_.seed));
+    f_.chance = measure_chance(
+        *f_.bench, f_.best,
+        shuffled(*f_.bench, f_.best, f_.residual(f_.best), f_.repeats.pass, f_.seed));
     prune();
     if (auto fitted = fit_both(); !fitted) return fail(fitted.error());
     return std::move(f_);
@@ -45,7 +46,9 @@ class Finder {
  private:
   Expected<void> search() {
     f_.weight = weights_without(f_.part.table.size(), f_.suspects);
-    f_.bench.emplace(f_.part.table, f_.terms, f_.weight, f_.repeats.target, f_.in_model, &made_);
+    f_.noise = noise_of(f_.part, f_.repeats, f_.weight);
+    f_.bench.emplace(f_.part.table, f_.terms, f_.weight, f_.repeats.target, f_.in_model, &made_,
+                     f_.noise);
     auto start = best_start();
     if (!start) return fail(start.error());
     f_.start = std::move(*start);
@@ -110,7 +113,7 @@ class Finder {
   bool add_refined(const State& state) {
     const std::vector<Term> coarse = terms_of_state(state);
     const std::vector<char> searched = flags(state, true);
-    const auto fitted = fit_near(f_.part.table, coarse, searched, f_.weight);
+    const auto fitted = fit_near(f_.part.table, coarse, searched, f_.weight, f_.noise);
     if (!fitted) return false;
     bool any = false;
     for (std::size_t t = 0; t < coarse.size(); ++t) {
@@ -190,11 +193,15 @@ class Finder {
   }
 
   Expected<void> fit_both() {
-    auto of_model =
-        fit_near(f_.part.table, terms_of_state(f_.start), flags(f_.start, true), f_.weight);
+    auto of_model = fit_near(f_.part.table, terms_of_state(f_.start), flags(f_.start, true),
+                             f_.weight, f_.noise);
+    if (of_model)
+      of_model = with_its_zero(f_.part.table, std::move(*of_model), flags(f_.start, true));
     if (!of_model) return fail(of_model.error());
     f_.of_model = comparison_of(f_.part, f_.repeats, std::move(*of_model), f_.suspects);
-    auto of_best = fit_near(f_.part.table, terms_of_state(f_.best), flags(true), f_.weight);
+    auto of_best =
+        fit_near(f_.part.table, terms_of_state(f_.best), flags(true), f_.weight, f_.noise);
+    if (of_best) of_best = with_its_zero(f_.part.table, std::move(*of_best), flags(true));
     if (!of_best) return fail(of_best.error());
     f_.of_best = comparison_of(f_.part, f_.repeats, std::move(*of_best), f_.suspects);
     return {};

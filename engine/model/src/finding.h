@@ -23,6 +23,7 @@ struct Finding {
   std::vector<Term> descriptions{};  ///< of the catalogue, that the model does not have
   std::vector<Suspect> suspects{};
   std::vector<double> weight{};  ///< of each reading: 0 for suspects
+  Noise noise{};                 ///< as the repeats show it
   std::optional<Workbench> bench{};
   Workbench::State start{}, best{};  ///< the model; with what the best explanation adds
   Chance chance{};                   ///< what noise finds in this search
@@ -32,7 +33,7 @@ struct Finding {
   double dof(const Workbench::State& state) const;
   /// Standard deviation that the best explanation leaves.
   double left() const;
-  /// What a state leaves, with root weights.
+  /// What a state leaves, whitened.
   VectorXd residual(const Workbench::State& state) const;
 };
 

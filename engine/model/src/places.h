@@ -7,14 +7,15 @@
 #include "design.h"
 #include "nonio/model/explain.h"
 #include "repeats.h"
+#include "whitening.h"
 
 namespace nonio::model {
 
 struct Leftover {
   const Part& part;
   const Repeats& repeats;
-  const VectorXd& root_weight;
-  const VectorXd& residual;  ///< times root weights
+  const Whitening& white;
+  const VectorXd& residual;  ///< whitened
   const MatrixXd& basis;     ///< orthonormal columns of the model, without zeros of lines
   double dof;                ///< of the residual
   const std::optional<NoiseFloor>& floor;
@@ -24,7 +25,7 @@ struct Leftover {
 class PlaceTests {
  public:
   /// `basis` of the model as in Leftover.
-  PlaceTests(const Part&, const Repeats&, const VectorXd& root_weight, const MatrixXd& basis,
+  PlaceTests(const Part&, const Repeats&, const Whitening& white, const MatrixXd& basis,
              double dof);
   /// With the share of what is left, largest first; only those whose rms is above `least`.
   std::vector<Place> operator()(const VectorXd& residual, const std::optional<NoiseFloor>& floor,
@@ -44,6 +45,6 @@ std::vector<Place> seats_of(const Leftover&);
 /// of its sum of squares: those whose own share is at least a twentieth, or whose product with
 /// another is.
 std::vector<std::string> factors_of(const Part& part, const Repeats& repeats,
-                                    const VectorXd& root_weight, const VectorXd& signal);
+                                    const Whitening& white, const VectorXd& signal);
 
 }  // namespace nonio::model

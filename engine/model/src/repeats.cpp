@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "design.h"
+#include "noise.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/statistics.h"
 
@@ -116,7 +117,7 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
   for (std::size_t p = 0; p < r.passes; ++p) {
     const auto rows = passes[p];
     const auto used = std::count_if(rows.begin(), rows.end(), [&](auto i) { return w(i) > 0.0; });
-    const Index k = used >= 10 ? 3 : used >= 6 ? 2 : used >= 1 ? 1 : 0;
+    const Index k = shared_columns(used);
     MatrixXd b(static_cast<Index>(rows.size()), k);
     for (std::size_t i = 0; i < rows.size(); ++i)
       for (Index c = 0; c < k; ++c)
@@ -178,12 +179,6 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
   }
   for (const Index k : common) out.dof += static_cast<double>(k);
   return out;
-}
-
-std::optional<NoiseFloor> noise_floor(const Saturated& s) {
-  if (!(s.dof >= 3.0)) return std::nullopt;
-  const double floor = std::sqrt(s.squares / s.dof);
-  return NoiseFloor{floor, floor / std::sqrt(2.0 * s.dof), s.dof};
 }
 
 namespace {
@@ -289,7 +284,8 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
   if (n < 10) return {};
   const std::vector<double> e = polished(r, y);
   // Taking out medians takes out noise too: measured, 1.1 to 1.25 with 4 to 10 readings a target.
-  const double s_rough = 1.2 * math::robust_deviation(e);
+  const double display = digit_of(o) / std::sqrt(12.0);
+  const double s_rough = std::max(1.2 * math::robust_deviation(e), display);
   if (!(s_rough > 0.0)) return {};
   std::vector<double> weight(n, 1.0);
   std::vector<std::uint32_t> high, flagged;
@@ -303,10 +299,9 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
   }
   if (flagged.empty() || flagged.size() > n / 4) return {};
   const Saturated left = saturate(r, y, weight);
-  const auto floor = noise_floor(left);
-  const bool known = floor && floor->dof >= 8.0;
-  const double s = known ? floor->s : s_rough;
-  const double dof = known ? floor->dof : static_cast<double>(n) / 4.0;
+  const bool known = left.dof >= 8.0;
+  const double s = std::max(known ? std::sqrt(left.squares / left.dof) : s_rough, display);
+  const double dof = known ? left.dof : static_cast<double>(n) / 4.0;
   std::vector<double> in_cell(r.cells, 0.0);
   for (std::size_t i = 0; i < n; ++i) in_cell[r.cell[i]] += weight[i];
   double least = 3.0;  // smallest t that would be named

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "compare.h"
+#include "noise.h"
 #include "places.h"
 #include "plans.h"
 #include "scatter.h"
@@ -57,7 +58,8 @@ class Judge {
     for (const Place& place : f_.of_model.places)
       if (place.p < place_p) out_.fails.push_back(place);
     std::vector<Place> serious = Judge::serious(f_.of_best.places, least_serious(f_.of_best.floor));
-    const bool walks = !out_.together.empty() && zero_walks();
+    const bool walks =
+        !out_.together.empty() && (zero_walks() || walks_instead(out_.together.front()));
     if (contradictory()) {
       v.kind = Verdict::Kind::unrepeatable;
       return;
@@ -91,14 +93,27 @@ class Judge {
       model.conservativeResize(Eigen::NoChange, model.cols() + block.cols());
       model.rightCols(block.cols()) = block;
     }
-    return criterion_of_walk(f_.part.table, f_.bench->root_weight(), model);
+    return criterion_of_walk(f_.part.table, f_.weight, f_.noise, model);
   }
 
-  /// Whether the model beside a zero that walks is better evidence than the best set of effects.
+  /// What a zero that is not steady costs: one parameter, one name.
+  double price_of_zero() const {
+    return std::log(f_.bench->readings()) + 2.0 * std::log(static_cast<double>(f_.terms.size()));
+  }
+
+  /// Whether the model beside a zero that walks, or that each run has for itself, is better
+  /// evidence than the best set of effects.
   bool zero_walks() const {
-    const double price = f_.start.price + std::log(f_.bench->readings()) +
-                         2.0 * std::log(static_cast<double>(f_.terms.size()));
-    return criterion_beside_walk(f_.of_model.fit.terms) + price < f_.best.criterion;
+    return criterion_beside_walk(f_.of_model.fit.terms) + f_.start.price + price_of_zero() <
+           f_.best.criterion;
+  }
+
+  /// Whether such a zero in its place is better evidence than this effect of the best set.
+  bool walks_instead(const std::string& name) const {
+    std::vector<Term> terms = f_.of_best.fit.terms;
+    std::erase_if(terms, [&](const Term& t) { return t.name() == name; });
+    const double price = f_.bench->without(f_.best, f_.index_of(name)).price + price_of_zero();
+    return criterion_beside_walk(terms) + price < f_.best.criterion;
   }
 
   /// Whether an effect of the best set is there also if the zero walks.
@@ -160,8 +175,7 @@ class Judge {
   std::vector<std::string> places_of(const std::vector<double>& says) const {
     const VectorXd part = Eigen::Map<const VectorXd>(says.data(), static_cast<Index>(says.size()));
     const VectorXd centred = part.array() - part.mean();
-    return factors_of(f_.part, f_.repeats, f_.bench->root_weight(),
-                      f_.bench->root_weight().cwiseProduct(centred));
+    return factors_of(f_.part, f_.repeats, f_.bench->white(), f_.bench->white()(centred));
   }
 
   /// Structure smaller than this is not worth a verdict.
@@ -195,18 +209,18 @@ class Judge {
   /// Noise alone, as large as that of a reading: what repeats leave, else what the best explanation
   /// leaves (with root weights).
   VectorXd noise() const {
-    const Saturated left = saturate(f_.repeats, f_.of_best.fit.residual, f_.weight);
-    if (!(left.dof >= 8.0)) return f_.residual(f_.best);
-    return f_.bench->root_weight().cwiseProduct(
-               Eigen::Map<const VectorXd>(left.e.data(), static_cast<Index>(left.e.size()))) *
-           std::sqrt(f_.bench->readings() / left.dof);
+    const Saturated left =
+        saturate(f_.repeats, f_.of_best.fit.residual, with_scatter(f_.weight, f_.noise));
+    if (!(left.dof >= 8.0) || !(left.squares > 0.0)) return f_.residual(f_.best);
+    const VectorXd e = f_.bench->white()(
+        Eigen::Map<const VectorXd>(left.e.data(), static_cast<Index>(left.e.size())));
+    return e * (f_.of_best.floor->s * std::sqrt(f_.bench->readings() / e.squaredNorm()));
   }
 
   void count_false_alarms(Verdict& v) const {
-    const Shuffles shuffles =
-        shuffled(*f_.bench, f_.best, noise(), f_.part.table, f_.repeats.pass, f_.seed);
+    const Shuffles shuffles = shuffled(*f_.bench, f_.best, noise(), f_.repeats.pass, f_.seed);
     const std::vector<char> named = named_in(*f_.bench, f_.best, shuffles, f_.chance);
-    const PlaceTests tests(f_.part, f_.repeats, f_.bench->root_weight(), f_.bench->basis(f_.best),
+    const PlaceTests tests(f_.part, f_.repeats, f_.bench->white(), f_.bench->basis(f_.best),
                            f_.dof(f_.best));
     const auto floor = floors(named.size());
     double alarms = 0.0;
@@ -220,12 +234,13 @@ class Judge {
   }
 
   bool contradictory() {
-    if (const auto run = wild_run(f_.part.table, f_.repeats, f_.of_best.fit.residual, f_.weight)) {
+    if (const auto run =
+            wild_run(f_.part.table, f_.repeats, f_.of_best.fit.residual, f_.weight, f_.noise)) {
       out_.fails.insert(out_.fails.begin(), *run);
       return true;
     }
     return too_many(f_.suspects.size(), f_.part.table.size()) ||
-           two_valued(f_.repeats, f_.of_best.fit.residual, f_.weight);
+           two_valued(f_.repeats, f_.of_best.fit.residual, f_.weight, f_.noise.digit);
   }
 
   /// The verdict's effect leads the list, also where one with more evidence is in doubt.

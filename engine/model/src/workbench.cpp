@@ -46,8 +46,8 @@ bool Workbench::follows_targets(const Block& block, Index of_position) const {
 
 Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
                      const std::vector<double>& weight, const std::vector<std::uint32_t>& target,
-                     std::size_t stated, Made* made)
-    : target_(target), stated_(stated), several_axes_(o.axes.size() > 1) {
+                     std::size_t stated, Made* made, const Noise& noise)
+    : white_(o, weight, noise), target_(target), stated_(stated), several_axes_(o.axes.size() > 1) {
   most_of_position_ = most_stated_ = most_of_curve_ = std::numeric_limits<Index>::max();
   if (!target_.empty()) {
     const std::uint32_t targets = *std::max_element(target_.begin(), target_.end()) + 1;
@@ -55,12 +55,10 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
     most_stated_ = static_cast<Index>(std::ceil(0.8 * (targets - 1.0)));
     most_of_curve_ = static_cast<Index>(targets) / 2 - 1;
   }
-  root_ = root_weights(o, weight);
-  used_ = static_cast<double>((root_.array() > 0.0).count());
+  used_ = static_cast<double>((root_weight().array() > 0.0).count());
   zeros_ = static_cast<Index>(lines_of(o));
-  MatrixXd y = root_.cwiseProduct(
-      Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.size())));
-  take_out_zeros(o, root_, y);
+  MatrixXd y = white_(Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.size())));
+  white_.take_out_zeros(y);
   y_ = y.col(0);
   Made own;
   std::vector<MatrixXd> parts;
@@ -94,9 +92,9 @@ MatrixXd Workbench::columns_for(const Observations& o, Instance& instance,
     instance.error = columns.error().message;
     return {};
   }
-  MatrixXd part = root_.asDiagonal() * *columns;
+  MatrixXd part = white_(*columns);
   const VectorXd before = part.colwise().norm().transpose();
-  take_out_zeros(o, root_, part);
+  white_.take_out_zeros(part);
   const VectorXd after = part.colwise().norm().transpose();
   if (part.cols() == 0 || !(after.array() > 1e-9 * before.array()).all()) return {};
   of_position = varies_with_target_only(*columns, target_);

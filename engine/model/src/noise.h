@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "design.h"
+#include "nonio/model/explain.h"
+#include "repeats.h"
+
+/// How the noise hangs together, from what repeats leave (docs/model.md).
+namespace nonio::model {
+
+/// Largest step of which all readings are whole multiples from each other; 0 if there is none.
+double digit_of(const Observations& o);
+
+/// Weights of the readings with their scatter: `weight` over the square of `rough`.
+std::vector<double> with_scatter(const std::vector<double>& weight, const Noise& noise);
+
+/// The stretch of targets that scatters differently and the correlation of neighbours, both from
+/// what the repeats leave: no model of the catalogue is in it.
+Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<double>& weight);
+
+/// `saturated` with the weights of `with_scatter`. What passes share takes some of what neighbours
+/// share with it; the floor is what it would be without.
+std::optional<NoiseFloor> noise_floor(const Repeats& repeats, const Saturated& saturated,
+                                      const std::vector<double>& weight, const Noise& noise);
+
+/// `noise` with a zero that is not steady, or with other neighbours than repeats show, where what
+/// these terms (their shapes given) leave is more likely so: restricted likelihood (Patterson and
+/// Thompson 1971) over its kinds and sizes.
+Noise with_zero(const Observations& o, const std::vector<Term>& terms,
+                const std::vector<double>& weight, const Noise& noise);
+
+}  // namespace nonio::model
