@@ -4,10 +4,13 @@
 rotary axes from ball centres, step diagonals, straightness, one axis before and after an adjustment, six axes with long
 names; in five languages and in two at once, released, with the key of samples/certificates.
 
-    bench/certificate_pages.py NONIO FOLDER [--dpi 70] [--only WORD ...]
+    bench/certificate_pages.py NONIO FOLDER [--dpi 70] [--only WORD ...] [--accredited] [--drafts | --amended]
 
+--accredited: with a smallest uncertainty that counts; --drafts: as they wait for a release; --amended: each as the one that
+replaces an earlier one.
 FOLDER/out/CAMPAIGN has the files, FOLDER/pages/CAMPAIGN-NN.png the pages, FOLDER/sheets contact sheets of eight pages. It
-says which first page has no frame for the signature. Wanted: pdftoppm."""
+says which first page has no frame for the signature and which certificate is missing, and then ends with status 1. Wanted:
+pdftoppm."""
 import argparse
 import json
 import pathlib
@@ -38,6 +41,8 @@ def complete(text, languages, analyses, outputs='"json", "certificate", "pdf-rep
     text = without_run(text)
     quoted = ", ".join(f'"{language}"' for language in languages)
     run = f'[run]\nanalyses = [{", ".join(analyses)}]\noutputs = [{outputs}]\n'
+    if languages[0] == "it":  # reports are English or Italian
+        run += '[options.pdf-report]\nlanguage = "it"\n'
     return (text.rstrip("\n") + "\n\n" + run + "\n[certificate]\nlanguages = [" + quoted + "]\n"
             'conditions = "Machine hall, no direct sun; 20 °C ± 1 K."\n')
 
@@ -164,10 +169,12 @@ def sheet_of(pages, columns=4):
 
 
 def render(folder, dpi):
+    """Names of the certificates whose first page has no frame for the signature."""
+    without = []
     (folder / "pages").mkdir(exist_ok=True)
     (folder / "sheets").mkdir(exist_ok=True)
-    for pdf in sorted((folder / "out").glob("*/certificate.pdf")) + sorted((folder / "out").glob("*/report.pdf")):
-        name = pdf.parent.name + ("-report" if pdf.name == "report.pdf" else "")
+    for pdf in sorted((folder / "out").glob("*/certificate*.pdf")) + sorted((folder / "out").glob("*/report*.pdf")):
+        name = pdf.parent.name + ("-report" if pdf.name.startswith("report") else "-draft" if "draft" in pdf.name else "")
         work = folder / "pages" / name
         run("pdftoppm", "-r", dpi, pdf, work)
         pages = []
@@ -181,6 +188,17 @@ def render(folder, dpi):
         first = re.search(rb"/Type\s*/Page\b.*?endobj", pdf.read_bytes(), re.S)
         if pdf.name == "certificate.pdf" and (first is None or b"/NonioSignature" not in first[0]):
             print(f"{name}: no frame for the signature on the first page")
+            without.append(name)
+    return without
+
+
+def release(nonio, site):
+    for draft in json.loads(run(nonio, "release", site, "--list", "--json").stdout)["drafts"]:
+        reasons = [part for f in draft["findings"] if f["severity"] == "attention"
+                   for part in ("--reason", f"{f['id']}=as found")]
+        done = run(nonio, "release", site / draft["folder"], "--by", "B. Sample", *reasons, check=False)
+        if done.returncode:
+            print(draft["campaign"], done.stdout, done.stderr)
 
 
 def main():
@@ -189,13 +207,20 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--dpi", default="70")
     parser.add_argument("--only", nargs="*", default=[])
+    parser.add_argument("--accredited", action="store_true")
+    parser.add_argument("--drafts", action="store_true")
+    parser.add_argument("--amended", action="store_true")
     wanted = parser.parse_args()
     site, out = wanted.folder / "site", wanted.folder / "out"
     shutil.rmtree(wanted.folder, ignore_errors=True)
     shutil.copytree(ROOT / "samples" / "certificates", site, ignore=shutil.ignore_patterns("keys", "*.sqlite", "adjusted"))
     run("bash", site / "make-key.sh")
     toml = (site / "site.toml").read_text("utf-8")
-    (site / "site.toml").write_text(re.sub(r"(?m)^languages = .*\n", "", toml), "utf-8")
+    toml = re.sub(r"(?m)^languages = .*\n", "", toml)
+    if wanted.accredited:
+        toml = toml.replace("[laboratory]\n", '[laboratory]\naccreditation = "LAT 123"\n', 1)
+        toml += "\n[laboratory.cmc]\nfixed_um = 0.5\nper_m_um = 1.0\narcsec = 0.3\n"
+    (site / "site.toml").write_text(toml, "utf-8")
     names = []
     for name, text, files in campaigns():
         if wanted.only and not any(word in name for word in wanted.only):
@@ -207,20 +232,30 @@ def main():
         names.append(name)
     print(run(wanted.nonio, "run", site, "--out", out, check=False).stderr[-2000:])
     print((out / "summary.txt").read_text())
-    for draft in json.loads(run(wanted.nonio, "release", site, "--list", "--json").stdout)["drafts"]:
-        reasons = [part for f in draft["findings"] if f["severity"] == "attention"
-                   for part in ("--reason", f"{f['id']}=as found")]
-        done = run(wanted.nonio, "release", site / draft["folder"], "--by", "B. Sample", *reasons, check=False)
-        if done.returncode:
-            print(draft["campaign"], done.stdout, done.stderr)
+    if not wanted.drafts:
+        release(wanted.nonio, site)
+    if wanted.amended:
+        for name in names:
+            manifest = site / name / "campaign.toml"
+            text = re.sub(r'(?m)^serial = "S-', 'serial = "T-', manifest.read_text("utf-8"), count=1)
+            text = text.replace("[certificate]\n", '[certificate]\namendment = "The serial number was misread."\n', 1)
+            manifest.write_text(text.replace('condition = "In use"', 'condition = "In use, guideways clean"'), "utf-8")
+        run(wanted.nonio, "run", site, "--out", out, check=False)
+        release(wanted.nonio, site)
+    missing = []
     for name in names:
-        if not (out / name / "certificate.pdf").exists():
-            print(f"{name}: no certificate")
-            for o in json.loads((out / name / "results.json").read_text()).get("outputs", []):
+        if not (out / name / ("certificate-draft.pdf" if wanted.drafts else "certificate.pdf")).exists():
+            missing.append(name)
+            results = out / name / "results.json"
+            for o in json.loads(results.read_text()).get("outputs", []) if results.exists() else []:
                 for f in o.get("findings", []):
                     print("   ", f["id"], json.dumps(f.get("evidence"), ensure_ascii=False)[:400])
-    render(wanted.folder, wanted.dpi)
-    return 0
+    without = render(wanted.folder, wanted.dpi)
+    if not names:
+        print("no kind has one of the words", *wanted.only)
+    if missing:
+        print("no certificate:", *missing)
+    return 1 if missing or without or not names else 0
 
 
 if __name__ == "__main__":

@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
   options.jobs = 1;
   options.out = fs::temp_directory_path() / ("nonio-bench-" + std::to_string(::getpid()));
   const int rounds = argc > 4 ? std::atoi(argv[4]) : 21;
-  std::vector<double> wall[2], processor[2], ratio;
+  std::vector<double> wall[2], processor[2], ratio, wall_ratio;
   night(options, true);  // files are in memory then
   for (int i = 0; i < rounds; ++i) {
     Cost cost[2]{};
@@ -79,11 +79,13 @@ int main(int argc, char** argv) {
       processor[confined].push_back(cost[confined].processor);
     }
     ratio.push_back(cost[1].processor / cost[0].processor);
+    wall_ratio.push_back(cost[1].wall / cost[0].wall);
   }
   fs::remove_all(options.out);
   for (const int confined : {0, 1})
     std::printf("%-12s CPU %.4f s, wall %.4f s (medians of %d nights)\n",
                 confined == 1 ? "confined" : "not confined", median(processor[confined]),
                 median(wall[confined]), rounds);
-  std::printf("CPU confined / not confined, median of the pairs: %.4f\n", median(ratio));
+  std::printf("confined / not confined, median of the pairs: CPU %.4f, wall %.4f\n", median(ratio),
+              median(wall_ratio));
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well `explain` finds what the second generator (tests/hidden) has hidden:
-//   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped|beside COUNT
-//   SEED [--verbose] [--plugins FOLDER]
+//   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped|beside|
+//                fixed-end|blank-temperatures|day-wave|short-misread|smallest COUNT SEED
+//                [--size PERCENT]
+//                [--verbose] [--plugins FOLDER]
 //                [--write FOLDER] [--right PERCENT] [--wrong PERCENT]
 //                [--ar RHO] [--run-zero SIZE] [--walk SIZE] [--rough TIMES] [--digit SIZE]
 // Sizes in units of the noise: what makes the noise other than independent (hidden::Unrest).
@@ -17,6 +19,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "hidden/generator.h"
 #include "nonio/host/plugins.h"
@@ -40,6 +43,7 @@ struct Arguments {
   Kind kind = Kind::one;
   std::uint64_t count = 0, seed = 0;
   bool verbose = false;
+  std::uint64_t size = 100;  ///< smallest: % of the printed smallest size
   fs::path plugins{}, write{};
   std::uint64_t least_right = 0, most_wrong = 100;  // %
   hidden::Unrest unrest{};
@@ -222,7 +226,9 @@ void score_fit(Score& score, const Hidden& h, const model::Comparison& c) {
 }
 
 bool of_one(Kind kind) {
-  return kind == Kind::one || kind == Kind::wave_under_curve || kind == Kind::grouped;
+  return kind == Kind::one || kind == Kind::wave_under_curve || kind == Kind::grouped ||
+         kind == Kind::fixed_end || kind == Kind::blank_temperatures || kind == Kind::day_wave ||
+         kind == Kind::short_misread || kind == Kind::smallest;
 }
 
 /// Whether the campaign was explained as it had to be.
@@ -391,6 +397,23 @@ void print_score(const Score& s, Kind kind) {
   }
 }
 
+/// The same campaign with its hidden effect of the size that `explain` prints as the smallest that
+/// it would find, seeing the noise alone; without it where it is no candidate.
+hidden::Scenario as_small_as_printed(hidden::Scenario s, const std::vector<Effect>& effects,
+                                     std::uint64_t percent) {
+  const std::vector<hidden::Piece> wanted = std::exchange(s.hidden, {});
+  const Hidden empty = hidden::generate(s);
+  const auto parts = model::parts_of(empty.campaign, {empty.table});
+  const auto said = step(parts[0], empty.campaign.machine, {}, effects);
+  if (!said) return s;
+  for (const model::Candidate& c : said->said.candidates)
+    if (c.visible && c.term.effect->info.name == hidden::kind_of(wanted[0].source)) {
+      s.hidden = wanted;
+      s.hidden[0].size = 0.01 * static_cast<double>(percent) * c.minimal_detectable / s.noise;
+    }
+  return s;
+}
+
 std::optional<Arguments> arguments(const std::vector<std::string>& words) {
   const std::map<std::string, Kind> kinds = {{"one", Kind::one},
                                              {"several", Kind::several},
@@ -399,11 +422,17 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
                                              {"wave-under-curve", Kind::wave_under_curve},
                                              {"screw-and-curve", Kind::screw_and_curve},
                                              {"grouped", Kind::grouped},
-                                             {"beside", Kind::beside}};
+                                             {"beside", Kind::beside},
+                                             {"fixed-end", Kind::fixed_end},
+                                             {"blank-temperatures", Kind::blank_temperatures},
+                                             {"day-wave", Kind::day_wave},
+                                             {"short-misread", Kind::short_misread},
+                                             {"smallest", Kind::smallest}};
   if (words.size() < 3 || kinds.count(words[0]) == 0) return {};
   const auto count = whole(words[1]), seed = whole(words[2]);
   if (!count || !seed) return {};
-  Arguments a{kinds.at(words[0]), *count, *seed};
+  Arguments a;
+  a.kind = kinds.at(words[0]), a.count = *count, a.seed = *seed;
   std::error_code error;
   a.plugins = fs::read_symlink("/proc/self/exe", error).parent_path() / NONIO_PLUGINS_FROM_PROGRAM;
   for (std::size_t i = 3; i < words.size(); ++i) {
@@ -413,6 +442,8 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
       a.plugins = words[++i];
     else if (words[i] == "--write" && i + 1 < words.size())
       a.write = words[++i];
+    else if (words[i] == "--size" && i + 1 < words.size() && whole(words[i + 1]))
+      a.size = *whole(words[++i]);
     else if ((words[i] == "--right" || words[i] == "--wrong") && i + 1 < words.size()) {
       const auto percent = whole(words[i + 1]);
       if (!percent) return {};
@@ -431,13 +462,15 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
   const auto a = arguments({argv + 1, argv + argc});
   if (!a) {
-    std::fprintf(stderr,
-                 "bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|\n    "
-                 "         grouped|beside COUNT SEED\n"
-                 "             [--verbose] [--plugins FOLDER] [--write FOLDER] [--right PERCENT] "
-                 "[--wrong PERCENT]\n"
-                 "             [--ar RHO] [--run-zero SIZE] [--walk SIZE] [--rough TIMES] "
-                 "[--digit SIZE]\n");
+    std::fprintf(
+        stderr,
+        "bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|\n    "
+        "         grouped|beside|fixed-end|blank-temperatures|day-wave|short-misread|smallest\n"
+        "             COUNT SEED\n"
+        "             [--verbose] [--plugins FOLDER] [--write FOLDER] [--right PERCENT] "
+        "[--wrong PERCENT]\n"
+        "             [--ar RHO] [--run-zero SIZE] [--walk SIZE] [--rough TIMES] "
+        "[--digit SIZE]\n");
     return 2;
   }
   host::Plugins plugins;
@@ -450,6 +483,9 @@ int main(int argc, char** argv) {
   for (std::uint64_t seed = a->seed; seed < a->seed + a->count; ++seed) {
     hidden::Scenario scenario = hidden::random_scenario(a->kind, seed);
     scenario.unrest = a->unrest;
+    if (a->kind == Kind::smallest)
+      scenario = as_small_as_printed(std::move(scenario), plugins.effects(), a->size);
+    if (a->kind == Kind::smallest && scenario.hidden.empty()) continue;
     const Hidden h = hidden::generate(scenario);
     if (!a->write.empty()) {
       const fs::path folder = a->write / h.campaign.id;

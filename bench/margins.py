@@ -50,7 +50,36 @@ def figures(head, rows):
     if len(spreads) >= 3:
         middle = statistics.median(spreads)
         out["size of a pass against the others"] = (max(max(s / middle, middle / s) for s in spreads), 8.0, False)
+    if (apart := two_curves(rows)) is not None:
+        out["two parts of the runs apart, squares"] = (apart, 25.0, False)
     return out
+
+
+def two_curves(rows):
+    """Squares of the means of two parts of the runs apart, over those of one run about its part's mean; a line of each run
+    is out."""
+    runs, directions = sorted({r for r, *_ in rows}), {d for _, d, *_ in rows}
+    cells = {(r, d, t): v for r, d, t, v in rows}
+    targets = sorted(t for t in {t for _, _, t, _ in rows} if all((r, d, t) in cells for r in runs for d in directions))
+    if len(targets) < 6 or len(runs) < 4:
+        return None
+
+    def straightened(r):
+        v = [statistics.fmean(cells[r, d, t] for d in directions) for t in targets]
+        t0, v0 = statistics.fmean(targets), statistics.fmean(v)
+        slope = sum((t - t0) * (x - v0) for t, x in zip(targets, v)) / sum((t - t0) ** 2 for t in targets)
+        return [x - v0 - slope * (t - t0) for t, x in zip(targets, v)]
+    curves, most = [straightened(r) for r in runs], 0.0
+    for gap in (0, 1):
+        for k in range(2, len(runs) - gap - 1):
+            parts = [curves[:k], curves[k + gap:]]
+            means = [[statistics.fmean(c) for c in zip(*part)] for part in parts]
+            squares = sum((x - m) ** 2 for part, mean in zip(parts, means) for c in part for x, m in zip(c, mean))
+            scatter = squares / ((len(runs) - gap - 2) * (len(targets) - 2))
+            apart = statistics.fmean((a - b) ** 2 for a, b in zip(*means))
+            if scatter > 0 and apart >= 0.1 * max(statistics.fmean(x * x for x in m) for m in means):
+                most = max(most, apart / scatter)
+    return most
 
 
 def main():

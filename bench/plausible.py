@@ -56,6 +56,13 @@ def campaign(folder, index, seed):
     targets = [round(margin + i * step + rng.uniform(-offset, offset) * step, 3) for i in range(count)]
     targets = [min(max(t, 0.0), travel) for t in targets]
     deviation, size = machine(rng, rotary, travel)
+    more = random.Random(f"{seed}-{index}-more")
+    settle = size * more.choice([0, 0, 0.1, 0.3]) * more.gauss(0, 1)  # a curve of its own that dies away from run to run
+    runs_to_settle, worn = more.uniform(0.5, 4), more.choice([0, 0, 0, 0.5]) * size * more.gauss(0, 1)
+    worn_at, worn_width = more.random(), more.uniform(0.05, 0.3)  # lost motion that is larger at one place
+    comment = more.choice(["", "", "# deviations in um, targets in mm\n", "# Achse: X; Einheit: mm\n", "# unit: um\n"])
+    if rotary:
+        comment = comment and "# Abweichung [arcsec], target [deg]\n"
     # An instrument that cannot resolve the machine shows zeros, and that is worth a finding.
     digits = rng.choice([0, 1, 1, 2, 3, 4, 6]) if size > 5 else rng.choice([1, 1, 2, 3, 4, 6]) if size > 0.5 else 3
     both = rng.choice(["both", "both", "both", "both", "+", "-"])
@@ -79,12 +86,17 @@ def campaign(folder, index, seed):
     with_time = rng.random() < 0.3 and layout == "bidirectional"
     with_material = rng.random() < 0.3
     separator = rng.choice([",", ",", ";", "\t"])
+    if as_position and "unit: um" in comment:  # would be wrong
+        comment = ""
     head = ["run", "direction", f"target_{unit}", f"position_{unit}" if as_position else f"deviation_{reading}"]
     head += ["time_s"] * with_time + ["material_c"] * with_material
     lines = [separator.join(head)]
     warm = rng.uniform(16, 30)
     for n, (run, d, i) in enumerate(rows):
         value = deviation(targets[i] / travel, d, run) + tilt * targets[i] / travel
+        x = targets[i] / travel
+        value += settle * math.exp(-run / runs_to_settle) * math.sin(4 * x)
+        value += worn * math.exp(-((x - worn_at) / worn_width) ** 2) * (d == "-")
         if as_position:
             text = f"{targets[i] + value / (3600 if rotary else 1000):.{rng.choice([6]) if digits > 2 else 4}f}"
         else:
@@ -93,7 +105,7 @@ def campaign(folder, index, seed):
         fields += [f"{n * 8.5:.1f}"] * with_time + [f"{warm + 0.002 * n:.2f}"] * with_material
         lines.append(separator.join(fields))
     folder.mkdir(parents=True)
-    (folder / "x.csv").write_text("\n".join(lines) + ("\n" if rng.random() < 0.9 else ""))
+    (folder / "x.csv").write_text(comment + "\n".join(lines) + ("\n" if rng.random() < 0.9 else ""))
     axis = "C" if rotary else "X"
     extra = ""
     if rng.random() < 0.7:

@@ -4,10 +4,10 @@
 namespace nonio::app {
 
 tl::expected<OpenCampaign, int> open_campaign(const char* verb, const std::string& folder,
-                                              const Common& common) {
+                                              const Common& common, host::TemplatesFor what) {
   OpenCampaign open{folder, nullptr, {}};
   auto place = host::open_workplace(open.folder, common.plugin_folders(), common.template_folders(),
-                                    NONIO_VERSION);
+                                    NONIO_VERSION, what);
   if (!place) return tl::unexpected(complain(verb, text_of(place.error())));
   open.place = std::move(*place);
   if (!common.quiet)

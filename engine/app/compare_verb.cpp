@@ -11,7 +11,7 @@ namespace {
 
 int compare(const std::string& folder, const Common& common) {
   const char* const verb = "nonio compare";
-  auto opened = open_campaign(verb, folder, common);
+  auto opened = open_campaign(verb, folder, common, host::TemplatesFor::english_words);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   auto parts = host::part_models(open.read, open.campaign().model);

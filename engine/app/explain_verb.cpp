@@ -23,7 +23,8 @@ class Explain {
       : options_(options), common_(common) {}
 
   int run() {
-    auto opened = open_campaign("nonio explain", options_.folder, common_);
+    auto opened =
+        open_campaign("nonio explain", options_.folder, common_, host::TemplatesFor::english_words);
     if (!opened) return opened.error();
     open_ = std::move(*opened);
     words_.emplace(open_.place->context.templates, "en");

@@ -16,7 +16,7 @@ nonio::app::Verb apart(nonio::app::Verb verb) {
   for (nonio::app::Verb& part : verb.verbs) part = apart(std::move(part));
   if (verb.run)
     verb.run = [run = std::move(verb.run)] {
-      nonio::host::keep_plugins_apart();
+      nonio::host::keep_plugins_apart(nonio::app::Common::own_plugins());
       return run();
     };
   return verb;

@@ -18,7 +18,8 @@ struct ModelOptions {
 const char* const model_name = "nonio model";
 
 int show_model(const ModelOptions& options, const Common& common) {
-  auto opened = open_campaign("nonio model show", options.folder, common);
+  auto opened =
+      open_campaign("nonio model show", options.folder, common, host::TemplatesFor::english_words);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   auto parts = host::part_models(open.read, open.campaign().model);
@@ -60,7 +61,8 @@ std::string refusal(const OpenCampaign& open, const std::string& effect, bool ad
 }
 
 int change(const ModelOptions& options, const Common& common, bool add) {
-  auto opened = open_campaign(add ? "nonio model add" : "nonio model drop", options.folder, common);
+  auto opened = open_campaign(add ? "nonio model add" : "nonio model drop", options.folder, common,
+                              host::TemplatesFor::english_words);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   if (const std::string why = refusal(open, options.effect, add); !why.empty())

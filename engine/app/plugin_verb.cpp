@@ -55,6 +55,7 @@ class CheckReport {
     if (common_.json)
       std::cout << Json{{"schema", "nonio-plugin-check/1"},
                         {"seed", options_.request.seed},
+                        {"seeds", options_.request.seeds},
                         {"checks", checks_},
                         {"passed", passed},
                         {"failed", failed},
@@ -64,7 +65,8 @@ class CheckReport {
                 << "\n";
     else
       std::cout << passed << " passed, " << failed << " failed, " << crashed << " crashed, "
-                << counts_[3] << " skipped; seed " << options_.request.seed << "\n";
+                << counts_[3] << " skipped; seed " << options_.request.seed << ", seeds "
+                << options_.request.seeds << "\n";
     if (passed + failed + crashed + counts_[3] == 0) {
       return complain("nonio plugin check",
                       "no plugin here has the check " + options_.request.only);
@@ -75,7 +77,7 @@ class CheckReport {
  private:
   std::string repeat(const host::PluginCheck& c) const {
     std::string words = "nonio plugin check " + c.file + " --only " + c.name + " --seed " +
-                        std::to_string(options_.request.seed);
+                        std::to_string(c.seed) + " --seeds 1";
     if (fs::is_directory(options_.subject) &&
         fs::is_directory(fs::path(options_.subject) / "cases"))
       words += " --cases " + (fs::path(options_.subject) / "cases").string();
@@ -160,6 +162,8 @@ Verb check_plugin_verb(Common& common) {
                     "A plugin; or a folder: every .so below it, and cases/*/campaign.toml as "
                     "samples"})),
                {"--seed", &options->request.seed, "Of the samples that are made (default: 1)"},
+               {"--seeds", &options->request.seeds,
+                "So many seeds, each one more than the last (default: 3)"},
                {"--only", &options->request.only, "One check of those below"},
                existing(Takes::folder, {"--cases", &options->cases,
                                         "A folder with campaigns below it: more samples"}),

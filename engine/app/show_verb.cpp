@@ -70,7 +70,7 @@ Number number_of(const std::string& key, const Json& value) {
            : key == "p"              ? Quantity::probability
                                      : Quantity::number};
   std::size_t longest = 0;
-  for (int i = 0; i <= static_cast<int>(Quantity::angular_expansion); ++i) {
+  for (int i = 0; i <= static_cast<int>(Quantity::angle_per_kelvin); ++i) {
     const Unit unit = unit_of(static_cast<Quantity>(i));
     if (unit.suffix.size() <= longest || !key.ends_with(unit.suffix)) continue;
     longest = unit.suffix.size();

@@ -62,10 +62,25 @@ void print_head(std::ostream& out, const host::PartModel& part) {
       << " readings; model: " << (effects.empty() ? "nothing but the zero" : effects) << "\n";
 }
 
-void print_parameters(std::ostream& out, const model::Fit& fit) {
+/// Curves by what they say, everything else by its parameters.
+void print_parameters(std::ostream& out, const model::Fit& fit, const host::PartModel& part,
+                      const host::ModelWords& words) {
   if (fit.parameters.empty()) return;
   out << "  parameters\n";
+  std::string told;
   for (const model::Parameter& p : fit.parameters) {
+    const auto term = std::find_if(fit.terms.begin(), fit.terms.end(),
+                                   [&](const model::Term& t) { return t.name() == p.effect; });
+    const auto curve =
+        term == fit.terms.end()
+            ? std::nullopt
+            : host::curve_of(part, fit, static_cast<std::size_t>(term - fit.terms.begin()));
+    if (curve && !p.shape) {
+      if (told != p.effect)
+        out << "    " << padded(p.effect, 20) << " " << words.curve(*curve, part) << "\n";
+      told = p.effect;
+      continue;
+    }
     const double value = printed(p.value, p.quantity);
     out << "    " << padded(p.effect, 20) << " " << padded(p.name, 8) << " "
         << (p.quantity == Quantity::count ? fixed_text(value, 0) : short_text(value, 4));
@@ -75,18 +90,14 @@ void print_parameters(std::ostream& out, const model::Fit& fit) {
   }
 }
 
-void print_places(std::ostream& out, const std::vector<model::Place>& places,
-                  const host::ModelWords& words, Quantity deviation) {
-  bool any = false;
-  for (const model::Place& place : places) {
-    if (!(place.p < model::place_p)) continue;
-    if (!any) out << "  where it fails\n";
-    any = true;
+/// One after the other: each beside those above it.
+void print_places(std::ostream& out, const model::Comparison& c, const host::ModelWords& words,
+                  Quantity deviation) {
+  if (!c.fails()) return line(out, "where it fails", "nowhere");
+  out << "  where it fails\n";
+  for (const model::Place& place : c.seats)
     out << "    " << padded(place.where + host::on_line(place), 24) << " "
-        << padded(fixed_text(100.0 * place.share, 0) + " %", 6) << "  p = " << p_text(place.p)
-        << "\n      " << words.place(place, deviation) << "\n";
-  }
-  if (!any) line(out, "where it fails", "nowhere");
+        << words.place(place, deviation) << "\n";
 }
 
 void print_suspects(std::ostream& out, const model::Comparison& c, const host::PartModel& part,
@@ -94,17 +105,6 @@ void print_suspects(std::ostream& out, const model::Comparison& c, const host::P
   for (const model::Suspect& s : c.suspects)
     out << "  suspect: "
         << words.suspect(s, host::place_of(part, campaign, s.row), part.deviation()) << "\n";
-}
-
-/// With Wilson's 95 % interval: what so many shuffles can tell.
-std::string false_alarms_text(const model::Verdict& v) {
-  const double n = static_cast<double>(v.trials), p = v.false_alarms, z2 = 1.959964 * 1.959964;
-  const double middle = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
-  const double half = std::sqrt(z2 * (p * (1.0 - p) + z2 / (4.0 * n)) / n) / (1.0 + z2 / n);
-  return fixed_text(100.0 * p, 1) + " % of " + std::to_string(v.trials) +
-         " shuffles of the noise (95 % interval " +
-         fixed_text(100.0 * std::max(0.0, middle - half), 1) + " .. " +
-         fixed_text(100.0 * (middle + half), 1) + " %)";
 }
 
 std::string largest_text(const host::Compared& compared, const Campaign& campaign) {
@@ -125,14 +125,27 @@ void print_candidates(std::ostream& out, const host::Explained& e) {
   double best = 0.0;
   for (const model::Candidate& c : e.explanation.candidates)
     if (host::is_ranked(c)) best = std::max(best, c.score);
-  out << "  " << padded("candidate", 22) << padded("evidence", 32) << padded("RMS after", 14)
-      << padded("left-out runs", 15) << "p\n";
+  if (best > 0.0)
+    out << "  " << padded("candidate", 22) << padded("evidence", 32) << padded("RMS after", 14)
+        << padded("left-out runs", 15) << "p\n";
   for (const model::Candidate& c : e.explanation.candidates) {
-    if (!host::is_ranked(c)) continue;
+    if (!host::is_ranked(c) || !(c.score > 0.0)) continue;
     out << "  " << padded(c.term.name(), 22) << bar(c.score, best, 20) << " "
         << padded(fixed_text(c.score, 1), 11) << padded(with_unit(c.rms, q), 14)
         << padded(c.cv_rms ? with_unit(*c.cv_rms, q) : "-", 15) << p_text(c.p) << "\n";
   }
+}
+
+/// What the best explanation adds; where it is none, what of it is not certain.
+void print_together(std::ostream& out, const model::Explanation& x) {
+  const bool unknown = x.verdict.kind == model::Verdict::Kind::unknown;
+  std::vector<std::string> names;
+  for (const std::string& name : x.together)
+    if (!unknown || std::find(x.certain.begin(), x.certain.end(), name) == x.certain.end())
+      names.push_back(name);
+  if (names.size() > (unknown ? 0U : 1U))
+    out << "    " << (unknown ? "it may also have, not certain: " : "the best explanation adds: ")
+        << host::listed(names) << "\n";
 }
 
 void print_verdict(std::ostream& out, const host::Explained& e, const host::ModelWords& words) {
@@ -140,15 +153,15 @@ void print_verdict(std::ostream& out, const host::Explained& e, const host::Mode
   out << "  verdict: " << host::to_text(x.verdict.kind)
       << (x.verdict.effect.empty() ? "" : " " + x.verdict.effect) << "\n    "
       << words.verdict(x, e.part) << "\n";
-  if (x.together.size() > 1)
-    out << "    the best explanation adds: " << host::listed(x.together) << "\n";
+  print_together(out, x);
   for (const model::Description& d : x.descriptions)
     out << "    " << words.description(d, e.part) << "\n";
-  if (!x.plans.empty()) out << "    to tell them apart: " << words.plan(x.plans.front()) << "\n";
+  for (const std::string& text : words.next(x, e.part))
+    out << "    " << (x.plans.empty() ? "next: " : "to tell them apart: ") << text << "\n";
   for (const char* what : {"is", "cure"})
     if (const std::string text = words.card(x.verdict.effect, what); !text.empty())
       out << "    " << text << "\n";
-  if (x.verdict.trials > 0) out << "    false alarms: " << false_alarms_text(x.verdict) << "\n";
+  if (x.verdict.trials > 0) out << "    " << words.false_alarms(x.verdict) << "\n";
 }
 
 void print_bars(std::ostream& out, const host::ModelStep& step) {
@@ -182,14 +195,13 @@ void print_comparison(std::ostream& out, const host::Compared& compared, const C
   if (c.largest != 0.0) line(out, "largest residual", largest_text(compared, campaign));
   line(out, "redundancy", std::to_string(c.fit.redundancy));
   if (c.lack_of_fit && std::isfinite(c.lack_of_fit->F))
-    line(out, "lack of fit",
-         "F = " + short_text(c.lack_of_fit->F) + ", p = " + p_text(c.lack_of_fit->p));
-  print_parameters(out, c.fit);
+    line(out, "lack of fit", words.lack_of_fit(c, q));
+  print_parameters(out, c.fit, part, words);
   for (const host::Correlated& pair : host::correlated(c.fit))
     line(out, "correlated",
          pair.one->effect + " " + pair.one->name + " and " + pair.other->effect + " " +
              pair.other->name + ": r = " + fixed_text(pair.r, 3));
-  print_places(out, c.places, words, part.deviation());
+  print_places(out, c, words, part.deviation());
   if (c.means > 0)
     line(out, "", "told from " + std::to_string(c.means) + " means of neighbouring readings");
   print_suspects(out, c, part, campaign, words);
@@ -204,7 +216,7 @@ void print_model(std::ostream& out, const host::Compared& compared, const host::
   line(out, "RMS", with_unit(c.fit.rms, q));
   if (c.cv_rms) line(out, "left-out runs", with_unit(*c.cv_rms, q));
   if (c.floor) line(out, "noise floor", floor_text(*c.floor, q));
-  print_parameters(out, c.fit);
+  print_parameters(out, c.fit, compared.part, words);
   for (const std::string& warning : host::warnings_of(compared.part, c.fit, words))
     out << "  warning: " << warning << "\n";
 }
@@ -217,8 +229,13 @@ void print_explanation(std::ostream& out, const host::Explained& e, const Campai
   line(out, "RMS", with_unit(c.fit.rms, q));
   if (c.floor) line(out, "noise floor", floor_text(*c.floor, q));
   print_candidates(out, e);
+  if (const std::string text = words.no_sign(e.explanation, e.part); !text.empty())
+    out << "  " << text << "\n";
   for (const model::Candidate& candidate : e.explanation.candidates)
-    if (!host::is_ranked(candidate)) out << "  " << words.unseen(candidate) << "\n";
+    // A test of an hour is not meant to show the day: only the JSON says so.
+    if (!host::is_ranked(candidate) && candidate.why != "short-test")
+      out << "  " << words.unseen(candidate, host::place_of(e.part, campaign, candidate.rows))
+          << "\n";
   print_verdict(out, e, words);
   print_suspects(out, c, e.part, campaign, words);
   for (const std::string& warning : host::warnings_of(e.part, c.fit, words))
@@ -242,7 +259,7 @@ void print_change(std::ostream& out, const host::Change& change, const host::Mod
   if (step.floor) line(out, "noise floor", with_unit(*step.floor, q));
   print_bars(out, step);
   if (!change.after) return;
-  print_parameters(out, change.after->comparison.fit);
+  print_parameters(out, change.after->comparison.fit, change.after->part, words);
   for (const std::string& warning :
        host::warnings_of(change.after->part, change.after->comparison.fit, words))
     out << "  warning: " << warning << "\n";

@@ -322,15 +322,40 @@ Expected<Laid> lay_all(const std::vector<Block>& blocks, double width, const Con
   return out;
 }
 
+/// Plots that begin parts side by side: their titles and legends take the same height.
+Expected<void> put_in_line(Columns& columns, double room, const Context& context) {
+  const auto share_of = [&](std::size_t i) {
+    return i < columns.shares.size() ? columns.shares[i]
+                                     : 1.0 / static_cast<double>(columns.parts.size());
+  };
+  double top = 0;
+  std::vector<Plot*> plots;
+  for (std::size_t i = 0; i < columns.parts.size(); ++i) {
+    if (columns.parts[i].empty()) continue;
+    Block& first = columns.parts[i].front();
+    auto* plot = std::get_if<Plot>(&first.what);
+    if (plot == nullptr) continue;
+    const auto own = plot_top(*plot, room * share_of(i), context, first.field);
+    if (!own) return fail(own.error());
+    top = std::max(top, *own);
+    plots.push_back(plot);
+  }
+  if (plots.size() > 1)
+    for (Plot* plot : plots) plot->top = top;
+  return {};
+}
+
 SignatureFrame moved(SignatureFrame frame, double x, double y) {
   frame.x += x, frame.y += y;
   return frame;
 }
 
-Expected<Laid> lay(const Columns& columns, double width, const Context& context, std::string_view) {
+Expected<Laid> lay(const Columns& given, double width, const Context& context, std::string_view) {
   constexpr double gutter = 16;
+  Columns columns = given;
   const std::size_t n = columns.parts.size();
   const double room = width - gutter * static_cast<double>(n - 1);
+  if (auto ok = put_in_line(columns, room, context); !ok) return fail(ok.error());
   Canvas canvas;
   double x = 0, height = 0;
   bool with_next = false;

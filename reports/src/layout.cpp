@@ -140,11 +140,18 @@ Expected<void> add_heads_and_feet(std::vector<Canvas>& pages, const Document& do
 }
 
 /// From corner to corner, so that no part of a page can be taken for a finished one.
-Expected<void> add_mark(std::vector<Canvas>& pages, const Document& document, const Fonts& fonts) {
+Expected<void> add_mark(std::vector<Canvas>& pages, const Document& document,
+                        const Context& context) {
   if (document.mark.empty()) return {};
   const Style& style = document.style;
-  const auto glyphs = shape(document.mark, fonts, true, "mark");
+  auto glyphs = shape(document.mark, context.fonts, true, "mark");
   if (!glyphs) return fail(glyphs.error());
+  // Bold ideographs have an outline, which is not seen through.
+  const bool bold =
+      std::none_of(glyphs->begin(), glyphs->end(), [](const Glyph& g) { return g.wide; });
+  if (!bold) glyphs = shape(document.mark, context.fonts, false, "mark");
+  if (!glyphs) return fail(glyphs.error());
+  note_glyphs(context, *glyphs, bold);
   const double diagonal = std::hypot(style.page_width, style.page_height);
   const double cosine = style.page_width / diagonal, sine = style.page_height / diagonal;
   const double size = std::min(110.0, 0.8 * diagonal / std::max(width_of(*glyphs), 0.1));
@@ -154,7 +161,7 @@ Expected<void> add_mark(std::vector<Canvas>& pages, const Document& document, co
     canvas.see_through(true);
     canvas.fill_colour(style.failed);
     canvas.text_along((style.page_width - length * cosine) / 2 + half * sine,
-                      (style.page_height - length * sine) / 2 - half * cosine, cosine, sine, true,
+                      (style.page_height - length * sine) / 2 - half * cosine, cosine, sine, bold,
                       size, *glyphs);
     canvas.see_through(false);
     page.place(0, 0, canvas.ops);
@@ -212,7 +219,7 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
   pages.add(waiting);
   std::vector<Canvas> drawn = pages.take();
   if (auto ok = add_heads_and_feet(drawn, document, context); !ok) return fail(ok.error());
-  if (auto ok = add_mark(drawn, document, fonts); !ok) return fail(ok.error());
+  if (auto ok = add_mark(drawn, document, context); !ok) return fail(ok.error());
   PdfFile file{document.title,   document.author,      document.subject,         document.language,
                document.date,    style.page_width,     style.page_height,        style.see_through,
                used.common_only, std::move(used.wide), std::move(used.pictures), {}};

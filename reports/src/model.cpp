@@ -22,13 +22,66 @@ std::string meaning_of(const ModelFit::Parameter& p, const Templates& templates,
                card + p.name.substr(0, p.name.find_last_not_of("0123456789") + 1));
 }
 
+const ModelFit::Curve* curve_named(const ModelFit& fit, const std::string& effect) {
+  for (const ModelFit::Effect& e : fit.effects)
+    if (e.name == effect && e.curve) return &*e.curve;
+  return nullptr;
+}
+
+/// What a curve comes to: nobody reads the coefficients of a spline.
+void add_curve(std::vector<ParameterRow>& rows, const std::string& effect,
+               const ModelFit::Curve& curve, const ModelFit& fit, const Templates& templates,
+               const std::string& language) {
+  const Quantity q = deviation_of(fit.angular), along = position_of(fit.rotary);
+  const auto row = [&](const char* name, double value, std::optional<double> at) {
+    const std::string key = std::string("model.curve.") + name;
+    std::string meaning = words(templates, language, at ? key + "_at" : key);
+    if (const std::size_t place = meaning.find("{at}"); at && place != std::string::npos)
+      meaning.replace(
+          place, 4, localised(evidence_text({"", *at, along}), language) + " " + unit_text(along));
+    std::string text = localised(short_text(printed(value, q)), language);
+    if (text.starts_with('-')) text.replace(0, 1, "\u2212");
+    rows.push_back({name == std::string_view("rms") ? effect : "", "", meaning, std::move(text),
+                    "–", unit_text(q)});
+  };
+  row("rms", curve.rms, {});
+  row("low", curve.low, curve.low_at);
+  row("high", curve.high, curve.high_at);
+}
+
 }  // namespace
+
+std::vector<CandidateRow> candidate_rows(const ModelFit& fit, const std::string& language) {
+  const Quantity q = deviation_of(fit.angular);
+  const auto with_unit = [&](double value) {
+    return localised(short_text(printed(value, q)), language) + " " + unit_text(q);
+  };
+  std::vector<CandidateRow> rows;
+  for (const ModelFit::Candidate& c : fit.candidates)
+    rows.push_back({c.effect, localised(fixed_text(c.score, 1), language), with_unit(c.rms),
+                    c.cv_rms ? with_unit(*c.cv_rms) : "–", with_unit(c.smallest), c.certain});
+  return rows;
+}
+
+std::string no_sign(const ModelFit& fit, const Templates& templates, const std::string& language) {
+  std::string text;
+  for (const Finding& f : fit.no_sign)
+    text += (text.empty() ? "" : ", ") + finding_text(templates, language, f, "says");
+  return text.empty() ? text : typeset(text + ".");
+}
 
 std::vector<ParameterRow> parameter_rows(const ModelFit& fit, const Templates& templates,
                                          const std::string& language) {
   std::vector<ParameterRow> rows;
   const std::string* above = nullptr;
   for (const ModelFit::Parameter& p : fit.parameters) {
+    const ModelFit::Curve* const curve = p.searched ? nullptr : curve_named(fit, p.effect);
+    if (curve != nullptr) {
+      if (above == nullptr || *above != p.effect)
+        add_curve(rows, p.effect, *curve, fit, templates, language);
+      above = &p.effect;
+      continue;
+    }
     std::optional<double> U;
     if (p.u && std::isfinite(*p.u)) U = 2 * *p.u;
     const Printed shown = printed_result(p.value, U, p.quantity, language);
@@ -81,12 +134,6 @@ std::string fit_in_words(const ModelFit& fit, const Results& results, const Word
         " " + words.get("model.largest",
                         {{"value", printed_number(largest->value, largest->quantity, 2, language)},
                          {"unit", unit_text(largest->quantity)}});
-  const Value *F = value("lack_of_fit_F"), *p = value("lack_of_fit_p");
-  if (F != nullptr && p != nullptr)
-    text +=
-        " " + words.get("model.lack_of_fit",
-                        {{"F", localised(short_text(F->value), language)},
-                         {"p", localised(evidence_text({"", p->value, p->quantity}), language)}});
   return text;
 }
 

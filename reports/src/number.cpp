@@ -76,6 +76,8 @@ std::string unit_text(Quantity quantity) {
       return "µm/(m·K)";
     case Quantity::deviation_per_time:
       return "µm/h";
+    case Quantity::deviation_per_kelvin:
+      return "µm/K";
     case Quantity::growth:
       return "µm/(m·h)";
     case Quantity::angular_growth:

@@ -93,5 +93,7 @@ Expected<Laid> lay_code(const Code&, double width, const Context&, std::string_v
 Expected<Laid> lay_signature(const SignatureBox&, double width, const Context&,
                              std::string_view field);
 Expected<Laid> lay_plot(const Plot&, double width, const Context&, std::string_view field);
+/// The height that its title and legend take.
+Expected<double> plot_top(const Plot&, double width, const Context&, std::string_view field);
 
 }  // namespace nonio::reports

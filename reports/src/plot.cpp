@@ -232,26 +232,32 @@ class PlotSetter {
         size_(std::max(5.0, context.style.small - 0.5)) {}
 
   Expected<Laid> lay() {
-    Expected<double> top = draw_title();
-    if (top) top = draw_legend(*top);
-    if (!top) return fail(top.error());
+    const auto own_top = draw_top();
+    if (!own_top) return fail(own_top.error());
+    if (plot_.only_legend) return Laid{{{*own_top, 2, std::move(canvas_.ops), true}}};
+    const double top = std::max(*own_top, plot_.top);
     // Title and legend may take many lines; the drawing stays one.
     constexpr double least_drawn = 85, least_of_given = 45;
     const double below = 2.9 * size_ + 3;
-    const double height =
-        std::max(plot_.height > 0 ? plot_.height : style_.plot_height,
-                 *top + below + (plot_.height > 0 ? least_of_given : least_drawn));
+    const double height = std::max(plot_.height > 0 ? plot_.height : style_.plot_height,
+                                   top + below + (plot_.height > 0 ? least_of_given : least_drawn));
     Range across, up;
     for (const Curve& curve : plot_.curves) {
       for (const double v : curve.x) across.add(v);
       for (const double v : curve.y) up.add(v);
       for (const double v : curve.y2) up.add(v);
     }
-    const auto drawn = across.empty() || up.empty() ? draw_nothing(*top, height)
-                       : plot_.scales               ? draw(*top, height, across, up)
-                                                    : draw_picture(*top, height, across, up);
+    const auto drawn = across.empty() || up.empty() ? draw_nothing(top, height)
+                       : plot_.scales               ? draw(top, height, across, up)
+                                                    : draw_picture(top, height, across, up);
     if (!drawn) return fail(drawn.error());
     return Laid{{{height, 5, std::move(canvas_.ops), false}}};
+  }
+
+  Expected<double> draw_top() {
+    if (plot_.only_legend) return draw_legend(0);
+    const auto title = draw_title();
+    return title ? draw_legend(*title) : title;
   }
 
  private:
@@ -292,16 +298,18 @@ class PlotSetter {
     bool any = false;
     for (const Curve& curve : plot_.curves) {
       if (curve.legend.empty()) continue;
-      auto text = set_line(context_, curve.legend, false, size_, width_ - 20, field_);
+      auto text = set_text(context_, curve.legend, false, size_, width_ - 20, field_);
       if (!text) return fail(text.error());
-      const double wide = 19 + text->lines[0].width * size_;
+      double wide = 0;
+      for (const TextLine& line : text->lines) wide = std::max(wide, 19 + line.width * size_);
       if (x > 0 && x + wide > width_) {
         x = 0;
         y += text->leading();
       }
       draw_sample(curve, x, -y - 0.65 * size_);
       canvas_.fill_colour(style_.text);
-      text->draw(canvas_, 0, x + 19, -y);
+      text->draw_all(canvas_, x + 19, -y);
+      y += text->height() - text->leading();
       x += wide + 9;
       any = true;
     }
@@ -354,6 +362,7 @@ class PlotSetter {
     frame.across =
         axis_scale(across.low, across.high, std::clamp(static_cast<int>(width_ / 30), 2, 7), ticks,
                    plot_.language);
+    if (!plot_.lanes.empty()) frame.across = lanes();
     if (auto ok = draw_axes(frame, labels, *up_title); !ok) return ok;
     canvas_.clip(frame.x, frame.y, frame.w, frame.h);
     canvas_.ops += "1 j\n";  // round joins: no spikes where a curve turns
@@ -406,8 +415,10 @@ class PlotSetter {
     canvas_.stroke_colour(style_.rule);
     canvas_.line(0.25);
     for (const double tick : f.up.ticks) canvas_.segment(f.x, f.py(tick), f.x + f.w, f.py(tick));
-    for (const double tick : f.across.ticks)
-      canvas_.segment(f.px(tick), f.y, f.px(tick), f.y + f.h);
+    for (const double tick : f.across.ticks) {
+      const double at = plot_.lanes.empty() ? tick : tick + 0.5;  // lanes have their names between
+      canvas_.segment(f.px(at), f.y, f.px(at), f.y + f.h);
+    }
     canvas_.stroke_colour(style_.muted);
     canvas_.line(0.5);
     if (plot_.zero_line) canvas_.segment(f.x, f.py(0), f.x + f.w, f.py(0));
@@ -427,6 +438,13 @@ class PlotSetter {
                            std::span(up.glyphs).subspan(line.begin, line.end - line.begin));
     }
     return {};
+  }
+
+  AxisScale lanes() const {
+    AxisScale scale{0.0, static_cast<double>(plot_.lanes.size()), {}, plot_.lanes};
+    for (std::size_t k = 0; k < plot_.lanes.size(); ++k)
+      scale.ticks.push_back(static_cast<double>(k) + 0.5);
+    return scale;
   }
 
   /// Room for `span`, to both sides alike.
@@ -473,6 +491,11 @@ class PlotSetter {
 Expected<Laid> lay_plot(const Plot& plot, double width, const Context& context,
                         std::string_view field) {
   return PlotSetter(plot, width, context, field).lay();
+}
+
+Expected<double> plot_top(const Plot& plot, double width, const Context& context,
+                          std::string_view field) {
+  return PlotSetter(plot, width, context, field).draw_top();
 }
 
 }  // namespace nonio::reports

@@ -112,6 +112,26 @@ bool in_space(const ModelFit& fit) {
                        [](char c) { return c == 'X' || c == 'Y' || c == 'Z'; }) > 1;
 }
 
+double Lanes::at(std::size_t line, double place) const {
+  constexpr double room = 0.08;
+  const auto [low, high] = ends[line];
+  const double part = low < high ? (place - low) / (high - low) : 0.5;
+  return static_cast<double>(line) + room + (1.0 - 2.0 * room) * part;
+}
+
+Lanes lanes_of(const ModelFit& fit) {
+  Lanes lanes;
+  if (!in_space(fit) || fit.measurements.size() < 2) return lanes;
+  lanes.names = fit.measurements;
+  lanes.ends.assign(lanes.names.size(), {INFINITY, -INFINITY});
+  for (std::size_t i = 0; i < fit.size() && i < fit.measurement.size(); ++i) {
+    auto& [low, high] = lanes.ends[fit.measurement[i]];
+    low = std::min(low, fit.target[i]);
+    high = std::max(high, fit.target[i]);
+  }
+  return lanes;
+}
+
 Trace mean_by_run(const ModelFit& fit) {
   std::map<std::uint32_t, Mean> means;
   for (std::size_t i = 0; i < fit.size() && i < fit.run.size(); ++i)
@@ -198,9 +218,11 @@ std::array<PictureWords, 9> picture_words(const ModelFit& fit, const Wording& wo
     PictureWords& w = out[i];
     w.title = words.get(key + "title");
     w.says = words.get((names[i] == "mesh" ? "picture.angle." : key) + "says");
-    w.x = words.get(
-        along ? (in_space(fit) ? "picture.position.x_lines" : "picture.position.x") : key + "x",
-        {{"axis", fit.axis}, {"unit", unit != nullptr ? unit : unit_text(q)}});
+    w.x = words.get(along ? (!lanes_of(fit).names.empty() ? "picture.position.x_lanes"
+                             : in_space(fit)              ? "picture.position.x_lines"
+                                                          : "picture.position.x")
+                          : key + "x",
+                    {{"axis", fit.axis}, {"unit", unit != nullptr ? unit : unit_text(q)}});
     w.y = words.get(own_y ? key + "y" : "picture.residual", {{"unit", unit_text(up)}});
     w.degrees = fit.rotary && (along || turn) && (along || picture == ResidualPlot::phase);
     if (along || picture == ResidualPlot::phase) w.x_per_si = unit_of(across).per_si;

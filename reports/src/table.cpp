@@ -20,9 +20,31 @@ struct Needs {
   std::vector<double> natural, least, numbers;
 };
 
+/// What each column asks for, but none more than one level: the short ones get all, so that one
+/// long column does not divide them.
+std::vector<double> up_to_a_level(const Needs& needs, double width) {
+  std::vector<double> out(needs.least.size());
+  const auto all_at = [&](double most) {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < out.size(); ++c)
+      sum += out[c] = std::max(needs.least[c], std::min(needs.natural[c], most));
+    return sum;
+  };
+  double low = 0.0, high = width;
+  for (int i = 0; i < 40; ++i) {
+    const double most = (low + high) / 2.0;
+    (all_at(most) > width ? high : low) = most;
+  }
+  all_at(low);
+  return out;
+}
+
+using Widths = std::vector<double>;
+
 /// Widths of the columns: what each needs, if there is room, and what is left over shared out; else
-/// its widest word and a share of the rest. Where even that is too much, words give way to numbers.
-std::vector<double> column_widths(const Needs& needs, double width) {
+/// its widest word, and of the rest a share, or the short ones first: two ways. Where even that is
+/// too much, words give way to numbers.
+std::vector<Widths> column_widths(const Needs& needs, double width) {
   const auto sum = [](const std::vector<double>& v) {
     return std::accumulate(v.begin(), v.end(), 0.0);
   };
@@ -35,13 +57,14 @@ std::vector<double> column_widths(const Needs& needs, double width) {
   std::vector<double> out = needs.natural;
   if (const double all = sum(out); all <= width) {
     for (double& w : out) w += (width - all) / static_cast<double>(out.size());
-    return out;
+    return {out};
   }
-  if (sum(needs.least) <= width) return between(needs.least, needs.natural);
-  if (sum(needs.numbers) <= width) return between(needs.numbers, needs.least);
+  if (sum(needs.least) <= width)
+    return {up_to_a_level(needs, width), between(needs.least, needs.natural)};
+  if (sum(needs.numbers) <= width) return {between(needs.numbers, needs.least)};
   out = needs.numbers;
   for (double& w : out) w *= width / sum(needs.numbers);
-  return out;
+  return {out};
 }
 
 /// Ideographs divide anywhere; up to four stay together, as most words have no more. 1 = font size.
@@ -97,7 +120,10 @@ class TableSetter {
       if (!title) return fail(title.error());
       auto unit = shape(table_.columns[c].unit, context_.fonts, false, names[c]);
       if (!unit) return fail(unit.error());
+      constexpr double short_title = 48;  // "U (k = 2)", "Nr. / No.": in one line
+      const double wide = width_of(*title) * context_.style.small;
       measure(c, *title, false);
+      if (wide <= short_title) needs.least[c] = std::max(needs.least[c], wide + 2 * pad + rounding);
       measure(c, *unit, false);
       titles_.push_back(std::move(*title));
       units_.push_back(std::move(*unit));
@@ -113,8 +139,32 @@ class TableSetter {
       }
       rows_.push_back(std::move(cells));
     }
-    widths_ = column_widths(needs, width_);
+    choose(column_widths(needs, width_));
     return {};
+  }
+
+  /// The way that makes the lower table.
+  void choose(const std::vector<Widths>& ways) {
+    std::size_t least = 0;
+    for (const Widths& way : ways) {
+      const std::size_t n = ways.size() == 1 ? 0 : lines(way);
+      if (widths_.empty() || n < least) widths_ = way, least = n;
+    }
+  }
+
+  std::size_t lines(const Widths& widths) const {
+    const auto in = [&](const Glyphs& text, std::size_t c) {
+      return wrap(text, (widths[c] - 2 * pad) / context_.style.small).size();
+    };
+    std::size_t all = 0, header = 0;
+    for (std::size_t c = 0; c < titles_.size(); ++c) header = std::max(header, in(titles_[c], c));
+    for (const Cells& row : rows_) {
+      std::size_t height = 1;
+      for (std::size_t c = 0; c < row.text.size(); ++c)
+        height = std::max(height, in(row.text[c], c));
+      all += height;
+    }
+    return header + all;
   }
 
   Expected<void> add_title(Laid& out) const {
@@ -146,7 +196,8 @@ class TableSetter {
       units.push_back(set(units_[c], false, c));
       if (!units_[c].empty()) unit_height = std::max(unit_height, units[c].height());
     }
-    const double height = title_height + unit_height + 4;
+    constexpr double above_rows = 1.2;
+    const double height = title_height + unit_height + 3.5;
     Canvas canvas;
     canvas.stroke_colour(style.text);
     canvas.line(0.8);
@@ -162,7 +213,7 @@ class TableSetter {
       if (!units_[c].empty()) units[c].draw_all(canvas, x + pad, -1.5 - title_height, room, align);
       x += widths_[c];
     }
-    return {height, 0, std::move(canvas.ops), true};
+    return {height + above_rows, 0, std::move(canvas.ops), true};
   }
 
   /// A row; one of more than `together` lines may be divided between two of them.

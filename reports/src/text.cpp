@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include "characters.h"
 #include "font_outlines.h"
@@ -70,6 +71,17 @@ Glyph glyph_of(char32_t c, const Font& font, const Font& wide) {
   return {id, id == 0 ? std::uint16_t{0} : wide.advance[id], space, space, true};
 }
 
+/// Of "k = 2", "5 %", "3 µm", "20 °C" neither part begins a line.
+bool stays_with_number(char32_t c) {
+  return c == U'=' || c == U'%' || c == U'\u00B5' || c == U'\u00B0';
+}
+
+/// Chinese stops and brackets fill half of their square only: no blank follows them.
+bool has_room_behind(char32_t c) {
+  constexpr std::u32string_view all = U"\u3002\uFF0C\uFF1B\uFF1A\u3001\uFF09\uFF1F\uFF01";
+  return all.find(c) != std::u32string_view::npos;
+}
+
 }  // namespace
 
 Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold,
@@ -81,6 +93,7 @@ Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold,
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t at = i;
     const char32_t c = next_composed(text, i);
+    if (c == U' ' && has_room_behind(last)) continue;
     Glyph glyph = glyph_of(c, font, fonts.wide);
     const bool accent = c == acute_above;
     const bool over_a_letter = bears_accent(last) && !glyph.wide && !out.back().wide &&
@@ -91,6 +104,8 @@ Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold,
     if (!out.empty() && (glyph.wide || out.back().wide) && !begins_no_line(c) &&
         !ends_no_line(last))
       out.back().break_after = true;
+    if (!out.empty() && out.back().space && stays_with_number(c)) out.back().break_after = false;
+    if (glyph.space && last == U'=') glyph.break_after = false;
     out.push_back(glyph);
     last = c;
   }
@@ -130,7 +145,7 @@ double width_of(const Glyph* begin, const Glyph* end) {
 double widest_word(const Glyphs& glyphs) {
   long widest = 0, word = 0;
   for (const Glyph& g : glyphs) {
-    if (!g.space) word += g.advance;
+    if (!g.space || !g.break_after) word += g.advance;
     widest = std::max(widest, word);
     if (g.break_after) word = 0;
   }

@@ -142,6 +142,22 @@ class Number(MachineTest):
         self.measured("fanuc", options='[options.fanuc]\naxes = ["Q number=4"]\n')
         self.assertIn("no axis Q", self.tables("fanuc")[1]["errors"][0]["message"], "the campaign's own slip")
 
+    def test_the_number_of_another_axis_is_refused(self):
+        self.record(["X", "Y"])
+        for control, key, axis in (("fanuc", "number", 2), ("linuxcnc", "joint", 1)):
+            self.measured(control, machine='asset = "S-1"\n', options='[options.%s]\naxes = ["Z %s=%d"]\n' % (control, key, axis))
+            _, results = self.tables(control, expect=1)
+            said = " ".join(e["message"] for e in results["errors"])
+            self.assertIn("axis Z, %s=%d is the number of axis %s, machines/S-1.toml" % (key, axis, "XY"[axis - 1]), said)
+            self.measured(control, machine='asset = "S-1"\n', options='[options.%s]\naxes = ["Z %s=7"]\n' % (control, key))
+            self.assertEqual(self.tables(control)[1]["errors"], [])
+
+    def test_one_axis_has_one_number(self):
+        for entries in ('"Z number=3 number=4"', '"Z number=3", "Z number=4"'):
+            self.measured("siemens-840d", options="[options.siemens-840d]\naxes = [%s]\n" % entries)
+            _, results = self.tables("siemens-840d", expect=1)
+            self.assertIn("axis Z has number=3 and number=4: which of them?", results["errors"][0]["message"])
+
     def test_an_asset_is_a_name_and_no_path(self):
         for asset in ("../S-1", "a/b", ".hidden", "a\\\\b"):
             self.measured("fanuc", machine='asset = "%s"\n' % asset)
@@ -440,6 +456,71 @@ class Merge(MachineTest):
                     "1    *        AXIS_X.COM                      ", "1    *        AXIS_X.COM                      AXIS_Z.COM"))
             self.assertEqual([t["output"] for t in done["tables"] if t["largest_um"] > 0], ["Z"])
         self.assertIn("CONFIG.CMA", self.nonio("merge", self.site / "X.COM", "--with", self.folder, expect=1).stderr)
+
+    def test_siemens_axes_by_names_of_their_own_are_refused(self):
+        self.record(["X", "Y", "Z"])
+        self.measured("siemens-840d", machine='asset = "S-1"\n')
+        path = self.site / "EEC.INI"
+        path.write_text(self.archive(((1, 0.001), (3, 0.0))).replace("AX3", "Z1"))
+        said = self.nonio("merge", path, "--with", self.folder, "--out", self.site / "load", expect=1).stderr
+        self.assertIn("calls an axis Z1: wanted AX1", said)
+        self.assertFalse((self.site / "load").exists())
+
+    def test_aerotech_keeps_planes_and_the_other_axes(self):
+        block = lambda n, size: (":START %d SAMPLEDIST=100.0 POSUNIT=PRIMARY CORUNIT=PRIMARY\n:START HOMEOFFSET=0\n" % n +
+                                 "".join("%.4f\n" % (size * k) for k in range(5)) + ":END\n")
+        plane = (":START2D 2 1 1 2 100.0 100.0 2\n:START2D POSUNIT=METRIC CORUNIT=METRIC/1000 OFFSETROW=0 OFFSETCOL=0\n"
+                 "0 0  1 0\n0 2  1 2\n:END\n")
+        self.record(["X", "Y", "Z"])
+        self.measured("aerotech", machine='asset = "S-1"\n')
+        path = self.site / "MACHINE.CAL"
+        for end in ("\n", "\r\n"):
+            for own in (block(3, 0.002), ""):
+                before = "; the builder's words\n" + block(1, 0.001) + own + plane
+                path.write_bytes(before.replace("\n", end).encode())
+                found = self.json_of("merge", path, "--with", self.folder, "--out", self.site / "load")
+                after = (self.site / "load" / "MACHINE.CAL").read_bytes().decode()
+                self.assertEqual(after.count("\n"), after.count(end))
+                after = after.replace(end, "\n")
+                for kept in ("; the builder's words\n" + block(1, 0.001), plane):
+                    self.assertIn(kept, after)
+                self.tables("aerotech")
+                new = self.file("aerotech-Z.cal")
+                self.assertEqual(after.count(":START 3 "), 1)
+                self.assertIn(new[new.index(":START"):], after)
+                self.assertEqual({t["output"] for t in found["tables"] if t["largest_um"] > 0}, {"Z"})
+        # What the words of a table say otherwise is another table: a turned sign, other units.
+        for word in ("NEGCOR", "CORUNIT=METRIC/1000", "HOMEOFFSET=5", "OUTAXIS3"):
+            path.write_text(block(1, 0.001).replace("HOMEOFFSET=0", "HOMEOFFSET=0 " + word))
+            self.assertIn(word, self.nonio("merge", path, "--with", self.folder, expect=None).stderr, word)
+
+    def test_a_list_of_twincat_keeps_its_cross_table(self):
+        def lis(n, size, more=""):
+            return ("# the builder's words\nkopf.achs_nr %d\nkw.ssfk.unit 1\nkw.ssfk.interval 1000000\nkw.ssfk.kw_startpos 0\n"
+                    "kw.ssfk.kw_nr_max 5\nkw.ssfk.bilateral 0\nkw.ssfk.modulo 0\n" % n +
+                    "".join("kw.ssfk.table[%d].pos %d\n" % (k, size * k) for k in range(5)) + more)
+        cross = ("kw.crosscomp.unit 1\nkw.crosscomp.last_index 1\nkw.crosscomp.master_ax_nr 1\nkw.crosscomp.n_cycles 0\n" +
+                 "".join("kw.crosscomp.table[%d].setpoint %d\nkw.crosscomp.table[%d].correction %d\n" % (k, 10**6 * k, k, 7 * k)
+                         for k in range(2)))
+        self.record(["X", "Y", "Z"])
+        self.measured("twincat-cnc", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 4.0,
+                      options='[options.twincat-cnc]\ncross_sign = "error"\n')
+        files = {"X.lis": lis(1, 30), "Z.lis": lis(3, 50, cross + "getriebe[0].lose 11\n")}
+        for name, text in files.items():
+            (self.site / name).write_text(text)
+        both = "%s,%s" % (self.site / "X.lis", self.site / "Z.lis")
+        found = self.json_of("merge", both, "--with", self.folder, "--out", self.site / "load")
+        self.assertEqual([p.name for p in (self.site / "load").iterdir()], ["Z.lis"])
+        after = (self.site / "load" / "Z.lis").read_text()
+        self.assertIn("# the builder's words\nkopf.achs_nr 3\n", after)
+        self.assertIn(cross + "getriebe[0].lose  40\n", after)
+        self.tables("twincat-cnc")
+        new = [l for l in self.file("twincat-cnc-Z.lis").splitlines() if l.startswith("kw.ssfk")]
+        self.assertEqual([l for l in after.splitlines() if l.startswith("kw.ssfk")], new)
+        self.assertEqual({(t["output"], tuple(t["by"])): t["largest_um"] > 0 for t in found["tables"]},
+                         {("1", ("1",)): False, ("Z", ("Z",)): True, ("Z", ("1",)): False})
+        alone = self.nonio("merge", self.site / "X.lis", "--with", self.folder, expect=1).stderr
+        self.assertIn("no list of axis 3 (kopf.achs_nr)", alone)
 
     def test_a_control_whose_files_hold_one_axis_is_refused_by_name(self):
         self.record(["X", "Y", "Z"], from_zero=True)

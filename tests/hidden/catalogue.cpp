@@ -48,11 +48,23 @@ Columns best_of(const Values& signal, const Values& shapes, Make make) {
   return best;
 }
 
-Columns best_warm_up(const Values& signal, const Cycle& c, const Values& t) {
+void append(Columns& to, const Columns& more) { to.insert(to.end(), more.begin(), more.end()); }
+
+/// Growth from the middle; if the fixed point is elsewhere, with what moves all readings alike.
+/// `of`(way from the fixed point, row).
+template <class F>
+Columns growing(const Scenario& s, F of, const Cycle& c) {
+  Columns columns{made(c, [&](std::size_t i) { return of(c.p[i], i); })};
+  if (s.fixed != 0.0) columns.push_back(made(c, [&](std::size_t i) { return of(c.length, i); }));
+  return columns;
+}
+
+Columns best_warm_up(const Values& signal, const Cycle& c, const Values& t, const Scenario& s) {
   Values taus;
   for (int k = 0; k <= 120; ++k) taus.push_back(t.back() * 0.02 * std::pow(400.0, k / 120.0));
   return best_of(signal, taus, [&](double tau) {
-    return Columns{made(c, [&](std::size_t i) { return c.p[i] * -std::expm1(-t[i] / tau); })};
+    return growing(
+        s, [&](double way, std::size_t i) { return way * -std::expm1(-t[i] / tau); }, c);
   });
 }
 
@@ -133,11 +145,23 @@ Columns best_columns(const std::string& kind, const Values& signal, const Cycle&
   if (kind == "backlash-slope")
     return {made(c, [&](std::size_t i) { return c.d[i] * c.p[i] / 2.0; })};
   if (kind == "zero-drift") return {t};
-  if (kind == "growth-drift") return {made(c, [&](std::size_t i) { return c.p[i] * t[i]; })};
-  if (kind == "warm-up") return best_warm_up(signal, c, t);
+  if (kind == "growth-drift")
+    return growing(
+        s, [&](double way, std::size_t i) { return way * t[i]; }, c);
+  if (kind == "warm-up") return best_warm_up(signal, c, t, s);
   if (kind == "temperature") {
     const double mean = mean_material(c);
-    return {made(c, [&](std::size_t i) { return c.p[i] * (c.material[i] - mean); })};
+    return growing(
+        s, [&](double way, std::size_t i) { return way * (c.material[i] - mean); }, c);
+  }
+  if (kind == "day-wave") {
+    const double w = 2.0 * pi / 86400.0;
+    Columns columns = growing(
+        s, [&](double way, std::size_t i) { return way * std::sin(w * t[i]); }, c);
+    append(columns,
+           growing(
+               s, [&](double way, std::size_t i) { return way * (1.0 - std::cos(w * t[i])); }, c));
+    return columns;
   }
   if (kind == "run-jump") return best_jump(signal, c);
   if (kind == "eccentricity") return harmonic(c, c.position, 1.0 / (2.0 * pi));
@@ -178,12 +202,16 @@ double in_noise(const Values& left, const Scenario& s) {
   return std::sqrt(dot(left, left)) / s.noise;
 }
 
-void append(Columns& to, const Columns& more) { to.insert(to.end(), more.begin(), more.end()); }
-
 /// What could be taken for this effect, as sets of columns.
 std::vector<Columns> look_alikes(const Made& m, const Cycle& c, const Scenario& s) {
   const auto columns_of = [&](const char* kind) { return best_columns(kind, m.deviation, c, s); };
   std::vector<Columns> rivals;
+  if (m.kind == "day-wave") {
+    for (const char* kind : {"growth-drift", "warm-up"}) {
+      rivals.push_back(columns_of(kind));
+      append(rivals.back(), {c.p});
+    }
+  }
   if (m.kind == "warm-up" || m.kind == "temperature") {
     rivals.push_back(columns_of("growth-drift"));
     append(rivals.back(), {c.p});

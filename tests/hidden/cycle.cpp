@@ -58,6 +58,7 @@ Cycle cycle_of(const Scenario& s) {
   double t = 0.0, last = low;
   for (std::uint32_t run = 1; run <= s.runs; ++run) {
     for (const double d : {1.0, -1.0}) {
+      if (s.one_way && d < 0.0) break;
       for (std::size_t k = 0; k < c.targets.size(); ++k) {
         const double at = c.targets[d > 0.0 ? k : c.targets.size() - 1 - k];
         const double turn = k == 0 ? 2.0 * overshoot : 0.0;

@@ -41,11 +41,11 @@ Cause simulate_sized(Source source, const Cycle& cycle, const Scenario& scenario
 /// Root mean square after the mean is taken out.
 double rms_about_mean(const std::vector<double>& values);
 
-/// Growth of a screw about the middle of the stretch, heated evenly over the stretch by its nut
+/// Growth of a screw away from `fixed` (m from the middle of the stretch), heated evenly by its nut
 /// from the first reading on: explicit finite differences of rho c T' = k T'' + q - h (4/D) T, with
-/// weak conduction into the bearings. Gives for each reading the integral of T from the middle
-/// to the reading's position, K m, of unit heating. `tau`: time constant of the loss to the air, s.
-std::vector<double> heated_screw(const Cycle& cycle, double tau, Random random);
+/// weak conduction into the bearings. Gives for each reading the integral of T from `fixed` to the
+/// reading's position, K m, of unit heating. `tau`: time constant of the loss to the air, s.
+std::vector<double> heated_screw(const Cycle& cycle, double fixed, double tau, Random random);
 
 /// Temperature of the first of two bodies, heated from t = 0: C1 T1' = 1 - g (T1 - T2) - T1 C1/tau,
 /// C2 T2' = g (T1 - T2); at each time.

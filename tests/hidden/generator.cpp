@@ -106,7 +106,7 @@ void state(Truth& truth, const Piece& piece, const Cause& cause, const Cycle& c,
 std::vector<double> wandering(const Scenario& s, const Cycle& c) {
   std::vector<double> out(c.size(), 0.0);
   if (s.unrest.walk > 0.0) {
-    Random steps(s.seed, 6);
+    Random steps(s.seed, 9);
     double at = 0.0;
     for (double& x : out) x = at += steps.normal();
     const double size = s.unrest.walk / rms_about_mean(out);
@@ -143,16 +143,31 @@ void measure(Hidden& h, const Cycle& c) {
   const std::vector<double> wander = wandering(s, c), rough = roughness(s, c);
   const double rho = s.unrest.correlation;
   double before = 0.0;
+  const std::size_t only = s.one_misread ? Random(s.seed, 6).below(c.size()) : c.size();
   for (std::size_t i = 0; i < c.size(); ++i) {
     const double fresh = noise.normal();
     before = i == 0 ? fresh : rho * before + std::sqrt(1.0 - rho * rho) * fresh;
     double e = zero + s.noise * (rough[i] * before + wander[i]);
     for (const auto& cause : h.causes) e += cause[i];
-    const bool misread = wrong.flag(s.misread);
+    const bool misread = s.one_misread ? i == only : wrong.flag(s.misread);
     const double by = wrong.sign() * wrong.uniform(8.0, 40.0) * s.noise;
     if (misread) e += by, h.misread.push_back(i);
     h.table.deviation.push_back(std::round(e / resolution) * resolution);
   }
+}
+
+/// A thermometer that is read at every second to fifth reading only, that now and then gives
+/// nothing, or that was off for a while.
+void blank(Hidden& h) {
+  Random random(h.scenario.seed, 7);
+  std::vector<double>& material = h.table.material;
+  const std::size_t n = material.size(), way = random.below(3);
+  const std::size_t every = random.whole(2, 5), length = n / random.whole(6, 12);
+  const std::size_t off = random.whole(1, n - length - 1);
+  const double share = random.uniform(0.05, 0.4);
+  for (std::size_t i = 0; i < n; ++i)
+    if (way == 0 ? i % every != 0 : way == 1 ? random.flag(share) : i >= off && i < off + length)
+      material[i] = std::numeric_limits<double>::quiet_NaN();
 }
 
 /// All readings towards + before all towards -, each group run by run and its targets ascending.
@@ -201,6 +216,7 @@ Hidden generate(const Scenario& s) {
   h.table = table_of(s, c);
   measure(h, c);
   if (s.kind == Kind::grouped) group(h);
+  if (s.kind == Kind::blank_temperatures) blank(h);
   return h;
 }
 

@@ -109,6 +109,11 @@ TEST_P(HiddenCampaigns, the_truth_is_of_its_kind) {
       case Kind::one:
       case Kind::beside:
       case Kind::grouped:
+      case Kind::fixed_end:
+      case Kind::blank_temperatures:
+      case Kind::day_wave:
+      case Kind::smallest:
+      case Kind::short_misread:
         EXPECT_EQ(t.hidden.size(), 1U);
         EXPECT_TRUE(t.model.empty());
         EXPECT_EQ(t.verdict, "missing");
@@ -181,7 +186,7 @@ TEST(HiddenPhysics, heat_balance_of_the_screw) {
     c.t.push_back(100.0);
   }
   c.length = 0.5;
-  const auto growth = heated_screw(c, 1e9, Random(1));
+  const auto growth = heated_screw(c, 0.0, 1e9, Random(1));
   for (std::size_t i = 0; i < c.size(); ++i)
     EXPECT_NEAR(growth[i], 100.0 * c.p[i], 100.0 * 0.25 * 0.02);
 }

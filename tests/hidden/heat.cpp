@@ -9,22 +9,23 @@ namespace {
 
 constexpr double diffusivity = 1.25e-5;  // of steel, m2/s: 45 W/(m K) / (7850 kg/m3 * 460 J/(kg K))
 
-/// Integral of T (cells of width dx, the first at -half) from 0 to p.
-double integral_to(double p, const std::vector<double>& T, double half, double dx) {
+/// Integral of T (cells of width dx, the first at -half) from `fixed` to p.
+double integral_to(double p, double fixed, const std::vector<double>& T, double half, double dx) {
   double sum = 0.0;
-  const double from = std::min(0.0, p), to = std::max(0.0, p);
+  const double from = std::min(fixed, p), to = std::max(fixed, p);
   for (std::size_t i = 0; i < T.size(); ++i) {
     const double low = -half + static_cast<double>(i) * dx;
     sum += T[i] * std::max(0.0, std::min(to, low + dx) - std::max(from, low));
   }
-  return p < 0.0 ? -sum : sum;
+  return p < fixed ? -sum : sum;
 }
 
 }  // namespace
 
-std::vector<double> heated_screw(const Cycle& cycle, double tau, Random random) {
+std::vector<double> heated_screw(const Cycle& cycle, double fixed, double tau, Random random) {
   constexpr std::size_t cells = 60;
-  const double half = 0.6 * cycle.length;  // the bearings stand a little outside the stretch
+  // The bearings stand a little outside the stretch.
+  const double half = std::max(0.6 * cycle.length, std::fabs(fixed));
   const double dx = 2.0 * half / cells;
   const double bearing = random.uniform(0.01, 0.05) / tau;  // loss of an end cell, 1/s
   const double uneven = random.uniform(-0.02, 0.02);        // of the heating along the screw
@@ -46,7 +47,7 @@ std::vector<double> heated_screw(const Cycle& cycle, double tau, Random random) 
       }
     }
     now = cycle.t[k];
-    growth.push_back(integral_to(cycle.p[k], T, half, dx));
+    growth.push_back(integral_to(cycle.p[k], fixed, T, half, dx));
   }
   return growth;
 }

@@ -42,6 +42,8 @@ Name name_of(Source source) {
       return {"worm mesh", "gear-mesh"};
     case Source::unbalance_wind_up:
       return {"unbalance wind-up", "elastic-reversal"};
+    case Source::shop_day:
+      return {"shop's day", "day-wave"};
     case Source::dent:
       return {"dent", ""};
     case Source::creeping_reversal:

@@ -32,7 +32,7 @@ const std::vector<Source>& outside_sources() {
 }
 
 bool warms(const std::string& kind) {
-  return kind == "warm-up" || kind == "growth-drift" || kind == "temperature";
+  return kind == "day-wave" || kind == "warm-up" || kind == "growth-drift" || kind == "temperature";
 }
 
 /// `n` causes of different kinds, none physically one with another.
@@ -63,9 +63,36 @@ void draw_pitch(Scenario& s, Random& random) {
   s.pitch = std::round(random.spread(s.even ? 2.3 : 0.6, longest) * step * 1e4) * 1e-4;
 }
 
+bool always_linear(Kind kind) {
+  return kind == Kind::wave_under_curve || kind == Kind::screw_and_curve ||
+         kind == Kind::fixed_end || kind == Kind::blank_temperatures || kind == Kind::day_wave ||
+         kind == Kind::short_misread;
+}
+
+/// Of a fixed bearing a little outside the stretch.
+double end_of(Random& random) { return random.sign() * random.uniform(0.5, 0.75); }
+
+/// What the story changes of the cycle.
+void draw_story(Scenario& s, Random& random) {
+  if (s.kind == Kind::fixed_end) s.fixed = end_of(random);
+  if (s.kind == Kind::fixed_end || s.kind == Kind::blank_temperatures) s.timed = true;
+  if (s.kind == Kind::day_wave) {
+    s.timed = true;
+    s.fixed = random.flag(0.5) ? 0.0 : end_of(random);
+    s.runs = static_cast<std::uint32_t>(random.whole(4, 8));
+    s.pause = 3600.0 * random.uniform(8.0, 30.0) / s.runs;
+  }
+  if (s.kind == Kind::short_misread) {
+    s.one_way = random.flag(0.5);
+    s.targets = s.one_way ? random.whole(10, 12) : random.whole(5, 6);
+    s.runs = 1;
+    s.one_misread = true;
+  }
+}
+
 void draw_cycle(Scenario& s, Random& random) {
   s.rotary = random.flag(0.35);
-  if (s.kind == Kind::wave_under_curve || s.kind == Kind::screw_and_curve) s.rotary = false;
+  if (always_linear(s.kind)) s.rotary = false;
   s.targets = s.rotary ? random.whole(12, 36) : random.whole(11, 31);
   s.length = s.rotary ? 2.0 * pi : std::round(random.spread(300.0, 3000.0) / 10.0) / 100.0;
   s.even = random.flag(0.2);
@@ -76,6 +103,7 @@ void draw_cycle(Scenario& s, Random& random) {
   s.feed = s.length / random.uniform(10.0, 40.0);
   s.pause = s.timed && random.flag(0.5) ? random.uniform(20.0, 180.0) : 0.0;
   s.pitch_known = random.flag(0.5);
+  draw_story(s, random);
   draw_pitch(s, random);
   const int teeth[] = {60, 72, 90, 96, 120, 144, 180};
   s.teeth = teeth[random.below(7)];
@@ -85,7 +113,26 @@ void draw_cycle(Scenario& s, Random& random) {
 
 void draw_causes(Scenario& s, Random& random) {
   switch (s.kind) {
+    case Kind::fixed_end: {
+      const Source growing[] = {Source::screw_heating, Source::slow_heating,
+                                Source::wrong_expansion};
+      s.hidden = {{growing[random.below(3)], random.uniform(3.5, 9.0)}};
+      break;
+    }
+    case Kind::blank_temperatures:
+      s.hidden = {{Source::wrong_expansion, random.uniform(3.5, 9.0)}};
+      break;
+    case Kind::day_wave:
+      s.hidden = {{Source::shop_day, random.uniform(3.5, 9.0)}};
+      break;
+    case Kind::short_misread: {
+      const Source shown_by_one_run[] = {Source::wrong_scale, Source::lost_motion,
+                                         Source::lead_error, Source::optics_slip};
+      s.hidden = {{shown_by_one_run[random.below(4)], random.uniform(3.5, 9.0)}};
+      break;
+    }
     case Kind::one:
+    case Kind::smallest:
     case Kind::grouped:
       s.hidden = pieces(random, s.rotary, 1, 3.5, 9.0);
       break;
@@ -149,6 +196,7 @@ Scenario random_scenario(Kind kind, std::uint64_t seed) {
     if (any_of(s, Source::wild_run)) s.runs = std::max<std::uint32_t>(s.runs, 3);
     if (any_of(s, Source::worm_mesh)) s.pitch_known = true;
     s.temperatures = any_of(s, Source::wrong_expansion) || (s.timed && random.flag(0.3));
+    if (kind == Kind::day_wave) s.temperatures = false;
     if (shown(s)) return s;
   }
 }

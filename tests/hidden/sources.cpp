@@ -114,23 +114,45 @@ Values slowly(const Cycle& c, Random& random, double amplitude) {
   return each(c, [&](std::size_t i) { return sign * amplitude * T[i] / T.back(); });
 }
 
-Values slow_heating(const Cycle& c, Random& random, double amplitude) {
+Values slow_heating(const Cycle& c, double fixed, Random& random, double amplitude) {
   Values s = slowly(c, random, 2.0 * amplitude);
-  for (std::size_t i = 0; i < c.size(); ++i) s[i] *= c.p[i] / c.length;
+  for (std::size_t i = 0; i < c.size(); ++i) s[i] *= (c.p[i] - fixed) / c.length;
   return s;
 }
 
-Values screw_heating(const Cycle& c, Random& random, double amplitude) {
+Values screw_heating(const Cycle& c, double fixed, Random& random, double amplitude) {
   const double tau = c.duration * random.uniform(0.12, 0.4);
-  Values s = heated_screw(c, tau, random);
+  Values s = heated_screw(c, fixed, tau, random);
   const double size = amplitude / rms_about_mean(s);
   for (double& v : s) v *= size;
   return s;
 }
 
-Values wrong_expansion(const Cycle& c, Random& random, double amplitude) {
+Values wrong_expansion(const Cycle& c, double fixed, Random& random, double amplitude) {
   const double coefficient = random.sign() * 2.0 * amplitude / c.length;
-  return each(c, [&](std::size_t i) { return coefficient * c.p[i] * (c.material[i] - 20.0); });
+  return each(
+      c, [&](std::size_t i) { return coefficient * (c.p[i] - fixed) * (c.material[i] - 20.0); });
+}
+
+/// The shop is warmest once a day, not quite as a sine; a steel body follows it late and less
+/// (first order, long since swung in). What its growth is at the first reading was set right then.
+Values shop_day(const Cycle& c, double fixed, Random& random, double amplitude) {
+  constexpr double day = 86400.0;
+  const double first = random.uniform(0.0, 2.0 * pi), second = random.uniform(0.0, 2.0 * pi);
+  const double skew = random.uniform(0.0, 0.03), tau = random.uniform(1800.0, 4.0 * 3600.0);
+  const auto body = [&](double t) {
+    double sum = 0.0;
+    for (const double harmonic : {1.0, 2.0}) {
+      const double w = 2.0 * pi * harmonic / day;
+      const double phase = harmonic > 1.0 ? second : first;
+      sum += (harmonic > 1.0 ? skew : 1.0) / std::hypot(1.0, w * tau) *
+             std::sin(w * t + phase - std::atan(w * tau));
+    }
+    return sum;
+  };
+  return each(c, [&](std::size_t i) {
+    return 2.0 * amplitude * (c.p[i] - fixed) / c.length * (body(c.t[i]) - body(0.0));
+  });
 }
 
 Cause optics_slip(const Cycle& c, Random& random, double amplitude) {
@@ -260,11 +282,11 @@ Cause simulate(Source source, const Cycle& c, const Scenario& s, Random random, 
     case Source::leaning_instrument:
       return {slowly(c, random, amplitude)};
     case Source::screw_heating:
-      return {screw_heating(c, random, amplitude)};
+      return {screw_heating(c, s.fixed * c.length, random, amplitude)};
     case Source::slow_heating:
-      return {slow_heating(c, random, amplitude)};
+      return {slow_heating(c, s.fixed * c.length, random, amplitude)};
     case Source::wrong_expansion:
-      return {wrong_expansion(c, random, amplitude)};
+      return {wrong_expansion(c, s.fixed * c.length, random, amplitude)};
     case Source::optics_slip:
       return optics_slip(c, random, amplitude);
     case Source::eccentric_scale:
@@ -275,6 +297,8 @@ Cause simulate(Source source, const Cycle& c, const Scenario& s, Random random, 
       return {meshing(c, 2.0 * pi / s.teeth, random, amplitude)};
     case Source::unbalance_wind_up:
       return {unbalance_wind_up(c, random, amplitude)};
+    case Source::shop_day:
+      return {shop_day(c, s.fixed * c.length, random, amplitude)};
     case Source::dent:
       return dent(c, random, amplitude);
     case Source::creeping_reversal:

@@ -72,21 +72,35 @@ Expected<Observations> read(const ReadInput& in) {
   return o;
 }
 
+/// Misbehaves when it is asked, in a campaign "<kind>-asked-<how>".
+bool asked(const Campaign& campaign, const std::string& kind) {
+  const std::string prefix = kind + "-asked-";
+  if (campaign.id.starts_with(prefix)) misbehave(campaign.id.substr(prefix.size()));
+  return true;
+}
+
+bool recognises(std::string_view head) {
+  const std::string_view asked_to = "# asked to ";
+  if (head.starts_with(asked_to))
+    misbehave(std::string(head.substr(asked_to.size(), head.find('\n') - asked_to.size())));
+  return false;
+}
+
 const std::vector<Option> options = {{"how", std::string("well"), "", "What to do wrong"}};
 
 }  // namespace
 
 NONIO_PLUGIN(registry) {
   registry.add(Reader{{"bad-reader", "1", "Misreads", options},
-                      [](std::string_view) { return false; },
+                      recognises,
                       [](std::string_view kind) { return kind == "axis"; },
                       read});
   registry.add(Analysis{{"bad-analysis", "1", "Misbehaves", options},
-                        [](const Campaign&, const Measurement&) { return true; },
+                        [](const Campaign& c, const Measurement&) { return asked(c, "analysis"); },
                         analyse});
   registry.add(Output{{"bad-output", "1", "Misbehaves", options},
                       Output::Stage::document,
-                      [](const Campaign&) { return true; },
+                      [](const Campaign& c) { return asked(c, "output"); },
                       write,
                       nullptr});
 }

@@ -531,6 +531,29 @@ class Certificates(SigningTest):
         self.assertEqual(self.results("c1")["certificate"]["changes"],
                          [{"file": "campaign.toml", "places": [{"key": "machine.serial", "before": "17", "after": "18"}]}])
 
+    def test_readings_that_another_campaign_has_too_can_be_amended(self):
+        self.by_hand()
+        for name in ("c1", "c2"):
+            self.signed_campaign(name)
+            (self.site / name / "x.csv").write_text(readings("both"))
+
+        def release():
+            draft, = json.loads(run(NONIO, "release", self.site / "c1", "--list", "--json").stdout)["drafts"]
+            findings = sorted({f["id"] for f in draft["findings"] if f["severity"] == "attention"})
+            self.assertTrue(any(f.startswith("plausibility.") for f in findings), findings)
+            return run(NONIO, "release", self.site / "c1", "--by", "Bruno Verdi", *(f"--reason={f}=the same test" for f in findings),
+                       check=False, env=self.environment)
+        self.night()
+        self.assertEqual(release().returncode, 0)
+        manifest = self.site / "c1" / "campaign.toml"
+        manifest.write_text(manifest.read_text().replace('serial = "17"', 'serial = "18"'))
+        self.amend("c1", "another serial number")
+        self.night()
+        self.assertTrue(self.draft("c1").exists(), (self.out / "summary.txt").read_text())
+        self.assertEqual(release().returncode, 0)
+        self.assertEqual(self.states(), {number(1): "amended", number(2): "issued"})
+        self.assertEqual([c["file"] for c in self.results("c1")["certificate"]["changes"]], ["campaign.toml"])
+
     def test_the_reason_of_a_withdrawal_is_carried_over(self):
         self.signed_campaign("c1")
         self.night()
@@ -542,6 +565,54 @@ class Certificates(SigningTest):
         said, = (says for _, _, says in self.journal() if says.get("by") == "Ada Neri")
         self.assertEqual(said["reason"], "wrong stamp")
         self.assertIn("@", said["account"])
+
+    def test_an_amendment_of_readings_that_another_campaign_has_too(self):
+        self.by_hand()
+        reasons = ("--reason", KNOWN + "=it is what was ordered", "--reason", "plausibility.file-of-another-campaign=one test, two papers")
+        for name in ("c1", "c2"):
+            self.signed_campaign(name)
+            (self.site / name / "x.csv").write_text(readings("one"))
+        self.night()
+        for name in ("c1", "c2"):
+            self.release_verb("--by", "Ada Neri", campaign=name, known=reasons, expect=0)
+        self.assertEqual(self.states(), {number(1): "issued", number(2): "issued"})
+        manifest = self.site / "c2" / "campaign.toml"
+        manifest.write_text(manifest.read_text().replace('serial = "17"', 'serial = "18"'))
+        self.amend("c2", "another serial number")
+        self.night()
+        self.assertEqual(self.ids("failed"), [])
+        self.release_verb("--by", "Ada Neri", campaign="c2", known=reasons, expect=0)
+        self.assertEqual(self.states(), {number(1): "issued", number(2): "amended", number(3): "issued"})
+        self.assertEqual(self.results("c2")["certificate"]["changes"],
+                         [{"file": "campaign.toml", "places": [{"key": "machine.serial", "before": "17", "after": "18"}]}])
+        self.assert_holds(self.pdf("c1"), self.pdf("c2"))
+
+    def test_the_record_of_the_machine_is_in_its_certificate(self):
+        self.signed_campaign("c1")
+        manifest = self.site / "c1" / "campaign.toml"
+        manifest.write_text(manifest.read_text().replace("[machine]\n", '[machine]\nasset = "S-0042"\n', 1))
+        (self.site / "machines").mkdir()
+        record = self.site / "machines" / "S-0042.toml"
+        text = 'format = 1\nasset = "S-0042"\ncontrol = "siemens-840d"\n[axes.X]\nnumber = 3\nreference_mm = 100\n'
+        record.write_text(text)
+        self.night()
+        self.assertEqual(self.states(), {number(1): "issued"})
+        if shutil.which("pdfdetach"):
+            self.assertIn("machine-record.json", run("pdfdetach", "-list", self.pdf("c1")).stdout)
+        self.assert_holds(self.pdf("c1"))
+        # What is in the control by now makes no other data of these readings: the number stays, and so does the record.
+        before = self.pdf("c1").read_bytes()
+        record.write_text(text.replace("number = 3", "number = 4"))
+        self.night()
+        self.assertEqual(self.states(), {number(1): "issued"})
+        self.assertEqual(self.pdf("c1").read_bytes(), before)
+        self.assert_holds(self.pdf("c1"))
+        # Of an amendment's files none is "gone": the record was never a file of the campaign.
+        self.change("c1", "other")
+        self.night()
+        self.assertEqual(self.states(), {number(1): "amended", number(2): "issued"})
+        self.assertEqual([c["file"] for c in self.results("c1")["certificate"]["changes"]], ["x.csv"])
+        self.assert_holds(self.pdf("c1"))
 
     # What the register says.
 
@@ -734,7 +805,7 @@ class Certificates(SigningTest):
         rng = random.Random(SEED)
         names = [f"c{i}" for i in range(12)]
         # Of so many readings drawn at random some look misread, some adrift: no reason here for a draft.
-        kinds = ("reversal.*", "reading.*", "drift.*", "scatter.*", "plan.*")
+        kinds = ("reversal.*", "reading.*", "drift.*", "scatter.*", "plan.*", "repeatability.*")
         self.release = 'release = "automatic"\nmay_stand = [%s]\n' % ", ".join(
             f'{{ finding = "{kind}", reason = "readings are drawn at random" }}' for kind in kinds)
         self.site_with()

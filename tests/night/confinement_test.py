@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plugins compute and nothing else: each hostile act is one refused result, and nothing else changes."""
+import contextlib
 import ctypes
 import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -121,7 +123,7 @@ class Confinement(NightTest):
         done = self.night("--json", expect=0)
         for line in done.stdout.splitlines():
             self.assertNotEqual(json.loads(line).get("event"), "forged")
-        self.assertIn("a plugin prints: ", done.stderr)
+        self.assertIn("analysis hostile (measurement X) prints: ", done.stderr)
         self.assertIn("the rest is dropped", done.stderr)
         self.assertLess(len(done.stderr), 100_000)
 
@@ -134,6 +136,7 @@ class Confinement(NightTest):
         self.campaign("a")
         for how, words in {"quits": "did not survive loading: ended the process",
                            "kills": "did not survive loading: tried what no plugin may do",
+                           "kills-by-half": "did not survive loading: tried what no plugin may do",
                            "starts": "did not survive loading: tried what no plugin may do",
                            "rounds": "changed the rounding mode of the process while it was loaded"}.items():
             done, _ = self.on_load(how, "--force", expect=0)
@@ -141,7 +144,7 @@ class Confinement(NightTest):
             self.assertEqual(self.ids("done"), ["a"])
 
     def test_memory_that_is_refused_once_while_an_output_prepares_is_no_note(self):
-        self.campaign("a")
+        self.campaign("a", run=GOOD)
         self.on_load("prepares-twice", expect=0)
         self.assertEqual([n for n in self.summary()["notes"] if "could not prepare" in n], [])
 
@@ -162,6 +165,7 @@ class Confinement(NightTest):
         self.campaign("a")
         done, _ = self.on_load("prints", "--json", expect=0)
         self.assertNotIn("forged", done.stdout)
+        self.assertIn('plugin test_on_load_prints.so prints: {"event":"forged"}', done.stderr)
 
     def test_loading_that_hangs_costs_its_limit_once(self):
         for i in range(3):
@@ -190,6 +194,75 @@ class Confinement(NightTest):
                            "kills": "tried what no plugin may do"}.items():
             done = self.verb("compare", self.site / "a", plugins=f"on_load_{how}", expect=0)
             self.assertIn("did not survive loading: " + words, done.stderr, how)
+
+    def test_a_plugin_that_waits_until_it_was_tried_ends_the_verb_and_nothing_else(self):
+        self.campaign("a")
+        for how in ("kills-visited", "types-visited"):
+            done = self.verb("compare", self.site / "a", plugins=f"on_load_{how}", expect=2)
+            self.assertIn("a plugin brought the process down in which it ran: tried what no plugin may do", done.stderr, how)
+
+    def test_what_a_plugin_leaves_running_ends_with_the_verb(self):
+        self.campaign("a")
+        done = self.verb("compare", self.site / "a", plugins="on_load_leaves-visited", expect=0)
+        self.assertIn("it left a process", done.stderr)
+        for command in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+            with contextlib.suppress(OSError):
+                self.assertNotIn(b"on_load_leaves-visited", command.read_bytes())
+
+    @staticmethod
+    def host_of(pid):
+        """The plugin host, once a process computes: the eldest that has one filter of system calls; those that compute have two."""
+        found = {"1": [], "2": []}
+        for child in processes_below(pid):
+            with contextlib.suppress(OSError, ValueError):
+                status = dict(line.split(":\t", 1) for line in pathlib.Path(f"/proc/{child}/status").read_text().splitlines())
+                begun = int(pathlib.Path(f"/proc/{child}/stat").read_text().rsplit(")", 1)[1].split()[19])
+                found.get(status["Seccomp_filters"].strip(), []).append((begun, child))
+        return min(found["1"])[1] if found["1"] and found["2"] else None
+
+    def test_a_plugin_host_that_dies_is_made_anew(self):
+        for i in range(60):
+            self.campaign(f"c{i:02}", run=GOOD)
+        reference = self.root / "reference"
+        self.night("--date", "2026-11-03", out=reference, expect=0)
+        run = subprocess.Popen(self.command("--date", "2026-11-03", "--plugin-path", str(PLUGINS / "hostile"), "--jobs", "2"),
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        killed = set()
+        while run.poll() is None and len(killed) < 4:
+            host = self.host_of(run.pid)
+            if host and host not in killed:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(host, signal.SIGKILL)
+                    killed.add(host)
+        _, said = run.communicate(timeout=120)
+        self.assertGreater(len(killed), 1)
+        files = lambda out: {k: v for k, v in tree(out).items() if "/" in k and not k.startswith(".nonio") and not k.endswith("run.json")}
+        if run.returncode == 1:  # one that was about to compute was killed too: its campaign says so
+            for entry in self.summary()["failed"]:
+                self.assertIn("signal 9", entry["reason"], said)
+            self.night(expect=0)
+        else:
+            self.assertEqual(run.returncode, 0, said)
+            self.assertEqual(tree(self.out), tree(reference))
+        self.assertEqual(files(self.out), files(reference))
+
+    def test_a_verb_outlives_what_plugins_beside_the_program_do_while_they_are_loaded(self):
+        """They are not tried in a child first: the process is made anew, and then all are."""
+        self.campaign("a")
+        own = pathlib.Path(NONIO).resolve().parents[1]
+        for how, words in {"quits": "ended the process", "hangs": "no answer within 10 s"}.items():
+            program = self.root / f"program-{how}"
+            shutil.copytree(own / "lib", program / "lib", symlinks=True)
+            (program / "bin").mkdir()
+            shutil.copy2(NONIO, program / "bin")
+            (program / "share").symlink_to(own / "share")
+            plugins = next(program.rglob("csv-reader.so")).parent
+            shutil.copy(next((PLUGINS / f"on_load_{how}").glob("*.so")), plugins)
+            done = subprocess.run([program / "bin" / "nonio", "compare", self.site / "a"], capture_output=True, text=True,
+                                  timeout=120)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("did not survive loading: " + words, done.stderr, how)
+            self.assertIn("noise floor", done.stdout)
 
     def test_the_key_is_hidden_from_plugins_in_nights_and_verbs(self):
         self.campaign("a", run=GOOD)

@@ -4,13 +4,16 @@
 // ends the main process by SIGKILL instead, or write:N:LOST, which says that it was written, or
 // write:N:LATE, of which the kernel finds out later that the disk did not take it: syncfs fails
 // then as Linux does it, once for each descriptor that was open before and for none that was opened
-// after. NONIO_FAULT_IN = main: only the calls of the main process count. NONIO_FAULT_COUNTS = FILE
-// gets how often each was called.
+// after. NONIO_FAULT_IN = main: only the calls of the main process count; = confining: only those
+// while a process that evaluates confines itself. NONIO_FAULT_COUNTS = FILE gets how often each was
+// called.
 #include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -64,7 +67,7 @@ constexpr int late = 0x20000;              // of a disk that says afterwards tha
 std::atomic<long>* disk_failed = nullptr;  // shared by the processes
 bool told[1024];                           // descriptors that do not hear of it (any more)
 int code = 0;                              // 0: kill
-bool main_only = false;
+bool main_only = false, confining_only = false, confining = false;
 pid_t main_pid = 0;
 
 template <class F>
@@ -85,7 +88,8 @@ bool hears_of_the_disk(int fd) {
 }
 
 bool fails(Function f) {
-  if (counts == nullptr || (main_only && ::getpid() != main_pid)) return false;
+  if (counts == nullptr || (main_only && ::getpid() != main_pid) || (confining_only && !confining))
+    return false;
   const long n = ++counts[f];
   if (f != wanted || n < from || n >= from + times) return false;
   if (code == 0) {
@@ -112,6 +116,7 @@ __attribute__((constructor)) void begin() {
                                           : std::atoi(what);
   const char* const in = std::getenv("NONIO_FAULT_IN");
   main_only = in != nullptr && std::strcmp(in, "main") == 0;
+  confining_only = in != nullptr && std::strcmp(in, "confining") == 0;
   main_pid = ::getpid();
   using Map = void* (*)(void*, size_t, int, int, int, off_t);
   void* shared =
@@ -233,6 +238,21 @@ int socketpair(int domain, int type, int protocol, int* ends) noexcept {
   return fails(Socketpair)
              ? -1
              : real<int (*)(int, int, int, int*)>("socketpair")(domain, type, protocol, ends);
+}
+int setrlimit(__rlimit_resource_t what, const struct rlimit* limit) noexcept {
+  if (what == RLIMIT_NPROC) confining = true;
+  return real<int (*)(__rlimit_resource_t, const struct rlimit*)>("setrlimit")(what, limit);
+}
+int prctl(int what, ...) noexcept {
+  va_list more;
+  va_start(more, what);
+  unsigned long a[4];
+  for (unsigned long& one : a) one = va_arg(more, unsigned long);
+  va_end(more);
+  using Control = int (*)(int, unsigned long, unsigned long, unsigned long, unsigned long);
+  const int code = real<Control>("prctl")(what, a[0], a[1], a[2], a[3]);
+  if (what == PR_SET_SECCOMP) confining = false;
+  return code;
 }
 DIR* opendir(const char* path) {
   return fails(Opendir) ? nullptr : real<DIR* (*)(const char*)>("opendir")(path);

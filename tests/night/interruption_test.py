@@ -3,6 +3,7 @@
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import time
@@ -11,6 +12,7 @@ import unittest
 from nightly import NightTest, tree
 
 KILLS = int(os.environ.get("NONIO_KILLS", "8"))
+TERMS = int(os.environ.get("NONIO_TERMS", "12"))
 SEED = int(os.environ.get("NONIO_SEED", "20261121"))
 
 
@@ -59,11 +61,57 @@ class Interruption(NightTest):
                     break
             else:
                 self.fail("no run could be killed before its end")
-            if rng.random() < 0.3:  # some are killed twice before they may end
+            # Some are killed twice before they may end; what had ended already would begin another night.
+            if rng.random() < 0.3 and not self.ended(out):
                 self.kill_somewhere(out, rng)
             if not self.ended(out):
                 self.run_nonio(out=out, expect=0)
             self.assertTrue(reference == tree(out), f"kill {k}: {self.differences(reference, tree(out))}")
+
+    def test_sigterm_at_random_moments(self):
+        """Of first and of forced nights, in turn: the night ends soon and leaves nothing behind, the next one has the same bytes."""
+        print(f"seed {SEED}, {TERMS} SIGTERMs", flush=True)
+        rng = random.Random(SEED)
+        before = self.root / "before"
+        args = {"first": ["--date", "2026-11-03"], "forced": ["--date", "2026-11-04", "--force"]}
+        self.run_nonio(*args["first"], out=before, expect=0)
+        references, ends = {}, {}
+        for how in args:
+            out = self.as_before(how, before)
+            began = time.monotonic()
+            self.run_nonio(*args[how], out=out, expect=0)
+            references[how] = tree(out), time.monotonic() - began
+        for k in range(TERMS):
+            how = ("first", "forced")[k % 2]
+            out = self.as_before(how, before)
+            reference, seconds = references[how]
+            night = subprocess.Popen(self.command(*args[how], out=out), stdout=subprocess.DEVNULL,
+                                     stderr=subprocess.PIPE, text=True)
+            # The later ones are there for nights that are quicker than the one that was timed.
+            time.sleep(seconds * (k + rng.random()) / TERMS)
+            began = time.monotonic()
+            night.send_signal(signal.SIGTERM)
+            _, errors = night.communicate(timeout=120)
+            told = f"{how}, SIGTERM {k}: status {night.returncode} after {time.monotonic() - began:.2f} s: {errors}"
+            # Before it can catch a signal it ends by it.
+            self.assertIn(night.returncode, (0, 130, -signal.SIGTERM), told)
+            self.assertLess(time.monotonic() - began, 10.0, told)
+            self.assertEqual([str(p) for p in out.rglob("*nonio-tmp*")], [], told)
+            if night.returncode == 130:
+                self.assertIn("interrupted", errors)
+            if night.returncode != 0:
+                self.run_nonio(*args[how], out=out, expect=0)
+            self.assertTrue(tree(out) == reference, f"{told}: other {self.differences(reference, tree(out))}")
+            ends[night.returncode] = ends.get(night.returncode, 0) + 1
+        print(f"status and how often: {ends}", flush=True)
+        self.assertIn(130, ends, "no night was interrupted")
+
+    def as_before(self, how, before):
+        out = self.root / "out"
+        shutil.rmtree(out, ignore_errors=True)
+        if how == "forced":
+            shutil.copytree(before, out)
+        return out
 
     def test_ctrl_c_ends_cleanly_and_resumes(self):
         reference, seconds = self.undisturbed()

@@ -75,6 +75,37 @@ class Isolation(NightTest):
             errors = [e["message"] for e in self.results(f"reader-{how}")["errors"]]
             self.assertEqual(errors, [] if words is None else ["reader bad-reader gave " + words], how)
 
+    def test_a_question_that_brings_the_process_down_names_who_was_asked(self):
+        run = '[run]\nanalyses = ["iso230-2", "bad-analysis"]\noutputs = ["json", "bad-output"]\n'
+        asked = ", asked whether it applies: signal 11"
+        expected = {"analysis-asked-segfault": "analysis bad-analysis (measurement X)" + asked,
+                    "analysis-asked-throw": "analysis bad-analysis threw an exception: thrown on purpose",
+                    "output-asked-segfault": "output bad-output" + asked,
+                    "output-asked-throw": "output bad-output threw an exception: thrown on purpose",
+                    "reader-segfault": "reader bad-reader (measurement X), asked whether it reads this file: signal 11",
+                    "reader-throw": "reader bad-reader threw an exception: thrown on purpose"}
+        for name in expected:
+            folder = self.campaign(name, run=run)
+            if name.startswith("reader"):
+                (folder / "x.csv").write_text(f"# asked to {name[7:]}\n" + (folder / "x.csv").read_text())
+        self.run_nonio("--plugin-path", str(PLUGINS / "bad"), expect=1)
+        for name, words in expected.items():
+            self.assertIn(words, self.results(name)["errors"][0]["message"])
+
+    def test_what_lacks_a_function_is_refused_with_its_name(self):
+        """Its file with it: half of what it brings would be another plugin than was meant."""
+        self.campaign("a")
+        plain = self.root / "plain"
+        self.run_nonio(out=plain, expect=0)
+        done = self.run_nonio("--plugin-path", str(PLUGINS / "incomplete"), expect=0)
+        why = "registers the output incomplete without `applies`, a function that every output has"
+        self.assertIn("plugin test_incomplete.so " + why, done.stderr)
+        self.assertIn("plugin test_incomplete.so " + why, self.summary()["notes"])
+        self.assertEqual((self.out / "a/results.json").read_bytes(), (plain / "a/results.json").read_bytes())
+        self.campaign("b", run='[run]\noutputs = ["incomplete"]\n')
+        self.run_nonio("--plugin-path", str(PLUGINS / "incomplete"), expect=1)
+        self.assertIn(why, self.results("b")["errors"][0]["message"])
+
     @unittest.skipIf("NONIO_TEST_NO_MEMORY_LIMIT" in os.environ, "nothing stops the parser there")
     def test_a_manifest_that_brings_its_parser_down(self):
         (self.site / "site.toml").write_text("[limits]\nmemory_MB = 64\n")

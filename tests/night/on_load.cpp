@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Does harm before anything in it is called: what, says NONIO_TEST_HOW.
 #include <fcntl.h>
+#include <sys/ioctl.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cfenv>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <new>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -15,12 +19,31 @@
 
 namespace {
 
+/// In the child in which a verb tries plugins first: that has one more filter.
+bool is_tried() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("Seccomp_filters:")) return line.back() != '1';
+  return false;
+}
+
 int harm() {
   constexpr std::string_view how = NONIO_TEST_HOW;
   if (how == "quits") std::exit(0);
   if (how == "hangs")
     for (;;) ::pause();
   if (how == "kills") ::kill(::getppid(), SIGKILL);
+  // The kernel takes the lower half.
+  if (how == "kills-by-half")
+    ::syscall(SYS_tgkill, (1L << 32) | ::getppid(), (1L << 32) | ::getppid(), SIGKILL);
+  if (how == "kills-visited" && !is_tried()) ::kill(::getppid(), SIGKILL);
+  if (how == "types-visited" && !is_tried()) ::ioctl(0, (1UL << 32) | TIOCSTI, "x");
+  if (how == "leaves-visited" && !is_tried()) {
+    if (::fork() == 0 && ::setsid() > 0)
+      for (;;) ::pause();
+    std::puts("it left a process");
+    std::fflush(stdout);
+  }
   if (how == "prints") std::puts("{\"event\":\"forged\"}"), std::fflush(stdout);
   if (how == "rounds") std::fesetround(FE_UPWARD);
   if (how == "reads" && ::open(std::getenv("NONIO_TEST_KEY"), O_RDONLY) >= 0)

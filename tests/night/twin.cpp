@@ -3,5 +3,8 @@
 #include "nonio/sdk/plugin.h"
 
 NONIO_PLUGIN(registry) {
-  registry.add(nonio::Analysis{{"iso230-2", "9", "A twin", {}}, nullptr, nullptr});
+  registry.add(nonio::Analysis{
+      {"iso230-2", "9", "A twin", {}},
+      [](const nonio::Campaign&, const nonio::Measurement&) { return true; },
+      [](const nonio::AnalysisInput&) { return nonio::Expected<nonio::Evaluation>(); }});
 }

@@ -2,6 +2,7 @@
 // Analyses that break one law each, which their name says.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "nonio/sdk/plugin.h"
 
@@ -74,6 +75,20 @@ Expected<Evaluation> looping(const AnalysisInput& in) {
   return one(in, range);
 }
 
+Expected<Evaluation> silent(const AnalysisInput&) { return Evaluation{}; }
+Expected<Evaluation> failing(const AnalysisInput&) { return fail("wanted something else"); }
+Expected<Evaluation> endless(const AnalysisInput& in) {
+  volatile bool on = true;
+  while (on) on = true;
+  return one(in, 0.0);
+}
+Expected<Evaluation> at_home(const AnalysisInput& in) {
+  Evaluation e = one(in, extremes(in.observations.deviation).range());
+  const char* home = std::getenv("HOME");
+  e.notes.push_back({.id = "home", .texts = {{"home", home == nullptr ? "" : home}}});
+  return e;
+}
+
 Analysis made(const char* name, Expected<Evaluation> (*analyse)(const AnalysisInput&)) {
   Analysis a;
   a.info = {name, "1", "Wrong on purpose"};
@@ -94,4 +109,8 @@ NONIO_PLUGIN(registry) {
   registry.add(made("counts-calls", counting));
   registry.add(made("crash-on-empty", crashing));
   registry.add(made("endless-on-zero", looping));
+  registry.add(made("says-nothing", silent));
+  registry.add(made("always-fails", failing));
+  registry.add(made("endless", endless));
+  registry.add(made("of-its-home", at_home));
 }

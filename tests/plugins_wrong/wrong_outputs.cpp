@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Outputs, tables and readers that break one law each, which their name says.
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <charconv>
 #include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
 
 #include "nonio/controllers/list.h"
 
@@ -37,6 +44,32 @@ Expected<OutputResult> crashing(const OutputInput& in) {
 }
 Expected<OutputResult> choosing(const OutputInput& in) {
   return file(in.options.text("kind") == "b" ? "../a.txt" : "a.txt", "a");
+}
+
+// What no plugin may do; the file is as if it had not.
+Expected<OutputResult> dated(const OutputInput&) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  ::localtime_r(&now, &local);
+  return file("a.txt", std::to_string(local.tm_mday));
+}
+Expected<OutputResult> placed(const OutputInput&) {
+  return file("a.txt", std::filesystem::current_path().string());
+}
+Expected<OutputResult> writing(const OutputInput&) {
+  std::ofstream("/dev/null") << "a";
+  return file("a.txt", "a");
+}
+Expected<OutputResult> talking(const OutputInput&) {
+  const int line = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  if (line >= 0) ::close(line);
+  return file("a.txt", "a");
+}
+Expected<OutputResult> bearing(const OutputInput&) {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  if (child > 0) ::waitpid(child, nullptr, 0);
+  return file("a.txt", "a");
 }
 
 Output with_option(const char* name, Option option) {
@@ -122,6 +155,13 @@ Expected<OutputResult> wrapping(const OutputInput& in) {
       {.name = "wrong", .table = declared(), .keys = {}, .files = wrapping_files, .parse = parse});
 }
 
+Expected<OutputResult> right(const OutputInput& in) {
+  return controllers::write_tables(
+      in, {.name = "wrong", .table = declared(), .keys = {}, .files = right_files, .parse = parse});
+}
+Expected<std::vector<LoadedTable>> unreadable(const TableInput&) { return fail("wanted a table"); }
+Expected<std::vector<LoadedTable>> empty(const TableInput&) { return std::vector<LoadedTable>(); }
+
 Output table(const char* name, Expected<OutputResult> (*written)(const OutputInput&)) {
   return controllers::controller({name, "1", "Wrong on purpose", {}}, declared(), written, parse);
 }
@@ -170,6 +210,18 @@ NONIO_PLUGIN(registry) {
   Output choice = made("path-by-choice", choosing);
   choice.info.options.push_back({"kind", std::string("a"), "", "A kind.", {"a", "b"}});
   registry.add(choice);
+  registry.add(made("dated", dated));
+  registry.add(made("of-its-folder", placed));
+  registry.add(made("writes-a-file", writing));
+  registry.add(made("opens-a-socket", talking));
+  registry.add(made("makes-a-process", bearing));
+  Output unread = table("unreadable", right);
+  unread.parse = unreadable;
+  registry.add(unread);
+  unread.info.name = "reads-nothing";
+  unread.parse = empty;
+  registry.add(unread);
+  registry.add(table("nothing-wrong", right));
   registry.add(table("wrong-sign", wrong_sign));
   Output fine = table("drifting", drifting);
   fine.control = finer();

@@ -109,6 +109,10 @@ class Parser {
     if (word == "kind") return now_.kind = rest, true;
     if (word == "rotary") return now_.rotary = true, true;
     if (word == "other-axis") return now_.other_axis = rest, true;
+    if (word == "serial") return now_.serial = rest, true;
+    if (word == "date") return now_.date = rest, true;
+    if (word == "slave") return now_.slave = rest, true;
+    if (word == "side") return now_.side = rest, true;
     if (word == "expansion") return now_.expansion = std::stod(rest), true;
     if (word == "without-end") return now_.bytes.pop_back(), true;
     if (word == "expect") return now_.expectations.push_back({number_, rest}), true;

@@ -13,8 +13,9 @@ struct Case {
   std::string name;  ///< file and line
   std::string reader, axis = "X", kind = "axis";
   bool rotary = false;
-  std::string other_axis;  ///< one more axis of the machine
-  double expansion = 0.0;  ///< um/(m K), 0: not stated
+  std::string other_axis;                 ///< one more axis of the machine
+  double expansion = 0.0;                 ///< um/(m K), 0: not stated
+  std::string serial, date, slave, side;  ///< of machine, campaign, axis, measurement
   std::map<std::string, std::string> options;
   std::string bytes;
   struct Line {

@@ -39,7 +39,11 @@ struct Run {
     axis.name = c.axis;
     axis.rotary = c.rotary;
     if (c.expansion > 0.0) axis.expansion = c.expansion * 1e-6;
+    axis.slave = c.slave;
     campaign.machine.axes.push_back(axis);
+    campaign.machine.serial = c.serial;
+    campaign.date = c.date;
+    measurement.side = c.side;
     if (!c.other_axis.empty()) {
       nonio::Axis other;
       other.name = c.other_axis;
@@ -141,13 +145,14 @@ struct Checker {
     return seen == 3 || say("wanted a centre of three coordinates, found " + std::to_string(seen));
   }
 
-  /// note ID [NAME VALUE], the value as it is printed (texts: as they are)
-  bool note(std::istringstream& in) {
+  /// note ID [NAME VALUE], the value as it is printed (texts: as they are); doubt likewise
+  template <class Said>
+  bool said(const std::vector<Said>& all, std::istringstream& in) {
     std::string id, name, wanted;
     in >> id >> name;
     std::getline(in >> std::ws, wanted);
     std::string known;
-    for (const nonio::Remark& r : read->notes) {
+    for (const Said& r : all) {
       known += " " + r.id;
       if (r.id != id) continue;
       if (name.empty()) return true;
@@ -160,7 +165,7 @@ struct Checker {
         if (n.name == name) known += "(" + nonio::evidence_text(n) + ")";
       }
     }
-    return say("wanted note " + id + ", found" + known);
+    return say("wanted " + id + ", found" + known);
   }
 
   bool holds(const std::string& text) {
@@ -171,8 +176,10 @@ struct Checker {
     if (word == "not-recognised") return !reader.recognises(c.bytes) || say("recognised");
     if (word == "error") return error(text.substr(6));
     if (!read) return say("error: " + read.error().message);
-    if (word == "note") return note(in);
-    if (word == "no-note") return !note(in) || say("wanted no such note");
+    if (word == "note") return said(read->notes, in);
+    if (word == "no-note") return !said(read->notes, in) || say("wanted no such note");
+    if (word == "doubt") return said(read->doubts, in);
+    if (word == "no-doubts") return read->doubts.empty() || say("found " + read->doubts.front().id);
     if (word == "reading") return reading(in);
     if (word == "centre") return centre(in);
     double value = 0.0, tolerance = 1e-9;

@@ -14,7 +14,7 @@ def campaign():
             "asset": "S-1", "maker": "M", "model": "M", "serial": "1", "description": "D", "condition": "C", "control": "fanuc",
             "structure": "gantry",
             "axes": {"X": {"kind": "linear", "travel": [0.0, 500.0], "screw_pitch_mm": 10.0,
-                           "expansion_um_per_m_K": 11.5, "tolerance_um": {"A": 15.0, "R+": 6}, "slave": "X2", "table_on": "backup/x.ini", "backlash_on_mm": 0.01},
+                           "expansion_um_per_m_K": 11.5, "fixed_point_mm": -40.0, "tolerance_um": {"A": 15.0, "R+": 6}, "slave": "X2", "table_on": "backup/x.ini", "backlash_on_mm": 0.01},
                      "C": {"kind": "rotary", "travel": [0, 360], "teeth": 120, "tolerance_arcsec": {"A": 8.0}, "backlash_on_deg": "none"},
                      "Y": {"screw_pitch_mm": 10.0}, "B": {"teeth": 90},
                      "U": {"kind": "rotary", "teeth": 60}, "A1": {"kind": "linear", "tolerance_um": {"A": 1}}}},

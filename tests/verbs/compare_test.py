@@ -31,6 +31,19 @@ class Compare(VerbTest):
         self.assertEqual(part["fails"], [])
         self.assertEqual(part["warnings"], [])
 
+    def test_what_is_left_is_told_once_each_beside_those_before_it(self):
+        self.campaign(manifest([]), x=readings(runs=4, drift=6, wave=3, backlash=-4))
+        part = self.part()
+        self.assertGreater(sum(place["share"] for place in part["fails"]), 1)  # run and time are nearly one
+        self.assertLessEqual(sum(place["rms_um"] ** 2 for place in part["left"]), part["rms_um"] ** 2)
+        self.assertGreater(len(part["left"]), 1)
+        shown = self.nonio("compare", self.folder).stdout
+        self.assertNotIn("%", shown)
+        self.assertRegex(shown, r"lack of fit +What is left is far more than noise: [\d.]+ um beyond it\.")
+        for place in part["left"]:
+            self.assertGreaterEqual(place["share"], 0.02)
+            self.assertIn(place["says"], shown)
+
     def test_largest_residual_is_found_again_in_the_file(self):
         data = readings(scale=20).splitlines()
         fields = data[30].split(",")

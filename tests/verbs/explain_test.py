@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """nonio explain: the JSON of the contract, verdicts, --auto."""
 import json
+import math
 import pathlib
 import random
 import shutil
@@ -61,6 +62,58 @@ class Explain(VerbTest):
         shown = self.nonio("explain", self.folder).stdout
         self.assertIn("verdict: missing backlash:X", shown)
         self.assertIn("#####", shown)
+
+    def test_what_there_is_no_sign_of_stands_on_one_line_with_the_size_that_would_be_seen(self):
+        self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
+        shown = self.nonio("explain", self.folder).stdout
+        line = next(l for l in shown.splitlines() if l.startswith("  No sign of: "))
+        self.assertRegex(line, r"No sign of: \S+:X \(would be seen from [\d.]+ um\), \S+:X \([\d.]+ um\)")
+        e = self.explain()
+        self.assertEqual(line.strip(), e["no_sign"])
+        for c in e["candidates"]:
+            self.assertEqual(c["score"] <= 0, f" {c['effect']} (" in line, c)
+        self.assertRegex(shown, r"If nothing were missing, this test would still name something (about|less than) 1 time in \d+\.")
+        self.assertNotIn(" of 200 shuffles", shown)
+
+    def test_nothing_says_how_far_it_goes(self):
+        self.campaign(manifest(["scale:X", "backlash:X"]), x=readings(scale=20, backlash=-6))
+        self.assertIn("nothing more, as far as these readings go", self.explain()["verdict"]["says"])
+
+    def real_like(self, drift, runs=5):
+        """Five targets, each with an error and a reversal of its own, far above the scatter."""
+        targets = [15.0, 25.2, 35.4, 45.6, 55.8]
+        place, reversal = [-4, 22, -29, 6, 4], [0, 9, -7, -1, -8]
+        rng, rows, step = random.Random(5), ["run,direction,target_mm,deviation_um"], 0
+        for run in range(1, runs + 1):
+            for way, order in (("+", range(5)), ("-", reversed(range(5)))):
+                for k in order:
+                    value = place[k] + reversal[k] * (0.5 if way == "+" else -0.5) + drift * step / 50 + rng.gauss(0, 0.7)
+                    rows.append(f"{run},{way},{targets[k]:g},{value:.3f}")
+                    step += 1
+        return "\n".join(rows) + "\n"
+
+    def test_a_drift_is_certain_beside_what_no_effect_of_place_explains(self):
+        self.campaign(manifest([]), x=self.real_like(drift=-8))
+        e = self.explain()
+        self.assertEqual(e["verdict"]["kind"], "unknown")
+        self.assertEqual(e["certain"], ["zero-drift:X"])
+        drift = next(c for c in e["candidates"] if c["effect"] == "zero-drift:X")
+        self.assertGreater(drift["score"], 50)
+        self.assertIn("free-position:X", drift["beside"])
+        self.assertIn("zero-drift:X", e["verdict"]["says"])
+        self.campaign(manifest([]), x=self.real_like(drift=0))
+        self.assertEqual(self.explain()["certain"], [])
+
+    def test_descriptions_have_their_size_and_the_sentence_says_what_to_measure(self):
+        self.campaign(manifest([]), x=self.real_like(drift=0))
+        e = self.explain()
+        sizes = {d["effect"]: (d["low_um"], d["high_um"], d["mean_um"]) for d in e["descriptions"]}
+        for got, true in zip(sizes["free-position:X"], (-29 - -0.2, 22 - -0.2)):
+            self.assertLess(abs(got - true), 1.5)
+        for got, true in zip(sizes["free-reversal:X"], (-8, 9, -1.4)):
+            self.assertLess(abs(got - true), 1.5)
+        self.assertTrue(any("9 targets or more" in text and "5 are too few" in text for text in e["next"]), e["next"])
+        self.assertIn("9 targets or more", self.nonio("explain", self.folder).stdout)
 
     def test_a_complete_model_misses_nothing(self):
         self.campaign(manifest(["scale:X", "backlash:X"]), x=readings(scale=20, backlash=-6))
@@ -183,6 +236,89 @@ class Explain(VerbTest):
         self.assertIn("zero-drift:X", e["model"]["effects"])
         self.assertEqual(e["verdict"]["kind"], "unknown")
         self.assertEqual(e["descriptions"][0]["effect"], "free-reversal:X")
+
+    def with_columns(self, times=None, growth=None, material=None, runs=4, **effects):
+        """The readings with times, with p um/m times growth(t), and a column material_c."""
+        rows = readings(runs=runs, times=False, noise=0.3, **effects).splitlines()
+        out = [rows[0] + ",time_s" + (",material_c" if material else "")]
+        for k, row in enumerate(rows[1:]):
+            run, direction, target, value = row.split(",")
+            t = times(k) if times else 10.0 * k
+            value = float(value) + (growth(t) * (float(target) - 185) / 1000 if growth else 0.0)
+            out.append(f"{run},{direction},{target},{value:.4f},{t:.1f}" + (f",{material(k, t)}" if material else ""))
+        return "\n".join(out) + "\n"
+
+    def test_temperatures_that_are_missing_are_interpolated_and_said(self):
+        def kelvin(t):
+            return math.sin(t / 120)
+        table = self.with_columns(growth=lambda t: 20 * kelvin(t),
+                                  material=lambda k, t: "" if k % 3 else f"{20 + kelvin(t):.3f}")
+        self.campaign(manifest([]), x=table)
+        e = self.explain()
+        self.assertEqual(e["verdict"].get("effect"), "temperature:X")
+        k = e["candidates"][0]["parameters"][0]
+        self.assertLess(abs(k["value"] - 20), 4 * k["u"] + 0.5)
+        said = [w for w in e["warnings"] if "interpolated" in w]
+        self.assertEqual(len(said), 1, e["warnings"])
+        self.assertIn("x.csv, lines 3, 4, 6, 7", said[0])
+
+    def test_what_is_no_candidate_says_why_and_where(self):
+        table = self.with_columns(material=lambda k, t: "" if 20 <= k < 60 else f"{20 + t / 1000:.3f}")
+        self.campaign(manifest([]), x=table)
+        unseen = {u["effect"]: u for u in self.explain()["unseen"]}
+        self.assertEqual(unseen["temperature:X"]["why_not"], "temperature-gaps")
+        self.assertEqual(unseen["temperature:X"]["lines"], list(range(22, 62)))
+        self.assertIn("would help", unseen["temperature:X"]["says"])
+        self.assertIn("temperature:X: 40 readings (x.csv, lines 22, 23", self.nonio("explain", self.folder).stdout)
+        self.campaign(manifest([]), x=readings(directions="+", times=False))
+        unseen = {u["effect"]: u["why_not"] for u in self.explain()["unseen"]}
+        self.assertEqual(unseen["backlash:X"], "one-direction")
+        self.assertEqual(unseen["temperature:X"], "no-temperature")
+        self.assertEqual(unseen["day-wave:X"], "no-times")
+
+    def test_growth_from_the_fixed_bearing(self):
+        def levelling(t):
+            return 25 * (1 - math.exp(-t / 300))
+        table = self.with_columns(growth=levelling).splitlines()
+        moved = [table[0]]
+        for row in table[1:]:  # all readings move with the middle, 300 mm from the bearing
+            *cells, value, t = row.split(",")
+            moved.append(",".join(cells + [f"{float(value) + 0.3 * levelling(float(t)):.4f}", t]))
+        moved = "\n".join(moved) + "\n"
+        self.campaign(manifest([]), x=moved)
+        e = self.explain()
+        self.assertEqual(e["verdict"].get("effect"), "warm-up:X")
+        fixed = {p["name"]: p for p in e["candidates"][0]["parameters"]}["fixed"]
+        self.assertLess(abs(fixed["value"] + 300), 60)
+        known = manifest([]).replace('kind = "linear"', 'kind = "linear"\nfixed_point_mm = -115', 1)
+        self.campaign(known, x=moved)
+        e = self.explain()
+        self.assertEqual(e["verdict"].get("effect"), "warm-up:X")
+        fixed = {p["name"]: p for p in e["candidates"][0]["parameters"]}["fixed"]
+        self.assertEqual((fixed["value"], "u" in fixed), (-300, False))
+
+    def test_growth_and_drift_together_are_one_growth(self):
+        table = self.with_columns(growth=lambda t: t / 20).splitlines()
+        moved = [table[0]] + [",".join(row.split(",")[:3] + [f"{float(row.split(',')[3]) + 0.2 * float(row.split(',')[4]) / 20:.4f}",
+                                                             row.split(",")[4]]) for row in table[1:]]
+        self.campaign(manifest([]), x="\n".join(moved) + "\n")
+        e = self.explain()
+        self.assertEqual(e["verdict"].get("effect"), "growth-drift:X")
+        self.assertRegex(e["verdict"]["says"], r"one growth away from -(2[0-5]|1?[0-9])(\.\d+)? mm")
+
+    def test_a_day_s_wave_has_a_name_and_another_wave_is_no_pair_of_names(self):
+        hours = 14
+        def of_day(t):
+            return 30 * math.sin(2 * math.pi * t / 86400 + 1)
+        self.campaign(manifest([]), x=self.with_columns(
+            runs=6, times=lambda k: (k // 22) * hours * 3600 / 5 + 10 * (k % 22), growth=lambda t: of_day(t) - of_day(0)))
+        e = self.explain()
+        self.assertEqual(e["verdict"].get("effect"), "day-wave:X")
+        self.campaign(manifest([]), x=self.with_columns(
+            runs=6, times=lambda k: (k // 22) * 700 + 10 * (k % 22), growth=lambda t: 30 * math.sin(2 * math.pi * t / 4400)))
+        e = self.explain()
+        self.assertNotIn(e["verdict"].get("effect"), ("warm-up:X", "growth-drift:X"), e["verdict"])
+        self.assertIn("free-growth:X", [d["effect"] for d in e["descriptions"]])
 
     def test_one_misread_value_of_15_is_no_contradiction(self):
         rows = readings(runs=3, targets=[0, 100, 200, 300, 400], directions="+").splitlines()

@@ -26,6 +26,29 @@ class Model(VerbTest):
         self.assertEqual(len((self.folder / "model-history.jsonl").read_text().splitlines()), 2)
         self.assertIn("+ backlash:X", self.nonio("model", "show", self.folder).stdout)
 
+    def test_the_page_says_what_drop_would_leave_and_in_which_order_the_error_falls(self):
+        effects = ["backlash:X", "scale:X", "zero-drift:X"]
+        self.campaign(manifest(effects, '[run]\noutputs = ["model-html"]\n'), x=readings(scale=60, backlash=-3, drift=9))
+        self.nonio("run", self.site, "--out", self.site / "out", "--quiet", expect=None)
+        page = (self.site / "out" / "c" / "model-X.html").read_text()
+        data = json.loads(page.split('id="data">')[1].split("</script>")[0])
+        for effect in data["effects"]:
+            dropped = self.json_of("model", "drop", self.folder, effect["name"])["after"]
+            self.json_of("model", "add", self.folder, effect["name"])
+            self.assertAlmostEqual(effect["without"]["rms"], dropped["rms_um"], places=5)
+            self.assertAlmostEqual(effect["without"]["cv_rms"], dropped["cv_rms_um"], places=5)
+            kept = [r + s for r, s in zip(data["residual"], effect["says"])]
+            unfitted = (sum(r * r for r in kept) / len(kept)) ** 0.5
+            self.assertLessEqual(effect["without"]["rms"], unfitted + 1e-5)  # eight digits on the page
+        falls = [line.split("</div>")[0] for line in page.split('class="label">')[1:]]
+        self.assertEqual(falls, ["no effects", "+ scale:X", "+ zero-drift:X", "+ backlash:X"])
+
+    def test_a_curve_is_told_by_what_it_says(self):
+        self.campaign(manifest(["pitch-curve:X"]), x=readings(wave=2, noise=0.1))
+        shown = self.nonio("model", "show", self.folder).stdout
+        self.assertRegex(shown, r"pitch-curve:X +curve: RMS [\d.]+ um, from -[\d.]+ um \(at \d+ mm\) to [\d.]+ um \(at \d+ mm\)")
+        self.assertNotRegex(shown, r"\bs1\b")
+
     def test_json(self):
         self.campaign(manifest([]), x=readings(backlash=-6))
         change = self.json_of("model", "add", self.folder, "backlash:X")

@@ -320,9 +320,13 @@ def of_manifests():
     return some
 
 
-def mutants(seed, count):
-    """`count` mutants, every mutator at least once where there is room; the original of each is seeded alike."""
-    tasks = [("x", m) for m in of_readings()] + [("m", m) for m in of_manifests()]
+def mutants(seed, count, only=""):
+    """`count` mutants, every mutator at least once where there is room; the original of each is seeded alike. `only`:
+    of those mutators whose names hold it."""
+    import tired  # which builds on this
+    tasks = [("x", m) for m in of_readings() + tired.of_readings()]
+    tasks += [("m", m) for m in of_manifests() + tired.of_manifests()]
+    tasks = [task for task in tasks if only in task[1][0]]
     rng = random.Random(seed)
     order = list(tasks)
     rng.shuffle(order)

@@ -17,6 +17,7 @@ import tempfile
 import unittest
 
 import mutants
+import tired
 from mutants import HEAD, POSITION, change_run, copy_pass, copy_run, csv, flip, positions, scaled
 
 NONIO = os.environ["NONIO"]
@@ -52,6 +53,26 @@ def ball(coordinate, scale=1.0):
     return "\n".join(lines) + "\n"
 
 
+def rtl(data, serial="", date="", expansion=""):
+    """Rows of mutants as a laser's file."""
+    targets = sorted({r[2] for r in data})
+    lines = ["HEADER::", "File type  : rtl", "Owner      : Linear", "", "TARGET DATA::", f"Target-count: {len(targets)}",
+             "Targets :", *(f"{t:.6f}" for t in targets), "Flags: 0 0 2 1", "", "USER-TEXT::", "Machine:",
+             f"Serial No:{serial}", f"Date:{date}", "By:", "Axis:", "Location:", "TITLE:", "", "RUNS::", "Run-count:10", "",
+             "DEVIATIONS::", "Run Target Data:"]
+    lines += [f"{2 * r - (d == '+')} {targets.index(t) + 1} {v:.3f}" for r, d, t, v in data]
+    if expansion:
+        lines += ["", "ENVIRONMENT::", f"Exp coeff  : {expansion} {expansion} 0"]
+    return "\n".join(lines + ["", "EOF::", ""])
+
+
+def waves():
+    """A pitch of 5.08 mm, seen at 47 targets."""
+    rng = random.Random(508)
+    return csv([[run, d, 1.3 * i, 4 * math.sin(6.28318 * 1.3 * i / 5.08) + rng.gauss(0, 0.3) - 3 * (d == "-")]
+                for run in range(1, 6) for d in "+-" for i in range(47)[::1 if d == "+" else -1]])
+
+
 def sub(*pairs):
     def change(text):
         for old, new in pairs:
@@ -78,6 +99,9 @@ def cases():
     drift = lambda text: text.replace("drift_um = 0.6", "drift_um = 190")
     tomorrow = (datetime.date.today() + datetime.timedelta(days=700)).isoformat()
     shared, twice = csv(own()), csv(own())
+    joint = lambda r: [x if x[2] < 500 else x[:3] + [x[3] + 12 - 8 * (x[1] == "-")] for x in r]
+    one, other = own(), own()
+    half = [[*x[:3], y[3]] if x[2] > 500 else x for x, y in zip(one, other)]
     read = lambda change, **how: (same, {"x.csv": csv(change(own()), **how)})
     return {
         "deviation-grows-with-position": read(lambda r: positions(1000.0)(r, None), head=POSITION),
@@ -118,6 +142,27 @@ def cases():
         "pass-order-turned": read(lambda r: sorted(turn(bump(r)), key=lambda x: (x[0], x[1], x[2]))),
         "pass-sign-turned": read(lambda r: [x if x[:2] != [3, "+"] else x[:3] + [-x[3]] for x in bump(r)]),
         "pass-of-another-size": read(lambda r: change_run(r, 3, lambda x: x[:3] + [x[3] / 1000])),
+        "comment-unit": (same, {"x.csv": "# deviations in nm\n" + csv(own())}),
+        "name-of-another": (sub(("[instrument]", Y_AXIS + "[instrument]")), {"x.csv": "# axis: Y\n" + csv(own())}),
+        "other-serial": (same, {"x.csv": rtl(own(), serial="no-such-machine")}),
+        "other-day": (same, {"x.csv": rtl(own(), date="2019-04-14 10:00:00")}),
+        "other-expansion": (same, {"x.csv": rtl(own(), expansion="23.800000")}),
+        "pitch-in-inch": (sub(("screw_pitch_mm = 10.0", "screw_pitch_mm = 0.3937")), {}),
+        "period-against-pitch": (sub(("screw_pitch_mm = 10.0", "screw_pitch_mm = 0.2")), {"x.csv": waves()}),
+        "span-of-one-axis": (lambda text: sub(("[instrument]", Y_AXIS + "[instrument]"))(text) +
+                             '[[measurement]]\nid = "D1"\nkind = "diagonal"\nfrom = { X = 0, Y = 0 }\nto = { X = 800, Y = 600 }\n'
+                             'file = "d.csv"\n', {"d.csv": csv([[r, d, 80.0 * i, (7 * i + 3 * r) % 5 + 0.1 * i]
+                                                               for r in (1, 2) for d in "+-" for i in range(11)])}),
+        "pace-against-test": (same, {"x.csv": with_columns(own(), ["time_s"], lambda i: 0.15 * i)}),
+        "pass-of-means": read(lambda r: r + [[6, *x[1:3], sum(y[3] for y in r if y[1:3] == x[1:3]) / 5] for x in r[:22]]),
+        "reading-far-off": read(lambda r: [x if i != 40 else x[:3] + [46083.0] for i, x in enumerate(r)]),
+        "mark-among-readings": read(lambda r: [x if i % 7 else x[:3] + [0.0] for i, x in enumerate(
+            [y[:3] + [y[3] + 40] for y in r])]),
+        "targets-against-order": read(lambda r: tired.exchanged(r, 2)),
+        "two-curves": read(lambda r: tired.half_of_another(r, 4)),
+        "two-reversals": read(joint),
+        "stretch-twice": (lambda text: sub(("[instrument]", Y_AXIS + "[instrument]"))(text) +
+                          SECOND.format("Y", "axis", "y.csv"), {"x.csv": csv(one), "y.csv": csv(half)}),
         "ball-circle": (lambda text: sub(("[instrument]", C_AXIS + "[instrument]"))(text) +
                         SECOND.format("C", "ball-centres", "c.csv").split("feed")[0], {"c.csv": ball(2, 1 / 25.4)}),
         "axis-direction": (lambda text: sub(("[instrument]", C_AXIS + "[instrument]"))(text) +
@@ -152,7 +197,7 @@ class Stopped(unittest.TestCase):
                 (folder / "campaign.toml").write_text(manifest)
                 for name, data in {"x.csv": csv(rows(k)), **files}.items():
                     if state == "stands" and finding != "file-of-another-campaign":  # other bytes, the same readings
-                        data = "# stands\n" + data
+                        data = data + "\n" if data.startswith("HEADER") else "# stands\n" + data
                     (folder / name).write_text(data, newline="")
         cls.night()
         for finding in cls.cases:  # what it has is let stand, whatever else the slip shows

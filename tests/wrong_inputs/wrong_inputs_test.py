@@ -95,13 +95,14 @@ def main():
     ask.add_argument("--count", type=int, default=300)
     ask.add_argument("--seed", type=int, default=2026)
     ask.add_argument("--list", action="store_true", help="prints every mutant with what became of it")
+    ask.add_argument("--only", default="", help="mutators whose names hold this text")
     wish = ask.parse_args()
     print(f"{wish.count} mutants, seed {wish.seed}")
     known = explained()
     counts, wrong, lines = collections.Counter(), [], collections.Counter()
     with tempfile.TemporaryDirectory(prefix="nonio-wrong-") as folder:
         root = pathlib.Path(folder)
-        tasks = list(mutants.mutants(wish.seed, wish.count))
+        tasks = list(mutants.mutants(wish.seed, wish.count, wish.only))
         for campaign, _, _, _, text, data, plain in tasks:
             write(root / "site" / campaign, text, data)
             write(root / "plain" / campaign, mutants.MANIFEST.format(id=campaign).encode(), plain)

@@ -16,6 +16,7 @@
 #include "confine.h"
 #include "nonio/host/apart.h"
 #include "process_state.h"
+#include "worker.h"
 
 namespace nonio::host {
 
@@ -34,12 +35,32 @@ void flush_output() {
   std::fflush(stdout);
 }
 
-/// What the shell would do with a program that ended so.
-[[noreturn]] void end_as(pid_t child) {
-  ::signal(SIGINT, SIG_IGN);  // the child gets it too, and says how it ends
+constexpr unsigned load_seconds = 10;
+
+/// Of the program; empty: not known.
+std::filesystem::path& own_folder() {
+  static std::filesystem::path folder;
+  return folder;
+}
+
+/// What the child says while it loads what was not tried; it has no value if there is no memory.
+SharedWords& loading_untried() {
+  static SharedWords words;
+  return words;
+}
+
+bool try_all = false;  // a process that did not ended while it loaded
+
+int end_of(pid_t child, const std::vector<pid_t>& children_before) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
     ;
+  end_children(children_before);  // what plugins have left running
+  return status;
+}
+
+/// What the shell would do with a program that ended so.
+[[noreturn]] void end_as(int status) {
   if (WIFEXITED(status)) ::_exit(WEXITSTATUS(status));
   if (WTERMSIG(status) == SIGINT) ::_exit(130);
   std::cerr << "nonio: a plugin brought the process down in which it ran: "
@@ -49,8 +70,27 @@ void flush_output() {
 
 }  // namespace
 
-void keep_plugins_apart() {
+void keep_plugins_apart(std::filesystem::path own_plugins) {
   if (where_run == Place::anywhere) where_run = Place::wanted_apart;
+  std::error_code error;
+  own_folder() = std::filesystem::canonical(own_plugins, error);
+}
+
+bool must_be_tried(const std::filesystem::path& plugin) {
+  return where_run != Place::apart || try_all || !loading_untried().valid() ||
+         plugin.parent_path() != own_folder();
+}
+
+LoadingUntried::LoadingUntried() {
+  if (where_run != Place::apart || try_all || !loading_untried().valid()) return;
+  loading_untried().set("loading");
+  ::alarm(load_seconds);
+}
+
+LoadingUntried::~LoadingUntried() {
+  if (where_run != Place::apart || try_all || !loading_untried().valid()) return;
+  ::alarm(0);
+  loading_untried().set("");
 }
 
 void hide_from_plugins(std::vector<std::filesystem::path> secrets) {
@@ -62,9 +102,20 @@ void step_aside() {
   where_run = Place::apart;
   flush_output();
   std::cerr.flush();
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+  const std::vector<pid_t> children_before = own_children();
   const pid_t parent = ::getpid();
-  const pid_t child = ::fork();
-  if (child > 0) end_as(child);
+  const bool can_tell = loading_untried().valid();
+  pid_t child = ::fork();
+  while (child > 0) {
+    ::signal(SIGINT, SIG_IGN);  // the child gets it too, and says how it ends
+    const int status = end_of(child, children_before);
+    if (try_all || !can_tell || loading_untried().get().empty()) end_as(status);
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT) end_as(status);
+    try_all = true;
+    ::signal(SIGINT, SIG_DFL);
+    child = ::fork();
+  }
   if (child < 0) {
     std::cerr << "nonio: no process for the plugins: " << std::strerror(errno) << "\n";
     ::_exit(2);

@@ -12,6 +12,20 @@ void step_aside();
 /// Whether this is such a child, or one of its own.
 bool is_apart();
 
+/// Whether a plugin must first be tried in a child of its own: it lies elsewhere than beside the
+/// program, with which it was tested, or this process cannot be made anew.
+bool must_be_tried(const std::filesystem::path& plugin);
+
+/// While it lives, plugins are loaded that were not tried: what ends this process, or hangs, makes
+/// another one that tries all of them first.
+class LoadingUntried {
+ public:
+  LoadingUntried();
+  LoadingUntried(const LoadingUntried&) = delete;
+  LoadingUntried& operator=(const LoadingUntried&) = delete;
+  ~LoadingUntried();
+};
+
 /// Where plugins are kept apart: they cannot read these files. Before they are loaded.
 void hide_from_plugins(std::vector<std::filesystem::path> secrets);
 

@@ -112,6 +112,19 @@ std::vector<std::string> model_mistakes(const std::vector<std::string>& effects,
   return out;
 }
 
+RowsPlace place_of(const PartModel& part, const Campaign& campaign,
+                   const std::vector<std::uint32_t>& rows) {
+  constexpr std::size_t most = 8;
+  RowsPlace out{rows.size(), {}, {}};
+  for (std::size_t k = 0; k < rows.size() && k < most; ++k) {
+    const ReadingPlace at = place_of(part, campaign, rows[k]);
+    if (k == 0) out.file = at.file;
+    out.lines += (k == 0 ? "" : ", ") + std::to_string(at.line);
+  }
+  if (rows.size() > most) out.lines += ", ...";
+  return out;
+}
+
 Expected<std::vector<PartModel>> part_models(const ReadCampaign& read,
                                              const std::vector<std::string>& effects) {
   const Campaign& campaign = read.manifest->campaign;
@@ -126,7 +139,9 @@ Expected<std::vector<PartModel>> part_models(const ReadCampaign& read,
   for (model::Part& part : model::parts_of(campaign, read.observations)) {
     auto terms = model::terms_of(part, campaign.machine, effects, read.effects);
     auto catalogue = model::catalogue(part, read.effects);
-    PartModel one{std::move(part), {}, std::move(catalogue), {}};
+    auto left_out = model::not_applying(part, read.effects);
+    PartModel one{std::move(part), {}, std::move(catalogue), {}, std::move(left_out)};
+    one.interpolated = place_of(one, campaign, model::interpolated_temperatures(one.part));
     if (terms)
       one.terms = std::move(*terms);
     else
@@ -169,8 +184,13 @@ Expected<model::Comparison> compare_part(const PartModel& part) {
 
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed) {
   if (!part.unfit.empty()) return fail(part.unfit);
-  return guarded(kind_of(part.part) + " " + part.part.name,
-                 [&] { return model::explain(part.part, part.terms, part.catalogue, seed); });
+  return guarded(kind_of(part.part) + " " + part.part.name, [&] {
+    auto out = model::explain(part.part, part.terms, part.catalogue, seed);
+    // None vanishes in silence.
+    if (out)
+      out->candidates.insert(out->candidates.end(), part.left_out.begin(), part.left_out.end());
+    return out;
+  });
 }
 
 }  // namespace nonio::host

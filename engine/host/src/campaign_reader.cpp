@@ -185,10 +185,12 @@ class CampaignReader {
       return fail(who + " gave " + why);
     if (auto possible = possible_air(*observations, m.file); !possible) return possible;
     if (auto excluded = exclude(m, *observations); !excluded) return excluded;
-    for (Finding& doubt : implausible_end(bytes, m.file)) {
-      doubt.measurement = m.id;
-      out_.doubts.push_back(std::move(doubt));
-    }
+    auto ends = implausible_end(bytes, m.file);
+    for (auto* doubts : {&ends, &observations->doubts})
+      for (Finding& doubt : *doubts) {
+        doubt.measurement = m.id;
+        out_.doubts.push_back(std::move(doubt));
+      }
     if (observations->missing > 0 && m.kind != "axis")  // of an axis its analyses say it
       observations->notes.push_back(
           {"readings.not-taken",
@@ -225,9 +227,15 @@ class CampaignReader {
     if (bytes.find_first_not_of(" \t\r\n") == bytes.npos)
       return fail(Error{"expected readings, found an empty file", m.file});
     for (const Reader& r : readers) {
-      if (!r.reads(m.kind)) continue;
-      any = true;
-      if (r.recognises(bytes.substr(0, 4096))) return &r;
+      const std::string who = "reader " + r.info.name;
+      stage_(who + " (measurement " + m.id + "), asked whether it reads this file");
+      const auto reads = guarded_answer(who, [&] { return r.reads(m.kind); });
+      if (!reads) return fail(reads.error());
+      any = any || *reads;
+      const auto recognised =
+          guarded_answer(who, [&] { return *reads && r.recognises(bytes.substr(0, 4096)); });
+      if (!recognised) return fail(recognised.error());
+      if (*recognised) return &r;
     }
     const std::string refused = context_.plugins->refusals();
     if (any)

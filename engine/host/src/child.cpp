@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "child.h"
 
+#include <fcntl.h>
 #include <malloc.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <thread>
 
 namespace nonio::host {
@@ -26,6 +29,18 @@ ChildEnd child_end(int status) {
   return {false, "signal " + std::to_string(number) + " (" + ::strsignal(number) + ")"};
 }
 
+ChildEnd end_child(pid_t child) {
+  using Clock = std::chrono::steady_clock;
+  ::kill(-child, SIGKILL);
+  ::kill(child, SIGKILL);
+  const auto patience = Clock::now() + std::chrono::seconds(2);
+  int status = 0;
+  pid_t gone = 0;
+  while ((gone = ::waitpid(child, &status, WNOHANG)) == 0 && Clock::now() < patience)
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  return gone > 0 ? child_end(status) : ChildEnd{false, "hangs in the kernel"};
+}
+
 ChildEnd wait_for_child(pid_t child, double seconds) {
   using Clock = std::chrono::steady_clock;
   const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
@@ -33,15 +48,35 @@ ChildEnd wait_for_child(pid_t child, double seconds) {
   int status = 0;
   while (::waitpid(child, &status, WNOHANG) == 0) {
     if (Clock::now() > deadline) {
-      ::kill(-child, SIGKILL);
-      ::kill(child, SIGKILL);
-      ::waitpid(child, &status, 0);
+      end_child(child);
       return {false, "no answer within " + std::to_string(static_cast<int>(seconds)) + " s", true};
     }
     std::this_thread::sleep_for(pause);
     pause = std::min(pause * 2, std::chrono::microseconds(5000));
   }
   return child_end(status);
+}
+
+std::vector<pid_t> own_children() {
+  std::vector<pid_t> all;
+  std::ifstream list("/proc/self/task/" + std::to_string(::gettid()) + "/children");
+  for (pid_t pid; list >> pid;) all.push_back(pid);
+  return all;
+}
+
+void end_children(const std::vector<pid_t>& kept) {
+  using Clock = std::chrono::steady_clock;
+  const auto patience = Clock::now() + std::chrono::seconds(2);
+  for (bool any = true; any && Clock::now() < patience;) {
+    any = false;
+    for (const pid_t pid : own_children()) {
+      if (std::find(kept.begin(), kept.end(), pid) != kept.end()) continue;
+      any = true;
+      ::kill(pid, SIGKILL);
+      ::waitpid(pid, nullptr, WNOHANG);
+    }
+    if (any) std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
 }
 
 void settle_child() {
@@ -55,6 +90,17 @@ void settle_child() {
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
+}
+
+void keep_silent() {
+  const int nothing = ::open("/dev/null", O_RDWR);
+  if (nothing < 0) return;
+  ::dup2(nothing, STDIN_FILENO);
+  ::dup2(nothing, STDOUT_FILENO);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  ::dup2(nothing, STDERR_FILENO);
+#endif
+  if (nothing > STDERR_FILENO) ::close(nothing);
 }
 
 pid_t fork_patiently() {

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <string>
+#include <vector>
 
 namespace nonio::host {
 
@@ -17,12 +18,25 @@ struct ChildEnd {
 /// From the status of waitpid.
 ChildEnd child_end(int wait_status);
 
+/// Kills a child with its process group and takes its status. One that waits for a disk in the
+/// kernel ends when the disk answers: after two seconds it is left behind.
+ChildEnd end_child(pid_t child);
+
 /// Waits up to `seconds`; kills the child's process group if it takes longer.
 ChildEnd wait_for_child(pid_t child, double seconds);
+
+std::vector<pid_t> own_children();
+/// Ends all but these, and whatever they leave where this process is a subreaper. One that waits
+/// for a disk in the kernel is left behind.
+void end_children(const std::vector<pid_t>& kept);
 
 /// To be called first in a child: its own process group, ended with its parent, no core file, its
 /// standard output joined to the standard error so that results on stdout stay clean.
 void settle_child();
+
+/// To be called then where nothing is printed: who reads what the parent prints waits until nobody
+/// can print any more, also for a child that was left behind.
+void keep_silent();
 
 /// Private memory that the process may have from now on. Without effect under a sanitizer, whose
 /// shadow memory is larger than any limit.

@@ -36,7 +36,10 @@ void apply_cmc(const Laboratory& laboratory, double length, Evaluation& e) {
   };
   const auto note = [&](const std::string& name) { raised += (raised.empty() ? "" : ", ") + name; };
   for (Value& v : e.values)
-    if (v.U && raise(*v.U, v.quantity)) note(v.name);
+    if (v.U && raise(*v.U, v.quantity)) {
+      v.k = 2.0;  // that of [laboratory.cmc]
+      note(v.name);
+    }
   for (PointTable::Column& c : e.points.columns)
     if (c.U) raise(*c.U, c.quantity);
   for (Series& s : e.series) {

@@ -2,13 +2,11 @@
 #include "committer.h"
 
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <iostream>
 #include <utility>
@@ -36,6 +34,7 @@ Message message_of(std::size_t campaign, const Expected<void>& result) {
 
 [[noreturn]] void serve(const Committer::Task& task, int channel) noexcept {
   settle_child();
+  keep_silent();
   for (Committer::Given given; ::read(channel, &given, sizeof given) == sizeof given;) {
     std::vector<Committer::Given> batch{given};
     while (batch.size() < largest_batch &&
@@ -76,8 +75,7 @@ Expected<void> Committer::start() {
 void Committer::end() {
   if (channel_ >= 0) ::close(std::exchange(channel_, -1));
   if (pid_ < 0) return;
-  ::kill(pid_, SIGKILL);
-  ::waitpid(std::exchange(pid_, -1), nullptr, 0);
+  end_child(std::exchange(pid_, -1));
 }
 
 Expected<void> Committer::give(Given campaign) {

@@ -65,11 +65,16 @@ std::string unsound_answer(const Evaluated& e, const std::string& id) {
 
 }  // namespace
 
-void evaluate_for(int stream, const Context& context, SharedWords& stage) {
+void evaluate_for(int stream, const Context& context, SharedWords& stage, Prints& prints) {
   open_files_with([stream](const fs::path& path) { return ask_for_file(stream, path); });
   keep_freed_memory();
   const std::size_t at_start = memory_held();
-  const Stage tell = [&stage](const std::string& words) { stage.set(words); };
+  std::string now;
+  const Stage tell = [&](const std::string& words) {
+    prints.pass_on(now);
+    now = words;
+    stage.set(words);
+  };
   for (std::string request; read_text(stream, request);) {
     fs::path folder;
     std::string id;
@@ -82,6 +87,7 @@ void evaluate_for(int stream, const Context& context, SharedWords& stage) {
         return ask_for_draw(stream, e, missing);
       };
     const Evaluated evaluated = evaluate(folder, id, context, tell, draw, twins);
+    prints.pass_on(now);
     const bool grown = has_grown(at_start);
     if (!write_text(stream, has_done + wire::pack(evaluated, grown))) return;
   }

@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "nonio/host/evaluate.h"
+#include "prints.h"
 #include "worker.h"
 
 namespace nonio::host {
 
 /// In the process with the plugins: evaluates the campaigns that the other side names, until it is
 /// gone. It can open no file: the other side hands it those of the campaign.
-void evaluate_for(int stream, const Context& context, SharedWords& stage);
+void evaluate_for(int stream, const Context& context, SharedWords& stage, Prints& prints);
 
 /// In the process that has files, register and signer, and no plugin code.
 class Evaluator {

@@ -4,9 +4,7 @@
 #include <fcntl.h>
 #include <linux/capability.h>
 #include <linux/landlock.h>
-#include <sched.h>
-#include <seccomp.h>
-#include <sys/mman.h>
+#include <linux/seccomp.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -16,9 +14,11 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <memory>
 #include <set>
+#include <span>
 #include <string_view>
+
+#include "filters.h"
 
 namespace nonio::host {
 namespace fs = std::filesystem;
@@ -101,285 +101,22 @@ void allow_all_but(int ruleset, const fs::path& folder, const std::set<fs::path>
   }
 }
 
-// ---- system calls: seccomp
-
-struct Release {
-  void operator()(void* filter) const { ::seccomp_release(filter); }
-};
-using Filter = std::unique_ptr<void, Release>;
-
-/// Nothing of this belongs into a computation: whoever tries is ended, with its name.
-constexpr std::string_view hostile[] = {"execve",
-                                        "execveat",
-                                        "fork",
-                                        "vfork",
-                                        "socket",
-                                        "socketpair",
-                                        "connect",
-                                        "bind",
-                                        "listen",
-                                        "accept",
-                                        "accept4",
-                                        "ptrace",
-                                        "process_vm_readv",
-                                        "process_vm_writev",
-                                        "kill",
-                                        "tkill",
-                                        "pidfd_open",
-                                        "pidfd_send_signal",
-                                        "pidfd_getfd",
-                                        "rt_sigqueueinfo",
-                                        "rt_tgsigqueueinfo",
-                                        "memfd_create",
-                                        "memfd_secret",
-                                        "shmget",
-                                        "shmat",
-                                        "shmctl",
-                                        "msgget",
-                                        "msgsnd",
-                                        "msgrcv",
-                                        "semget",
-                                        "semop",
-                                        "mq_open",
-                                        "bpf",
-                                        "keyctl",
-                                        "add_key",
-                                        "request_key",
-                                        "perf_event_open",
-                                        "userfaultfd",
-                                        "io_uring_setup",
-                                        "mount",
-                                        "umount2",
-                                        "move_mount",
-                                        "open_tree",
-                                        "fsopen",
-                                        "pivot_root",
-                                        "chroot",
-                                        "unshare",
-                                        "setns",
-                                        "reboot",
-                                        "kexec_load",
-                                        "init_module",
-                                        "finit_module",
-                                        "delete_module",
-                                        "swapon",
-                                        "swapoff",
-                                        "sethostname",
-                                        "setdomainname",
-                                        "settimeofday",
-                                        "clock_settime",
-                                        "clock_adjtime",
-                                        "adjtimex",
-                                        "setuid",
-                                        "setgid",
-                                        "setreuid",
-                                        "setregid",
-                                        "setresuid",
-                                        "setresgid",
-                                        "setgroups",
-                                        "capset",
-                                        "personality",
-                                        "quotactl",
-                                        "open_by_handle_at",
-                                        "name_to_handle_at",
-                                        "fanotify_init",
-                                        "chmod",
-                                        "fchmod",
-                                        "fchmodat",
-                                        "chown",
-                                        "fchown",
-                                        "lchown",
-                                        "fchownat",
-                                        "utimensat",
-                                        "setxattr",
-                                        "lsetxattr",
-                                        "fsetxattr",
-                                        "removexattr",
-                                        "lremovexattr",
-                                        "fremovexattr",
-                                        "setpriority",
-                                        "sched_setaffinity",
-                                        "sched_setscheduler",
-                                        "sched_setparam",
-                                        "sched_setattr",
-                                        "ioprio_set",
-                                        "syslog",
-                                        "acct"};
-
-/// What a computation does, and how it looks at files that it may not open.
-constexpr std::string_view computing[] = {"read",
-                                          "readv",
-                                          "pread64",
-                                          "write",
-                                          "writev",
-                                          "close",
-                                          "fstat",
-                                          "newfstatat",
-                                          "stat",
-                                          "lstat",
-                                          "statx",
-                                          "lseek",
-                                          "munmap",
-                                          "mremap",
-                                          "madvise",
-                                          "brk",
-                                          "mprotect",
-                                          "mincore",
-                                          "futex",
-                                          "sendto",
-                                          "sendmsg",
-                                          "recvfrom",
-                                          "recvmsg",
-                                          "poll",
-                                          "ppoll",
-                                          "rt_sigaction",
-                                          "rt_sigprocmask",
-                                          "rt_sigreturn",
-                                          "sigaltstack",
-                                          "getpid",
-                                          "gettid",
-                                          "getppid",
-                                          "getuid",
-                                          "geteuid",
-                                          "getgid",
-                                          "getegid",
-                                          "getpgrp",
-                                          "getrandom",
-                                          "clock_gettime",
-                                          "clock_getres",
-                                          "clock_nanosleep",
-                                          "nanosleep",
-                                          "gettimeofday",
-                                          "time",
-                                          "sched_yield",
-                                          "sched_getaffinity",
-                                          "getcpu",
-                                          "getrusage",
-                                          "times",
-                                          "sysinfo",
-                                          "uname",
-                                          "exit",
-                                          "exit_group",
-                                          "restart_syscall",
-                                          "set_robust_list",
-                                          "rseq",
-                                          "getcwd",
-                                          "readlink",
-                                          "readlinkat",
-                                          "access",
-                                          "faccessat",
-                                          "faccessat2",
-                                          "open",
-                                          "openat",
-                                          "getdents64",
-                                          "fcntl",
-                                          "dup",
-                                          "dup2",
-                                          "dup3",
-                                          "getrlimit",
-                                          "membarrier",
-                                          "fadvise64"};
-
-void add(const Filter& filter, std::uint32_t action, std::string_view call) {
-  const int number = ::seccomp_syscall_resolve_name(std::string(call).c_str());
-  if (number != __NR_SCMP_ERROR) ::seccomp_rule_add(filter.get(), action, number, 0);
-}
-
-template <class... Compare>
-void add_if(const Filter& filter, std::uint32_t action, const char* call, Compare... compare) {
-  const int number = ::seccomp_syscall_resolve_name(call);
-  if (number != __NR_SCMP_ERROR)
-    ::seccomp_rule_add(filter.get(), action, number, sizeof...(compare), compare...);
-}
-
-std::string load(const Filter& filter) {
-  const int code = ::seccomp_load(filter.get());
-  return code == 0 ? "" : std::string("seccomp: ") + std::strerror(-code);
-}
-
-scmp_arg_cmp masked(unsigned argument, scmp_datum_t mask, scmp_datum_t value) {
-  return {argument, SCMP_CMP_MASKED_EQ, mask, value};
-}
-
-/// Memory that no limit counts: shared without a file, or growing like a stack.
-void forbid_uncounted_memory(const Filter& filter, std::uint32_t action) {
-  constexpr unsigned flags = 3;  // argument of mmap
-  add_if(filter, action, "mmap",
-         masked(flags, MAP_SHARED | MAP_ANONYMOUS, MAP_SHARED | MAP_ANONYMOUS));
-  add_if(filter, action, "mmap", masked(flags, MAP_GROWSDOWN, MAP_GROWSDOWN));
-}
-
-/// For the process that loads plugins and makes the others: everything but what is hostile. A
-/// process may be made as its sibling only, which is how `PluginHost` does it.
-std::string forbid_hostile() {
-  const Filter filter(::seccomp_init(SCMP_ACT_ALLOW));
-  if (!filter) return "seccomp: no memory";
-  for (const std::string_view call : hostile) add(filter, SCMP_ACT_KILL_PROCESS, call);
-  add(filter, SCMP_ACT_ERRNO(ENOSYS), "clone3");  // whose arguments a filter does not see
-  add_if(filter, SCMP_ACT_KILL_PROCESS, "clone", masked(0, CLONE_THREAD | CLONE_PARENT, 0));
-  add_if(filter, SCMP_ACT_ERRNO(EAGAIN), "clone", masked(0, CLONE_THREAD, CLONE_THREAD));
-  for (const pid_t spared : {::getppid(), 1})
-    add_if(filter, SCMP_ACT_KILL_PROCESS, "tgkill",
-           scmp_arg_cmp{0, SCMP_CMP_EQ, static_cast<scmp_datum_t>(spared), 0});
-  // signals by way of a descriptor
-  for (const scmp_datum_t command : {F_SETOWN, F_SETSIG, 15 /* F_SETOWN_EX */})
-    add_if(filter, SCMP_ACT_KILL_PROCESS, "fcntl", scmp_arg_cmp{1, SCMP_CMP_EQ, command, 0});
-  add_if(filter, SCMP_ACT_ERRNO(EPERM), "prlimit64", scmp_arg_cmp{0, SCMP_CMP_NE, 0, 0});
-  add_if(filter, SCMP_ACT_KILL_PROCESS, "ioctl",
-         scmp_arg_cmp{1, SCMP_CMP_EQ, 0x5412 /* TIOCSTI */, 0});
-  forbid_uncounted_memory(filter, SCMP_ACT_KILL_PROCESS);
-  return load(filter);
-}
-
-std::string forbid_talking() {
-  const Filter filter(::seccomp_init(SCMP_ACT_ALLOW));
-  if (!filter) return "seccomp: no memory";
-  for (const char* call : {"execve",
-                           "execveat",
-                           "socket",
-                           "connect",
-                           "bind",
-                           "listen",
-                           "accept",
-                           "accept4",
-                           "ptrace",
-                           "process_vm_readv",
-                           "process_vm_writev",
-                           "bpf",
-                           "keyctl",
-                           "add_key",
-                           "request_key",
-                           "mount",
-                           "unshare",
-                           "setns",
-                           "io_uring_setup",
-                           "userfaultfd",
-                           "perf_event_open"})
-    add(filter, SCMP_ACT_KILL_PROCESS, call);
-  return load(filter);
-}
+// ---- system calls: seccomp (filters.h)
 
 bool computing_confined = false;
 
-std::string allow_computing() {
-  const Filter filter(::seccomp_init(SCMP_ACT_ERRNO(EPERM)));
-  if (!filter) return "seccomp: no memory";
-  for (const std::string_view call : computing) add(filter, SCMP_ACT_ALLOW, call);
-  constexpr unsigned flags = 3;
-  add_if(filter, SCMP_ACT_ALLOW, "mmap", masked(flags, MAP_GROWSDOWN, 0));
-  add_if(filter, SCMP_ACT_ALLOW, "prlimit64", scmp_arg_cmp{0, SCMP_CMP_EQ, 0, 0},
-         scmp_arg_cmp{2, SCMP_CMP_EQ, 0, 0});
-  // abort() and raise(), to nobody else
-  add_if(filter, SCMP_ACT_ALLOW, "tgkill",
-         scmp_arg_cmp{0, SCMP_CMP_EQ, static_cast<scmp_datum_t>(::getpid()), 0});
-  add(filter, SCMP_ACT_ERRNO(EAGAIN), "clone");
-  add(filter, SCMP_ACT_ERRNO(ENOSYS), "clone3");
-  add_if(filter, SCMP_ACT_KILL_PROCESS, "tgkill",
-         scmp_arg_cmp{0, SCMP_CMP_NE, static_cast<scmp_datum_t>(::getpid()), 0});
-  for (const char* call : {"chdir", "fchdir", "umask"}) add(filter, SCMP_ACT_KILL_PROCESS, call);
-  const std::string why = load(filter);
-  computing_confined = why.empty();
-  return why;
+std::string forbid(std::span<const sock_filter> calls) {
+  std::array<sock_filter, most_filter_steps> steps;
+  const sock_fprog program{static_cast<unsigned short>(calls.size()), steps.data()};
+  const auto own = static_cast<std::uint32_t>(::getpid()),
+             parent = static_cast<std::uint32_t>(::getppid());
+  std::transform(calls.begin(), calls.end(), steps.begin(), [&](sock_filter step) {
+    if (step.k == own_process) step.k = own;
+    if (step.k == parent_process) step.k = parent;
+    return step;
+  });
+  return ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0 ? ""
+                                                                           : why_not("seccomp");
 }
 
 bool has_seccomp() { return ::prctl(PR_GET_SECCOMP) >= 0; }
@@ -419,13 +156,13 @@ std::string confine_loading(const std::vector<fs::path>& readable) {
   drop_capabilities();
   set_limit(RLIMIT_CORE, 0);
   if (const std::string why = restrict_files(readable); !why.empty()) return why;
-  return has_seccomp() ? forbid_hostile() : "";
+  return has_seccomp() ? forbid(loading_filter) : "";
 }
 
 std::string confine_visit() {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return why_not("no_new_privs");
   set_limit(RLIMIT_CORE, 0);
-  return has_seccomp() ? forbid_talking() : "";
+  return has_seccomp() ? forbid(visit_filter) : "";
 }
 
 std::string hide_files(const std::vector<fs::path>& files) {
@@ -453,7 +190,10 @@ std::string confine_computing() {
   set_limit(RLIMIT_NPROC, 0);
   set_limit(RLIMIT_FSIZE, 0);
   set_limit(RLIMIT_NOFILE, descriptors);
-  return has_seccomp() ? allow_computing() : "";
+  if (!has_seccomp()) return {};
+  std::string why = forbid(computing_filter);
+  computing_confined = why.empty();
+  return why;
 }
 
 bool is_computing_confined() { return computing_confined; }

@@ -28,6 +28,11 @@ std::string confine_computing();
 /// program started, nobody spoken to.
 std::string confine_visit();
 
+/// For one call of a plugin that should need nothing but its arguments: files, sockets, processes,
+/// signals, another folder or mode mask are not to be had. `told` gets the name of the system call
+/// that was tried, and must not return. An error as above.
+std::string confine_pure(void (*told)(const char* call));
+
 /// These files can be read no more; nor what is made from now on in the folders above them.
 std::string hide_files(const std::vector<std::filesystem::path>& secrets);
 

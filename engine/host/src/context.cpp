@@ -155,7 +155,8 @@ Expected<void> keep(Templates& templates, const std::string& name, std::string b
 }  // namespace
 
 Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::string& digest,
-                                   std::string* json, const TemplateFiles& own) {
+                                   std::string* json, const TemplateFiles& own,
+                                   std::string_view below) {
   std::map<std::string, fs::path> files;
   for (const fs::path& folder : folders) {
     auto here = files_below(folder);
@@ -163,6 +164,7 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
     for (auto& [name, path] : *here) files[name] = std::move(path);
   }
   for (const auto& [name, bytes] : own.files) files[name] = own.folder / name;
+  std::erase_if(files, [&](const auto& file) { return !file.first.starts_with(below); });
   Templates templates;
   std::string all;
   Json carried = Json::object();

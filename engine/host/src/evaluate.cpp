@@ -47,7 +47,10 @@ class CampaignRun {
 
  private:
   bool failed() const { return !out_.results.errors.empty(); }
-  void report(Error error) { out_.results.errors.push_back(std::move(error)); }
+  void report(Error error) {
+    if (read_.manifest) give_line(error, read_.manifest->lines, {"campaign"});
+    out_.results.errors.push_back(std::move(error));
+  }
   void locate(Error& error, const std::string& plugin = {}) const {
     host::locate(error, read_.manifest->lines, context_.site.lines, plugin);
   }
@@ -126,7 +129,10 @@ class CampaignRun {
       const Measurement& m = out_.campaign.measurements[i];
       if (read_.observations[i].size() == 0) continue;
       for (const Analysis* analysis : analyses)
-        if (analysis->applies && analysis->applies(out_.campaign, m))
+        if (analysis->applies &&
+            applies(
+                "analysis", analysis->info.name,
+                [&] { return analysis->applies(out_.campaign, m); }, " (measurement " + m.id + ")"))
           analyse_with(*analysis, &m, [&](const Settings& options) {
             return analysis->analyse(
                 {out_.campaign, m, read_.observations[i], options, &read_.observations});
@@ -137,6 +143,17 @@ class CampaignRun {
         analyse_with(*analysis, nullptr, [&](const Settings& options) {
           return analysis->analyse_campaign({out_.campaign, read_.observations, options});
         });
+  }
+
+  /// What the plugin says of itself.
+  template <class Ask>
+  bool applies(const char* kind, const std::string& name, const Ask& ask,
+               const std::string& where = {}) {
+    const std::string who = std::string(kind) + " " + name;
+    stage_(who + where + ", asked whether it applies");
+    const auto said = guarded_answer(who, ask);
+    if (!said) report(said.error());
+    return said && *said;
   }
 
   /// Of one measurement, or of the campaign if there is none.
@@ -155,6 +172,8 @@ class CampaignRun {
       locate(evaluation.error(), analysis.info.name);
       if (evaluation.error().file.empty())
         evaluation.error().file = measurement == nullptr ? manifest_name : measurement->file;
+      give_line(evaluation.error(), read_.manifest->lines,
+                {"options." + analysis.info.name, "run.analyses"});
       return report(std::move(evaluation.error()));
     }
     const std::vector<std::string>& uses = evaluation->uses;
@@ -356,7 +375,8 @@ class CampaignRun {
           control != output->info.name)
         continue;
       if (output->stage == Output::Stage::table && !control_of_record(output->info.name)) continue;
-      if (!output->applies(out_.campaign)) continue;
+      if (!applies("output", output->info.name, [&] { return output->applies(out_.campaign); }))
+        continue;
       const bool asked =
           !all || output->stage != Output::Stage::table || control == output->info.name;
       if (auto options = settle(*output)) wanted.push_back({*output, std::move(*options), asked});
@@ -539,19 +559,19 @@ class CampaignRun {
   void place_at_output(Error& error, const Wanted& w) const {
     const std::string& name = w.output.info.name;
     locate(error, name);
-    if (!error.file.empty()) return;
-    const auto& own = read_.manifest->lines;
-    const std::string asked = read_.manifest->run.outputs             ? "run.outputs"
-                              : out_.campaign.machine.control == name ? "machine.control"
-                                                                      : "campaign.id";
-    for (const std::string& key : {"options." + name, asked, std::string("campaign")}) {
-      const auto found = own.find(key);
-      if (found == own.end()) continue;
-      error.file = manifest_name;
-      error.line = found->second;
-      return;
+    const bool blamed = error.line != 0;
+    if (error.file.empty()) error.file = manifest_name;
+    const std::string& control = out_.campaign.machine.control;
+    const bool own = read_.manifest->run.outputs.has_value() || control == name;
+    if (const auto line = context_.site.lines.find("run.outputs");
+        !blamed && error.file == manifest_name && !own && context_.site.run.outputs &&
+        line != context_.site.lines.end() && !read_.manifest->lines.contains("options." + name)) {
+      error.file = site_name;
+      error.line = line->second;
     }
-    error.file = manifest_name;
+    const std::string asked = read_.manifest->run.outputs ? "run.outputs" : "machine.control";
+    give_line(error, read_.manifest->lines,
+              {"options." + name, own ? asked : "campaign.id", "campaign"});
   }
 
   /// What was issued is not written again.

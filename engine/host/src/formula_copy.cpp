@@ -68,32 +68,45 @@ class Nearest {
     return columns ? apart(own_, span_of(o_, *columns)) : 1.0;
   }
 
-  double over_grid() const {
-    if (effect_.shapes.empty()) return at({});
-    if (effect_.shapes.size() > 1) return 1.0;  // none in the catalogue
-    const auto grid = effect_.shapes[0].grid(o_, axis_);
+  double over_grid() {
+    std::size_t searched = effect_.shapes.size(), free = 0;
+    for (std::size_t k = effect_.shapes.size(); k-- > 0;) {
+      usual_.insert(usual_.begin(), effect_.shapes[k].usual.value_or(0.0));
+      if (!effect_.shapes[k].usual) searched = k, ++free;
+    }
+    if (free == 0) return at(usual_);
+    if (free > 1) return 1.0;  // none in the catalogue
+    searched_ = searched;
+    const auto grid = effect_.shapes[searched].grid(o_, axis_);
     double least = 1.0;
     std::size_t best = 0;
     for (std::size_t k = 0; k < grid.size(); ++k)
-      if (const double d = at({grid[k]}); d < least) least = d, best = k;
-    if (grid.empty() || !effect_.shapes[0].continuous) return least;
+      if (const double d = with(grid[k]); d < least) least = d, best = k;
+    if (grid.empty() || !effect_.shapes[searched].continuous) return least;
     return std::min(
         least, between(grid[best == 0 ? 0 : best - 1], grid[std::min(best + 1, grid.size() - 1)]));
   }
 
  private:
+  /// With this value of the shape that is searched, and the usual ones of others.
+  double with(double value) const {
+    std::vector<double> shape = usual_;
+    shape[searched_] = value;
+    return at(shape);
+  }
+
   /// Golden section.
   double between(double low, double high) const {
     constexpr double golden = 0.6180339887498949;
     double a = high - golden * (high - low), b = low + golden * (high - low);
-    double at_a = at({a}), at_b = at({b});
+    double at_a = with(a), at_b = with(b);
     for (int step = 0; step < 60; ++step) {
       if (at_a < at_b) {
         high = b, b = a, at_b = at_a;
-        at_a = at({a = high - golden * (high - low)});
+        at_a = with(a = high - golden * (high - low));
       } else {
         low = a, a = b, at_a = at_b;
-        at_b = at({b = low + golden * (high - low)});
+        at_b = with(b = low + golden * (high - low));
       }
     }
     return std::min(at_a, at_b);
@@ -103,6 +116,8 @@ class Nearest {
   const Axis& axis_;
   const Effect& effect_;
   const Columns& own_;
+  std::vector<double> usual_{};  // of each shape
+  std::size_t searched_ = 0;
 };
 
 }  // namespace
@@ -122,7 +137,7 @@ Expected<std::string> copy_of(const Observations& o, const Axis& axis, const Eff
   if (span.empty()) return std::string("zero");
   for (const Effect& effect : catalogue) {
     if (effect.info.name == own.info.name || !effect.applies || !effect.applies(o, axis)) continue;
-    const Nearest nearest(o, axis, effect, span);
+    Nearest nearest(o, axis, effect, span);
     const bool alike = !shape.empty() && shape.size() == effect.shapes.size();
     if ((alike && nearest.at(shape) < same) || nearest.over_grid() < same) return effect.info.name;
   }

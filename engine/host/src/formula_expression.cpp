@@ -100,6 +100,10 @@ Dimension dimension_of(Quantity quantity) {
       return {0, 0, -1};
     case Quantity::deviation_per_time:
       return {1, -1, 0};
+    case Quantity::deviation_per_kelvin:
+      return {1, 0, -1};
+    case Quantity::angle_per_kelvin:
+      return {0, 0, -1};
     case Quantity::angle_per_time:
     case Quantity::growth:
     case Quantity::angular_growth:

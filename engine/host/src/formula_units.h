@@ -19,7 +19,7 @@ struct FormulaUnit {
   }
 };
 
-inline constexpr std::array<FormulaUnit, 16> formula_units{
+inline constexpr std::array<FormulaUnit, 18> formula_units{
     {{Quantity::deviation, "deviation"},
      {Quantity::length, "position or period"},
      {Quantity::deviation_per_length, "slope"},
@@ -33,6 +33,8 @@ inline constexpr std::array<FormulaUnit, 16> formula_units{
      {Quantity::angular_growth, "growth of an angle in time"},
      {Quantity::angular_expansion, "expansion of an angle"},
      {Quantity::small_angle, "small angle"},
+     {Quantity::deviation_per_kelvin, "drift with temperature"},
+     {Quantity::angle_per_kelvin, "drift of an angle with temperature"},
      {Quantity::time, "time"},
      {Quantity::temperature_difference, "temperature difference"},
      {Quantity::number, "none: a number"}}};

@@ -41,4 +41,10 @@ auto guarded(const std::string& who, const Call& call) -> decltype(call()) {
   });
 }
 
+/// What a plugin says of itself.
+template <class Ask>
+Expected<bool> guarded_answer(const std::string& who, const Ask& ask) {
+  return guarded(who, [&]() -> Expected<bool> { return ask(); });
+}
+
 }  // namespace nonio::host

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "nonio/host/evaluate.h"
@@ -42,7 +43,8 @@ AxisEntry entry_of(const std::string& text) {
   entry.axis = word();
   for (std::string one = word(); !one.empty(); one = word()) {
     const std::size_t equals = one.find('=');
-    entry.put(one.substr(0, equals), equals == std::string::npos ? "" : one.substr(equals));
+    entry.settings.emplace_back(one.substr(0, equals),
+                                equals == std::string::npos ? "" : one.substr(equals));
   }
   return entry;
 }
@@ -123,9 +125,16 @@ class Layers {
   }
 
   void add_campaign(std::vector<Error>& errors) {
+    std::map<std::string, std::string> said;  // "Z number"
     for (const std::string& text : entries_in(manifest_.options)) {
       AxisEntry e = entry_of(text);
-      for (const auto& [key, value] : e.settings) look_at(e.axis, key, value, errors);
+      for (const auto& [key, value] : e.settings) {
+        look_at(e.axis, key, value, errors);
+        const std::string& first = said.emplace(e.axis + " " + key, value).first->second;
+        if (first != value)
+          errors.push_back(at_axes("axis " + e.axis + " has " + key + first + " and " + key +
+                                   value + ": which of them?"));
+      }
       add(e);
     }
     for (const Axis& a : manifest_.campaign.machine.axes) add_backlash(a, errors);
@@ -150,8 +159,9 @@ class Layers {
   void add(const AxisEntry& entry) {
     const auto known = std::find_if(entries_.begin(), entries_.end(),
                                     [&](const AxisEntry& e) { return e.axis == entry.axis; });
-    if (known == entries_.end()) return entries_.push_back(entry);
-    for (const auto& [key, value] : entry.settings) known->put(key, value);
+    AxisEntry& all =
+        known == entries_.end() ? entries_.emplace_back(AxisEntry{entry.axis, {}}) : *known;
+    for (const auto& [key, value] : entry.settings) all.put(key, value);
   }
 
   Error at_axes(const std::string& message) const {
@@ -166,16 +176,28 @@ class Layers {
   void look_at(const std::string& axis, const std::string& key, const std::string& value,
                std::vector<Error>& errors) const {
     if (record_ == nullptr) return;
-    const auto recorded = record_->axes.find(axis);
-    if (recorded == record_->axes.end()) return;
     const std::string other = key == "joint" ? "number" : key;
-    const auto says = recorded->second.settings.find(other);
     const auto number = number_of(value);
-    if (says == recorded->second.settings.end() || !number) return;
+    if (!number) return;
+    const auto recorded = record_->axes.find(axis);
+    const bool known = recorded != record_->axes.end() && recorded->second.settings.contains(other);
+    if (!known && other == "number") look_for_owner(axis, key + value, *number, errors);
+    if (!known) return;
+    const auto says = recorded->second.settings.find(other);
     if (std::fabs(*number - says->second) <= 1e-9 * std::max(1.0, std::fabs(says->second))) return;
     errors.push_back(at_axes("axis " + axis + ", " + key + value + " contradicts " +
                              place_in(*record_, key_of(axis, other)) + ", where it is " +
                              in_digits(says->second)));
+  }
+
+  /// A number that another axis of the machine has: the table would go to that one.
+  void look_for_owner(const std::string& axis, const std::string& said, double number,
+                      std::vector<Error>& errors) const {
+    for (const auto& [name, recorded] : record_->axes)
+      if (const auto has = recorded.settings.find("number");
+          name != axis && has != recorded.settings.end() && has->second == number)
+        errors.push_back(at_axes("axis " + axis + ", " + said + " is the number of axis " + name +
+                                 ", " + place_in(*record_, key_of(name, "number"))));
   }
 
   /// What was in the parameter while measured, as these plugins take it.

@@ -85,6 +85,7 @@ Axis read_axis(const std::string& name, TableReader& reader) {
     axis.teeth = reader.whole("teeth");
   } else {
     axis.screw_pitch = reader.number("screw_pitch_mm", mm);
+    axis.fixed_point = reader.number("fixed_point_mm", mm);
     axis.expansion = expansion_of(reader);
     axis.slave = reader.text("slave");
     if (axis.slave == axis.name && !axis.slave.empty())

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 
@@ -13,8 +14,6 @@ namespace nonio::host {
 namespace {
 
 using Kind = model::Verdict::Kind;
-
-constexpr double least_said = 0.005;  // of what is left: less would be read as "0 %"
 
 Number count(const char* name, std::size_t n) {
   return {name, static_cast<double>(n), Quantity::count};
@@ -112,13 +111,14 @@ void put_readings(ModelFit& out, const model::Part& part) {
   out.deviation = o.deviation;
 }
 
-void put_fit(ModelFit& out, const model::Comparison& c) {
+void put_fit(ModelFit& out, const PartModel& part, const model::Comparison& c) {
   const model::Fit& fit = c.fit;
   out.residual = fit.residual;
   out.weight = fit.weight;
   out.cv_residual = c.cv_residual;
   for (std::size_t t = 0; t < fit.terms.size(); ++t)
-    out.effects.push_back({fit.terms[t].name(), fit.terms[t].effect->compensable, fit.part[t]});
+    out.effects.push_back({fit.terms[t].name(), fit.terms[t].effect->compensable, fit.part[t],
+                           curve_of(part, fit, t)});
   for (const model::Parameter& p : fit.parameters)
     out.parameters.push_back({p.effect, p.name, p.value,
                               std::isfinite(p.u) ? std::optional(p.u) : std::nullopt, p.quantity,
@@ -131,16 +131,78 @@ void put_fit(ModelFit& out, const model::Comparison& c) {
   for (const model::Suspect& s : c.suspects) out.suspects.push_back({s.row, s.minimal_detectable});
 }
 
-/// The error as the model grows in its order; a step that cannot be fitted alone is left out.
+constexpr std::size_t most_refitted = 20000;  // readings: fits of more cost seconds
+
+/// Which of these terms are in, in the order of the model.
+std::vector<model::Term> chosen(const std::vector<model::Term>& terms,
+                                const std::vector<char>& in) {
+  std::vector<model::Term> out;
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    if (in[t] != 0) out.push_back(terms[t]);
+  return out;
+}
+
+/// The terms in the order in which each takes most away from what those before it leave, with the
+/// shapes of the whole model. Of long tables in the order of the model.
+std::vector<std::size_t> falling_order(const PartModel& part, const model::Fit& whole) {
+  std::vector<std::size_t> order;
+  std::vector<char> in(part.terms.size(), 0);
+  while (order.size() < part.terms.size()) {
+    std::size_t best = part.terms.size();
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t t = 0; t < part.terms.size(); ++t) {
+      if (in[t] != 0) continue;
+      if (best == part.terms.size()) best = t;
+      if (part.part.table.size() > most_refitted) break;
+      in[t] = 1;
+      const auto fitted = model::fit(part.part.table, chosen(whole.terms, in), whole.weight);
+      in[t] = 0;
+      if (fitted && fitted->rms < least) least = fitted->rms, best = t;
+    }
+    in[best] = 1;
+    order.push_back(best);
+  }
+  return order;
+}
+
+/// The error as the model grows; a step that cannot be fitted alone is left out.
 void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& whole) {
+  const std::vector<std::size_t> order = falling_order(part, whole.fit);
   PartModel grown = part;
-  for (std::size_t n = 0; n < part.terms.size(); ++n) {
-    grown.terms.assign(part.terms.begin(), part.terms.begin() + static_cast<std::ptrdiff_t>(n));
+  std::vector<char> in(part.terms.size(), 0);
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    grown.terms = chosen(part.terms, in);
     if (const auto c = compare_part(grown))
-      out.steps.push_back({n == 0 ? "" : grown.terms.back().name(), c->fit.rms, c->cv_rms});
+      out.steps.push_back({n == 0 ? "" : part.terms[order[n - 1]].name(), c->fit.rms, c->cv_rms});
+    in[order[n]] = 1;
   }
   out.steps.push_back(
-      {part.terms.empty() ? "" : part.terms.back().name(), whole.fit.rms, whole.cv_rms});
+      {order.empty() ? "" : part.terms[order.back()].name(), whole.fit.rms, whole.cv_rms});
+}
+
+/// As `nonio model drop` would leave it, for each effect.
+void put_without(ModelFit& out, const PartModel& part) {
+  if (part.part.table.size() > most_refitted) return;
+  for (std::size_t t = 0; t < part.terms.size(); ++t) {
+    if (part.terms[t].effect->always) continue;
+    PartModel rest = part;
+    rest.terms.erase(rest.terms.begin() + static_cast<std::ptrdiff_t>(t));
+    if (auto c = compare_part(rest))
+      out.without.push_back(
+          {part.terms[t].name(), c->fit.rms, c->cv_rms, std::move(c->fit.residual)});
+  }
+}
+
+void put_candidates(ModelFit& out, const PartModel& part, const model::Explanation& e) {
+  for (const model::Candidate& c : e.candidates) {
+    if (!is_ranked(c) || !(c.score > 0.0)) continue;
+    const bool certain =
+        std::find(e.certain.begin(), e.certain.end(), c.term.name()) != e.certain.end();
+    out.candidates.push_back(
+        {c.term.name(), c.score, c.rms, c.cv_rms, c.p, c.minimal_detectable, c.aliases, certain});
+  }
+  out.no_sign = no_sign_findings(e, part);
+  out.next = next_findings(e, part);
 }
 
 /// The axis that moved, if only one did in all the readings; a line has the phase of no other
@@ -174,11 +236,18 @@ ModelFit value_of(const PartModel& part, const model::Explanation& e) {
   else if (!balls)
     out.period = 0.0;
   put_readings(out, part.part);
-  put_fit(out, e.comparison);
+  put_fit(out, part, e.comparison);
   put_steps(out, part, e.comparison);
+  put_without(out, part);
+  put_candidates(out, part, e);
   out.says = {verdict_finding(e, part)};
-  for (const model::Place& place : e.fails)
-    if (place.share >= least_said) out.says.push_back(place_finding(place, part.deviation()));
+  if (e.comparison.lack_of_fit && std::isfinite(e.comparison.lack_of_fit->F))
+    out.says.push_back(left_finding(e.comparison, part.deviation()));
+  for (const model::Place& place : e.verdict.kind == Kind::unknown ? e.fails : e.comparison.seats)
+    out.says.push_back(place_finding(place, part.deviation()));
+  for (const model::Description& d : e.descriptions)
+    out.says.push_back(description_finding(d, part));
+  if (e.verdict.trials > 0) out.says.push_back(false_alarms_finding(e.verdict));
   return out;
 }
 

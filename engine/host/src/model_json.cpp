@@ -170,6 +170,7 @@ Json compared_json(const Compared& c, const Campaign& campaign, const ModelWords
   json["correlations"] = std::move(pairs);
   json["fails"] = places_json(failing(comparison.places), words, q);
   json["places"] = places_json(comparison.places, words, q);
+  json["left"] = places_json(comparison.seats, words, q);
   if (comparison.means > 0) json["means"] = comparison.means;
   json["suspects"] = suspects_json(comparison.suspects, c.part, campaign, words);
   json["warnings"] = warnings_of(c.part, comparison.fit, words);
@@ -186,8 +187,22 @@ Json candidate_json(const model::Candidate& c, const PartModel& part, double rms
   put(json, "score", c.score, Quantity::number);
   json["parameters"] = parameters_json(c.parameters, false);
   json["aliases"] = c.aliases;
+  if (!c.beside.empty()) json["beside"] = c.beside;
   json["says"] = words.candidate(c, part, rms_before);
   put(json, "minimum_detectable_rms", c.minimal_detectable, q);
+  if (c.bias > 1.0) put(json, "bias", c.bias, Quantity::ratio);
+  return json;
+}
+
+/// Why an effect is no candidate, in which lines of the file, and what would help.
+Json unseen_json(const model::Candidate& c, const PartModel& part, const Campaign& campaign,
+                 const ModelWords& words) {
+  const std::string says = words.unseen(c, place_of(part, campaign, c.rows));
+  Json json = {{"effect", c.term.name()}, {"says", says}, {"why_not", c.why}};
+  if (c.rows.empty()) return json;
+  Json lines = Json::array();
+  for (const std::uint32_t row : c.rows) lines.push_back(place_of(part, campaign, row).line);
+  json["lines"] = std::move(lines);
   return json;
 }
 
@@ -228,21 +243,29 @@ void put_explained(Json& json, const Explained& e, const Campaign& campaign,
     if (is_ranked(c))
       candidates.push_back(candidate_json(c, e.part, x.comparison.fit.rms, words));
     else
-      unseen.push_back({{"effect", c.term.name()}, {"says", words.unseen(c)}});
+      unseen.push_back(unseen_json(c, e.part, campaign, words));
   json["candidates"] = std::move(candidates);
   json["unseen"] = std::move(unseen);
   json["together"] = x.together;
   json["certain"] = x.certain;
+  Json cancelling = Json::array();
+  for (const auto& pair : x.cancelling) cancelling.push_back({pair.first, pair.second});
+  json["cancelling"] = std::move(cancelling);
   Json descriptions = Json::array();
   for (const model::Description& d : x.descriptions) {
     Json one = {{"effect", d.term.name()}};
     put(one, "rms", d.rms, q);
+    put(one, "low", d.low, q);
+    put(one, "high", d.high, q);
+    put(one, "mean", d.mean, q);
     one["says"] = words.description(d, e.part);
     descriptions.push_back(std::move(one));
   }
   json["descriptions"] = std::move(descriptions);
   json["verdict"] = verdict_json(e, words);
   json["plans"] = plans_json(x.plans, words);
+  json["next"] = words.next(x, e.part);
+  if (const std::string text = words.no_sign(x, e.part); !text.empty()) json["no_sign"] = text;
   if (x.verdict.trials > 0) {
     put(json, "false_alarm_rate", x.verdict.false_alarms, Quantity::ratio);
     json["false_alarm_trials"] = x.verdict.trials;
@@ -314,6 +337,7 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
   for (const std::string& measurement : part.part.order_assumed)
     out.push_back(words.order_assumed(measurement));
   if (!part.part.table.order_known) out.push_back(words.order_unknown());
+  if (part.interpolated.count > 0) out.push_back(words.temperature_interpolated(part.interpolated));
   for (std::string& said : words.noise(fit, part)) out.push_back(std::move(said));
   return out;
 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/host/model_words.h"
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
+#include "nonio/host/model_json.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::host {
@@ -53,11 +56,177 @@ std::string on_line(const model::Place& place) {
 }
 
 Finding place_finding(const model::Place& place, Quantity deviation) {
-  return {.id = (place.line.empty() ? "place." : "place.line.") + place.where,
+  const std::string of = place.together ? "together" : place.where;
+  return {.id = (place.line.empty() ? "place." : "place.line.") + of,
           .evidence = {percent("share", place.share),
                        {"rms", place.rms, deviation},
                        {"p", place.p, Quantity::probability}},
           .texts = {{"where", place.where}, {"line", place.line}}};
+}
+
+Finding plan_finding(const model::Plan& plan) {
+  return {.id = "plan." + plan.id,
+          .evidence = {{"readings", static_cast<double>(plan.readings), Quantity::count},
+                       {"power", plan.power, Quantity::number}},
+          .texts = {{"one", plan.one}, {"other", plan.other}, {"of", plan.of}}};
+}
+
+Finding description_finding(const model::Description& d, const PartModel& part) {
+  using What = model::Description::What;
+  const Quantity q = part.deviation();
+  const char* of = d.what == What::reversal_at_targets ? "reversal"
+                   : d.what == What::value_at_targets  ? "place"
+                                                       : "course";
+  return {.id = std::string("description.") + of,
+          .evidence = {{"after", d.rms, q},
+                       {"low", d.low, q},
+                       {"high", d.high, q},
+                       {"mean", d.mean, q}},
+          .texts = {{"effect", d.term.name()}}};
+}
+
+Finding false_alarms_finding(const model::Verdict& v) {
+  // Of none in n the upper end of Wilson's 95 % interval is told: z^2/(n + z^2).
+  const double n = static_cast<double>(v.trials), z2 = 1.959964 * 1.959964;
+  const bool any = v.false_alarms > 0.0;
+  const double share = any ? v.false_alarms : z2 / (n + z2);
+  return {.id = any ? "false-alarms" : "false-alarms.none",
+          .evidence = {{"times", std::round(1.0 / share), Quantity::count}}};
+}
+
+std::vector<Finding> no_sign_findings(const model::Explanation& e, const PartModel& part) {
+  std::vector<Finding> out;
+  for (const model::Candidate& c : e.candidates) {
+    if (!is_ranked(c) || c.score > 0.0) continue;
+    out.push_back({.id = out.empty() ? "no-sign.first" : "no-sign.other",
+                   .evidence = {{"size", c.minimal_detectable, part.deviation()}},
+                   .texts = {{"effect", c.term.name()}}});
+  }
+  return out;
+}
+
+namespace {
+
+constexpr double told_apart = 4.0;         // standard deviations
+constexpr std::size_t enough_targets = 9;  // a wave and a bend need as many columns as 5 targets
+
+class Next {
+ public:
+  Next(const model::Explanation& e, const PartModel& part) : e_(e), part_(part) {}
+
+  std::vector<Finding> all() {
+    plan();
+    if (e_.verdict.kind == Kind::unknown)
+      for (const model::Place& place : e_.fails) at(place);
+    return std::move(out_);
+  }
+
+ private:
+  static bool has(const std::string& where, const char* factor) {
+    return where.find(factor) != std::string::npos;
+  }
+
+  void add(const char* id, std::vector<Number> numbers = {},
+           std::vector<std::pair<std::string, std::string>> texts = {}) {
+    const std::string name = std::string("next.") + id;
+    if (std::none_of(out_.begin(), out_.end(), [&](const Finding& f) { return f.id == name; }))
+      out_.push_back({.id = name, .evidence = std::move(numbers), .texts = std::move(texts)});
+  }
+
+  /// The cheapest that tells them apart.
+  void plan() {
+    if (e_.plans.empty()) return;
+    const auto good = std::find_if(e_.plans.begin(), e_.plans.end(),
+                                   [](const model::Plan& p) { return p.power >= told_apart; });
+    if (good != e_.plans.end()) return out_.push_back(plan_finding(*good));
+    const auto [low, high] = std::minmax_element(part_.part.along.begin(), part_.part.along.end());
+    add("wider",
+        {{"from", *low, part_.position()},
+         {"to", *high, part_.position()},
+         {"power", e_.plans.front().power, Quantity::number}},
+        {{"one", e_.plans.front().one}, {"other", e_.plans.front().other}});
+  }
+
+  void at(const model::Place& place) {
+    const bool of_time = has(place.where, "time") || has(place.where, "run");
+    if (of_time) {
+      time(place);
+    } else if (has(place.where, "temperature")) {
+      add("settle");
+    } else if (has(place.where, "position") || has(place.where, "phase") ||
+               has(place.where, "angle")) {
+      position(place);
+    } else {
+      add("both-sides");
+    }
+  }
+
+  void time(const model::Place& place) {
+    const Observations& o = part_.part.table;
+    const auto known = [&](const std::vector<double>& column) {
+      return column.size() == o.size() &&
+             std::any_of(column.begin(), column.end(), [](double v) { return std::isfinite(v); });
+    };
+    if (has(place.where, "run") && place.at && std::isfinite(*place.at))
+      add("run", {{"at", *place.at, Quantity::count}});
+    if (!known(o.time))
+      add("times");
+    else if (!known(o.material))
+      add("temperatures");
+    add("settle");
+  }
+
+  void position(const model::Place& place) {
+    std::set<double> targets(part_.part.along.begin(), part_.part.along.end());
+    const auto count = static_cast<double>(targets.size());
+    if (part_.part.kind == model::Part::Kind::axis && targets.size() < enough_targets)
+      add("more-targets", {{"targets", count, Quantity::count},
+                           {"wanted", static_cast<double>(enough_targets), Quantity::count}});
+    else if (place.at && std::isfinite(*place.at))
+      add("around", {{"at", *place.at, place.at_quantity}});
+    else
+      add("between");
+  }
+
+  const model::Explanation& e_;
+  const PartModel& part_;
+  std::vector<Finding> out_;
+};
+
+}  // namespace
+
+std::vector<Finding> next_findings(const model::Explanation& e, const PartModel& part) {
+  return Next(e, part).all();
+}
+
+std::optional<ModelFit::Curve> curve_of(const PartModel& part, const model::Fit& fit,
+                                        std::size_t term) {
+  if (!fit.terms[term].effect->curve) return std::nullopt;
+  const std::vector<double>& says = fit.part[term];
+  ModelFit::Curve out;
+  double squares = 0.0, weight = 0.0;
+  for (std::size_t i = 0; i < says.size(); ++i) {
+    squares += fit.weight[i] * says[i] * says[i];
+    weight += fit.weight[i];
+  }
+  const auto [low, high] = std::minmax_element(says.begin(), says.end());
+  if (low == says.end() || !(weight > 0.0)) return std::nullopt;
+  out.rms = std::sqrt(squares / weight);
+  out.low = *low;
+  out.high = *high;
+  if (part.part.kind == model::Part::Kind::space) return out;
+  const auto place = [&](double value) -> std::optional<double> {
+    std::optional<double> at;
+    for (std::size_t i = 0; i < says.size(); ++i) {
+      if (!(std::fabs(says[i] - value) <= 1e-9 * (out.high - out.low))) continue;
+      if (at && !(std::fabs(part.part.along[i] - *at) <= 1e-9)) return std::nullopt;
+      at = part.part.along[i];
+    }
+    return at;
+  };
+  out.low_at = place(out.low);
+  out.high_at = place(out.high);
+  return out;
 }
 
 Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
@@ -87,6 +256,11 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
   }
   if ((v.kind == Kind::nothing || v.kind == Kind::unknown) && !e.comparison.floor)
     f.id += "-without-floor";
+  if (v.kind == Kind::unknown && !e.certain.empty()) {
+    f.id = "verdict.certain";
+    f.texts.emplace_back("effects", listed(e.certain));
+    f.evidence.push_back({"after", e.certain_rms, q});
+  }
   return f;
 }
 
@@ -105,17 +279,16 @@ std::string ModelWords::place(const model::Place& place, Quantity deviation) con
 
 std::string ModelWords::verdict(const model::Explanation& e, const PartModel& part) const {
   std::string text = finding_text(templates_, language_, verdict_finding(e, part), "says");
+  if (e.one_growth && e.verdict.kind == Kind::missing)
+    text += " " + says("one-growth", {{"at", *e.one_growth, Quantity::length}}, {});
   if (e.verdict.kind != Kind::unknown) return text;
-  if (!e.certain.empty())
-    text = says(
-        "verdict.certain", {{"rms", e.best_rms, part.deviation()}},
-        {{"part", kind_of(part.part)}, {"axis", part.part.name}, {"effects", listed(e.certain)}});
+  for (const auto& [one, other] : e.cancelling) text += " " + cancelling(one, other);
   if (!e.fails.empty()) text += " " + place(e.fails.front(), part.deviation());
   return text;
 }
 
 std::string ModelWords::description(const model::Description& d, const PartModel& part) const {
-  return says("description", {{"after", d.rms, part.deviation()}}, {{"effect", d.term.name()}});
+  return finding_text(templates_, language_, description_finding(d, part), "says");
 }
 
 std::string ModelWords::candidate(const model::Candidate& c, const PartModel& part,
@@ -125,23 +298,85 @@ std::string ModelWords::candidate(const model::Candidate& c, const PartModel& pa
                                        {"after", c.rms, q},
                                        {"p", c.p, Quantity::probability},
                                        {"detectable", c.minimal_detectable, q}};
-  const char* id = c.score > 0.0 ? c.aliases.empty() ? "candidate.evidence" : "candidate.alias"
-                                 : "candidate.none";
-  return says(id, numbers, {{"effect", c.term.name()}, {"aliases", listed(c.aliases)}});
+  constexpr double worth_saying = 1.05;
+  const char* id = !(c.score > 0.0)     ? "candidate.none"
+                   : !c.beside.empty()  ? "candidate.beside"
+                   : !c.aliases.empty() ? "candidate.alias"
+                                        : "candidate.evidence";
+  std::string text = says(
+      id, numbers,
+      {{"effect", c.term.name()}, {"aliases", listed(c.aliases)}, {"beside", listed(c.beside)}});
+  if (c.score > 0.0 && c.bias > worth_saying)
+    text += " " + says("candidate.near",
+                       {{"detectable", c.minimal_detectable, q}, {"bias", c.bias, Quantity::ratio}},
+                       {});
+  return text;
 }
 
-std::string ModelWords::unseen(const model::Candidate& c) const {
-  const std::string text = says("unseen." + c.why, {}, {{"effect", c.term.name()}});
+std::string ModelWords::unseen(const model::Candidate& c, const RowsPlace& rows) const {
+  const std::string text =
+      says("unseen." + c.why, {{"count", static_cast<double>(rows.count), Quantity::count}},
+           {{"effect", c.term.name()}, {"file", rows.file}, {"lines", rows.lines}});
   return text.empty() ? says("unseen.other", {}, {{"effect", c.term.name()}, {"why", c.why}})
                       : text;
 }
 
+std::string ModelWords::temperature_interpolated(const RowsPlace& rows) const {
+  return says("temperature-interpolated",
+              {{"count", static_cast<double>(rows.count), Quantity::count}},
+              {{"file", rows.file}, {"lines", rows.lines}});
+}
+
+std::string ModelWords::cancelling(const std::string& one, const std::string& other) const {
+  return says("cancelling", {}, {{"one", one}, {"other", other}});
+}
+
 std::string ModelWords::plan(const model::Plan& plan) const {
-  std::string text = says("plan." + plan.id,
-                          {{"readings", static_cast<double>(plan.readings), Quantity::count},
-                           {"power", plan.power, Quantity::number}},
-                          {{"one", plan.one}, {"other", plan.other}, {"of", plan.of}});
+  std::string text = finding_text(templates_, language_, plan_finding(plan), "says");
   return text.empty() ? plan.id : text;
+}
+
+std::string ModelWords::no_sign(const model::Explanation& e, const PartModel& part) const {
+  std::string text;
+  for (const Finding& f : no_sign_findings(e, part))
+    text += (text.empty() ? "" : ", ") + finding_text(templates_, language_, f, "says");
+  return text.empty() ? text : text + ".";
+}
+
+std::vector<std::string> ModelWords::next(const model::Explanation& e,
+                                          const PartModel& part) const {
+  std::vector<std::string> out;
+  for (const Finding& f : next_findings(e, part))
+    out.push_back(finding_text(templates_, language_, f, "says"));
+  return out;
+}
+
+std::string ModelWords::false_alarms(const model::Verdict& v) const {
+  return finding_text(templates_, language_, false_alarms_finding(v), "says");
+}
+
+Finding left_finding(const model::Comparison& c, Quantity q) {
+  const double s = c.floor ? c.floor->s : 0.0;
+  const double beyond = std::sqrt(std::max(0.0, c.fit.rms * c.fit.rms - s * s));
+  const char* id = !(c.lack_of_fit->p < model::place_p) || !(beyond > 0.0) ? "left.noise"
+                   : beyond > s                                            ? "left.far-more"
+                                                                           : "left.more";
+  return {.id = id, .evidence = {{"beyond", beyond, q}}};
+}
+
+std::string ModelWords::lack_of_fit(const model::Comparison& c, Quantity q) const {
+  return finding_text(templates_, language_, left_finding(c, q), "says");
+}
+
+std::string ModelWords::curve(const ModelFit::Curve& c, const PartModel& part) const {
+  const Quantity q = part.deviation();
+  std::vector<Number> numbers{{"rms", c.rms, q}, {"low", c.low, q}, {"high", c.high, q}};
+  const bool placed = c.low_at && c.high_at;
+  if (placed) {
+    numbers.push_back({"low_at", *c.low_at, part.position()});
+    numbers.push_back({"high_at", *c.high_at, part.position()});
+  }
+  return says(placed ? "curve.placed" : "curve", std::move(numbers), {});
 }
 
 std::string ModelWords::suspect(const model::Suspect& s, const ReadingPlace& at, Quantity q) const {

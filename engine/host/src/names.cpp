@@ -57,6 +57,25 @@ void locate(Error& error, const KeyLines& manifest, const KeyLines& site,
       }
 }
 
+void give_line(Error& error, const KeyLines& manifest, const std::vector<std::string>& others) {
+  if (error.line != 0 || error.file.empty()) return;
+  error.line = 1;
+  if (error.file != manifest_name) return;
+  const auto take = [&](std::string_view key) {
+    const auto found = manifest.find(key);
+    if (found != manifest.end()) error.line = found->second;
+    return found != manifest.end();
+  };
+  std::string_view key = error.key;
+  while (!key.empty() && !take(key)) {
+    const std::size_t dot = key.rfind('.');
+    key = key.substr(0, dot == key.npos ? 0 : dot);
+  }
+  if (!key.empty()) return;
+  for (const std::string& other : others)
+    if (take(other)) return;
+}
+
 std::vector<Error> site_mistakes(const Context& context) {
   const Plugins& plugins = *context.plugins;
   std::vector<Error> errors;

@@ -15,4 +15,9 @@ std::vector<Error> ownerless_options(const RawOptions& options, const Plugins& p
 void locate(Error& error, const KeyLines& manifest, const KeyLines& site,
             const std::string& plugin = {});
 
+/// Gives an error of a file its line: of the manifest that of the nearest key above the one that is
+/// to blame (machine.axes.X for machine.axes.X.slave) or of the first of `others` that is there,
+/// else the first line, from which a file as a whole is wrong.
+void give_line(Error& error, const KeyLines& manifest, const std::vector<std::string>& others);
+
 }  // namespace nonio::host

@@ -238,7 +238,9 @@ Expected<OutputLock> OutputLock::take(const fs::path& out) {
 
 OutputLock::OutputLock(OutputLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
 OutputLock::~OutputLock() {
-  if (fd_ >= 0) ::close(fd_);
+  if (fd_ < 0) return;
+  ::flock(fd_, LOCK_UN);  // for a process that was left behind too, since a disk hangs
+  ::close(fd_);
 }
 
 }  // namespace nonio::host

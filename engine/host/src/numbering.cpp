@@ -22,15 +22,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Of other campaigns, or of the machine's record: no file of the campaign, and no data of its
+/// certificate. What other campaigns do makes no other data of these, and what is in the control by
+/// now neither.
+bool is_foreign(const std::string& input) {
+  return input.starts_with(shared_name("")) || input.starts_with(machine_prefix);
+}
+
 /// What a certificate is made from: the campaign's own files, and what of site.toml has a say in
 /// the results.
 Inputs data_of(const Evaluated& evaluated, const Context& context) {
   Inputs data = evaluated.inputs;
-  // What other campaigns do makes no other data of these, and what is in the control by now
-  // neither.
-  std::erase_if(data, [](const auto& one) {
-    return one.first.starts_with(shared_name("")) || one.first.starts_with(machine_prefix);
-  });
+  std::erase_if(data, [](const auto& one) { return is_foreign(one.first); });
   data.emplace_back(site_name, sha256(context.site.evaluation));
   return data;
 }
@@ -57,7 +60,8 @@ Expected<Files> attached_files(const std::vector<IssuedFile>& issued) {
     auto attached = sign::unverified_attachments(f.bytes);
     if (!attached) return fail(f.name + " in the register: " + attached.error().message);
     for (sign::Attachment& a : *attached)
-      if (a.relation == source_relation && a.name != templates_name)
+      if (a.relation == source_relation && a.name != templates_name &&
+          a.name != machine_record_name)
         files.emplace_back(a.name == settings_name ? site_name : std::move(a.name),
                            std::move(a.bytes));
     break;
@@ -70,7 +74,7 @@ Expected<Files> current_files(const Evaluated& evaluated, const Context& context
   Files files;
   const std::string prefix = input_name("");
   for (const auto& [input, digest] : evaluated.inputs) {
-    if (input.starts_with(machine_prefix)) continue;
+    if (is_foreign(input)) continue;
     const std::string name = input.starts_with(prefix) ? input.substr(prefix.size()) : input;
     const auto path = path_inside(folder, name);
     if (!path) return fail(path.error());
@@ -259,6 +263,11 @@ Expected<Certificate> Numbers::draw(const Evaluated& evaluated, const fs::path& 
   if (auto same = check_release(made_from(evaluated, context_)); !same) return fail(same.error());
   const auto before = opened->last_number(campaign);
   if (!before) return fail(before.error());
+  // Of the same data, by a night beside this one, since they were looked for? Then nothing is
+  // amended.
+  if (*before) found = opened->find(campaign, data);
+  if (!found) return fail(found.error());
+  if (*found) return std::move(**found);
   Certificate certificate;
   Issue& issue = certificate.issue;
   if (*before)

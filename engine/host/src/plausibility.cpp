@@ -307,18 +307,30 @@ void beyond_travel(const Campaign& campaign, const Observations& o, std::vector<
   }
 }
 
-/// A diagonal whose targets are a small piece of it.
+/// A diagonal whose targets are a small piece of it, or end where one of its axes does: then they
+/// are positions of that axis, and not the way along the line.
 void short_diagonal(const Measurement& m, const Observations& o, std::vector<Finding>& out) {
+  constexpr double nearly = 1e-3, shorter = 0.99;
   double square = 0.0;
+  std::map<std::string, double> ways;
   for (const auto& [axis, from] : m.from)
-    if (const auto to = m.to.find(axis); to != m.to.end()) square += std::pow(to->second - from, 2);
+    if (const auto to = m.to.find(axis); to != m.to.end()) {
+      ways[axis] = std::fabs(to->second - from);
+      square += std::pow(to->second - from, 2);
+    }
   const double length = std::sqrt(square), span = range_of(along(o));
-  if (span >= least_of_travel * length) return;
-  out.push_back({.id = "plausibility.span-against-travel",
-                 .attention = true,
-                 .evidence = {{"span", span, Quantity::length},
-                              {"travel", length, Quantity::length},
-                              {"share", span / length, Quantity::ratio}}});
+  const Number measured{"span", span, Quantity::length}, whole{"travel", length, Quantity::length};
+  if (span < least_of_travel * length)
+    return out.push_back(
+        {.id = "plausibility.span-against-travel",
+         .attention = true,
+         .evidence = {measured, whole, {"share", span / length, Quantity::ratio}}});
+  for (const auto& [axis, way] : ways)
+    if (way < shorter * length && std::fabs(span - way) < nearly * way)
+      return out.push_back({.id = "plausibility.span-of-one-axis",
+                            .attention = true,
+                            .evidence = {measured, whole},
+                            .texts = {{"axis", axis}}});
 }
 
 /// U of what was evaluated against all of it: then the test says nothing of the axis.
@@ -363,11 +375,13 @@ std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t 
     if (out.size() > before) break;
   }
   implausible_span(campaign, m, o, all, out);
+  if (const Axis* axis = campaign.machine.axis(m.axis); axis != nullptr && m.kind == "axis")
+    period_against_pitch(*axis, o, out);
   if (m.kind == "diagonal") short_diagonal(m, o, out);
   if (m.kind == "ball-centres") implausible_centres(m, o, out);
   beyond_travel(campaign, o, out);
   if (runs || steps) implausible_passes(o, runs, out);
-  implausible_columns(o, runs, out);
+  implausible_columns(m, o, runs, out);
   return out;
 }
 

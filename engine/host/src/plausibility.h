@@ -32,6 +32,13 @@ void note_shared(const Twins& twins, Inputs& inputs);
 /// What the manifest alone says. `today`: YYYY-MM-DD, or empty: no day is too late.
 std::vector<Finding> implausible_campaign(const Manifest& manifest, const std::string& today);
 
+/// A pitch in inches under a name that says mm: no usual one, and a usual one 25.4 times as large;
+/// or that of another axis of the machine, 25.4 times as large.
+void implausible_pitch(const Campaign& campaign, std::vector<Finding>& out);
+
+/// The same as the readings betray it.
+void period_against_pitch(const Axis& axis, const Observations& o, std::vector<Finding>& out);
+
 /// What the readings of a measurement say. `all`: of each measurement of the campaign.
 std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t measurement,
                                           const std::vector<Observations>& all);
@@ -47,7 +54,8 @@ std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
                                                    const std::vector<Observations>& all);
 
 /// Temperatures, pressure, humidity and, if wanted, times.
-void implausible_columns(const Observations& o, bool with_times, std::vector<Finding>& out);
+void implausible_columns(const Measurement& m, const Observations& o, bool with_times,
+                         std::vector<Finding>& out);
 
 /// Centres of a ball: how far apart, and about which axis.
 void implausible_centres(const Measurement& m, const Observations& o, std::vector<Finding>& out);

@@ -64,7 +64,7 @@ void implausible_air(const Observations& o, std::vector<Finding>& out) {
 }
 
 /// Times against the ways that were gone, and against the order of the rows.
-void implausible_times(const Observations& o, std::vector<Finding>& out) {
+void implausible_times(const Measurement& m, const Observations& o, std::vector<Finding>& out) {
   constexpr double slowest = 3600.0;                      // s for a reading
   constexpr double fastest = 5.0, fastest_angle = 600.0;  // m/s, rad/s
   std::vector<std::pair<double, double>> taken;           // time, position
@@ -79,7 +79,17 @@ void implausible_times(const Observations& o, std::vector<Finding>& out) {
     way += std::fabs(taken[i].second - taken[i - 1].second);
   const double lasted = taken.back().first - taken.front().first;
   const double each = lasted / static_cast<double>(taken.size() - 1);
-  if (each > slowest || way > (axis.rotary ? fastest_angle : fastest) * lasted)
+  // Less than the rest at each target, or faster than the axis was fed.
+  constexpr double shorter = 0.9, faster = 1.1;
+  if (lasted > 0.0 &&
+      ((m.dwell && each < shorter * *m.dwell) || (m.feed && way > faster * *m.feed * lasted)))
+    out.push_back({.id = "plausibility.pace-against-test",
+                   .attention = true,
+                   .evidence = {{"readings", static_cast<double>(taken.size()), Quantity::count},
+                                {"lasted", lasted, Quantity::time},
+                                {"way", way, axis.rotary ? Quantity::angle : Quantity::length},
+                                {"dwell", m.dwell.value_or(0.0), Quantity::time}}});
+  else if (each > slowest || way > (axis.rotary ? fastest_angle : fastest) * lasted)
     out.push_back({.id = "plausibility.pace",
                    .attention = true,
                    .evidence = {{"readings", static_cast<double>(taken.size()), Quantity::count},
@@ -134,9 +144,10 @@ std::array<double, 3> normal_of(const std::vector<std::array<double, 3>>& centre
 
 }  // namespace
 
-void implausible_columns(const Observations& o, bool with_times, std::vector<Finding>& out) {
+void implausible_columns(const Measurement& m, const Observations& o, bool with_times,
+                         std::vector<Finding>& out) {
   implausible_air(o, out);
-  if (with_times) implausible_times(o, out);
+  if (with_times) implausible_times(m, o, out);
 }
 
 void implausible_centres(const Measurement& m, const Observations& o, std::vector<Finding>& out) {

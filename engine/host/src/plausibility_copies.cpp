@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -229,6 +230,48 @@ bool tells(const std::vector<double>& readings, double step) {
   return std::pow(step / (*high - *low), static_cast<double>(readings.size()) - 1.0) < chance;
 }
 
+/// Readings by run, direction and target.
+using Cells = std::map<std::tuple<std::uint32_t, int, double>, double>;
+
+Cells cells_by_run(const std::vector<Stroke>& strokes) {
+  Cells cells;
+  for (const Stroke& s : strokes)
+    for (std::size_t i = 0; i < s.target.size(); ++i)
+      cells[{s.run, s.direction, s.target[i]}] = s.deviation[i];
+  return cells;
+}
+
+/// Readings that stand in both at the same run, direction and target, if they are more than chance
+/// gives: how likely two readings are the same is counted, so that digits coarser than the machine
+/// say nothing. Zeros do not count: instruments are zeroed at a target.
+std::optional<double> shared_readings(const Cells& one, const Cells& other) {
+  constexpr double chance = 1e-7, of_all = 0.15;
+  constexpr std::size_t fewest = 8, fewest_values = 6;
+  std::map<double, double> first, second;
+  std::set<double> values;
+  double n = 0.0, same = 0.0, pairs = 0.0;
+  for (const auto& [at, value] : one) {
+    const auto there = other.find(at);
+    if (there == other.end() || (value == 0.0 && there->second == 0.0)) continue;
+    n += 1.0;
+    first[value] += 1.0;
+    second[there->second] += 1.0;
+    if (value != there->second) continue;
+    same += 1.0;
+    values.insert(value);
+  }
+  if (same < static_cast<double>(fewest) || values.size() < fewest_values || same < of_all * n)
+    return std::nullopt;
+  for (const auto& [value, count] : first)
+    if (const auto there = second.find(value); there != second.end())
+      pairs += count * there->second;
+  // A value that both have once for one reason counts once: without what is shared.
+  const double likely = std::max(pairs - same, 1.0) / (n * n);
+  const double p = std::exp(std::lgamma(n + 1.0) - std::lgamma(same + 1.0) -
+                            std::lgamma(n - same + 1.0) + same * std::log(std::min(likely, 1.0)));
+  return p < chance ? std::optional(same) : std::nullopt;
+}
+
 }  // namespace
 
 void implausible_copies(const Observations& o, std::vector<Finding>& out) {
@@ -259,14 +302,29 @@ std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
                                                    const std::vector<Observations>& all) {
   std::vector<Finding> out;
   std::map<std::vector<double>, std::size_t> seen;  // readings, measurement
+  std::vector<Cells> cells(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].size() == 0 || all[i].axes.empty()) continue;
     const auto strokes = strokes_of(all[i]);
+    if (all[i].axes.size() == 1 && all[i].lines.size() == 1 && all[i].size() <= most_sorted)
+      cells[i] = cells_by_run(strokes);
     const double step = step_of(strokes);
     std::map<std::size_t, double> shared;
     for (const Stroke& s : strokes) {
       const auto [at, is_new] = seen.try_emplace(s.as_taken, i);
       if (!is_new && at->second != i && tells(s.as_taken, step)) shared[at->second] += 1.0;
+    }
+    for (std::size_t other = 0; other < i && shared.empty() && !cells[i].empty(); ++other) {
+      const auto readings = shared_readings(cells[i], cells[other]);
+      if (!readings) continue;
+      const Measurement &m = campaign.measurements[i], &first = campaign.measurements[other];
+      out.push_back({.id = "plausibility.stretch-twice",
+                     .attention = true,
+                     .evidence = {{"readings", *readings, Quantity::count},
+                                  {"of", static_cast<double>(all[i].size()), Quantity::count}},
+                     .texts = {{"file", m.file}, {"other", first.file}, {"with", first.id}},
+                     .measurement = m.id});
+      break;
     }
     for (const auto& [other, passes] : shared) {
       const Measurement &m = campaign.measurements[i], &first = campaign.measurements[other];

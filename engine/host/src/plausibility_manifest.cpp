@@ -21,6 +21,45 @@ struct Statement {
   Quantity quantity;
 };
 
+void axis_statements(const Axis& a, std::vector<Statement>& all) {
+  const std::string key = "machine.axes." + a.name + ".";
+  constexpr double mm = 1e-3, degree = 1.0 / deg_per_rad;
+  all.push_back({key + "expansion_um_per_m_K", a.expansion, -2e-6, 3e-5, Quantity::expansion});
+  // The new value begins there: one in um would turn a motor by millimetres.
+  if (a.rotary)
+    all.push_back(
+        {key + "backlash_on_deg", a.backlash_on, -0.5 * degree, 0.5 * degree, Quantity::angle});
+  else
+    all.push_back({key + "backlash_on_mm", a.backlash_on, -1 * mm, 1 * mm, Quantity::length});
+  // One that is too small is not met, and that is seen; one too large is met by everything.
+  for (const auto& [name, tolerance] : a.tolerance)
+    if (a.rotary)
+      all.push_back({key + "tolerance_arcsec." + name, tolerance, 1e-3 * arc_second,
+                     600 * arc_second, Quantity::angular_deviation});
+    else
+      all.push_back({key + "tolerance_um." + name, tolerance, 1e-3 * micrometre, 1000 * micrometre,
+                     Quantity::deviation});
+}
+
+/// What a certificate prints of how a test was made.
+void test_statements(const Campaign& c, const Measurement& m, std::vector<Statement>& all) {
+  const std::string key = "measurement." + m.id + ".";
+  const Axis* axis = c.machine.axis(m.axis);
+  const bool rotary = axis != nullptr && axis->rotary;
+  constexpr double mm = 1e-3, degree = 1.0 / deg_per_rad, minute = 60.0;
+  all.push_back({key + "dwell_s", m.dwell, 0.05, 600, Quantity::time});
+  if (rotary) {
+    all.push_back(
+        {key + "over_travel_deg", m.over_travel, 1e-3 * degree, 90 * degree, Quantity::angle});
+  } else {
+    all.push_back({key + "over_travel_mm", m.over_travel, 0.01 * mm, 500 * mm, Quantity::length});
+  }
+  if (!m.feed) return;
+  const double feed = *m.feed * minute * (rotary ? deg_per_rad : 1e3);  // as the key says it
+  all.push_back({key + (rotary ? "feed_deg_per_min" : "feed_mm_per_min"), feed, 1.0,
+                 rotary ? 720000.0 : 200000.0, Quantity::number});
+}
+
 std::vector<Statement> statements(const Campaign& c) {
   const Instrument& i = c.instrument;
   const Environment& e = c.environment;
@@ -46,9 +85,11 @@ std::vector<Statement> statements(const Campaign& c) {
       {"environment.drift_um", e.drift, finest, 200 * micrometre, Quantity::deviation},
       {"environment.drift_arcsec", e.drift_angle, finest_angle, 120 * arc_second,
        Quantity::angular_deviation}};
-  for (const Axis& a : c.machine.axes)
-    all.push_back({"machine.axes." + a.name + ".expansion_um_per_m_K", a.expansion, -2e-6, 3e-5,
-                   Quantity::expansion});
+  constexpr double minutes = 60.0;
+  all.push_back(
+      {"environment.drift_minutes", e.drift_time, 1 * minutes, 10080 * minutes, Quantity::time});
+  for (const Axis& a : c.machine.axes) axis_statements(a, all);
+  for (const Measurement& m : c.measurements) test_statements(c, m, all);
   return all;
 }
 
@@ -69,6 +110,51 @@ void implausible_places(const Campaign& c, std::vector<Finding>& out) {
                                     {"to", to, Quantity::length}},
                        .texts = {{"axis", name}, {"of", m.id}}});
       }
+}
+
+/// A name in small letters, up to its first blank or point.
+std::string short_name(std::string_view text) {
+  const std::size_t folder = text.find_last_of('/');
+  if (folder != text.npos) text.remove_prefix(folder + 1);
+  std::string name(text.substr(0, text.find_first_of(". ")));
+  for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  return name;
+}
+
+void push_name(std::string where, std::string found, std::string expected,
+               std::vector<Finding>& out) {
+  out.push_back({.id = "plausibility.name-of-another",
+                 .attention = true,
+                 .texts = {{"where", std::move(where)},
+                           {"found", std::move(found)},
+                           {"expected", std::move(expected)}}});
+}
+
+/// Two measurements whose files carry each the other's name; a line on the master's side of a
+/// gantry that is called as the slave is.
+void exchanged_names(const Campaign& c, std::vector<Finding>& out) {
+  const auto called = [](const Measurement& m, const std::string& file) {
+    return file == short_name(m.id) || file == short_name(m.axis);
+  };
+  for (std::size_t i = 0; i < c.measurements.size(); ++i) {
+    const Measurement& m = c.measurements[i];
+    const std::string file = short_name(m.file);
+    for (std::size_t k = i + 1; k < c.measurements.size(); ++k) {
+      const Measurement& other = c.measurements[k];
+      const std::string its = short_name(other.file);
+      // A straightness may be called after its direction.
+      if (file != its && m.lateral.empty() && other.lateral.empty() && called(m, its) &&
+          called(other, file) && !called(m, file) && !called(other, its))
+        push_name(m.file, short_name(m.file), m.id, out);
+    }
+    const Axis* axis = c.machine.axis(m.axis);
+    if (m.side != "master" || axis == nullptr || axis->slave.empty()) continue;
+    const std::string slave = short_name(axis->slave);
+    if (short_name(m.id) == slave)
+      push_name("measurement." + m.id + ".id", m.id, axis->name, out);
+    else if (file == slave)
+      push_name(m.file, axis->slave, axis->name, out);
+  }
 }
 
 }  // namespace
@@ -106,6 +192,8 @@ std::vector<Finding> implausible_campaign(const Manifest& manifest, const std::s
                                   {"most", s.most, s.quantity}},
                      .texts = {{"key", s.key}}});
   implausible_places(c, out);
+  exchanged_names(c, out);
+  implausible_pitch(c, out);
   return out;
 }
 

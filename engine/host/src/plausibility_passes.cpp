@@ -141,18 +141,6 @@ class Curve {
   std::map<double, Cell> cells_;
 };
 
-void take_line_out(const std::vector<double>& at, std::vector<double>& values) {
-  const auto n = static_cast<double>(at.size());
-  double t = 0.0, v = 0.0, tt = 0.0, tv = 0.0;
-  for (std::size_t i = 0; i < at.size(); ++i) t += at[i] / n, v += values[i] / n;
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    tt += (at[i] - t) * (at[i] - t);
-    tv += (at[i] - t) * (values[i] - v);
-  }
-  for (std::size_t i = 0; i < at.size(); ++i)
-    values[i] -= v + (tt > 0.0 ? tv / tt : 0.0) * (at[i] - t);
-}
-
 /// What makes `one` the same curve as `other`: nothing, its other end first, its other sign.
 enum class Turned { not_at_all, order, sign };
 
@@ -262,10 +250,12 @@ void implausible_passes(const Observations& o, bool with_directions, std::vector
   const auto strokes = strokes_of(o);
   const Quantity deviation = o.angular ? Quantity::angular_deviation : Quantity::deviation;
   against_order(strokes, out);
+  implausible_values(strokes, o, out);
   const std::size_t before = out.size();
   swapped(strokes, deviation, out);
   if (out.size() == before) turned_passes(strokes, out);
   another_size(strokes, deviation, out);
+  if (out.size() == before && o.size() <= most_sorted) implausible_halves(strokes, o.angular, out);
 }
 
 }  // namespace nonio::host

@@ -39,6 +39,16 @@ int sense_of_targets(const std::vector<double>& targets) {
   return rises ? 1 : falls ? -1 : 0;
 }
 
+void count_backwards(Stroke& s) {
+  std::size_t rises = 0, falls = 0;
+  for (std::size_t i = 1; i < s.target.size(); ++i)
+    ++(s.target[i] > s.target[i - 1] ? rises : falls);
+  s.backwards = std::min(rises, falls);
+  for (std::size_t i = s.target.size(); i-- > 1;)
+    if ((s.target[i] > s.target[i - 1]) == (rises < falls))
+      s.turns_at = std::min(s.target[i], s.target[i - 1]);
+}
+
 std::vector<Stroke> in_order(const Observations& o, const std::vector<std::size_t>& order) {
   std::map<std::tuple<std::uint32_t, std::uint32_t, int>, std::size_t> known;
   std::vector<Stroke> strokes;
@@ -75,6 +85,7 @@ std::vector<Stroke> strokes_of(const Observations& o) {
   for (Stroke& s : strokes) {
     s.alone_in_file = o.time.empty() ? s.alone : alone[{s.line, s.run, s.direction}];
     s.sense = sense_of_targets(s.target);
+    count_backwards(s);
     s.as_taken = s.deviation;
     // From here on by target: a copy is one whatever way it was gone.
     std::vector<std::pair<double, double>> rows;
@@ -110,6 +121,18 @@ double step_of(const std::vector<Stroke>& strokes) {
                     [&](double d) { return std::fabs(d / grid - std::round(d / grid)) < 1e-4; }))
       return step > 0.0 ? std::min(step, grid) : 0.0;
   return step;
+}
+
+void take_line_out(const std::vector<double>& at, std::vector<double>& values) {
+  const auto n = static_cast<double>(at.size());
+  double t = 0.0, v = 0.0, tt = 0.0, tv = 0.0;
+  for (std::size_t i = 0; i < at.size(); ++i) t += at[i] / n, v += values[i] / n;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    tt += (at[i] - t) * (at[i] - t);
+    tv += (at[i] - t) * (values[i] - v);
+  }
+  for (std::size_t i = 0; i < at.size(); ++i)
+    values[i] -= v + (tt > 0.0 ? tv / tt : 0.0) * (at[i] - t);
 }
 
 }  // namespace nonio::host

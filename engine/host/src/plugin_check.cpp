@@ -2,12 +2,19 @@
 #include "nonio/host/plugin_check.h"
 
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <clocale>
+#include <cstdlib>
+#include <ctime>
 #include <iostream>
+#include <thread>
 
 #include "child.h"
+#include "confine.h"
 #include "context.h"
 #include "nonio/host/files.h"
 #include "nonio/host/nearest.h"
@@ -27,10 +34,18 @@ using kit::Verdict;
 using CheckState = PluginCheck::State;
 
 constexpr double scan_seconds = 1.0;
+constexpr std::size_t most_hanging = 2;  // checks of one plugin
+
+bool went_well(const PluginCheck& c) {
+  return c.state == CheckState::passed || c.state == CheckState::skipped;
+}
+
 constexpr const char* of_files[][2] = {
     {"loads", "The library loads, its ABI is the program's, it registers within a second."},
     {"symbols", "One symbol is exported, nonio_plugin."},
-    {"cases", "Every campaign of its cases can be read."}};
+    {"cases", "Every campaign of its cases can be read."},
+    {"pure", "Elsewhere and later the same comes out, without files, sockets or processes."},
+    {"time", "Not two of its checks hang; the others are not tried then."}};
 
 /// All that one file registers.
 struct Brought final : Registry {
@@ -44,13 +59,42 @@ struct Brought final : Registry {
   void add(Output o) override { outputs.push_back(std::move(o)); }
 };
 
-double processor_seconds() {
+double processor_seconds(int who = RUSAGE_SELF) {
   rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
+  ::getrusage(who, &usage);
   const auto of = [](const timeval& t) {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
   return of(usage.ru_utime) + of(usage.ru_stime);
+}
+
+/// Where the child that `pure` looks at leaves its answer.
+SharedWords* impure_answer = nullptr;
+
+[[noreturn]] void tell_impurity(const char* call) {
+  impure_answer->set(std::string("fit calls ") + call +
+                     ": wanted nothing but its arguments, no file, socket or process");
+  ::_exit(0);
+}
+
+/// 26 hours apart, so that the local date of the second is never that of the first.
+constexpr const char *first_zone = "HERE+12", *second_zone = "ELSE-14";
+
+void set_zone(const char* zone) {
+  ::setenv("TZ", zone, 1);
+  ::tzset();
+}
+
+/// Another home and folder.
+void go_elsewhere() {
+  for (const char* name : {"HOME", "TMPDIR", "USER", "PWD"}) ::setenv(name, "/elsewhere", 1);
+  if (::chdir("/usr") != 0) throw std::runtime_error("no folder /usr");
+}
+
+/// The first locale of the system that writes a comma in numbers; none: as it was.
+void speak_otherwise() {
+  for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "it_IT.UTF-8", "es_ES.UTF-8"})
+    if (std::setlocale(LC_ALL, name) != nullptr) return;
 }
 
 /// The file's own first, so that they stand in for the program's of the same name.
@@ -88,6 +132,8 @@ Expected<std::vector<kit::Source>> sources_below(const fs::path& folder) {
       if (!bytes) return fail(bytes.error());
       s.files.push_back({entry.path().filename().string(), std::move(*bytes)});
     }
+    if (auto values = read_file(place / "expected" / "values.csv"); values)
+      s.files.push_back({"expected/values.csv", std::move(*values)});
     sources.push_back(std::move(s));
   }
   return sources;
@@ -103,12 +149,11 @@ class Checker {
     std::string digest;
     auto templates = read_templates(request_.template_folders, digest);
     if (!templates) return fail(templates.error());
-    bench_.seed = request_.seed;
     bench_.templates = std::move(*templates);
     bench_.context.version = request_.version;
     bench_.context.plugins = &own_;
     bench_.context.templates = bench_.templates;
-    bench_.sources = kit::made_sources(request_.seed);
+    seed(request_.seed);
     for (const fs::path& folder : request_.cases) {
       auto cases = sources_below(folder);
       if (!cases) return fail(cases.error());
@@ -118,7 +163,9 @@ class Checker {
   }
 
   void check(const fs::path& path) {
-    path_ = path;
+    hung_ = 0;
+    path_ = fs::absolute(path);
+    shown_path_ = path;
     std::string list;
     const bool loads = run(
         "", "loads", [&](Bench&) { return load(); }, &list, true);
@@ -134,8 +181,14 @@ class Checker {
   }
 
  private:
+  void seed(std::uint64_t number) {
+    bench_.seed = number;
+    bench_.sources = kit::made_sources(number);
+  }
+
   /// A line of `load`: "reader csv". Of each kind the plugins are counted.
   void check_plugin(const std::string& plugin, std::size_t (&at)[4]) {
+    hung_ = 0;
     const std::string kind = plugin.substr(0, plugin.find(' '));
     if (kind == "reader") {
       run_all(plugin, kit::reader_checks(), &Brought::readers, at[0]++);
@@ -156,6 +209,38 @@ class Checker {
     for (const auto& c : kit::info_checks())
       run(plugin, c.name, [&](Bench& b) { return c.run((brought_.*kind)[index].info, b); });
     run_of(plugin, checks, kind, index);
+    pure(plugin,
+         [this, kind, index](Bench& b) { return kit::fingerprint((brought_.*kind)[index], b); });
+  }
+
+  /// The same work twice, the second time elsewhere and later, with nothing to be had.
+  void pure(const std::string& plugin, const std::function<Verdict(Bench&)>& digest) {
+    if ((!request_.only.empty() && request_.only != "pure") || hung_ >= most_hanging) return;
+    zone_ = first_zone;
+    PluginCheck result = in_child(plugin, "pure", digest);
+    if (result.state == CheckState::passed) {
+      const std::string here = std::exchange(result.says, {});
+      elsewhere_ = true;
+      zone_ = second_zone;
+      result = in_child(plugin, "pure", [&](Bench& b) {
+        std::string why;
+        b.only_plugin = [&] {
+          go_elsewhere();  // only now: what the host calls before puts the folder back
+          speak_otherwise();
+          why = confine_pure(tell_impurity);
+        };
+        Verdict v = digest(b);
+        if (!why.empty()) return kit::skipped("it cannot be confined: " + why);
+        if (v.state != Verdict::State::passed) return v;
+        return v.says == here ? kit::passed()
+                              : kit::failed(
+                                    "another home, folder, locale, time zone and a second "
+                                    "later it makes something else of the same input");
+      });
+      elsewhere_ = false;
+    }
+    zone_ = nullptr;
+    tell_(result);
   }
 
   template <class Plugin>
@@ -172,16 +257,27 @@ class Checker {
            bool always = false) {
     const bool asked = request_.only.empty() || request_.only == name;
     if (!asked && !always) return true;
+    if (hung_ >= most_hanging) return false;
     PluginCheck result = in_child(plugin, name, work);
-    const bool well = result.state == CheckState::passed || result.state == CheckState::skipped;
+    const std::uint64_t seeds = plugin.empty() ? 1 : std::max<std::uint64_t>(1, request_.seeds);
+    for (std::uint64_t i = 1; i < seeds && went_well(result); ++i) {
+      seed(request_.seed + i);
+      PluginCheck next = in_child(plugin, name, work);
+      if (!went_well(next) || result.state == CheckState::skipped) result = std::move(next);
+    }
+    if (seeds > 1) seed(request_.seed);
+    const bool well = went_well(result);
     if (list != nullptr && well) *list = std::exchange(result.says, {});
     if (asked || !well) tell_(result);
+    if (hung_ >= most_hanging)
+      tell_({shown_path_.string(), plugin, "time", CheckState::failed,
+             "two of its checks hang: the others were not tried", bench_.seed});
     return well;
   }
 
   PluginCheck in_child(const std::string& plugin, const std::string& name,
                        const std::function<Verdict(Bench&)>& work) {
-    PluginCheck result{path_.string(), plugin, name, CheckState::passed, {}};
+    PluginCheck result{shown_path_.string(), plugin, name, CheckState::passed, {}, bench_.seed};
     SharedWords stage, answer;
     if (!stage.valid() || !answer.valid()) {
       result.state = CheckState::crashed;
@@ -190,16 +286,20 @@ class Checker {
     }
     std::cout.flush();
     std::cerr.flush();
+    const double before = processor_seconds(RUSAGE_CHILDREN);
     const pid_t child = ::fork();
     if (child == 0) {
       settle_child();
       limit_child();
+      impure_answer = &answer;
       answer.set(told(name == "loads", stage, work));
       ::_exit(0);
     }
     const ChildEnd end =
         child < 0 ? ChildEnd{false, "no process"} : wait_for_child(child, 10.0 * request_.seconds);
     const std::string words = answer.get();
+    if (end.overdue) hung_ = most_hanging;  // it waits, which costs the most
+    if (!end.well && processor_seconds(RUSAGE_CHILDREN) - before > 0.9 * request_.seconds) ++hung_;
     if (!end.well || words.empty()) {
       result.state = CheckState::crashed;
       result.says = end.words + (stage.get().empty() ? "" : " in: " + stage.get());
@@ -224,7 +324,9 @@ class Checker {
     Verdict v;
     try {
       bench_.stage = [&stage](const std::string& words) { stage.set(words); };
+      if (zone_ != nullptr) set_zone(zone_);
       if (!first) set_up();
+      if (elsewhere_) std::this_thread::sleep_for(std::chrono::milliseconds(1100));
       v = work(bench_);
     } catch (const std::bad_alloc&) {
       v = kit::failed("out of memory in: " + stage.get());
@@ -298,8 +400,11 @@ class Checker {
   Plugins own_;
   Bench bench_;
   std::vector<kit::Source> cases_;
-  fs::path path_;
-  Brought brought_;  ///< in a child only
+  fs::path path_, shown_path_;  ///< the second as it was given
+  std::size_t hung_ = 0;        ///< checks of one plugin that did not come back
+  bool elsewhere_ = false;      ///< the next child is the second of `pure`
+  const char* zone_ = nullptr;  ///< of time, of the next child
+  Brought brought_;             ///< in a child only
 };
 
 template <class Checks>

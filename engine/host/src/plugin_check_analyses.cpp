@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <numeric>
 
+#include "nonio/host/digest.h"
 #include "nonio/sdk/format.h"
+#include "plugin_check_truth.h"
 #include "plugin_checks.h"
 
 namespace nonio::host::kit {
@@ -255,6 +257,8 @@ std::optional<int> power_of(Quantity q) {
     case Quantity::deviation_per_length:
     case Quantity::deviation_per_angle:
     case Quantity::deviation_per_time:
+    case Quantity::deviation_per_kelvin:
+    case Quantity::angle_per_kelvin:
     case Quantity::angle_per_time:
     case Quantity::deviation_per_reading:
     case Quantity::angle_per_reading:
@@ -411,11 +415,50 @@ Verdict analysis_hostile(const Analysis& a, const Bench& bench) {
   return passed();
 }
 
+/// Where it applies it has something to say, somewhere at least.
+Verdict analysis_says(const Analysis& a, const Bench& bench) {
+  if (!a.analyse_campaign && (!a.applies || !a.analyse))
+    return failed("applies or analyse is missing");
+  bool tried = false;
+  std::string error;
+  for (const Sample& s : bench.samples) {
+    if (!applies(a, s)) continue;
+    tried = true;
+    bench.stage("sample " + s.name);
+    const Said said = said_of(a, s);
+    if (said.evaluations > 0 && !(said.values.empty() && said.texts.empty())) return passed();
+    if (error.empty() && said.failed()) error = "; sample " + s.name + ": " + said.error;
+  }
+  if (!tried) return skipped(no_sample);
+  const std::string nothing = "of no sample that it applies to it says anything" + error;
+  return a.info.on_request
+             ? skipped(nothing +
+                       "; put a campaign with its options into cases/<name>/campaign.toml")
+             : failed(nothing);
+}
+
 }  // namespace
+
+Verdict fingerprint(const Analysis& a, const Bench& bench) {
+  if (bench.only_plugin) bench.only_plugin();
+  std::string all;
+  for (const Sample& s : bench.samples) {
+    if (!applies(a, s)) continue;
+    bench.stage("sample " + s.name);
+    const Said said = said_of(a, s);
+    all += s.name + "\n" + said.texts;
+    for (const auto* list : {&said.values, &said.evidence})
+      for (const auto& v : *list) all += v.name + " " + exact_text(v.value) + "\n";
+  }
+  return all.empty() ? skipped(no_sample) : Verdict{Verdict::State::passed, sha256(all)};
+}
 
 const std::vector<Check<Analysis>>& analysis_checks() {
   static const std::vector<Check<Analysis>> checks = {
+      {"truth", "It gives the values of expected/values.csv.",
+       [](const Analysis& x, const Bench& bench) { return truth(x, bench); }},
       {"again", "The same input gives the same bytes.", analysis_again},
+      {"says", "Of a sample that it applies to it says something.", analysis_says},
       {"finite", "What cannot be given is absent.", analysis_finite},
       {"rows", "The order of rows changes nothing.", analysis_rows},
       {"shift", "The unknown zero of the readings is in no result, or in it as it is.",

@@ -81,6 +81,30 @@ Observations rearranged(const Observations& o, const std::vector<std::size_t>& o
   return out;
 }
 
+std::vector<std::pair<std::string, Observations>> odd_tables(const Observations& o) {
+  std::vector<std::pair<std::string, Observations>> all;
+  all.emplace_back("no readings", rearranged(o, {}));
+  all.emplace_back("one reading", rearranged(o, {0}));
+  std::vector<std::size_t> same(9, o.size() / 2), plus;
+  all.emplace_back("one target", rearranged(o, same));
+  for (std::size_t i = 0; i < o.size(); ++i)
+    if (o.axes.front().approach.empty() || o.axes.front().approach[i] > 0) plus.push_back(i);
+  all.emplace_back("one direction", rearranged(o, plus));
+  Observations bare = o;
+  for (auto* column : {&bare.time, &bare.material, &bare.air, &bare.u}) column->clear();
+  for (auto* column : {&bare.run, &bare.source_line}) column->clear();
+  all.emplace_back("positions only", bare);
+  Observations huge = o;
+  for (auto& axis : huge.axes)
+    for (double& x : axis.position) x *= 1e150;
+  all.emplace_back("huge positions", std::move(huge));
+  Observations blank = o;
+  for (auto* column : {&blank.time, &blank.material})
+    for (std::size_t i = 0; i < column->size(); i += 3) (*column)[i] = std::nan("");
+  all.emplace_back("times and temperatures missing", std::move(blank));
+  return all;
+}
+
 namespace {
 
 /// How its control counts the axes: by their places, so that tables of every control are written.
@@ -90,6 +114,28 @@ MachineRecord record_for(const Sample& sample) {
     record.axes[a.name] = {.rotary = a.rotary,
                            .settings = {{"number", static_cast<double>(record.axes.size() + 1)}}};
   return record;
+}
+
+/// Of controls that count: nobody but the machine's builder knows how many counts an axis has. So
+/// many that a sixteenth of one is a nanometre.
+void add_encoders(Settings& settings, const Info& info, const Machine& machine) {
+  for (const Option& o : info.options) {
+    if (o.name != "axes" || o.help.find("counts_per_mm") == o.help.npos) continue;
+    auto entries = settings.values.find(o.name);
+    if (entries == settings.values.end()) continue;
+    auto* list = std::get_if<std::vector<std::string>>(&entries->second);
+    for (const Axis& axis : machine.axes) {
+      const std::string counts = axis.rotary ? " counts_per_deg=3600" : " counts_per_mm=62500";
+      if (list == nullptr) continue;
+      const auto own = std::find_if(list->begin(), list->end(), [&](const std::string& entry) {
+        return entry.starts_with(axis.name + " ");
+      });
+      if (own == list->end())
+        list->push_back(axis.name + counts);
+      else if (own->find(" counts_per") == own->npos)
+        *own += counts;
+    }
+  }
 }
 
 Settings or_defaults(Checked<Settings> settled, const Info& info) {
@@ -111,7 +157,10 @@ Settings settings_for(const Output& output, const Sample& sample) {
   manifest.campaign = sample.campaign;
   manifest.options = sample.options;
   const MachineRecord record = record_for(sample);
-  return or_defaults(settle_table_options(output.info, {}, manifest, &record), output.info);
+  Settings settings =
+      or_defaults(settle_table_options(output.info, {}, manifest, &record), output.info);
+  add_encoders(settings, output.info, sample.campaign.machine);
+  return settings;
 }
 
 Results results_of(const Sample& s, const Bench& bench) {

@@ -7,6 +7,7 @@
 
 #include "nonio/math/loaded_table.h"
 #include "nonio/sdk/format.h"
+#include "plugin_check_truth.h"
 #include "plugin_checks.h"
 
 namespace nonio::host::kit {
@@ -83,21 +84,28 @@ struct Written {
   std::vector<Artifact> files;
   std::vector<LoadedTable> tables;
   std::string refused;  ///< why there are none
+  bool unable = false;  ///< the plugin failed, instead of saying what it lacks
 };
 
 Written written_table(const Output& o, const Sample& s, const Settings& options,
                       const Bench& bench) {
+  if (o.applies && !o.applies(s.campaign)) return {{}, {}, "it does not apply to runs of one axis"};
   const auto r = o.write({s.campaign, s.observations, {}, options, bench.templates});
-  if (!r) return {{}, {}, r.error().message};
+  if (!r) return {{}, {}, r.error().message, true};
   if (r->artifacts.empty())
-    return {{}, {}, r->findings.empty() ? "no file" : "finding " + r->findings.front().id};
+    return {{},
+            {},
+            r->findings.empty() ? "no file" : "finding " + r->findings.front().id,
+            r->findings.empty()};
   auto tables = o.parse({r->artifacts, s.campaign, options});
   if (!tables)
-    return {r->artifacts, {}, "its own files cannot be read back: " + tables.error().message};
+    return {r->artifacts, {}, "its own files cannot be read back: " + tables.error().message, true};
+  if (tables->empty()) return {r->artifacts, {}, "its own files, read back, hold no table", true};
   return {r->artifacts, std::move(*tables), {}};
 }
 
-/// Ways to set the plugin up: nobody knows the sign of some controls, which the user then says.
+/// Ways to set the plugin up: nobody knows the sign of some controls, which the user then says; a
+/// table for each direction.
 std::vector<Settings> set_ups(const Output& o, const Sample& s) {
   const Settings defaults = settings_for(o, s);
   std::vector<Settings> all{defaults};
@@ -107,6 +115,11 @@ std::vector<Settings> set_ups(const Output& o, const Sample& s) {
         all.push_back(defaults);
         all.back().values["sign"] = choice;
       }
+  if (o.control->bidirectional)
+    for (std::size_t i = 0, n = all.size(); i < n; ++i) {
+      all.push_back(all[i]);
+      all.back().values["directions"] = true;
+    }
   return all;
 }
 
@@ -116,7 +129,7 @@ struct SetUp {
   double first = 0.0;
 };
 
-std::vector<SetUp> settings_that_write(const Output& o, const Bench& bench, std::string& why) {
+std::vector<SetUp> settings_that_write(const Output& o, const Bench& bench, Written& why) {
   std::vector<SetUp> all;
   for (const double first : {0.0, -0.8}) {
     Random random = bench.random(10);
@@ -125,8 +138,8 @@ std::vector<SetUp> settings_that_write(const Output& o, const Bench& bench, std:
       const Written w = written_table(o, s, options, bench);
       if (math::correction_of(w.tables, "X"))
         all.push_back({std::move(options), first});
-      else if (why.empty())
-        why = w.refused;
+      else if (why.refused.empty() || (w.unable && !why.unable))
+        why = w;
     }
     if (!all.empty()) break;
   }
@@ -195,9 +208,12 @@ std::string wrong_table(const Output& o, const KnownError& k, const Settings& op
 Verdict each_setting(const Output& o, const Bench& bench,
                      const std::function<std::string(const SetUp&)>& law) {
   if (!o.parse) return failed("it declares a table and cannot read it back (Output::parse)");
-  std::string why;
+  Written why;
   const auto settings = settings_that_write(o, bench, why);
-  if (settings.empty()) return skipped("no table of one axis alone: " + why);
+  if (settings.empty()) {
+    const std::string none = "no table of one axis alone: " + why.refused;
+    return why.unable ? failed(none) : skipped(none);
+  }
   for (const SetUp& s : settings)
     if (const std::string wrong = law(s); !wrong.empty()) return failed(wrong);
   return passed();
@@ -258,6 +274,21 @@ Verdict table_sign(const Output& o, const Bench& bench) {
   });
 }
 
+/// Range of what is left at the points of its tables.
+double left_at_points(const KnownError& k, const std::vector<LoadedTable>& tables,
+                      const math::Correction& added, int direction) {
+  double low = 1e9, high = -1e9;
+  for (const LoadedTable& t : tables) {
+    if (t.output != "X" || t.input != std::vector<std::string>{"X"}) continue;
+    for (const double x : t.position[0]) {
+      if (x < k.targets.front() || x > k.targets.back()) continue;
+      const double rest = added(x, direction) + k.at(x);
+      low = std::min(low, rest), high = std::max(high, rest);
+    }
+  }
+  return high - low;
+}
+
 /// At every point of the table, so that no sum of increments drifts away.
 Verdict table_rounding(const Output& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
@@ -266,19 +297,12 @@ Verdict table_rounding(const Output& o, const Bench& bench) {
       bench.stage("round " + std::to_string(round));
       const KnownError k = random_error(random, false, 30e-6, s.first);
       const Written w = written_table(o, sample_of(k), s.options, bench);
-      const double step = step_of(o, false);
-      for (const LoadedTable& t : w.tables) {
-        if (t.output != "X" || t.input != std::vector<std::string>{"X"}) continue;
-        double low = 1e9, high = -1e9;
-        for (std::size_t i = 0; i < t.position[0].size(); ++i) {
-          const double x = t.position[0][i];
-          if (x < k.targets.front() || x > k.targets.back()) continue;
-          low = std::min(low, t.plus[i] + k.at(x)), high = std::max(high, t.plus[i] + k.at(x));
-        }
-        if (high - low > 1.05 * step + 1e-11)
-          return "its points leave the error by " + in_um(high - low) + ": wanted half a step of " +
-                 in_um(step) + " to each side";
-      }
+      const auto added = math::correction_of(w.tables, "X");
+      for (const int direction : {1, -1})
+        if (const double off = added ? left_at_points(k, w.tables, *added, direction) : 0.0;
+            off > 1.05 * step_of(o, false) + 1e-11)
+          return "its points leave the error by " + in_um(off) + ": wanted half a step of " +
+                 in_um(step_of(o, false)) + " to each side";
     }
     return {};
   });
@@ -360,6 +384,8 @@ const std::vector<Check<Output>>& controller_checks() {
   static const std::vector<Check<Output>> checks = {
       {"declared", "Name, units, steps and how well each fact is known are declared.",
        table_declared},
+      {"truth", "Files of the maker do what table.csv says.",
+       [](const Output& x, const Bench& bench) { return truth(x, bench); }},
       {"cancels", "Its table, read back, takes a planted error away.", table_cancels},
       {"sign", "Over an error that rises the control adds what falls as much.", table_sign},
       {"rounding", "No point is off by more than half a step.", table_rounding},

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "nonio/host/digest.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
+#include "plugin_check_truth.h"
 #include "plugin_checks.h"
 
 namespace nonio::host::kit {
@@ -394,37 +396,13 @@ Verdict effect_explained(const Effect& e, const Bench& bench) {
     if (!x) return failed(s.where() + ": " + x.error().message);
     if (named(*x, s.term.name()) || describes(*x, s.term.name())) return passed();
     if (unseen_in(*x, s.term.name())) continue;
-    // A free curve of time may look as if the readings did not repeat.
-    if (e.description && x->verdict.kind == model::Verdict::Kind::unrepeatable) continue;
+    // A cause that comes near is named before a description; a free curve of time may look as if
+    // the readings did not repeat.
+    if (e.description && x->verdict.kind != model::Verdict::Kind::nothing) continue;
     return failed(s.where() + ": planted alone, explain says " +
                   (x->verdict.effect.empty() ? "nothing" : x->verdict.effect) + " instead");
   }
   return skipped("no sample determines its parameters");
-}
-
-/// Readings that nobody should have sent.
-std::vector<std::pair<std::string, Observations>> odd_tables(const Observations& o) {
-  std::vector<std::pair<std::string, Observations>> all;
-  all.emplace_back("no readings", rearranged(o, {}));
-  all.emplace_back("one reading", rearranged(o, {0}));
-  std::vector<std::size_t> same(9, o.size() / 2), plus;
-  all.emplace_back("one target", rearranged(o, same));
-  for (std::size_t i = 0; i < o.size(); ++i)
-    if (o.axes.front().approach.empty() || o.axes.front().approach[i] > 0) plus.push_back(i);
-  all.emplace_back("one direction", rearranged(o, plus));
-  Observations bare = o;
-  for (auto* column : {&bare.time, &bare.material, &bare.air, &bare.u}) column->clear();
-  for (auto* column : {&bare.run, &bare.source_line}) column->clear();
-  all.emplace_back("positions only", bare);
-  Observations huge = o;
-  for (auto& axis : huge.axes)
-    for (double& x : axis.position) x *= 1e150;
-  all.emplace_back("huge positions", std::move(huge));
-  Observations blank = o;
-  for (auto* column : {&blank.time, &blank.material})
-    for (std::size_t i = 0; i < column->size(); i += 3) (*column)[i] = std::nan("");
-  all.emplace_back("times and temperatures missing", std::move(blank));
-  return all;
 }
 
 /// Of an axis, or of the first thing that an effect in space would be of.
@@ -465,10 +443,31 @@ Verdict effect_hostile(const Effect& e, const Bench& bench) {
 
 }  // namespace
 
+Verdict fingerprint(const Effect& e, const Bench& bench) {
+  if (!e.columns || !e.applies) return skipped("applies or columns is missing");
+  const auto all = shown(e, bench);
+  if (all.empty()) return skipped(unseen);
+  if (bench.only_plugin) bench.only_plugin();
+  std::string text;
+  for (const Shown& s : all) {
+    bench.stage(s.where());
+    const auto shape = shape_at(e, s, 0.5);
+    if (!shape) continue;
+    const auto columns = e.columns(s.table(), s.term.axis, *shape);
+    text += s.where() + (columns ? std::string("\n") : ": " + columns.error().message + "\n");
+    if (!columns) continue;
+    for (const auto& c : *columns)
+      for (const double x : c) text += exact_text(x) + " ";
+  }
+  return {Verdict::State::passed, sha256(text)};
+}
+
 const std::vector<Check<Effect>>& effect_checks() {
   static const std::vector<Check<Effect>> checks = {
       {"columns", "A column for each parameter, an entry for each reading, all of them numbers.",
        effect_columns},
+      {"truth", "Its columns are those of the formula beside it.",
+       [](const Effect& x, const Bench& bench) { return truth(x, bench); }},
       {"again", "The same input gives the same bytes.", effect_again},
       {"still", "Columns are 0 where the axis stood still.", effect_still},
       {"rows", "The order of rows changes nothing.", effect_rows},

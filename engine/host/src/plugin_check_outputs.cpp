@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "nonio/host/digest.h"
 #include "nonio/host/files.h"
 #include "plugin_checks.h"
 
@@ -252,6 +253,32 @@ Verdict output_templates(const Output& o, const Bench& bench) {
 }
 
 }  // namespace
+
+Verdict fingerprint(const Output& o, const Bench& bench) {
+  if (!o.applies || !o.write) return skipped("applies or write is missing");
+  std::vector<Results> results;
+  for (const Sample& s : bench.samples) results.push_back(results_of(s, bench));
+  if (bench.only_plugin) bench.only_plugin();
+  if (o.prepare) o.prepare(bench.templates);
+  std::string all;
+  for (std::size_t i = 0; i < bench.samples.size(); ++i) {
+    const Sample& s = bench.samples[i];
+    if (!o.applies(s.campaign)) continue;
+    bench.stage("sample " + s.name);
+    const auto r = written(o, s, results[i], settings_for(o.info, s), bench);
+    all += s.name + (r ? "\n" : ": " + r.error().message + "\n");
+    if (!r) continue;
+    for (const Artifact& a : r->artifacts) all += a.name + "\n" + sha256(a.bytes) + "\n";
+    for (const Prediction& p : r->predictions)
+      all += p.name + " " + exact_text(p.before) + " " + exact_text(p.after) + "\n";
+    for (const Finding& f : r->findings) {
+      all += f.id + "\n";
+      for (const auto& [key, text] : f.texts) all += key + "=" + text + "\n";
+    }
+  }
+  return all.empty() ? skipped("it applies to no sample")
+                     : Verdict{Verdict::State::passed, sha256(all)};
+}
 
 const std::vector<Check<Output>>& output_checks() {
   static const std::vector<Check<Output>> checks = {

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <map>
 
+#include "nonio/host/digest.h"
 #include "nonio/host/manifest.h"
 #include "nonio/sdk/format.h"
+#include "plugin_check_truth.h"
 #include "plugin_checks.h"
 
 namespace nonio::host::kit {
@@ -262,13 +264,13 @@ Verdict reader_signs(const Reader& r, const Bench& bench) {
   return each_file(r, bench, [&](const ReadFile& f, const Observations& whole) -> std::string {
     for (const Token& t : numbers_of(f.bytes, random)) {
       const std::string number = f.bytes.substr(t.at, t.length);
-      const std::string other = number[0] == '-'   ? number.substr(1)
-                                : number[0] == '+' ? "-" + number.substr(1)
-                                                   : "-" + number;
-      const auto o = read(r, f, with_token(f.bytes, t, other));
-      if (o && o->size() < whole.size())
-        return other + " in place of " + number + " in " + line_words(f.bytes, t.at) + ": " +
-               std::to_string(whole.size() - o->size()) + " readings are gone";
+      const std::string size = number[0] == '-' || number[0] == '+' ? number.substr(1) : number;
+      for (const std::string& other : {size, "-" + size, "+" + size}) {
+        const auto o = read(r, f, with_token(f.bytes, t, other));
+        if (o && o->size() < whole.size())
+          return other + " in place of " + number + " in " + line_words(f.bytes, t.at) + ": " +
+                 std::to_string(whole.size() - o->size()) + " readings are gone";
+      }
     }
     return {};
   });
@@ -302,6 +304,21 @@ Verdict reader_inch(const Reader& r, const Bench& bench) {
   return skipped("no option has the choices mm and inch");
 }
 
+/// Against readings.csv: a file tells nobody whether its numbers were taken for what they are.
+Verdict reader_truth(const Reader& r, const Bench& bench) {
+  std::size_t compared = 0;
+  Verdict v = each_file(r, bench, [&](const ReadFile& f, const Observations& o) -> std::string {
+    for (const Source& source : bench.sources)
+      if (source.name == f.sample)
+        return differs_from_truth(o, f.campaign.measurements[f.measurement], source, compared);
+    return {};
+  });
+  if (v.state == Verdict::State::passed && compared == 0)
+    return skipped(
+        "no readings.csv beside a file of a case: write down what the instrument showed");
+  return v;
+}
+
 /// Files of anybody else.
 Verdict reader_foreign(const Reader& r, const Bench& bench) {
   Random random = bench.random(9);
@@ -329,9 +346,28 @@ Verdict reader_foreign(const Reader& r, const Bench& bench) {
 
 }  // namespace
 
+Verdict fingerprint(const Reader& r, const Bench& bench) {
+  if (!r.recognises || !r.reads || !r.read) return skipped("recognises, reads or read is missing");
+  const auto files = files_of(r, bench);
+  if (files.empty()) return skipped(no_file);
+  if (bench.only_plugin) bench.only_plugin();
+  std::string all;
+  for (const ReadFile& f : files) {
+    bench.stage(f.where());
+    const auto o = read(r, f, f.bytes);
+    all += f.where() + (o ? std::string("\n") : ": " + o.error().message + "\n");
+    for (std::size_t i = 0; o && i < o->size(); ++i) {
+      for (const double x : row_of(*o, i)) all += exact_text(x) + " ";
+      all += "\n";
+    }
+  }
+  return {Verdict::State::passed, sha256(all)};
+}
+
 const std::vector<Check<Reader>>& reader_checks() {
   static const std::vector<Check<Reader>> checks = {
       {"reads", "It reads its samples: columns of one length, of numbers.", reader_reads},
+      {"truth", "Reading by reading it finds what readings.csv says.", reader_truth},
       {"again", "The same input gives the same bytes.", reader_again},
       {"empty", "Nothing is found in an empty file.", reader_empty},
       {"foreign", "It knows no file of another kind.", reader_foreign},

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
@@ -49,7 +51,9 @@ struct Bench {
   std::vector<Analysis> analyses;
   Templates templates;
   Context context;  ///< for the model: without a site
-  Stage stage;      ///< told what is being tried, for the case that it does not come back
+  /// What `pure` does once everything is ready and only the plugin is still to be called.
+  std::function<void()> only_plugin{};
+  Stage stage;  ///< told what is being tried, for the case that it does not come back
 
   Random random(std::uint64_t stream) const { return {seed, stream}; }
 };
@@ -60,6 +64,8 @@ struct Verdict {
 };
 inline Verdict passed() { return {}; }
 inline Verdict failed(std::string says) { return {Verdict::State::failed, std::move(says)}; }
+/// All of a number, for comparing.
+inline std::string exact_text(double x) { return std::to_string(std::bit_cast<std::uint64_t>(x)); }
 inline Verdict skipped(std::string says) { return {Verdict::State::skipped, std::move(says)}; }
 
 template <class Plugin>
@@ -76,10 +82,19 @@ const std::vector<Check<Analysis>>& analysis_checks();
 const std::vector<Check<Output>>& output_checks();
 const std::vector<Check<Output>>& controller_checks();
 
+/// What a plugin makes of all samples, digested; a failure says why there is nothing. Calls
+/// `Bench::only_plugin` before the plugin.
+Verdict fingerprint(const Reader& reader, const Bench& bench);
+Verdict fingerprint(const Effect& effect, const Bench& bench);
+Verdict fingerprint(const Analysis& analysis, const Bench& bench);
+Verdict fingerprint(const Output& output, const Bench& bench);
+
 /// A rearrangement of n rows.
 std::vector<std::size_t> shuffled(std::size_t n, Random& random);
 /// The rows in this order; of lines and their names nothing changes.
 Observations rearranged(const Observations& o, const std::vector<std::size_t>& order);
+/// Readings that nobody should have sent.
+std::vector<std::pair<std::string, Observations>> odd_tables(const Observations& o);
 /// The plugin's defaults, and what the sample says.
 Settings settings_for(const Info& info, const Sample& sample);
 /// Of a table: beside these, the numbers of the axes by their places.

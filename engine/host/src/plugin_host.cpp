@@ -16,13 +16,13 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <fstream>
 #include <iostream>
 
 #include "child.h"
 #include "computing.h"
 #include "confine.h"
 #include "nonio/host/digest.h"
+#include "prints.h"
 #include "process_state.h"
 #include "wire.h"
 
@@ -31,11 +31,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Steady = std::chrono::steady_clock;
 
 constexpr const char* loading_process = "the process that loads plugins";
 constexpr double load_seconds = 10.0, prepare_seconds = 30.0, answer_seconds = 30.0;
-constexpr std::string_view preparing = "prepare ";
+constexpr std::string_view preparing = "prepare ", died = "died";
+constexpr int most_unexplained = 3;
 constexpr std::size_t most_prints = 16 << 10;  // bytes
 
 /// What the process that loads plugins says when it is ready.
@@ -45,17 +46,7 @@ struct Ready {
   std::string refused;  ///< why it cannot go on; empty: it can
 };
 
-std::vector<pid_t> children() {
-  std::vector<pid_t> all;
-  std::ifstream list("/proc/self/task/" + std::to_string(::gettid()) + "/children");
-  for (pid_t pid; list >> pid;) all.push_back(pid);
-  return all;
-}
-
-/// Never into the files of the night, nor what --json prints.
-void take_prints(int prints) {
-  ::dup2(prints, STDOUT_FILENO);
-  ::dup2(prints, STDERR_FILENO);
+void take_input() {
   const int nothing = ::open("/dev/null", O_RDONLY);
   if (nothing >= 0) ::dup2(nothing, STDIN_FILENO);
 }
@@ -79,35 +70,30 @@ std::vector<fs::path> library_folders(const fs::path& own_plugins) {
 
 PluginHost::PluginHost(Wish wish) : wish_(std::move(wish)) {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
-  children_before_ = children();
+  children_before_ = own_children();
   for (std::string& words : lacking_confinement()) notes_.push_back(std::move(words));
 }
 
 PluginHost::~PluginHost() {
   end();
-  for (const pid_t pid : children()) {
-    if (std::find(children_before_.begin(), children_before_.end(), pid) != children_before_.end())
-      continue;
-    ::kill(pid, SIGKILL);
-    ::waitpid(pid, nullptr, 0);
-  }
+  end_children(children_before_);
 }
 
 void PluginHost::end() {
   control_ = Handle();
-  if (pid_ > 0) {
-    ::kill(-pid_, SIGKILL);
-    ::kill(pid_, SIGKILL);
-    ::waitpid(std::exchange(pid_, -1), nullptr, 0);
-  }
+  if (pid_ > 0) end_child(std::exchange(pid_, -1));
   pass_on_prints();
 }
 
 Expected<Catalogue> PluginHost::start() {
   constexpr int most_trials = 100;  // each leaves something out
+  int unexplained = 0;              // what the system refuses now it may give in a moment
   for (int i = 0; i < most_trials; ++i) {
     auto loaded = load_once();
-    if (loaded || loaded.error().key != preparing) return loaded;
+    const bool again =
+        !loaded && (loaded.error().key == preparing ||
+                    (loaded.error().key == died && ++unexplained < most_unexplained));
+    if (!again) return loaded;
   }
   return fail("plugin after plugin brings down " + std::string(loading_process));
 }
@@ -142,31 +128,28 @@ Expected<Catalogue> PluginHost::load_once() {
     return std::move(ready.catalogue);
   }
   if (hung == "stopped") return fail("interrupted");
-  int status = 0;
-  ::kill(pid_, SIGKILL);
-  ::waitpid(std::exchange(pid_, -1), &status, 0);
-  const ChildEnd how = child_end(status);
+  const ChildEnd how = end_child(std::exchange(pid_, -1));
   const std::string why = !hung.empty() ? hung : how.well ? "ended the process" : how.words;
   const std::string where = progress.get();
-  if (where.empty()) return fail(std::string(loading_process) + " died: " + why);
-  leave_out(where, why);
-  Error again{why};
-  again.key = preparing;
-  return fail(again);
+  Error error{where.empty() ? std::string(loading_process) + " died: " + why : why};
+  error.key = where.empty() ? died : preparing;
+  // Who dies once may have been killed, or refused memory; who hangs has cost its limit.
+  if (!where.empty() && (!hung.empty() || !suspected_.insert(where).second)) leave_out(where, why);
+  return fail(error);
 }
 
 /// Every step has a limit of its own.
 Expected<std::string> PluginHost::answer(int stream, SharedWords& progress, std::string& hung) {
   std::string last;
-  auto deadline = Clock::now() + std::chrono::duration<double>(load_seconds);
+  auto deadline = Steady::now() + std::chrono::duration<double>(load_seconds);
   while (!is_ready(stream)) {
     pass_on_prints();
     if (wish_.stopped != nullptr && wish_.stopped()) hung = "stopped";
     const std::string now = progress.get();
     const double limit = now.starts_with(preparing) ? prepare_seconds : load_seconds;
-    if (now != last) deadline = Clock::now() + std::chrono::duration<double>(limit);
+    if (now != last) deadline = Steady::now() + std::chrono::duration<double>(limit);
     last = now;
-    if (Clock::now() > deadline)
+    if (Steady::now() > deadline)
       hung = "no answer within " + std::to_string(static_cast<int>(limit)) + " s";
     if (!hung.empty()) return fail(hung);
   }
@@ -195,13 +178,18 @@ Expected<pid_t> PluginHost::make_process(Handle stream, const SharedWords& stage
     const bool sent = send_descriptors(control_.get(), 'w', {stream.get(), stage.descriptor()});
     pollfd one{control_.get(), POLLIN, 0};
     const bool heard = sent && ::poll(&one, 1, static_cast<int>(1000 * answer_seconds)) > 0;
-    const auto hello = heard ? receive_descriptors(control_.get()) : fail("no answer");
+    auto hello = heard ? receive_descriptors(control_.get()) : fail("no answer");
     // The kernel says who it is: a child of ours, and not the one that loads.
     if (hello && hello->word == 'h' && hello->sender > 0 && hello->sender != pid_) {
       siginfo_t info{};
       if (::waitid(P_PID, static_cast<id_t>(hello->sender), &info, WEXITED | WNOHANG | WNOWAIT) ==
-          0)
+          0) {
+        deaths_ = 0;
+        if (hello->descriptors.size() == 1)
+          last_words_.push_back({hello->sender, std::move(hello->descriptors.front()),
+                                 SharedWords(::fcntl(stage.descriptor(), F_DUPFD_CLOEXEC, 3))});
         return hello->sender;
+      }
     }
     end();
   }
@@ -209,16 +197,27 @@ Expected<pid_t> PluginHost::make_process(Handle stream, const SharedWords& stage
 }
 
 void PluginHost::pass_on_prints() {
-  std::array<char, 4096> part{};
-  for (ssize_t n = 0; prints_ && (n = ::read(prints_.get(), part.data(), part.size())) > 0;) {
-    if (printed_ == 0) std::cerr << "a plugin prints: ";
-    const std::size_t room = most_prints - std::min(printed_, most_prints);
-    std::cerr.write(part.data(), std::min<ssize_t>(n, static_cast<ssize_t>(room)));
-    const bool was_full = room == 0;
-    printed_ += static_cast<std::size_t>(n);
-    if (!was_full && printed_ >= most_prints)
-      std::cerr << "\nplugins print more than " << most_prints << " bytes: the rest is dropped\n";
+  if (prints_) say(take_all(prints_.get()));
+  const auto has_died = [](const LastWords& one) {
+    siginfo_t info{};
+    return ::waitid(P_PID, static_cast<id_t>(one.pid), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+           info.si_pid == one.pid;
+  };
+  for (std::size_t i = last_words_.size(); i-- > 0;) {
+    const LastWords& one = last_words_[i];
+    if (!has_died(one)) continue;
+    const std::string text = take_all(one.reading.get());
+    if (!text.empty()) say(printed_by(one.stage.valid() ? one.stage.get() : "", text));
+    last_words_.erase(last_words_.begin() + static_cast<std::ptrdiff_t>(i));
   }
+}
+
+void PluginHost::say(std::string_view text) {
+  const std::size_t room = most_prints - std::min(printed_, most_prints);
+  std::cerr << text.substr(0, room);
+  printed_ += text.size();
+  if (room > 0 && printed_ >= most_prints)
+    std::cerr << "\nplugins print more than " << most_prints << " bytes: the rest is dropped\n";
 }
 
 // ---- in the process that loads plugins
@@ -247,12 +246,14 @@ bool is_prepared(const Output& output, const Templates& templates) {
 
 }  // namespace
 
-Plugins& PluginHost::load_all(SharedWords& progress, std::vector<std::string>& said) const {
+Plugins& PluginHost::load_all(SharedWords& progress, std::vector<std::string>& said,
+                              Prints& prints) const {
   auto* plugins = new Plugins;  // never unloaded
   for (const fs::path& path : plugins->files_in(wish_.folders)) {
     progress.set(path.string());
     const auto known = refused_.find(path);
     plugins->load_file(path, known == refused_.end() ? "" : known->second);
+    prints.pass_on("plugin " + path.filename().string());
     if (const std::string changed = restore_process_state(); !changed.empty())
       said.push_back("plugin " + path.filename().string() + " changed " + changed +
                      " of the process while it was loaded; put right again");
@@ -265,6 +266,7 @@ Plugins& PluginHost::load_all(SharedWords& progress, std::vector<std::string>& s
     if (!is_prepared(output, wish_.context.templates) &&
         !is_prepared(output, wish_.context.templates))
       said.push_back("output " + output.info.name + " could not prepare: it threw an exception");
+    prints.pass_on("output " + output.info.name);
     restore_process_state();
   }
   progress.set("");
@@ -273,8 +275,10 @@ Plugins& PluginHost::load_all(SharedWords& progress, std::vector<std::string>& s
 
 void PluginHost::serve(int control, int catalogue, int prints, SharedWords& progress) noexcept {
   settle_child();
-  take_prints(prints);
-  std::vector<int> kept{control, catalogue, progress.descriptor()};
+  take_input();
+  Prints own(prints);
+  if (!own.valid()) ::_exit(1);
+  std::vector<int> kept{control, catalogue, progress.descriptor(), prints, own.reading()};
   std::sort(kept.begin(), kept.end());
   close_others(kept);
   forget_environment();
@@ -286,17 +290,17 @@ void PluginHost::serve(int control, int catalogue, int prints, SharedWords& prog
   if (wish_.confine && ready.refused.empty()) ready.refused = check_secrets();
   if (ready.refused.empty()) {
     keep_process_state();
-    wish_.context.plugins = &load_all(progress, ready.said);
+    wish_.context.plugins = &load_all(progress, ready.said, own);
     ready.catalogue = wish_.context.plugins->catalogue();
     if (wish_.confine) ready.refused = confine_files();
   }
   if (!write_text(catalogue, wire::pack(ready.catalogue, ready.said, ready.refused))) ::_exit(0);
   ::close(catalogue);
-  while (ready.refused.empty()) make_sibling(control);
+  while (ready.refused.empty()) make_sibling(control, prints);
   ::_exit(0);
 }
 
-void PluginHost::make_sibling(int control) noexcept {
+void PluginHost::make_sibling(int control, int prints) noexcept {
   auto asked = receive_descriptors(control);
   if (!asked) ::_exit(0);  // the main process has gone
   if (asked->descriptors.size() != 2) return;
@@ -307,14 +311,18 @@ void PluginHost::make_sibling(int control) noexcept {
   settle_child();
   SharedWords stage(asked->descriptors[1].release());
   const int stream = asked->descriptors[0].get();
-  if (!stage.valid() || !send_descriptors(control, 'h', {})) ::_exit(0);
-  close_others({stream});
+  Prints own(prints);
+  if (!stage.valid() || !own.valid() || !send_descriptors(control, 'h', {own.reading()}))
+    ::_exit(0);
+  std::vector<int> kept{stream, prints, own.reading()};
+  std::sort(kept.begin(), kept.end());
+  close_others(kept);
   limit_memory(wish_.context.site.limits.memory_MB);
   if (const std::string why = wish_.confine ? confine_computing() : ""; !why.empty()) {
     stage.set("confining the process: " + why);
     ::_exit(1);
   }
-  evaluate_for(stream, wish_.context, stage);
+  evaluate_for(stream, wish_.context, stage, own);
   ::_exit(0);
 }
 

@@ -5,11 +5,13 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "channel.h"
 #include "nonio/host/evaluate.h"
+#include "prints.h"
 #include "worker.h"
 
 namespace nonio::host {
@@ -53,8 +55,10 @@ class PluginHost {
  private:
   Expected<Catalogue> load_once();
   [[noreturn]] void serve(int control, int catalogue, int prints, SharedWords& progress) noexcept;
-  Plugins& load_all(SharedWords& progress, std::vector<std::string>& said) const;
-  void make_sibling(int control) noexcept;
+  Plugins& load_all(SharedWords& progress, std::vector<std::string>& said, Prints& prints) const;
+  /// With a limit for all plugins together.
+  void say(std::string_view text);
+  void make_sibling(int control, int prints) noexcept;
   std::string check_secrets() const;
   Expected<std::string> answer(int stream, SharedWords& progress, std::string& hung);
   void leave_out(const std::string& progress, const std::string& why);
@@ -64,11 +68,19 @@ class PluginHost {
   std::vector<std::string> notes_;
   std::map<std::filesystem::path, std::string> refused_;  ///< and why
   std::map<std::string, std::string> unprepared_;         ///< outputs, and why
+  std::set<std::string> suspected_;                       ///< where it died once
   std::vector<pid_t> children_before_;
   pid_t pid_ = -1;
   Handle control_, prints_;
+  /// What a process that evaluates has printed and not passed on when it died.
+  struct LastWords {
+    pid_t pid;
+    Handle reading;
+    SharedWords stage;
+  };
+  std::vector<LastWords> last_words_;
   std::size_t printed_ = 0;
-  int deaths_ = 0;
+  int deaths_ = 0;  ///< since a process was made
 };
 
 }  // namespace nonio::host

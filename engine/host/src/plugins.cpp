@@ -8,6 +8,7 @@
 #include <cstring>
 #include <iostream>
 #include <span>
+#include <variant>
 
 #include "apart.h"
 #include "child.h"
@@ -150,6 +151,52 @@ std::vector<Plugin> named(std::vector<Catalogue::Described> all) {
 
 }  // namespace
 
+namespace {
+
+/// What a file registers: it is taken whole or not at all.
+class Offered final : public Registry {
+ public:
+  void add(Reader reader) override { take("reader", std::move(reader)); }
+  void add(Effect effect) override { take("effect", std::move(effect)); }
+  void add(Analysis analysis) override { take("analysis", std::move(analysis)); }
+  void add(Output output) override { take("output", std::move(output)); }
+
+  /// The first of them without a function that it cannot do without; empty: none.
+  const std::string& incomplete() const { return incomplete_; }
+  void give_to(Registry& registry) {
+    for (auto& one : all_) std::visit([&](auto& plugin) { registry.add(std::move(plugin)); }, one);
+  }
+
+ private:
+  static const char* missing(const Reader& r) {
+    return !r.recognises ? "recognises" : !r.reads ? "reads" : !r.read ? "read" : "";
+  }
+  static const char* missing(const Effect& e) {
+    return !e.applies ? "applies" : !e.columns ? "columns" : "";
+  }
+  static const char* missing(const Analysis& a) {
+    if (a.analyse_campaign && !a.applies) return "";
+    return !a.applies ? "applies" : !a.analyse ? "analyse" : "";
+  }
+  static const char* missing(const Output& o) {
+    return !o.applies ? "applies" : !o.write ? "write" : "";
+  }
+
+  template <class Plugin>
+  void take(const char* kind, Plugin plugin) {
+    const std::string function = missing(plugin);
+    if (incomplete_.empty() && !function.empty())
+      incomplete_ = std::string("registers the ") + kind + " " + plugin.info.name + " without `" +
+                    function + "`, a function that every " + kind + " has";
+    all_.emplace_back(std::move(plugin));
+  }
+
+  std::vector<std::variant<Reader, Effect, Analysis, Output>> all_;
+  std::string incomplete_;
+};
+
+}  // namespace
+
 Plugins::Plugins(Catalogue c)
     : files_(std::move(c.files)),
       conflicts_(std::move(c.conflicts)),
@@ -192,11 +239,18 @@ std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
 void Plugins::load(const std::vector<fs::path>& folders) {
   step_aside();
   const std::vector<fs::path> paths = files_in(folders);
-  std::vector<std::string> refusals = probe(paths);
-  for (std::size_t i = 0; i < paths.size(); ++i)
+  std::vector<fs::path> strange;
+  std::copy_if(paths.begin(), paths.end(), std::back_inserter(strange), must_be_tried);
+  std::vector<std::string> refusals = probe(strange);
+  for (std::size_t i = 0; i < strange.size(); ++i)
     if (!refusals[i].empty() && !refusals[i].starts_with("did not survive"))
-      refusals[i] = probe(std::span(paths).subspan(i, 1)).front();
-  for (std::size_t i = 0; i < paths.size(); ++i) load_file(paths[i], refusals[i]);
+      refusals[i] = probe(std::span(strange).subspan(i, 1)).front();
+  const LoadingUntried loading;
+  std::size_t tried = 0;
+  for (const fs::path& path : paths) {
+    const bool is_strange = tried < strange.size() && strange[tried] == path;
+    load_file(path, is_strange ? refusals[tried++] : "");
+  }
 }
 
 void Plugins::load_file(const fs::path& path, const std::string& refusal) {
@@ -208,10 +262,10 @@ void Plugins::load_file(const fs::path& path, const std::string& refusal) {
   try {
     auto entry = open_entry(path);
     if (!entry) entry = open_entry(path);  // what fails for a moment only would make another night
-    if (entry)
-      (*entry)->add_to(*this);
-    else
-      file.refused = entry.error().message;
+    Offered offered;
+    if (entry) (*entry)->add_to(offered);
+    file.refused = entry ? offered.incomplete() : entry.error().message;
+    if (file.refused.empty()) offered.give_to(*this);
   } catch (const std::bad_alloc&) {
     file.refused = out_of_memory;
   } catch (const std::exception& e) {

@@ -12,14 +12,12 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <functional>
 #include <iostream>
-#include <thread>
 #include <utility>
 
 #include "channel.h"
@@ -163,15 +161,8 @@ Signer::~Signer() {
   end_process();
 }
 
-/// One that waits for a disk in the kernel is left behind.
 void Signer::end_process() {
-  using Clock = std::chrono::steady_clock;
-  if (pid_ < 0) return;
-  ::kill(pid_, SIGKILL);
-  const auto patience = Clock::now() + std::chrono::seconds(2);
-  while (::waitpid(pid_, nullptr, WNOHANG) == 0 && Clock::now() < patience)
-    std::this_thread::sleep_for(std::chrono::microseconds(200));
-  pid_ = -1;
+  if (pid_ >= 0) end_child(std::exchange(pid_, -1));
 }
 
 Expected<void> Signer::fork_process() {
@@ -185,6 +176,7 @@ Expected<void> Signer::fork_process() {
 
 void Signer::serve() const noexcept {
   settle_child();
+  keep_silent();
   ::prctl(PR_SET_DUMPABLE, 0);  // nobody may look into its memory
   ::close(to_);
   constexpr int most_deaths = 5;

@@ -127,6 +127,10 @@ Expected<std::vector<double>> shape_of(const EffectSpec& e, const Observations& 
     }
     const Effect::Shape& searched = e.effect.shapes[k];
     const std::vector<double> grid = searched.grid(o, e.axis);
+    if (grid.size() != 1 && searched.usual) {
+      shape.push_back(*searched.usual);
+      continue;
+    }
     if (grid.size() != 1)
       return fail("effect." + key_of(searched.parameter, e.axis.rotary) +
                   " is missing: " + searched.parameter.help + " of " + e.name);

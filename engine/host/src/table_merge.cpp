@@ -63,6 +63,9 @@ Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh
     if (!there || d.largest > nothing)
       return fail("the control would not read the new table of " + axis +
                   " back from the merged file; nothing was written");
+    if (d.present->backlash && d.next->backlash != d.present->backlash)
+      return fail("the files of the backup hold another backlash value of " + axis +
+                  " than the new table needs; nothing was written");
   }
   return there ? Expected<void>{} : fail("the merged file holds no table of " + axis);
 }

@@ -50,6 +50,9 @@ std::string unsound(const Observations& o) {
   }
   if (!std::all_of(o.u.begin(), o.u.end(), [](double u) { return finite(u) && u > 0.0; }))
     return "an uncertainty of a reading that is not a number above 0";
+  for (const Finding& doubt : o.doubts)
+    if (!doubt.attention || !doubt.id.starts_with("plausibility."))
+      return "the doubt " + doubt.id + "; wanted findings plausibility.* of attention";
   return unsound_lines(o);
 }
 

@@ -4,16 +4,13 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/mman.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <iostream>
 #include <new>
-#include <thread>
 #include <utility>
 
 namespace nonio::host {
@@ -60,6 +57,7 @@ class Outbox {
 [[noreturn]] void do_task(const Watched::Task& task, int channel, double memory_MB,
                           SignsOfLife& signs) noexcept {
   settle_child();
+  keep_silent();
   if (memory_MB > 0.0) limit_memory(memory_MB);
   Outbox outbox(channel);
   try {
@@ -195,16 +193,7 @@ bool Watched::is_silent(double seconds) {
 
 ChildEnd Watched::end() {
   if (pid_ < 0) return {};
-  ::kill(-pid_, SIGKILL);
-  ::kill(pid_, SIGKILL);
-  // What waits for a disk without a way to interrupt it ends when the disk answers, not now.
-  const auto patience = Clock::now() + std::chrono::seconds(2);
-  int status = 0;
-  pid_t gone = 0;
-  while ((gone = ::waitpid(pid_, &status, WNOHANG)) == 0 && Clock::now() < patience)
-    std::this_thread::sleep_for(std::chrono::microseconds(200));
-  pid_ = -1;
-  return gone > 0 ? child_end(status) : ChildEnd{false, "hangs in the kernel"};
+  return end_child(std::exchange(pid_, -1));
 }
 
 std::string no_answer(double seconds) {

@@ -144,7 +144,7 @@ class Reader {
     bool there = false;
     get(there);
     value.reset();
-    if (there) get(value.emplace());
+    if (there) get(value.emplace(T{}));
   }
   template <class A, class B>
   void get(std::pair<A, B>& both) {
@@ -213,16 +213,19 @@ NONIO_ON_THE_WIRE(FileChange, a, b, c)
 NONIO_ON_THE_WIRE(Issue, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
 NONIO_ON_THE_WIRE(Conformity, a, b, c, d, e, f, g, h)
 NONIO_ON_THE_WIRE(ModelFit::Parameter, a, b, c, d, e, f)
-NONIO_ON_THE_WIRE(ModelFit::Effect, a, b, c)
+NONIO_ON_THE_WIRE(ModelFit::Curve, a, b, c, d, e)
+NONIO_ON_THE_WIRE(ModelFit::Effect, a, b, c, d)
+NONIO_ON_THE_WIRE(ModelFit::Without, a, b, c, d)
+NONIO_ON_THE_WIRE(ModelFit::Candidate, a, b, c, d, e, f, g, h)
 NONIO_ON_THE_WIRE(ModelFit::Step, a, b, c)
 NONIO_ON_THE_WIRE(ModelFit::Suspect, a, b)
 NONIO_ON_THE_WIRE(ModelFit, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x,
-                  y)
+                  y, z, aa, bb, cc)
 NONIO_ON_THE_WIRE(Results::Analysed, a, b, c, d)
 NONIO_ON_THE_WIRE(Results::Written, a, b, c)
 NONIO_ON_THE_WIRE(Results, a, b, c, d, e, f)
 
-NONIO_ON_THE_WIRE(Axis, a, b, c, d, e, f, g, h, i, j)
+NONIO_ON_THE_WIRE(Axis, a, b, c, d, e, f, g, h, i, j, k)
 NONIO_ON_THE_WIRE(Machine, a, b, c, d, e, f, g, h, i)
 NONIO_ON_THE_WIRE(Instrument, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
 NONIO_ON_THE_WIRE(Sensor, a, b, c, d, e, f, g, h)

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <iostream>
 #include <utility>
@@ -29,6 +28,7 @@ struct Message {
 [[noreturn]] void serve(const Worker::Task& task, int channel, double memory_MB,
                         SharedWords& stage) noexcept {
   settle_child();
+  keep_silent();
   limit_memory(memory_MB);
   const std::size_t at_start = memory_held();
   bool first = true;
@@ -182,11 +182,7 @@ namespace {
 /// A process that closed its channel by ending keeps the status it ended with.
 ChildEnd end_group(pid_t& pid) {
   if (pid < 0) return {true, {}};
-  int status = 0;
-  ::kill(-pid, SIGKILL);
-  ::kill(pid, SIGKILL);
-  ::waitpid(std::exchange(pid, -1), &status, 0);
-  return child_end(status);
+  return end_child(std::exchange(pid, -1));
 }
 
 }  // namespace

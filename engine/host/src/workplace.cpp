@@ -31,7 +31,7 @@ fs::path site_of(const fs::path& campaign) {
 Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
                                                     const std::vector<fs::path>& plugin_folders,
                                                     const std::vector<fs::path>& template_folders,
-                                                    const std::string& version) {
+                                                    const std::string& version, TemplatesFor what) {
   std::error_code error;
   if (!fs::is_directory(campaign, error))
     return fail("there is no folder " + campaign.string() + "; wanted the folder of a campaign");
@@ -50,7 +50,8 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   context.machines = std::move(*machines);
   const auto folders = with_site_templates(template_folders, site);
   if (!folders) return fail(folders.error());
-  auto templates = read_templates(*folders, context.templates_sha256);
+  auto templates = read_templates(*folders, context.templates_sha256, nullptr, {},
+                                  what == TemplatesFor::documents ? "" : "words/en/");
   if (!templates) return fail(templates.error());
   context.templates = std::move(*templates);
   if (context.site.signing) hide_from_plugins(secret_files(*context.site.signing, site));

@@ -105,6 +105,11 @@ AxisTest choose_targets(const AxisTest& test, bool leave_out, std::vector<Findin
   const std::string done = leave_out ? "-left-out" : "";
   say(("targets.unpaired" + done).c_str(), incomplete.unpaired);
   say(("readings.too-few" + done).c_str(), incomplete.single);
+  if (leave_out)
+    findings.push_back(FindingBuilder("plan.targets-left-out", false, test.rotary)
+                           .count("evaluated", static_cast<double>(kept.size()))
+                           .count("targets", static_cast<double>(test.targets.size()))
+                           .done());
   return leave_out ? test.only(kept) : test;
 }
 

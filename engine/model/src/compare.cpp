@@ -183,12 +183,16 @@ Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
 
 std::vector<Place> seats_in(const Part& part, const Repeats& repeats,
                             const Comparison& comparison) {
+  constexpr double least_share = 0.02;
   const Fit& fit = comparison.fit;
   const Whitening white(part.table, fit.weight, Whitening::of_repeats(fit.noise));
   const MatrixXd basis = basis_of(part.table, fit.terms, white);
   const VectorXd residual = white_residual(fit, white);
-  return seats_of({part, repeats, white, residual, basis, static_cast<double>(fit.redundancy),
-                   comparison.floor});
+  auto seats = seats_of({part, repeats, white, residual, basis,
+                         static_cast<double>(fit.redundancy), comparison.floor});
+  for (Place& seat : seats) seat.together = seat.where.find(" x ") != std::string::npos;
+  std::erase_if(seats, [](const Place& place) { return !(place.share >= least_share); });
+  return seats;
 }
 
 std::vector<char> searched_in(const std::vector<Term>& terms) {
@@ -220,10 +224,16 @@ Expected<Comparison> compare(const Part& part, const std::vector<Term>& model) {
   if (part.table.size() == 0) return fail("there are no readings of an axis to compare with");
   const Repeats repeats(part.table);
   auto out = compare_without(part, model, repeats, suspects_of(part.table, repeats, model));
-  if (!out || part.table.size() <= thin_beyond || !can_be_thinned(part.table)) return out;
+  if (!out) return out;
+  if (part.table.size() <= thin_beyond || !can_be_thinned(part.table)) {
+    if (out->fails()) out->seats = seats_in(part, repeats, *out);
+    return out;
+  }
   const Part thin = thinned(part, out->fit.weight);
-  auto of_means = compare_without(thin, out->fit.terms, Repeats(thin.table), {});
+  const Repeats of_thin(thin.table);
+  auto of_means = compare_without(thin, out->fit.terms, of_thin, {});
   if (!of_means) return fail(of_means.error());
+  if (of_means->fails()) out->seats = seats_in(thin, of_thin, *of_means);
   out->places = std::move(of_means->places);
   out->means = thin.table.size();
   return out;

@@ -92,6 +92,17 @@ std::vector<std::vector<double>> shapes_of(const Observations& o, const Term& te
   return all;
 }
 
+bool is_usual(const Term& term, const std::vector<double>& shape, std::size_t k) {
+  const auto& usual = term.effect->shapes[k].usual;
+  return usual && shape[k] == *usual;
+}
+
+bool are_usual(const Term& term, const std::vector<double>& shape) {
+  for (std::size_t k = 0; k < shape.size(); ++k)
+    if (term.effect->shapes[k].usual && !is_usual(term, shape, k)) return false;
+  return true;
+}
+
 std::vector<double> stated_u(const Observations& o) {
   std::vector<double> u = o.u;
   const auto stated = [](double one) { return std::isfinite(one) && one > 0.0; };

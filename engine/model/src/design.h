@@ -41,6 +41,11 @@ Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vect
 /// that the term has already is kept. Empty if the readings cannot show the effect.
 std::vector<std::vector<double>> shapes_of(const Observations& o, const Term& term);
 
+/// Whether a shape of a term has the value that needs no evidence; whether all that have such a
+/// value have it.
+bool is_usual(const Term& term, const std::vector<double>& shape, std::size_t k);
+bool are_usual(const Term& term, const std::vector<double>& shape);
+
 /// Uncertainties of the readings as their readers stated them; a reading without one counts as one
 /// of mean uncertainty. Empty where none was stated.
 std::vector<double> stated_u(const Observations& o);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/model/explain.h"
 
+#include "beside.h"
 #include "candidates.h"
 #include "compare.h"
-#include "describe.h"
 #include "finding.h"
 #include "thin.h"
 #include "verdict.h"
@@ -23,7 +23,9 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
       out.together.push_back(c.term.name());
   out.best_rms = finding->of_best.fit.rms;
   judge(*finding, out);
-  if (out.verdict.kind == Verdict::Kind::unknown) out.descriptions = described(*finding);
+  if (out.verdict.kind == Verdict::Kind::unknown) describe(*finding, catalogue, out);
+  if (finding->of_model.fails())
+    finding->of_model.seats = seats_in(part, finding->repeats, finding->of_model);
   out.comparison = std::move(finding->of_model);
   return out;
 }
@@ -40,6 +42,7 @@ Expected<Explanation> explain_on_means(const Part& part, const std::vector<Term>
   auto whole = compare_without(part, out->comparison.fit.terms, repeats, std::move(suspects));
   if (!whole) return fail(whole.error());
   whole->places = std::move(out->comparison.places);
+  whole->seats = std::move(out->comparison.seats);
   whole->means = thin.table.size();
   out->comparison = std::move(*whole);
   out->verdict.suspects_share =

@@ -16,8 +16,6 @@ namespace {
 
 using State = Workbench::State;
 
-constexpr double least_rms = 0.2;  // of the noise: smaller effects are not worth a name
-
 class Finder {
  public:
   Finder(const Part& part, const std::vector<Term>& model, const std::vector<Term>& catalogue,
@@ -31,6 +29,7 @@ class Finder {
 
   Expected<Finding> run() {
     f_.suspects = suspects_of(f_.part.table, f_.repeats, model_);
+    if (auto alone = suspect_without_repeats(); !alone.empty()) f_.suspects = std::move(alone);
     for (int round = 0; round < 3; ++round) {
       if (auto searched = search(); !searched) return fail(searched.error());
       if (!suspect_again()) break;
@@ -54,12 +53,32 @@ class Finder {
     f_.start = std::move(*start);
     f_.best = best_explanation(*f_.bench, f_.start);
     // What lies between the values of a grid would be taken for an effect of its own.
-    const bool finer = add_refined(f_.start);
-    if (add_refined(f_.best) || finer) {
+    constexpr double worth_another_round = 1.0;
+    for (int round = 0; round < 3; ++round) {
+      const bool finer = add_refined(f_.start), alone = round == 0 && add_refined_alone();
+      if (!add_refined(f_.best) && !finer && !alone) break;
+      const double before = f_.best.criterion;
       f_.start = f_.bench->settled(std::move(f_.start));
       f_.best = best_explanation(*f_.bench, f_.start);
+      if (!(f_.best.criterion < before - worth_another_round)) break;
     }
     return {};
+  }
+
+  /// Each effect of the best explanation alone beside the model: what a coarse grid leaves of a
+  /// large one is not to be fitted by others.
+  bool add_refined_alone() {
+    bool any = false;
+    const State best = f_.best;
+    for (const std::size_t b : best.blocks) {
+      const std::size_t e = f_.bench->effect_of(b);
+      if (e < f_.in_model || f_.bench->blocks()[b].searched == 0) continue;
+      const State alone = f_.bench->with(f_.start, f_.bench->gains(f_.start, e), e);
+      if (alone.blocks.size() == f_.start.blocks.size()) continue;
+      any = add_fitted(alone, terms_of_state(alone)) || any;
+      any = add_moved(alone) || any;
+    }
+    return any;
   }
 
   /// Instants and periods of a model hold each other fast: tried from two sides. A curve that comes
@@ -111,18 +130,106 @@ class Finder {
 
   /// Shapes of a state between the values of their grids, as values of the grids.
   bool add_refined(const State& state) {
-    const std::vector<Term> coarse = terms_of_state(state);
-    const std::vector<char> searched = flags(state, true);
-    const auto fitted = fit_near(f_.part.table, coarse, searched, f_.weight, f_.noise);
+    bool any = add_fitted(state, terms_of_state(state));
+    any = add_moved(state) || any;
+    // Another effect may stand for what such a value leaves.
+    for (const std::size_t b : state.blocks)
+      if (const std::size_t e = f_.bench->effect_of(b); e >= f_.in_model)
+        any = add_without(state, e) || any;
+    return any;
+  }
+
+  bool add_without(const State& state, std::size_t effect) {
+    const State rest = f_.bench->settled(f_.bench->without(state, effect));
+    const auto free = [&](std::size_t b) {
+      const auto& shapes = f_.terms[f_.bench->effect_of(b)].effect->shapes;
+      return std::any_of(shapes.begin(), shapes.end(),
+                         [](const Effect::Shape& shape) { return shape.usual.has_value(); });
+    };
+    if (std::none_of(rest.blocks.begin(), rest.blocks.end(), free)) return false;
+    const bool any = add_fitted(rest, terms_of_state(rest));
+    return add_moved(rest) || any;
+  }
+
+  /// A usual value stays where it is, unless it is moved a little: perhaps it is not the best.
+  bool add_moved(const State& state) {
+    std::vector<Term> moved = terms_of_state(state);
+    bool usual = false;
+    for (Term& term : moved)
+      for (std::size_t k = 0; k < term.shape.size(); ++k) {
+        const auto grid = term.effect->shapes[k].grid(f_.part.table, term.axis);
+        if (!is_usual(term, term.shape, k) || grid.size() < 2) continue;
+        term.shape[k] += 1e-6 * (grid.back() - grid.front());
+        usual = true;
+      }
+    return usual && add_fitted(state, moved);
+  }
+
+  bool add_fitted(const State& state, const std::vector<Term>& terms) {
+    const auto fitted = fit_near(f_.part.table, terms, flags(state, true), f_.weight, f_.noise);
     if (!fitted) return false;
     bool any = false;
-    for (std::size_t t = 0; t < coarse.size(); ++t) {
-      if (fitted->terms[t].shape == coarse[t].shape) continue;
-      f_.bench->add_shape(f_.part.table, f_.bench->effect_of(state.blocks[t]),
-                          fitted->terms[t].shape);
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      const Workbench::Block& block = f_.bench->blocks()[state.blocks[t]];
+      if (fitted->terms[t].shape == block.shape) continue;
+      f_.bench->add_shape(f_.part.table, block.effect, fitted->terms[t].shape);
       any = true;
     }
     return any;
+  }
+
+  /// Few readings without repeats: a misread value bends every effect. So each is left out in turn,
+  /// and the best explanation of the others predicts it.
+  std::vector<Suspect> suspect_without_repeats() {
+    constexpr std::size_t fewest = 8, most = 40;
+    const std::size_t n = f_.part.table.size();
+    const auto repeated = saturate(f_.repeats, f_.part.table.deviation, {});
+    if (n < fewest || n > most || repeated.dof >= 3.0 || f_.part.table.axes.size() > 1) return {};
+    f_.suspects.clear();
+    if (!search()) return {};
+    const double all = f_.best.criterion;
+    Suspect worst;
+    double least = all;
+    std::vector<std::pair<double, std::vector<Term>>> each{{all, terms_of_state(f_.best)}};
+    const double price = 3.0 * std::log(static_cast<double>(n));  // a value, and which of n
+    for (std::size_t i = 0; i < n; ++i) {
+      f_.suspects = {{i, 0.0, 0.0, 0.0}};
+      if (!search()) continue;
+      // As of all readings: a criterion of fewer has another unit.
+      const double used = f_.bench->readings();
+      const double criterion = f_.best.criterion + price +
+                               (static_cast<double>(n) - used) * std::log(f_.best.squares / used);
+      if (!(criterion < least + alias_evidence)) continue;
+      const auto s = predicted(i);
+      if (!s) continue;
+      each.emplace_back(criterion, terms_of_state(f_.best));
+      if (criterion < least) least = criterion, worst = *s;
+    }
+    f_.suspects.clear();
+    for (const auto& one : each)
+      for (const Term& term : one.second)
+        if (one.first < least + alias_evidence) f_.otherwise.push_back(term.name());
+    return least < all ? std::vector<Suspect>{worst} : std::vector<Suspect>{};
+  }
+
+  /// A reading of weight 0 against what the best explanation of the others says of it: none if it
+  /// is as far away as one of so many may be.
+  std::optional<Suspect> predicted(std::size_t row) const {
+    constexpr double rarely = 0.01;
+    const MatrixXd basis = f_.bench->basis(f_.best);
+    const double dof = f_.dof(f_.best), n = f_.bench->readings() + 1.0;
+    const auto fitted = fit_near(f_.part.table, terms_of_state(f_.best), flags(false), f_.weight);
+    if (!fitted || !(dof >= 3.0) || !(f_.best.squares > 0.0)) return {};
+    // Leverage of a row outside: no more than the largest within, at best a guess.
+    double leverage = 1.0 / n;
+    for (Index i = 0; i < basis.rows(); ++i)
+      leverage = std::max(leverage, 1.0 / n + basis.row(i).squaredNorm());
+    const double sigma = f_.left() * std::sqrt(1.0 + leverage);
+    const double e = fitted->residual[row];
+    if (math::t_two_sided(e / sigma, dof) * n > rarely) return {};
+    double least = 3.0;
+    while (math::t_two_sided(least, dof) * n > rarely) least += 0.05;
+    return Suspect{row, e, e / sigma, least * sigma};
   }
 
   /// Whether the best explanation suspects other readings than before.

@@ -12,6 +12,9 @@
 
 namespace nonio::model {
 
+inline constexpr double alias_evidence = 6.0;  ///< 2 ln 20: one twentieth is no difference
+inline constexpr double least_rms = 0.2;  ///< of the noise: smaller effects are not worth a name
+
 /// What the search over all sets of effects has found in one part: candidates and the verdict are
 /// read off it.
 struct Finding {
@@ -25,6 +28,9 @@ struct Finding {
   std::vector<double> weight{};  ///< of each reading: 0 for suspects
   Noise noise{};                 ///< as the repeats show it
   std::optional<Workbench> bench{};
+  /// Few readings without repeats: effects that with another reading suspected, or none, are nearly
+  /// as good an explanation.
+  std::vector<std::string> otherwise{};
   Workbench::State start{}, best{};  ///< the model; with what the best explanation adds
   Chance chance{};                   ///< what noise finds in this search
   Comparison of_model{}, of_best{};  ///< fits of both

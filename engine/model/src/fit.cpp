@@ -150,9 +150,11 @@ class SquaresOf {
 void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std::size_t k,
             const Whitening& white, const VectorXd& y) {
   const std::vector<double> grid = terms[t].effect->shapes[k].grid(o, terms[t].axis);
+  if (grid.empty() || is_usual(terms[t], terms[t].shape, k)) return;
   double& value = terms[t].shape[k];
-  const auto above = std::upper_bound(grid.begin(), grid.end(), value * (1.0 + 1e-12));
-  const auto below = std::lower_bound(grid.begin(), grid.end(), value * (1.0 - 1e-12));
+  const double same = 1e-12 * std::max(std::fabs(value), grid.back() - grid.front());
+  const auto above = std::upper_bound(grid.begin(), grid.end(), value + same);
+  const auto below = std::lower_bound(grid.begin(), grid.end(), value - same);
   double low = below == grid.begin() ? value : *std::prev(below);
   double high = above == grid.end() ? value : *above;
   if (!(low < high)) return;
@@ -165,7 +167,8 @@ void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std:
   const double start = value, squares = at(start);
   double a = high - golden * (high - low), b = low + golden * (high - low);
   double fa = at(a), fb = at(b);
-  for (int step = 0; step < 40 && high - low > 1e-7 * std::fabs(high); ++step) {
+  const double fine = 1e-7 * std::max(std::fabs(low), std::fabs(high));
+  for (int step = 0; step < 40 && high - low > fine; ++step) {
     if (fa < fb) {
       high = b, b = a, fb = fa, a = high - golden * (high - low), fa = at(a);
     } else {
@@ -193,16 +196,38 @@ void refine_shapes(const Observations& o, std::vector<Term>& terms,
   for (std::size_t t = 0; t < terms.size(); ++t)
     for (const Effect::Shape& shape : terms[t].effect->shapes)
       continuous += searched[t] && shape.continuous;
-  for (std::size_t round = 0; round < (continuous > 1 ? 2U : 1U); ++round)
+  // One after the other; shapes of a large effect that go along with each other want more rounds.
+  constexpr std::size_t fewest = 2, most = 8;
+  constexpr double still_better = 1e-3;
+  double before = std::numeric_limits<double>::infinity();
+  for (std::size_t round = 0; round < (continuous > 1 ? most : 1U); ++round) {
     for (std::size_t t = 0; t < terms.size(); ++t)
       for (std::size_t k = 0; searched[t] && k < terms[t].shape.size(); ++k)
         if (terms[t].effect->shapes[k].continuous) refine(o, terms, t, k, white, y);
+    if (continuous < 2 || round + 1 < fewest) continue;
+    const double now = squares_with(o, terms, white, y);
+    if (!(now < before * (1.0 - still_better))) break;
+    before = now;
+  }
+}
+
+/// Whether a shape is an unknown of the fit: not where it has its usual or its only value.
+bool estimated(const Observations& o, const Term& term, std::size_t k) {
+  const Effect::Shape& shape = term.effect->shapes[k];
+  if (!shape.continuous || is_usual(term, term.shape, k)) return false;
+  return !shape.usual || shape.grid(o, term.axis).size() > 1;
 }
 
 /// Derivative of a term's part by its shape k, by central differences.
 Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::size_t k,
                                 const VectorXd& linear) {
-  const double step = 1e-4 * std::max(std::fabs(term.shape[k]), 1e-12);
+  const Effect::Shape& shape = term.effect->shapes[k];
+  double size = std::max(std::fabs(term.shape[k]), 1e-12);
+  if (shape.usual) {  // may lie at 0
+    const std::vector<double> grid = shape.grid(o, term.axis);
+    if (grid.size() > 1) size = std::max(size, grid.back() - grid.front());
+  }
+  const double step = 1e-4 * size;
   std::vector<double> up = term.shape, down = term.shape;
   up[k] += step;
   down[k] -= step;
@@ -227,7 +252,7 @@ void step_shapes(const Observations& o, std::vector<Term>& terms, const std::vec
     std::vector<Term> next = terms;
     for (std::size_t t = 0; t < terms.size(); ++t)
       for (std::size_t k = 0; searched[t] && k < terms[t].shape.size(); ++k) {
-        if (!terms[t].effect->shapes[k].continuous) continue;
+        if (!estimated(o, terms[t], k)) continue;
         const Index columns = d->first[t + 1] - d->first[t];
         const auto column = shape_column(o, terms[t], k, s->x.segment(d->first[t], columns));
         if (!column) continue;
@@ -310,7 +335,7 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
     const Index k = design.first[t + 1] - design.first[t];
     for (Index i = 0; i < k; ++i) place[at++] = row++;
     for (std::size_t i = 0; i < term.shape.size(); ++i, ++at) {
-      if (!searched[t] || !term.effect->shapes[i].continuous) continue;
+      if (!searched[t] || !estimated(o, term, i)) continue;
       const auto column = shape_column(o, term, i, s.x.segment(design.first[t], k));
       if (!column || !(column->norm() > 0.0)) continue;
       design.a.conservativeResize(Eigen::NoChange, plain + extra + 1);

@@ -8,6 +8,7 @@
 #include "design.h"
 #include "lines.h"
 #include "nonio/model/explain.h"
+#include "nonio/sdk/axis_readings.h"
 
 namespace nonio::model {
 
@@ -192,6 +193,36 @@ std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects
         terms.push_back(std::move(*term));
   }
   return terms;
+}
+
+std::vector<Candidate> not_applying(const Part& part, const std::vector<Effect>& effects) {
+  std::vector<Candidate> out;
+  for (const Effect& effect : effects) {
+    if (effect.always || effect.description || !effect.why_not) continue;
+    for (const std::string& of : offered_by(part, effect)) {
+      auto term = term_of(part, effect, of);
+      if (!term || effect.applies(part.table, term->axis)) continue;
+      WhyNot why = effect.why_not(part.table, term->axis);
+      if (why.id.empty()) continue;
+      Candidate c;
+      c.term = std::move(*term);
+      c.visible = false;
+      c.why = std::move(why.id);
+      c.rows = std::move(why.rows);
+      out.push_back(std::move(c));
+    }
+  }
+  return out;
+}
+
+std::vector<std::uint32_t> interpolated_temperatures(const Part& part) {
+  std::vector<std::uint32_t> rows;
+  for (const Axis& axis : part.axes)
+    if (const auto r = readings_of(part.table, axis); r && r->temperature)
+      rows.insert(rows.end(), r->interpolated.begin(), r->interpolated.end());
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  return rows;
 }
 
 Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,

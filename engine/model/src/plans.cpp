@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "design.h"
 #include "nonio/sdk/axis_readings.h"
@@ -23,6 +24,12 @@ struct Course {  // one further measurement
   bool reversed = false;  // - sweep first
 };
 
+double last_known(const std::vector<double>& values) {
+  for (std::size_t i = values.size(); i-- > 0;)
+    if (std::isfinite(values[i])) return values[i];
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 void append(Observations& o, const Course& course, double interval) {
   auto& axis = o.axes.front();
   const std::uint32_t run = o.run.empty() ? 0 : *std::max_element(o.run.begin(), o.run.end());
@@ -39,7 +46,7 @@ void append(Observations& o, const Course& course, double interval) {
     o.run.push_back(run + static_cast<std::uint32_t>(r) + 1);
     if (!o.line.empty()) o.line.push_back(o.line.back());
     if (!o.time.empty()) o.time.push_back(t);
-    if (!o.material.empty()) o.material.push_back(o.material.back());
+    if (!o.material.empty()) o.material.push_back(last_known(o.material));
     if (!o.u.empty()) o.u.push_back(o.u.back());
   };
   std::vector<double> up = course.targets, down(up.rbegin(), up.rend());
@@ -101,6 +108,17 @@ std::vector<Further> further_runs(const Part& part, const Candidate& candidate) 
   return out;
 }
 
+/// Those that reach far enough first, at most three.
+std::vector<Plan> cheapest(std::vector<Plan> plans) {
+  std::stable_sort(plans.begin(), plans.end(), [](const Plan& a, const Plan& b) {
+    const bool a_enough = a.power >= enough, b_enough = b.power >= enough;
+    if (a_enough != b_enough) return a_enough;
+    return a_enough ? a.readings < b.readings : a.power > b.power;
+  });
+  if (plans.size() > 3) plans.resize(3);
+  return plans;
+}
+
 }  // namespace
 
 std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
@@ -129,13 +147,30 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
     }
     if (std::isfinite(plan.power)) plans.push_back(std::move(plan));
   }
-  std::stable_sort(plans.begin(), plans.end(), [](const Plan& a, const Plan& b) {
-    const bool a_enough = a.power >= enough, b_enough = b.power >= enough;
-    if (a_enough != b_enough) return a_enough;
-    return a_enough ? a.readings < b.readings : a.power > b.power;
-  });
-  if (plans.size() > 3) plans.resize(3);
-  return plans;
+  return cheapest(std::move(plans));
+}
+
+std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& model,
+                                 const std::vector<Term>& pair, const std::vector<double>& value,
+                                 double s) {
+  std::vector<Plan> plans;
+  if (pair.size() != 2 || !(s > 0.0) || part.kind != Part::Kind::axis) return plans;
+  Candidate of_axis;
+  of_axis.term = pair[0];
+  for (const Further& f : further_runs(part, of_axis)) {
+    VectorXd said = VectorXd::Zero(static_cast<Index>(f.table.size()));
+    std::size_t at = 0;
+    for (const Term& term : pair) {
+      const auto columns = columns_of(f.table, term, term.shape);
+      if (!columns || at + static_cast<std::size_t>(columns->cols()) > value.size()) return plans;
+      for (Index k = 0; k < columns->cols(); ++k) said += value[at++] * columns->col(k);
+    }
+    const double power = std::min(distance(f.table, model, said, pair[0], s),
+                                  distance(f.table, model, said, pair[1], s));
+    plans.push_back(
+        {f.id, f.table.size() - part.table.size(), power, pair[0].name(), pair[1].name(), f.of});
+  }
+  return cheapest(std::move(plans));
 }
 
 }  // namespace nonio::model

@@ -21,4 +21,10 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
                             const Candidate& candidate, const std::vector<Term>& catalogue,
                             double s);
 
+/// The same for two effects that cancel each other, with the values of their linear parameters:
+/// what they say together against what each of them can say alone.
+std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& model,
+                                 const std::vector<Term>& pair, const std::vector<double>& value,
+                                 double s);
+
 }  // namespace nonio::model

@@ -169,7 +169,6 @@ class ChanceOf {
     Added out{VectorXd::Zero(shuffles), VectorXd::Ones(shuffles),
               std::vector<char>(static_cast<std::size_t>(shuffles), 0)};
     VectorXd paid = VectorXd::Zero(shuffles);
-    const bool searched = instance.blocks.size() > 1 && !instance.term.effect->curve;
     for (const std::size_t b : instance.blocks) {
       const Workbench::Block& block = bench_.blocks()[b];
       const auto w = shuffles_.in_complete.middleCols(block.first, block.count);
@@ -178,9 +177,8 @@ class ChanceOf {
       MatrixXd t = shuffles_.products.middleCols(block.first, block.count);
       llt.matrixU().solveInPlace<Eigen::OnTheRight>(t);
       const VectorXd falls = t.rowwise().squaredNorm();
-      const double price = bench_.price(effect, block.count);
-      const double k = static_cast<double>(block.count) +
-                       (searched ? static_cast<double>(instance.term.effect->shapes.size()) : 0.0);
+      const double price = bench_.price(block);
+      const auto k = static_cast<double>(Workbench::unknowns_of(block));
       for (Index i = 0; i < shuffles; ++i) {
         if (out.fall(i) > 0.0 &&
             (price == paid(i) ? falls(i) <= out.fall(i)

@@ -9,6 +9,7 @@
 
 #include "compare.h"
 #include "noise.h"
+#include "nonio/sdk/axis_readings.h"
 #include "places.h"
 #include "plans.h"
 #include "scatter.h"
@@ -26,6 +27,8 @@ constexpr double certain_share = 0.06;
 // Far more than chance asks for: what is left beside it is no independent noise.
 constexpr double certain_evidence = 50.0;
 constexpr double most_of_one_target = 0.3;
+// Two effects whose parts run against each other like this are one thing without a name.
+constexpr double cancels_beyond = 0.95;
 
 /// Whether two places share a factor.
 bool same_factor(const std::string& a, const std::string& b) {
@@ -64,8 +67,11 @@ class Judge {
       v.kind = Verdict::Kind::unrepeatable;
       return;
     }
+    find_one_growth();
+    find_cancelling();
     list_certain(serious, walks);
-    if (!out_.together.empty() && !walks &&
+    if (!out_.together.empty() && !walks && !cancels(out_.together.front()) &&
+        !beside_cancelling(out_.together.front()) &&
         !in_doubt(out_.together.front(), serious, unexplained_share)) {
       v.kind = Verdict::Kind::missing;
       v.effect = out_.together.front();
@@ -74,8 +80,9 @@ class Judge {
       lift(v.effect);
       out_.plans = plans_for(f_.part, f_.of_model.fit.terms, out_.candidates.front(), f_.terms,
                              f_.of_best.fit.s);
-    } else if (walks || !serious.empty()) {
+    } else if (walks || !serious.empty() || !out_.cancelling.empty()) {
       v.kind = Verdict::Kind::unknown;
+      if (!out_.cancelling.empty()) plan_for_cancelling();
       if (auto seats = seats_in(f_.part, f_.repeats, f_.of_model); !seats.empty())
         out_.fails = std::move(seats);
       else if (!serious.empty())
@@ -124,7 +131,7 @@ class Judge {
     for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t)
       if (f_.of_best.fit.terms[t].name() == name) {
         const Workbench::Block& block = f_.bench->blocks()[f_.best.blocks[t]];
-        price = f_.bench->price(block.effect, block.count);
+        price = f_.bench->price(block);
         terms.push_back(f_.of_best.fit.terms[t]);
       }
     return without - criterion_beside_walk(terms) - price > certain_evidence;
@@ -147,13 +154,114 @@ class Judge {
     return false;
   }
 
+  const std::vector<double>* part_of(const std::string& name) const {
+    const Fit& fit = f_.of_best.fit;
+    for (std::size_t t = 0; t < fit.terms.size(); ++t)
+      if (fit.terms[t].name() == name) return &fit.part[t];
+    return nullptr;
+  }
+
+  /// Correlation of what two effects say of the readings, without the zeros of lines.
+  double correlation(const std::string& one, const std::string& other) const {
+    const auto *a = part_of(one), *b = part_of(other);
+    if (a == nullptr || b == nullptr) return 0.0;
+    const VectorXd& root = f_.bench->root_weight();
+    MatrixXd both(root.size(), 2);
+    both.col(0) = root.cwiseProduct(Eigen::Map<const VectorXd>(a->data(), root.size()));
+    both.col(1) = root.cwiseProduct(Eigen::Map<const VectorXd>(b->data(), root.size()));
+    take_out_zeros(f_.part.table, root, both);
+    const double size = both.col(0).norm() * both.col(1).norm();
+    return size > 0.0 ? both.col(0).dot(both.col(1)) / size : 0.0;
+  }
+
+  /// Not the same at every reading of a target: what is constant in time is told by the first runs.
+  bool in_time(const std::string& name) const {
+    const std::size_t e = f_.index_of(name);
+    return std::none_of(f_.best.blocks.begin(), f_.best.blocks.end(), [&](std::size_t b) {
+      return f_.bench->effect_of(b) == e && f_.bench->blocks()[b].of_position;
+    });
+  }
+
+  void find_cancelling() {
+    const auto& names = out_.together;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      for (std::size_t k = i + 1; k < names.size(); ++k)
+        if (in_time(names[i]) && in_time(names[k]) &&
+            correlation(names[i], names[k]) < -cancels_beyond)
+          out_.cancelling.emplace_back(names[i], names[k]);
+  }
+
+  bool cancels(const std::string& name) const {
+    return std::any_of(out_.cancelling.begin(), out_.cancelling.end(),
+                       [&](const auto& pair) { return pair.first == name || pair.second == name; });
+  }
+
+  const Parameter* parameter_of(const std::string& name) const {
+    for (const Parameter& p : f_.of_best.fit.parameters)
+      if (p.effect == name) return &p;
+    return nullptr;
+  }
+
+  /// Growth about the middle and a drift of the zero are together one growth from another place.
+  /// Where a bearing may be there, the growth is named first: the drift would be its shadow.
+  void find_one_growth() {
+    constexpr double farthest = 0.8;  // of the stretch, from its middle
+    auto& names = out_.together;
+    if (f_.part.kind != Part::Kind::axis || f_.part.axes.front().rotary) return;
+    const std::string axis = ":" + f_.part.axes.front().name;
+    const auto growth = std::find(names.begin(), names.end(), "growth-drift" + axis);
+    const auto drift = std::find(names.begin(), names.end(), "zero-drift" + axis);
+    if (growth == names.end() || drift == names.end()) return;
+    const Parameter *g = parameter_of(*growth), *z = parameter_of(*drift);
+    const auto read = readings_of(f_.part.table, f_.part.axes.front());
+    if (g == nullptr || z == nullptr || !read || !(std::fabs(g->value) > 0.0)) return;
+    const double from = -z->value / g->value;
+    if (std::fabs(from) > farthest * read->length) return;
+    out_.one_growth = read->middle + from;
+    if (drift < growth) std::iter_swap(drift, growth);
+  }
+
+  /// Whether what a cancelling pair says together, which has no name, works where an effect does.
+  bool beside_cancelling(const std::string& name) const {
+    const auto* own = part_of(name);
+    if (own == nullptr) return false;
+    const auto works_in = places_of(*own);
+    const double rms2 = (f_.bench->without(f_.best, f_.index_of(name)).squares - f_.best.squares) /
+                        f_.bench->readings();
+    for (const auto& pair : out_.cancelling) {
+      std::vector<double> sum = *part_of(pair.first);
+      const std::vector<double>& other = *part_of(pair.second);
+      double mean = 0.0, squares = 0.0;
+      for (std::size_t i = 0; i < sum.size(); ++i) mean += sum[i] += other[i];
+      mean /= static_cast<double>(sum.size());
+      for (const double x : sum) squares += (x - mean) * (x - mean);
+      if (squares / static_cast<double>(sum.size()) < unexplained_share * rms2) continue;
+      for (const std::string& place : places_of(sum))
+        for (const std::string& where : works_in)
+          if (same_factor(place, where)) return true;
+    }
+    return false;
+  }
+
+  /// A further run that one of the two alone, in whatever form, could not follow.
+  void plan_for_cancelling() {
+    const auto& [one, other] = out_.cancelling.front();
+    std::vector<Term> pair;
+    std::vector<double> value;
+    for (const Term& term : f_.of_best.fit.terms)
+      if (term.name() == one || term.name() == other) pair.push_back(term);
+    for (const Parameter& p : f_.of_best.fit.parameters)
+      if (!p.shape && (p.effect == one || p.effect == other)) value.push_back(p.value);
+    out_.plans = plans_for_pair(f_.part, f_.of_model.fit.terms, pair, value, f_.of_best.fit.s);
+  }
+
   /// Effects whose evidence stands whatever the rest is: overwhelming, and of what is left in their
   /// places nothing as large as they are.
   void list_certain(const std::vector<Place>& serious, bool walks) {
     for (const std::string& name : out_.together) {
       const auto c = std::find_if(out_.candidates.begin(), out_.candidates.end(),
                                   [&](const Candidate& k) { return k.term.name() == name; });
-      if (c->score < certain_evidence || !c->aliases.empty()) continue;
+      if (c->score < certain_evidence || !c->aliases.empty() || cancels(name)) continue;
       if (in_doubt(name, serious, certain_share)) continue;
       if (of_one_target(name) || (walks && !beside_walk(name))) continue;
       out_.certain.push_back(name);

@@ -29,10 +29,32 @@ bool varies_with_target_only(const MatrixXd& columns, const std::vector<std::uin
 
 }  // namespace
 
-Index Workbench::unknowns_of(const Block& block) const {
+/// How many values its shapes are chosen from.
+void Workbench::count_shapes(Instance& instance) const {
+  const auto& shapes = instance.term.effect->shapes;
+  instance.tried = instance.blocks.size(), instance.usual = 0;
+  instance.free.assign(shapes.size(), 0);
+  for (const std::size_t b : instance.blocks) {
+    const auto& shape = blocks_[b].shape;
+    for (std::size_t k = 0; k < shapes.size(); ++k)
+      if (shape[k] != blocks_[instance.blocks.front()].shape[k]) instance.free[k] = 1;
+    instance.usual += are_usual(instance.term, shape);
+  }
+}
+
+/// A block with the usual values of its shapes was chosen from those only: of the others evidence
+/// is asked that they are needed.
+void Workbench::fill_search(Block& block) const {
   const Instance& instance = instances_[block.effect];
-  const bool searched = instance.blocks.size() > 1 && !instance.term.effect->curve;
-  return block.count + (searched ? static_cast<Index>(instance.term.effect->shapes.size()) : 0);
+  const bool usual = are_usual(instance.term, block.shape);
+  const auto tried = static_cast<double>(usual ? instance.usual : instance.tried);
+  block.searched = 0, block.cost_of_shape = 0.0;
+  if (!(tried > 1.0)) return;
+  // Neighbours on a grid are alike: about a third of its values are independent.
+  const bool curve = instance.term.effect->curve;
+  block.cost_of_shape = 2.0 * std::log(std::max(curve ? tried : tried / 3.0, 2.0));
+  for (std::size_t k = 0; k < instance.free.size() && !curve; ++k)
+    block.searched += instance.free[k] != 0 && !is_usual(instance.term, block.shape, k);
 }
 
 /// Whether a block, beside so many unknowns of position, comes near to one free value per target.
@@ -54,6 +76,7 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
     most_of_position_ = static_cast<Index>(std::ceil(0.6 * (targets - 1.0)));
     most_stated_ = static_cast<Index>(std::ceil(0.8 * (targets - 1.0)));
     most_of_curve_ = static_cast<Index>(targets) / 2 - 1;
+    few_ = o.size() <= 40 && static_cast<double>(o.size()) < 2.5 * static_cast<double>(targets);
   }
   used_ = static_cast<double>((root_weight().array() > 0.0).count());
   zeros_ = static_cast<Index>(lines_of(o));
@@ -63,7 +86,7 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
   Made own;
   std::vector<MatrixXd> parts;
   for (const Term& term : terms) {
-    instances_.push_back({term, {}, {}, 0.0, may_lose(o, term)});
+    instances_.push_back({term, {}, {}, may_lose(o, term)});
     reducible_ = reducible_ || instances_.back().reducible;
     add(o, instances_.size() - 1, parts, made != nullptr ? *made : own);
   }
@@ -112,6 +135,7 @@ void Workbench::add_shape(const Observations& o, std::size_t effect,
   x_.rightCols(part.cols()) = part;
   xy_.conservativeResize(columns);
   for (Index k = 0; k < part.cols(); ++k) xy_(columns - part.cols() + k) = part.col(k).dot(y_);
+  fill_search(block);
   push(std::move(block), part);
   products_.assign(blocks_.size(), {});
 }
@@ -136,24 +160,20 @@ void Workbench::add(const Observations& o, std::size_t effect, std::vector<Matri
     at += part.cols();
     parts.push_back(std::move(part));
   }
-  // Neighbours on a grid are alike: about a third of its values are independent.
-  const auto tried = static_cast<double>(instance.blocks.size());
-  instance.cost_of_shape =
-      tried > 1.0 ? 2.0 * std::log(std::max(instance.term.effect->curve ? tried : tried / 3.0, 2.0))
-                  : 0.0;
+  count_shapes(instance);
+  for (const std::size_t b : instance.blocks) fill_search(blocks_[b]);
 }
 
-double Workbench::price(std::size_t effect, Index columns) const {
-  const Instance& instance = instances_[effect];
-  const auto searched =
-      static_cast<double>(instance.blocks.size() > 1 && !instance.term.effect->curve
-                              ? instance.term.effect->shapes.size()
-                              : 0);
-  return (static_cast<double>(columns) + searched) * std::log(used_) + instance.cost_of_shape +
+double Workbench::price(const Block& block, Index columns) const {
+  return static_cast<double>(columns + block.searched) * std::log(used_) + block.cost_of_shape +
          2.0 * std::log(static_cast<double>(std::max<std::size_t>(instances_.size(), 2)));
 }
 
-double Workbench::criterion(double squares, double price) const {
+double Workbench::criterion(double squares, double price, Index parameters) const {
+  // Of few readings a large share is fitted by whatever comes (as in the corrected criteria of
+  // Hurvich and Tsai 1989).
+  const double free = used_ - static_cast<double>(zeros_ + parameters) - 2.0;
+  if (few_) price *= used_ / std::max(free, 0.5);
   return used_ * std::log(std::max(squares, 1e-300) / used_) + price;
 }
 
@@ -169,7 +189,7 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
   out.blocks = std::move(blocks);
   const std::vector<Index> columns = columns_of_state(out);
   for (const std::size_t b : out.blocks) {
-    out.price += price(blocks_[b].effect, blocks_[b].count);
+    out.price += price(blocks_[b]);
     out.parameters += unknowns_of(blocks_[b]);
   }
   out.squares = yy_;
@@ -187,13 +207,13 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
       out.price = 0.0, out.parameters = 0;
       for (std::size_t i = 0; i < out.blocks.size(); ++i) {
         const Block& block = blocks_[out.blocks[i]];
-        out.price += price(block.effect, d.rank[i]);
+        out.price += price(block, d.rank[i]);
         out.parameters += unknowns_of(block) - block.count + d.rank[i];
       }
     }
   }
   out.criterion = std::isnan(out.squares) ? std::numeric_limits<double>::infinity()
-                                          : criterion(out.squares, out.price);
+                                          : criterion(out.squares, out.price, out.parameters);
   return out;
 }
 
@@ -361,7 +381,8 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
     if (std::isnan(fall)) continue;
     if (follows_targets(blocks_[b], of_position)) continue;
     const double c =
-        criterion(std::max(state.squares - fall, 1e-12 * yy_), price(effect, blocks_[b].count));
+        criterion(std::max(state.squares - fall, 1e-12 * yy_), state.price + price(blocks_[b]),
+                  state.parameters + unknowns_of(blocks_[b]));
     if (c < least) least = c, best = b;
   }
   if (best == blocks_.size()) return state;
@@ -369,8 +390,8 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
   more.blocks.push_back(best);
   more.squares = std::max(state.squares - gains(static_cast<Index>(best)), 0.0);
   more.parameters += unknowns_of(blocks_[best]);
-  more.price += price(effect, blocks_[best].count);
-  more.criterion = criterion(more.squares, more.price);
+  more.price += price(blocks_[best]);
+  more.criterion = criterion(more.squares, more.price, more.parameters);
   return more;
 }
 

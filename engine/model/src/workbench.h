@@ -20,15 +20,18 @@ class Workbench {
     std::size_t effect;
     std::vector<double> shape;
     Index first, count;
-    bool of_position;  ///< the same at every reading of a target
-    MatrixXd own{};    ///< scalar products of its columns
+    bool of_position;            ///< the same at every reading of a target
+    MatrixXd own{};              ///< scalar products of its columns
+    Index searched = 0;          ///< of its shapes so many were searched
+    double cost_of_shape = 0.0;  ///< 2 ln of the number of independent values they were chosen from
   };
   struct Instance {
     Term term;
     std::vector<std::size_t> blocks;  ///< none: the readings cannot show it
     std::string error;
-    double cost_of_shape = 0.0;  ///< 2 ln of the number of independent values of its shapes
-    bool reducible = false;      ///< may_lose
+    bool reducible = false;            ///< may_lose
+    std::size_t tried = 0, usual = 0;  ///< values of its shapes; of these with the usual ones
+    std::vector<char> free{};          ///< of each shape: it has more than one value
   };
   /// Blocks in the order in which they came in, with what they leave.
   struct State {
@@ -93,11 +96,13 @@ class Workbench {
   MatrixXd gram(const std::vector<std::size_t>& blocks) const;
   MatrixXd products(const std::vector<std::size_t>& blocks) const;
 
-  /// Price of an effect with so many linear columns.
-  double price(std::size_t effect, Index columns) const;
+  /// Price of an effect with these shapes; with so many linear columns of its own.
+  double price(const Block& block, Index columns) const;
+  double price(const Block& block) const { return price(block, block.count); }
+  /// Linear columns and searched shapes.
+  static Index unknowns_of(const Block& block) { return block.count + block.searched; }
 
  private:
-  Index unknowns_of(const Block& block) const;
   bool follows_targets(const Block& block, Index of_position) const;
   void add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts, Made& made);
   /// Columns of unit length without the zeros of lines; none if the readings cannot show them.
@@ -121,8 +126,10 @@ class Workbench {
   void add_falls(const Projection& projection, std::size_t effect, VectorXd& fall) const;
   double fall_of_block(const Projection& projection, const Block& block) const;
   void push(Block block, const MatrixXd& columns);
+  void count_shapes(Instance& instance) const;
+  void fill_search(Block& block) const;
   const MatrixXd& products_of(std::size_t block) const;
-  double criterion(double squares, double price) const;
+  double criterion(double squares, double price, Index parameters) const;
 
   std::vector<Instance> instances_;
   std::vector<Block> blocks_;
@@ -137,6 +144,7 @@ class Workbench {
   Index most_of_position_ = 0, most_stated_ = 0, most_of_curve_ = 0;
   Index zeros_ = 0;
   bool several_axes_ = false, reducible_ = false;
+  bool few_ = false;  // readings without repeats
 };
 
 }  // namespace nonio::model

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "merge.h"
 #include "nonio/controllers/list.h"
 
 namespace nonio {
@@ -30,6 +31,8 @@ ControlTable declared() {
   return t;
 }
 
+constexpr std::string_view two_tables = "two tables from home";
+
 Expected<std::vector<Artifact>> files(const Sheet& s) {
   const auto below = std::llround(-s.grid.first / s.grid.step);  // points below home, or above it
   const auto above = std::llround(s.grid.last() / s.grid.step);
@@ -40,8 +43,8 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
   };
   std::vector<std::string> words = s.words();
   if (below > 0 && above > 0)
-    words.emplace_back(
-        "two tables from home, one to each side: the control adds them, and each is 0 beyond home");
+    words.push_back(std::string(two_tables) +
+                    ", one to each side: the control adds them, and each is 0 beyond home");
   std::string out = controllers::comments(words, "; ");
   for (const std::int64_t side : {1, -1}) {
     const std::int64_t points = side > 0 ? above : below;
@@ -67,16 +70,16 @@ std::string plane(const CrossJob& job, const std::vector<controllers::KnownAxis>
         4);
   };
   std::string out = "; straightness and squareness from the diagonals of " +
-                    controllers::plain(job.measurement) + "\n:START2D " + row + " " + col + " " +
+                    controllers::plain(job.measurement) + "\n; " + controllers::cross_words(a) +
+                    "\n; " + controllers::cross_words(b) + "\n:START2D " + row + " " + col + " " +
                     col + " " + row + " " + step(b) + " " + step(a) + " " +
                     std::to_string(a.position.size()) +
                     "\n:START2D POSUNIT=METRIC CORUNIT=METRIC/1000 OFFSETROW=0 OFFSETCOL=0\n";
   for (const double of_b : b.value) {
     std::string line;
     for (const double of_a : a.value)
-      line += (line.empty() ? "" : "  ") +
-              controllers::decimal(-(of_b - b.value.front()) * 1e6, 3) + " " +
-              controllers::decimal(-(of_a - a.value.front()) * 1e6, 3);
+      line += (line.empty() ? "" : "  ") + controllers::decimal(-of_b * 1e6, 3) + " " +
+              controllers::decimal(-of_a * 1e6, 3);
     out += line + "\n";
   }
   return out + ":END\n";
@@ -95,6 +98,18 @@ double value_in(const std::vector<std::string_view>& words, std::string_view key
   return NAN;
 }
 
+/// The first word of a head behind its numbers that is none of these (or does not begin as one that
+/// ends with '='): other units, a turned sign (NEGCOR), a third axis are other tables.
+std::string_view not_understood(const std::vector<std::string_view>& head, std::size_t numbers,
+                                std::initializer_list<std::string_view> known) {
+  for (std::size_t i = numbers; i < head.size(); ++i)
+    if (std::none_of(known.begin(), known.end(), [&](std::string_view k) {
+          return k.back() == '=' ? head[i].starts_with(k) : head[i] == k;
+        }))
+      return head[i];
+  return {};
+}
+
 struct Parser {
   const std::vector<controllers::KnownAxis>& axes;
   std::vector<LoadedTable> tables{};
@@ -105,6 +120,11 @@ struct Parser {
   }
   Expected<void> line_table(const std::vector<std::string_view>& head, std::vector<double> v) {
     const auto of = axis(head.size() > 1 ? head[1] : "");
+    if (const auto word = not_understood(
+            head, 2,
+            {":START", "HOMEOFFSET=0", "POSUNIT=PRIMARY", "CORUNIT=PRIMARY", "SAMPLEDIST="});
+        !word.empty())
+      return fail("a :START with " + std::string(word) + ", which is not understood");
     const double step = value_in(head, "SAMPLEDIST=");
     if (!(std::fabs(step) > 0.0) || value_in(head, "HOMEOFFSET=") != 0.0)
       return fail("a :START without SAMPLEDIST or with a HOMEOFFSET");
@@ -123,6 +143,11 @@ struct Parser {
     const auto cols = controllers::whole(head.size() > 7 ? head[7] : "");
     const auto drow = controllers::real(head.size() > 7 ? head[5] : ""),
                dcol = controllers::real(head.size() > 7 ? head[6] : "");
+    if (const auto word = not_understood(
+            head, 8,
+            {":START2D", "POSUNIT=METRIC", "CORUNIT=METRIC/1000", "OFFSETROW=0", "OFFSETCOL=0"});
+        !word.empty())
+      return fail("a :START2D with " + std::string(word) + ", which is not understood");
     if (!cols || *cols < 2 || !drow || !dcol || !(*drow > 0.0) || !(*dcol > 0.0) ||
         v.size() % static_cast<std::size_t>(2 * *cols) != 0)
       return fail("a :START2D that is not understood");
@@ -165,7 +190,14 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (!axes) return tl::unexpected<Error>(axes.error());
   Parser parser{*axes};
   for (const Artifact& f : in.files)
+    if (auto ended = controllers::ends_whole(f.name, f.bytes); !ended)
+      return tl::unexpected<Error>(ended.error());
+  for (const Artifact& f : in.files) {
+    const std::size_t before = parser.tables.size();
     if (auto done = parser.file(f.bytes); !done) return tl::unexpected<Error>(done.error());
+    if (f.bytes.find(two_tables) != f.bytes.npos && parser.tables.size() == before + 1)
+      return fail(f.name + ": one of its two tables is missing: the file was cut");
+  }
   if (parser.tables.empty()) return fail("no :START");
   return parser.tables;
 }
@@ -190,6 +222,13 @@ Expected<OutputResult> write(const OutputInput& in) {
                     [](const CrossCurve& c) { return std::fabs(c.position.front()) > 1e-9; }))
       return fail("diagonals of " + set.measurement +
                   ": a plane begins at home (0), the curves do not");
+    for (const CrossCurve& c : set.curves)
+      if (c.reference != 0.0)
+        return controllers::wrong_axes("axis " + c.input +
+                                       ": a plane counts from home, where its entries are 0: "
+                                       "reference_mm must be 0, found " +
+                                       controllers::decimal(c.reference * 1e3, 4) + " mm");
+    if (controllers::oversized(set, in, result)) continue;
     const std::vector<Artifact> file{
         {"aerotech-plane-" + controllers::file_part(set.measurement) + ".cal", plane(set, *axes)}};
     if (auto done = controllers::predict_cross(set, file, parse, *jobs, in, result); !done)
@@ -205,11 +244,13 @@ Expected<OutputResult> write(const OutputInput& in) {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  registry.add(controllers::controller(
+  Output output = controllers::controller(
       {"aerotech", "1.0.0",
        "Axis calibration files (.cal, one and two dimensions) for Aerotech A3200 and Automation1.",
        controllers::table_options(
            declared(),
            "number (of the axis, from 1), step_mm, backlash_mm and the same with _deg")},
-      declared(), nonio::write, parse));
+      declared(), nonio::write, parse);
+  output.merge = aerotech::merge;
+  registry.add(std::move(output));
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "nonio/controllers/kit.h"
+#include "nonio/controllers/size.h"
 #include "nonio/math/loaded_table.h"
 
 namespace nonio::controllers {
@@ -50,12 +51,31 @@ std::optional<CrossCurve> curve_of(const Evaluation& e, const Part& part,
   if (s == nullptr || s->position.size() < 2 || (part.squareness != nullptr && square == nullptr))
     return std::nullopt;
   CrossCurve curve{s->over, output, s->position, s->value};
-  for (std::size_t i = 0; i < curve.value.size(); ++i) {
-    curve.value[i] -= s->value.front();
-    if (square != nullptr)
-      curve.value[i] += part.sign * square->value * (s->position[i] - s->position.front());
-  }
+  for (std::size_t i = 0; square != nullptr && i < curve.value.size(); ++i)
+    curve.value[i] += part.sign * square->value * (s->position[i] - s->position.front());
   return curve;
+}
+
+void make_zero(CrossCurve& curve, const std::map<std::string, AxisSettings>& settings) {
+  curve.reference = std::clamp(0.0, curve.position.front(), curve.position.back());
+  if (const auto axis = settings.find(curve.input); axis != settings.end())
+    if (const auto said = axis->second.find("reference_mm"); said != axis->second.end()) {
+      curve.reference = said->second / 1e3;
+      curve.told = true;
+    }
+  const double zero = math::ErrorCurve::at(curve.position, curve.value, curve.reference);
+  for (double& v : curve.value) v -= zero;
+}
+
+TableSize size_of_curve(const CrossCurve& curve) {
+  TableSize size;
+  size.take(curve.position, curve.value);
+  return size;
+}
+
+/// Settings of option `axes`; one that is malformed is said where the axes themselves are read.
+std::map<std::string, AxisSettings> known_settings(const OutputInput& in) {
+  return settings_of_axes(in.options).value_or(std::map<std::string, AxisSettings>{});
 }
 
 /// Both diagonals as read, at the stops of the curves.
@@ -150,6 +170,7 @@ std::string CrossJob::axes() const {
 
 std::vector<CrossJob> cross_jobs(const OutputInput& in) {
   std::vector<CrossJob> jobs;
+  const auto settings = known_settings(in);
   const auto& measurements = in.campaign.measurements;
   for (const Results::Analysed& a : in.results.analyses) {
     const auto of = std::find_if(measurements.begin(), measurements.end(),
@@ -157,10 +178,60 @@ std::vector<CrossJob> cross_jobs(const OutputInput& in) {
     const auto index = static_cast<std::size_t>(of - measurements.begin());
     const bool volume =
         of != measurements.end() && of->kind == "step-diagonal" && index < in.observations.size();
-    if (auto job = volume ? of_volume(in, a, index) : of_diagonals(a))
+    if (auto job = volume ? of_volume(in, a, index) : of_diagonals(a)) {
+      for (CrossCurve& curve : job->curves) make_zero(curve, settings);
       jobs.push_back(std::move(*job));
+    }
   }
   return jobs;
+}
+
+bool oversized(const CrossJob& job, const OutputInput& in, OutputResult& result) {
+  const auto settings = known_settings(in);
+  bool beyond = false;
+  for (const CrossCurve& curve : job.curves) {
+    const auto axis = settings.find(curve.output);
+    if (axis == settings.end()) continue;
+    const TableSize size = size_of_curve(curve);
+    const auto hold = [&](const char* key, Quantity q, double found, double at) {
+      const auto said = axis->second.find(key);
+      if (said == axis->second.end()) return;
+      const double limit = said->second / unit_of(q).per_si;
+      if (found <= limit * (1.0 + 1e-9)) return;
+      beyond = true;
+      result.findings.push_back(
+          {"table.refused-cross",
+           true,
+           {{"found", found, q}, {"limit", limit, q}, {"at", at, Quantity::length}},
+           {{"axis", curve.output}, {"input", curve.input}, {"key", key}},
+           job.measurement,
+           "The machine's maker allows no more (" + std::string(key) +
+               "): the axis must be mended or adjusted before a table can take the rest."});
+    };
+    hold("largest_um", Quantity::deviation, size.largest, size.largest_at);
+    hold("slope_um_per_m", Quantity::deviation_per_length, size.slope, size.slope_from);
+  }
+  return beyond;
+}
+
+std::string cross_words(const CrossCurve& curve) {
+  const TableSize size = size_of_curve(curve);
+  return plain(curve.output) + " over " + plain(curve.input) + ": zero at " +
+         decimal(curve.reference * 1e3, 4) + " mm of " + plain(curve.input) +
+         (curve.told ? "" : ", taken as reference point") + "; largest entry " +
+         decimal(size.largest * 1e6, 3) + " um at " + decimal(size.largest_at * 1e3, 4) +
+         " mm, steepest " + decimal(size.slope * 1e6, 3) + " um/m";
+}
+
+void note_cross(const CrossJob& job, OutputResult& result) {
+  for (const CrossCurve& curve : job.curves) {
+    const TableSize size = size_of_curve(curve);
+    result.notes.push_back({curve.told ? "table.cross-zero-at" : "table.cross-zero-taken",
+                            {{"reference", curve.reference, Quantity::length},
+                             {"largest", size.largest, Quantity::deviation},
+                             {"slope", size.slope, Quantity::deviation_per_length}},
+                            {{"axis", curve.output}, {"input", curve.input}}});
+  }
 }
 
 bool together(const CrossJob& set, const AxisJob& job, const Campaign& campaign) {
@@ -247,6 +318,7 @@ Expected<void> predict_cross(const CrossJob& job, const std::vector<Artifact>& f
       if (of.loaded && together(job, of, input.campaign))
         tables->insert(tables->end(), of.loaded->begin(), of.loaded->end());
   predict_lines(job, *tables, result);
+  note_cross(job, result);
   return {};
 }
 

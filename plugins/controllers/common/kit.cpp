@@ -276,6 +276,16 @@ std::string Sheet::at(std::size_t i) const {
   return in_steps(position[i], table.position_step.of(job.rotary), position_unit());
 }
 
+std::int64_t Sheet::minus_start() const {
+  if (!directions || table.entry != Entry::increment) return 0;
+  const auto at = [&](const std::vector<double>& values) {
+    return math::quantised(std::vector{math::ErrorCurve::at(position, values, reference)},
+                           value_step())
+        .front();
+  };
+  return at(minus) - at(plus);
+}
+
 std::vector<std::string> Sheet::zero_and_size() const {
   TableSize size;
   for (const auto* entries : {&plus, &minus}) {
@@ -401,19 +411,23 @@ Expected<LoadedTable> loaded(const ControlTable& t, const RawTable& raw) {
                   .backlash = raw.backlash,
                   .rotary = rotary};
   for (const double x : raw.position) out.position[0].push_back(x * position_unit);
-  const auto correction = [&](std::vector<double> entry) {
+  const auto correction = [&](std::vector<double> entry, double start) {
     double sum = 0.0, zero = 0.0;
     for (std::size_t i = 0; i < entry.size(); ++i) {
       if (t.entry == Entry::increment) entry[i] = sum += entry[i];
       if (t.entry == Entry::increment && i == raw.reference) zero = entry[i];
       if (t.entry == Entry::position && i < raw.position.size()) entry[i] -= raw.position[i];
     }
+    for (double& v : entry) v += start;
     for (double& v : entry)
       v = (t.sign == ControlTable::Sign::error ? zero - v : v - zero) * unit + 0.0;
     return entry;
   };
-  out.plus = correction(raw.plus);
-  out.minus = correction(raw.minus);
+  if (t.zero == ControlTable::Zero::first && raw.reference != 0)
+    return fail("axis " + raw.axis.name + ": the table is declared to be 0 at its first point, " +
+                "found its zero at point " + std::to_string(raw.reference + 1));
+  out.plus = correction(raw.plus, 0.0);
+  out.minus = correction(raw.minus, t.entry == Entry::increment ? raw.minus_start : 0.0);
   if (auto ok = math::sound(out); !ok) return tl::unexpected<Error>(ok.error());
   return out;
 }

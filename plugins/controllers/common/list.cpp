@@ -26,7 +26,7 @@ std::vector<Artifact> list_file(const Sheet& s, std::string_view name, bool two)
 namespace {
 
 Expected<void> whole_text(const Artifact& f, std::size_t points) {
-  if (f.bytes.back() != '\n') return fail(f.name + ": the last line has no end: the file was cut");
+  if (auto ended = ends_whole(f.name, f.bytes); !ended) return ended;
   const std::size_t at = f.bytes.find(points_said);
   if (at == std::string::npos) return {};
   const auto words = words_of(
@@ -97,7 +97,7 @@ std::optional<double> parameter_in(std::string_view bytes, std::string_view para
   const std::string key = std::string(parameter) + " = ";
   const std::size_t at = bytes.find(key);
   if (at == std::string_view::npos) return std::nullopt;
-  const auto words = words_of(bytes.substr(at + key.size(), 60), " \n");
+  const auto words = words_of(bytes.substr(at + key.size(), 60), " \r\n");
   if (words.size() < 2 || (words[1] != "mm" && words[1] != "deg")) return std::nullopt;
   const auto value = real(words[0]);
   return value ? std::optional(*value / (words[1] == "mm" ? 1e3 : deg_per_rad)) : std::nullopt;

@@ -21,6 +21,11 @@ std::optional<Number> number(std::string_view text) {
 
 }  // namespace
 
+Expected<void> ends_whole(std::string_view name, std::string_view text) {
+  if (text.empty() || text.back() == '\n') return {};
+  return fail(std::string(name) + ": the last line has no end: the file was cut");
+}
+
 std::vector<std::string_view> lines_of(std::string_view text) {
   std::vector<std::string_view> lines;
   while (!text.empty()) {
@@ -48,6 +53,31 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t from = text.find_first_not_of(" \t\r");
   if (from == std::string_view::npos) return {};
   return text.substr(from, text.find_last_not_of(" \t\r") - from + 1);
+}
+
+std::optional<std::string> with_lines(const std::string& text,
+                                      const std::function<bool(std::string_view)>& is_own,
+                                      const std::string& lines,
+                                      std::optional<std::size_t> otherwise) {
+  std::string out, fresh = lines;
+  std::optional<std::size_t> place;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t next = std::min(text.find('\n', at), text.size() - 1) + 1;
+    const std::string_view one = std::string_view(text).substr(at, next - at);
+    if (is_own(one.substr(0, one.find_last_not_of("\r\n") + 1))) {
+      if (!place) place = out.size();
+    } else {
+      out += one;
+    }
+    at = next;
+  }
+  if (!place) place = otherwise;
+  if (!place) return std::nullopt;
+  if (*place > 0 && out[*place - 1] != '\n') fresh.insert(0, "\n");
+  if (text.find("\r\n") != std::string::npos)
+    for (std::size_t at = 0; (at = fresh.find('\n', at)) != std::string::npos; at += 2)
+      fresh.replace(at, 1, "\r\n");
+  return out.insert(*place, fresh);
 }
 
 std::optional<double> real(std::string_view text) {

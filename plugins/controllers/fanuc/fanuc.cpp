@@ -79,15 +79,8 @@ Expected<Parameters> parameters_of(const Sheet& s) {
   if (std::abs(p.backlash) > 9999)
     return fail("axis " + s.job.axis + ": parameter 1851 would be " + std::to_string(p.backlash) +
                 ", the control takes -9999..9999: set a larger detection_unit_um");
-  if (s.directions) {  // zero where the axis returns to reference; 3627 is the other direction's
-    const auto& curve = s.job.table_curve();
-    const bool plus = o.text("reference_return", "+") != "-";
-    const auto at = [&](const std::vector<double>& values) {
-      return math::ErrorCurve::at(curve.position, values, s.reference);
-    };
-    const double zero = at(plus ? curve.plus : curve.minus);
-    p.opposite = std::llround((zero - at(plus ? curve.minus : curve.plus)) / s.value_unit());
-  }
+  // Zero where the axis returns to reference; 3627 is the other direction's.
+  p.opposite = (o.text("reference_return", "+") != "-" ? 1 : -1) * s.minus_start();
   return p;
 }
 

@@ -114,7 +114,8 @@ std::vector<double> wanted(const AxisJob& job, const Crosses& crosses, const Lay
   return at;
 }
 
-std::string words(const Sheet& s, const Layout& layout, const std::string& artifact) {
+std::string words(const Sheet& s, const Crosses& crosses, const Layout& layout,
+                  const std::string& artifact) {
   const AxisJob& job = s.job;
   std::vector<std::string> lines = s.warning;
   lines.insert(lines.end(), job.about.begin(), job.about.end());
@@ -124,6 +125,7 @@ std::string words(const Sheet& s, const Layout& layout, const std::string& artif
       "in " +
       std::string(job.unit()));
   for (std::string& line : s.zero_and_size()) lines.push_back(std::move(line));
+  for (const CrossCurve* c : crosses) lines.push_back("column " + controllers::cross_words(*c));
   lines.push_back(controllers::reversal_words(job, s.directions));
   if (job.curve.bidirectional()) {
     lines.emplace_back(layout.listed ? "CfgAxisComp/backLash (401802), positive where the encoder "
@@ -197,6 +199,7 @@ void predict_columns(const CrossJob& set, const std::vector<const AxisJob*>& wri
         }))
       return;
   controllers::predict_lines(set, tables, result);
+  controllers::note_cross(set, result);
   const char* note = set.volume ? "heidenhain.cross-volume" : "heidenhain.cross";
   if (std::none_of(result.notes.begin(), result.notes.end(),
                    [&](const Remark& r) { return r.id == note; }))
@@ -211,7 +214,7 @@ Expected<std::vector<Artifact>> files(const Sheet& s, const Crosses& crosses,
                 ": the table has columns for axis names of 1 to 9 characters without blanks");
   const std::string stem = "heidenhain-tnc-" + s.job.stem;
   return std::vector<Artifact>{{stem + ".COM", com_table(s, axes, crosses, layout)},
-                               {stem + ".txt", words(s, layout, stem + ".COM")}};
+                               {stem + ".txt", words(s, crosses, layout, stem + ".COM")}};
 }
 
 ControlTable table_of(const Layout& layout, bool directions, const Settings& options) {
@@ -232,7 +235,8 @@ Expected<OutputResult> write(const OutputInput& input) {
                 " has no column for the negative direction: set layout = \"tnc640\" or "
                 "directions = false");
   // The columns of other axes are for one state of the machine, and have no direction.
-  const auto sets = directions ? std::vector<CrossJob>{} : controllers::cross_jobs(input);
+  auto sets = directions ? std::vector<CrossJob>{} : controllers::cross_jobs(input);
+  std::erase_if(sets, [&](const CrossJob& s) { return controllers::oversized(s, input, result); });
   const auto crosses = [&](const AxisJob& job) { return columns_of(sets, job, input); };
   const controllers::Writer writer{
       .name = "heidenhain-tnc",

@@ -148,6 +148,8 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   for (const Artifact& f : in.files)
     if (f.bytes.rfind("BEGIN CONFIG.CMA", 0) == 0) note_owners(f.bytes, owners);
   for (const Artifact& f : in.files) {
+    if (auto ended = controllers::ends_whole(f.name, f.bytes); !ended)
+      return tl::unexpected<Error>(ended.error());
     const Lines lines = controllers::lines_of(f.bytes);
     const bool is_table = !lines.empty() && lines[0].rfind("BEGIN ", 0) == 0;
     if (is_table && lines[0].rfind("BEGIN CONFIG.CMA", 0) == 0) continue;

@@ -32,10 +32,11 @@ std::string table(const CrossCurve& curve, std::int64_t number, const Naming& na
   };
   const auto& x = curve.position;
   std::string out = "; table " + t + ": axis " + controllers::plain(curve.output) +
-                    " by the position of " + controllers::plain(curve.input) + "\n";
+                    " by the position of " + controllers::plain(curve.input) + "\n; " +
+                    controllers::cross_words(curve) + "\n";
   for (std::size_t i = 0; i < x.size(); ++i)
     out += "$AN_CEC[" + t + "," + std::to_string(i) +
-           "]=" + decimal((curve.value[i] - curve.value.front()) * per_si, digits) + "\n";
+           "]=" + decimal(curve.value[i] * per_si, digits) + "\n";
   const double step = (x.back() - x.front()) / static_cast<double>(x.size() - 1);
   return out + line("INPUT_AXIS", name(curve.input)) + line("OUTPUT_AXIS", name(curve.output)) +
          line("STEP", decimal(step * per_si, digits)) +
@@ -111,6 +112,7 @@ Expected<void> write_cross_tables(const OutputInput& input,
   for (const CrossJob& job : jobs) {
     if (auto ok = controllers::fits(job, input.options); !ok) return ok;
     if (controllers::lacks_number(job.moving(), input, *axes, job.measurement, result)) continue;
+    if (controllers::oversized(job, input, result)) continue;
     if (auto free = free_tables(first, job.curves.size(), input.options); !free)
       return fail("diagonals of " + job.measurement + ": " + free.error().message);
     const std::string stem = "siemens-840d-" + controllers::file_part(job.axes()) +

@@ -35,31 +35,21 @@ std::optional<Line> line_of(std::string_view text) {
 
 using IsOwn = std::function<bool(const Line&)>;
 
-/// The text without its own lines, and in the place of the first of them (else before M17) the new
-/// ones. Nothing where it has none and is not to get any.
+/// The text with new lines in the place of its own ones (else before M17). Nothing where it has
+/// none and is not to get any.
 std::optional<std::string> replaced(const std::string& text, const IsOwn& is_own,
                                     const std::string& lines, bool add) {
-  std::string out;
-  std::optional<std::size_t> place, end;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t next = std::min(text.find('\n', at), text.size() - 1) + 1;
-    const std::string_view one = std::string_view(text).substr(at, next - at);
-    const std::string_view bare = one.substr(0, one.find_last_not_of("\r\n") + 1);
-    const auto line = line_of(bare);
-    if (line && is_own(*line)) {
-      if (!place) place = out.size();
-    } else {
-      if (controllers::trimmed(bare) == "M17") end = out.size();
-      out += one;
-    }
-    at = next;
-  }
-  if (!place && (!add || !end)) return std::nullopt;
-  std::string fresh = lines;
-  if (text.find("\r\n") != std::string::npos)
-    for (std::size_t at = 0; (at = fresh.find('\n', at)) != std::string::npos; at += 2)
-      fresh.replace(at, 1, "\r\n");
-  return out.insert(place.value_or(end.value_or(0)), fresh);
+  std::optional<std::size_t> end;
+  for (const std::string_view one : controllers::lines_of(text))
+    if (add && controllers::trimmed(one) == "M17")
+      end = static_cast<std::size_t>(one.data() - text.data());
+  return controllers::with_lines(
+      text,
+      [&](std::string_view one) {
+        const auto line = line_of(one);
+        return line && is_own(*line);
+      },
+      lines, end);
 }
 
 /// The assignments of a text, one a line.
@@ -76,6 +66,25 @@ std::vector<Line> lines_in(const std::vector<Artifact>& files) {
     for (const std::string_view text : controllers::lines_of(f.bytes))
       if (auto line = line_of(text)) out.push_back(std::move(*line));
   return out;
+}
+
+/// An axis by a name of its own: which AXn that is the control alone knows, and it may be this one.
+Expected<void> only_numbered(const std::vector<Artifact>& files) {
+  const auto check = [](std::string_view axis) -> Expected<void> {
+    const auto number =
+        axis.starts_with("AX") ? controllers::whole(axis.substr(2)) : std::optional<std::int64_t>();
+    if (number) return {};
+    return fail("the backup calls an axis " + controllers::plain(axis) +
+                ": wanted AX1, AX2 and so on, which says whose table it is; save it so");
+  };
+  for (const Line& l : lines_in(files)) {
+    const bool axis_last = l.name.rfind("AA_ENC_COMP", 0) == 0 || l.name == "MA_BACKLASH";
+    if (axis_last && !l.index.empty())
+      if (auto ok = check(l.index.back()); !ok) return ok;
+    if ((l.name == "AN_CEC_INPUT_AXIS" || l.name == "AN_CEC_OUTPUT_AXIS") && l.value.size() > 2)
+      if (auto ok = check(std::string_view(l.value).substr(1, l.value.size() - 2)); !ok) return ok;
+  }
+  return {};
 }
 
 struct Cec {
@@ -199,6 +208,7 @@ class Merger {
 }  // namespace
 
 Expected<std::vector<Artifact>> merge(const MergeInput& in) {
+  if (auto ok = only_numbered(in.backup); !ok) return fail(ok.error());
   Merger merger(in);
   for (const Artifact& table : in.table)
     if (auto done = merger.take(table); !done) return fail(done.error());

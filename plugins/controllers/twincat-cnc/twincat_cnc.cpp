@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "merge.h"
 #include "nonio/controllers/list.h"
 
 namespace nonio {
@@ -120,6 +121,8 @@ Expected<LoadedTable> screw(const List& list, const controllers::KnownAxis& axis
     raw.position.push_back(at("kw_startpos") + at("interval") * static_cast<double>(i));
   const bool both = at("bilateral") == 1.0;
   if (both) raw.minus = column(list, "kw.ssfk.table", ".neg"), raw.backlash = 0.0;
+  if (both && raw.minus.size() != raw.plus.size())
+    return fail("kw.ssfk.table has not as many entries neg as pos");
   if (at("modulo") == 1.0) raw.outside = LoadedTable::Outside::repeats;
   return controllers::loaded(declared(), raw);
 }
@@ -135,6 +138,9 @@ Expected<LoadedTable> cross(const List& list, const std::vector<controllers::Kno
                 .position = {column(list, "kw.crosscomp.table", ".setpoint")},
                 .plus = column(list, "kw.crosscomp.table", ".correction"),
                 .minus = {}};
+  const auto last = list.find("kw.crosscomp.last_index");
+  if (last == list.end() || static_cast<double>(t.plus.size()) != last->second + 1.0)
+    return fail("kw.crosscomp.last_index is not that of the last entry");
   for (double& x : t.position[0]) x *= 1e-7;
   for (double& v : t.plus) v *= sign * 1e-7;
   if (auto ok = math::sound(t); !ok) return tl::unexpected<Error>(ok.error());
@@ -158,6 +164,8 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   const std::string said = in.options.text("cross_sign");
   std::vector<LoadedTable> tables;
   for (const Artifact& f : in.files) {
+    if (auto ended = controllers::ends_whole(f.name, f.bytes); !ended)
+      return tl::unexpected<Error>(ended.error());
     const List list = read_list(f.bytes);
     const auto number = list.find("kopf.achs_nr");
     if (number == list.end() || !(number->second >= 1.0 && number->second < 1e6))
@@ -181,8 +189,10 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
 std::string cross_list(const CrossCurve& c, const std::vector<controllers::KnownAxis>& axes,
                        double sign, const std::string& about) {
   const auto units = [](double x) { return std::to_string(std::llround(x / 1e-7)); };
-  std::string out = head({about, "compensation of " + controllers::plain(c.output) +
-                                     " by the position of " + controllers::plain(c.input)},
+  std::string out = head({about,
+                          "compensation of " + controllers::plain(c.output) +
+                              " by the position of " + controllers::plain(c.input),
+                          controllers::cross_words(c)},
                          axis_named(axes, c.output).number, c.output);
   out += line("kw.crosscomp.unit", "1") +
          line("kw.crosscomp.last_index", std::to_string(c.position.size() - 1)) +
@@ -191,7 +201,7 @@ std::string cross_list(const CrossCurve& c, const std::vector<controllers::Known
   for (std::size_t i = 0; i < c.position.size(); ++i) {
     const std::string row = "kw.crosscomp.table[" + std::to_string(i) + "]";
     out += line(row + ".setpoint", units(c.position[i])) +
-           line(row + ".correction", units(sign * (c.value[i] - c.value.front())));
+           line(row + ".correction", units(sign * c.value[i]));
   }
   return out;
 }
@@ -208,6 +218,7 @@ Expected<void> write_cross(const OutputInput& in, const std::vector<controllers:
     if (job.volume || said.empty()) continue;
     if (auto ok = controllers::fits(job, in.options); !ok) return ok;
     if (controllers::lacks_number(job.moving(), in, *axes, job.measurement, result)) continue;
+    if (controllers::oversized(job, in, result)) continue;
     std::vector<Artifact> files;
     for (const CrossCurve& c : job.curves)
       files.push_back({"twincat-cnc-cross-" + controllers::file_part(c.output) +
@@ -255,9 +266,11 @@ std::vector<Option> options() {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  registry.add(controllers::controller(
+  Output output = controllers::controller(
       {"twincat-cnc", "1.0.0",
        "Correction lists (kw.ssfk, kw.crosscomp) for Beckhoff TwinCAT CNC and the ISG kernel.",
        nonio::options()},
-      declared(), nonio::write, parse));
+      declared(), nonio::write, parse);
+  output.merge = twincat_cnc::merge;
+  registry.add(std::move(output));
 }

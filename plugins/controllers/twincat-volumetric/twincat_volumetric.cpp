@@ -56,6 +56,8 @@ std::vector<Block> blocks_of(const std::vector<AxisJob>& jobs, const std::vector
     const auto same = [](double x, double y) { return y - x < 1e-7; };
     b.position.erase(std::unique(b.position.begin(), b.position.end(), same), b.position.end());
     b.zero = std::clamp(0.0, b.position.front(), b.position.back());
+    for (const auto& [along, c] : b.curves)
+      if (c.told) b.zero = c.reference;
     for (const AxisJob& j : jobs)
       if (j.axis == name)
         b.zero = controllers::reference_position(j, b.position.front(), b.position.back());
@@ -107,6 +109,9 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   std::vector<LoadedTable> tables;
   std::size_t first = 0;  // of the tables, that of this block
   bool names = true;
+  for (const Artifact& f : in.files)
+    if (auto ended = controllers::ends_whole(f.name, f.bytes); !ended)
+      return tl::unexpected<Error>(ended.error());
   for (const Artifact& f : in.files)
     for (std::string_view line : controllers::lines_of(f.bytes)) {
       line = line.substr(0, line.find("//"));
@@ -160,10 +165,11 @@ Expected<OutputResult> write(const OutputInput& in) {
                              [&](const AxisJob& o) { return o.axis == j.axis; }) > 1;
       };
   std::erase_if(*jobs, twice);
-  const auto sets = controllers::cross_jobs(in);
+  auto sets = controllers::cross_jobs(in);
   if (sets.size() > 1)
     return fail(
         "one file holds one state of the machine: leave one set of diagonals in the campaign");
+  std::erase_if(sets, [&](const CrossJob& s) { return controllers::oversized(s, in, result); });
   const auto blocks = blocks_of(*jobs, sets);
   if (blocks.empty()) return result;
   std::string axes;
@@ -190,7 +196,10 @@ Expected<OutputResult> write(const OutputInput& in) {
       if (b.axis == job.axis) controllers::note_zero(job, b.zero, result);
     controllers::note_size(job, size, result);
   }
-  for (const CrossJob& set : sets) controllers::predict_lines(set, *read, result);
+  for (const CrossJob& set : sets) {
+    controllers::predict_lines(set, *read, result);
+    controllers::note_cross(set, result);
+  }
   controllers::note_facts(writer, result);
   return result;
 }

@@ -24,5 +24,6 @@ NONIO_PLUGIN(registry) {
                                   Quantity::deviation_per_length, Quantity::deviation_per_angle}},
                       .shapes = {},
                       .applies = applies,
-                      .columns = columns});
+                      .columns = columns,
+                      .why_not = one_direction});
 }

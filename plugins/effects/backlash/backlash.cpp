@@ -24,5 +24,6 @@ NONIO_PLUGIN(registry) {
              .shapes = {},
              .compensable = true,
              .applies = applies,
-             .columns = columns});
+             .columns = columns,
+             .why_not = one_direction});
 }

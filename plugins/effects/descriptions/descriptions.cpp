@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is left, not why. free-position: s_k at target k; free-reversal: d r_k/2 at target k;
-// free-time: straight from one knot of time to the next, v_k at knot k. s, r, v: m or rad;
-// d: direction of approach.
+// What is left, not why. free-growth: p v_k, straight in time from one knot to the next (p:
+// position from the middle of the measured stretch, m or rad; v in m/m or rad/rad). free-position:
+// s_k at target k; free-reversal: d r_k/2 at target k; free-time: straight from one knot of time to
+// the next, v_k at knot k. s, r, v: m or rad; d: direction of approach.
 #include <algorithm>
 #include <cmath>
 
@@ -81,6 +82,16 @@ static Expected<Effect::Columns> of_time(const Observations& o, const Axis& axis
   return columns;
 }
 
+static Expected<Effect::Columns> of_growth(const Observations& o, const Axis& axis,
+                                           const std::vector<double>& shape) {
+  auto columns = of_time(o, axis, shape);
+  const auto r = readings_of(o, axis);
+  if (!columns || !r) return columns;
+  for (auto& column : *columns)
+    for (std::size_t i = 0; i < o.size(); ++i) column[i] *= r->p[i];
+  return columns;
+}
+
 NONIO_PLUGIN(registry) {
   registry.add(Effect{
       .info = {"free-position", "1.0.0", "A free value for each target: a description, no cause"},
@@ -108,5 +119,14 @@ NONIO_PLUGIN(registry) {
       .curve = true,
       .applies = [](const Observations& o, const Axis& axis) { return !knots(o, axis).empty(); },
       .columns = of_time,
+      .description = true});
+  registry.add(Effect{
+      .info = {"free-growth", "1.0.0", "Thermal, position x time: a description, no cause"},
+      .linear = {{"v", "growth at a knot", Quantity::deviation_per_length,
+                  Quantity::deviation_per_angle}},
+      .shapes = {{{"knots", "knots in time", Quantity::count}, knots, false}},
+      .curve = true,
+      .applies = [](const Observations& o, const Axis& axis) { return !knots(o, axis).empty(); },
+      .columns = of_growth,
       .description = true});
 }

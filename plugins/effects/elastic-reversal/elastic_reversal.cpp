@@ -27,5 +27,8 @@ NONIO_PLUGIN(registry) {
                  {"b", "part with the cosine", Quantity::deviation, Quantity::angular_deviation}},
       .shapes = {},
       .applies = applies,
-      .columns = columns});
+      .columns = columns,
+      .why_not = [](const Observations& o, const Axis& axis) {
+        return axis.rotary ? one_direction(o, axis) : WhyNot{};
+      }});
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// deviation = g p t; p: position from the middle of the measured stretch, m or rad; t: time since
-// the first reading of its line, s; g: 1/s.
+// deviation = g (p - fixed) t; p: position from the middle of the measured stretch, m or rad;
+// fixed: the same, of the fixed point that the manifest states, else 0 (another one is growth about
+// the middle and a drift of the zero); t: time since the first reading of its line, s; g: 1/s.
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
@@ -13,7 +14,10 @@ static bool applies(const Observations& o, const Axis& axis) {
 
 static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
                                          const std::vector<double>&) {
-  return columns_of(o, axis, [](const AxisReadings& r, std::size_t i) { return r.p[i] * r.t[i]; });
+  const bool known = axis.fixed_point && !axis.rotary;
+  return columns_of(o, axis, [&](const AxisReadings& r, std::size_t i) {
+    return (r.p[i] - (known ? *axis.fixed_point - r.middle : 0.0)) * r.t[i];
+  });
 }
 
 NONIO_PLUGIN(registry) {
@@ -23,5 +27,6 @@ NONIO_PLUGIN(registry) {
       .linear = {{"g", "growth of the slope in time", Quantity::growth, Quantity::angular_growth}},
       .shapes = {},
       .applies = applies,
-      .columns = columns});
+      .columns = columns,
+      .why_not = no_order});
 }

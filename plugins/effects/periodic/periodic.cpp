@@ -65,5 +65,8 @@ NONIO_PLUGIN(registry) {
                       .shapes = {{{"P", "period", Quantity::length}, grid}},
                       .compensable = true,
                       .applies = applies,
-                      .columns = columns});
+                      .columns = columns,
+                      .why_not = [](const Observations& o, const Axis& axis) {
+                        return WhyNot{!axis.rotary && readings_of(o, axis) ? "few-targets" : ""};
+                      }});
 }

@@ -48,5 +48,8 @@ NONIO_PLUGIN(registry) {
                       .curve = true,
                       .compensable = true,
                       .applies = applies,
-                      .columns = columns});
+                      .columns = columns,
+                      .why_not = [](const Observations& o, const Axis& axis) {
+                        return WhyNot{readings_of(o, axis) ? "few-targets" : ""};
+                      }});
 }

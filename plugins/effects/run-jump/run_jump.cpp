@@ -68,5 +68,6 @@ NONIO_PLUGIN(registry) {
                          grid,
                          false}},
              .applies = applies,
-             .columns = columns});
+             .columns = columns,
+             .why_not = no_order});
 }

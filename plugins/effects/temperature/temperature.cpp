@@ -1,22 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
-// deviation = k p K; p: position from the middle of the measured stretch, m or rad; K: material
-// temperature less its mean, K; k: 1/K.
+// deviation = k (p - fixed) K; p: position from the middle of the measured stretch, m or rad;
+// fixed: what does not move, the same; K: material temperature less its mean, K; k: 1/K.
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
 using namespace nonio;
 
-static bool applies(const Observations& o, const Axis& axis) {
-  constexpr double least_range = 0.05;  // K; less is the sensor's own noise
-  const auto r = readings_of(o, axis);
-  if (!r || !r->temperature || !(r->length > 0.0)) return false;
-  const auto [low, high] = std::minmax_element(r->K.begin(), r->K.end());
+constexpr double least_range = 0.05;  // K; less is the sensor's own noise
+
+static bool varies(const AxisReadings& r) {
+  const auto [low, high] = std::minmax_element(r.K.begin(), r.K.end());
   return *high - *low > least_range;
 }
 
+static bool applies(const Observations& o, const Axis& axis) {
+  const auto r = readings_of(o, axis);
+  return r && r->temperature && r->length > 0.0 && varies(*r);
+}
+
+/// The rows without a temperature, where some have one.
+static WhyNot why_not(const Observations& o, const Axis& axis) {
+  const auto r = readings_of(o, axis);
+  if (!r || !(r->length > 0.0)) return {};
+  WhyNot out{"temperature-gaps"};
+  for (std::uint32_t i = 0; i < o.size(); ++i)
+    if (r->moved[i] && (o.material.size() != o.size() || !std::isfinite(o.material[i])))
+      out.rows.push_back(i);
+  const auto moved = static_cast<std::size_t>(std::count(r->moved.begin(), r->moved.end(), 1));
+  if (out.rows.size() == moved) return {"no-temperature"};
+  return r->temperature ? WhyNot{"temperature-constant"} : out;
+}
+
 static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
-                                         const std::vector<double>&) {
-  return columns_of(o, axis, [](const AxisReadings& r, std::size_t i) { return r.p[i] * r.K[i]; });
+                                         const std::vector<double>& shape) {
+  if (shape.size() != 1 || !std::isfinite(shape[0]))
+    return fail("temperature: wanted a fixed point");
+  return columns_of(o, axis, [fixed = shape[0]](const AxisReadings& r, std::size_t i) {
+    return (r.p[i] - fixed) * r.K[i];
+  });
 }
 
 NONIO_PLUGIN(registry) {
@@ -25,7 +46,8 @@ NONIO_PLUGIN(registry) {
                "Expansion follows the measured temperature: wrong coefficient or no correction"},
       .linear = {{"k", "expansion left in the readings", Quantity::expansion,
                   Quantity::angular_expansion}},
-      .shapes = {},
+      .shapes = {fixed_point_shape()},
       .applies = applies,
-      .columns = columns});
+      .columns = columns,
+      .why_not = why_not});
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// deviation = w p (1 - exp(-t/tau)); p: position from the middle of the measured stretch, m or rad;
-// t: time since the first reading of its line, s; tau: time constant, s; w: m/m or rad/rad.
+// deviation = w (p - fixed) (1 - exp(-t/tau)); p: position from the middle of the measured stretch,
+// m or rad; fixed: what does not move, the same; t: time since the first reading of its line, s;
+// tau: time constant, s; w: m/m or rad/rad.
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
@@ -26,19 +27,22 @@ static std::vector<double> grid(const Observations& o, const Axis& axis) {
 
 static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
                                          const std::vector<double>& shape) {
-  if (shape.size() != 1 || !(shape[0] > 0.0))
-    return fail("warm-up: wanted a time constant above 0");
-  return columns_of(o, axis, [tau = shape[0]](const AxisReadings& r, std::size_t i) {
-    return -r.p[i] * std::expm1(-r.t[i] / tau);
-  });
+  if (shape.size() != 2 || !(shape[0] > 0.0) || !std::isfinite(shape[1]))
+    return fail("warm-up: wanted a time constant above 0 and a fixed point");
+  return columns_of(o, axis,
+                    [tau = shape[0], fixed = shape[1]](const AxisReadings& r, std::size_t i) {
+                      return -(r.p[i] - fixed) * std::expm1(-r.t[i] / tau);
+                    });
 }
 
 NONIO_PLUGIN(registry) {
-  registry.add(Effect{.info = {"warm-up", "1.0.0",
-                               "Screw or scale warms and levels off: growth with a time constant"},
-                      .linear = {{"w", "final growth of the slope", Quantity::deviation_per_length,
-                                  Quantity::deviation_per_angle}},
-                      .shapes = {{{"tau", "time constant", Quantity::time}, grid}},
-                      .applies = applies,
-                      .columns = columns});
+  registry.add(
+      Effect{.info = {"warm-up", "1.0.0",
+                      "Screw or scale warms and levels off: growth with a time constant"},
+             .linear = {{"w", "final growth of the slope", Quantity::deviation_per_length,
+                         Quantity::deviation_per_angle}},
+             .shapes = {{{"tau", "time constant", Quantity::time}, grid}, fixed_point_shape()},
+             .applies = applies,
+             .columns = columns,
+             .why_not = no_order});
 }

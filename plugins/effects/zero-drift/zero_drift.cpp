@@ -23,5 +23,6 @@ NONIO_PLUGIN(registry) {
                   Quantity::angle_per_time}},
       .shapes = {},
       .applies = applies,
-      .columns = columns});
+      .columns = columns,
+      .why_not = no_order});
 }

@@ -36,6 +36,9 @@ Conditions conditions_of(const std::vector<Observations>&);
 bool is_printed(const Results::Analysed&);
 bool is_printed(const pages::Measured&);
 
+/// With a full stop, where somebody's text ends without one and another sentence follows.
+std::string ended(const Source&, std::string text);
+
 /// The title in the document's language: the laboratory's, or that of the words.
 std::string title_of(const Source&);
 
@@ -69,6 +72,9 @@ void add_signature(const Source&, Blocks&);
 
 /// Limits that nothing was held against; empty if there are none.
 std::string undecided_text(const Source&);
+
+/// Measurements of the campaign of which nothing is printed; empty if there are none.
+std::string not_reported_text(const Source&);
 
 /// Directions of approach and their signs mean something: a test over targets is printed.
 bool has_directions(const OutputInput&);

@@ -67,6 +67,21 @@ std::vector<Shown> shown_results(const Source& source,
   return all;
 }
 
+/// In two languages a column of meanings makes each row two lines high: they stand below.
+bool is_brief(const Source& source) { return source.in.campaign.certificate.languages.size() > 1; }
+
+/// "A: Accuracy, both directions. B: Reversal error, largest."
+std::string meanings(const Source& source, const std::vector<Shown>& all) {
+  std::string text;
+  std::set<std::string> said;
+  for (const Shown& s : all) {
+    const std::string meaning = source.words.get_or("value." + s.value->name, "");
+    if (meaning.empty() || !said.insert(s.value->name).second) continue;
+    text += (text.empty() ? "" : "; ") + pages::symbol(s.value->name) + ": " + meaning;
+  }
+  return text.empty() ? text : ended(source, text);
+}
+
 Level level_of(Decision decision) {
   return decision == Decision::conforms           ? Level::good
          : decision == Decision::does_not_conform ? Level::failed
@@ -93,13 +108,14 @@ void add_conformity(const Source& source, Blocks& blocks) {
   const bool factors = std::any_of(all.begin(), all.end(), [](const Shown& s) {
     return s.value->U && std::fabs(s.value->k - 2.0) >= 0.005;
   });
+  const bool brief = is_brief(source);
   Table table;
-  table.columns = {
-      {w.get("conformity.measurement"), "", false},
-      {w.get("results.symbol"), "", false},
-      {w.get("results.meaning"), "", false},
-      {w.get("results.value"), "", true},
-      {factors ? w.get("results.uncertainty") : pages::U_heading(source, 2.0), "", true}};
+  table.columns = {{w.get("conformity.measurement"), "", false},
+                   {w.get("results.symbol"), "", false}};
+  if (!brief) table.columns.push_back({w.get("results.meaning"), "", false});
+  table.columns.push_back({w.get("results.value"), "", true});
+  table.columns.push_back(
+      {factors ? w.get("results.uncertainty") : pages::U_heading(source, 2.0), "", true});
   if (factors) table.columns.push_back({w.get("results.k"), "", true});
   if (limits) table.columns.push_back({w.get("conformity.limit"), "", true});
   table.columns.push_back({"", "", false});
@@ -107,11 +123,10 @@ void add_conformity(const Source& source, Blocks& blocks) {
   for (const Shown& s : all) {
     const Value& v = *s.value;
     const Printed shown = printed_result(v.value, v.U, v.quantity, source.language());
-    std::vector<Table::Cell> row = {{s.measured->measurement.id},
-                                    {pages::symbol(v.name), true},
-                                    {w.get_or("value." + v.name, "")},
-                                    {shown.value},
-                                    {shown.U}};
+    std::vector<Table::Cell> row = {{s.measured->measurement.id}, {pages::symbol(v.name), true}};
+    if (!brief) row.push_back({w.get_or("value." + v.name, "")});
+    row.push_back({shown.value});
+    row.push_back({shown.U});
     if (factors)
       row.push_back({v.U ? printed_number(v.k, Quantity::number, 2, source.language()) : ""});
     if (limits)
@@ -127,6 +142,8 @@ void add_conformity(const Source& source, Blocks& blocks) {
   blocks.push_back(
       {Heading{w.get(limits ? "conformity.title" : "conformity.results"), 1}, "conformity.title"});
   blocks.push_back({std::move(table), "conformity"});
+  if (const std::string text = brief ? meanings(source, all) : ""; !text.empty())
+    blocks.push_back({Paragraph{text, Paragraph::Look::small}, "conformity"});
   if (limits)
     blocks.push_back({Paragraph{pages::rule_text(source) + " " + w.get("conformity.specification"),
                                 Paragraph::Look::small},

@@ -28,9 +28,10 @@ std::string excluded(const Source& source, const pages::Measured& m) {
   }
   if (which.empty()) return {};
   const std::string& reason = m.measurement.exclude_reason;
-  return source.words.get(
-      "departure.excluded",
-      {{"file", m.measurement.file}, {"which", which}, {"reason", reason.empty() ? "–" : reason}});
+  return ended(source,
+               source.words.get("departure.excluded", {{"file", m.measurement.file},
+                                                       {"which", which},
+                                                       {"reason", reason.empty() ? "–" : reason}}));
 }
 
 /// Of ISO 230-2, where it is not the one that everybody takes it for.
@@ -72,6 +73,12 @@ std::string places(const Source& source, const std::map<std::string, double>& at
 
 }  // namespace
 
+std::string ended(const Source& source, std::string text) {
+  for (const std::string_view stop : {".", "!", "?", "。", "！", "？"})
+    if (text.ends_with(stop)) return text;
+  return text + (source.language() == "zh" ? "。" : ".");
+}
+
 std::vector<std::string> departures_of(const Source& source, const pages::Measured& m) {
   Sentences sentences;
   sentences.add(excluded(source, m));
@@ -109,10 +116,12 @@ std::string test_parameters(const Source& source, const pages::Measured& m) {
   const Measurement& t = m.measurement;
   const Environment& e = source.in.campaign.environment;
   std::string said, not_said;
-  const auto add = [&](const char* name, bool there, const std::string& sentence) {
+  const bool moves = pages::over_one_position(t);  // targets, one after the other
+  const auto add = [&](const char* name, bool there, const std::string& sentence,
+                       bool wanted = true) {
     if (there)
       said += (said.empty() ? "" : " ") + sentence;
-    else
+    else if (wanted)
       not_said += (not_said.empty() ? "" : ", ") + w.get(std::string("test_name.") + name);
   };
   const auto with = [&](const char* key, const char* place, const std::string& text) {
@@ -125,14 +134,15 @@ std::string test_parameters(const Source& source, const pages::Measured& m) {
            quantity(source, t.feed.value_or(0) * per_minute, travel,
                     m.rotary ? "°/min" : "mm/min")));
   add("dwell", t.dwell.has_value(),
-      with("test.dwell", "dwell", quantity(source, t.dwell.value_or(0), Quantity::time)));
+      with("test.dwell", "dwell", quantity(source, t.dwell.value_or(0), Quantity::time)), moves);
   add("over_travel", t.over_travel.has_value(),
-      with("test.over_travel", "over_travel", quantity(source, t.over_travel.value_or(0), travel)));
+      with("test.over_travel", "over_travel", quantity(source, t.over_travel.value_or(0), travel)),
+      moves);
   add("at", !t.at.empty(), with("test.at", "at", places(source, t.at)));
   add("tool_offset", !t.tool_offset.empty(),
-      with("test.tool_offset", "offset", places(source, t.tool_offset)));
+      with("test.tool_offset", "offset", places(source, t.tool_offset)), moves);
   add("workpiece_offset", !t.workpiece_offset.empty(),
-      with("test.workpiece_offset", "offset", places(source, t.workpiece_offset)));
+      with("test.workpiece_offset", "offset", places(source, t.workpiece_offset)), moves);
   add("compensation", !t.compensation.empty(),
       w.get(t.compensation == "on" ? "test.compensation_on" : "test.compensation_off"));
   add("warm_up", !e.warm_up.empty(), with("test.warm_up", "text", e.warm_up));

@@ -144,6 +144,15 @@ void add_statements(const std::vector<Source>& sources, dcc::About& about) {
   own("conditions.title", t.conditions);
   own("opinions.title", t.opinions);
   own("parties.place", in.campaign.site);
+  for (const Results::Analysed& a : in.results.analyses)
+    if (is_printed(a) && !pages::cmc_text(sources.front(), a).empty())
+      add("", in_all(sources, [&](const Source& s) {
+            return s.words.get(
+                "method_heading.departures_of",
+                {{"measurement", a.measurement}, {"departures", pages::cmc_text(s, a)}});
+          }));
+  if (!not_reported_text(sources.front()).empty())
+    add("", in_all(sources, [](const Source& s) { return not_reported_text(s); }));
   if (!undecided_text(sources.front()).empty())
     add("", in_all(sources, [](const Source& s) { return undecided_text(s); }));
   if (has_directions(in)) add("", word(sources, "notes.sign"));

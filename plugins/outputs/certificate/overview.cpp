@@ -115,6 +115,39 @@ const pages::Measured* as_found(const std::vector<pages::Measured>& all,
   return nullptr;
 }
 
+bool looks_alike(const Curve& a, const Curve& b) {
+  return a.kind == b.kind && a.colour == b.colour && a.dash == b.dash && a.marker == b.marker;
+}
+
+/// What the lines of several plots are, said once above them. A plot in which a line of the same
+/// name looks otherwise (its last run is another one) keeps its own.
+Plot common_legend(std::vector<Plot>& plots) {
+  Plot common;
+  common.only_legend = true;
+  const auto known = [&](const Curve& c) {
+    return std::find_if(common.curves.begin(), common.curves.end(),
+                        [&](const Curve& k) { return k.legend == c.legend; });
+  };
+  const auto is_own = [](const Curve& c) {  // a limit has the number of its axis
+    return c.legend.empty() || c.dash == Dash::dash_dot;
+  };
+  for (Plot& plot : plots) {
+    if (!plot.scales || std::any_of(plot.curves.begin(), plot.curves.end(), [&](const Curve& c) {
+          return !is_own(c) && known(c) != common.curves.end() && !looks_alike(*known(c), c);
+        }))
+      continue;
+    for (Curve& c : plot.curves) {
+      if (is_own(c)) continue;
+      if (known(c) == common.curves.end()) {
+        common.curves.push_back(c);
+        common.curves.back().x.clear(), common.curves.back().y.clear();
+      }
+      c.legend.clear();
+    }
+  }
+  return common;
+}
+
 }  // namespace
 
 void add_overview(const Source& source, Blocks& blocks) {
@@ -138,15 +171,13 @@ void add_overview(const Source& source, Blocks& blocks) {
     }
     if (const pages::Measured* before = as_found(all, m)) lay_under(source, *before, *plot);
     limits |= add_limit(source, m, *plot);
-    if (!plots.empty() && plot->scales)  // the first one says what the lines are
-      for (Curve& c : plot->curves)
-        if (c.dash != Dash::dash_dot) c.legend.clear();
     plots.push_back(std::move(*plot));
   }
   if (plots.empty()) return;
   const std::size_t per_row = std::min<std::size_t>(plots.size(), plots.size() == 4 ? 2 : 3);
-  const double height = plots.size() > 3 ? 92 : plots.size() == 1 ? 134 : 125;
+  const double height = plots.size() > 3 ? 92 : plots.size() == 1 ? 134 : 104;
   blocks.push_back({Spacer{3}});
+  if (plots.size() > 1) blocks.push_back({common_legend(plots), "overview"});
   for (std::size_t i = 0; i < plots.size(); i += per_row) {
     Columns row;
     for (std::size_t k = i; k < std::min(i + per_row, plots.size()); ++k) {

@@ -126,7 +126,7 @@ std::string replaced_text(const Source& source) {
   const Issue& issue = *source.in.issue;
   std::string text =
       w.get("amendment.replaces", {{"number", issue.replaces}, {"date", issue.replaces_date}});
-  if (!issue.why.empty()) text += " " + w.get("amendment.why", {{"why", issue.why}});
+  if (!issue.why.empty()) text += " " + ended(source, w.get("amendment.why", {{"why", issue.why}}));
   if (issue.changes.empty()) text += " " + w.get("amendment.nothing");
   return text;
 }
@@ -248,6 +248,22 @@ bool has_part(const OutputInput& in, const pages::Measured& m) {
          });
 }
 
+}  // namespace
+
+std::string not_reported_text(const Source& source) {
+  std::string all;
+  for (const pages::Measured& m : pages::measured(source.in))
+    if (!has_part(source.in, m)) {
+      const std::string heading = pages::heading_of(source, m), &id = m.measurement.id;
+      const bool named = heading.find(id) != std::string::npos;
+      all += (all.empty() ? "" : "; ") + heading + (named ? "" : " (" + id + ")");
+    }
+  return all.empty() ? all
+                     : source.words.get("method_heading.not_reported", {{"measurements", all}});
+}
+
+namespace {
+
 /// What the program found, then what a person states. Nobody states by default.
 void add_departures(const Source& source, Blocks& blocks) {
   const CertificateTexts& texts = source.in.campaign.certificate;
@@ -266,6 +282,7 @@ void add_departures(const Source& source, Blocks& blocks) {
               "departures of measurement " + m.measurement.id);
   }
   if (none) paragraph(blocks, source.words.get("method_heading.none_found"), "departures");
+  paragraph(blocks, not_reported_text(source), "departures");
   if (!texts.deviations.empty())
     paragraph(blocks,
               source.words.get("method_heading.deviations", {{"deviations", texts.deviations}}),
@@ -368,7 +385,12 @@ bool has_directions(const OutputInput& in) {
 void add_statements(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
   blocks.push_back({Heading{w.get("statements.title"), 2}, "statements.title"});
-  paragraph(blocks, w.get("notes.uncertainty") + " " + w.get("statements.guides"), "statements");
+  const std::vector<std::string>& parts = source.look.measurement;
+  const bool budget = std::find(parts.begin(), parts.end(), "budget") != parts.end();
+  paragraph(blocks,
+            w.get("notes.uncertainty") + " " + w.get("statements.guides") +
+                (budget ? " " + w.get("statements.budget") : ""),
+            "statements");
   if (has_directions(source.in)) paragraph(blocks, w.get("notes.sign"), "notes.sign");
   paragraph(blocks, w.get("notes.items") + " " + w.get("statements.whole"), "statements");
   if (!source.in.campaign.certificate.customer_data.empty())

@@ -79,8 +79,9 @@ std::uint64_t scrambled(std::size_t row) {
 
 std::string words_of(const Source& source) {
   Object out;
-  for (const char* name : {"rms_now", "without", "reading", "deviation", "model", "residual",
-                           "time", "temperature", "line", "suspect", "reversal"})
+  for (const char* name :
+       {"rms_now", "without", "without_cv", "not_refitted", "reading", "deviation", "model",
+        "residual", "time", "temperature", "line", "suspect", "reversal"})
     out.text(name, source.words.get(std::string("page.") + name));
   out.text("no_readings", source.words.get("picture.no_readings"));
   out.text("one_direction", source.words.get("picture.reversal.none"));
@@ -105,6 +106,26 @@ std::string files_of(const Source& source) {
       if (m.id == id) file = m.file;
     out += json(file);
   });
+}
+
+/// The model fitted again without one effect: RMS of all readings, residuals of those on the page.
+std::string without_of(const ModelFit& fit, const std::string& effect,
+                       const std::vector<std::size_t>& rows, double per_si) {
+  const auto it = std::find_if(fit.without.begin(), fit.without.end(),
+                               [&](const auto& w) { return w.effect == effect; });
+  if (it == fit.without.end() || it->residual.size() != fit.size()) return "null";
+  Object out;
+  out.number("rms", it->rms * per_si);
+  out.number("cv_rms", it->cv_rms ? *it->cv_rms * per_si : std::nan(""));
+  out.raw("residual", column(it->residual, rows, per_si));
+  return out.done();
+}
+
+/// Names of the lines that stand side by side; null where all readings have one axis.
+std::string lanes_text(const ModelFit& fit) {
+  const Lanes lanes = lanes_of(fit);
+  if (lanes.names.empty()) return "null";
+  return list(lanes.names, [](std::string& out, const std::string& name) { out += json(name); });
 }
 
 }  // namespace
@@ -157,6 +178,8 @@ std::string data_of(const Source& source, const Kept& kept) {
   out.text("unit", unit_text(up));
   out.text("position_unit", unit_text(along));
   out.text("time_unit", source.pictures[static_cast<std::size_t>(ResidualPlot::time)].time_unit);
+  out.raw("lanes", lanes_text(fit));
+  out.number("measurements", static_cast<double>(fit.measurements.size()));
   out.number("period", period_of(fit) * across);
   out.number("floor", fit.floor ? *fit.floor * per_si : std::nan(""));
   out.raw("words", words_of(source));
@@ -179,6 +202,7 @@ std::string data_of(const Source& source, const Kept& kept) {
             Object effect;
             effect.text("name", e.name);
             effect.raw("says", column(known(e.contribution, fit.size()), rows, per_si));
+            effect.raw("without", without_of(fit, e.name, rows, per_si));
             text += effect.done();
           }));
   std::map<std::size_t, std::size_t> place;

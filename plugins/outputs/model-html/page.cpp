@@ -33,6 +33,7 @@ std::string head(const Source& source) {
          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src '" +
          csp_source(script_sha256) + "'; style-src '" + csp_source(style_sha256) +
          "'; base-uri 'none'; form-action 'none'\">\n"
+         "<meta name=\"color-scheme\" content=\"light dark\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" +
          element("title", html(title_of(source) + " · " + source.in.campaign.id)) +
          element("style", page_style) + "</head>\n";
@@ -88,6 +89,57 @@ std::string parameters(const Source& source) {
   for (const std::string& text :
        {correlated_parameters(fit, words), fit_in_words(fit, source.in.results, words)})
     if (!text.empty()) out += element("p", html(text));
+  return out;
+}
+
+/// What effects are and what cures them, as the catalogue says it.
+std::string cards(const Source& source) {
+  std::string out;
+  for (const ModelFit::Candidate& c : source.fit.candidates) {
+    std::string text;
+    for (const char* what : {"is", "looks", "cure"})
+      if (const std::string words =
+              nonio::words(source.in.templates, source.words.language(),
+                           "effect." + c.effect.substr(0, c.effect.find(':')) + "." + what);
+          !words.empty())
+        text += element("p", html(typeset(words)));
+    if (!text.empty())
+      out +=
+          element("details", element("summary", html(c.effect)) + text, out.empty() ? "open" : "");
+  }
+  if (out.empty()) return out;
+  return element("h3", html(source.words.get("model.card"))) + out;
+}
+
+/// Effects that are not in the model: those with evidence, those without, what to measure next.
+std::string candidates(const Source& source) {
+  const Wording& words = source.words;
+  const std::string& language = words.language();
+  std::string rows;
+  for (const CandidateRow& row : candidate_rows(source.fit, language)) {
+    const std::string certain =
+        row.certain ? " <b>" + html(words.get("model.certain")) + "</b>" : "";
+    rows += "<tr>" + element("td", html(row.effect) + certain);
+    for (const std::string* text : {&row.evidence, &row.rms, &row.cv_rms, &row.smallest})
+      rows += element("td", html(*text), "class=\"number\"");
+    rows += "</tr>\n";
+  }
+  std::string out = element("h2", html(words.get("model.candidates")));
+  if (rows.empty()) {
+    out += element("p", html(words.get("model.none_missing")));
+  } else {
+    std::string head = element("th", html(words.get("model.effect")));
+    for (const char* title : {"evidence", "rms_after", "left_out_after", "smallest"})
+      head += element("th", html(words.get(std::string("model.") + title)), "class=\"number\"");
+    out += element("div", element("table", "<tr>" + head + "</tr>\n" + rows), "class=\"scroll\"");
+  }
+  if (const std::string text = no_sign(source.fit, source.in.templates, language); !text.empty())
+    out += element("p", html(text));
+  out += cards(source);
+  std::string next;
+  for (const Finding& f : source.fit.next)
+    next += element("li", html(typeset(finding_text(source.in.templates, language, f, "says"))));
+  if (!next.empty()) out += element("h3", html(words.get("model.next"))) + element("ul", next);
   return out;
 }
 
@@ -222,6 +274,7 @@ std::string page_of(const Source& source) {
   std::string body = identity(source) + notes(source);
   if (!source.fit.steps.empty())
     body += element("h2", html(words.get("model.falls"))) + Falling(source).text();
+  body += candidates(source);
   body += element("h2", html(words.get("model.parameters"))) + parameters(source);
   body += "<section class=\"residuals\">\n" +
           element("h2", html(words.get("picture.heading", {{"part", source.fit.part}}))) +

@@ -19,11 +19,15 @@
   const finite = (v) => typeof v === "number" && isFinite(v);
   const counts = (i) => data.weight[i] >= 0.5;
 
-  // ---- the residual without some effects; each measurement keeps a zero of its own ----
+  // ---- the residual without some effects: without one it comes from a fit of the others; without
+  // several their parts come back, and each measurement keeps a zero of its own ----
+  let refitted = null;
   function work() {
-    residual = data.residual.slice();
-    for (const e of out.e) data.effects[e].says.forEach((v, i) => (residual[i] += v));
-    if (out.e.size > 0) {
+    const one = out.e.size === 1 ? data.effects[[...out.e][0]].without : null;
+    refitted = one;
+    residual = (one ? one.residual : data.residual).slice();
+    if (!one) for (const e of out.e) data.effects[e].says.forEach((v, i) => (residual[i] += v));
+    if (out.e.size > 0 && !one) {
       const sum = new Map(), weight = new Map();
       const add = (map, key, v) => map.set(key, (map.get(key) || 0) + v);
       for (let i = 0; i < n; i++) {
@@ -110,8 +114,9 @@
       this.empty = !(low <= high);
       if (this.empty) [low, high] = [0, 1];
       const side = 0.025 * (high - low) || 0.5;
-      this.left = low - side;
-      this.right = high + side;
+      this.lanes = options.lanes ? data.lanes : null;
+      this.left = this.lanes ? 0 : low - side;
+      this.right = this.lanes ? this.lanes.length : high + side;
       [this.low, this.high] = options.range || range;
       this.axes(said, options.kind || (said.degrees ? "turn" : ""));
     }
@@ -127,9 +132,12 @@
         put(svg, "text", {x: x - 4, y: r1(this.py(t.at) + 3.5), "text-anchor": "end"}, t.label);
       }
       let free = -Infinity;
-      for (const t of ticks(this.left, this.right, Math.max(2, Math.min(7, Math.round(w / 50))), kind)) {
-        const at = this.px(t.at), half = 3.2 * t.label.length;
-        put(svg, "line", {class: "rule", x1: r1(at), x2: r1(at), y1: y, y2: y + h});
+      const across = this.lanes
+        ? this.lanes.map((name, m) => ({at: m + 0.5, rule: m + 1, label: name}))
+        : ticks(this.left, this.right, Math.max(2, Math.min(7, Math.round(w / 50))), kind);
+      for (const t of across) {
+        const at = this.px(t.at), rule = this.px(t.rule === undefined ? t.at : t.rule), half = 3.2 * t.label.length;
+        put(svg, "line", {class: "rule", x1: r1(rule), x2: r1(rule), y1: y, y2: y + h});
         if (at - half < free || at + half > x + w + 8) continue;
         free = at + half + 4;
         put(svg, "text", {x: r1(at), y: y + h + 13, "text-anchor": "middle"}, t.label);
@@ -165,6 +173,18 @@
     }
   }
 
+  // ---- places: lines in space stand side by side, each in a lane of width 1 ----
+  const ends_of_lane = (data.lanes || []).map((name, m) =>
+    data.target.reduce(([a, b], v, i) => (data.measurement[i] === m ? [Math.min(a, v), Math.max(b, v)] : [a, b]), [Infinity, -Infinity]));
+  function place_of(m, target) {
+    if (!data.lanes) return target;
+    const [low, high] = ends_of_lane[m], room = 0.08;
+    return m + room + (1 - 2 * room) * (low < high ? (target - low) / (high - low) : 0.5);
+  }
+  const place = data.target.map((v, i) => place_of(data.measurement[i], v));
+  const lines = Array.from({length: Math.max(1, data.measurements)}, (_, m) => m);
+  const of_line = (rows, m) => rows.filter((i) => data.measurement[i] === m);
+
   const mean = (list) => list.reduce((a, b) => a + b, 0) / list.length;
   function grouped(rows, key, values) {
     const map = new Map();
@@ -196,24 +216,49 @@
   }
 
   function by_position() {
-    const frame = new Frame(0, shown.map((i) => data.target[i]), {});
-    frame.scatter(shown, shown.map((i) => data.target[i]), shown.map((i) => residual[i]));
-    for (const d of [1, -1, 0]) {
-      const groups = grouped(shown.filter((i) => data.direction[i] === d), data.target, residual);
-      frame.line(groups.map((g) => g[0]), groups.map((g) => mean(g[1])), d > 0 ? "plus" : d < 0 ? "minus" : "other");
-    }
+    const xs = shown.map((i) => place[i]);
+    const frame = new Frame(0, xs, {lanes: true});
+    frame.scatter(shown, xs, shown.map((i) => residual[i]));
+    for (const m of lines)
+      for (const d of [1, -1, 0]) {
+        const groups = grouped(of_line(shown, m).filter((i) => data.direction[i] === d), data.target, residual);
+        frame.line(groups.map((g) => place_of(m, g[0])), groups.map((g) => mean(g[1])), d > 0 ? "plus" : d < 0 ? "minus" : "other");
+      }
     return frame;
   }
 
   function by_reversal() {
-    const minus = new Map(grouped(shown.filter((i) => data.direction[i] < 0), data.target, residual));
-    const both = grouped(shown.filter((i) => data.direction[i] > 0), data.target, residual).filter((g) => minus.has(g[0]));
-    const xs = both.map((g) => g[0]), ys = both.map((g) => mean(g[1]) - mean(minus.get(g[0])));
-    const half = both.map((g) => 2 * (data.floor || 0) * Math.sqrt(1 / g[1].length + 1 / minus.get(g[0]).length));
-    const [low, high] = extremes([0, ...ys, ...half, ...half.map((v) => -v)]);
+    const of_lines = lines.map((m) => reversal_of(m));
+    const all = (key) => of_lines.flatMap((line) => line[key]);
+    const [low, high] = extremes([0, ...all("ys"), ...all("half"), ...all("half").map((v) => -v)]);
     const edge = 0.06 * (high - low) || 1;
-    const frame = new Frame(1, xs, {range: [low - edge, high + edge]});
-    if (data.floor && xs.length > 1) {
+    const frame = new Frame(1, all("xs"), {range: [low - edge, high + edge], lanes: true});
+    if (lines.length > 1 && data.floor) {
+      // One belt for all lines: bands would darken each other.
+      const widest = Math.max(0, ...all("half"));
+      put(frame.svg, "rect", {class: "band", x: frame.x, y: r1(frame.py(widest)), width: frame.w,
+                              height: r1(frame.py(-widest) - frame.py(widest))});
+    }
+    for (const line of of_lines) draw_reversal(frame, line);
+    return frame;
+  }
+
+  /// mean(+) less mean(-) at each target of one measurement, and twice its standard deviation by the
+  /// floor.
+  function reversal_of(m) {
+    const rows = of_line(shown, m);
+    const minus = new Map(grouped(rows.filter((i) => data.direction[i] < 0), data.target, residual));
+    const both = grouped(rows.filter((i) => data.direction[i] > 0), data.target, residual).filter((g) => minus.has(g[0]));
+    return {
+      targets: both.map((g) => g[0]),
+      xs: both.map((g) => place_of(m, g[0])),
+      ys: both.map((g) => mean(g[1]) - mean(minus.get(g[0]))),
+      half: both.map((g) => 2 * (data.floor || 0) * Math.sqrt(1 / g[1].length + 1 / minus.get(g[0]).length)),
+    };
+  }
+
+  function draw_reversal(frame, {targets, xs, ys, half}) {
+    if (lines.length === 1 && data.floor && xs.length > 1) {
       const there = xs.map((v, j) => r1(frame.px(v)) + " " + r1(frame.py(half[j])));
       const back = xs.map((v, j) => r1(frame.px(v)) + " " + r1(frame.py(-half[j]))).reverse();
       put(frame.svg, "path", {class: "band", d: "M" + there.concat(back).join("L") + "z"});
@@ -221,9 +266,8 @@
     frame.line(xs, ys, "other");
     xs.forEach((v, j) => {
       put(frame.svg, "circle", {class: "dot", cx: r1(frame.px(v)), cy: r1(frame.py(ys[j])), r: 2.5});
-      frame.points.push([frame.px(v), frame.py(ys[j]), -1, [position(v), words.reversal + " " + number(ys[j], 2) + " " + data.unit]]);
+      frame.points.push([frame.px(v), frame.py(ys[j]), -1, [position(targets[j]), words.reversal + " " + number(ys[j], 2) + " " + data.unit]]);
     });
-    return frame;
   }
 
   function by_run() {
@@ -282,8 +326,8 @@
     });
   }
   function left_out() {
-    const xs = shown.map((i) => data.target[i]);
-    const frame = new Frame(8, xs, {});
+    const xs = shown.map((i) => place[i]);
+    const frame = new Frame(8, xs, {lanes: true});
     frame.scatter(shown, xs, shown.map((i) => data.left_out[i]));
     return frame;
   }
@@ -298,10 +342,13 @@
     drawers.forEach((drawer, k) => {
       if (!data.pictures[k].none) pictures.push(drawer());
     });
-    const now = rms(), all = out.e.size === 0;
+    const whole = out.d.size === 0 && out.r.size === 0 && refitted;
+    const now = whole ? refitted.rms : rms(), all = out.e.size === 0;
+    const names = [...out.e].sort((a, b) => a - b).map((e) => data.effects[e].name).join(", ");
     document.getElementById("rms").textContent =
       (finite(now) ? text(words.rms_now, {rms: number(now, 2), unit: data.unit, count: shown.filter((i) => data.weight[i] > 0 || wrong.has(i)).length}) : words.no_readings) +
-      (all ? "" : " " + text(words.without, {effects: [...out.e].sort().map((e) => data.effects[e].name).join(", ")}));
+      (all ? "" : " " + text(refitted ? words.without : words.not_refitted, {effects: names})) +
+      (whole && finite(refitted.cv_rms) ? " " + text(words.without_cv, {rms: number(refitted.cv_rms, 2), unit: data.unit}) : "");
     mark(marked);
   }
 

@@ -15,12 +15,22 @@ namespace {
 const std::vector<double> identity_shares = {0.36, 0.29, 0.35};
 const std::vector<double> title_shares = {0.66, 0.34};  // the laboratory above the instrument
 
+/// What was measured, so that the line below the title is true of every campaign.
+const char* subtitle_of(const Source& source) {
+  bool positioning = false, other = false;
+  for (const Measurement& m : source.in.campaign.measurements)
+    (m.kind == "axis" ? positioning : other) = true;
+  if (positioning && other) return "subtitle_both";
+  return positioning ? "subtitle" : other ? "subtitle_geometry" : "subtitle_plan";
+}
+
 }  // namespace
 
 void add_title(const Source& source, Blocks& blocks) {
   const Laboratory& laboratory = source.in.campaign.laboratory;
-  Blocks title = {{Heading{source.words.get("title"), 0}, "title"},
-                  {Paragraph{source.words.get("subtitle"), Paragraph::Look::muted}, "subtitle"}};
+  Blocks title = {
+      {Heading{source.words.get("title"), 0}, "title"},
+      {Paragraph{source.words.get(subtitle_of(source)), Paragraph::Look::muted}, "subtitle"}};
   Blocks by;
   if (!laboratory.name.empty())
     by.push_back({Paragraph{laboratory.name, Paragraph::Look::bold}, "laboratory.name"});

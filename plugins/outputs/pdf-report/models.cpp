@@ -55,6 +55,35 @@ void add_parameters(const Source& source, const ModelFit& fit, Blocks& blocks) {
     blocks.push_back({Paragraph{text, Paragraph::Look::small}, field});
 }
 
+/// Effects with evidence that are not in the model, in a table; the others in a sentence; what to
+/// measure next.
+void add_candidates(const Source& source, const ModelFit& fit, Blocks& blocks) {
+  const Wording& words = source.pictures;
+  const std::string field = "candidates for the model of " + fit.part;
+  Table table;
+  table.title = words.get("model.candidates");
+  table.columns = {{words.get("model.effect"), ""},
+                   {words.get("model.evidence"), "", true},
+                   {words.get("model.rms_after"), "", true},
+                   {words.get("model.left_out_after"), "", true},
+                   {words.get("model.smallest"), "", true}};
+  for (const CandidateRow& row : candidate_rows(fit, source.language()))
+    table.rows.push_back(
+        {{row.effect + (row.certain ? " – " + words.get("model.certain") : ""), row.certain},
+         {row.evidence},
+         {row.rms},
+         {row.cv_rms},
+         {row.smallest}});
+  if (!table.rows.empty()) blocks.push_back({std::move(table), field});
+  if (const std::string text = no_sign(fit, source.in.templates, source.language()); !text.empty())
+    blocks.push_back({Paragraph{text, Paragraph::Look::small}, field});
+  for (const Finding& f : fit.next) {
+    const std::string text = finding_text(source.in.templates, source.language(), f, "says");
+    blocks.push_back(
+        {Paragraph{words.get("model.next") + ": " + typeset(text), Paragraph::Look::small}, field});
+  }
+}
+
 void add_falling_error(const Source& source, const ModelFit& fit, Blocks& blocks) {
   if (fit.steps.empty()) return;
   const Wording& words = source.pictures;
@@ -98,6 +127,7 @@ void add_models(const Source& source, Blocks& blocks) {
     blocks.push_back(
         {Heading{source.pictures.get("model.heading", {{"part", fit.part}}), 1}, field});
     add_what_it_says(source, fit, blocks);
+    add_candidates(source, fit, blocks);
     add_parameters(source, fit, blocks);
     add_falling_error(source, fit, blocks);
     if (const std::string text = fit_in_words(fit, source.in.results, source.pictures);

@@ -32,7 +32,8 @@ class Pictures {
         deviation_(deviation_of(fit.angular)),
         position_(position_of(fit.rotary)),
         per_si_(unit_of(deviation_).per_si),
-        suspect_(fit.size(), 0) {
+        suspect_(fit.size(), 0),
+        lanes_(lanes_of(fit)) {
     for (const ModelFit::Suspect& s : fit.suspects)
       if (s.row < fit.size()) suspect_[s.row] = 1;
     double low = 0, high = 0;
@@ -76,7 +77,8 @@ class Pictures {
         normal(plot);
         break;
       case ResidualPlot::left_out:
-        scatter(plot, scaled(fit_.target, said.x_per_si), scaled(fit_.cv_residual, per_si_));
+        plot.lanes = lanes_.names;
+        scatter(plot, places(), scaled(fit_.cv_residual, per_si_));
         break;
     }
     return plot;
@@ -157,17 +159,33 @@ class Pictures {
     line(plot, scaled(mean.x, per_si), scaled(mean.y, per_si_), style_.text);
   }
 
-  void position(Plot& plot) const {
-    const double across = unit_of(position_).per_si;
-    scatter(plot, scaled(fit_.target, across), scaled(fit_.residual, per_si_));
-    for (std::uint32_t m = 0; m < std::max<std::size_t>(fit_.measurements.size(), 1); ++m)
-      mean_lines(plot, fit_.measurements.size() > 1 ? of_measurement(fit_, m) : fit_, across);
+  /// Where targets of a measurement lie in a picture by position.
+  std::vector<double> along(std::vector<double> targets, std::size_t measurement) const {
+    for (double& t : targets)
+      t = lanes_.names.empty() ? t * unit_of(position_).per_si : lanes_.at(measurement, t);
+    return targets;
   }
 
-  void mean_lines(Plot& plot, const ModelFit& fit, double across) const {
+  /// Of every reading.
+  std::vector<double> places() const {
+    if (lanes_.names.empty()) return along(fit_.target, 0);
+    std::vector<double> out(fit_.size());
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = lanes_.at(fit_.measurement[i], fit_.target[i]);
+    return out;
+  }
+
+  void position(Plot& plot) const {
+    plot.lanes = lanes_.names;
+    scatter(plot, places(), scaled(fit_.residual, per_si_));
+    for (std::uint32_t m = 0; m < std::max<std::size_t>(fit_.measurements.size(), 1); ++m)
+      mean_lines(plot, fit_.measurements.size() > 1 ? of_measurement(fit_, m) : fit_, m);
+  }
+
+  void mean_lines(Plot& plot, const ModelFit& fit, std::size_t measurement) const {
     for (const int d : {+1, -1, 0}) {
       const Trace mean = mean_by_target(fit, d);
-      line(plot, scaled(mean.x, across), scaled(mean.y, per_si_),
+      line(plot, along(mean.x, measurement), scaled(mean.y, per_si_),
            d > 0   ? style_.plus
            : d < 0 ? style_.minus
                    : style_.accent,
@@ -178,20 +196,21 @@ class Pictures {
   void reversal(Plot& plot) const {
     plot.range.reset();
     plot.belts.clear();
-    if (fit_.measurements.size() <= 1) return reversal_line(plot, reversal_of(fit_), true);
+    plot.lanes = lanes_.names;
+    if (fit_.measurements.size() <= 1) return reversal_line(plot, reversal_of(fit_), 0, true);
     double widest = 0;
     for (std::uint32_t m = 0; m < fit_.measurements.size(); ++m) {
       const Reversal r = reversal_of(of_measurement(fit_, m));
       for (const double spread : r.spread) widest = std::max(widest, spread);
-      if (!r.values.x.empty()) reversal_line(plot, r, false);
+      if (!r.values.x.empty()) reversal_line(plot, r, m, false);
     }
     // One belt for all lines: bands would darken each other.
     const double half = fit_.floor ? 2 * widest * *fit_.floor * per_si_ : 0;
     if (half > 0) plot.belts.push_back({-half, half, style_.rule});
   }
 
-  void reversal_line(Plot& plot, const Reversal& r, bool with_band) const {
-    const auto x = scaled(r.values.x, unit_of(position_).per_si);
+  void reversal_line(Plot& plot, const Reversal& r, std::size_t measurement, bool with_band) const {
+    const auto x = along(r.values.x, measurement);
     if (with_band && fit_.floor) {
       Curve band;
       band.kind = Curve::Kind::band;
@@ -250,6 +269,7 @@ class Pictures {
   Quantity deviation_, position_;
   double per_si_;
   std::vector<char> suspect_;  ///< of each reading
+  Lanes lanes_;
   std::pair<double, double> range_;
 };
 

@@ -273,6 +273,40 @@ void add_plans(const Source& source, Blocks& blocks) {
   }
 }
 
+namespace {
+
+/// What an uncertainty of its values needs was not stated.
+bool lacks_statements(const Results::Analysed& a) {
+  const auto& findings = a.evaluation.findings;
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const Finding& f) { return f.id == "uncertainty.no-data"; });
+}
+
+/// What the numbers mean, as far as there are such numbers.
+std::string meaning_of_numbers(const Source& source) {
+  const Results& results = source.in.results;
+  std::string all;
+  const auto say = [&](bool wanted, const std::string& text) {
+    if (wanted) all += (all.empty() ? "" : " ") + text;
+  };
+  bool with_U = false, without_U = false;
+  for (const Results::Analysed& a : results.analyses)
+    for (const Value& v : a.evaluation.values)
+      v.U ? with_U = true : without_U |= lacks_statements(a);
+  const auto& measurements = source.in.campaign.measurements;
+  say(with_U, source.words.get("notes.uncertainty"));
+  say(without_U, source.words.get("notes.no_uncertainty"));
+  say(std::any_of(results.conformity.begin(), results.conformity.end(),
+                  [](const Conformity& c) { return !c.measurement.empty(); }),
+      pages::rule_text(source));
+  say(std::any_of(measurements.begin(), measurements.end(), pages::over_one_position),
+      source.words.get("notes.sign"));
+  say(true, source.words.get("notes.items"));
+  return all;
+}
+
+}  // namespace
+
 void add_notes(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
   const Results& results = source.in.results;
@@ -285,24 +319,14 @@ void add_notes(const Source& source, Blocks& blocks) {
   for (const Remark& note : results.notes)
     add(w.get("status.of_measurement",
               {{"measurement", note.measurement}, {"what", remark(source, note)}}));
-  bool with_U = false, without_U = false;
   std::set<std::string> said;
   std::string methods;
-  for (const Results::Analysed& a : results.analyses) {
-    for (const Value& v : a.evaluation.values) (v.U ? with_U : without_U) = true;
+  for (const Results::Analysed& a : results.analyses)
     for (const Remark& note : a.evaluation.notes)
       if (said.insert(remark(source, note)).second)
         methods += (methods.empty() ? "" : " ") + remark(source, note);
-  }
   add(methods);
-  std::string ours;
-  const auto say = [&](const char* key) { ours += (ours.empty() ? "" : " ") + w.get(key); };
-  if (with_U) say("notes.uncertainty");
-  if (without_U) say("notes.no_uncertainty");
-  if (!results.conformity.empty()) ours += (ours.empty() ? "" : " ") + rule_text(source);
-  say("notes.sign");
-  say("notes.items");
-  add(ours);
+  add(meaning_of_numbers(source));
 }
 
 }  // namespace nonio::pdf_report

@@ -67,6 +67,24 @@ std::uint32_t whole_number(std::string_view text, std::uint32_t most) {
   return n <= most ? n : 0;
 }
 
+bool is_other_axis(const Machine& machine, const Measurement& m, std::string_view name) {
+  const std::string own = control_axis(machine, m);
+  if (name.empty() || name == own || (name == m.axis && m.side != "slave")) return false;
+  for (const Axis& axis : machine.axes)
+    if ((name == axis.name && axis.name != m.axis) || name == axis.slave) return true;
+  // Where a gantry's sides are told apart by a figure, X1 is not X2.
+  return m.side == "slave" && name.size() == own.size() && name.size() > 1 &&
+         name.substr(0, name.size() - 1) == own.substr(0, own.size() - 1) && name.back() >= '0' &&
+         name.back() <= '9';
+}
+
+bool is_other_letter(std::string_view own, std::string_view name) {
+  constexpr std::string_view letters = "XYZABCUVW", figures = "0123456789";
+  return !own.empty() && !name.empty() && name.size() <= 2 &&
+         letters.find(name[0]) != letters.npos && name[0] != own[0] &&
+         (name.size() == 1 || figures.find(name[1]) != figures.npos);
+}
+
 Expected<const Axis*> axis_of(const ReadInput& input) {
   const Measurement& m = input.measurement;
   const Axis* const axis = input.campaign.machine.axis(m.axis);

@@ -47,6 +47,13 @@ std::uint32_t whole_number(std::string_view text, std::uint32_t most);
 /// The axis of the measurement, which must be in the manifest.
 Expected<const Axis*> axis_of(const ReadInput& input);
 
+/// Whether a name that a file says is that of an axis of the machine, or of the control on the
+/// other side of a gantry, and of another one than the measurement's.
+bool is_other_axis(const Machine& machine, const Measurement& m, std::string_view name);
+
+/// Whether a name is that of an axis by its letter (ISO 841), and by its letter of another one.
+bool is_other_letter(std::string_view own, std::string_view name);
+
 /// One reading of one axis, SI. A deviation of NaN: it was not taken.
 struct Reading {
   std::uint32_t run = 0;

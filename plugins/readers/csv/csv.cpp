@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "comments.h"
 #include "duplicates.h"
 #include "header.h"
 #include "lines.h"
@@ -329,6 +330,7 @@ Expected<Observations> read_runs(const ReadInput& input) {
   if (auto ok = read_rows(input, lines, *header, rows); !ok)
     return in_file(ok.error(), lines.number());
   if (auto ok = rows.finish(); !ok) return in_file(ok.error(), 0);
+  doubt_comments(input, *header, *expectation, obs);
   return obs;
 }
 

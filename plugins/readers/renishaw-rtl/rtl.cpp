@@ -63,9 +63,17 @@ void add_environment(const Environment& e, const Axis& axis, Observations& obs) 
   else
     obs.notes.push_back(
         {at_start > 0 ? "renishaw.normalised" : "renishaw.not-normalised", {alpha}});
-  if (axis.expansion && std::fabs(*axis.expansion - alpha.value) > 0.05e-6)
-    obs.notes.push_back(
-        {"renishaw.other-expansion", {alpha, {"manifest", *axis.expansion, Quantity::expansion}}});
+  if (!axis.expansion) return;
+  // What tables give for one material differs by less. A coefficient of 0, or one that was not
+  // counted with, has not spoilt the deviations.
+  constexpr double other_material = 1e-6, same = 0.05e-6;
+  const double apart = std::fabs(*axis.expansion - alpha.value);
+  const Number stated{"manifest", *axis.expansion, Quantity::expansion};
+  if (apart > other_material && alpha.value != 0.0 && (at_start != at_end || at_start >= 0))
+    obs.doubts.push_back(
+        {.id = "plausibility.other-expansion", .attention = true, .evidence = {alpha, stated}});
+  else if (apart > same)
+    obs.notes.push_back({"renishaw.other-expansion", {alpha, stated}});
 }
 
 Expected<Observations> in_file(Expected<Observations> result, const ReadInput& input) {

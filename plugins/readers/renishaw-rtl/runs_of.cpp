@@ -2,7 +2,10 @@
 #include "runs_of.h"
 
 #include <algorithm>
+#include <charconv>
+#include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "code_pages.h"
 
@@ -53,6 +56,70 @@ Expected<bool> bidirectional(const std::vector<Pass>& passes) {
 
 Remark run_note(const char* id, std::size_t run) { return {id, {counted("run", run)}}; }
 
+/// The days of "2014-10-08 10:53:29"; of any other form nothing, since 10/02 may be two days.
+std::optional<std::chrono::sys_days> day_of(std::string_view text) {
+  int part[3] = {};
+  constexpr std::size_t at[] = {0, 5, 8}, digits[] = {4, 2, 2};
+  if (text.size() < 10 || text[4] != '-' || text[7] != '-') return std::nullopt;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const char* first = text.data() + at[i];
+    if (std::from_chars(first, first + digits[i], part[i]).ptr != first + digits[i])
+      return std::nullopt;
+  }
+  const std::chrono::year_month_day day{std::chrono::year(part[0]),
+                                        std::chrono::month(static_cast<unsigned>(part[1])),
+                                        std::chrono::day(static_cast<unsigned>(part[2]))};
+  return day.ok() ? std::optional(std::chrono::sys_days(day)) : std::nullopt;
+}
+
+/// Letters and figures alone, without zeros in front: as people type serial numbers.
+std::string bare(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const char big = c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c;
+    if ((big >= 'A' && big <= 'Z') || (big > '0' && big <= '9') || (big == '0' && !out.empty()))
+      out += big;
+  }
+  return out;
+}
+
+/// What the operator typed into the file, each against what the manifest says.
+struct Typed {
+  const ReadInput& input;
+  std::vector<Finding>& doubts;
+
+  void add(const char* id, std::uint64_t line, std::string_view found, std::string expected) const {
+    doubts.push_back({.id = id,
+                      .attention = true,
+                      .texts = {{"where", input.measurement.file + ":" + std::to_string(line)},
+                                {"found", std::string(found)},
+                                {"expected", std::move(expected)}}});
+  }
+
+  /// The second line; some type the instrument's there, or more than the number.
+  void serial(std::uint64_t line, std::string_view text) const {
+    const Machine& machine = input.campaign.machine;
+    const std::string found = bare(text);
+    if (machine.serial.empty() || found.empty()) return;
+    for (const std::string& known :
+         {machine.serial, machine.asset, input.campaign.instrument.serial}) {
+      const std::string own = bare(known);
+      if (!own.empty() && (found.find(own) != found.npos || own.find(found) != own.npos)) return;
+    }
+    add("plausibility.other-serial", line, text, machine.serial);
+  }
+
+  /// The third line. A campaign of some weeks has one date.
+  void day(std::uint64_t line, std::string_view text) const {
+    constexpr std::chrono::days spare{31};
+    const Campaign& c = input.campaign;
+    const auto found = day_of(text), from = day_of(c.date);
+    const auto to = c.end_date.empty() ? from : day_of(c.end_date);
+    if (!found || !from || !to || (*found >= *from - spare && *found <= *to + spare)) return;
+    add("plausibility.other-day", line, text.substr(0, 10), c.date);
+  }
+};
+
 }  // namespace
 
 Expected<void> add_runs(const RunFile& file, const Units& units, Runs& runs) {
@@ -86,7 +153,8 @@ Expected<void> add_runs(const RunFile& file, const Units& units, Runs& runs) {
 
 Expected<void> add_user_text(const RunFile& file, const ReadInput& input, Observations& obs) {
   if (file.user.empty()) return {};
-  constexpr std::size_t axis_line = 4;
+  constexpr std::size_t serial_line = 1, date_line = 2, axis_line = 4;
+  const Typed typed{input, obs.doubts};
   const std::string code_page = input.options.text("code_page", "utf-8");
   std::string all;
   bool unreadable = false;
@@ -100,13 +168,18 @@ Expected<void> add_user_text(const RunFile& file, const ReadInput& input, Observ
     const auto text = decoded(line, code_page);
     unreadable = unreadable || !text;
     if (text) all += (all.empty() ? "" : "; ") + *text;
-    const std::string axis(trimmed(line.substr(colon + 1)));
-    if (i == axis_line && axis != input.measurement.axis &&
-        input.campaign.machine.axis(axis) != nullptr && !input.options.flag("ignore_axis"))
+    const std::string value(trimmed(line.substr(colon + 1)));
+    if (i == serial_line && is_utf8(value)) typed.serial(file.user[i].number, value);
+    if (i == date_line) typed.day(file.user[i].number, value);
+    if (i != axis_line || input.options.flag("ignore_axis")) continue;
+    const std::string own = control_axis(input.campaign.machine, input.measurement);
+    if (is_other_axis(input.campaign.machine, input.measurement, value))
       return fail(at_line(file.user[i].number,
-                          "the file says axis " + axis + ", the manifest " +
-                              input.measurement.axis +
+                          "the file says axis " + value + ", the manifest " + own +
                               "; if the file is wrong: ignore_axis = true among the options"));
+    // An axis that the manifest does not name is another one by its letter.
+    if (is_other_letter(own, value))
+      typed.add("plausibility.name-of-another", file.user[i].number, value, own);
   }
   if (!all.empty()) obs.notes.push_back({"renishaw.user-text", {}, {{"text", all}}});
   if (unreadable) obs.notes.push_back({"renishaw.code-page"});

@@ -5,6 +5,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -77,11 +78,13 @@ class Browser:
         self.process.wait(timeout=30)
 
 
-def rms_without(data, effect):
-    residual = [r + (data["effects"][effect]["says"][i] if effect is not None else 0.0)
-                for i, r in enumerate(data["residual"])]
+def rms_without(data, effects):
+    """Fitted again without one effect, if the page has that; else their parts come back, less a zero."""
     weight = data["weight"]
-    if effect is not None:
+    if len(effects) == 1 and data["effects"][effects[0]]["without"]:
+        return data["effects"][effects[0]]["without"]["rms"]
+    residual = [r + sum(data["effects"][e]["says"][i] for e in effects) for i, r in enumerate(data["residual"])]
+    if effects:
         shift = sum(w * (r - o) for w, r, o in zip(weight, residual, data["residual"]))
         residual = [r - shift / sum(weight) for r in residual]
     return math.sqrt(sum(w * r * r for w, r in zip(weight, residual)) / sum(weight))
@@ -113,17 +116,37 @@ def check(browser, page, width):
     assert wide <= width, f"{where}: the page is {wide} wide"
     comma = str.replace if data["language"] == "it" else lambda text, a, b: text
     shown = lambda: browser.value("document.getElementById('rms').textContent")
-    wanted = comma(f"{rms_without(data, None):.2f}", ".", ",")
+    wanted = comma(f"{rms_without(data, []):.2f}", ".", ",")
     assert wanted in shown(), f"{where}: wanted {wanted}, found {shown()}"
     for effect in range(len(data["effects"])):
         box = f"document.querySelectorAll('#effects input')[{effect}]"
         browser.value(f"{box}.click()")
-        wanted = comma(f"{rms_without(data, effect):.2f}", ".", ",")
+        wanted = comma(f"{rms_without(data, [effect]):.2f}", ".", ",")
         assert wanted in shown(), f"{where}: wanted {wanted}, found {shown()}"
+        refitted = data["effects"][effect]["without"] is not None
+        said = data["words"]["without" if refitted else "not_refitted"].split("{")[0]
+        assert said in shown(), f"{where}: wanted {said}, found {shown()}"
         assert browser.value("location.hash") == f"#e{effect}", where
         browser.value(f"{box}.click()")
+    if len(data["effects"]) > 1:
+        for effect in (0, 1):
+            browser.value(f"document.querySelectorAll('#effects input')[{effect}].click()")
+        wanted = comma(f"{rms_without(data, [0, 1]):.2f}", ".", ",")
+        said = data["words"]["not_refitted"].split("{")[0]
+        assert wanted in shown() and said in shown(), f"{where}: wanted {wanted} {said}, found {shown()}"
+        for effect in (0, 1):
+            browser.value(f"document.querySelectorAll('#effects input')[{effect}].click()")
     bad = complaints(browser)
     assert not bad, f"{where}: {bad}"
+
+
+def check_dark(browser, page):
+    browser.open(page.as_uri(), 1400)
+    colour = "getComputedStyle(document.body).backgroundColor"
+    light = browser.value(colour)
+    browser.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+    dark = browser.value(colour)
+    assert light == "rgb(255, 255, 255)" and sum(map(int, re.findall(r"\d+", dark))) < 150, (light, dark)
 
 
 def check_hover(browser, page):
@@ -152,8 +175,9 @@ def main():
         subprocess.run([sys.argv[1], str(pages)], check=True)
         browser = Browser(program, folder + "/profile")
         for page in sorted(pages.glob("*/*/model-*.html")):
-            for width in (1400,) if page.parts[-3] == "many" else (1400, 400):
+            for width in (1400,) if page.parts[-3] == "many" else (1400, 400, 320):
                 check(browser, page, width)
+        check_dark(browser, pages / "usual" / "en" / "model-X.html")
         check_hover(browser, pages / "usual" / "en" / "model-X.html")
         browser.close()
     return 0

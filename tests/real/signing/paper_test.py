@@ -99,6 +99,8 @@ class Paper(SigningTest):
         for words in ("asks 5", "whole multiples of 10 mm apart", "plan of its own"):
             self.assertIn(words, self.said("short"))
         self.assertNotIn(STANDARD, self.said("short"))
+        self.assertNotIn(STANDARD, self.said("left-out"))
+        self.assertIn("plan of its own", self.said("left-out"))
         self.assertIn("drifted by", self.said("drifting"))
         self.assertIn("Approached in direction + only.", self.said("one-direction"))
         self.assertNotIn(STANDARD, self.said("one-direction"))

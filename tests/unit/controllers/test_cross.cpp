@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "machine.h"
+#include "nonio/controllers/text.h"
 #include "workshop.h"
 
 using namespace workshop;
@@ -74,6 +75,90 @@ TEST(Cross, SiemensTablesTakeStraightnessAndSquarenessAway) {
   for (const char* diagonal : {"D1", "D2"}) {
     EXPECT_GT(prediction(*result, diagonal).before, 40 * um);
     EXPECT_LT(prediction(*result, diagonal).after, 0.01 * um);
+  }
+}
+
+const Remark* note(const OutputResult& r, const std::string& id, const std::string& axis) {
+  for (const Remark& said : r.notes)
+    if (said.id == id && said.texts.front().second == axis) return &said;
+  return nullptr;
+}
+
+// Zero where all other tables are: at the reference point of the axis by which it is looked up, and
+// not at the first point, where the axis may never stand when the table is switched on.
+TEST(Cross, ZeroAtTheReferencePointAndSaid) {
+  struct Kind {
+    Output output;
+    Options options;
+    std::vector<std::string> files;
+  };
+  for (const Kind& k : {Kind{siemens_plugin(), {}, {"siemens-840d-XY-CEC.ini"}},
+                        {heidenhain_plugin(), {}, {"heidenhain-tnc-X.COM"}},
+                        {plugin(plugin_twincat_cnc),
+                         {{"cross_sign", std::string("error")}},
+                         {"twincat-cnc-cross-Y.lis"}},
+                        {plugin(plugin_twincat_volumetric),
+                         {{"sign", std::string("error")}},
+                         {"twincat-volumetric-XY.csv"}}})
+    for (const double reference : {0.0, 5.0, Lx}) {  // m
+      Bench bench = gantry();
+      bench.results.analyses.push_back(analysed(true));
+      Options options = k.options;
+      const bool said = reference > 0.0;
+      if (said)
+        options["axes"] =
+            std::vector<std::string>{"X reference_mm=" + std::to_string(reference * 1e3)};
+      const auto result = bench.write(k.output, options);
+      const std::string who = k.output.info.name + " " + std::to_string(reference);
+      ASSERT_TRUE(result) << who << result.error().message;
+      std::vector<Artifact> files;
+      for (const std::string& name : k.files) files.push_back({name, file(*result, name)});
+      const auto y = control_cross(k.output, files, "X", "Y", options);
+      ASSERT_TRUE(y) << who << y.error().message;
+      for (const double x : {0.0, 3.6, 6.0, 12.0})
+        EXPECT_NEAR((*y)(x, 1), -(f(x) - f(reference)), 0.1 * um + 0.0005 * um) << who << " " << x;
+      EXPECT_NEAR((*y)(reference, 1), 0.0, 0.11 * um) << who;
+      const Remark* zero =
+          note(*result, said ? "table.cross-zero-at" : "table.cross-zero-taken", "Y");
+      ASSERT_NE(zero, nullptr) << who;
+      EXPECT_EQ(zero->evidence.front().value, reference) << who;
+      EXPECT_LT(prediction(*result, "D1").after, 0.4 * um) << who;
+      std::string text;
+      for (const Artifact& a : result->artifacts) text += a.bytes;
+      const std::string at = controllers::decimal(reference * 1e3, 4) + " mm";
+      EXPECT_TRUE(contains(text, k.output.info.name == "twincat-volumetric"
+                                     ? "errors over X: zero at " + at
+                                     : "Y over X: zero at " + at + " of X" +
+                                           (said ? ";" : ", taken as reference point;")))
+          << who << text.substr(0, 1500);
+    }
+}
+
+TEST(Cross, APlaneOfAerotechCountsFromHome) {
+  Bench bench = gantry();
+  bench.results.analyses.push_back(analysed(true));
+  const Output aerotech = plugin(plugin_aerotech);
+  const auto result = bench.write(aerotech);
+  ASSERT_TRUE(result) << result.error().message;
+  EXPECT_TRUE(contains(file(*result, "aerotech-plane-D1.cal"), "; Y over X: zero at 0.0 mm of X"));
+  bench.campaign.measurements.clear(), bench.observations.clear();  // diagonals alone
+  const auto moved =
+      bench.write(aerotech, {{"axes", std::vector<std::string>{"Y reference_mm=9000"}}});
+  ASSERT_FALSE(moved);
+  EXPECT_TRUE(contains(moved.error().message, "reference_mm must be 0")) << moved.error().message;
+}
+
+TEST(Cross, WhatTheMakerDoesNotAllowIsNotWritten) {
+  for (const auto& [limit, stays] : {std::pair{"Y largest_um=39", false},
+                                     {"Y largest_um=41", true},
+                                     {"Y slope_um_per_m=10", false},
+                                     {"Y slope_um_per_m=11", true}}) {
+    Bench bench = gantry();
+    bench.results.analyses.push_back(analysed(true));
+    const auto result = bench.write(siemens_plugin(), {{"axes", std::vector<std::string>{limit}}});
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(has_file(*result, "siemens-840d-XY-CEC.ini"), stays) << limit;
+    EXPECT_EQ(finding(*result, "table.refused-cross") == nullptr, stays) << limit;
   }
 }
 

@@ -73,9 +73,9 @@ Observations campaign(const Axis& axis, int targets, double step, int runs) {
 }
 
 const std::vector<std::string> kinds = {
-    "scale",        "pitch-curve",  "periodic",  "backlash",        "backlash-slope",
-    "zero-drift",   "growth-drift", "warm-up",   "temperature",     "run-jump",
-    "eccentricity", "harmonic2",    "gear-mesh", "elastic-reversal"};
+    "scale",        "pitch-curve",      "periodic",    "backlash", "backlash-slope", "zero-drift",
+    "growth-drift", "warm-up",          "temperature", "run-jump", "eccentricity",   "harmonic2",
+    "gear-mesh",    "elastic-reversal", "day-wave",    "zero-wave"};
 
 /// Of several axes, of the set-up and of ball centres; space_effects_test.cpp has their columns.
 const std::vector<std::string> kinds_in_space = {
@@ -83,7 +83,8 @@ const std::vector<std::string> kinds_in_space = {
     "line-slope",    "mirror-tilt",       "centre",      "direction", "radial-run-out",
     "axial-run-out", "linear-squareness", "linear-scale"};
 
-const std::vector<std::string> descriptions = {"free-position", "free-reversal", "free-time"};
+const std::vector<std::string> descriptions = {"free-position", "free-reversal", "free-time",
+                                               "free-growth"};
 
 std::vector<double> first_shape(const Effect& e, const Observations& o, const Axis& axis) {
   std::vector<double> shape;
@@ -142,8 +143,11 @@ INSTANTIATE_TEST_SUITE_P(
         ByHand{"zero-drift", false, {}, {{0.0, 60.0, 180.0}}},
         ByHand{"growth-drift", false, {}, {{0.0, -6.0, 90.0}}},
         // 1 - 2^(-t/60 s) with tau = 60 s/ln 2: 0, 1/2, 7/8
-        ByHand{"warm-up", false, {60.0 / std::numbers::ln2}, {{0.0, -0.05, 0.4375}}},
-        ByHand{"temperature", false, {}, {{0.1, 0.01, 0.15}}},
+        ByHand{"warm-up", false, {60.0 / std::numbers::ln2, 0.0}, {{0.0, -0.05, 0.4375}}},
+        ByHand{"temperature", false, {0.0}, {{0.1, 0.01, 0.15}}},
+        // The same away from the lower end.
+        ByHand{"warm-up", false, {60.0 / std::numbers::ln2, -0.5}, {{0.0, 0.2, 0.875}}},
+        ByHand{"temperature", false, {-0.5}, {{0.0, -0.04, 0.3}}},
         ByHand{"run-jump", false, {110.0}, {{0.0, 0.0, 1.0}}},
         // P = 1.2 m: -150, -30, 150 deg
         ByHand{"periodic",
@@ -159,6 +163,7 @@ INSTANTIATE_TEST_SUITE_P(
             "elastic-reversal", true, {}, {{0.0, 0.5, 0.25}, {0.5, 0.0, std::sqrt(0.75) / 2.0}}}),
     [](const auto& c) {
       std::string name = c.param.kind;
+      if (!c.param.shape.empty() && c.param.shape.back() < 0.0) name += "-from-an-end";
       for (char& letter : name)
         if (letter == '-') letter = '_';
       return name;
@@ -206,7 +211,7 @@ TEST(Effects, DescriptionsAreNoCandidatesAndSayEachTargetByItself) {
     ASSERT_TRUE(e.applies(o, linear())) << name;
     const auto columns = e.columns(o, linear(), first_shape(e, o, linear()));
     ASSERT_TRUE(columns) << name;
-    if (name == "free-time") continue;
+    if (name == "free-time" || name == "free-growth") continue;
     // Each column is of one target.
     for (const auto& column : *columns) {
       std::set<double> at;
@@ -251,13 +256,15 @@ TEST(Effects, GridsAscendAndGiveColumnsOfFiniteNumbers) {
       for (const auto& kind : kinds) {
         const Effect& e = effect(kind);
         if (!e.applies(o, axis)) continue;
-        for (const auto& shape : e.shapes) {
-          const auto grid = shape.grid(o, axis);
+        for (std::size_t s = 0; s < e.shapes.size(); ++s) {
+          const auto grid = e.shapes[s].grid(o, axis);
           ASSERT_FALSE(grid.empty()) << kind;
           EXPECT_LE(grid.size(), 400u) << kind;
           for (std::size_t k = 1; k < grid.size(); ++k) EXPECT_LT(grid[k - 1], grid[k]) << kind;
           for (const double value : grid) {
-            const auto columns = e.columns(o, axis, {value});
+            auto shape = first_shape(e, o, axis);
+            shape[s] = value;
+            const auto columns = e.columns(o, axis, shape);
             ASSERT_TRUE(columns) << kind << ": " << columns.error().message;
             if (e.curve) {
               EXPECT_EQ(columns->size(), static_cast<std::size_t>(value));
@@ -347,6 +354,91 @@ TEST(Effects, KnotsLeaveThreeTargetsForTwoFreeValues) {
   EXPECT_EQ(knots(8), (Grid{3, 4}));
   EXPECT_EQ(knots(13), (Grid{3, 4, 5, 6, 7}));
   EXPECT_EQ(knots(60), (Grid{3, 4, 5, 6, 7, 8, 9, 10}));
+}
+
+TEST(Effects, AFixedPointIsTheMiddleUnlessTheReadingsOrTheManifestSayOtherwise) {
+  const Observations o = campaign(linear(), 11, 0.1, 3);
+  for (const char* kind : {"warm-up", "temperature"}) {
+    const Effect::Shape& shape = effect(kind).shapes.back();
+    ASSERT_EQ(shape.usual, 0.0) << kind;
+    const auto grid = shape.grid(o, linear());
+    EXPECT_EQ(std::count(grid.begin(), grid.end(), 0.0), 1) << kind;
+    EXPECT_LE(grid.front(), -0.75) << kind;  // a bearing a quarter of the stretch outside
+    EXPECT_GE(grid.back(), 0.75) << kind;
+    EXPECT_EQ(shape.grid(campaign(rotary(), 11, 0.1, 3), rotary()), std::vector<double>{0.0});
+    Axis known = linear();
+    known.fixed_point = 1.2;  // the middle is 0.5
+    ASSERT_EQ(shape.grid(o, known).size(), 1u) << kind;
+    EXPECT_NEAR(shape.grid(o, known)[0], 0.7, 1e-12) << kind;
+  }
+  Axis known = linear();
+  known.fixed_point = 0.0;
+  const auto growth = effect("growth-drift").columns(o, known, {});
+  ASSERT_TRUE(growth);
+  for (std::size_t i = 0; i < o.size(); ++i)
+    EXPECT_NEAR((*growth)[0][i], o.axes[0].position[i] * o.time[i], 1e-9);
+}
+
+TEST(Effects, TemperaturesThatAreMissingAreInterpolatedInTime) {
+  Observations o = campaign(linear(), 11, 0.1, 3);  // 20 degC + 1 mK/s
+  const auto whole = effect("temperature").columns(o, linear(), {0.0});
+  for (std::size_t i = 0; i < o.size(); ++i)
+    if (i % 4 != 0) o.material[i] = nan;
+  std::reverse(o.time.begin(), o.time.end());  // rows need not be in the order of time
+  std::reverse(o.material.begin(), o.material.end());
+  ASSERT_TRUE(effect("temperature").applies(o, linear()));
+  const auto r = readings_of(o, linear());
+  EXPECT_EQ(r->interpolated.size(), 49u);
+  // Beyond the last one that is known (65 - 1 is 64: one reading) its value holds: no more than
+  // 10 mK, and as much of the mean.
+  for (std::size_t i = 0; i < o.size(); ++i)
+    EXPECT_NEAR(r->K[i], 1e-3 * (o.time[i] - 325.0), 0.0102) << i;
+  ASSERT_TRUE(whole);
+}
+
+TEST(Effects, WhatDoesNotApplySaysWhyAndInWhichRows) {
+  const auto why = [](const std::string& kind, const Observations& o) {
+    const Effect& e = effect(kind);
+    EXPECT_FALSE(e.applies(o, linear())) << kind;
+    return e.why_not(o, linear());
+  };
+  Observations o = campaign(linear(), 11, 0.1, 3);
+  for (std::size_t i = 20; i < 50; ++i) o.material[i] = nan;  // a gap of nearly half the test
+  const WhyNot gap = why("temperature", o);
+  EXPECT_EQ(gap.id, "temperature-gaps");
+  ASSERT_EQ(gap.rows.size(), 30u);
+  EXPECT_EQ(gap.rows.front(), 20u);
+  std::fill(o.material.begin(), o.material.end(), 20.0);
+  EXPECT_EQ(why("temperature", o).id, "temperature-constant");
+  o.material.clear();
+  EXPECT_EQ(why("temperature", o).id, "no-temperature");
+  EXPECT_EQ(why("day-wave", o).id, "short-test");
+  o.time.clear();
+  EXPECT_EQ(why("day-wave", o).id, "no-times");
+  o.order_known = false;
+  for (const char* kind : {"zero-drift", "growth-drift", "warm-up", "run-jump"})
+    EXPECT_EQ(why(kind, o).id, "no-order") << kind;
+  std::fill(o.axes[0].approach.begin(), o.axes[0].approach.end(), std::int8_t{1});
+  EXPECT_EQ(why("backlash", o).id, "one-direction");
+  EXPECT_EQ(why("backlash-slope", o).id, "one-direction");
+  EXPECT_EQ(why("pitch-curve", campaign(linear(), 5, 0.1, 2)).id, "few-targets");
+}
+
+// A test of ten hours: sin and 1 - cos of 15 deg an hour, from the first reading on.
+TEST(Effects, ADaysWaveTurnsFifteenDegreesInAnHour) {
+  Observations o = campaign(linear(), 11, 0.1, 2);
+  EXPECT_FALSE(effect("day-wave").applies(o, linear()));
+  for (std::size_t i = 0; i < o.size(); ++i)
+    o.time[i] = 500.0 + 36000.0 * static_cast<double>(i) / 43.0;
+  ASSERT_TRUE(effect("day-wave").applies(o, linear()));
+  ASSERT_TRUE(effect("zero-wave").applies(o, linear()));
+  const auto growth = effect("day-wave").columns(o, linear(), {0.5});
+  const auto zero = effect("zero-wave").columns(o, linear(), {});
+  ASSERT_TRUE(growth && zero);
+  EXPECT_NEAR((*zero)[0].back(), std::sin(150.0 / 180.0 * pi), 1e-12);
+  EXPECT_NEAR((*zero)[1].back(), 1.0 - std::cos(150.0 / 180.0 * pi), 1e-12);
+  EXPECT_NEAR((*growth)[0].back(), -std::sin(150.0 / 180.0 * pi), 1e-12);  // 1 m from the far end
+  EXPECT_NEAR((*growth)[1].front(), 0.0, 1e-12);
 }
 
 // Positions and times from another origin are the same axis. (Angles are not: theta counts.)

@@ -197,10 +197,41 @@ TEST_F(Certificate, TheBudgetStandsInIt) {
   }
   c.campaign.certificate.languages = {"en"};
   const std::string page = text(c);
-  for (const char* what : {"Uncertainty budget of ISO 230-2", "Misalignment",
-                           "Drift during the test", "environment.drift_um", "rectangular"})
+  for (const char* what : {"Uncertainty budget: ISO 230-2", "Misalignment", "Drift during the test",
+                           "environment.drift_um", "rectangular"})
     EXPECT_TRUE(says(page, what)) << what;
   EXPECT_FALSE(has(page, "230-9")) << "its text was not read";
+  const std::string said = "Its budget stands with each measurement.";
+  EXPECT_TRUE(says(page, said));
+  const auto result = write(c);
+  ASSERT_TRUE(result);
+  EXPECT_FALSE(has(result->artifacts[1].bytes, said)) << "the DCC has none";
+  auto& parts =
+      std::get<std::vector<std::string>>(templates.tables["certificate"].values["measurement"]);
+  std::erase(parts, "budget");
+  EXPECT_FALSE(says(text(c), said));
+}
+
+TEST_F(Certificate, WhereTheLaboratorysFloorCountsItSaysSo) {
+  Case c = whole();
+  EXPECT_FALSE(says(text(c), "CMC"));
+  c.results.analyses.front().evaluation.findings.push_back(
+      {.id = "uncertainty.cmc", .texts = {{"results", "A+, B_mean"}}});
+  const std::string said = "The uncertainty of A↑, B mean would be smaller than";
+  EXPECT_TRUE(says(text(c), said));
+  const auto result = write(c);
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(has(result->artifacts[1].bytes, said));
+}
+
+TEST_F(Certificate, ResultsInTwoLanguagesHaveTheirMeaningsBelow) {
+  Case c = whole();
+  c.campaign.certificate.languages = {"it", "en"};
+  for (const char* name : {"A", "A+", "A-", "E", "R", "R+", "B"})
+    decide(c, "iso230-2", name, 50e-6, Decision::conforms);
+  const std::string page = text(c);
+  EXPECT_TRUE(says(page, "A↑: Accuracy, + direction; "));
+  EXPECT_TRUE(says(page, "; B: Errore di inversione massimo."));
 }
 
 TEST_F(Certificate, TheCoverageFactorThatWasUsedIsPrinted) {
@@ -338,6 +369,8 @@ TEST_F(Certificate, ADraftSaysSoOnEveryPageAndIsNotSigned) {
     const PdfText pdf = read_pdf(result->artifacts.front().bytes);
     ASSERT_GT(pdf.pages.size(), 1U);
     for (const auto& page : pdf.pages) EXPECT_TRUE(says(page, mark)) << language << "\n" << page;
+    for (std::size_t i = 1; i < pdf.pages.size(); ++i)  // the head has it in a line with others
+      EXPECT_TRUE(has("\n" + pdf.pages[i], "\n" + mark + "\n")) << language << ": across the page";
     EXPECT_FALSE(says(pdf.all(), "PAdES")) << language;
   }
 }

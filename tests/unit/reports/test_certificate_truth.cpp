@@ -93,7 +93,7 @@ TEST_F(Truth, WhatWasExcludedIsSaidWithItsReasonAndWithoutOneThereIsNoCertificat
   EXPECT_EQ(output().lacks(input(c)), keys) << "a dash is no reason";
   c.campaign.measurements[0].exclude_reason = "beam interrupted";
   EXPECT_TRUE(output().lacks(input(c)).empty());
-  const std::string said = "X.csv: line 57 (88.0 µm). Reason: beam interrupted";
+  const std::string said = "X.csv: line 57 (88.0 µm). Reason: beam interrupted.";
   EXPECT_TRUE(has(page(c), said));
   EXPECT_TRUE(has(dcc(c), said));
 }
@@ -105,10 +105,11 @@ TEST_F(Truth, ReadingsThatWereNotTakenAreCounted) {
   EXPECT_TRUE(has(page(c), "3 planned readings were not taken; 210 were."));
 }
 
-TEST_F(Truth, TargetsLeftOutAreNotCountedAsEvaluated) {
+/// One target from one direction only.
+Case with_target_of_one_direction(const Plugins& plugins) {
   Case c = whole_case(plugins);
   Observations& o = c.observations[0];
-  for (std::size_t i = 0; i < o.size();)  // one target from one direction only
+  for (std::size_t i = 0; i < o.size();)
     if (o.axes[0].approach[i] < 0 && o.axes[0].position[i] == o.axes[0].position[3]) {
       o.axes[0].position.erase(o.axes[0].position.begin() + static_cast<std::ptrdiff_t>(i));
       o.axes[0].approach.erase(o.axes[0].approach.begin() + static_cast<std::ptrdiff_t>(i));
@@ -118,10 +119,45 @@ TEST_F(Truth, TargetsLeftOutAreNotCountedAsEvaluated) {
     } else {
       ++i;
     }
+  return c;
+}
+
+TEST_F(Truth, TargetsLeftOutAreNotCountedAsEvaluated) {
+  Case c = with_target_of_one_direction(plugins);
   analyse_with(c, "incomplete_targets", std::string("leave-out"));
   const std::string text = page(c);
   EXPECT_TRUE(has(text, "Evaluated: 20 of 21 targets."));
   EXPECT_TRUE(has(text, "1 of 21 targets were left out"));
+}
+
+TEST_F(Truth, AMeasurementOfWhichNothingIsPrintedIsNamed) {
+  Case c = whole_case(plugins);
+  const std::string said = "Measured in this campaign and not reported here";
+  EXPECT_FALSE(has(page(c), said));
+  Measurement straight = c.campaign.measurements[0];
+  straight.id = "X-in-Y", straight.kind = "straightness", straight.lateral = "Y";
+  c.campaign.measurements.push_back(straight);
+  c.observations.push_back(c.observations[0]);
+  for (const std::string& text : {page(c), dcc(c)})
+    EXPECT_TRUE(has(text, said + ": Straightness of X in Y – measurement X-in-Y."));
+}
+
+TEST_F(Truth, ATestWithTargetsLeftOutIsOneToAPlanOfItsOwn) {
+  Case c = with_target_of_one_direction(plugins);
+  analyse(c);  // no value is given that needs the target; its plan is no other one for that
+  EXPECT_TRUE(has(page(c), "1 of 21 targets were not reached from both directions"));
+  EXPECT_TRUE(has(page(c), "the plan of ISO 230-2 was not followed"));
+  EXPECT_FALSE(has(page(c), "ISO 230-2:2014, accuracy"));
+  for (const char* of_vdi : {"VDI", "Ps"})  // it gives no value at all: no column either
+    EXPECT_FALSE(has(page(c), of_vdi)) << of_vdi;
+  analyse_with(c, "incomplete_targets", std::string("leave-out"));
+  for (const std::string& text : {page(c), dcc(c)}) {
+    EXPECT_TRUE(has(text, "20 of 21 targets are evaluated; ISO 230-2 asks all of them."));
+    EXPECT_TRUE(has(text, "the plan of ISO 230-2 was not followed"));
+    EXPECT_TRUE(has(text, "Positioning, to a test plan of its own"));
+    EXPECT_FALSE(has(text, "ISO 230-2:2014, accuracy"));
+    EXPECT_FALSE(has(text, "VDI/DGQ 3441:1977, statistical"));
+  }
 }
 
 TEST_F(Truth, APlanThatIsNotTheStandardsHasNoTitleWithItsName) {
@@ -439,7 +475,7 @@ TEST_F(Truth, TheFactorOfACurveIsTheSameOnPaperAndInTheDcc) {
   s.k = 2.23;
   c.results.analyses.front().evaluation.series = {s};
   EXPECT_TRUE(has(dcc(c), "<si:coverageFactorXMLList>2.23 2.23<"));
-  EXPECT_TRUE(has(page(c), "U (k = 2.2)"));
+  EXPECT_TRUE(has(page(c), "U (k = 2.23)"));
   EXPECT_TRUE(has(page(c), "zero by the definition of the curve"));
 }
 

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <regex>
+#include <set>
 
 #include "fixtures.h"
 #include "font_reader.h"
@@ -272,6 +274,55 @@ TEST(Plots, ManyPointsAreThinnedByPlaceAndExtremesStay) {
   EXPECT_EQ(count(with(1.01), " l\n"), plain);
   EXPECT_NE(with(1.01), with(1.04));
   EXPECT_EQ(with(0.01), with(0.04)) << "one among others is not";
+}
+
+/// Lower edge and height of each frame of a plot, from the origin of its piece.
+std::set<std::pair<std::string, std::string>> frames(const Document& document) {
+  const auto bytes = pdf(document, *fonts());
+  EXPECT_TRUE(bytes) << bytes.error().message;
+  std::set<std::pair<std::string, std::string>> out;
+  static const std::regex frame("(\\S+) (\\S+) (\\S+) (\\S+) re\\s+S");
+  for (const std::string& stream : fixtures::streams(*bytes))
+    if (stream.find("BT ") != std::string::npos)
+      for (std::sregex_iterator it(stream.begin(), stream.end(), frame), end; it != end; ++it)
+        out.insert({(*it)[2], (*it)[4]});
+  return out;
+}
+
+TEST(Plots, SideBySideTheyAreInLine) {
+  Plot plain;
+  plain.title = "Y";
+  Plot::Curve curve;
+  curve.x = {0, 1, 2}, curve.y = {1, 2, 1};
+  plain.curves = {curve};
+  Plot much = plain;
+  for (int i = 0; i < 12; ++i) {
+    curve.legend = "a legend that takes room " + std::to_string(i);
+    much.curves.push_back(curve);
+  }
+  EXPECT_EQ(frames(of({{plain}, {much}})).size(), 2U) << "one below the other each has its own";
+  EXPECT_EQ(frames(of({{Columns{{{{plain}}, {{much}}}}}})).size(), 1U);
+}
+
+TEST(Plots, ALegendForSeveralIsDrawnAlone) {
+  Plot legend;
+  legend.only_legend = true;
+  Plot::Curve curve;
+  curve.legend = "run 1";
+  legend.curves = {curve};
+  EXPECT_TRUE(frames(of({{legend}, {Paragraph{"p"}}})).empty());
+  EXPECT_EQ(count(pages_of(of({{legend}, {Paragraph{"p"}}})).all(), "run 1"), 1U);
+}
+
+TEST(Plots, ALegendTooLongForALineGoesOn) {
+  Plot plot;
+  Plot::Curve curve;
+  curve.x = {0, 1}, curve.y = {0, 1};
+  curve.legend = "Grenze von A = 30 arcsec / Limit of A = 30 arcsec";
+  plot.curves = {curve};
+  const std::string page = pages_of(of({{Columns{{{{plot}}, {}, {}, {}}}}})).all();
+  EXPECT_EQ(count(page, "30 arcsec"), 2U) << page;
+  EXPECT_EQ(count(page, "\u2026"), 0U);
 }
 
 TEST(Charts, BarsSayTheirValuesAndBearWhatIsNone) {

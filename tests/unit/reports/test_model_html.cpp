@@ -93,6 +93,23 @@ TEST_F(ModelHtml, NeedsNothingFromOutside) {
   EXPECT_EQ(occurrences(text, "http:"), 1U) << "the name of SVG";
 }
 
+TEST_F(ModelHtml, CandidatesCardsSizesAndWhatToMeasureStandOnIt) {
+  const std::string text = page(with_candidates(made_model()));
+  for (const char* what :
+       {"scale:X <b>certain</b>", "0.150 \u00b5m", "<summary>scale:X</summary>",
+        "No sign of: warm-up:X (would be seen from 1.10 \u00b5m), temperature:X (0.250 \u00b5m).",
+        "<li>Note the temperature"})
+    EXPECT_TRUE(has(text, what)) << what;
+  EXPECT_TRUE(has(page(made_model()), "No effect that is not in the model has evidence for it."));
+  EXPECT_TRUE(has(page(with_candidates(made_model()), "it"), "Nessun segno di: warm-up:X"));
+}
+
+TEST_F(ModelHtml, HoldsTheFitWithoutAnEffectAndNoneWhereThereIsNone) {
+  const std::string text = page(made_model());
+  EXPECT_EQ(occurrences(text, "\"without\":{"), 1U);
+  EXPECT_EQ(occurrences(text, "\"without\":null"), 2U);
+}
+
 TEST_F(ModelHtml, TheSameBytesTwice) {
   EXPECT_EQ(page(made_model()), page(made_model()));
   EXPECT_NE(page(made_model()), page(made_model(), "it"));

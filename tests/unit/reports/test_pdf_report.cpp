@@ -195,6 +195,47 @@ TEST_F(PdfReport, NothingNeedsAttentionOnlyWhereSomethingWasJudged) {
   EXPECT_TRUE(has(text(nothing), "Nothing was evaluated"));
 }
 
+TEST_F(PdfReport, WhatItSaysOfTheCampaignIsSo) {
+  Case axes = usual();
+  const std::string positioning = "Accuracy and repeatability of positioning",
+                    rule = "Decision rule after", sign = "B = mean";
+  EXPECT_TRUE(has(text(axes), positioning));
+  EXPECT_TRUE(has(text(axes), sign));
+  // A limit of an axis that was not measured: no decision, and no rule of one.
+  axes.results.conformity.push_back(
+      {"", "Y", "", "A", 5e-6, Quantity::deviation, Decision::cannot_be_decided, "no-value"});
+  EXPECT_FALSE(has(text(axes), rule));
+  decide(axes, "iso230-2", "A", 50e-6, Decision::conforms);
+  EXPECT_TRUE(has(text(axes), rule));
+  Case centres = usual();
+  centres.campaign.measurements[0].kind = "ball-centres";
+  EXPECT_FALSE(has(text(centres), positioning));
+  EXPECT_TRUE(has(text(centres), "Geometry of a machine tool"));
+  EXPECT_FALSE(has(text(centres), sign)) << "nothing was approached";
+  Case both = centres;
+  both.campaign.measurements.push_back(axes.campaign.measurements[0]);
+  both.campaign.measurements.back().id = "X2";
+  EXPECT_TRUE(has(text(both), "Positioning and geometry of a machine tool"));
+  Case plan;
+  EXPECT_TRUE(has(text(plan), "Plan of measurements"));
+  Case not_evaluated = usual();
+  EXPECT_TRUE(has(text(not_evaluated), "Readings and mean of each direction"));
+  not_evaluated.results.analyses.clear();  // of a diagonal, say: no mean is drawn
+  EXPECT_FALSE(has(text(not_evaluated), "mean of each direction"));
+  EXPECT_TRUE(has(text(not_evaluated), "Readings by run"));
+  // Values that have no U by what they are: nobody has left anything out.
+  const std::string not_stated = "the data for an uncertainty budget were not stated";
+  Case without = usual();
+  for (auto& a : without.results.analyses) {
+    std::erase_if(a.evaluation.findings,
+                  [](const Finding& f) { return f.id == "uncertainty.no-data"; });
+    for (Value& v : a.evaluation.values) v.U.reset();
+  }
+  EXPECT_FALSE(has(text(without), not_stated));
+  without.results.analyses[0].evaluation.findings.push_back({.id = "uncertainty.no-data"});
+  EXPECT_TRUE(has(text(without), not_stated));
+}
+
 // What the table refuses, the figure does not show.
 TEST_F(PdfReport, NoBracketStandsForAResultThatIsNotThere) {
   Case c = usual();

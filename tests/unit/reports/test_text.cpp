@@ -134,6 +134,18 @@ TEST(Breaking, BetweenIdeographsButForPunctuation) {
   EXPECT_EQ(lines(U"测量 值值", 2.4), (Lines{"测量", "值值"}));
 }
 
+TEST(Breaking, ANumberStaysWithItsSignAndUnit) {
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(lines(U"aaa k = 2", 2.5), (Lines{"aaa", "k = 2"}));
+  EXPECT_EQ(lines(U"aaa 95 %", 3.2), (Lines{"aaa", "95 %"}));
+  EXPECT_NEAR(widest_word(shaped("k = 2")), width_of(shaped("k = 2")), 1e-9);
+}
+
+TEST(Breaking, NoBlankFollowsAnIdeographicStop) {
+  EXPECT_EQ(shaped("结果。 规范： a").size(), shaped("结果。规范：a").size());
+  EXPECT_EQ(shaped("结果 a").size(), 4U);
+}
+
 TEST(Breaking, AWordOfATableIsAnIdeograph) {
   EXPECT_NEAR(widest_word(shaped("反向差值")), 1.0, 1e-9);
   EXPECT_NEAR(widest_word(shaped("反向差值。")), 2.0, 1e-9);

@@ -49,6 +49,31 @@ TEST(Text, BrokenUtf16IsNamedWithItsLine) {
   }
 }
 
+TEST(Text, AnyBytesAreUtf8OrAnErrorWithALine) {
+  const std::uint32_t seed = std::random_device{}();
+  std::mt19937 random(seed);
+  int read_ones = 0;
+  for (int i = 0; i < 20000; ++i) {
+    std::string bytes = random() % 2 == 0 ? "\xFF\xFE" : "\xFE\xFF";
+    const bool big = bytes[0] == '\xFE';
+    for (std::size_t k = random() % 12; k > 0; --k) {
+      const auto high = static_cast<char>(random() % 3 == 0 ? 0xD8 + random() % 8 : random() % 256);
+      const auto low = static_cast<char>(random() % 16 == 0 ? '\n' : random() % 256);
+      bytes += {big ? high : low, big ? low : high};
+    }
+    if (random() % 8 == 0) bytes.pop_back();
+    const auto read = utf8_of_utf16(bytes);
+    if (!read) {
+      EXPECT_GE(read.error().line, 1U) << "seed " << seed;
+      EXPECT_LE(read.error().line, bytes.size()) << "seed " << seed;
+    } else if (*read) {
+      ++read_ones;
+      EXPECT_TRUE(is_utf8(**read)) << "seed " << seed;
+    }
+  }
+  EXPECT_GT(read_ones, 100) << "seed " << seed;
+}
+
 TEST(Text, EveryCharacterIsUtf8AndNoSurrogateIs) {
   for (std::uint32_t c = 1; c <= 0x10FFFF; c += c < 0x3000 ? 1 : 17) {
     std::string text;
@@ -98,6 +123,13 @@ TEST(ColumnMap, UnitsAreOfTheKindOfAxis) {
   EXPECT_EQ(unit_named("inch", false), 0.0254);
   EXPECT_FALSE(unit_named("mm", true));
   EXPECT_DOUBLE_EQ(*unit_named("arcsec", true), M_PI / 180.0 / 3600.0);
+}
+
+TEST(Units, DriftWithTemperature) {
+  EXPECT_EQ(unit_of(Quantity::deviation_per_kelvin).symbol, "um/K");
+  EXPECT_EQ(unit_of(Quantity::deviation_per_kelvin).suffix, "_um_per_K");
+  EXPECT_DOUBLE_EQ(printed(2.5e-6, Quantity::deviation_per_kelvin), 2.5);
+  EXPECT_DOUBLE_EQ(printed(1.0 / arcsec_per_rad, Quantity::angle_per_kelvin), 1.0);
 }
 
 }  // namespace

@@ -57,18 +57,18 @@ std::string distribution_text(const Source& source, const Contribution& c) {
 
 Table inputs(const Source& source, const Results::Analysed& a, const UncertaintyBudget& budget) {
   const Wording& w = source.words;
-  std::string longest;
+  Table table;
+  table.title =
+      w.get("budget.title", {{"analysis", analysis_title(source, a)}}) + " – " + w.get("budget.u");
   if (budget.length > 0.0)
-    longest =
+    table.title +=
         ", " +
         w.get("budget.length",
               {{"length",
                 printed_number(budget.length, Quantity::length, 0, source.language()) + " mm"}});
-  Table table;
-  table.title = w.get("budget.title", {{"analysis", analysis_title(source, a)}});
   table.columns = {{w.get("budget.no"), "", true},
                    {w.get("budget.contribution"), "", false},
-                   {w.get("budget.u") + longest, "", true},
+                   {"u", "", true},
                    {"", "", false},
                    {w.get("budget.distribution"), "", false},
                    {w.get("budget.correlation"), "", false},
@@ -122,10 +122,14 @@ Table results(const Source& source, const Results::Analysed& a, const Uncertaint
     for (const double u : r.u) variance += u * u;
     std::vector<Table::Cell> cells = {{row.names, true}, {unit.text}};
     for (const double u : r.u) cells.push_back({part(source, u, std::sqrt(variance), unit)});
-    cells.push_back({printed_number(r.k, Quantity::number, 2, source.language())});
     std::string U;
+    double k = r.k;
     for (const Value& v : a.evaluation.values)
-      if (v.name == r.name && v.U) U = small(source, unit.factor * *v.U, unit.quantity);
+      if (v.name == r.name && v.U) {
+        U = small(source, unit.factor * *v.U, unit.quantity);
+        k = v.k;
+      }
+    cells.push_back({printed_number(k, Quantity::number, 2, source.language())});
     cells.push_back({U, true});
     table.rows.push_back(std::move(cells));
   }
@@ -134,6 +138,21 @@ Table results(const Source& source, const Results::Analysed& a, const Uncertaint
 
 }  // namespace
 
+std::string cmc_text(const Source& source, const Results::Analysed& a) {
+  for (const Finding& f : a.evaluation.findings) {
+    if (f.id != "uncertainty.cmc") continue;
+    std::string names;
+    for (const auto& [name, text] : f.texts)
+      for (std::size_t at = 0; name == "results" && at < text.size();) {
+        const std::size_t end = std::min(text.find(", ", at), text.size());
+        names += (names.empty() ? "" : ", ") + symbol(text.substr(at, end - at));
+        at = end + 2;
+      }
+    return source.words.get("budget.cmc", {{"results", names}});
+  }
+  return {};
+}
+
 void add_budget(const Source& source, const Measured& m, Blocks& blocks) {
   for (const auto* a : m.analyses) {
     const auto& budget = a->evaluation.budget;
@@ -141,6 +160,8 @@ void add_budget(const Source& source, const Measured& m, Blocks& blocks) {
     const std::string field = "budget of " + a->plugin + ", measurement " + a->measurement;
     blocks.push_back({inputs(source, *a, *budget), field});
     blocks.push_back({results(source, *a, *budget), field});
+    if (std::string text = cmc_text(source, *a); !text.empty())
+      blocks.push_back({Paragraph{std::move(text), Paragraph::Look::small}, field});
   }
 }
 

@@ -214,10 +214,12 @@ std::optional<Plot> runs_plot(const Source& source, const Measured& m) {
   Plot plot = empty_plot(source, m, source.words.get("plot.runs"));
   plot.y_title = source.words.get("plot.deviation", {{"unit", unit_text(deviation_of(o.angular))}});
   add_runs(source, o, plot);
+  const std::size_t readings = plot.curves.size();
   const Points points(m, {"mean+", "mean-"});
   for (const bool plus : {true, false})
     if (auto mean = points[plus ? "mean+" : "mean-"]; any_finite(mean))
       plot.curves.push_back(mean_curve(source, points["target"], std::move(mean), plus));
+  if (plot.curves.size() == readings) plot.title = source.words.get("plot.readings");
   return plot;
 }
 

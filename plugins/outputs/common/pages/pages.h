@@ -79,6 +79,9 @@ void add_plots(const Source&, const Measured&, Blocks&);
 std::optional<reports::Plot> readings_plot(const Source&, const Measured&);
 /// "U (k = 2)": the heading of expanded uncertainties that have one coverage factor.
 std::string U_heading(const Source&, double k);
+/// Of which results the laboratory's smallest uncertainty (CMC) stands in place of what the budget
+/// gives; empty if of none.
+std::string cmc_text(const Source&, const Results::Analysed&);
 /// What its uncertainties are made of, from the budget that results.json has too.
 void add_budget(const Source&, const Measured&, Blocks&);
 

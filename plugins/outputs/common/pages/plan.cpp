@@ -17,7 +17,8 @@ bool has(const Results::Analysed& a, std::string_view id) {
 bool departs(const Results::Analysed& a) {
   const auto& findings = a.evaluation.findings;
   return std::any_of(findings.begin(), findings.end(), [](const Finding& f) {
-    return (f.id.starts_with("plan.") && f.id != "plan.long-axis") || f.id == "direction.missing";
+    return (f.id.starts_with("plan.") && f.id != "plan.long-axis") || f.id == "direction.missing" ||
+           f.id == "targets.unpaired";
   });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "nonio/reports/model.h"
 #include "nonio/reports/number.h"
@@ -252,9 +253,17 @@ struct Joined {
   std::vector<const PointTable::Column*> columns;
 };
 
-std::vector<Joined> joined_points(const Measured& m) {
+/// A certificate prints no more of an analysis that gives no value with an uncertainty.
+bool without_values(const Source& source, const Results::Analysed& a) {
+  const auto& values = a.evaluation.values;
+  return source.certificate && std::all_of(values.begin(), values.end(),
+                                           [&](const Value& v) { return left_out(source, v); });
+}
+
+std::vector<Joined> joined_points(const Source& source, const Measured& m) {
   std::vector<Joined> out;
   for (const auto* a : m.analyses) {
+    if (without_values(source, *a)) continue;
     const PointTable& points = a->evaluation.points;
     if (points.columns.empty() || points.columns.front().values.empty()) continue;
     Joined* into = nullptr;
@@ -317,8 +326,9 @@ std::vector<std::string> cells_of(const Source& source, const PointTable::Column
 }  // namespace
 
 std::string U_heading(const Source& source, double k) {
-  return source.words.get("targets.uncertainty",
-                          {{"k", localised(short_text(k, k == 2.0 ? 0 : 2), source.language())}});
+  return source.words.get(
+      "targets.uncertainty",
+      {{"k", k == 2.0 ? "2" : printed_number(k, Quantity::number, 2, source.language())}});
 }
 
 namespace {
@@ -330,7 +340,7 @@ std::vector<Beside> curves_of(const Source& source, const Measured& m) {
   constexpr std::size_t per_table = 3;
   std::vector<Beside> all;
   for (const Results::Analysed* a : m.analyses) {
-    if (a->plugin == model_analysis) continue;
+    if (a->plugin == model_analysis || without_values(source, *a)) continue;
     for (const Series& s : a->evaluation.series) {
       if (s.position.empty() || (source.certificate && s.U.size() != s.value.size())) continue;
       const bool fits = !all.empty() && all.back().size() < per_table &&
@@ -358,6 +368,22 @@ std::pair<Printed, bool> at_place(const Source& source, const Series& s, std::si
   return {std::move(shown), none};
 }
 
+/// A long table of one curve in two halves side by side.
+void add_curve_table(Table table, const std::string& field, Blocks& blocks) {
+  constexpr std::size_t narrow = 3, few = 12, most = 80;
+  const std::size_t n = table.rows.size();
+  if (table.columns.size() > narrow || n <= few || n > most) {
+    blocks.push_back({std::move(table), field});
+    return;
+  }
+  blocks.push_back({Heading{std::exchange(table.title, {}), 2}, field});
+  Table second = table;
+  const auto half = static_cast<std::ptrdiff_t>((n + 1) / 2);
+  table.rows.erase(table.rows.begin() + half, table.rows.end());
+  second.rows.erase(second.rows.begin(), second.rows.begin() + half);
+  blocks.push_back({Columns{{{{std::move(table), field}}, {{std::move(second), field}}}}, field});
+}
+
 /// Curves that no table of targets holds, at their places with U.
 void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
   const Wording& w = source.words;
@@ -373,7 +399,7 @@ void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
       table.columns.push_back({symbol(s->name), unit_text(s->quantity), true});
       table.columns.push_back({U_heading(source, s->k), unit_text(s->quantity), true});
     }
-    table.title = w.get("targets.curve", {{"name", names}});
+    table.title = w.get(curves.size() == 1 ? "targets.curve" : "targets.curves", {{"name", names}});
     const int decimals = decimals_for(first.position, first.position_quantity, 4);
     for (std::size_t i = 0; i < first.position.size(); ++i) {
       std::vector<Table::Cell> row = {{printed_number(first.position[i], first.position_quantity,
@@ -389,7 +415,7 @@ void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
       if (any) table.rows.push_back(std::move(row));
     }
     if (!table.rows.empty())
-      blocks.push_back({std::move(table), "curves " + names + " of " + m.measurement.id});
+      add_curve_table(std::move(table), "curves " + names + " of " + m.measurement.id, blocks);
   }
   if (by_definition)
     blocks.push_back({Paragraph{w.get("targets.by_definition"), Paragraph::Look::small},
@@ -401,7 +427,7 @@ void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
 void add_targets(const Source& source, const Measured& m, Blocks& blocks) {
   const Wording& w = source.words;
   if (source.certificate) add_curves(source, m, blocks);
-  for (const Joined& joined : joined_points(m)) {
+  for (const Joined& joined : joined_points(source, m)) {
     const auto n = common_count(joined);
     Table table;
     table.title = w.get("targets.title");

@@ -18,8 +18,19 @@ bool same(const std::string& a, const std::string& b) {
                     [&](char x, char y) { return plain(x) == plain(y); });
 }
 
+/// "Hall 4 (beim Auftraggeber / at the customer's)": what both begin with stands once.
+bool join_in_brackets(std::string& a, const std::string& b) {
+  const std::size_t open = a.find(" (");
+  if (open == std::string::npos || open == 0 || b.find(" (") != open || !a.ends_with(')') ||
+      !b.ends_with(')') || !same(a.substr(0, open), b.substr(0, open)))
+    return false;
+  a.pop_back();
+  a += " / " + b.substr(open + 2);
+  return true;
+}
+
 void join(std::string& a, const std::string& b, const char* between = " / ") {
-  if (!same(a, b)) a += between + b;
+  if (!same(a, b) && !join_in_brackets(a, b)) a += between + b;
 }
 
 Blocks joined(Blocks first, const Blocks& second);
@@ -45,7 +56,8 @@ void merge(Plot& a, const Plot& b) {
   join(a.title, b.title);
   join(a.x_title, b.x_title, " · ");
   join(a.empty_text, b.empty_text);
-  for (std::size_t i = 0; i < a.curves.size(); ++i) join(a.curves[i].legend, b.curves[i].legend);
+  for (std::size_t i = 0; i < std::min(a.curves.size(), b.curves.size()); ++i)
+    join(a.curves[i].legend, b.curves[i].legend);
 }
 
 Block merged(Block a, const Block& b) {

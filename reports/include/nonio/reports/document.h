@@ -115,10 +115,14 @@ struct Plot {
   std::optional<std::pair<double, double>> range{};  ///< of the vertical axis; else what is drawn
   bool degrees = false;  ///< the horizontal axis is an angle: ticks at parts of a turn
   bool whole = false;    ///< the horizontal axis counts: ticks at whole numbers
+  /// The horizontal axis has a lane of width 1 for each name, from 0 on.
+  std::vector<std::string> lanes{};
   bool zero_line = true;
   bool same_scale = false;   ///< a length is as long across as up: a picture of something
   bool scales = true;        ///< false: nothing but the picture, and x_title as its caption
+  bool only_legend = false;  ///< of plots that follow: neither title nor picture
   double height = 0;         ///< with title and legend; 0: the style's
+  double top = 0;            ///< least height of title and legend: plots side by side are in line
   std::string empty_text{};  ///< what is said where there is nothing to draw
 };
 

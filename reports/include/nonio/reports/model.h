@@ -25,7 +25,17 @@ std::vector<ParameterRow> parameter_rows(const ModelFit&, const Templates&,
 /// "backlash:X b and periodic:X a (-0.95); ...": what the readings hardly tell apart; or nothing.
 std::string correlated_parameters(const ModelFit&, const Wording&);
 
-/// Readings, redundancy, largest residual, lack of fit, in sentences.
+/// An effect that is not in the model, in words and printed numbers.
+struct CandidateRow {
+  std::string effect, evidence, rms, cv_rms, smallest;
+  bool certain = false;
+};
+std::vector<CandidateRow> candidate_rows(const ModelFit&, const std::string& language);
+
+/// Those without evidence in one sentence, with the size from which each would be seen; or nothing.
+std::string no_sign(const ModelFit&, const Templates&, const std::string& language);
+
+/// Readings, redundancy, largest residual, in sentences.
 std::string fit_in_words(const ModelFit&, const Results&, const Wording&);
 
 }  // namespace nonio::reports

@@ -10,12 +10,19 @@
 /// The model of one campaign against its measurements: what the verbs and the nightly run share.
 namespace nonio::host {
 
+/// Rows of a part as words name them: the file of the first, and the lines of at most eight.
+struct RowsPlace {
+  std::size_t count = 0;
+  std::string file, lines;
+};
 /// Measurements that are explained together, with the effects that the model and the catalogue have
 /// for it. The terms point into the campaign's effects.
 struct PartModel {
   model::Part part;
   std::vector<model::Term> terms, catalogue;
   std::string unfit;  ///< why these readings cannot show the model; "" if they can
+  std::vector<model::Candidate> left_out{};  ///< effects that do not apply, and why
+  RowsPlace interpolated{};                  ///< readings whose temperature is interpolated
 
   Quantity deviation() const { return deviation_of(part.table.angular); }
   /// Of what readings are told apart by along their line: a position or an angle.
@@ -41,6 +48,9 @@ struct ReadingPlace {
   Quantity position = Quantity::length;
 };
 ReadingPlace place_of(const PartModel& part, const Campaign& campaign, std::size_t row);
+
+RowsPlace place_of(const PartModel& part, const Campaign& campaign,
+                   const std::vector<std::uint32_t>& rows);
 
 /// What is wrong with a list of effects: form, unknown kind or axis (with the nearest name), twice
 /// the same.

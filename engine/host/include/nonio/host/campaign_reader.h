@@ -41,10 +41,10 @@ struct TemplateFiles {
 
 /// All template folders laid over each other, the later ones winning, and one digest of them.
 /// `json`, if wanted: all of them in one text, from which `templates_from` has them again.
-/// `own` wins over all folders.
+/// `own` wins over all folders. `below`: only files whose names begin so.
 Expected<Templates> read_templates(const std::vector<std::filesystem::path>& folders,
                                    std::string& digest, std::string* json = nullptr,
-                                   const TemplateFiles& own = {});
+                                   const TemplateFiles& own = {}, std::string_view below = {});
 
 /// Templates that travelled in a signed file.
 struct CarriedTemplates {
@@ -64,9 +64,14 @@ struct Workplace {
   std::vector<std::string> notes;  ///< plugins that were refused
 };
 
+/// What `open_workplace` reads of the templates: fonts and words of other languages take a third of
+/// the time of a short command.
+enum class TemplatesFor { documents, english_words };
+
 /// Plugins, templates and the site.toml of the nearest folder above the campaign that has one.
 Expected<std::unique_ptr<Workplace>> open_workplace(
     const std::filesystem::path& campaign, const std::vector<std::filesystem::path>& plugin_folders,
-    const std::vector<std::filesystem::path>& template_folders, const std::string& version);
+    const std::vector<std::filesystem::path>& template_folders, const std::string& version,
+    TemplatesFor what = TemplatesFor::documents);
 
 }  // namespace nonio::host

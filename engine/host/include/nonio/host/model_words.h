@@ -5,6 +5,7 @@
 
 #include "nonio/host/campaign_model.h"
 #include "nonio/host/nearest.h"
+#include "nonio/sdk/results.h"
 #include "nonio/sdk/settings.h"
 
 /// Sentences about a model, from templates/words/<language>/model.toml.
@@ -20,8 +21,20 @@ class ModelWords {
   std::string candidate(const model::Candidate& candidate, const PartModel& part,
                         double rms_before) const;
   /// Why these readings cannot show it.
-  std::string unseen(const model::Candidate& candidate) const;
+  std::string unseen(const model::Candidate& candidate, const RowsPlace& rows) const;
+  std::string temperature_interpolated(const RowsPlace& rows) const;
+  /// Two effects that cancel each other: neither is shown.
+  std::string cancelling(const std::string& one, const std::string& other) const;
   std::string plan(const model::Plan& plan) const;
+  /// The candidates without evidence in one sentence, with the smallest that would be seen; "" if
+  /// there is none.
+  std::string no_sign(const model::Explanation& explanation, const PartModel& part) const;
+  /// What to measure next, a sentence each.
+  std::vector<std::string> next(const model::Explanation& explanation, const PartModel& part) const;
+  std::string false_alarms(const model::Verdict& verdict) const;
+  std::string lack_of_fit(const model::Comparison& comparison, Quantity deviation) const;
+  /// "RMS 0.7 um, from -1.1 um at 210 mm to 0.9 um at 640 mm"
+  std::string curve(const ModelFit::Curve& curve, const PartModel& part) const;
   std::string suspect(const model::Suspect& suspect, const ReadingPlace& place,
                       Quantity deviation) const;
   std::string below_uncertainty(const std::string& effect) const;
@@ -50,6 +63,17 @@ class ModelWords {
 /// The same as findings, for documents in any language: ids "verdict.*" and "place.*".
 Finding verdict_finding(const model::Explanation& explanation, const PartModel& part);
 Finding place_finding(const model::Place& place, Quantity deviation);
+Finding plan_finding(const model::Plan& plan);
+Finding description_finding(const model::Description& description, const PartModel& part);
+Finding false_alarms_finding(const model::Verdict& verdict);
+/// How far what is left goes beyond the noise.
+Finding left_finding(const model::Comparison& comparison, Quantity deviation);
+std::vector<Finding> no_sign_findings(const model::Explanation& explanation, const PartModel& part);
+std::vector<Finding> next_findings(const model::Explanation& explanation, const PartModel& part);
+
+/// Of a curve in the fit what its parameters come to; nothing of other effects.
+std::optional<ModelFit::Curve> curve_of(const PartModel& part, const model::Fit& fit,
+                                        std::size_t term);
 
 /// " (D1)" of a place on one line, else nothing.
 std::string on_line(const model::Place& place);

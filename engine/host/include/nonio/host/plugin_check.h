@@ -19,7 +19,8 @@ struct PluginCheck {
   std::string plugin;  ///< "effect bow"; empty of the file itself
   std::string name;    ///< of the check: "rows"
   State state = State::passed;
-  std::string says;  ///< what was found and wanted; why it was skipped
+  std::string says;        ///< what was found and wanted; why it was skipped
+  std::uint64_t seed = 1;  ///< of the samples
 };
 const char* to_text(PluginCheck::State state);
 
@@ -27,8 +28,9 @@ struct PluginCheckRequest {
   std::filesystem::path subject;             ///< a plugin, or a folder with plugins below it
   std::vector<std::filesystem::path> cases;  ///< folders with campaigns below: more samples
   std::string only;                          ///< the one check to do; empty: all
-  std::uint64_t seed = 1;
-  double seconds = 20.0;  ///< of the processor, for one check
+  std::uint64_t seed = 1;                    ///< the first one
+  std::uint64_t seeds = 3;                   ///< so many, each one more than the last
+  double seconds = 20.0;                     ///< of the processor, for one check
   double memory_MB = 2000.0;
   std::filesystem::path own_plugins;  ///< of the program: samples are read and evaluated by them
   std::vector<std::filesystem::path> template_folders;

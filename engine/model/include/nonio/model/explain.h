@@ -85,7 +85,8 @@ struct Place {
   /// Where it is largest, if it sits at one place: a target (m or rad), a run, an instant (s).
   std::optional<double> at{};
   Quantity at_quantity = Quantity::number;
-  std::string line{};  ///< in space: "position" along this one
+  std::string line{};     ///< in space: "position" along this one
+  bool together = false;  ///< of two factors: with what each of them says alone
 };
 
 /// A reading that contradicts its neighbours; kept, with weight 0, until the user excludes it.
@@ -105,7 +106,10 @@ struct Comparison {
   std::optional<NoiseFloor> floor{};
   std::optional<LackOfFit> lack_of_fit{};
   std::vector<Place> places{};  ///< all that were looked at, largest share first
-  std::size_t means = 0;        ///< long tables: of how many means the places tell; else 0
+  /// Where something fails: the fewest places that hold what is left, each beside those before it,
+  /// so that nothing is counted twice; no share below 2 %.
+  std::vector<Place> seats{};
+  std::size_t means = 0;  ///< long tables: of how many means the places tell; else 0
   std::vector<Suspect> suspects{};
   bool fails() const;  ///< something is left in some place
 };
@@ -123,8 +127,22 @@ struct Candidate {
   double score = 0.0;  ///< 2 ln of the evidence for it; <= 0: none
   std::vector<Parameter> parameters;
   std::vector<std::string> aliases;  ///< these readings cannot tell them from this one
-  double minimal_detectable = 0.0;   ///< rms of the smallest one that would be found, m or rad
+  /// RMS of the smallest one that would be found nine times in ten, m or rad.
+  double minimal_detectable = 0.0;
+  /// Found near that size: an effect this large is found only where the noise makes it look so many
+  /// times larger in the mean. 1 where that is nothing.
+  double bias = 1.0;
+  std::vector<std::uint32_t>
+      rows{};  ///< not visible: rows of the part's table that stand in the way
+  /// Descriptions of place beside which its evidence was found; else it is that beside the model.
+  std::vector<std::string> beside{};
 };
+
+/// Effects that concern a part and do not apply to its readings, with the reason: not visible.
+std::vector<Candidate> not_applying(const Part& part, const std::vector<Effect>& effects);
+
+/// Rows of the table that have no temperature of their own, where it is interpolated in time.
+std::vector<std::uint32_t> interpolated_temperatures(const Part& part);
 
 /// A further measurement that would tell the effects of an alias group apart.
 struct Plan {
@@ -144,10 +162,15 @@ struct Verdict {
   double suspects_share = 0.0;  ///< of the readings
 };
 
-/// A description added to the best explanation and to those before it: what is left, not why.
+/// A description added to the model, to what is certain and to those before it: what is left, not
+/// why.
 struct Description {
+  enum class What { value_at_targets, reversal_at_targets, course };
   Term term;         ///< with the shapes found
   double rms = 0.0;  ///< what is left with it, m or rad
+  What what = What::course;
+  /// What it says, m or rad: of each target (values less their mean), else of each reading.
+  double low = 0.0, high = 0.0, mean = 0.0;
 };
 
 struct Explanation {
@@ -157,7 +180,13 @@ struct Explanation {
   double best_rms = 0.0;              ///< what the best explanation leaves, m or rad
   /// Of these what is free of doubt, whatever the rest is; most evidence first.
   std::vector<std::string> certain;
-  std::vector<Description> descriptions;  ///< unknown: of what the best explanation leaves
+  /// Pairs of effects of `together` that cancel each other: neither is shown by that.
+  std::vector<std::pair<std::string, std::string>> cancelling;
+  /// Growth and drift of `together` that are as well one growth away from this place on the axis,
+  /// m.
+  std::optional<double> one_growth{};
+  double certain_rms = 0.0;               ///< unknown: with them in the model, m or rad
+  std::vector<Description> descriptions;  ///< unknown: of what is left beside the certain
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
   std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
   Verdict verdict;

@@ -27,7 +27,11 @@ struct AxisReadings {
   /// False: one reading counts as one second, in the order of the rows; where that is not known
   /// either, `t` is 0 everywhere.
   bool timed = false;
-  bool temperature = false;  ///< every reading has a material temperature
+  double middle = 0.0;  ///< of the measured stretch, as commanded
+  /// Every reading has a material temperature; of those in `interpolated` it lies, in time, on the
+  /// straight line between their neighbours'.
+  bool temperature = false;
+  std::vector<std::uint32_t> interpolated;  ///< rows
 };
 
 namespace detail {
@@ -56,14 +60,61 @@ inline void fill_times(const Observations& o, AxisReadings& r) {
   }
 }
 
+/// Temperatures of one line whose rows without one lie between others; false where a gap is longer
+/// than a quarter of the line, or an end is more than an eighth away.
+inline bool fill_blanks(const std::vector<std::uint32_t>& known,
+                        const std::vector<std::uint32_t>& blank, AxisReadings& r) {
+  if (blank.empty()) return true;
+  if (known.size() < 3) return false;
+  const auto& t = r.t;
+  const double whole = std::max(t[known.back()], t[blank.back()]);
+  for (const std::uint32_t i : blank) {
+    const auto after = std::upper_bound(known.begin(), known.end(), t[i],
+                                        [&](double at, std::uint32_t k) { return at < t[k]; });
+    if (after == known.begin() || after == known.end()) {
+      const std::uint32_t end = after == known.end() ? known.back() : known.front();
+      if (std::fabs(t[i] - t[end]) > whole / 8.0) return false;
+      r.K[i] = r.K[end];
+    } else {
+      const std::uint32_t a = *std::prev(after), b = *after;
+      if (t[b] - t[a] > whole / 4.0) return false;
+      r.K[i] = r.K[a] + (r.K[b] - r.K[a]) * (t[i] - t[a]) / (t[b] - t[a]);
+    }
+    r.interpolated.push_back(i);
+  }
+  return true;
+}
+
+inline bool known_temperatures(const Observations& o, AxisReadings& r) {
+  if (o.material.size() != o.size()) return false;
+  const std::size_t lines = std::max<std::size_t>(o.line.empty() ? 1 : o.lines.size(), 1);
+  std::vector<std::vector<std::uint32_t>> known(lines), blank(lines);
+  bool gaps = false;
+  for (std::uint32_t i = 0; i < o.size(); ++i) {
+    if (!r.moved[i]) continue;
+    const bool has = std::isfinite(o.material[i]);
+    if (has) r.K[i] = o.material[i];
+    gaps = gaps || !has;
+    (has ? known : blank)[o.line.empty() ? 0 : o.line[i]].push_back(i);
+  }
+  if (gaps && !(r.duration > 0.0)) return false;  // nobody knows what lies between what
+  const auto earlier = [&](std::uint32_t a, std::uint32_t b) { return r.t[a] < r.t[b]; };
+  for (std::size_t line = 0; line < lines; ++line) {
+    std::stable_sort(known[line].begin(), known[line].end(), earlier);
+    std::stable_sort(blank[line].begin(), blank[line].end(), earlier);
+    if (!fill_blanks(known[line], blank[line], r)) return false;
+  }
+  return true;
+}
+
 inline void fill_temperatures(const Observations& o, AxisReadings& r) {
-  r.temperature = complete(o.material, r.moved);
-  if (!r.temperature) return;
+  r.temperature = known_temperatures(o, r);
   double sum = 0.0, n = 0.0;
   for (std::size_t i = 0; i < o.size(); ++i)
-    if (r.moved[i]) sum += o.material[i], ++n;
+    if (r.moved[i]) sum += r.K[i], ++n;
   for (std::size_t i = 0; i < o.size(); ++i)
-    if (r.moved[i]) r.K[i] = o.material[i] - sum / n;
+    r.K[i] = r.temperature && r.moved[i] ? r.K[i] - sum / n : 0.0;
+  if (!r.temperature) r.interpolated.clear();
 }
 
 }  // namespace detail
@@ -90,8 +141,9 @@ inline Expected<AxisReadings> readings_of(const Observations& o, const Axis& axi
   }
   if (!(low <= high)) return fail("the readings do not move axis " + axis.name);
   r.length = high - low;
+  r.middle = (low + high) / 2.0;
   for (std::size_t i = 0; i < n; ++i)
-    if (r.moved[i]) r.p[i] = r.theta[i] - (low + high) / 2.0;
+    if (r.moved[i]) r.p[i] = r.theta[i] - r.middle;
   detail::fill_times(o, r);
   detail::fill_temperatures(o, r);
   return r;
@@ -100,6 +152,39 @@ inline Expected<AxisReadings> readings_of(const Observations& o, const Axis& axi
 inline bool from_both_directions(const AxisReadings& r) {
   return std::any_of(r.d.begin(), r.d.end(), [](double d) { return d > 0.0; }) &&
          std::any_of(r.d.begin(), r.d.end(), [](double d) { return d < 0.0; });
+}
+
+/// Where to look for the point of a screw or scale that stays where it is, from the middle of the
+/// stretch, m: known from the manifest, else the middle (rotary axes, several axes), else also
+/// a bearing at an end or anywhere between. Steps of about 20 deg of the angle between what moves
+/// all readings alike and what fans them out.
+inline std::vector<double> fixed_points(const Observations& o, const Axis& axis) {
+  const auto r = readings_of(o, axis);
+  if (!r) return {};
+  if (axis.fixed_point && !axis.rotary) return {*axis.fixed_point - r->middle};
+  if (axis.rotary || o.axes.size() > 1 || !(r->length > 0.0)) return {0.0};
+  std::vector<double> points;
+  for (const double at : {-1.5, -0.5, -0.2, 0.0, 0.2, 0.5, 1.5}) points.push_back(at * r->length);
+  return points;
+}
+
+inline Effect::Shape fixed_point_shape() {
+  return {.parameter = {"fixed", "fixed point, from the middle of the measured stretch",
+                        Quantity::length, Quantity::angle},
+          .grid = fixed_points,
+          .usual = 0.0};
+}
+
+/// Why an effect that asks for the course of time does not apply.
+inline WhyNot no_order(const Observations& o, const Axis& axis) {
+  const auto r = readings_of(o, axis);
+  return {r && !(r->duration > 0.0) ? "no-order" : ""};
+}
+
+/// Why an effect that asks for both directions of approach does not apply.
+inline WhyNot one_direction(const Observations& o, const Axis& axis) {
+  const auto r = readings_of(o, axis);
+  return {r && !from_both_directions(*r) ? "one-direction" : ""};
 }
 
 /// The positions that were measured, each once, ascending, from the middle of the stretch. What

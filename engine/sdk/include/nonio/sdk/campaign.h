@@ -17,9 +17,11 @@ struct Axis {
   std::string name;
   bool rotary = false;
   std::optional<std::pair<double, double>> travel{};
-  std::optional<double> screw_pitch{};        ///< m; period of the drive or scale
-  std::optional<int> teeth{};                 ///< periods per revolution of a rotary axis
-  std::optional<double> expansion{};          ///< 1/K
+  std::optional<double> screw_pitch{};  ///< m; period of the drive or scale
+  std::optional<int> teeth{};           ///< periods per revolution of a rotary axis
+  std::optional<double> expansion{};    ///< 1/K
+  /// Where screw or scale is held and does not move when it grows: m.
+  std::optional<double> fixed_point{};
   std::map<std::string, double> tolerance{};  ///< upper limit of a result, by its name: m or rad
   std::string slave{};  ///< of a gantry: name of the control's axis that drives the second side
   /// What was on in the control while the axis was measured; none: nobody says it.

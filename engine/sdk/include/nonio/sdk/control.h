@@ -24,8 +24,9 @@ struct ControlTable {
   enum class Sign { error, correction };               ///< entries are +e, or -e
   enum class Entry { absolute, increment, position };  ///< position: nominal plus the entry
   enum class Grid { even, listed };
-  /// Where an entry has to be 0: nowhere (it is made so at the reference point all the same), at
-  /// the reference point, at the zero of the axis, from which the points count.
+  /// Where an entry has to be 0: nowhere (it is made so at the reference point all the same); at
+  /// the reference point, wherever that lies; at the first point, the zero of the axis, from which
+  /// the control counts its points.
   enum class Zero { free, reference, first };
   struct Scale {
     double linear = 1e-3, rotary = std::numbers::pi / 180.0;

@@ -63,6 +63,9 @@ struct Observations {
 
   std::uint64_t missing = 0;  ///< readings that were not taken
   std::vector<Remark> notes;  ///< what the reader did that a user would want to know
+  /// What the file says against the manifest: findings `plausibility.*`, for which no table is
+  /// written before a person says why.
+  std::vector<Finding> doubts{};
 
   std::size_t size() const { return deviation.size(); }
   const AxisColumn* axis(std::string_view name) const {

@@ -62,6 +62,13 @@ struct Reader {
   Expected<Observations> (*read)(const ReadInput&) = nullptr;
 };
 
+/// Why an effect is no candidate for these readings: a name of words ("unseen.<id>"), empty if it
+/// does not concern this axis at all; and the rows of the table that stand in the way.
+struct WhyNot {
+  std::string id;
+  std::vector<std::uint32_t> rows{};
+};
+
 /// One physical cause of deviation: observations -> one column for each linear parameter. Rows in
 /// which the axis did not move are 0 (`readings_of` in sdk/axis_readings.h gives what a column
 /// needs).
@@ -80,6 +87,9 @@ struct Effect {
     /// if these readings cannot show the effect.
     std::function<std::vector<double>(const Observations&, const Axis&)> grid;
     bool continuous = true;  ///< the best value lies between those of the grid
+    /// Taken where the readings say nothing against it (a fixed point in the middle): no evidence
+    /// is asked for it, as it is for every other value of the grid.
+    std::optional<double> usual{};
   };
   Info info;                      ///< name: the kind without the axis, "backlash"
   std::vector<Parameter> linear;  ///< of a curve: one, which stands for all of its columns
@@ -103,6 +113,8 @@ struct Effect {
   /// A curve that says what is left and not why ("a reversal for each target"): never a candidate,
   /// offered where no effect explains. Beside other effects it is what they leave of it.
   bool description = false;
+  /// Optional: why it does not apply, where it does not.
+  std::function<WhyNot(const Observations&, const Axis&)> why_not{};
 };
 
 struct AnalysisInput {
@@ -190,7 +202,7 @@ class Registry {
   ~Registry() = default;
 };
 
-inline constexpr int sdk_version = 7;
+inline constexpr int sdk_version = 8;
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
@@ -214,7 +226,7 @@ inline constexpr int sdk_version = 7;
 #endif
 
 /// Everything that must agree before a plugin may be called.
-#define NONIO_ABI_TAG "nonio-sdk 7; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
+#define NONIO_ABI_TAG "nonio-sdk 8; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
 
 /// The one exported symbol, `nonio_plugin`. Plain: the host reads the tag before it calls anything.
 struct PluginEntry {

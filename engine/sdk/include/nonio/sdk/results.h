@@ -170,6 +170,11 @@ struct Conformity {
 /// and tables of documents are made from. SI. Columns have an entry for each reading, or none where
 /// the files did not have them; the prediction is deviation - residual.
 struct ModelFit {
+  /// A curve as people read it: m or rad, at places of the readings (m or rad along their line).
+  struct Curve {
+    double rms = 0.0, low = 0.0, high = 0.0;
+    std::optional<double> low_at{}, high_at{};  ///< absent where it is no function of place
+  };
   struct Parameter {
     std::string effect, name;  ///< "backlash:X", "b"
     double value = 0.0;
@@ -181,8 +186,28 @@ struct ModelFit {
     std::string name;                  ///< "backlash:X"
     bool compensable = false;          ///< a table in the controller can take it away
     std::vector<double> contribution;  ///< what it says of each reading; m or rad
+    std::optional<Curve> curve{};      ///< of a curve: what its parameters come to
   };
-  /// The error as the model grew: first without any effect, then with one more at a time.
+  /// The model fitted again without one of its effects.
+  struct Without {
+    std::string effect;
+    double rms = 0.0;
+    std::optional<double> cv_rms{};
+    std::vector<double> residual{};  ///< of each reading
+  };
+  /// An effect that is not in the model, with evidence for it; m or rad.
+  struct Candidate {
+    std::string effect;
+    double score = 0.0;  ///< 2 ln of the evidence
+    double rms = 0.0;    ///< with it in the model
+    std::optional<double> cv_rms{};
+    double p = 1.0;
+    double smallest = 0.0;             ///< rms of one that would be found nine times in ten
+    std::vector<std::string> aliases;  ///< these readings cannot tell them from it
+    bool certain = false;              ///< whatever the rest is
+  };
+  /// The error as the model grows: first without any effect, then with one more at a time, that
+  /// which takes most away.
   struct Step {
     std::string effect;  ///< the one that came in; empty for the first
     double rms = 0.0;
@@ -217,7 +242,12 @@ struct ModelFit {
   std::vector<Step> steps;                       ///< the last one is the model
   std::optional<double> floor{}, floor_u{};      ///< scatter of repeats, its standard uncertainty
   std::vector<Suspect> suspects;
-  std::vector<Finding> says;  ///< the verdict, then what else the model says
+  std::vector<Finding> says;            ///< the verdict, then what else the model says
+  std::vector<Without> without{};       ///< for each effect that can be left out
+  std::vector<Candidate> candidates{};  ///< most evidence first
+  /// Of the others, "No sign of A (would be seen from 1 um)", "B (2 um)", ...: one sentence.
+  std::vector<Finding> no_sign{};
+  std::vector<Finding> next{};  ///< what to measure next
 
   std::size_t size() const { return deviation.size(); }
 };

@@ -35,6 +35,9 @@ enum class Quantity {
   angle_per_reading,           ///< rad, printed in arcsec/reading
   growth_per_reading,          ///< m/m, printed in um/(m reading)
   angular_growth_per_reading,  ///< rad/rad, printed in arcsec/(deg reading)
+  // Of a zero that moves with temperature.
+  deviation_per_kelvin,  ///< m/K, printed in um/K
+  angle_per_kelvin,      ///< rad/K, printed in arcsec/K
 };
 
 /// Of the same, counted in readings.
@@ -91,6 +94,10 @@ constexpr Unit unit_of(Quantity q) {
       return {"degC", "_c", 1.0};
     case Quantity::temperature_difference:
       return {"K", "_K", 1.0};
+    case Quantity::deviation_per_kelvin:
+      return {"um/K", "_um_per_K", 1e6};
+    case Quantity::angle_per_kelvin:
+      return {"arcsec/K", "_arcsec_per_K", arcsec_per_rad};
     case Quantity::time:
       return {"s", "_s", 1.0};
     case Quantity::deviation_per_time:

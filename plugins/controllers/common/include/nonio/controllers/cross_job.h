@@ -14,10 +14,13 @@
 /// diagonals or step diagonals, on the points of their pitch.
 namespace nonio::controllers {
 
-/// Error of axis `output` over axis `input`, 0 at the first point. SI.
+/// Error of axis `output` over axis `input`, 0 at the reference point of `input` as in all tables.
+/// SI.
 struct CrossCurve {
   std::string input, output;
   std::vector<double> position, value;
+  double reference = 0.0;  ///< position of `input` where it is 0
+  bool told = false;       ///< somebody says so; else 0 if it has it, else its nearest end
 };
 
 /// A line in space as it was read: what tables do to it can be predicted.
@@ -47,6 +50,14 @@ std::vector<CrossJob> cross_jobs(const OutputInput&);
 
 /// Whether this pitch table and these curves are of one state of the machine.
 bool together(const CrossJob&, const AxisJob&, const Campaign&);
+
+/// True, with findings, where a curve is larger or steeper than the maker of the machine allows a
+/// table of its output axis: settings largest_um and slope_um_per_m.
+bool oversized(const CrossJob&, const OutputInput&, OutputResult&);
+
+/// "Y over X: zero at 0.0 mm of X, largest entry ...", for the file; and the same as notes.
+std::string cross_words(const CrossCurve&);
+void note_cross(const CrossJob&, OutputResult&);
 
 /// More points than option `max_points` allows are an error.
 Expected<void> fits(const CrossJob&, const Settings& options);

@@ -38,6 +38,8 @@ struct Sheet {
   /// The same in steps of the table: rounded as absolute values, then differences of these where
   /// the entries are increments. So their sum is never off by more than half a step.
   std::vector<std::int64_t> plus_steps, minus_steps;
+  /// Of increments: what `minus_steps` begin with, minus less plus at the reference, in steps.
+  std::int64_t minus_start() const;
   std::vector<std::string> warning{};
 
   double position_unit() const { return table.position_unit.of(job.rotary); }
@@ -94,12 +96,17 @@ Expected<ControlTable> chosen(ControlTable, const Settings&);
 Expected<std::vector<AxisJob>> write_axes(const OutputInput&, const Writer&, OutputResult&);
 Expected<OutputResult> write_tables(const OutputInput&, const Writer&);
 
-/// Entries as a file has them, in its units.
+/// Entries as a file has them, in its units; one for each position. An increment is the change over
+/// the interval that ends at its position, so that of the first position is 0: nothing lies before
+/// it. The sums are 0 at the point `reference` (docs/howto-plugin.md has a drawing).
 struct RawTable {
   KnownAxis axis;
   std::vector<double> position;
   std::vector<double> plus, minus{};
-  std::size_t reference = 0;  ///< of increments: the point whose sum is 0
+  std::size_t reference = 0;  ///< of increments: the point whose sum is 0; Zero::first: the first
+  /// Of increments: the sum of `minus` at that point, where a number of its own says it (Fanuc
+  /// 3627).
+  double minus_start = 0.0;
   LoadedTable::Outside outside = LoadedTable::Outside::holds;
   std::optional<double> backlash{};  ///< SI
 };

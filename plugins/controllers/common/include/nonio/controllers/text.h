@@ -2,21 +2,34 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "nonio/sdk/error.h"
+
 /// Texts of tables, to be written and to be read.
 namespace nonio::controllers {
 
 /// Without the ends of lines, LF or CR LF.
 std::vector<std::string_view> lines_of(std::string_view text);
+/// An error where the last line has no end: the file was cut, and what is left of a number is
+/// another one.
+Expected<void> ends_whole(std::string_view name, std::string_view text);
 /// What stands between these characters.
 std::vector<std::string_view> words_of(std::string_view line,
                                        std::string_view separators = " \t\r");
 std::string_view trimmed(std::string_view text);
+/// The text with these lines in place of its own ones, where the first of them was; where it has
+/// none, in front of byte `otherwise`, or nothing if that is not said. `is_own` sees the lines one
+/// after the other, without their ends; the new ones get the ends that the text has.
+std::optional<std::string> with_lines(const std::string& text,
+                                      const std::function<bool(std::string_view)>& is_own,
+                                      const std::string& lines,
+                                      std::optional<std::size_t> otherwise);
 /// The whole text as a finite number, with or without its sign.
 std::optional<double> real(std::string_view text);
 std::optional<std::int64_t> whole(std::string_view text);

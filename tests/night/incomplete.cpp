@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// An analysis as it should be, and beside it an output that nobody can ask whether it applies.
+#include "nonio/sdk/plugin.h"
+
+NONIO_PLUGIN(registry) {
+  using namespace nonio;
+  registry.add(Analysis{{"complete", "1", "Beside what is not", {}},
+                        [](const Campaign&, const Measurement&) { return true; },
+                        [](const AnalysisInput&) { return Expected<Evaluation>(); }});
+  registry.add(Output{{"incomplete", "1", "Has no `applies`", {}},
+                      Output::Stage::document,
+                      nullptr,
+                      [](const OutputInput&) { return Expected<OutputResult>(); }});
+}

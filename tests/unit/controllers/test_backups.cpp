@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What comes back from a control: cut anywhere, with the line ends of Windows, with comments. It is
+// read as the whole table, or not at all.
+#include <cmath>
+
+#include "workshop.h"
+
+using namespace workshop;
+
+namespace {
+
+struct Kind {
+  const char* name;
+  const char* path;
+  Options options;
+  const char* comment = nullptr;  ///< begins a line that says nothing
+  bool below = false;
+  std::string axes = "X number=1";
+  /// Nothing in the control's layout says where it ends: cut behind a whole line it is a shorter
+  /// table.
+  bool ends_say_nothing = false;
+};
+
+std::vector<Kind> kinds() {
+  const Options error{{"sign", std::string("error")}}, both{{"directions", true}};
+  return {{"siemens-840d", plugin_siemens_840d, {}, ";"},
+          {"siemens-840d directions", plugin_siemens_840d, both, ";"},
+          {"heidenhain-tnc", plugin_heidenhain_tnc, {}},
+          {"heidenhain-tnc directions", plugin_heidenhain_tnc, both},
+          {"heidenhain-tnc itnc530",
+           plugin_heidenhain_tnc,
+           {{"layout", std::string("itnc530")}},
+           nullptr,
+           false,
+           "X number=1",
+           true},
+          {"fanuc", plugin_fanuc, {{"extended", true}}},
+          {"fanuc directions", plugin_fanuc, {{"extended", true}, {"directions", true}}},
+          {"linuxcnc", plugin_linuxcnc, {}},
+          {"twincat-cnc", plugin_twincat_cnc, {}, "#"},
+          {"twincat-cnc directions", plugin_twincat_cnc, both, "#"},
+          {"twincat-nc-ptp", plugin_twincat_nc_ptp, {}},
+          {"twincat-volumetric", plugin_twincat_volumetric, error, "//", false, "X number=1", true},
+          {"fagor-8055", plugin_fagor_8055, error, "#"},
+          {"haas-classic", plugin_haas_classic, error, "#", true},
+          {"mitsubishi", plugin_mitsubishi, {}, "#"},
+          {"pmac", plugin_pmac, {}, nullptr, false, "X number=1 counts_per_mm=2000"},
+          {"aerotech", plugin_aerotech, {}, ";"},
+          {"ecmc", plugin_ecmc, {}, "#"}};
+}
+
+Bench machine(bool below) {
+  Measured m;
+  m.targets = even(below ? -16 * 12.7 * mm : -100 * mm, below ? 12.7 * mm : 25 * mm, 17);
+  m.plus = [](double x) { return 8.37 * um * std::sin(x / (60 * mm)); };
+  m.minus = [p = m.plus](double x) { return p(x) + 4.2 * um; };
+  return Bench(m);
+}
+
+Options with_axes(const Kind& k) {
+  Options o = k.options;
+  o["axes"] = std::vector<std::string>{k.axes};
+  return o;
+}
+
+using Tables = std::vector<LoadedTable>;
+
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (std::fabs(a[i] - b[i]) > 1e-12) return false;
+  return true;
+}
+
+/// What a cut may leave: the table itself, and the backlash value or nothing of it.
+bool same(const Tables& cut, const Tables& whole, bool backlash_too) {
+  if (cut.size() != whole.size()) return false;
+  for (std::size_t i = 0; i < cut.size(); ++i) {
+    const LoadedTable &a = cut[i], &b = whole[i];
+    if (a.output != b.output || a.input != b.input || a.outside != b.outside ||
+        !same(a.position[0], b.position[0]) || !same(a.plus, b.plus) || !same(a.minus, b.minus))
+      return false;
+    if (backlash_too && a.backlash.has_value() != b.backlash.has_value()) return false;
+    if (a.backlash && (!b.backlash || std::fabs(*a.backlash - *b.backlash) > 1e-12)) return false;
+  }
+  return true;
+}
+
+std::string with_windows_ends(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  return out;
+}
+
+}  // namespace
+
+TEST(Backup, CutAtEveryByteItIsTheWholeTableOrNone) {
+  for (const Kind& k : kinds()) {
+    const Output output = plugin(k.path);
+    const auto r = machine(k.below).write(output, with_axes(k));
+    ASSERT_TRUE(r) << k.name << r.error().message;
+    const auto whole = read_back(output, r->artifacts, with_axes(k), {{.name = "X"}});
+    ASSERT_TRUE(whole) << k.name << whole.error().message;
+    int refused = 0, wrong = 0;
+    for (std::size_t f = 0; f < r->artifacts.size(); ++f)
+      for (std::size_t n = 1; n < r->artifacts[f].bytes.size() && wrong == 0; ++n) {
+        auto files = r->artifacts;
+        files[f].bytes.resize(n);
+        if (k.ends_say_nothing && files[f].bytes.back() == '\n') continue;
+        const auto read = read_back(output, files, with_axes(k), {{.name = "X"}});
+        if (!read || read->empty()) {
+          ++refused;
+        } else if (!same(*read, *whole, false)) {
+          ++wrong;
+          ADD_FAILURE() << k.name << ": " << files[f].name << " cut behind byte " << n
+                        << " is read as another table; it ends with\n"
+                        << files[f].bytes.substr(n < 120 ? 0 : n - 120);
+        }
+      }
+    EXPECT_GT(refused, 30) << k.name;
+  }
+}
+
+TEST(Backup, LineEndsOfWindowsAndCommentsChangeNothing) {
+  for (const Kind& k : kinds()) {
+    const Output output = plugin(k.path);
+    const auto r = machine(k.below).write(output, with_axes(k));
+    ASSERT_TRUE(r) << k.name;
+    const auto whole = read_back(output, r->artifacts, with_axes(k), {{.name = "X"}});
+    ASSERT_TRUE(whole) << k.name;
+    auto windows = r->artifacts;
+    for (Artifact& a : windows) a.bytes = with_windows_ends(a.bytes);
+    const auto read = read_back(output, windows, with_axes(k), {{.name = "X"}});
+    ASSERT_TRUE(read) << k.name << ": " << read.error().message;
+    EXPECT_TRUE(same(*read, *whole, true)) << k.name;
+    if (k.comment == nullptr) continue;
+    auto commented = r->artifacts;
+    for (Artifact& a : commented)
+      for (std::size_t at = 0; (at = a.bytes.find('\n', at)) != std::string::npos;)
+        a.bytes.insert(++at, std::string(k.comment) + " a note 17 4\n"),
+            at = a.bytes.find('\n', at) + 1;
+    const auto noted = read_back(output, commented, with_axes(k), {{.name = "X"}});
+    ASSERT_TRUE(noted) << k.name << ": " << noted.error().message;
+    EXPECT_TRUE(same(*noted, *whole, true)) << k.name;
+  }
+}
+
+// kw.crosscomp of which the end is missing: what is left is a table of a shorter way.
+TEST(Backup, ACrossTableOfTwincatHasAllItsPoints) {
+  const Output output = plugin(plugin_twincat_cnc);
+  std::string list =
+      "kopf.achs_nr 2\nkw.crosscomp.unit 1\nkw.crosscomp.last_index 2\n"
+      "kw.crosscomp.master_ax_nr 1\n";
+  for (int i = 0; i < 3; ++i)
+    for (const char* what : {"setpoint", "correction"})
+      list += "kw.crosscomp.table[" + std::to_string(i) + "]." + what + " " +
+              std::to_string(100 * i) + "\n";
+  const Options options{{"cross_sign", std::string("error")}};
+  EXPECT_TRUE(read_back(output, {{"Y.lis", list}}, options));
+  const std::size_t third = list.find("kw.crosscomp.table[2]");
+  const auto read = read_back(output, {{"Y.lis", list.substr(0, third)}}, options);
+  ASSERT_FALSE(read);
+  EXPECT_TRUE(contains(read.error().message, "last_index")) << read.error().message;
+}
