@@ -179,6 +179,7 @@ struct Score {
   Tally certain,
       described;  ///< names said to be certain that are hidden; descriptions to the floor
   Tally answered, right, kind, floor, wrong_name, place, alias, ends, noise, above_floor, values;
+  Tally without_u;  ///< values whose u is not printed
   std::map<std::string, Tally> of_effect, of_value;
   std::map<std::string, Tally> named_of;                ///< outside: `missing`, by cause
   std::map<std::string, std::uint64_t> certain_beside;  ///< certain, and not hidden
@@ -195,6 +196,8 @@ void score_values(Score& score, const Hidden& h, const model::Fit& fit) {
   for (const hidden::TrueValue& truth : h.truth.values)
     for (const model::Parameter& p : fit.parameters) {
       if (p.effect != truth.effect || p.name != truth.name) continue;
+      score.without_u.add(!std::isfinite(p.u));
+      if (!std::isfinite(p.u)) continue;
       const bool in = std::fabs(p.value - truth.value) <= 2.0 * p.u;
       score.values.add(in);
       score.of_value[truth.effect.substr(0, truth.effect.find(':')) + " " + p.name].add(in);
@@ -271,8 +274,9 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
     if (h.scenario.kind == Kind::complete) {
       score_fit(score, h, first.comparison);
       // True words on what the runs show.
-      if (h.scenario.unrest.run_zero > 0.0 && first.verdict.kind == Verdict::Kind::unknown &&
-          !first.fails.empty() && first.fails.front().where == "run")
+      const bool unsteady = h.scenario.unrest.run_zero > 0.0 || h.scenario.unrest.walk > 0.0;
+      if (unsteady && first.verdict.kind == Verdict::Kind::unknown && !first.fails.empty() &&
+          (first.fails.front().where == "run" || first.fails.front().where == "time"))
         right = true;
       if (!right)
         ++score.other_words[std::string(to_text(first.verdict.kind)) + " " +
@@ -345,7 +349,7 @@ void print_score(const Score& s, Kind kind) {
   }
   if (kind == Kind::beside) print("named, by verdict or as certain", s.right);
   if (kind == Kind::complete)
-    print("verdict: nothing; zeros of runs: or that they differ", s.right);
+    print("verdict: nothing; a zero that moves: or that it does", s.right);
   for (const auto& [words, count] : s.other_words)
     std::printf("    %-40s %llu\n", words.c_str(), static_cast<unsigned long long>(count));
   if (kind == Kind::outside) {
@@ -365,6 +369,7 @@ void print_score(const Score& s, Kind kind) {
     std::printf("    of right models that is expected (F distribution) %12.2f %%\n",
                 100.0 * s.above_floor_expected / static_cast<double>(s.above_floor.of));
   print("floor of the repeats within 2 u of the true noise", s.floor);
+  if (s.without_u.yes > 0) print("values whose u not printed", s.without_u);
   print("true value within 2 u", s.values);
   for (const auto& [name, tally] : s.of_value) print("    " + name, tally);
   std::printf(" by effect or cause\n");

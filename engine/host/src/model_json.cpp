@@ -108,7 +108,7 @@ void put_noise(Json& json, const model::Fit& fit, Quantity q) {
   put(one, "neighbours", noise.measured, Quantity::number);
   if (std::isfinite(noise.measured)) put(one, "neighbours_p", noise.p, Quantity::probability);
   put(one, "neighbours_used", noise.neighbours, Quantity::number);
-  if (noise.zero != model::Noise::Zero::steady) put(one, "zero_s", noise.zero_size * fit.s, q);
+  if (noise.zero != model::Noise::Zero::steady) put(one, "zero_s", noise.zero_found * fit.s, q);
   if (noise.digit > 0.0) put(one, "last_digit", noise.digit, q);
   if (noise.stretch) {
     const Quantity at = q == Quantity::deviation ? Quantity::length : Quantity::angle;

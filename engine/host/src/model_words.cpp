@@ -417,7 +417,12 @@ std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartMode
     out.push_back(says(noise.zero == Zero::walks    ? "noise.walks"
                        : noise.zero == Zero::of_run ? "noise.of-run"
                                                     : "noise.of-pass",
-                       {{"s", noise.zero_size * fit.s, q}}, {}));
+                       {{"s", noise.zero_found * fit.s, q}}, {}));
+  std::string open;
+  for (const model::Parameter& p : fit.parameters)
+    if (noise.zero_open && !p.shape && !std::isfinite(p.u))
+      open += (open.empty() ? "" : ", ") + p.effect + " " + p.name;
+  if (!open.empty()) out.push_back(says("noise.open", {}, {{"parameters", open}}));
   if (const auto& stretch = noise.stretch) {
     const Quantity at = part.position();
     out.push_back(says("noise.stretch",

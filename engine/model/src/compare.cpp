@@ -133,7 +133,7 @@ VectorXd white_residual(const Fit& fit, const Whitening& white) {
 }
 
 /// The places of what a fit leaves. Where neighbours are alike, a place counts as far as it does
-/// with independent ones too: few readings know the correlation badly.
+/// with every correlation that the repeats leave open, none at all too: few readings know it badly.
 std::vector<Place> places_left(const Part& part, const Repeats& repeats, const Fit& fit,
                                const Saturated& saturated, const std::vector<double>& weight) {
   const auto tested = [&](const Noise& noise) {
@@ -145,12 +145,16 @@ std::vector<Place> places_left(const Part& part, const Repeats& repeats, const F
   Noise noise = Whitening::of_repeats(fit.noise);
   std::vector<Place> places = tested(noise);
   if (noise.independent()) return places;
-  noise.neighbours = noise.in_repeats = 0.0;
-  const std::vector<Place> plain = tested(noise);
-  for (Place& place : places)
-    for (const Place& other : plain)
-      if (other.where == place.where && other.line == place.line)
-        place.p = std::max(place.p, other.p);
+  constexpr double largest = 0.95;
+  const double high = std::min(noise.in_repeats + 2.0 * noise.u_neighbours, largest);
+  for (const double rho : {0.0, high}) {
+    noise.neighbours = noise.in_repeats = rho;
+    const std::vector<Place> others = tested(noise);
+    for (Place& place : places)
+      for (const Place& other : others)
+        if (other.where == place.where && other.line == place.line)
+          place.p = std::max(place.p, other.p);
+  }
   return places;
 }
 

@@ -237,7 +237,8 @@ class Finder {
     const std::size_t n = f_.part.table.size();
     const auto fitted = fit_near(f_.part.table, terms_of_state(f_.best), flags(false), f_.weight);
     if (!fitted) return false;
-    const std::vector<double>& e = fitted->residual;
+    std::vector<double> e = fitted->residual;
+    for (std::size_t i = 0; i < f_.noise.rough.size(); ++i) e[i] /= f_.noise.rough[i];
     const double s = math::robust_deviation(e);
     if (!(s > 0.0)) return false;
     double least = 3.0;

@@ -315,7 +315,9 @@ MatrixXd spread(const MatrixXd& design, const MatrixXd& cofactor, const Whitenin
 
 /// s of a fit whose noise has more than its weights.
 double s_of(const Fit& fit, const Observations& o) {
-  const Whitening white(o, fit.weight, fit.noise);
+  Noise likely = fit.noise;
+  if (likely.zero_found > 0.0) likely.zero_size = likely.zero_found;
+  const Whitening white(o, fit.weight, likely);
   MatrixXd left = white(
       Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(fit.residual.size())));
   white.take_out_zeros(left);
@@ -354,15 +356,32 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
         if (p >= plain) p = -1;
     out.redundancy -= std::min(out.redundancy, static_cast<std::size_t>(extra));
   }
-  if (more_than_weights(out.noise))
-    cofactor = spread(design.a.leftCols(cofactor.cols()), cofactor, white,
-                      covariance_of(o, white.root(), out.noise));
+  const auto columns = cofactor.cols();
+  std::vector<char> open(static_cast<std::size_t>(columns), 0);
+  if (more_than_weights(out.noise)) {
+    const MatrixXd plain_cofactor = cofactor;
+    const auto with = [&](const Noise& noise) {
+      return spread(design.a.leftCols(columns), plain_cofactor, white,
+                    covariance_of(o, white.root(), noise));
+    };
+    cofactor = with(out.noise);
+    if (out.noise.zero_open) {
+      Noise steady = out.noise;
+      steady.zero = Noise::Zero::steady;
+      const MatrixXd known = with(steady);
+      for (Index k = 0; k < columns; ++k)
+        open[static_cast<std::size_t>(k)] = known(k, k) < 0.5 * cofactor(k, k);
+    }
+  }
   const std::size_t p = out.parameters.size();
   out.correlation.assign(p, std::vector<double>(p, 0.0));
   for (std::size_t i = 0; i < p; ++i) {
     out.correlation[i][i] = 1.0;
     if (place[i] < 0) continue;
-    out.parameters[i].u = std::sqrt(cofactor(place[i], place[i]));
+    // What a zero of unknown size makes of it nobody can say.
+    out.parameters[i].u = open[static_cast<std::size_t>(place[i])] != 0
+                              ? std::numeric_limits<double>::quiet_NaN()
+                              : std::sqrt(cofactor(place[i], place[i]));
     for (std::size_t k = 0; k < p; ++k)
       if (place[k] >= 0)
         out.correlation[i][k] =

@@ -192,6 +192,15 @@ TargetScatter scatter_of(const Part& part, const Saturated& s, const std::vector
   return out;
 }
 
+/// What a stretch says of each reading.
+void spread_out(const Part& part, Noise& noise) {
+  noise.rough.clear();
+  for (const double x : part.table.axes.front().position)
+    noise.rough.push_back(x >= noise.stretch->from && x <= noise.stretch->to
+                              ? noise.stretch->inside
+                              : noise.stretch->outside);
+}
+
 /// The stretch of targets whose scatter differs most from that of the others, if chance does not
 /// give such a one: F-test of the two variances, times the number of stretches.
 void find_stretch(const Part& part, const Saturated& s, const std::vector<double>& weight,
@@ -229,11 +238,24 @@ void find_stretch(const Part& part, const Saturated& s, const std::vector<double
       noise.stretch = Noise::Stretch{scatter.at[a], scatter.at[b - 1], std::sqrt(in / f) / mean,
                                      std::sqrt(out / g) / mean};
     }
-  if (!noise.stretch) return;
-  for (const double x : part.table.axes.front().position)
-    noise.rough.push_back(x >= noise.stretch->from && x <= noise.stretch->to
-                              ? noise.stretch->inside
-                              : noise.stretch->outside);
+  if (noise.stretch) spread_out(part, noise);
+}
+
+/// Inside and outside of a known stretch anew, from what is left with their weights.
+void measure_stretch(const Part& part, const Saturated& s, const std::vector<double>& weight,
+                     Noise& noise) {
+  const TargetScatter scatter = scatter_of(part, s, weight);
+  double in = 0.0, f = 0.0, out = 0.0, g = 0.0;
+  for (std::size_t k = 0; k < scatter.at.size(); ++k) {
+    const bool inside = scatter.at[k] >= noise.stretch->from && scatter.at[k] <= noise.stretch->to;
+    (inside ? in : out) += scatter.squares[k];
+    (inside ? f : g) += scatter.dof[k];
+  }
+  if (!(in > 0.0) || !(out > 0.0)) return;
+  const double mean = std::sqrt((in + out) / (f + g));
+  noise.stretch->inside = std::sqrt(in / f) / mean;
+  noise.stretch->outside = std::sqrt(out / g) / mean;
+  spread_out(part, noise);
 }
 
 }  // namespace
@@ -269,7 +291,13 @@ Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<doubl
   noise.digit = digit_of(part.table);
   Saturated left = saturate(repeats, part.table.deviation, weight);
   find_stretch(part, left, weight, noise);
-  const std::vector<double> with = with_scatter(weight, noise);
+  std::vector<double> with = with_scatter(weight, noise);
+  // What a pass shares carries scatter of the stretch to the others: less with its weights.
+  for (int round = 0; round < 3 && noise.stretch; ++round) {
+    left = saturate(repeats, part.table.deviation, with);
+    measure_stretch(part, left, weight, noise);
+    with = with_scatter(weight, noise);
+  }
   if (noise.stretch) left = saturate(repeats, part.table.deviation, with);
   find_neighbours(repeats, left, with, noise);
   return noise;
@@ -289,73 +317,6 @@ std::optional<NoiseFloor> noise_floor(const Repeats& repeats, const Saturated& s
   }
   const double floor = std::max(std::sqrt(variance), noise.digit / std::sqrt(12.0));
   return NoiseFloor{floor, floor * std::hypot(1.0 / std::sqrt(2.0 * dof), by_neighbours), dof};
-}
-
-namespace {
-
-/// -2 ln of the restricted likelihood.
-double restricted(const Observations& o, const MatrixXd& model, const std::vector<double>& weight,
-                  const Noise& noise) {
-  const Whitening white(o, weight, noise);
-  MatrixXd x = white(model);
-  MatrixXd y = white(Eigen::Map<const VectorXd>(o.deviation.data(), model.rows()));
-  white.take_out_zeros(x);
-  white.take_out_zeros(y);
-  const auto n =
-      static_cast<double>((white.root().array() > 0.0).count()) - static_cast<double>(lines_of(o));
-  double squares = y.squaredNorm(), log_det = white.log_det();
-  if (x.cols() > 0) {
-    const Eigen::HouseholderQR<MatrixXd> qr(x);
-    VectorXd rotated = y.col(0);
-    rotated.applyOnTheLeft(qr.householderQ().transpose());
-    squares = rotated.tail(rotated.size() - x.cols()).squaredNorm();
-    log_det += 2.0 * qr.matrixQR().diagonal().cwiseAbs().array().log().sum();
-  }
-  const double dof = n - static_cast<double>(x.cols());
-  return dof * std::log(squares / dof) + log_det;
-}
-
-}  // namespace
-
-Noise with_zero(const Observations& o, const std::vector<Term>& terms,
-                const std::vector<double>& weight, const Noise& noise) {
-  constexpr double worth = 1.5;       // an uncertainty too small is worse than one too large
-  constexpr std::size_t most = 1500;  // beyond, the covariance of all readings is too large
-  if (o.size() > most || o.size() < 10 || noise.pass.empty()) return noise;
-  const auto blocks = blocks_of(o, terms, root_weights(o, weight));
-  if (!blocks) return noise;
-  MatrixXd model(static_cast<Index>(o.size()), 0);
-  for (const MatrixXd& block : *blocks) {
-    model.conservativeResize(Eigen::NoChange, model.cols() + block.cols());
-    model.rightCols(block.cols()) = block;
-  }
-  for (Index k = 0; k < model.cols(); ++k) model.col(k) /= std::max(model.col(k).norm(), 1e-300);
-  const auto passes = *std::max_element(noise.pass.begin(), noise.pass.end()) + 1;
-  const bool runs = !o.run.empty() && std::any_of(o.run.begin(), o.run.end(),
-                                                  [&](auto run) { return run != o.run.front(); });
-  Noise best = noise;
-  double least = restricted(o, model, weight, noise) - worth;
-  const auto look = [&](Noise::Zero zero, const std::vector<double>& sizes) {
-    double before = std::numeric_limits<double>::infinity();
-    for (const double size : sizes) {
-      Noise with = noise;
-      with.zero = zero, with.zero_size = size;
-      const double value = restricted(o, model, weight, with);
-      if (value < least) least = value, best = with;
-      if (value > before + 1e-9) break;  // beyond its minimum
-      before = value;
-    }
-  };
-  for (const double rho : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9}) {
-    Noise with = noise;
-    with.neighbours = rho;
-    const double value = restricted(o, model, weight, with);
-    if (value < least) least = value, best = with;
-  }
-  look(Noise::Zero::walks, {0.02, 0.04, 0.07, 0.12, 0.2, 0.33, 0.55, 0.9, 1.5, 2.5});
-  if (runs) look(Noise::Zero::of_run, {0.1, 0.2, 0.35, 0.6, 1.0, 1.8, 3.0, 6.0, 12.0});
-  if (passes > 2) look(Noise::Zero::of_pass, {0.1, 0.2, 0.35, 0.6, 1.0, 1.8, 3.0, 6.0, 12.0});
-  return best;
 }
 
 }  // namespace nonio::model

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <unordered_map>
 
@@ -275,6 +276,40 @@ std::vector<double> without_set_up(const Observations& o, const std::vector<Term
   return e;
 }
 
+/// How much more than all readings those about each one scatter: of the targets next to it, by the
+/// median; 1 where it is not twice as much. A rough stretch is no row of misreadings.
+std::vector<double> rougher_than(double s, const Observations& o, const std::vector<double>& e) {
+  constexpr std::size_t fewest = 16;
+  constexpr double much = 2.0;
+  std::vector<double> out(e.size(), 1.0);
+  if (o.axes.size() != 1 || e.size() < 4 * fewest || e.size() > 20000) return out;
+  const std::vector<double>& at = o.axes.front().position;
+  std::vector<std::size_t> row(e.size());
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  std::stable_sort(row.begin(), row.end(), [&](auto a, auto b) { return at[a] < at[b]; });
+  // Whole targets: three, and more until there are enough readings.
+  std::vector<std::size_t> first;
+  for (std::size_t k = 0; k < row.size(); ++k)
+    if (k == 0 || at[row[k]] != at[row[k - 1]]) first.push_back(k);
+  first.push_back(row.size());
+  const std::size_t targets = first.size() - 1;
+  std::vector<double> some;
+  for (std::size_t t = 0; t < targets; ++t) {
+    std::size_t low = t > 0 ? t - 1 : 0, high = std::min(t + 2, targets);
+    while (first[high] - first[low] < fewest && (low > 0 || high < targets)) {
+      low -= low > 0 ? 1 : 0;
+      high += high < targets ? 1 : 0;
+    }
+    if (3 * (high - low) > 2 * targets) continue;
+    some.clear();
+    for (std::size_t k = first[low]; k < first[high]; ++k) some.push_back(std::fabs(e[row[k]]));
+    const double ratio = 1.2 * 1.4826 * median_of(some) / s;
+    if (ratio > much)
+      for (std::size_t k = first[t]; k < first[t + 1]; ++k) out[row[k]] = ratio;
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
@@ -289,11 +324,12 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
   if (!(s_rough > 0.0)) return {};
   std::vector<double> weight(n, 1.0);
   std::vector<std::uint32_t> high, flagged;
+  const std::vector<double> rougher = rougher_than(s_rough, o, e);
   for (std::uint32_t i = 0; i < n; ++i)
-    if (std::fabs(e[i]) > 3.5 * s_rough) high.push_back(i);
+    if (std::fabs(e[i]) > 3.5 * s_rough * rougher[i]) high.push_back(i);
   const std::vector<double> apart = apart_from_others(r, high, e);
   for (std::size_t k = 0; k < high.size(); ++k) {
-    if (!(std::fabs(apart[k]) > 3.5 * s_rough)) continue;
+    if (!(std::fabs(apart[k]) > 3.5 * s_rough * rougher[high[k]])) continue;
     flagged.push_back(high[k]);
     weight[high[k]] = 0.0;
   }
@@ -312,7 +348,8 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
     const bool repeated = known && others > 0.0;
     const double residual = repeated ? left.e[i] : e[i];
     // A pass adds about 3 of its readings' worth of uncertainty, a cell 1 of its own.
-    const double sigma = s * std::sqrt(1.0 + (repeated ? 1.0 / others + 0.2 : 0.3));
+    const double sigma =
+        s * rougher[i] * std::sqrt(1.0 + (repeated ? 1.0 / others + 0.2 : 0.3));
     const double t = residual / sigma;
     if (math::t_two_sided(t, dof) * static_cast<double>(n) > 0.01) continue;
     out.push_back({i, residual, t, least * sigma});

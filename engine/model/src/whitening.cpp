@@ -45,9 +45,9 @@ void Whitening::filter(const Noise& noise, const Observations& o) {
     Covariance& P = of_line[line_of(o, i)];
     Step& s = step_[i];
     const std::uint32_t pass = noise.pass[i], run = o.run.empty() ? 1 : o.run[i];
-    const bool on = P.begun && P.pass == pass;
-    const bool other = !P.begun || (noise.zero == Zero::of_run ? P.run != run : !on);
-    s.keep_near = on ? rho : 0.0;
+    const bool other =
+        !P.begun || (noise.zero == Zero::of_run ? P.run != run : P.pass != pass);
+    s.keep_near = P.begun ? rho : 0.0;  // the machine goes on from pass to pass
     s.keep_level = P.begun && !(own && other) ? 1.0 : 0.0;
     P.near = s.keep_near * s.keep_near * P.near + 1.0 - s.keep_near * s.keep_near;
     P.both *= s.keep_near * s.keep_level;
@@ -104,9 +104,9 @@ MatrixXd covariance_of(const Observations& o, const VectorXd& root, const Noise&
       const auto j = static_cast<std::size_t>(b);
       if (line_of(o, i) != line_of(o, j)) continue;
       const bool same = noise.pass[i] == noise.pass[j];
-      if (same && b > a) alike *= noise.neighbours;
+      if (b > a) alike *= noise.neighbours;
       if (!(root(b) > 0.0)) continue;
-      if (same) v(a, b) = alike / (root(a) * root(b));
+      v(a, b) = (a == b ? 1.0 : alike) / (root(a) * root(b));
       if (noise.zero == Zero::walks) v(a, b) += size2 * static_cast<double>(a);
       if (noise.zero == Zero::of_run && run(i) == run(j)) v(a, b) += size2;
       if (noise.zero == Zero::of_pass && same) v(a, b) += size2;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <random>
 
@@ -111,8 +112,8 @@ TEST(Noise, generalised_least_squares_agree_with_the_dense_covariance) {
         for (std::size_t b = 0; b < used.size(); ++b) {
           const std::size_t i = used[a], j = used[b];
           const double apart = std::fabs(static_cast<double>(i) - static_cast<double>(j));
-          if (i / 4 == j / 4)
-            v[a][b] += (i == j ? 1.0 : std::pow(rho, apart)) * noise.rough[i] * noise.rough[j];
+          // On through the passes: a machine does not forget where it turns.
+          v[a][b] += (i == j ? 1.0 : std::pow(rho, apart)) * noise.rough[i] * noise.rough[j];
         }
       }
       const auto inverse_one = solved(v, ones);
@@ -186,9 +187,8 @@ TEST(Noise, a_rough_stretch_is_found_and_weighted) {
   ASSERT_TRUE(noise.stretch);
   EXPECT_NEAR(noise.stretch->from, 0.6, 0.051);
   EXPECT_NEAR(noise.stretch->to, 0.9, 0.051);
-  // Drawn 4: what passes share carries scatter of the stretch to its neighbours, so less is found.
-  EXPECT_GT(noise.stretch->inside / noise.stretch->outside, 2.0);
-  EXPECT_LT(noise.stretch->inside / noise.stretch->outside, 5.2);
+  EXPECT_NEAR(noise.stretch->inside / noise.stretch->outside, 4.0, 1.2);
+  EXPECT_TRUE(compared(table).suspects.empty());  // scatter, no misreadings
   for (std::size_t i = 0; i < table.size(); ++i) table.at(i) = 1e-6 * normal(random);
   EXPECT_FALSE(compared(table).fit.noise.stretch);
 }
@@ -212,10 +212,10 @@ TEST(Noise, a_zero_of_each_run_is_in_u) {
   EXPECT_LE(white, 6);
 }
 
-/// u of a drift: sqrt(a V a) with a = least squares, by the dense covariance of its definition.
-TEST(Noise, a_zero_that_is_not_steady_is_in_u_of_least_squares) {
-  std::mt19937_64 random(71);
-  std::normal_distribution<double> normal;
+namespace {
+
+/// Growth with the reading, about its middle.
+Effect drift_effect() {
   Effect drift;
   drift.info = {"drift", "1.0.0", "in time"};
   drift.linear = {{"z", "drift", Quantity::deviation, Quantity::deviation}};
@@ -226,6 +226,51 @@ TEST(Noise, a_zero_that_is_not_steady_is_in_u_of_least_squares) {
     std::iota(t.begin(), t.end(), 0.0);
     return Effect::Columns{t};
   };
+  return drift;
+}
+
+}  // namespace
+
+/// Each of few runs has its zero: a drift lies within 2 u as often as 2 u says, or has no u.
+TEST(Noise, few_runs_with_zeros_of_their_own_leave_u_large_or_open) {
+  std::mt19937_64 random(81);
+  std::normal_distribution<double> normal;
+  const Effect drift = drift_effect();
+  for (const std::uint32_t runs : {2U, 4U, 6U}) {
+    int in = 0, said = 0;
+    constexpr int tables = 60;
+    for (int k = 0; k < tables; ++k) {
+      Table table(11, runs);
+      add_noise(table, 0.0, 1e-6, random);
+      double zero = 0.0;
+      for (std::size_t i = 0; i < table.size(); ++i) {
+        if (i % 22 == 0) zero = 3e-6 * normal(random);
+        table.at(i) += zero;
+      }
+      const auto c = compare(table.part, {{&drift, table.part.axes[0], {}}});
+      ASSERT_TRUE(c) << c.error().message;
+      const Parameter& p = c->fit.parameters.front();
+      if (!std::isfinite(p.u)) {
+        EXPECT_TRUE(c->fit.noise.zero_open);
+        continue;
+      }
+      ++said;
+      in += std::fabs(p.value) <= 2.0 * p.u ? 1 : 0;
+    }
+    SCOPED_TRACE(runs);
+    if (runs > 2) {
+      EXPECT_GE(said, tables / 3);
+      EXPECT_GE(in, 0.85 * said);
+    }
+    std::printf("seed 81, %u runs: u of %d of %d drifts, %d within 2 u\n", runs, said, tables, in);
+  }
+}
+
+/// u of a drift: sqrt(a V a) with a = least squares, by the dense covariance of its definition.
+TEST(Noise, a_zero_that_is_not_steady_is_in_u_of_least_squares) {
+  std::mt19937_64 random(71);
+  std::normal_distribution<double> normal;
+  const Effect drift = drift_effect();
   using Zero = Noise::Zero;
   for (const Zero zero : {Zero::walks, Zero::of_run, Zero::of_pass}) {
     SCOPED_TRACE(static_cast<int>(zero));

@@ -51,7 +51,9 @@ struct Noise {
   double u_neighbours = 0.0;  ///< standard uncertainty of `in_repeats`, where it is used
   double neighbours = 0.0;    ///< as values and u of a fit have it
   Zero zero = Zero::steady;
-  double zero_size = 0.0;  ///< standard deviation of a zero, or of a step of the walk, over s
+  double zero_size = 0.0;   ///< of a zero, or a step of the walk, over s, as u has it
+  double zero_found = 0.0;  ///< the most likely one
+  bool zero_open = false;   ///< these readings leave open how large it may be
   double digit = 0.0;      ///< last digit of the readings, m or rad
   std::optional<Stretch> stretch{};
   std::vector<double> rough{};        ///< of each reading its standard deviation over s; empty: 1
