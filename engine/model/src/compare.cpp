@@ -144,7 +144,9 @@ std::vector<Place> places_left(const Part& part, const Repeats& repeats, const F
   };
   Noise noise = Whitening::of_repeats(fit.noise);
   std::vector<Place> places = tested(noise);
-  if (noise.independent()) return places;
+  if (noise.independent() || std::none_of(places.begin(), places.end(),
+                                          [](const Place& place) { return place.p < place_p; }))
+    return places;
   constexpr double largest = 0.95;
   const double high = std::min(noise.in_repeats + 2.0 * noise.u_neighbours, largest);
   for (const double rho : {0.0, high}) {
@@ -192,8 +194,8 @@ std::vector<Place> seats_in(const Part& part, const Repeats& repeats,
   const Whitening white(part.table, fit.weight, Whitening::of_repeats(fit.noise));
   const MatrixXd basis = basis_of(part.table, fit.terms, white);
   const VectorXd residual = white_residual(fit, white);
-  auto seats = seats_of({part, repeats, white, residual, basis,
-                         static_cast<double>(fit.redundancy), comparison.floor});
+  auto seats = seats_of({part, repeats, white, residual, basis, static_cast<double>(fit.redundancy),
+                         comparison.floor});
   for (Place& seat : seats) seat.together = seat.where.find(" x ") != std::string::npos;
   std::erase_if(seats, [](const Place& place) { return !(place.share >= least_share); });
   return seats;

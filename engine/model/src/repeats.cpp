@@ -348,8 +348,7 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
     const bool repeated = known && others > 0.0;
     const double residual = repeated ? left.e[i] : e[i];
     // A pass adds about 3 of its readings' worth of uncertainty, a cell 1 of its own.
-    const double sigma =
-        s * rougher[i] * std::sqrt(1.0 + (repeated ? 1.0 / others + 0.2 : 0.3));
+    const double sigma = s * rougher[i] * std::sqrt(1.0 + (repeated ? 1.0 / others + 0.2 : 0.3));
     const double t = residual / sigma;
     if (math::t_two_sided(t, dof) * static_cast<double>(n) > 0.01) continue;
     out.push_back({i, residual, t, least * sigma});

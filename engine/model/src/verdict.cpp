@@ -108,16 +108,11 @@ class Judge {
     return std::log(f_.bench->readings()) + 2.0 * std::log(static_cast<double>(f_.terms.size()));
   }
 
-  static double margin() {
-    const char* m = std::getenv("NX_MARGIN");
-    return m ? std::atof(m) : 0.0;
-  }
-
   /// Whether the model beside a zero that walks, or that each run has for itself, is better
   /// evidence than the best set of effects.
   bool zero_walks() const {
     return criterion_beside_walk(f_.of_model.fit.terms) + f_.start.price + price_of_zero() <
-           f_.best.criterion + margin();
+           f_.best.criterion;
   }
 
   /// Whether such a zero in its place is better evidence than this effect of the best set.
@@ -125,8 +120,7 @@ class Judge {
     std::vector<Term> terms = f_.of_best.fit.terms;
     std::erase_if(terms, [&](const Term& t) { return t.name() == name; });
     const double price = f_.bench->without(f_.best, f_.index_of(name)).price + price_of_zero();
-    return criterion_beside_walk(terms) + price <
-           f_.best.criterion + (in_time(name) ? margin() : 0.0);
+    return criterion_beside_walk(terms) + price < f_.best.criterion;
   }
 
   /// Whether an effect of the best set is there also if the zero walks.

@@ -45,8 +45,7 @@ void Whitening::filter(const Noise& noise, const Observations& o) {
     Covariance& P = of_line[line_of(o, i)];
     Step& s = step_[i];
     const std::uint32_t pass = noise.pass[i], run = o.run.empty() ? 1 : o.run[i];
-    const bool other =
-        !P.begun || (noise.zero == Zero::of_run ? P.run != run : P.pass != pass);
+    const bool other = !P.begun || (noise.zero == Zero::of_run ? P.run != run : P.pass != pass);
     s.keep_near = P.begun ? rho : 0.0;  // the machine goes on from pass to pass
     s.keep_level = P.begun && !(own && other) ? 1.0 : 0.0;
     P.near = s.keep_near * s.keep_near * P.near + 1.0 - s.keep_near * s.keep_near;

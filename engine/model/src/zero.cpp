@@ -69,8 +69,8 @@ class Signs {
     white_.take_out_zeros(y);
     basis_ = x;
     if (x.cols() > 0)
-      basis_ = Eigen::HouseholderQR<MatrixXd>(x).householderQ() *
-               MatrixXd::Identity(x.rows(), x.cols());
+      basis_ =
+          Eigen::HouseholderQR<MatrixXd>(x).householderQ() * MatrixXd::Identity(x.rows(), x.cols());
     left_ = y.col(0) - basis_ * (basis_.transpose() * y.col(0));
     const auto used = static_cast<double>((white_.root().array() > 0.0).count());
     dof_ = used - static_cast<double>(x.cols()) - static_cast<double>(lines_of(o));
@@ -116,8 +116,7 @@ MatrixXd of_groups(const std::vector<std::uint32_t>& group) {
   Index next = 0;
   for (auto& [g, k] : number) k = next++;
   const Index together = (next + most - 1) / most;
-  MatrixXd out =
-      MatrixXd::Zero(static_cast<Index>(group.size()), (next + together - 1) / together);
+  MatrixXd out = MatrixXd::Zero(static_cast<Index>(group.size()), (next + together - 1) / together);
   for (std::size_t i = 0; i < group.size(); ++i)
     out(static_cast<Index>(i), number[group[i]] / together) = 1.0;
   return out;
@@ -145,11 +144,13 @@ class Search {
       : likelihood_(likelihood), noise_(noise), best_(noise), least_(likelihood(noise) - worth) {}
 
   void neighbours() {
+    constexpr double less_likely = 2.0;
     double before = std::numeric_limits<double>::infinity();
     for (const double rho : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9}) {
       Noise with = noise_;
       with.neighbours = rho;
-      const double value = likelihood_(with);
+      // A walk that is as likely is worse for u of what changes in time.
+      const double value = likelihood_(with) + less_likely;
       if (value < least_) least_ = value, best_ = with, likely_.clear();
       if (rho > noise_.neighbours && value > before) break;
       before = value;
@@ -169,7 +170,8 @@ class Search {
       least = std::min(least, value);
       if (value > least + unlikely) break;  // beyond its minimum
     }
-    if (best_.zero == kind && likely_.empty()) likely_ = tried, whole_ = tried.size() == sizes.size();
+    if (best_.zero == kind && likely_.empty())
+      likely_ = tried, whole_ = tried.size() == sizes.size();
   }
 
   /// The most likely noise; its zero as large as it is in the mean over all likely sizes, since a

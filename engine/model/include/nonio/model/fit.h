@@ -54,7 +54,7 @@ struct Noise {
   double zero_size = 0.0;   ///< of a zero, or a step of the walk, over s, as u has it
   double zero_found = 0.0;  ///< the most likely one
   bool zero_open = false;   ///< these readings leave open how large it may be
-  double digit = 0.0;      ///< last digit of the readings, m or rad
+  double digit = 0.0;       ///< last digit of the readings, m or rad
   std::optional<Stretch> stretch{};
   std::vector<double> rough{};        ///< of each reading its standard deviation over s; empty: 1
   std::vector<std::uint32_t> pass{};  ///< of each reading
