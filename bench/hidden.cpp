@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well `explain` finds what the second generator (tests/hidden) has hidden:
+// How well `explain` finds what the second generator (tests/support/hidden) has hidden:
 //   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped|beside|
 //                fixed-end|blank-temperatures|day-wave|short-misread|smallest COUNT SEED
 //                [--size PERCENT]
@@ -22,7 +22,7 @@
 #include <utility>
 
 #include "hidden/generator.h"
-#include "nonio/host/plugins.h"
+#include "host/loader/plugins.h"
 #include "nonio/math/distributions.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
@@ -478,7 +478,7 @@ int main(int argc, char** argv) {
         "[--digit SIZE]\n");
     return 2;
   }
-  host::Plugins plugins;
+  host::loader::Plugins plugins;
   plugins.load({a->plugins.lexically_normal()});
   if (plugins.effects().empty()) {
     std::fprintf(stderr, "bench_hidden: no effect in %s\n", a->plugins.c_str());

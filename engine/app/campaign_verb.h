@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "common.h"
-#include "nonio/host/campaign_model.h"
+#include "host/modelling/campaign_model.h"
 
 namespace nonio::app {
 
 /// The campaign that a verb is about.
 struct OpenCampaign {
   std::filesystem::path folder;
-  std::unique_ptr<host::Workplace> place;
-  host::ReadCampaign read;
+  std::unique_ptr<host::reading::Workplace> place;
+  host::reading::ReadCampaign read;
   const Campaign& campaign() const { return read.manifest->campaign; }
 };
 
@@ -24,7 +24,7 @@ struct OpenCampaign {
 /// single measurements stay in `read.errors` and leave the others.
 tl::expected<OpenCampaign, int> open_campaign(
     const char* verb, const std::string& folder, const Common& common,
-    host::TemplatesFor what = host::TemplatesFor::documents);
+    host::reading::TemplatesFor what = host::reading::TemplatesFor::documents);
 
 /// "CAMPAIGN", --templates and the common options.
 std::vector<Argument> campaign_arguments(std::string& folder, Common& common);

@@ -4,12 +4,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "nonio/host/certificate_list.h"
+#include "host/certificates/certificate_list.h"
 #include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
-using host::RegisterEntry;
+using host::certificates::RegisterEntry;
 
 namespace {
 
@@ -57,10 +57,11 @@ int refuse(const Error& error) {
   return exit_usage;
 }
 
-int audit(const CertificateWish& wanted, const host::Numbering& numbering, const Common& common) {
-  const auto found = host::audit(wanted.site, numbering);
+int audit(const CertificateWish& wanted, const host::config::Numbering& numbering,
+          const Common& common) {
+  const auto found = host::certificates::audit(wanted.site, numbering);
   if (!found) return refuse(found.error());
-  const host::Audit& a = *found;
+  const host::certificates::Audit& a = *found;
   if (common.json) {
     std::cout
         << Json{{"schema", "nonio-audit/1"}, {"sound", a.wrong.empty()},       {"register", a.id},
@@ -84,18 +85,19 @@ int audit(const CertificateWish& wanted, const host::Numbering& numbering, const
 int certificates(const CertificateWish& wanted, const Common& common) {
   if (wanted.withdraw.empty() != wanted.why.empty())
     return refuse(Error{"--withdraw NUMBER and --why TEXT go together"});
-  const auto numbering = host::numbering_of(wanted.site);
+  const auto numbering = host::certificates::numbering_of(wanted.site);
   if (!numbering) return refuse(numbering.error());
   if (wanted.audit) return audit(wanted, *numbering, common);
   if (!wanted.withdraw.empty()) {
-    const auto done =
-        host::withdraw(wanted.site, *numbering, wanted.withdraw, wanted.why, wanted.by);
+    const auto done = host::certificates::withdraw(wanted.site, *numbering, wanted.withdraw,
+                                                   wanted.why, wanted.by);
     if (!done) return refuse(done.error());
   }
-  const auto entries = host::certificates_of(wanted.site, *numbering);
+  const auto entries = host::certificates::certificates_of(wanted.site, *numbering);
   if (!entries) return refuse(entries.error());
   if (!wanted.out.empty())
-    if (auto written = host::export_certificates(wanted.site, *numbering, wanted.out); !written)
+    if (auto written = host::certificates::export_certificates(wanted.site, *numbering, wanted.out);
+        !written)
       return refuse(written.error());
   if (common.json) {
     Json all = Json::array();

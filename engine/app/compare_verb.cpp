@@ -11,19 +11,19 @@ namespace {
 
 int compare(const std::string& folder, const Common& common) {
   const char* const verb = "nonio compare";
-  auto opened = open_campaign(verb, folder, common, host::TemplatesFor::english_words);
+  auto opened = open_campaign(verb, folder, common, host::reading::TemplatesFor::english_words);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
-  auto parts = host::part_models(open.read, open.campaign().model);
+  auto parts = host::modelling::part_models(open.read, open.campaign().model);
   if (!parts) return complain(verb, text_of(parts.error()));
-  const host::ModelWords words(open.place->context.templates, "en");
+  const host::modelling::ModelWords words(open.place->context.templates, "en");
   std::vector<std::string> warnings;
-  for (const std::string& effect : host::unmeasured(open.campaign().model, *parts))
+  for (const std::string& effect : host::modelling::unmeasured(open.campaign().model, *parts))
     warnings.push_back(words.unmeasured(effect));
   std::vector<Error> errors = open.read.errors;
-  std::vector<host::Compared> all;
-  for (host::PartModel& part : *parts) {
-    auto comparison = host::compare_part(part);
+  std::vector<host::modelling::Compared> all;
+  for (host::modelling::PartModel& part : *parts) {
+    auto comparison = host::modelling::compare_part(part);
     if (comparison) {
       all.push_back({std::move(part), std::move(*comparison)});
     } else {
@@ -33,9 +33,10 @@ int compare(const std::string& folder, const Common& common) {
   }
   for (const std::string& warning : warnings) complain(verb, warning);
   if (common.json)
-    std::cout << host::compare_json(all, open.campaign(), words, warnings, errors);
+    std::cout << host::modelling::compare_json(all, open.campaign(), words, warnings, errors);
   else
-    for (const host::Compared& one : all) print_comparison(std::cout, one, open.campaign(), words);
+    for (const host::modelling::Compared& one : all)
+      print_comparison(std::cout, one, open.campaign(), words);
   if (parts->empty()) complain(verb, "there is no measurement of an axis with readings");
   return errors.empty() && !parts->empty() ? exit_done : exit_failed;
 }

@@ -4,7 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "nonio/host/plugins.h"
+#include "host/loader/plugins.h"
 #include "nonio/sdk/format.h"
 #include "verbs.h"
 
@@ -111,7 +111,7 @@ void print_control(const Output& o, bool facts) {
 }
 
 int list_controls(const std::vector<std::string>& names, const Common& common) {
-  host::Plugins plugins;
+  host::loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   std::vector<const Output*> all;
   for (const Output& o : plugins.outputs())

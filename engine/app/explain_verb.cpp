@@ -23,8 +23,8 @@ class Explain {
       : options_(options), common_(common) {}
 
   int run() {
-    auto opened =
-        open_campaign("nonio explain", options_.folder, common_, host::TemplatesFor::english_words);
+    auto opened = open_campaign("nonio explain", options_.folder, common_,
+                                host::reading::TemplatesFor::english_words);
     if (!opened) return opened.error();
     open_ = std::move(*opened);
     words_.emplace(open_.place->context.templates, "en");
@@ -49,17 +49,17 @@ class Explain {
     all_.clear();
     errors_ = open_.read.errors;
     failed_ = !errors_.empty();
-    auto parts = host::part_models(open_.read, open_.campaign().model);
+    auto parts = host::modelling::part_models(open_.read, open_.campaign().model);
     if (!parts) {
       tell(text_of(parts.error()));
       return exit_usage;
     }
     warnings_.clear();
-    for (const std::string& effect : host::unmeasured(open_.campaign().model, *parts))
+    for (const std::string& effect : host::modelling::unmeasured(open_.campaign().model, *parts))
       warnings_.push_back(words_->unmeasured(effect));
     if (parts->empty()) tell("there is no measurement of an axis with readings");
-    for (host::PartModel& part : *parts) {
-      auto explanation = host::explain_part(part, options_.seed);
+    for (host::modelling::PartModel& part : *parts) {
+      auto explanation = host::modelling::explain_part(part, options_.seed);
       if (explanation) {
         all_.push_back({std::move(part), std::move(*explanation)});
         continue;
@@ -74,7 +74,7 @@ class Explain {
   /// What belongs into the model beyond doubt; empty: nothing more.
   std::string next() const {
     if (all_.empty()) return {};
-    const model::Explanation& worst = all_[host::most_severe(all_)].explanation;
+    const model::Explanation& worst = all_[host::modelling::most_severe(all_)].explanation;
     if (worst.verdict.kind == model::Verdict::Kind::missing) return worst.verdict.effect;
     if (worst.verdict.kind == model::Verdict::Kind::unknown && !worst.certain.empty())
       return worst.certain.front();
@@ -82,7 +82,7 @@ class Explain {
   }
 
   bool add(const std::string& effect) {
-    const auto change = host::change_model(open_.folder, open_.read, effect, true);
+    const auto change = host::modelling::change_model(open_.folder, open_.read, effect, true);
     if (!change) {
       tell(text_of(change.error()));
       failed_ = true;
@@ -100,20 +100,20 @@ class Explain {
     for (const std::string& warning : warnings_) tell(warning);
     if (all_.empty()) return;
     if (common_.json) {
-      std::cout << host::explain_json(all_, open_.campaign(), *words_, options_.seed, steps_,
-                                      warnings_, errors_);
+      std::cout << host::modelling::explain_json(all_, open_.campaign(), *words_, options_.seed,
+                                                 steps_, warnings_, errors_);
       return;
     }
-    for (const host::Explained& e : all_)
+    for (const host::modelling::Explained& e : all_)
       print_explanation(std::cout, e, open_.campaign(), *words_);
   }
 
   const ExplainOptions& options_;
   const Common& common_;
   OpenCampaign open_;
-  std::optional<host::ModelWords> words_;
-  std::vector<host::Explained> all_;
-  std::vector<host::ModelStep> steps_;
+  std::optional<host::modelling::ModelWords> words_;
+  std::vector<host::modelling::Explained> all_;
+  std::vector<host::modelling::ModelStep> steps_;
   std::vector<std::string> warnings_;
   std::vector<Error> errors_;
   bool failed_ = false;

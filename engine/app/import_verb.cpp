@@ -5,8 +5,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "nonio/host/files.h"
-#include "nonio/host/import.h"
+#include "host/storage/files.h"
+#include "host/tools/import.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -21,24 +21,25 @@ struct ImportArguments {
 };
 
 /// A file if it ends in .toml, else the pattern itself.
-host::Checked<host::ImportRule> rule_of(const ImportArguments& arguments) {
-  if (!arguments.rule.ends_with(".toml")) return host::import_rule_of_pattern(arguments.rule);
-  const auto text = host::read_file(arguments.rule);
+host::config::Checked<host::tools::ImportRule> rule_of(const ImportArguments& arguments) {
+  if (!arguments.rule.ends_with(".toml"))
+    return host::tools::import_rule_of_pattern(arguments.rule);
+  const auto text = host::storage::read_file(arguments.rule);
   if (!text) return tl::unexpected(std::vector<Error>{text.error()});
-  return host::parse_import_rule(*text, arguments.rule);
+  return host::tools::parse_import_rule(*text, arguments.rule);
 }
 
-Json json_of(const std::vector<host::ImportReport::Passed>& list) {
+Json json_of(const std::vector<host::tools::ImportReport::Passed>& list) {
   Json out = Json::array();
   for (const auto& p : list) out.push_back({{"file", p.file}, {"why", p.why}});
   return out;
 }
 
-void print_json(const host::ImportReport& report, bool dry_run) {
+void print_json(const host::tools::ImportReport& report, bool dry_run) {
   Json campaigns = Json::array();
-  for (const host::ImportedCampaign& c : report.campaigns) {
+  for (const host::tools::ImportedCampaign& c : report.campaigns) {
     Json files = Json::array();
-    for (const host::ImportedFile& f : c.files)
+    for (const host::tools::ImportedFile& f : c.files)
       files.push_back({{"file", f.file},
                        {"measurement", f.measurement},
                        {"axis", f.axis},
@@ -64,7 +65,7 @@ void print_json(const host::ImportReport& report, bool dry_run) {
             << "\n";
 }
 
-void print(const char* title, const std::vector<host::ImportReport::Passed>& list) {
+void print(const char* title, const std::vector<host::tools::ImportReport::Passed>& list) {
   constexpr std::size_t most = 20;
   if (!list.empty()) std::cout << title << "\n";
   for (std::size_t i = 0; i < std::min(list.size(), most); ++i)
@@ -73,8 +74,8 @@ void print(const char* title, const std::vector<host::ImportReport::Passed>& lis
     std::cout << "  and " << list.size() - most << " more (--json lists them all)\n";
 }
 
-void print(const host::ImportReport& report) {
-  for (const host::ImportedCampaign& c : report.campaigns) {
+void print(const host::tools::ImportReport& report) {
+  for (const host::tools::ImportedCampaign& c : report.campaigns) {
     if (c.there) {
       std::cout << c.id << ": imported before, nothing to do\n";
       continue;
@@ -84,8 +85,8 @@ void print(const host::ImportReport& report) {
                   : c.whole() ? ": whole"
                               : ": not written")
               << (c.whole() ? "" : ", something is missing") << "\n";
-    for (const std::string& lack : c.lacks) std::cout << "  wanted: " << lack << "\n";
-    for (const host::ImportedFile& f : c.files) {
+    for (const std::string& lack : c.lacks) std::cout << "  expected: " << lack << "\n";
+    for (const host::tools::ImportedFile& f : c.files) {
       if (!f.same_as.empty()) {  // said once, and nothing more of this file
         std::cout << "  " << f.file << ": " << f.lacks.front() << "\n";
         continue;
@@ -95,7 +96,7 @@ void print(const host::ImportReport& report) {
                 << (f.reader.empty() ? "?" : f.reader) << ", " << f.readings << " readings, "
                 << f.missing << " not taken\n";
       for (const std::string& what : f.assumed) std::cout << "    assumed: " << what << "\n";
-      for (const std::string& lack : f.lacks) std::cout << "    wanted: " << lack << "\n";
+      for (const std::string& lack : f.lacks) std::cout << "    expected: " << lack << "\n";
     }
   }
   print("The same as another, left out:", report.duplicates);
@@ -115,10 +116,10 @@ int import_files(const ImportArguments& arguments, const Common& common) {
   }
   if (!arguments.reader.empty()) rule->reader = arguments.reader;
   if (!arguments.campaign.empty()) rule->campaign = arguments.campaign;
-  host::Plugins plugins;
+  host::loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
-  const auto report = host::import_folder(
+  const auto report = host::tools::import_folder(
       {arguments.folder, fs::absolute(arguments.out), *rule, arguments.partial, arguments.dry_run},
       plugins);
   if (!report) return complain(verb, report.error().message);
@@ -127,7 +128,7 @@ int import_files(const ImportArguments& arguments, const Common& common) {
   else if (!common.quiet)
     print(*report);
   bool whole = !report->campaigns.empty();
-  for (const host::ImportedCampaign& c : report->campaigns) whole = whole && c.whole();
+  for (const host::tools::ImportedCampaign& c : report->campaigns) whole = whole && c.whole();
   if (report->campaigns.empty()) complain(verb, "no file follows the pattern " + rule->pattern);
   return whole ? exit_done : exit_failed;
 }

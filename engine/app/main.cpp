@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "nonio/host/apart.h"
+#include "host/process/keep_apart.h"
 #include "verbs.h"
 
 namespace {
@@ -16,7 +16,7 @@ nonio::app::Verb apart(nonio::app::Verb verb) {
   for (nonio::app::Verb& part : verb.verbs) part = apart(std::move(part));
   if (verb.run)
     verb.run = [run = std::move(verb.run)] {
-      nonio::host::keep_plugins_apart(nonio::app::Common::own_plugins());
+      nonio::host::process::keep_plugins_apart(nonio::app::Common::own_plugins());
       return run();
     };
   return verb;

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "axis_argument.h"
-#include "nonio/host/files.h"
-#include "nonio/host/plan.h"
+#include "host/storage/files.h"
+#include "host/tools/plan.h"
 #include "table_common.h"
 #include "verbs.h"
 
@@ -34,11 +34,12 @@ Expected<std::string> merged_axis(const MergeWish& w, const Campaign& campaign) 
   std::string list;
   for (const std::string& a : measured) list += (list.empty() ? "" : ", ") + a;
   return fail(measured.empty() ? "the campaign has no measurement of an axis"
-                               : "wanted --axis, one of " + list);
+                               : "expected --axis, one of " + list);
 }
 
-int tell_merged(const host::MergedTables& merged, const Loaded& present, const std::string& axis,
-                const MergeWish& w, const OpenCampaign& open, const Common& common) {
+int tell_merged(const host::tables::MergedTables& merged, const Loaded& present,
+                const std::string& axis, const MergeWish& w, const OpenCampaign& open,
+                const Common& common) {
   std::vector<std::string> written;
   if (!w.out.empty())
     for (const Artifact& f : merged.files)
@@ -73,13 +74,13 @@ int merge(const MergeWish& w, const Common& common) {
       load(open.place->plugins, w.backup, control, open.campaign(), *settings, options);
   if (!present) return complain(merge_name, text_of(present.error()));
   const auto merged =
-      host::merge_tables(open.read, *present->control, *options(present->control->info),
-                         open.place->context.templates, present->files, *axis);
+      host::tables::merge_tables(open.read, *present->control, *options(present->control->info),
+                                 open.place->context.templates, present->files, *axis);
   if (!merged) return complain(merge_name, text_of(merged.error()), exit_failed);
   tell_findings(merge_name, open, merged->findings);
   if (merged->files.empty()) return complain(merge_name, "nothing was written", exit_failed);
   if (!w.out.empty())
-    if (auto done = host::publish(std::filesystem::absolute(w.out), merged->files); !done)
+    if (auto done = host::storage::publish(std::filesystem::absolute(w.out), merged->files); !done)
       return complain(merge_name, text_of(done.error()), exit_failed);
   return tell_merged(*merged, *present, *axis, w, open, common);
 }

@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "campaign_verb.h"
-#include "nonio/host/nearest.h"
+#include "host/storage/nearest.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -18,19 +18,19 @@ struct ModelOptions {
 const char* const model_name = "nonio model";
 
 int show_model(const ModelOptions& options, const Common& common) {
-  auto opened =
-      open_campaign("nonio model show", options.folder, common, host::TemplatesFor::english_words);
+  auto opened = open_campaign("nonio model show", options.folder, common,
+                              host::reading::TemplatesFor::english_words);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
-  auto parts = host::part_models(open.read, open.campaign().model);
+  auto parts = host::modelling::part_models(open.read, open.campaign().model);
   if (!parts) return complain(model_name, text_of(parts.error()));
-  const auto history = host::read_history(open.folder);
+  const auto history = host::modelling::read_history(open.folder);
   if (!history) return complain(model_name, text_of(history.error()), exit_failed);
-  const host::ModelWords words(open.place->context.templates, "en");
-  std::vector<host::Compared> all;
+  const host::modelling::ModelWords words(open.place->context.templates, "en");
+  std::vector<host::modelling::Compared> all;
   std::vector<Error> errors = open.read.errors;
-  for (host::PartModel& part : *parts) {
-    auto comparison = host::compare_part(part);
+  for (host::modelling::PartModel& part : *parts) {
+    auto comparison = host::modelling::compare_part(part);
     if (comparison) {
       all.push_back({std::move(part), std::move(*comparison)});
     } else {
@@ -39,9 +39,9 @@ int show_model(const ModelOptions& options, const Common& common) {
     }
   }
   if (common.json) {
-    std::cout << host::compare_json(all, open.campaign(), words, {}, errors);
+    std::cout << host::modelling::compare_json(all, open.campaign(), words, {}, errors);
   } else {
-    for (const host::Compared& one : all) print_model(std::cout, one, words);
+    for (const host::modelling::Compared& one : all) print_model(std::cout, one, words);
     print_history(std::cout, *history);
   }
   return errors.empty() ? exit_done : exit_failed;
@@ -53,25 +53,25 @@ std::string refusal(const OpenCampaign& open, const std::string& effect, bool ad
   const bool there = std::find(model.begin(), model.end(), effect) != model.end();
   if (add && there) return "\"" + effect + "\" is in the model already";
   if (!add && !there)
-    return "\"" + effect + "\" is not in the model" + host::suggestion(effect, model) +
-           (model.empty() ? "; it is empty" : "; there are " + host::listed(model));
+    return "\"" + effect + "\" is not in the model" + host::storage::suggestion(effect, model) +
+           (model.empty() ? "; it is empty" : "; there are " + host::storage::listed(model));
   if (!add) return {};
-  const auto mistakes = host::model_mistakes({effect}, open.read);
+  const auto mistakes = host::modelling::model_mistakes({effect}, open.read);
   return mistakes.empty() ? std::string() : mistakes.front();
 }
 
 int change(const ModelOptions& options, const Common& common, bool add) {
   auto opened = open_campaign(add ? "nonio model add" : "nonio model drop", options.folder, common,
-                              host::TemplatesFor::english_words);
+                              host::reading::TemplatesFor::english_words);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   if (const std::string why = refusal(open, options.effect, add); !why.empty())
     return complain(model_name, why + "; nothing was changed");
-  const auto changed = host::change_model(open.folder, open.read, options.effect, add);
+  const auto changed = host::modelling::change_model(open.folder, open.read, options.effect, add);
   if (!changed) return complain(model_name, text_of(changed.error()), exit_failed);
-  const host::ModelWords words(open.place->context.templates, "en");
+  const host::modelling::ModelWords words(open.place->context.templates, "en");
   if (common.json)
-    std::cout << host::change_json(*changed, open.campaign(), words);
+    std::cout << host::modelling::change_json(*changed, open.campaign(), words);
   else
     print_change(std::cout, *changed, words);
   return open.read.errors.empty() ? exit_done : exit_failed;

@@ -6,8 +6,9 @@
 #include <cstdint>
 #include <numbers>
 
-#include "nonio/host/schema.h"
+#include "host/tools/schema.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/splitmix64.h"
 
 namespace nonio::app {
 
@@ -39,8 +40,8 @@ std::string text_line(const std::string& key, const std::string& text, const std
 
 /// A key as a comment with an example, and what it means in the words of the table of keys.
 std::string offered(const std::string& table, const std::string& key, const std::string& example) {
-  std::string help = host::campaign_key_help(table + "." + key);
-  if (help.empty()) help = host::site_key_help(table + "." + key);
+  std::string help = host::tools::campaign_key_help(table + "." + key);
+  if (help.empty()) help = host::tools::site_key_help(table + "." + key);
   return "# " + key + " = " + example + "  # " + help + "\n";
 }
 
@@ -114,7 +115,7 @@ std::string instrument_text(const NewCampaign& c) {
   text += offered("instrument", "issuer", "\"LAT 000\"") +
           offered("instrument", "valid_until", "2027-01-12") +
           offered("instrument", "sphere_um", "0.5") + offered("instrument", "probe_um", "1.0");
-  text += "\n# " + host::campaign_key_help("sensor") + "\n# [[sensor]]\n" +
+  text += "\n# " + host::tools::campaign_key_help("sensor") + "\n# [[sensor]]\n" +
           offered("sensor", "measures", "\"material\"") + offered("sensor", "serial", "\"T-001\"") +
           offered("sensor", "calibrated", "2026-01-12") +
           offered("sensor", "certificate", "\"SO-2026-0009\"");
@@ -130,21 +131,16 @@ std::string instrument_text(const NewCampaign& c) {
          offered("environment", "sensors", "\"on the table and on the column\"");
 }
 
-/// Even, and the same on every machine: 53 bits of a splitmix64.
+/// The same on every machine.
 class Noise {
  public:
-  explicit Noise(std::uint64_t seed) : state_(seed) {}
+  explicit Noise(std::uint64_t seed) : numbers_(seed) {}
   /// -1 .. 1, most often near 0.
   double operator()() { return (even() + even() + even()) * 2.0 / 3.0 - 1.0; }
 
  private:
-  double even() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
-  }
-  std::uint64_t state_;
+  double even() { return numbers_.uniform(); }
+  SplitMix64 numbers_;
 };
 
 }  // namespace

@@ -10,10 +10,11 @@
 #include <set>
 
 #include "axis_argument.h"
+#include "host/evaluation/evaluate.h"
+#include "host/reading/campaign_reader.h"
+#include "host/storage/files.h"
+#include "host/storage/nearest.h"
 #include "new_text.h"
-#include "nonio/host/campaign_reader.h"
-#include "nonio/host/files.h"
-#include "nonio/host/nearest.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -80,23 +81,24 @@ std::string today() {
 std::optional<fs::path> site_above(const fs::path& folder) {
   std::error_code error;
   for (fs::path up = folder.parent_path(); !up.empty(); up = up.parent_path()) {
-    if (fs::exists(up / host::site_name, error)) return up;
+    if (fs::exists(up / host::config::site_name, error)) return up;
     if (up == up.parent_path()) break;
   }
   for (const auto& entry : fs::directory_iterator(folder.parent_path(), error))
-    if (fs::exists(entry.path() / host::manifest_name, error)) return folder.parent_path();
+    if (fs::exists(entry.path() / host::config::manifest_name, error)) return folder.parent_path();
   return std::nullopt;
 }
 
 /// The folder of the site's campaign that has the id; empty if none has.
 fs::path holder_of(const std::string& id, const fs::path& site) {
   std::error_code error;
-  if (!fs::exists(site / host::site_name, error)) return {};  // it may be anybody's home
+  if (!fs::exists(site / host::config::site_name, error)) return {};  // it may be anybody's home
   fs::recursive_directory_iterator it(site, fs::directory_options::skip_permission_denied, error);
   for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
     if (it->path().filename().string().starts_with('.')) it.disable_recursion_pending();
-    if (it->path().filename() != host::manifest_name) continue;
-    if (const auto text = host::read_file(it->path()); text && host::salvage_id(*text) == id)
+    if (it->path().filename() != host::config::manifest_name) continue;
+    if (const auto text = host::storage::read_file(it->path());
+        text && host::config::extract_id(*text) == id)
       return it->path().parent_path();
   }
   return {};
@@ -122,7 +124,7 @@ bool is_date(const std::string& text) {
 Expected<void> one_line(const char* option, const std::string& text) {
   for (const char c : text)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-      return fail(std::string(option) + ": wanted a text of one line");
+      return fail(std::string(option) + ": expected a text of one line");
   return {};
 }
 
@@ -148,22 +150,22 @@ std::string lower(std::string text) {
 Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
-    return fail("--file: wanted AXIS=PATH such as X=x.csv, found \"" + text + "\"");
+    return fail("--file: expected AXIS=PATH such as X=x.csv, found \"" + text + "\"");
   const std::string name = text.substr(0, equals);
   const fs::path path = text.substr(equals + 1);
   if (!is_axis_name(name))
-    return fail("--file: wanted an axis of capital letters and digits, found \"" + name + "\"");
+    return fail("--file: expected an axis of capital letters and digits, found \"" + name + "\"");
   auto it =
       std::find_if(axes.begin(), axes.end(), [&](const NewAxis& a) { return a.axis.name == name; });
   if (it == axes.end())
     it = axes.insert(axes.end(), {.axis = axis_named(name), .file = {}, .bytes = {}});
   if (!it->file.empty()) return fail("--file: axis " + name + " has two files");
-  auto bytes = host::read_file(path);
+  auto bytes = host::storage::read_file(path);
   if (!bytes) return fail(bytes.error());
   if (bytes->empty()) return fail("--file: " + path.string() + " is empty");
   it->file = path.filename().string();
-  if (!host::is_artifact_name(it->file) || it->file == host::manifest_name)
-    return fail("--file: wanted a plain file name, found \"" + it->file + "\"");
+  if (!host::storage::is_artifact_name(it->file) || it->file == host::config::manifest_name)
+    return fail("--file: expected a plain file name, found \"" + it->file + "\"");
   it->bytes = std::move(*bytes);
   return {};
 }
@@ -171,18 +173,19 @@ Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
 /// From the folder's name, if the command line does not say it.
 Expected<std::string> id_of(const NewWish& wish, const fs::path& folder, Questions& ask) {
   std::string id = wish.id, near = valid_id(folder.filename().string());
-  if (!host::is_campaign_id(near)) near = "campaign-" + near;
+  if (!host::config::is_campaign_id(near)) near = "campaign-" + near;
   if (auto done = ask.text("Id of the campaign (a-z 0-9 . _ -)", id, near); !done)
     return fail(done.error());
-  if (!host::is_campaign_id(id)) {
+  if (!host::config::is_campaign_id(id)) {
     const std::string nearest = valid_id(id);
     return fail(
-        "id: wanted a-z 0-9 . _ - and no more than 100, not starting with a point; found \"" + id +
-        "\"" + (host::is_campaign_id(nearest) ? " (nearest: \"" + nearest + "\")" : ""));
+        "id: expected a-z 0-9 . _ - and no more than 100, not starting with a point; found \"" +
+        id + "\"" +
+        (host::config::is_campaign_id(nearest) ? " (nearest: \"" + nearest + "\")" : ""));
   }
   if (const auto site = site_above(folder))
     if (const fs::path other = holder_of(id, *site); !other.empty())
-      return fail("id: " + other.string() + " has the id \"" + id + "\"; wanted another (--id)");
+      return fail("id: " + other.string() + " has the id \"" + id + "\"; expected another (--id)");
   return id;
 }
 
@@ -242,7 +245,7 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
   }
   if (auto done = one_line("--control", c.control); !done) return fail(done.error());
   if (!is_date(c.date))
-    return fail("--date: wanted a day such as 2026-11-03, found \"" + c.date + "\"");
+    return fail("--date: expected a day such as 2026-11-03, found \"" + c.date + "\"");
   auto axes = axes_with_files(wish, ask);
   if (!axes) return fail(axes.error());
   c.axes = std::move(*axes);
@@ -253,7 +256,7 @@ std::vector<Artifact> files_of(const NewCampaign& c) {
   std::vector<Artifact> files;
   for (const NewAxis& a : c.axes)
     files.push_back({a.file, a.example() ? example_readings(a.axis) : a.bytes});
-  files.push_back({host::manifest_name, campaign_text(c)});  // last: it shows the rest
+  files.push_back({host::config::manifest_name, campaign_text(c)});  // last: it shows the rest
   return files;
 }
 
@@ -283,14 +286,16 @@ std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::strin
   if (trial.folder().empty()) return {Error{"cannot make a folder for a trial"}};
   const fs::path folder = trial.folder() / "campaign";
   if (site)
-    if (const auto text = host::read_file(*site / host::site_name))
-      if (auto done = host::publish(trial.folder(), {{host::site_name, *text}}); !done)
+    if (const auto text = host::storage::read_file(*site / host::config::site_name))
+      if (auto done = host::storage::publish(trial.folder(), {{host::config::site_name, *text}});
+          !done)
         return {done.error()};
-  if (auto done = host::publish(folder, files); !done) return {done.error()};
-  auto place = host::open_workplace(folder, common.plugin_folders(), common.template_folders(),
-                                    NONIO_VERSION);
+  if (auto done = host::storage::publish(folder, files); !done) return {done.error()};
+  auto place = host::reading::open_workplace(folder, common.plugin_folders(),
+                                             common.template_folders(), NONIO_VERSION);
   if (!place) return {place.error()};
-  return host::evaluate(folder, id, (*place)->context, [](const std::string&) {}).results.errors;
+  return host::evaluation::evaluate(folder, id, (*place)->context, [](const std::string&) {})
+      .results.errors;
 }
 
 /// Whether something is in the way. An empty folder is not.
@@ -305,7 +310,7 @@ int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::
               bool example, const Common& common) {
   std::vector<std::string> written;
   for (const NewFiles& one : all) {
-    if (auto done = host::publish(one.folder, one.files); !done)
+    if (auto done = host::storage::publish(one.folder, one.files); !done)
       return complain(new_name, text_of(done.error()), exit_failed);
     for (const Artifact& file : one.files) written.push_back((one.folder / file.name).string());
   }
@@ -352,7 +357,7 @@ int new_site(const NewWish& wish, const fs::path& folder, const Common& common) 
       return complain(new_name, done.error().message, ask.status());
     if (auto done = one_line(question, *to); !done) return complain(new_name, done.error().message);
   }
-  std::vector<NewFiles> all{{folder, {{host::site_name, site_text(site)}}}};
+  std::vector<NewFiles> all{{folder, {{host::config::site_name, site_text(site)}}}};
   if (wish.empty) return write_new(all, wish, "site", false, common);
   Questions silent(false);
   bool example = false;
@@ -374,17 +379,17 @@ int new_campaign(const NewWish& wish, const fs::path& folder, const Common& comm
 /// SITE/machines/<asset>.toml.
 int new_machine(const NewWish& wish, const fs::path& path, const Common& common) {
   NewMachine machine{path.stem().string(), wish.machine, wish.serial, wish.control, {}};
-  if (path.extension() != ".toml" || path.parent_path().filename() != host::machines_folder)
-    return complain(new_name, "wanted SITE/machines/<asset>.toml, found " + wish.folder);
+  if (path.extension() != ".toml" || path.parent_path().filename() != host::config::machines_folder)
+    return complain(new_name, "expected SITE/machines/<asset>.toml, found " + wish.folder);
   const auto axes = axes_of(wish.axes.empty() ? std::vector<std::string>{"X=0:500"} : wish.axes);
   if (!axes) return complain(new_name, axes.error().message);
   for (const NewAxis& a : *axes) machine.axes.push_back(a.axis);
   const std::string text = machine_text(machine);
   const std::string file = path.filename().string();
-  if (const auto read = host::parse_machine(text, file, machine.asset); !read)
+  if (const auto read = host::config::parse_machine(text, file, machine.asset); !read)
     return complain(new_name, text_of(read.error().front()) + "; nothing was written");
-  if (!host::is_artifact_name(file))
-    return complain(new_name, "wanted a plain name, found " + file);
+  if (!host::storage::is_artifact_name(file))
+    return complain(new_name, "expected a plain name, found " + file);
   std::vector<NewFiles> all{{path.parent_path(), {{file, text}}}};
   return write_new(all, wish, "machine", false, common);
 }
@@ -393,10 +398,10 @@ int make_new(NewWish wish, const Common& common) {
   const std::vector<std::string> kinds{"site", "campaign", "machine"};
   const bool named = std::find(kinds.begin(), kinds.end(), wish.what) != kinds.end();
   if (wish.folder.empty() && named)
-    return complain(new_name, "wanted a folder after \"" + wish.what + "\"");
+    return complain(new_name, "expected a folder after \"" + wish.what + "\"");
   if (!wish.folder.empty() && !named)
-    return complain(new_name, "wanted site, campaign or machine, found \"" + wish.what + "\"" +
-                                  host::suggestion(wish.what, kinds));
+    return complain(new_name, "expected site, campaign or machine, found \"" + wish.what + "\"" +
+                                  host::storage::suggestion(wish.what, kinds));
   if (wish.folder.empty()) wish.folder = std::exchange(wish.what, {});
   fs::path folder = fs::absolute(wish.folder).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();

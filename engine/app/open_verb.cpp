@@ -14,8 +14,8 @@
 #include <sstream>
 
 #include "colour.h"
-#include "nonio/host/files.h"
-#include "nonio/host/record.h"
+#include "host/evaluation/record.h"
+#include "host/storage/files.h"
 #include "results_folder.h"
 #include "verbs.h"
 
@@ -30,7 +30,7 @@ struct OpenWish {
 };
 
 Expected<Json> json_file(const fs::path& path) {
-  const auto text = host::read_file(path);
+  const auto text = host::storage::read_file(path);
   if (!text) return fail(text.error());
   Json json = Json::parse(*text, nullptr, false);
   if (json.is_discarded() || !json.is_object())
@@ -41,7 +41,7 @@ Expected<Json> json_file(const fs::path& path) {
 /// The report in the language that was asked for; else a page; else the results
 /// themselves.
 Expected<fs::path> document_of(const fs::path& results) {
-  const auto json = json_file(results / host::results_name);
+  const auto json = json_file(results / host::evaluation::results_name);
   if (!json) return fail(json.error());
   std::vector<std::string> files;
   for (const Json& o : json->value("outputs", Json::array()))
@@ -52,7 +52,7 @@ Expected<fs::path> document_of(const fs::path& results) {
   for (const char* ending : {".pdf", ".html"})
     for (const std::string& file : files)
       if (file.ends_with(ending)) return results / file;
-  return results / host::results_name;
+  return results / host::evaluation::results_name;
 }
 
 /// The first campaign that asks for attention or has failed; with none, the summary.
@@ -67,7 +67,8 @@ Expected<fs::path> document_of_night(const fs::path& out, const Common& common) 
       if (!common.quiet) std::cerr << status_word(list, STDERR_FILENO) << " " << id << "\n";
       if (first.empty()) first = id;
     }
-  return first.empty() ? out / "summary.txt" : document_of(host::results_folder(out, first));
+  return first.empty() ? out / "summary.txt"
+                       : document_of(host::storage::results_folder(out, first));
 }
 
 Expected<fs::path> document(const OpenWish& wish, const Common& common) {
@@ -80,10 +81,10 @@ Expected<fs::path> document(const OpenWish& wish, const Common& common) {
     case Holds::night:
       return document_of_night(folder, common);
     case Holds::campaign: {
-      const fs::path results = host::results_folder(wish.out, id_of_campaign(folder));
+      const fs::path results = host::storage::results_folder(wish.out, id_of_campaign(folder));
       if (what_holds(results) == Holds::results) return document_of(results);
       return fail("there are no results of " + folder.string() + " in " + wish.out +
-                  "; wanted --out OUT, the folder that `nonio run` wrote them to");
+                  "; expected --out OUT, the folder that `nonio run` wrote them to");
     }
     case Holds::nothing:
       break;

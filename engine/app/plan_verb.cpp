@@ -9,8 +9,8 @@
 
 #include "axis_argument.h"
 #include "campaign_verb.h"
-#include "nonio/host/files.h"
-#include "nonio/host/plan.h"
+#include "host/storage/files.h"
+#include "host/tools/plan.h"
 #include "nonio/sdk/format.h"
 #include "tables.h"
 #include "verbs.h"
@@ -32,7 +32,7 @@ struct Programs {
 
 struct Plan {
   Lengths mm;
-  math::TripleWish wish;
+  math::TripleRequest wish;
   std::string even = "any";
   std::int64_t count = 5, choose = 1;
   Programs programs;
@@ -45,7 +45,7 @@ struct ProgramWish {
 };
 
 Expected<void> settle(Plan& plan) {
-  math::TripleWish& w = plan.wish;
+  math::TripleRequest& w = plan.wish;
   const auto one = [](const char* option, const std::string& text, double& to) -> Expected<void> {
     const auto length = length_of(option, text);
     if (!length) return fail(length.error());
@@ -65,7 +65,7 @@ Expected<void> settle(Plan& plan) {
            : plan.even == "prefer" ? math::EvenSteps::prefer
                                    : math::EvenSteps::any;
   if (plan.count < 1)
-    return fail("--count: wanted at least 1, found " + std::to_string(plan.count));
+    return fail("--count: expected at least 1, found " + std::to_string(plan.count));
   w.count = static_cast<std::size_t>(plan.count);
   return {};
 }
@@ -86,14 +86,14 @@ void print_plan(std::size_t number, const math::TriplePlan& p, const math::Tripl
         fixed_text(100.0 * p.cover_x, 2), fixed_text(100.0 * p.cover_y, 2),
         fixed_text(p.gain_EYX(), 2), fixed_text(p.gain_EXY(), 2)})
     std::cout << padded_left(cell, 10);
-  std::cout << "\n       why: " << host::why_listed(p)
-            << "\n       gives up: " << host::gives_up(p, best) << "\n";
-  if (const std::string warning = host::aspect_warning(p); !warning.empty())
+  std::cout << "\n       why: " << host::tools::why_listed(p)
+            << "\n       gives up: " << host::tools::gives_up(p, best) << "\n";
+  if (const std::string warning = host::tools::aspect_warning(p); !warning.empty())
     std::cout << "       warning: " << warning << "\n";
 }
 
 void print_plans(const Plan& plan, const math::TriplePlans& found) {
-  const math::TripleWish& w = plan.wish;
+  const math::TripleRequest& w = plan.wish;
   std::cout << "X " << mm_text(w.x) << " mm, Y " << mm_text(w.y) << " mm, over-travel "
             << mm_text(w.over_travel) << " mm at each end; steps are multiples of "
             << mm_text(w.resolution) << " mm" << (w.largest_step > 0.0 ? ", at most " : "")
@@ -118,15 +118,15 @@ int write_programs(const char* verb, const Common& common, const Programs& p,
   const auto given = settings_of(p.settings);
   if (!given) return complain(verb, given.error().message);
   for (const auto& [name, value] : *given) settings[name] = value;
-  host::Plugins plugins;
+  host::loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
-  const auto files = host::write_programs(plugins, p.control, machine, rows, settings);
+  const auto files = host::tools::write_programs(plugins, p.control, machine, rows, settings);
   if (!files) {
     for (const Error& e : files.error()) complain(verb, e.message);
     return exit_usage;
   }
-  if (auto done = host::publish(fs::absolute(p.out), *files); !done)
+  if (auto done = host::storage::publish(fs::absolute(p.out), *files); !done)
     return complain(verb, done.error().message, exit_failed);
   for (const Artifact& a : *files) {
     const std::string path = (fs::path(p.out) / a.name).string();
@@ -142,15 +142,15 @@ int plan_triples(Plan plan, const Common& common) {
   const auto found = math::plan_triples(plan.wish);
   if (!found) return complain(verb, found.error().message);
   if (common.json)
-    std::cout << host::triples_json(plan.wish, *found);
+    std::cout << host::tools::triples_json(plan.wish, *found);
   else if (!found->plans.empty())
     print_plans(plan, *found);
   if (found->plans.empty()) {
-    return complain(verb, host::why_nothing(*found), exit_failed);
+    return complain(verb, host::tools::why_nothing(*found), exit_failed);
   }
   if (plan.programs.out.empty() && plan.programs.control.empty()) return exit_done;
   if (plan.choose < 1 || plan.choose > static_cast<std::int64_t>(found->plans.size()))
-    return complain(verb, "--choose: wanted 1 to " + std::to_string(found->plans.size()) +
+    return complain(verb, "--choose: expected 1 to " + std::to_string(found->plans.size()) +
                               ", found " + std::to_string(plan.choose));
   Machine machine;
   machine.axes = {Axis{.name = "X", .travel = std::pair(0.0, plan.wish.x)},
@@ -168,14 +168,14 @@ Expected<PointTable> grid_of(const ProgramWish& p) {
   const char* const end = p.n.data() + p.n.size();
   const auto [stop, error] = std::from_chars(p.n.data(), end, n);
   if (error != std::errc() || stop != end || n < 1 || n > 100000)
-    return fail("--n: wanted a whole number of steps from 1 to 100000, found \"" + p.n + "\"");
+    return fail("--n: expected a whole number of steps from 1 to 100000, found \"" + p.n + "\"");
   rows.columns.push_back({"n", Quantity::count, {static_cast<double>(n)}});
   for (const auto& [option, text, name] :
        {std::tuple{"--step-x", &p.step_x, "step_x"}, {"--step-y", &p.step_y, "step_y"}}) {
     const auto step = length_of(option, *text);
     if (!step) return fail(step.error());
     if (!(*step > 0.0 && *step < 1e3))
-      return fail(std::string(option) + ": wanted more than 0 mm, found \"" + *text + "\"");
+      return fail(std::string(option) + ": expected more than 0 mm, found \"" + *text + "\"");
     rows.columns.push_back({name, Quantity::length, {*step}});
   }
   return rows;

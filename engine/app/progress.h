@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "nonio/host/run.h"
+#include "host/batch/run.h"
 
 namespace nonio::app {
 
@@ -14,16 +14,16 @@ namespace nonio::app {
 class Progress {
  public:
   Progress(bool quiet, bool json);
-  host::RunEvents events();
+  host::batch::RunEvents events();
   /// Ends the bar's line.
   void end();
   /// Names the campaigns that failed and were not done again.
-  void still_failed(const host::Night& night);
+  void still_failed(const host::batch::Night& night);
 
  private:
   void note(const std::string& message);
   void planned(std::size_t campaigns, std::size_t to_do);
-  void finished(const host::CampaignState& campaign);
+  void finished(const host::batch::CampaignState& campaign);
   void draw();
   void clear();
 

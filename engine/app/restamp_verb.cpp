@@ -3,7 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "nonio/host/restamp.h"
+#include "host/certificates/restamp.h"
 #include "printable.h"
 #include "verbs.h"
 
@@ -20,7 +20,8 @@ struct RestampWish {
   bool no_time_stamp = false, no_fetch = false;
 };
 
-void print(const std::string& file, const host::Restamped& done, const Common& common) {
+void print(const std::string& file, const host::certificates::Restamped& done,
+           const Common& common) {
   if (common.json) {
     std::cout << Json{{"schema", "nonio-restamp/1"},
                       {"file", file},
@@ -37,7 +38,7 @@ void print(const std::string& file, const host::Restamped& done, const Common& c
 }
 
 int restamp(const RestampWish& wanted, const Common& common) {
-  host::RestampOptions options;
+  host::certificates::RestampOptions options;
   options.whom = {wanted.site, wanted.trust, wanted.revoked, wanted.signer};
   options.time_stamp = wanted.time_stamp;
   options.with_time_stamp = !wanted.no_time_stamp;
@@ -45,14 +46,14 @@ int restamp(const RestampWish& wanted, const Common& common) {
   options.fetch = !wanted.no_fetch;
   if (wanted.no_time_stamp && !wanted.time_stamp.empty())
     return complain(restamp_name, "--time-stamp and --no-time-stamp exclude each other");
-  const auto how = host::prolonging_of(options);
+  const auto how = host::certificates::prolonging_of(options);
   if (!how) {
     for (const Error& e : how.error()) complain(restamp_name, text_of(e));
     return exit_usage;
   }
   int status = exit_done;
   for (const std::string& file : wanted.files) {
-    const auto done = host::restamp(file, *how, wanted.out);
+    const auto done = host::certificates::restamp(file, *how, wanted.out);
     if (done)
       print(file, *done, common);
     else

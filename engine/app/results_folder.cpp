@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "results_folder.h"
 
-#include "nonio/host/evaluate.h"
-#include "nonio/host/files.h"
-#include "nonio/host/record.h"
+#include "host/evaluation/evaluate.h"
+#include "host/evaluation/record.h"
+#include "host/storage/files.h"
 
 namespace nonio::app {
 namespace fs = std::filesystem;
 
 Holds what_holds(const fs::path& folder) {
   std::error_code error;
-  if (fs::exists(folder / host::manifest_name, error)) return Holds::campaign;
-  if (fs::exists(folder / host::results_name, error)) return Holds::results;
+  if (fs::exists(folder / host::config::manifest_name, error)) return Holds::campaign;
+  if (fs::exists(folder / host::evaluation::results_name, error)) return Holds::results;
   if (fs::exists(folder / "summary.json", error)) return Holds::night;
   return Holds::nothing;
 }
@@ -26,9 +26,9 @@ std::string holds_nothing(const fs::path& folder) {
 
 std::string id_of_campaign(const fs::path& folder) {
   std::string id;
-  if (const auto text = host::read_file(folder / host::manifest_name)) {
-    const auto manifest = host::parse_manifest(*text, host::manifest_name);
-    id = manifest ? manifest->campaign.id : host::salvage_id(*text);
+  if (const auto text = host::storage::read_file(folder / host::config::manifest_name)) {
+    const auto manifest = host::config::parse_manifest(*text, host::config::manifest_name);
+    id = manifest ? manifest->campaign.id : host::config::extract_id(*text);
   }
   return id.empty() ? fs::absolute(folder).lexically_normal().filename().string() : id;
 }

@@ -9,8 +9,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "nonio/host/files.h"
-#include "nonio/host/run.h"
+#include "host/batch/run.h"
+#include "host/storage/files.h"
 #include "progress.h"
 #include "verbs.h"
 
@@ -20,25 +20,26 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const char* to_text(host::CampaignState::Action action) {
+const char* to_text(host::batch::CampaignState::Action action) {
   switch (action) {
-    case host::CampaignState::Action::todo:
+    case host::batch::CampaignState::Action::todo:
       return "to do";
-    case host::CampaignState::Action::done:
+    case host::batch::CampaignState::Action::done:
       return "done";
-    case host::CampaignState::Action::unchanged:
+    case host::batch::CampaignState::Action::unchanged:
       break;
   }
   return "unchanged";
 }
 
-void print_night_plan(const host::Night& night, bool json) {
-  for (const host::CampaignState& c : night.campaigns) {
-    const bool collides = c.action == host::CampaignState::Action::todo && c.status == "failed";
+void print_night_plan(const host::batch::Night& night, bool json) {
+  for (const host::batch::CampaignState& c : night.campaigns) {
+    const bool collides =
+        c.action == host::batch::CampaignState::Action::todo && c.status == "failed";
     const std::string reason = collides ? c.errors.front().message : c.reason;
     if (json)
       std::cout << Json{{"id", c.id},
-                        {"folder", host::path_text(c.folder)},
+                        {"folder", host::storage::path_text(c.folder)},
                         {"action", collides ? "refused" : to_text(c.action)},
                         {"reason", reason}}
                        .dump(-1, ' ', false, Json::error_handler_t::replace)
@@ -49,12 +50,12 @@ void print_night_plan(const host::Night& night, bool json) {
   }
 }
 
-void print_summary(const host::Night& night, const fs::path& out, bool json) {
+void print_summary(const host::batch::Night& night, const fs::path& out, bool json) {
   std::size_t done = 0, unchanged = 0, attention = 0, failed = 0;
-  for (const host::CampaignState& c : night.campaigns) {
+  for (const host::batch::CampaignState& c : night.campaigns) {
     if (c.status == "failed")
       ++failed;
-    else if (c.action == host::CampaignState::Action::done)
+    else if (c.action == host::batch::CampaignState::Action::done)
       ++done;
     else
       ++unchanged;
@@ -80,7 +81,7 @@ void print_summary(const host::Night& night, const fs::path& out, bool json) {
 
 struct RunWish {
   std::string site, out;
-  host::RunOptions options;
+  host::batch::RunOptions options;
 };
 
 /// Whoever ends the run, or the terminal that it was started from, leaves a night that the next run
@@ -88,7 +89,7 @@ struct RunWish {
 /// went away, or a limit for the size of files, is no reason to die but an error like others.
 void catch_signals() {
   struct sigaction stop {};
-  stop.sa_handler = [](int) { host::request_stop(); };
+  stop.sa_handler = [](int) { host::process::request_stop(); };
   sigaction(SIGINT, &stop, nullptr);
   sigaction(SIGTERM, &stop, nullptr);
   struct sigaction hang_up {};
@@ -114,10 +115,10 @@ bool is_date(const std::string& text) {
 
 int run_night(RunWish& wish, const Common& common) {
   const char* const verb = "nonio run";
-  if (wish.out.empty()) return complain(verb, "--out is empty; wanted a folder");
-  host::RunOptions& options = wish.options;
+  if (wish.out.empty()) return complain(verb, "--out is empty; expected a folder");
+  host::batch::RunOptions& options = wish.options;
   if (!options.date.empty() && !is_date(options.date))
-    return complain(verb, "--date: wanted a day as YYYY-MM-DD, found \"" + options.date + "\"");
+    return complain(verb, "--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
   options.site = wish.site;
   options.out = fs::absolute(wish.out);
   options.plugin_folders = common.plugin_folders();
@@ -127,13 +128,13 @@ int run_night(RunWish& wish, const Common& common) {
   options.as_root = options.as_root || std::getenv("NONIO_ALLOW_ROOT") != nullptr;
   catch_signals();
   if (::geteuid() == 0 && !options.as_root && !common.quiet)
-    std::cerr << "nonio: this runs as root, for whom nothing needs it: wanted a user of its own "
+    std::cerr << "nonio: this runs as root, for whom nothing needs it: expected a user of its own "
                  "(the package's service runs as nonio), or --root to say that it is meant\n";
   Progress progress(common.quiet, common.json);
-  const host::Night night = host::run_site(options, progress.events());
+  const host::batch::Night night = host::batch::run_site(options, progress.events());
   progress.end();
-  if (night.end == host::Night::End::refused) return complain(verb, night.error);
-  if (night.end == host::Night::End::interrupted)
+  if (night.end == host::batch::Night::End::refused) return complain(verb, night.error);
+  if (night.end == host::batch::Night::End::interrupted)
     return complain(verb, "interrupted; the same command goes on where it stopped",
                     exit_interrupted);
   if (!night.error.empty()) return complain(verb, night.error, exit_failed);
@@ -150,7 +151,7 @@ int run_night(RunWish& wish, const Common& common) {
 
 Verb run_verb(Common& common) {
   auto wish = std::make_shared<RunWish>();
-  host::RunOptions& options = wish->options;
+  host::batch::RunOptions& options = wish->options;
   using Takes = Argument::Takes;
   return {
       .name = "run",

@@ -3,9 +3,9 @@
 #include <iostream>
 #include <memory>
 
-#include "nonio/host/files.h"
-#include "nonio/host/plugins.h"
-#include "nonio/host/schema.h"
+#include "host/loader/plugins.h"
+#include "host/storage/files.h"
+#include "host/tools/schema.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -13,11 +13,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Schema = std::string (*)(const host::Plugins&);
+using Schema = std::string (*)(const host::loader::Plugins&);
 
 int write_schema(const std::string& verb, Schema schema, const std::string& out,
                  const Common& common) {
-  host::Plugins plugins;
+  host::loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   if (!plugins.conflicts().empty()) return complain(verb, plugins.conflicts().front());
   for (const std::string& note : plugins.refusal_notes())
@@ -29,8 +29,9 @@ int write_schema(const std::string& verb, Schema schema, const std::string& out,
   }
   const fs::path path = fs::absolute(out);
   if (!path.has_filename() || fs::is_directory(path))
-    return complain(verb, out + " is a folder; wanted a file");
-  const auto written = host::publish(path.parent_path(), {{path.filename().string(), text}});
+    return complain(verb, out + " is a folder; expected a file");
+  const auto written =
+      host::storage::publish(path.parent_path(), {{path.filename().string(), text}});
   return written ? exit_done : complain(verb, text_of(written.error()), exit_failed);
 }
 
@@ -55,9 +56,9 @@ Verb schema_of(const std::string& file, Schema schema, Common& common) {
 Verb schema_verb(Common& common) {
   return {.name = "schema",
           .summary = "JSON schemas, with which editors complete and check the files of a site",
-          .verbs = {schema_of("campaign", host::campaign_schema, common),
-                    schema_of("site", host::site_schema, common),
-                    schema_of("machine", host::machine_schema, common)}};
+          .verbs = {schema_of("campaign", host::tools::campaign_schema, common),
+                    schema_of("site", host::tools::site_schema, common),
+                    schema_of("machine", host::tools::machine_schema, common)}};
 }
 
 }  // namespace nonio::app

@@ -12,10 +12,11 @@
 #include <set>
 
 #include "colour.h"
-#include "nonio/host/campaign_reader.h"
-#include "nonio/host/digest.h"
-#include "nonio/host/files.h"
-#include "nonio/host/results_json.h"
+#include "host/config/template_files.h"
+#include "host/evaluation/results_json.h"
+#include "host/reading/campaign_reader.h"
+#include "host/storage/digest.h"
+#include "host/storage/files.h"
 #include "nonio/sdk/format.h"
 #include "results_folder.h"
 #include "verbs.h"
@@ -39,26 +40,26 @@ struct Shown {
 /// What the night would write, without a number drawn for a certificate;
 /// nothing is written.
 Expected<Shown> evaluated_now(const fs::path& folder, const Common& common) {
-  auto place = host::open_workplace(folder, common.plugin_folders(), common.template_folders(),
-                                    NONIO_VERSION);
+  auto place = host::reading::open_workplace(folder, common.plugin_folders(),
+                                             common.template_folders(), NONIO_VERSION);
   if (!place) return fail(place.error());
   if (!common.quiet)
     for (const std::string& note : (*place)->notes) complain("nonio show", note);
-  const host::Context& context = (*place)->context;
-  const host::Evaluated evaluated =
-      host::evaluate(folder, id_of_campaign(folder), context, [](const std::string&) {});
-  std::vector<host::RecordedFile> files;
+  const host::reading::Context& context = (*place)->context;
+  const host::evaluation::Evaluated evaluated = host::evaluation::evaluate(
+      folder, id_of_campaign(folder), context, [](const std::string&) {});
+  std::vector<host::evaluation::RecordedFile> files;
   for (const Results::Written& w : evaluated.results.outputs)
     for (const Artifact& a : w.result.artifacts)
-      files.push_back({a.name, a.bytes.size(), host::sha256(a.bytes)});
-  return Shown{host::results_json(evaluated, context, files), context.templates};
+      files.push_back({a.name, a.bytes.size(), host::storage::sha256(a.bytes)});
+  return Shown{host::evaluation::results_json(evaluated, context, files), context.templates};
 }
 
 Expected<Shown> of_night(const fs::path& folder, const Common& common) {
-  auto text = host::read_file(folder / host::results_name);
+  auto text = host::storage::read_file(folder / host::evaluation::results_name);
   if (!text) return fail(text.error());
   std::string digest;
-  auto templates = host::read_templates(common.template_folders(), digest);
+  auto templates = host::config::read_templates(common.template_folders(), digest);
   if (!templates) return fail(templates.error());
   return Shown{std::move(*text), std::move(*templates)};
 }
@@ -316,7 +317,7 @@ int show(const ShowWish& wish, const Common& common) {
   const fs::path folder = wish.folder;
   const Holds holds = what_holds(folder);
   if (holds == Holds::night)
-    return complain(verb, folder.string() + " holds the results of a night; wanted " +
+    return complain(verb, folder.string() + " holds the results of a night; expected " +
                               (folder / "ID").string() + " (summary.txt lists them)");
   if (holds == Holds::nothing) return complain(verb, holds_nothing(folder));
   const auto shown =
@@ -330,8 +331,8 @@ int show(const ShowWish& wish, const Common& common) {
       Page(*shown, std::cout).print(results);
     return results.at("status") == "failed" ? exit_failed : exit_done;
   } catch (const Json::exception& e) {
-    return complain(verb, (folder / host::results_name).string() +
-                              ": wanted results of a campaign (nonio-results/1): " + e.what());
+    return complain(verb, (folder / host::evaluation::results_name).string() +
+                              ": expected results of a campaign (nonio-results/1): " + e.what());
   }
 }
 

@@ -2,10 +2,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "nonio/host/evaluate.h"
-#include "nonio/host/files.h"
-#include "nonio/host/plugins.h"
-#include "nonio/host/simulate.h"
+#include "host/evaluation/evaluate.h"
+#include "host/loader/plugins.h"
+#include "host/storage/files.h"
+#include "host/tools/simulate.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -22,37 +22,38 @@ std::string not_to_be_written(const fs::path& out, const fs::path& truth) {
   const fs::path below = truth.lexically_relative(out);
   if (!below.empty() && *below.begin() != "..")
     return "the truth would lie in the campaign's folder: " + truth.string();
-  const fs::path manifest = out / host::manifest_name;
+  const fs::path manifest = out / host::config::manifest_name;
   std::error_code error;
   if (!fs::exists(manifest, error)) return {};
-  const auto text = host::read_file(manifest);
-  if (text && text->starts_with(host::simulated_mark)) return {};
+  const auto text = host::storage::read_file(manifest);
+  if (text && text->starts_with(host::tools::simulated_mark)) return {};
   return out.string() + " holds a campaign that was not simulated; it is left as it is";
 }
 
 int simulate(const SimulateWish& w, const Common& common) {
   const char* const verb = "nonio simulate";
-  if (w.out.empty()) return complain(verb, "--out is empty; wanted a folder");
+  if (w.out.empty()) return complain(verb, "--out is empty; expected a folder");
   fs::path out = fs::absolute(w.out).lexically_normal();
   if (!out.has_filename()) out = out.parent_path();
   const fs::path truth = w.truth.empty() ? fs::path(out.string() + ".truth.json")
                                          : fs::absolute(w.truth).lexically_normal();
   if (const std::string why = not_to_be_written(out, truth); !why.empty())
     return complain(verb, why);
-  const auto text = host::read_file(w.specification);
+  const auto text = host::storage::read_file(w.specification);
   if (!text) return complain(verb, text.error().message);
-  host::Plugins plugins;
+  host::loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
-  const auto made = host::simulate(*text, w.specification, plugins.effects());
+  const auto made = host::tools::simulate(*text, w.specification, plugins.effects());
   if (!made) {
     for (const Error& e : made.error())
       complain(verb,
                e.file + (e.line != 0 ? ", line " + std::to_string(e.line) : "") + ": " + e.message);
     return exit_usage;
   }
-  auto written = host::publish(truth.parent_path(), {{truth.filename().string(), made->truth}});
-  if (written) written = host::publish(out, made->campaign);
+  auto written =
+      host::storage::publish(truth.parent_path(), {{truth.filename().string(), made->truth}});
+  if (written) written = host::storage::publish(out, made->campaign);
   if (!written) return complain(verb, written.error().message, exit_failed);
   if (common.json)
     std::cout

@@ -5,12 +5,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "nonio/host/night_status.h"
+#include "host/batch/night_status.h"
 #include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
-using host::NightStatus;
+using host::batch::NightStatus;
 
 namespace {
 
@@ -27,7 +27,7 @@ const char* to_text(NightStatus::State state) {
                                                 : "cut-short";
 }
 
-std::string night_text(const host::NightOf& night) {
+std::string night_text(const host::evaluation::NightOf& night) {
   return "night " + std::to_string(night.number) + (night.date.empty() ? "" : " of " + night.date);
 }
 
@@ -42,7 +42,7 @@ std::string trouble(const NightStatus& s, const StatusWish& wish) {
   if (s.state == NightStatus::State::cut_short)
     return night_text(s.night) + " began and did not end";
   if (!s.last) return s.state == NightStatus::State::running ? "" : "no night is complete";
-  if (s.age < -60.0) return "summary.json is from the future; wanted a clock that is right";
+  if (s.age < -60.0) return "summary.json is from the future; expected a clock that is right";
   if (wish.max_age > 0.0 && s.age > wish.max_age * 3600.0)
     return "older than " + hours_text(wish.max_age);
   return {};
@@ -62,7 +62,7 @@ std::string line_of(const NightStatus& s, const std::string& wrong) {
 }
 
 int status(const StatusWish& wish, const Common& common) {
-  const auto found = host::night_status(wish.out);
+  const auto found = host::batch::night_status(wish.out);
   if (!found) return complain(status_name, found.error().message);
   const std::string wrong = trouble(*found, wish);
   const int exit = wrong.empty() ? exit_done : exit_failed;

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <iostream>
 
-#include "nonio/host/plan.h"
+#include "host/config/table_files.h"
+#include "host/tools/plan.h"
 #include "nonio/sdk/format.h"
 #include "tables.h"
 
@@ -15,7 +16,7 @@ void put(TableJson& json, const std::string& name, double si, Quantity q) {
   if (std::isfinite(si)) json[name + std::string(unit_of(q).suffix)] = printed(si, q);
 }
 
-static TableJson shape_json(const host::TableShape& s, bool rotary) {
+static TableJson shape_json(const host::tables::TableShape& s, bool rotary) {
   TableJson json = TableJson::object();
   put(json, "largest", s.largest, deviation_of(rotary));
   put(json, "largest_step", s.step, deviation_of(rotary));
@@ -25,7 +26,7 @@ static TableJson shape_json(const host::TableShape& s, bool rotary) {
   return json;
 }
 
-TableJson difference_json(const host::TableDifference& d) {
+TableJson difference_json(const host::tables::TableDifference& d) {
   TableJson json = {{"output", d.output}, {"by", d.input}};
   put(json, "largest", d.largest, deviation_of(d.rotary));
   put(json, "at", d.at, position_of(d.rotary));
@@ -35,7 +36,8 @@ TableJson difference_json(const host::TableDifference& d) {
   return json;
 }
 
-static void print_shape(const char* name, const std::optional<host::TableShape>& s, bool rotary) {
+static void print_shape(const char* name, const std::optional<host::tables::TableShape>& s,
+                        bool rotary) {
   std::cout << "  " << name << ": ";
   if (!s) {
     std::cout << "no table\n";
@@ -49,7 +51,7 @@ static void print_shape(const char* name, const std::optional<host::TableShape>&
   std::cout << "\n";
 }
 
-void print_difference(const host::TableDifference& d) {
+void print_difference(const host::tables::TableDifference& d) {
   std::cout << "axis " << d.output;
   if (d.input.size() != 1 || d.input.front() != d.output) {
     std::cout << " by the position of";
@@ -62,27 +64,28 @@ void print_difference(const host::TableDifference& d) {
   print_shape("new    ", d.next, d.rotary);
 }
 
-Expected<Loaded> load(const host::Plugins& plugins, const std::string& files,
-                      const std::string& control, const Campaign& campaign, const Texts& settings,
-                      const std::function<host::Checked<Settings>(const Info&)>& options_of) {
-  auto read = host::read_table_files(files);
+Expected<Loaded> load(
+    const host::loader::Plugins& plugins, const std::string& files, const std::string& control,
+    const Campaign& campaign, const Texts& settings,
+    const std::function<host::config::Checked<Settings>(const Info&)>& options_of) {
+  auto read = host::config::read_table_files(files);
   if (!read) return tl::unexpected<Error>(read.error());
-  const auto found = host::control_of(plugins, control, *read, campaign, settings);
+  const auto found = host::tables::control_of(plugins, control, *read, campaign, settings);
   if (!found) return tl::unexpected<Error>(found.error());
   const auto options = options_of((*found)->info);
   if (!options) return tl::unexpected<Error>(options.error().front());
-  auto tables = host::tables_in(**found, *read, campaign, *options);
+  auto tables = host::tables::tables_in(**found, *read, campaign, *options);
   if (!tables) return fail(files + ": " + tables.error().message);
   return Loaded{*found, std::move(*tables), std::move(*read)};
 }
 
-host::Checked<Settings> campaign_options(const OpenCampaign& open, const Info& info,
-                                         const Texts& settings) {
-  auto settled =
-      host::settle_table_options(info, open.place->context.site.options, *open.read.manifest,
-                                 open.read.machine ? &*open.read.machine : nullptr);
+host::config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info& info,
+                                                 const Texts& settings) {
+  auto settled = host::config::settle_table_options(
+      info, open.place->context.site.options, *open.read.manifest,
+      open.read.machine ? &*open.read.machine : nullptr);
   if (!settled) return settled;
-  const auto told = host::options_from(info, settings);
+  const auto told = host::config::options_from(info, settings);
   if (!told) return told;
   for (const auto& [name, text] : settings) {
     auto axes = settled->texts("axes");  // of each axis the last word counts

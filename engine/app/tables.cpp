@@ -55,26 +55,27 @@ const char* head_of(const model::Part& part) {
   return "ball centres ";
 }
 
-void print_head(std::ostream& out, const host::PartModel& part) {
-  const std::string effects = host::listed(part.names());
-  out << head_of(part.part) << part.part.name << " (" << host::listed(part.part.measurements)
-      << "): " << part.part.table.size()
+void print_head(std::ostream& out, const host::modelling::PartModel& part) {
+  const std::string effects = host::storage::listed(part.names());
+  out << head_of(part.part) << part.part.name << " ("
+      << host::storage::listed(part.part.measurements) << "): " << part.part.table.size()
       << " readings; model: " << (effects.empty() ? "nothing but the zero" : effects) << "\n";
 }
 
 /// Curves by what they say, everything else by its parameters.
-void print_parameters(std::ostream& out, const model::Fit& fit, const host::PartModel& part,
-                      const host::ModelWords& words) {
+void print_parameters(std::ostream& out, const model::Fit& fit,
+                      const host::modelling::PartModel& part,
+                      const host::modelling::ModelWords& words) {
   if (fit.parameters.empty()) return;
   out << "  parameters\n";
   std::string told;
   for (const model::Parameter& p : fit.parameters) {
     const auto term = std::find_if(fit.terms.begin(), fit.terms.end(),
                                    [&](const model::Term& t) { return t.name() == p.effect; });
-    const auto curve =
-        term == fit.terms.end()
-            ? std::nullopt
-            : host::curve_of(part, fit, static_cast<std::size_t>(term - fit.terms.begin()));
+    const auto curve = term == fit.terms.end()
+                           ? std::nullopt
+                           : host::modelling::curve_of(
+                                 part, fit, static_cast<std::size_t>(term - fit.terms.begin()));
     if (curve && !p.shape) {
       if (told != p.effect)
         out << "    " << padded(p.effect, 20) << " " << words.curve(*curve, part) << "\n";
@@ -91,25 +92,27 @@ void print_parameters(std::ostream& out, const model::Fit& fit, const host::Part
 }
 
 /// One after the other: each beside those above it.
-void print_places(std::ostream& out, const model::Comparison& c, const host::ModelWords& words,
-                  Quantity deviation) {
+void print_places(std::ostream& out, const model::Comparison& c,
+                  const host::modelling::ModelWords& words, Quantity deviation) {
   if (!c.fails()) return line(out, "where it fails", "nowhere");
   out << "  where it fails\n";
   for (const model::Place& place : c.seats)
-    out << "    " << padded(place.where + host::on_line(place), 24) << " "
+    out << "    " << padded(place.where + host::modelling::on_line(place), 24) << " "
         << words.place(place, deviation) << "\n";
 }
 
-void print_suspects(std::ostream& out, const model::Comparison& c, const host::PartModel& part,
-                    const Campaign& campaign, const host::ModelWords& words) {
+void print_suspects(std::ostream& out, const model::Comparison& c,
+                    const host::modelling::PartModel& part, const Campaign& campaign,
+                    const host::modelling::ModelWords& words) {
   for (const model::Suspect& s : c.suspects)
     out << "  suspect: "
-        << words.suspect(s, host::place_of(part, campaign, s.row), part.deviation()) << "\n";
+        << words.suspect(s, host::modelling::place_of(part, campaign, s.row), part.deviation())
+        << "\n";
 }
 
-std::string largest_text(const host::Compared& compared, const Campaign& campaign) {
-  const host::PartModel& part = compared.part;
-  const auto at = host::place_of(part, campaign, compared.comparison.largest_row);
+std::string largest_text(const host::modelling::Compared& compared, const Campaign& campaign) {
+  const host::modelling::PartModel& part = compared.part;
+  const auto at = host::modelling::place_of(part, campaign, compared.comparison.largest_row);
   std::string text = with_unit(compared.comparison.largest, part.deviation()) + " at " +
                      evidence_text({"", at.target, at.position}) + " " +
                      std::string(unit_of(at.position).symbol) + ", run " + std::to_string(at.run) +
@@ -120,16 +123,16 @@ std::string largest_text(const host::Compared& compared, const Campaign& campaig
   return at.line == 0 ? text : text + ":" + std::to_string(at.line);
 }
 
-void print_candidates(std::ostream& out, const host::Explained& e) {
+void print_candidates(std::ostream& out, const host::modelling::Explained& e) {
   const Quantity q = e.part.deviation();
   double best = 0.0;
   for (const model::Candidate& c : e.explanation.candidates)
-    if (host::is_ranked(c)) best = std::max(best, c.score);
+    if (host::modelling::is_ranked(c)) best = std::max(best, c.score);
   if (best > 0.0)
     out << "  " << padded("candidate", 22) << padded("evidence", 32) << padded("RMS after", 14)
         << padded("left-out runs", 15) << "p\n";
   for (const model::Candidate& c : e.explanation.candidates) {
-    if (!host::is_ranked(c) || !(c.score > 0.0)) continue;
+    if (!host::modelling::is_ranked(c) || !(c.score > 0.0)) continue;
     out << "  " << padded(c.term.name(), 22) << bar(c.score, best, 20) << " "
         << padded(fixed_text(c.score, 1), 11) << padded(with_unit(c.rms, q), 14)
         << padded(c.cv_rms ? with_unit(*c.cv_rms, q) : "-", 15) << p_text(c.p) << "\n";
@@ -145,12 +148,13 @@ void print_together(std::ostream& out, const model::Explanation& x) {
       names.push_back(name);
   if (names.size() > (unknown ? 0U : 1U))
     out << "    " << (unknown ? "it may also have, not certain: " : "the best explanation adds: ")
-        << host::listed(names) << "\n";
+        << host::storage::listed(names) << "\n";
 }
 
-void print_verdict(std::ostream& out, const host::Explained& e, const host::ModelWords& words) {
+void print_verdict(std::ostream& out, const host::modelling::Explained& e,
+                   const host::modelling::ModelWords& words) {
   const model::Explanation& x = e.explanation;
-  out << "  verdict: " << host::to_text(x.verdict.kind)
+  out << "  verdict: " << host::modelling::to_text(x.verdict.kind)
       << (x.verdict.effect.empty() ? "" : " " + x.verdict.effect) << "\n    "
       << words.verdict(x, e.part) << "\n";
   print_together(out, x);
@@ -164,7 +168,7 @@ void print_verdict(std::ostream& out, const host::Explained& e, const host::Mode
   if (x.verdict.trials > 0) out << "    " << words.false_alarms(x.verdict) << "\n";
 }
 
-void print_bars(std::ostream& out, const host::ModelStep& step) {
+void print_bars(std::ostream& out, const host::modelling::ModelStep& step) {
   const double whole = std::max(
       {step.rms_before.value_or(0.0), step.rms_after.value_or(0.0), step.floor.value_or(0.0)});
   const Quantity q = step.quantity;
@@ -183,10 +187,10 @@ std::string with_unit(double value, Quantity q) {
   return short_text(printed(value, q)) + " " + std::string(unit_of(q).symbol);
 }
 
-void print_comparison(std::ostream& out, const host::Compared& compared, const Campaign& campaign,
-                      const host::ModelWords& words) {
+void print_comparison(std::ostream& out, const host::modelling::Compared& compared,
+                      const Campaign& campaign, const host::modelling::ModelWords& words) {
   const model::Comparison& c = compared.comparison;
-  const host::PartModel& part = compared.part;
+  const host::modelling::PartModel& part = compared.part;
   const Quantity q = part.deviation();
   print_head(out, part);
   line(out, "RMS", with_unit(c.fit.rms, q));
@@ -197,7 +201,7 @@ void print_comparison(std::ostream& out, const host::Compared& compared, const C
   if (c.lack_of_fit && std::isfinite(c.lack_of_fit->F))
     line(out, "lack of fit", words.lack_of_fit(c, q));
   print_parameters(out, c.fit, part, words);
-  for (const host::Correlated& pair : host::correlated(c.fit))
+  for (const host::modelling::Correlated& pair : host::modelling::correlated(c.fit))
     line(out, "correlated",
          pair.one->effect + " " + pair.one->name + " and " + pair.other->effect + " " +
              pair.other->name + ": r = " + fixed_text(pair.r, 3));
@@ -205,11 +209,12 @@ void print_comparison(std::ostream& out, const host::Compared& compared, const C
   if (c.means > 0)
     line(out, "", "told from " + std::to_string(c.means) + " means of neighbouring readings");
   print_suspects(out, c, part, campaign, words);
-  for (const std::string& warning : host::warnings_of(part, c.fit, words))
+  for (const std::string& warning : host::modelling::warnings_of(part, c.fit, words))
     out << "  warning: " << warning << "\n";
 }
 
-void print_model(std::ostream& out, const host::Compared& compared, const host::ModelWords& words) {
+void print_model(std::ostream& out, const host::modelling::Compared& compared,
+                 const host::modelling::ModelWords& words) {
   const model::Comparison& c = compared.comparison;
   const Quantity q = compared.part.deviation();
   print_head(out, compared.part);
@@ -217,12 +222,12 @@ void print_model(std::ostream& out, const host::Compared& compared, const host::
   if (c.cv_rms) line(out, "left-out runs", with_unit(*c.cv_rms, q));
   if (c.floor) line(out, "noise floor", floor_text(*c.floor, q));
   print_parameters(out, c.fit, compared.part, words);
-  for (const std::string& warning : host::warnings_of(compared.part, c.fit, words))
+  for (const std::string& warning : host::modelling::warnings_of(compared.part, c.fit, words))
     out << "  warning: " << warning << "\n";
 }
 
-void print_explanation(std::ostream& out, const host::Explained& e, const Campaign& campaign,
-                       const host::ModelWords& words) {
+void print_explanation(std::ostream& out, const host::modelling::Explained& e,
+                       const Campaign& campaign, const host::modelling::ModelWords& words) {
   const model::Comparison& c = e.explanation.comparison;
   const Quantity q = e.part.deviation();
   print_head(out, e.part);
@@ -233,19 +238,21 @@ void print_explanation(std::ostream& out, const host::Explained& e, const Campai
     out << "  " << text << "\n";
   for (const model::Candidate& candidate : e.explanation.candidates)
     // A test of an hour is not meant to show the day: only the JSON says so.
-    if (!host::is_ranked(candidate) && candidate.why != "short-test")
-      out << "  " << words.unseen(candidate, host::place_of(e.part, campaign, candidate.rows))
+    if (!host::modelling::is_ranked(candidate) && candidate.why != "short-test")
+      out << "  "
+          << words.unseen(candidate, host::modelling::place_of(e.part, campaign, candidate.rows))
           << "\n";
   print_verdict(out, e, words);
   print_suspects(out, c, e.part, campaign, words);
-  for (const std::string& warning : host::warnings_of(e.part, c.fit, words))
+  for (const std::string& warning : host::modelling::warnings_of(e.part, c.fit, words))
     out << "  warning: " << warning << "\n";
 }
 
-void print_change(std::ostream& out, const host::Change& change, const host::ModelWords& words) {
-  const host::ModelStep& step = change.step;
+void print_change(std::ostream& out, const host::modelling::Change& change,
+                  const host::modelling::ModelWords& words) {
+  const host::modelling::ModelStep& step = change.step;
   out << step.effect << (step.added ? " added" : " dropped") << "; the model is now "
-      << (change.effects.empty() ? "empty" : host::listed(change.effects)) << "\n";
+      << (change.effects.empty() ? "empty" : host::storage::listed(change.effects)) << "\n";
   if (!change.no_before.empty()) out << "  before: " << change.no_before << "\n";
   const Quantity q = step.quantity;
   const auto row = [&](const char* name, const std::optional<double>& before,
@@ -261,17 +268,17 @@ void print_change(std::ostream& out, const host::Change& change, const host::Mod
   if (!change.after) return;
   print_parameters(out, change.after->comparison.fit, change.after->part, words);
   for (const std::string& warning :
-       host::warnings_of(change.after->part, change.after->comparison.fit, words))
+       host::modelling::warnings_of(change.after->part, change.after->comparison.fit, words))
     out << "  warning: " << warning << "\n";
 }
 
-void print_history(std::ostream& out, const std::vector<host::ModelStep>& history) {
+void print_history(std::ostream& out, const std::vector<host::modelling::ModelStep>& history) {
   if (history.empty()) return;
   out << "history\n";
   double whole = 0.0;
-  for (const host::ModelStep& step : history)
+  for (const host::modelling::ModelStep& step : history)
     whole = std::max({whole, step.rms_before.value_or(0.0), step.rms_after.value_or(0.0)});
-  for (const host::ModelStep& step : history)
+  for (const host::modelling::ModelStep& step : history)
     out << "  " << padded((step.added ? "+ " : "- ") + step.effect, 24)
         << (step.rms_after ? bar(*step.rms_after, whole, bar_width, step.floor) + " " +
                                  with_unit(*step.rms_after, step.quantity)

@@ -4,7 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "nonio/host/verify.h"
+#include "host/certificates/verify.h"
 #include "printable.h"
 #include "verbs.h"
 
@@ -34,14 +34,15 @@ Json to_json(const std::string& file, const sign::Verified& v) {
   Json checks = Json::array();
   for (const sign::Check& c : v.checks)
     checks.push_back({{"id", c.id}, {"state", to_text(c.state)}, {"says", c.says}});
-  return {{"schema", "nonio-verify/1"},     {"file", file},        {"holds", v.holds()},
-          {"verdict", host::verdict_of(v)}, {"signer", v.subject}, {"checks", std::move(checks)}};
+  return {{"schema", "nonio-verify/1"}, {"file", file},
+          {"holds", v.holds()},         {"verdict", host::certificates::verdict_of(v)},
+          {"signer", v.subject},        {"checks", std::move(checks)}};
 }
 
 /// The verdict first: nothing that a file says comes before it, and nothing can look like it.
 void print(const std::string& file, const sign::Verified& v, bool quiet) {
   const std::string name = printable(file);
-  std::cout << name << ": " << host::verdict_of(v) << "\n";
+  std::cout << name << ": " << host::certificates::verdict_of(v) << "\n";
   if (quiet) return;
   for (const sign::Check& c : v.checks)
     std::cout << name << ": " << c.id << " " << to_text(c.state) << ": " << printable(c.says)
@@ -50,17 +51,18 @@ void print(const std::string& file, const sign::Verified& v, bool quiet) {
 
 int verify(const VerifyWish& wanted, const Common& common) {
   const auto verifier =
-      host::verifier_of({wanted.site, wanted.trust, wanted.revoked, wanted.signer});
+      host::certificates::verifier_of({wanted.site, wanted.trust, wanted.revoked, wanted.signer});
   if (!verifier) {
     for (const Error& e : verifier.error()) complain("nonio verify", text_of(e));
     return exit_usage;
   }
-  const auto place = host::open_to_verify(common.plugin_folders(), common.template_folders(),
-                                          wanted.site, NONIO_VERSION);
+  const auto place = host::certificates::open_to_verify(
+      common.plugin_folders(), common.template_folders(), wanted.site, NONIO_VERSION);
   if (!place) return complain("nonio verify", place.error().message);
   bool all = true;
   for (const std::string& file : wanted.files) {
-    const sign::Verified v = host::verify_file(file, *verifier, (*place)->context, wanted.site);
+    const sign::Verified v =
+        host::certificates::verify_file(file, *verifier, (*place)->context, wanted.site);
     all = all && v.holds();
     if (common.json)
       std::cout << to_json(file, v).dump(-1, ' ', true, Json::error_handler_t::replace) << "\n";

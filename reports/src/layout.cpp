@@ -92,9 +92,9 @@ Expected<Laid> lay_first_foot(const Document& document, double width, const Cont
     }
   }
   if (height > context.page_room / 2)
-    return fail("the foot of the first page takes " + fixed_text(height, 0) + " pt, wanted up to " +
-                fixed_text(context.page_room / 2, 0) + " pt: shorter texts in " +
-                document.first_foot.front().field);
+    return fail("the foot of the first page takes " + fixed_text(height, 0) +
+                " pt, expected up to " + fixed_text(context.page_room / 2, 0) +
+                " pt: shorter texts in " + document.first_foot.front().field);
   return foot;
 }
 

@@ -20,21 +20,83 @@ MAY = {
     "plugins/controllers": {"sdk", "math", "controllers"},
     "plugins/outputs": {"sdk", "math", "reports"},
 }
+# Rooms of engine/host, from below upwards -> the rooms below that each may include. Beside the sdk:
+ROOMS = {
+    "storage": set(),
+    "process": {"storage"},
+    "config": {"storage"},
+    "loader": {"storage", "process", "config"},
+    "reading": {"storage", "process", "config", "loader"},
+    "modelling": {"storage", "process", "config", "loader", "reading"},
+    "tables": {"storage", "process", "config", "loader", "reading"},
+    "evaluation": {"storage", "process", "config", "loader", "reading", "modelling", "tables"},
+    "certificates": {"storage", "process", "config", "loader", "reading", "modelling", "tables", "evaluation"},
+}
+# Three users of the engine, which do not know each other.
+ROOMS |= {room: set(ROOMS) for room in ("batch", "plugin_check", "tools")}
+# What a room takes of the other parts, beside sdk and math.
+PARTS_OF_ROOMS = {"reading": {"model"}, "modelling": {"model"}, "evaluation": {"model"}, "plugin_check": {"model"},
+                  "certificates": {"sign"}, "batch": {"sign"}}
+# Folders that know each other only through these.
+SHARED = {"common"}
 # third-party header -> the parts that are its home
 HOMES = {
-    "Poco/": {"engine/host"}, "boost/dll": {"engine/host"}, "boost/math": {"engine/math"},
+    "Poco/": {"engine/host", "plugins/readers"}, "boost/dll": {"engine/host"}, "boost/math": {"engine/math"},
     "boost/": {"engine/host", "engine/math"}, "toml++": {"engine/host"}, "muParser": {"engine/host"}, "hpdf": {"reports"}, "qrencode": {"reports"},
     "libdeflate": {"reports", "engine/sign"}, "openssl/": {"engine/sign", "engine/host", "reports"}, "xmlsec/": {"engine/sign"},
-    "libxml/": {"engine/sign"}, "CLI/": {"engine/app"}, "nlohmann": {"engine/host", "engine/app", "plugins/outputs"},
+    "libxml/": {"engine/sign", "plugins/readers"}, "utf8proc": {"reports"}, "CLI/": {"engine/app"}, "nlohmann": {"engine/host", "engine/app", "plugins/outputs"},
     "Eigen": {"engine/math", "engine/model", "plugins/analyses", "plugins/effects"}, "tl/": {"engine/sdk"}, "sqlite3": {"engine/host"},
 }
 
 
-def complaint(part, line):
-    header = re.match(r'\s*#\s*include\s*[<"]([^">]+)', line)
+def of_host(part, room, name):
+    """What is wrong with including `name`, a header of engine/host, or with what a room includes."""
+    where = re.match(r"host/(\w+)/\w+\.h$", name)
+    if where:
+        if where.group(1) not in ROOMS:
+            return f"there is no room {where.group(1)}"
+        if part == "engine/app":
+            return f"{name} brings a third-party type" if name in LEAKS else None
+        if part != "engine/host":
+            return f"{part} may not include engine/host"
+        if where.group(1) != room and where.group(1) not in ROOMS[room]:
+            return f"{room} may not include {where.group(1)}"
+    own = re.match(r"nonio/(\w+)/", name)
+    if room and own and own.group(1) not in {"sdk", "math"} | PARTS_OF_ROOMS.get(room, set()):
+        return f"{room} may not include nonio/{own.group(1)}"
+    return None
+
+
+def leaking_headers():
+    """Headers of engine/host through which a third-party type comes."""
+    headers = {f"host/{p.parent.name}/{p.name}": p.read_text(encoding="utf-8") for p in (ROOT / "engine/host").rglob("*.h")}
+    leaks = {name for name, text in headers.items() if re.search(THIRD_PARTY, text)}
+    while more := {n for n, text in headers.items() if n not in leaks and any(f'"{leak}"' in text for leak in leaks)}:
+        leaks |= more
+    return leaks
+
+
+THIRD_PARTY = r"include\s*<(Eigen|Poco|boost|toml|muParser|nlohmann|hpdf|openssl|libxml|xmlsec|sqlite|simdjson)"
+LEAKS = leaking_headers()
+
+
+def complaint(part, path, line):
+    header = re.match(r'\s*#\s*include\s*([<"])([^">]+)', line)
     if not header:
         return None
-    name = header.group(1)
+    name = header.group(2)
+    room = path.parent.name if part == "engine/host" else None
+    if why := of_host(part, room, name):
+        return why
+    if header.group(1) == '"' and not re.match(r"(nonio|host|reports)/", name):
+        # A bare name: a header of the same folder, or of the folder that its neighbours share.
+        target = path.parent / name
+        if room:
+            return f'"{name}": say its room'
+        if part.startswith("plugins/") and not target.exists():
+            others = [p for p in (ROOT / part).rglob(name) if not SHARED & set(p.parts)]
+            if others and not list((ROOT / part).rglob(f"common/**/{name}")):
+                return f'"{name}" belongs to {others[0].parent.relative_to(ROOT)}: plugins share only what stands in common'
     own = re.match(r"nonio/(\w+)/", name)
     if own and own.group(1) not in MAY[part]:
         return f"{part} may not include nonio/{own.group(1)}"
@@ -52,8 +114,8 @@ for part in MAY:
         public = "include" in path.parts
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
             seen += 1
-            why = complaint(part, line)
-            if public and re.search(r"include\s*<(Eigen|Poco|boost|toml|muParser|nlohmann|hpdf|openssl|libxml|xmlsec|sqlite)", line):
+            why = complaint(part, path, line)
+            if public and re.search(THIRD_PARTY, line):
                 why = why or "no third-party type crosses a public header"
             if why:
                 wrong.append(f"{path.relative_to(ROOT)}:{number}: {why}")

@@ -11,7 +11,7 @@ namespace {
 
 /// UTF-16 with a byte-order mark as UTF-8; an error for anything else.
 Expected<std::string> utf8(std::string_view text) {
-  if (!text.starts_with("\xFE\xFF") || text.size() % 2 != 0) return fail("wanted text in UTF-16");
+  if (!text.starts_with("\xFE\xFF") || text.size() % 2 != 0) return fail("expected text in UTF-16");
   const auto unit = [&](std::size_t i) {
     return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]) << 8 |
                                       static_cast<unsigned char>(text[i + 1]));
@@ -23,7 +23,7 @@ Expected<std::string> utf8(std::string_view text) {
       i += 2;
       c = 0x10000 + ((c - 0xD800) << 10) + (unit(i) - 0xDC00);
     }
-    if (c < 0x20 || (c >= 0xD800 && c < 0xE000)) return fail("wanted text in UTF-16");
+    if (c < 0x20 || (c >= 0xD800 && c < 0xE000)) return fail("expected text in UTF-16");
     const int more = c < 0x80 ? 0 : c < 0x800 ? 1 : c < 0x10000 ? 2 : 3;
     constexpr unsigned char lead[] = {0, 0xC0, 0xE0, 0xF0};
     out += static_cast<char>(lead[more] | c >> (6 * more));

@@ -22,7 +22,7 @@ class Comparison {
   Expected<void> run() const {
     if (a_.bytes.substr(0, a_.body) != b_.bytes.substr(0, b_.body)) return fail("its head differs");
     if (a_.objects.size() != b_.objects.size())
-      return fail("it has " + std::to_string(a_.objects.size() - 1) + " objects, wanted " +
+      return fail("it has " + std::to_string(a_.objects.size() - 1) + " objects, expected " +
                   std::to_string(b_.objects.size() - 1));
     if (a_.order != b_.order) return fail("its objects stand in another order");
     if (!same_dictionary(a_.trailer, b_.trailer, {"ID"})) return fail("its trailer differs");

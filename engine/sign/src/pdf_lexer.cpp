@@ -92,7 +92,7 @@ Expected<void> Lexer::read_container(Value& value, int depth) {
     if (take(is_dictionary ? ">>" : "]")) return check_keys(value);
     if (is_dictionary) {
       Value key;
-      if (!take("/")) return refuse("wanted a key of a dictionary");
+      if (!take("/")) return refuse("expected a key of a dictionary");
       if (auto done = read_name(key); !done) return done;
       value.keys.push_back(std::move(key.text));
       value.items.emplace_back();
@@ -128,7 +128,7 @@ Expected<void> Lexer::read_number(Value& value) {
                        word.find_first_not_of("-.0123456789") == std::string_view::npos &&
                        std::count(word.begin(), word.end(), '.') == 1 &&
                        word.find('-', 1) == std::string_view::npos;
-  if (!is_integer && !is_real) return refuse("wanted a value");
+  if (!is_integer && !is_real) return refuse("expected a value");
   at_ = end;
   value.kind = is_integer ? Value::Kind::integer : Value::Kind::real;
   if (!is_integer) value.integer = 0;
@@ -143,7 +143,7 @@ Expected<void> Lexer::read_name(Value& value) {
     if (c == '#') {
       const int high = digit_of(peek());
       const int low = at_ + 1 < bytes_.size() ? digit_of(bytes_[at_ + 1]) : -1;
-      if (high < 0 || low < 0) return refuse("wanted two digits in a name");
+      if (high < 0 || low < 0) return refuse("expected two digits in a name");
       c = static_cast<char>(high * 16 + low);
       at_ += 2;
     }
@@ -190,11 +190,11 @@ Expected<void> Lexer::read_hexadecimal(Value& value) {
   value.hexadecimal = true;
   const std::size_t end = bytes_.find('>', at_);
   if (end == std::string_view::npos || (end - at_) % 2 != 0)
-    return refuse("wanted an even number of hexadecimal digits");
+    return refuse("expected an even number of hexadecimal digits");
   value.text.reserve((end - at_) / 2);
   for (; at_ < end; at_ += 2) {
     const int high = digit_of(bytes_[at_]), low = digit_of(bytes_[at_ + 1]);
-    if (high < 0 || low < 0) return refuse("wanted hexadecimal digits");
+    if (high < 0 || low < 0) return refuse("expected hexadecimal digits");
     value.text += static_cast<char>(high * 16 + low);
   }
   ++at_;

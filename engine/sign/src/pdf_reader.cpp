@@ -76,9 +76,9 @@ class FileReader {
       return fail("is not a PDF of version 1.3 to 1.7");
     std::size_t at = 9;
     if (b[at] == '%') {  // four bytes that say that the file is not text
-      if (b[at + 5] != '\n') return refuse(at, "wanted a comment of four bytes");
+      if (b[at + 5] != '\n') return refuse(at, "expected a comment of four bytes");
       for (std::size_t i = at + 1; i < at + 5; ++i)
-        if (static_cast<unsigned char>(b[i]) < 0x80) return refuse(i, "wanted a byte above 127");
+        if (static_cast<unsigned char>(b[i]) < 0x80) return refuse(i, "expected a byte above 127");
       at += 6;
     }
     file_.body = at;
@@ -93,7 +93,7 @@ class FileReader {
     std::size_t number = number_end;
     while (number > 0 && b[number - 1] >= '0' && b[number - 1] <= '9') --number;
     if (number < word.size() || b.substr(number - word.size(), word.size()) != word)
-      return refuse(number, "wanted startxref and the place of the table");
+      return refuse(number, "expected startxref and the place of the table");
     tail_ = number - word.size();
     const auto parsed = std::from_chars(b.data() + number, b.data() + number_end, file_.xref);
     if (parsed.ec != std::errc() || parsed.ptr != b.data() + number_end || file_.xref >= tail_ ||
@@ -107,25 +107,25 @@ class FileReader {
     std::size_t count = 0;
     if (!in.take("xref\n0 ") || !in.take_number(count, 10) || !in.take("\n") || count < 2 ||
         count > 100000)
-      return refuse(in.at(), "wanted one cross-reference table that begins with object 0");
+      return refuse(in.at(), "expected one cross-reference table that begins with object 0");
     offsets_.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
       const char* kind = i == 0 ? " 65535 f" : " 00000 n";
       if (!in.take_digits(offsets_[i], 10) || !in.take(kind) ||
           !(in.take("\r\n") || in.take(" \n")))
-        return refuse(in.at(), "wanted the entry of object " + std::to_string(i));
+        return refuse(in.at(), "expected the entry of object " + std::to_string(i));
     }
-    if (offsets_.front() != 0) return refuse(in.at(), "wanted no free object but the first");
-    if (!in.take("trailer\n")) return refuse(in.at(), "wanted the trailer");
+    if (offsets_.front() != 0) return refuse(in.at(), "expected no free object but the first");
+    if (!in.take("trailer\n")) return refuse(in.at(), "expected the trailer");
     auto trailer = in.value();
     if (!trailer) return fail(trailer.error());
-    if (!trailer->is(Value::Kind::dictionary)) return refuse(in.at(), "wanted a dictionary");
+    if (!trailer->is(Value::Kind::dictionary)) return refuse(in.at(), "expected a dictionary");
     in.skip_space();
-    if (in.at() != tail_) return refuse(in.at(), "wanted startxref");
+    if (in.at() != tail_) return refuse(in.at(), "expected startxref");
     for (const char* key : {"Prev", "XRefStm", "Encrypt"})
       if (trailer->find(key) != nullptr)
         return fail(std::string("the trailer has /") + key +
-                    ": wanted one revision, not encrypted");
+                    ": expected one revision, not encrypted");
     const Value* size = trailer->find("Size");
     if (size == nullptr || !size->is(Value::Kind::integer) ||
         size->integer != static_cast<std::int64_t>(count))
@@ -142,7 +142,7 @@ class FileReader {
     std::size_t at = file_.body;
     for (const std::size_t number : file_.order) {
       if (offsets_[number] != at)
-        return refuse(at, "wanted object " + std::to_string(number) +
+        return refuse(at, "expected object " + std::to_string(number) +
                               " here: bytes that belong to nothing, or to two things");
       if (auto done = read_object(number, at); !done) return done;
       at = file_.objects[number].end;
@@ -157,7 +157,7 @@ class FileReader {
     object.begin = at;
     std::size_t found = 0;
     if (!in.take_number(found, 10) || found != number || !in.take(" 0 obj"))
-      return refuse(at, "wanted object " + std::to_string(number));
+      return refuse(at, "expected object " + std::to_string(number));
     auto value = in.value();
     if (!value) return fail(value.error());
     object.value = std::move(*value);
@@ -166,22 +166,22 @@ class FileReader {
       if (auto done = read_stream(in, object); !done) return done;
     in.skip_space();
     if (!in.take("endobj"))
-      return refuse(in.at(), "wanted the end of object " + std::to_string(number));
+      return refuse(in.at(), "expected the end of object " + std::to_string(number));
     in.skip_space();
     object.end = in.at();
     return {};
   }
 
   Expected<void> read_stream(Lexer& in, Object& object) {
-    if (!in.take("\r\n") && !in.take("\n")) return refuse(in.at(), "wanted a line's end");
+    if (!in.take("\r\n") && !in.take("\n")) return refuse(in.at(), "expected a line's end");
     const auto length = length_of(object.value.find("Length"));
-    if (!length) return refuse(in.at(), "wanted the length of a stream");
+    if (!length) return refuse(in.at(), "expected the length of a stream");
     if (*length > file_.xref - in.at()) return refuse(in.at(), "a stream longer than the file");
     object.has_stream = true;
     object.stream = file_.bytes.substr(in.at(), *length);
     in.skip(*length);
     if (!in.take("\r\n")) in.take("\n");
-    if (!in.take("endstream")) return refuse(in.at(), "wanted the end of a stream");
+    if (!in.take("endstream")) return refuse(in.at(), "expected the end of a stream");
     return {};
   }
 
@@ -232,7 +232,7 @@ Unpacked unpack(std::string_view packed, std::string& into) {
 
 /// Whether it is packed; an error if in a way that is not read.
 Expected<bool> is_packed(const File& file, const Object& object) {
-  if (!object.has_stream) return fail("wanted a stream");
+  if (!object.has_stream) return fail("expected a stream");
   const Value* filter = file.find(&object.value, "Filter");
   if (filter == nullptr) return false;
   if (!filter->is_name("FlateDecode") || object.value.find("DecodeParms") != nullptr)

@@ -75,11 +75,11 @@ Expected<std::string> utf16(std::string_view text) {
     const auto lead = static_cast<unsigned char>(text[i]);
     const std::size_t more = lead < 0x80 ? 0 : lead < 0xE0 ? 1 : lead < 0xF0 ? 2 : 3;
     if ((lead >= 0x80 && lead < 0xC2) || lead > 0xF4 || i + more >= text.size())
-      return fail("wanted text in UTF-8");
+      return fail("expected text in UTF-8");
     std::uint32_t c = more == 0 ? lead : lead & (0x3FU >> more);
     for (std::size_t k = 1; k <= more; ++k) {
       const auto next = static_cast<unsigned char>(text[i + k]);
-      if ((next & 0xC0) != 0x80) return fail("wanted text in UTF-8");
+      if ((next & 0xC0) != 0x80) return fail("expected text in UTF-8");
       c = c << 6 | (next & 0x3FU);
     }
     i += more + 1;
@@ -175,15 +175,16 @@ class Reservation {
   Expected<void> check() const {
     const Value* catalog = file_.catalog();
     const std::size_t page = file_.first_page() == 0 ? 0 : page_of_signature();
-    if (catalog == nullptr || page == 0) return fail("wanted a PDF with pages");
+    if (catalog == nullptr || page == 0) return fail("expected a PDF with pages");
     for (const char* key : {"AcroForm", "Names", "AF", "Perms"})
       if (catalog->find(key) != nullptr)
         return fail(std::string("the PDF has /") + key +
-                    " already: wanted neither form nor attachments");
+                    " already: expected neither form nor attachments");
     const Value* annotations = file_.objects[page].value.find("Annots");
     if (annotations != nullptr && !annotations->is(Value::Kind::array))
       return fail("the first page's /Annots is not a plain list");
-    if (room_ < 1000 || room_ > max_room) return fail("wanted 1000 to 32000 bytes for a signature");
+    if (room_ < 1000 || room_ > max_room)
+      return fail("expected 1000 to 32000 bytes for a signature");
     return {};
   }
 
@@ -200,7 +201,7 @@ class Reservation {
   Expected<void> attach(const Attachment& a, std::string& names) {
     const auto name = utf16(a.name), says = utf16(a.says);
     if (!name || !says || a.name.empty() || a.name.size() > 255)
-      return fail("the attachment \"" + a.name + "\": wanted a name and a description in UTF-8");
+      return fail("the attachment \"" + a.name + "\": expected a name and a description in UTF-8");
     if (!names_.insert(a.name).second) return fail("two attachments are called " + a.name);
     const std::string packed = deflated(a.bytes);
     if (packed.empty()) return fail("no memory for the attachment " + a.name);

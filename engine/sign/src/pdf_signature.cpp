@@ -16,7 +16,7 @@ Expected<const Value*> find_signature(const File& file) {
   const Value* fields = file.find(form, "Fields");
   if (fields == nullptr || !fields->is(Value::Kind::array)) return fail("has no signature");
   if (fields->items.size() != 1)
-    return fail("has " + std::to_string(fields->items.size()) + " form fields, wanted one");
+    return fail("has " + std::to_string(fields->items.size()) + " form fields, expected one");
   const Value* field = file.resolve(&fields->items.front());
   const Value* type = file.find(field, "FT");
   if (type == nullptr || !type->is_name("Sig") || field->find("Kids") != nullptr)
@@ -27,7 +27,7 @@ Expected<const Value*> find_signature(const File& file) {
   for (const pdf::Object& object : file.objects)
     if (object.value.find("ByteRange") != nullptr) ++dictionaries;
   if (dictionaries != 1)
-    return fail("has " + std::to_string(dictionaries) + " signature dictionaries, wanted one");
+    return fail("has " + std::to_string(dictionaries) + " signature dictionaries, expected one");
   const Value* filter = value->find("SubFilter");
   if (filter == nullptr || !filter->is_name(sub_filter))
     return fail("has a signature of another kind than " + std::string(sub_filter));
@@ -82,7 +82,7 @@ Expected<PdfSignature> signature_at_end(std::string_view bytes) {
     const auto parsed = std::from_chars(text.data(), text.data() + text.size(), numbers.at(i));
     if (text.size() != digits || parsed.ptr != text.data() + digits ||
         !bytes.substr(at + digits).starts_with(i < 2 ? " " : then))
-      return fail("/ByteRange: wanted four numbers");
+      return fail("/ByteRange: expected four numbers");
   }
   PdfSignature signature;
   signature.gap = at - 1 + then.size();
@@ -95,7 +95,7 @@ Expected<PdfSignature> signature_at_end(std::string_view bytes) {
   signature.contents = bytes.substr(signature.gap + 1, behind - signature.gap - 2);
   if (bytes[signature.gap] != '<' || bytes[behind - 1] != '>' ||
       signature.contents.size() % 2 != 0 || !is_lower_hexadecimal(signature.contents))
-    return fail("/Contents: wanted digits and small letters a to f");
+    return fail("/Contents: expected digits and small letters a to f");
   signature.before = bytes.substr(0, signature.gap);
   signature.behind = bytes.substr(behind);
   const auto time = time_in(bytes.substr(from + found - time_size, time_size));
@@ -116,9 +116,9 @@ Expected<PdfSignature> signature_of(const File& file, const Value& dictionary) {
   if (range == nullptr || !range->is(Value::Kind::array) || range->items.size() != 4 ||
       !std::all_of(range->items.begin(), range->items.end(),
                    [](const Value& v) { return v.is(Value::Kind::integer) && v.integer >= 0; }))
-    return fail("/ByteRange: wanted four numbers");
+    return fail("/ByteRange: expected four numbers");
   if (contents == nullptr || !contents->is(Value::Kind::string) || !contents->hexadecimal)
-    return fail("/Contents: wanted hexadecimal digits");
+    return fail("/Contents: expected hexadecimal digits");
   const auto at = [&](std::size_t i) { return static_cast<std::size_t>(range->items[i].integer); };
   if (at(0) != 0 || at(1) != contents->begin || at(2) != contents->end ||
       at(2) > file.bytes.size() || at(3) != file.bytes.size() - at(2))
@@ -131,7 +131,7 @@ Expected<PdfSignature> signature_of(const File& file, const Value& dictionary) {
   signature.contents = file.bytes.substr(contents->begin + 1, contents->end - contents->begin - 2);
   // Upper case would say the same in other bytes: a file has one form.
   if (!is_lower_hexadecimal(signature.contents))
-    return fail("/Contents: wanted digits and small letters a to f");
+    return fail("/Contents: expected digits and small letters a to f");
   const Value* time = dictionary.find("M");
   const auto stated =
       time_in(time == nullptr ? "" : file.bytes.substr(time->begin, time->end - time->begin));

@@ -81,7 +81,7 @@ Expected<Updater> Updater::of(const File& file) {
   const Value* root = file.trailer.find("Root");
   const Value* catalogue = file.catalog();
   if (catalogue == nullptr || !root->is(Value::Kind::reference) || out.page_ == 0)
-    return fail("wanted a PDF with pages");
+    return fail("expected a PDF with pages");
   out.catalogue_ = static_cast<std::size_t>(root->integer);
   const Value* form = catalogue->find("AcroForm");
   const Value* fields = form == nullptr ? nullptr : form->find("Fields");

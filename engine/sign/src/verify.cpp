@@ -45,7 +45,7 @@ void Report::check_signer(X509* certificate, const Verifier& verifier) {
   });
   if (by_subject || wanted == fingerprint) return add("signer.expected", {}, "signed by " + shown);
   add("signer.expected",
-      fail("signed by " + shown + ", certificate " + fingerprint + "; wanted " + verifier.signer),
+      fail("signed by " + shown + ", certificate " + fingerprint + "; expected " + verifier.signer),
       {});
 }
 

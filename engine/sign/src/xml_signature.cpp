@@ -53,7 +53,7 @@ Expected<DocumentPtr> parse_xml(std::string_view bytes) {
   if (!document || xmlDocGetRootElement(document.get()) == nullptr)
     return fail("is not well-formed XML");
   if (document->intSubset != nullptr || document->extSubset != nullptr)
-    return fail("has a document type: wanted none");
+    return fail("has a document type: expected none");
   return document;
 }
 
@@ -63,9 +63,9 @@ namespace {
 /// instructions for programs, sections that are not parsed) has no place in a certificate.
 Expected<void> check_nodes(const xmlNode* node) {
   for (; node != nullptr; node = node->next) {
-    if (node->type == XML_COMMENT_NODE) return fail("has a comment: wanted none");
-    if (node->type == XML_PI_NODE) return fail("has an instruction for programs: wanted none");
-    if (node->type == XML_CDATA_SECTION_NODE) return fail("has a CDATA section: wanted none");
+    if (node->type == XML_COMMENT_NODE) return fail("has a comment: expected none");
+    if (node->type == XML_PI_NODE) return fail("has an instruction for programs: expected none");
+    if (node->type == XML_CDATA_SECTION_NODE) return fail("has a CDATA section: expected none");
     if (node->type != XML_ELEMENT_NODE && node->type != XML_TEXT_NODE)
       return fail("has something else than elements and text");
     if (node->type == XML_ELEMENT_NODE)
@@ -183,7 +183,7 @@ struct Parts {
     if (bytes.size() > max_file) return fail(too_large);
     if (!bytes.starts_with(xml_head) || !bytes.ends_with(">\n"))
       return fail(
-          "wanted it to begin with <?xml version=\"1.0\" encoding=\"UTF-8\"?> and to end "
+          "expected it to begin with <?xml version=\"1.0\" encoding=\"UTF-8\"?> and to end "
           "with its root and a new line");
     bytes.remove_prefix(xml_head.size());
     bytes.remove_suffix(1);

@@ -54,7 +54,7 @@ Expected<void> mark_customer_data(const OutputInput& in, Document& document) {
   mark(document.first_foot, keys);
   if (keys.empty()) return {};
   Error error{
-      "certificate.customer_data: wanted keys whose values are printed, such as "
+      "certificate.customer_data: expected keys whose values are printed, such as "
       "\"machine.serial\", found \"" +
       keys.front() + "\""};
   error.key = "certificate.customer_data";

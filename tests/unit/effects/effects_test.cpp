@@ -8,8 +8,8 @@
 #include <set>
 #include <sstream>
 
-#include "nonio/host/manifest.h"
-#include "nonio/host/plugins.h"
+#include "host/config/manifest.h"
+#include "host/loader/plugins.h"
 #include "nonio/sdk/axis_readings.h"
 
 namespace nonio {
@@ -20,8 +20,8 @@ constexpr double pi = std::numbers::pi;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 const Effect& effect(const std::string& name) {
-  static const host::Plugins& plugins = []() -> const host::Plugins& {
-    static host::Plugins loaded;
+  static const host::loader::Plugins& plugins = []() -> const host::loader::Plugins& {
+    static host::loader::Plugins loaded;
     loaded.load({NONIO_TEST_PLUGINS});
     return loaded;
   }();
@@ -228,7 +228,7 @@ TEST(Effects, EveryOneHasACardInEveryLanguage) {
     const std::string file = std::string(NONIO_WORDS) + "/" + language + "/effects.toml";
     std::ostringstream text;
     text << std::ifstream(file).rdbuf();
-    const auto words = host::parse_settings(text.str(), file);
+    const auto words = host::config::parse_settings(text.str(), file);
     ASSERT_TRUE(words) << words.error().message;
     std::size_t wanted = 0;
     const auto expect = [&](const std::string& name) {

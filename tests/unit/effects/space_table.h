@@ -8,8 +8,8 @@
 #include <map>
 #include <numeric>
 
+#include "host/loader/plugins.h"
 #include "machine.h"
-#include "nonio/host/plugins.h"
 
 /// Tables of lines in space, and what the exact machine reads on them.
 namespace nonio::space {
@@ -23,8 +23,8 @@ inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 inline const Point corner(0.3, 0.2, 0.1), travel(0.8, 0.6, 0.5);
 
 inline const std::vector<Effect>& effects() {
-  static const host::Plugins& plugins = []() -> const host::Plugins& {
-    static host::Plugins loaded;
+  static const host::loader::Plugins& plugins = []() -> const host::loader::Plugins& {
+    static host::loader::Plugins loaded;
     loaded.load({NONIO_TEST_PLUGINS});
     return loaded;
   }();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // write_scripts FOLDER: a page in each script, and the same pages with a part of a letter lost, for
-// tests/real/pages.
+// tests/external/pages.
 #include <iostream>
 #include <map>
 

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/batch/computing.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <set>
+
+#include "host/batch/wire.h"
+#include "host/process/channel.h"
+#include "host/process/child.h"
+#include "host/storage/files.h"
+
+namespace nonio::host::batch {
+namespace fs = std::filesystem;
+
+namespace {
+
+// What the process with the plugins says, first byte.
+constexpr char wants_file = 'f', wants_draw = 'd', has_done = 'e';
+
+/// What the other side asks for, and what it gets.
+struct Drawn {
+  bool well = false;
+  evaluation::Certificate certificate;
+  Error error;
+  std::vector<std::string> missing;
+};
+
+int ask_for_file(int stream, const fs::path& path) {
+  if (!process::write_text(stream, wants_file + path.string())) ::_exit(0);
+  auto handed = process::receive_descriptors(stream);
+  if (!handed) ::_exit(0);
+  if (!handed->descriptors.empty()) return handed->descriptors.front().release();
+  errno = static_cast<unsigned char>(handed->word);
+  return -1;
+}
+
+Expected<evaluation::Certificate> ask_for_draw(int stream, const evaluation::Evaluated& evaluated,
+                                               std::vector<std::string>& missing) {
+  std::string reply;
+  if (!process::write_text(stream, wants_draw + wire::pack(evaluated, missing)) ||
+      !process::read_text(stream, reply))
+    ::_exit(0);
+  Drawn drawn;
+  if (!wire::unpack(reply, drawn.well, drawn.certificate, drawn.error, drawn.missing)) ::_exit(0);
+  missing = std::move(drawn.missing);
+  if (!drawn.well) return fail(std::move(drawn.error));
+  return std::move(drawn.certificate);
+}
+
+/// What no honest process says: these values decide which files are written.
+std::string unsound_answer(const evaluation::Evaluated& e, const std::string& id) {
+  if (e.campaign.id != id) return "another campaign's results";
+  if (e.status != "ok" && e.status != "attention" && e.status != "failed") return "no status";
+  if ((e.status == "failed") == e.results.errors.empty()) return "a status against its errors";
+  std::set<std::string> names;
+  for (const Results::Written& w : e.results.outputs)
+    for (const Artifact& a : w.result.artifacts)
+      if (!storage::is_artifact_name(a.name) || !names.insert(a.name).second)
+        return "an artifact that cannot be called \"" + a.name + "\"";
+  return {};
+}
+
+}  // namespace
+
+void evaluate_for(int stream, const reading::Context& context, process::SharedStatus& stage,
+                  Prints& prints) {
+  storage::open_files_with([stream](const fs::path& path) { return ask_for_file(stream, path); });
+  process::keep_freed_memory();
+  const std::size_t at_start = process::memory_held();
+  std::string now;
+  const reading::Stage tell = [&](const std::string& words) {
+    prints.pass_on(now);
+    now = words;
+    stage.set(words);
+  };
+  for (std::string request; process::read_text(stream, request);) {
+    fs::path folder;
+    std::string id;
+    bool draws = false;
+    reading::Twins twins;
+    if (!wire::unpack(request, folder, id, draws, twins)) return;
+    evaluation::Draw draw;
+    if (draws)
+      draw = [stream](const evaluation::Evaluated& e, std::vector<std::string>& missing) {
+        return ask_for_draw(stream, e, missing);
+      };
+    const evaluation::Evaluated evaluated =
+        evaluation::evaluate(folder, id, context, tell, draw, twins);
+    prints.pass_on(now);
+    const bool grown = process::has_grown(at_start);
+    if (!process::write_text(stream, has_done + wire::pack(evaluated, grown))) return;
+  }
+}
+
+/// Files of the campaign, and nothing else that this user could read.
+bool Evaluator::hand_out(const fs::path& folder, const std::string& path) const {
+  std::error_code error;
+  const fs::path root = fs::path(path).is_absolute() ? fs::canonical(folder, error) : folder;
+  const std::string inside = fs::path(path).lexically_relative(root).string();
+  // A manifest may be a link to anywhere, as for the survey.
+  const auto full = inside == config::manifest_name
+                        ? Expected<fs::path>(folder / config::manifest_name)
+                        : storage::path_inside(folder, inside);
+  const bool secret = full && std::any_of(secrets_.begin(), secrets_.end(), [&](const fs::path& s) {
+                        return fs::equivalent(*full, s, error);
+                      });
+  if (!full || secret) return process::send_descriptors(stream_, static_cast<char>(EACCES), {});
+  const process::Handle file(::open(full->c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  const int code = errno;
+  return file ? process::send_descriptors(stream_, 0, {file.get()})
+              : process::send_descriptors(stream_, static_cast<char>(code), {});
+}
+
+Expected<evaluation::Evaluated> Evaluator::evaluate(const fs::path& folder, const std::string& id,
+                                                    const evaluation::Draw& draw,
+                                                    const reading::Twins& twins) {
+  std::optional<evaluation::Certificate> drawn;
+  if (!process::write_text(stream_, wire::pack(folder, id, draw != nullptr, twins))) ::_exit(0);
+  for (std::string said;;) {
+    if (!process::read_text(stream_, said)) ::_exit(0);
+    if (said.empty()) break;
+    const std::string_view rest = std::string_view(said).substr(1);
+    evaluation::Evaluated evaluated;
+    if (said[0] == wants_file) {
+      if (!hand_out(folder, std::string(rest))) ::_exit(0);
+    } else if (said[0] == wants_draw) {
+      Drawn reply;
+      if (!draw || !wire::unpack(rest, evaluated, reply.missing) || evaluated.campaign.id != id)
+        break;
+      auto certificate = draw(evaluated, reply.missing);
+      reply.well = certificate.has_value();
+      if (certificate)
+        reply.certificate = *(drawn = std::move(*certificate));
+      else
+        reply.error = certificate.error();
+      if (!process::write_text(
+              stream_, wire::pack(reply.well, reply.certificate, reply.error, reply.missing)))
+        ::_exit(0);
+    } else if (said[0] == has_done) {
+      if (!wire::unpack(rest, evaluated, grown_)) break;
+      if (const std::string why = unsound_answer(evaluated, id); !why.empty())
+        return fail("the process that evaluates gave " + why);
+      // A certificate is what was drawn here; of it the other side says only whose it is.
+      if (evaluated.certificate) {
+        if (!drawn) break;
+        drawn->output = evaluated.certificate->output;
+        evaluated.certificate = std::move(drawn);
+      }
+      return evaluated;
+    } else {
+      break;
+    }
+  }
+  return fail("the process that evaluates says what no process of ours says");
+}
+
+}  // namespace nonio::host::batch

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "host/batch/prints.h"
+#include "host/batch/worker.h"
+#include "host/evaluation/evaluate.h"
+
+namespace nonio::host::batch {
+
+/// In the process with the plugins: evaluates the campaigns that the other side names, until it is
+/// gone. It can open no file: the other side hands it those of the campaign.
+void evaluate_for(int stream, const reading::Context& context, process::SharedStatus& stage,
+                  Prints& prints);
+
+/// In the process that has files, register and signer, and no plugin code.
+class Evaluator {
+ public:
+  /// `secrets`: files that are handed to nobody.
+  Evaluator(int stream, std::vector<std::filesystem::path> secrets)
+      : stream_(stream), secrets_(std::move(secrets)) {}
+
+  /// As `evaluate`, done by the other side. Where it is gone, this process ends too: its parent
+  /// knows why. An error: it says what no process of ours says.
+  Expected<evaluation::Evaluated> evaluate(const std::filesystem::path& folder,
+                                           const std::string& id, const evaluation::Draw& draw,
+                                           const reading::Twins& twins);
+  /// Whether the memory of the other side has grown noticeably.
+  bool grown() const { return grown_; }
+
+ private:
+  bool hand_out(const std::filesystem::path& folder, const std::string& path) const;
+
+  int stream_;
+  std::vector<std::filesystem::path> secrets_;
+  bool grown_ = false;
+};
+
+}  // namespace nonio::host::batch

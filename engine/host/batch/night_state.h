@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "host/batch/night_status.h"
+#include "host/batch/run.h"
+#include "nonio/sdk/error.h"
+
+namespace nonio::host::batch {
+
+/// What a night keeps for itself in the output folder; no campaign can have its name.
+inline constexpr const char* state_folder = ".nonio";
+
+/// Which night it is. A run that was killed or interrupted is the same night when it is resumed, so
+/// that it ends with the same summary as an undisturbed one. Kept in OUT/.nonio.
+struct NightState {
+  std::uint64_t number = 1;
+  std::string date{};              ///< YYYY-MM-DD, as it was given
+  std::optional<NightEnd> last{};  ///< the night before; none before the first
+  bool force = false;
+  bool resumed = false;
+  /// Certificates in the register when the night before ended, or when the first one began; none
+  /// if the register could not be read.
+  std::optional<std::uint64_t> issued_before{};
+  std::string site{};  ///< whose results they are, its folder
+  evaluation::NightOf of() const { return {number, date}; }
+};
+
+/// An error if the folder holds the results of another site that is still there: campaigns of both
+/// would be taken for one another's, and the summary would tell of one of them only.
+Expected<NightState> begin_night(const RunOptions& options, const std::string& site,
+                                 std::optional<std::uint64_t> issued_so_far);
+/// `night.issued_before` is then what the next one begins with.
+Expected<void> end_night(const std::filesystem::path& out, const NightState& night,
+                         const NightEnd& end);
+
+/// Holds the layout that site.toml wants (`hashed`: OUT/ab/<id>) against that of the results that
+/// are there, and marks a new output folder. Results are never moved: another layout is an error.
+Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, bool dry_run);
+
+/// Held while a run uses an output folder; an error names the trouble if another run does.
+class OutputLock {
+ public:
+  static Expected<OutputLock> take(const std::filesystem::path& out);
+  OutputLock(OutputLock&& other) noexcept;
+  OutputLock& operator=(OutputLock&&) = delete;
+  ~OutputLock();
+
+ private:
+  explicit OutputLock(int fd) : fd_(fd) {}
+  int fd_;
+};
+
+}  // namespace nonio::host::batch

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/certificates/register.h"
+#include "host/evaluation/evaluate.h"
+#include "host/evaluation/record.h"
+#include "host/process/stop.h"
+
+namespace nonio::host::batch {
+
+struct RunOptions {
+  std::filesystem::path site, out;
+  std::vector<std::filesystem::path> plugin_folders, template_folders;
+  std::filesystem::path own_plugins;  ///< the plugin folder beside the program
+  std::size_t jobs = 0;               ///< 0: one for each core
+  bool force = false;
+  bool dry_run = false;
+  bool verify_results = false;  ///< compare the digests of all files given out, touched or not
+  std::string date{};           ///< of the night, YYYY-MM-DD; empty: today's
+  std::string version;
+  bool as_root = false;  ///< root may run it, whoever can write the plugins
+  bool confine = true;   ///< false: only to measure what confining plugins costs
+};
+
+/// One campaign of the night, as it is known so far. Small: there may be very many. What its record
+/// holds (findings) is read again for the summary.
+struct CampaignState {
+  std::string id;
+  std::string folder;            ///< relative to the site, in the bytes of the file system
+  bool named_by_folder = false;  ///< its manifest gives no id
+  bool is_campaign = true;       ///< false: a folder of which nobody knows what lies in it
+  enum class Action { todo, done, unchanged } action = Action::todo;
+  std::string reason;  ///< why it is to do, or why not
+  std::string status;  ///< ok, attention, failed; empty while it is to do
+  std::vector<Error> errors;
+  std::vector<std::uint64_t> readings{};  ///< of its files' SHA-256 the begin, until compared
+  /// Of those that another campaign has too, and where that one stands in the list of campaigns.
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> twins{};
+  /// The same as its record knew it, with the other one's id.
+  std::vector<std::pair<std::uint64_t, std::string>> twins_before{};
+};
+
+/// A campaign that has results and is not in the site any more. Its results stay until a person
+/// removes them, which says that this was meant.
+struct Vanished {
+  std::string id, folder;   ///< folder: where it was, as text
+  std::uint64_t night = 0;  ///< in which it was done last
+  std::string why;          ///< what is there instead, and what to do
+};
+
+/// What the run tells while it goes on.
+struct RunEvents {
+  std::function<void(const std::string& message)> note;
+  std::function<void(std::size_t campaigns, std::size_t to_do)> planned;
+  std::function<void(const CampaignState&)> finished;
+  std::function<void()> tick;  ///< several times a second, to redraw
+};
+
+struct Night {
+  enum class End { complete, interrupted, refused } end = End::complete;
+  evaluation::NightOf night{};
+  std::optional<std::uint64_t> seen_before{};  ///< campaigns that the night before saw
+  std::string error;                           ///< of a refused run: usage or configuration
+  std::vector<CampaignState> campaigns;        ///< ordered by id
+  std::vector<std::string> notes;
+  std::vector<certificates::RegisterEntry>
+      issued;  ///< certificates that are new since the night before
+  std::vector<certificates::WaitingDraft> waiting;  ///< for their release
+  std::vector<Vanished> vanished;                   ///< ordered by id
+  std::size_t failed() const;  ///< campaigns, and folders that could not be listed
+  /// Whether anything failed or vanished.
+  bool any_failed() const { return failed() > 0 || !vanished.empty(); }
+};
+
+/// The nightly run over a site. Returns when every campaign is done, or after a call of
+/// `request_stop`, or at once with `refused` if the site or the output folder cannot be used.
+Night run_site(const RunOptions& options, const RunEvents& events);
+
+}  // namespace nonio::host::batch

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "host/batch/night_state.h"
+#include "host/batch/plugin_host.h"
+#include "host/batch/run.h"
+#include "host/certificates/numbering.h"
+#include "host/certificates/signer.h"
+
+namespace nonio::host::batch {
+
+/// Asked with all numbers of the register once it could be read; an error: no number is drawn.
+using NumbersCheck = std::function<Expected<void>(const std::vector<certificates::RegisterEntry>&)>;
+
+/// What certificates need.
+struct ReleaseDesk {
+  certificates::Signer* signer = nullptr;              ///< null: nobody signs
+  const certificates::Releasing* releasing = nullptr;  ///< null: it is a night
+  NumbersCheck recheck{};                              ///< empty: the register was read before
+  PluginHost* plugins = nullptr;                       ///< makes the processes that evaluate
+};
+
+/// Does every campaign that is to do, in workers of its own. False if it was interrupted.
+bool do_campaigns(const RunOptions& options, const RunEvents& events,
+                  const reading::Context& context, const NightState& night, const ReleaseDesk& desk,
+                  std::vector<CampaignState>& campaigns);
+
+}  // namespace nonio::host::batch

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/batch/survey.h"
+
+namespace nonio::host::batch {
+
+/// Looks at the campaigns `which` of `states` and completes them, on all cores, in child processes
+/// that may hang or crash without harm to the night. An error only if no process can be had, or if
+/// the register does not know a number.
+Expected<void> look_at_all(const SurveyInput& input, const std::vector<std::size_t>& which,
+                           std::vector<CampaignState>& states);
+
+/// For a number that was issued before.
+Error unknown_number(const std::string& number, const std::filesystem::path& out);
+
+}  // namespace nonio::host::batch

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/certificates/register_check.h"
+
+#include <algorithm>
+
+#include "host/certificates/certificate_list.h"
+#include "host/certificates/content_check.h"
+#include "host/certificates/register.h"
+#include "host/evaluation/issue_json.h"
+#include "host/evaluation/record.h"
+#include "host/storage/digest.h"
+
+namespace nonio::host::certificates {
+namespace fs = std::filesystem;
+
+namespace {
+
+using State = sign::Check::State;
+
+struct StatedNumber {
+  std::string number, register_id;
+  bool by_register = true;  ///< no: it may be a number of somebody else's
+};
+
+/// Of a DCC: its identifier, which need not come from a register. What output `certificate` makes
+/// always does.
+StatedNumber stated_in_dcc(std::string_view xml) {
+  constexpr std::string_view open = "<dcc:uniqueIdentifier>", close = "</dcc:uniqueIdentifier>";
+  const std::size_t begin = xml.find(open);
+  const std::size_t end = xml.find(close);
+  if (begin == std::string_view::npos || end == std::string_view::npos || end < begin) return {};
+  constexpr std::string_view numbered = ">Nonio certificate<";
+  return {std::string(xml.substr(begin + open.size(), end - begin - open.size())),
+          {},
+          xml.find(numbered) != std::string_view::npos};
+}
+
+StatedNumber stated_in_pdf(const sign::Verified& v) {
+  const sign::Attachment* results = find_attachment(v, evaluation::results_name);
+  if (results == nullptr) return {};
+  const storage::Json json = storage::Json::parse(results->bytes, nullptr, false);
+  if (!json.is_object() || !json.contains("certificate")) return {};
+  const Issue issue = evaluation::certificate_of(json["certificate"]).issue;
+  return {issue.number, issue.register_id, true};
+}
+
+bool is_issued_file(std::string_view bytes, const std::vector<evaluation::IssuedFile>& files) {
+  return std::any_of(files.begin(), files.end(),
+                     [&](const evaluation::IssuedFile& f) { return bytes == f.bytes; });
+}
+
+std::string words_of(const RegisterEntry& e) {
+  if (e.state == "withdrawn")
+    return e.number + " was withdrawn: " + e.reason +
+           (e.replaced_by.empty() ? "" : "; " + e.replaced_by + " replaces it");
+  if (e.state == "amended") return e.number + " was replaced by " + e.replaced_by;
+  if (e.state == "drawn") return e.number + " was drawn and never issued";
+  return e.number + " of " + e.date + " is in force, and this is the file that was issued";
+}
+
+}  // namespace
+
+std::optional<sign::Check> check_register(const sign::Verified& verified, std::string_view bytes,
+                                          const fs::path& site) {
+  StatedNumber stated = bytes.starts_with("%PDF-") ? stated_in_pdf(verified) : stated_in_dcc(bytes);
+  if (stated.number.empty()) return std::nullopt;
+  sign::Check check{"register.state", State::fails, {}};
+  const auto says = [&](State state, std::string words) {
+    check.state = state;
+    check.says = std::move(words);
+    return check;
+  };
+  if (site.empty()) {
+    check.essential = false;
+    return says(State::not_checked,
+                "whether " + stated.number +
+                    " was withdrawn or replaced: only the register of its site knows (--site)");
+  }
+  const auto numbering = numbering_of(site);
+  if (!numbering) return says(State::fails, numbering.error().message);
+  const auto path = register_path(site, *numbering);
+  if (!path) return says(State::fails, path.error().message);
+  std::error_code error;
+  if (!fs::exists(*path, error)) {
+    check.essential = stated.by_register;
+    return says(State::not_checked, "the site has no register that knows " + stated.number);
+  }
+  auto opened = Register::open_to_read(site, *numbering);
+  if (!opened) return says(State::fails, opened.error().message);
+  const auto all = opened->all();
+  if (!all) return says(State::fails, all.error().message);
+  if (const std::string own = opened->number_of(storage::sha256(bytes)); !own.empty())
+    stated.number = own;
+  const std::string id = opened->id();
+  if (!stated.register_id.empty() && !id.empty() && stated.register_id != id)
+    return says(State::fails, stated.number + " was issued by the register " + stated.register_id +
+                                  "; that of this site is " + id);
+  const auto entry = std::find_if(
+      all->begin(), all->end(), [&](const RegisterEntry& e) { return e.number == stated.number; });
+  if (entry == all->end()) {
+    if (stated.by_register)
+      return says(State::fails, "the register of this site never issued " + stated.number +
+                                    ": was the site copied, or the register replaced?");
+    check.essential = false;
+    return says(State::not_checked, stated.number + " is no number of this site's register");
+  }
+  const auto files = opened->files(stated.number);
+  if (!files) return says(State::fails, files.error().message);
+  if (!is_issued_file(bytes, *files))
+    return says(State::fails, "the register of this site has issued another certificate as " +
+                                  stated.number + ": was the site copied?");
+  return says(entry->in_force() ? State::holds : State::fails, words_of(*entry));
+}
+
+}  // namespace nonio::host::certificates

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Drafts wait in the register until a person releases them; what is issued leaves the list.
+#include "host/certificates/register.h"
+#include "host/certificates/register_tables.h"
+
+namespace nonio::host::certificates {
+
+namespace {
+
+storage::Json draft_json(const Approval& a) {
+  return {{"by", a.by}, {"role", a.role}, {"at", a.at}, {"reasons", a.reasons}};
+}
+
+storage::Json draft_json(const WaitingDraft& d) {
+  storage::Json json = {{"folder", d.folder},
+                        {"out", d.out},
+                        {"file", d.file},
+                        {"sha256", d.sha256},
+                        {"replaces", d.replaces},
+                        {"made_from", d.made_from},
+                        {"findings", storage::Json::array()}};
+  for (const evaluation::KnownFinding& f : d.findings)
+    json["findings"].push_back({{"measurement", f.measurement},
+                                {"id", f.id},
+                                {"title", f.title},
+                                {"attention", f.attention}});
+  if (d.author) json["author"] = draft_json(*d.author);
+  return json;
+}
+
+/// Throws what nlohmann::json throws where it is not what `draft_json` has written.
+WaitingDraft draft_of(const std::string& campaign, const storage::Json& json) {
+  WaitingDraft d;
+  d.campaign = campaign;
+  json.at("folder").get_to(d.folder);
+  json.at("out").get_to(d.out);
+  json.at("file").get_to(d.file);
+  json.at("sha256").get_to(d.sha256);
+  json.at("replaces").get_to(d.replaces);
+  json.at("made_from").get_to(d.made_from);
+  for (const storage::Json& f : json.at("findings"))
+    d.findings.push_back({f.at("measurement"), f.at("id"), f.at("title"), f.at("attention")});
+  if (json.contains("author")) {
+    const storage::Json& a = json["author"];
+    d.author = Approval{a.at("by"), a.at("role"), a.at("at"), a.at("reasons")};
+  }
+  return d;
+}
+
+Expected<std::vector<WaitingDraft>> drafts_of(const std::vector<storage::Database::Row>& rows) {
+  std::vector<WaitingDraft> drafts;
+  for (const storage::Database::Row& row : rows) try {
+      drafts.push_back(draft_of(row[0], storage::Json::parse(row[1])));
+    } catch (const storage::Json::exception&) {
+      return fail("the register's draft of " + row[0] +
+                  " cannot be read; expected what `nonio run` writes: run the night with --force");
+    }
+  return drafts;
+}
+
+bool same_work(const WaitingDraft& a, const WaitingDraft& b) {
+  const auto same = [](const evaluation::KnownFinding& x, const evaluation::KnownFinding& y) {
+    return x.same(y) && x.title == y.title && x.attention == y.attention;
+  };
+  return a.made_from == b.made_from && a.replaces == b.replaces && a.sha256 == b.sha256 &&
+         std::equal(a.findings.begin(), a.findings.end(), b.findings.begin(), b.findings.end(),
+                    same);
+}
+
+}  // namespace
+
+std::string finding_key(const evaluation::KnownFinding& finding) {
+  return (finding.measurement.empty() ? "" : finding.measurement + ": ") + finding.id;
+}
+
+Expected<std::vector<WaitingDraft>> Register::all_drafts() {
+  const auto rows = database_->rows("SELECT campaign, says FROM drafts ORDER BY campaign");
+  if (auto well = database_->take_error(); !well) return fail(well.error());
+  return drafts_of(rows);
+}
+
+Expected<std::optional<WaitingDraft>> Register::draft(const std::string& campaign) {
+  const auto rows =
+      database_->rows("SELECT campaign, says FROM drafts WHERE campaign = ?", {campaign});
+  if (auto well = database_->take_error(); !well) return fail(well.error());
+  auto drafts = drafts_of(rows);
+  if (!drafts) return fail(drafts.error());
+  if (drafts->empty()) return std::nullopt;
+  return std::move(drafts->front());
+}
+
+namespace {
+
+void put_draft(storage::Database& database, const WaitingDraft& draft) {
+  database.rows("INSERT OR REPLACE INTO drafts VALUES(?, ?)",
+                {draft.campaign,
+                 draft_json(draft).dump(-1, ' ', false, storage::Json::error_handler_t::replace)});
+}
+
+}  // namespace
+
+Expected<void> Register::enter_draft(const WaitingDraft& draft) {
+  storage::Database::Transaction transaction(*database_);
+  WaitingDraft now = draft;
+  // What cannot be read is replaced.
+  if (const auto before = this->draft(draft.campaign);
+      before && *before && same_work(**before, now))
+    now.author = (*before)->author;
+  put_draft(*database_, now);
+  return transaction.end();
+}
+
+Expected<void> Register::drop_draft(const std::string& campaign) {
+  storage::Database::Transaction transaction(*database_);
+  database_->rows("DELETE FROM drafts WHERE campaign = ?", {campaign});
+  return transaction.end();
+}
+
+Expected<void> Register::approve(const std::string& campaign, const Approval& approval) {
+  storage::Database::Transaction transaction(*database_);
+  auto waiting = draft(campaign);
+  if (!waiting) return fail(waiting.error());
+  if (!*waiting) return fail("there is no draft of " + campaign);
+  WaitingDraft& now = **waiting;
+  now.author = approval;
+  now.author->at = utc_now();
+  put_draft(*database_, now);
+  storage::Json says = draft_json(*now.author);
+  says["campaign"] = campaign;
+  says["draft_sha256"] = now.sha256;
+  Journal(*database_).add("approved", "", says);
+  return transaction.end();
+}
+
+}  // namespace nonio::host::certificates

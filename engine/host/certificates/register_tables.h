@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "host/certificates/journal.h"
+#include "host/storage/database.h"
+
+namespace nonio::host::certificates {
+
+std::int64_t integer(const std::string& text);
+
+/// The tables of a register that was made just now; those of one that version 1 of this format has
+/// left, carried over with all that is in it. An error if the file is something else.
+Expected<void> make_tables(storage::Database& database);
+/// Whether it has what this version adds.
+bool is_of_this_version(storage::Database& database);
+
+/// What was issued under a number, as the journal keeps it: digests, no contents.
+storage::Json issued_json(storage::Database& database, std::int64_t id);
+
+}  // namespace nonio::host::certificates

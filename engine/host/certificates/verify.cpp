@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/certificates/verify.h"
+
+#include <algorithm>
+#include <ctime>
+#include <fstream>
+
+#include "host/certificates/content_check.h"
+#include "host/certificates/recomputed.h"
+#include "host/certificates/register_check.h"
+#include "host/config/site_files.h"
+#include "host/config/template_files.h"
+#include "host/evaluation/record.h"
+#include "host/storage/files.h"
+
+namespace nonio::host::certificates {
+namespace fs = std::filesystem;
+
+namespace {
+
+using State = sign::Check::State;
+
+void check_documents(sign::Verified& v, const sign::Verifier& verifier) {
+  bool any = false;
+  sign::Verifier inside = verifier;
+  inside.existed = v.existed;
+  for (const sign::Attachment& a : v.attachments) {
+    if (!is_document(a)) continue;
+    any = true;
+    for (sign::Check& c : sign::verify_xml(a.bytes, inside, v.certificate).checks) {
+      c.id = "dcc." + c.id.substr(c.id.find('.') + 1);
+      c.says = a.name + ": " + c.says;
+      v.checks.push_back(std::move(c));
+    }
+    v.checks.push_back(check_dcc(a, find_attachment(v, evaluation::results_name)));
+  }
+  if (!any) v.checks.push_back({"dcc", State::not_checked, "none is attached", false});
+}
+
+sign::Verified refused(const std::string& why) {
+  sign::Verified v;
+  v.checks.push_back({"file.structure", State::fails, why});
+  return v;
+}
+
+Expected<std::string> text_at(const fs::path& path) {
+  if (path.empty()) return std::string();
+  return storage::read_file(path);
+}
+
+}  // namespace
+
+config::Checked<sign::Verifier> verifier_of(const VerifyOptions& options) {
+  VerifyOptions o = options;
+  if (!o.site.empty()) {
+    std::string digest;
+    const auto site = config::read_site(o.site, digest);
+    if (!site) return tl::unexpected(site.error());
+    if (const auto& s = site->signing) {
+      if (o.trust.empty() && !s->trust.empty()) o.trust = o.site / s->trust;
+      if (o.revocation.empty() && !s->revocation.empty()) o.revocation = o.site / s->revocation;
+      if (o.signer.empty()) o.signer = s->signer;
+    }
+  }
+  auto trust = text_at(o.trust), revocation = text_at(o.revocation);
+  for (const auto* text : {&trust, &revocation})
+    if (!*text) return tl::unexpected(std::vector<Error>{text->error()});
+  return sign::Verifier{std::move(*trust), std::move(*revocation), o.signer, std::time(nullptr)};
+}
+
+Expected<std::unique_ptr<reading::Workplace>> open_to_verify(
+    const std::vector<fs::path>& plugin_folders, std::vector<fs::path> template_folders,
+    const fs::path& site, const std::string& version) {
+  if (std::error_code error; !site.empty() && fs::is_directory(site / "templates", error))
+    template_folders.push_back(site / "templates");
+  auto place = std::make_unique<reading::Workplace>();
+  reading::Context& context = place->context;
+  context.version = version;
+  auto templates =
+      config::read_templates(template_folders, context.templates_sha256, &context.templates_json);
+  if (!templates) return fail(templates.error());
+  context.templates = std::move(*templates);
+  place->plugins.load(plugin_folders);
+  if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
+  context.plugins = &place->plugins;
+  return place;
+}
+
+Expected<std::string> read_bounded(const fs::path& path) {
+  const auto refuse = [&](const std::string& size) {
+    return fail("is larger than " + std::to_string(sign::max_bytes / 1'000'000) + " MB" + size +
+                ": no certificate of Nonio is");
+  };
+  std::error_code error;
+  if (fs::is_directory(path, error)) return fail(path.string() + " is a folder, expected a file");
+  if (const auto size = fs::file_size(path, error); !error && size > sign::max_bytes)
+    return refuse(" (" + std::to_string(size) + " bytes)");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return fail("cannot read " + path.string());
+  std::string bytes;
+  if (const auto size = fs::file_size(path, error); !error) bytes.reserve(size + 1);
+  std::vector<char> part(std::size_t{1} << 16);
+  do {
+    file.read(part.data(), static_cast<std::streamsize>(part.size()));
+    bytes.append(part.data(), static_cast<std::size_t>(file.gcount()));
+    if (bytes.size() > sign::max_bytes) return refuse("");
+  } while (file);
+  if (file.bad()) return fail("cannot read " + path.string());
+  return bytes;
+}
+
+sign::Verified verify_file(const fs::path& path, const sign::Verifier& verifier,
+                           const reading::Context& context, const fs::path& site) {
+  const auto bytes = read_bounded(path);
+  if (!bytes) return refused(bytes.error().message);
+  if (bytes->starts_with("<?xml")) {
+    sign::Verified v = sign::verify_xml(*bytes, verifier);
+    if (!v.holds()) return v;
+    v.checks.push_back(check_dcc({path.filename().string(), *bytes, {}, {}, {}}, nullptr));
+    if (auto state = check_register(v, *bytes, site)) v.checks.push_back(std::move(*state));
+    return v;
+  }
+  sign::Verified v = sign::verify_pdf(*bytes, verifier);
+  // What nobody signed is not given to plugins.
+  if (!v.holds()) {
+    for (const char* check : {"content.values", "content.printed"})
+      v.checks.push_back({check, State::not_checked, "the signature does not hold"});
+    return v;
+  }
+  // What was added later is looked at by `verify_pdf`; the rest is about what was issued.
+  const std::string_view issued = std::string_view(*bytes).substr(0, v.issued);
+  if (auto state = check_register(v, issued, site)) v.checks.push_back(std::move(*state));
+  check_documents(v, verifier);
+  for (sign::Check& c : check_content(v, issued, context)) v.checks.push_back(std::move(c));
+  return v;
+}
+
+std::string verdict_of(const sign::Verified& v) {
+  if (!v.holds()) return "DOES NOT HOLD";
+  const auto is_open = [&](std::string_view id) {
+    return std::any_of(v.checks.begin(), v.checks.end(), [&](const sign::Check& c) {
+      return c.id == id && c.state == State::not_checked;
+    });
+  };
+  if (is_open("content.printed")) return "holds, pages not compared";
+  if (is_open("content.templates")) return "holds, with other words than are installed";
+  return "HOLDS";
+}
+
+}  // namespace nonio::host::certificates

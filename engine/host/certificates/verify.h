@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/reading/campaign_reader.h"
+#include "nonio/sign/verify.h"
+
+namespace nonio::host::certificates {
+
+/// What `nonio verify` is told; paths may be empty.
+struct VerifyOptions {
+  std::filesystem::path site;  ///< whose [signing] says whom to trust and expect
+  std::filesystem::path trust, revocation;
+  std::string signer;
+};
+
+/// Trust, revocation lists and expected signer; what is given by itself goes before the site's.
+config::Checked<sign::Verifier> verifier_of(const VerifyOptions& options);
+
+/// Plugins and templates, with those of `site` if it is not empty. Of its site.toml nothing, and
+/// nothing of the folder that one happens to stand in.
+Expected<std::unique_ptr<reading::Workplace>> open_to_verify(
+    const std::vector<std::filesystem::path>& plugin_folders,
+    std::vector<std::filesystem::path> template_folders, const std::filesystem::path& site,
+    const std::string& version);
+
+/// A file that may be a certificate. Refused by its size where the system tells it, else when more
+/// comes than may; never read whole.
+Expected<std::string> read_bounded(const std::filesystem::path& path);
+
+/// A certificate (PDF) or a DCC (XML): its signature first, then, where that holds, its content:
+/// every attached DCC, and the attached readings evaluated again by the plugins of `context`, up to
+/// the printed pages. The register of `site` (may be empty) is asked whether a number is in force.
+/// Whatever the file holds, there is an answer.
+sign::Verified verify_file(const std::filesystem::path& path, const sign::Verifier& verifier,
+                           const reading::Context& context, const std::filesystem::path& site);
+
+/// What it all comes to, in a few words: "HOLDS", "DOES NOT HOLD", or "holds, ..." with what was
+/// not compared.
+std::string verdict_of(const sign::Verified& verified);
+
+}  // namespace nonio::host::certificates

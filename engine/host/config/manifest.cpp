@@ -1,0 +1,478 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/config/manifest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <sstream>
+
+#include "host/config/certificate_reader.h"
+#include "host/config/formula_reader.h"
+#include "host/config/toml_reader.h"
+#include "nonio/sdk/format.h"
+#include "nonio/sdk/statement.h"
+
+namespace nonio::host::config {
+
+namespace {
+
+constexpr double mm = 1e-3, um = 1e-6;
+constexpr double deg = 1.0 / deg_per_rad, arcsec = 1.0 / arcsec_per_rad;
+
+RunChoice read_run(TableReader& top) {
+  RunChoice run;
+  auto reader = top.table("run");
+  if (!reader) return run;
+  run.analyses = reader->texts("analyses");
+  run.outputs = reader->texts("outputs");
+  reader->finish();
+  return run;
+}
+
+/// Of plugins that only the run knows: what is wrong with them is said there.
+RawOptions read_options(TableReader& top, std::vector<Error>& errors) {
+  RawOptions options;
+  const toml::table* table = top.anything("options");
+  if (table == nullptr) return options;
+  const std::string& file = top.file();
+  for (const auto& [plugin, node] : *table) {
+    const std::string name(plugin.str());
+    const toml::table* entries = node.as_table();
+    if (entries == nullptr) {
+      errors.push_back(Error{"options." + name + ": expected a table, found " + type_name(node),
+                             file, node.source().begin.line});
+      continue;
+    }
+    auto& of_plugin = options[name];
+    for (const auto& [key, value] : *entries) {
+      const std::uint64_t line = value.source().begin.line;
+      if (auto setting = to_setting(value))
+        of_plugin[std::string(key.str())] = RawOption{std::move(*setting), file, line};
+      else
+        errors.push_back(Error{"options." + name + "." + std::string(key.str()) +
+                                   ": expected a value, found " + type_name(value),
+                               file, line});
+    }
+  }
+  return options;
+}
+
+/// A coefficient in 1/K under the key for um/(m K) would leave the length as it is, in silence.
+std::optional<double> expansion_of(TableReader& reader) {
+  constexpr const char* key = "expansion_um_per_m_K";
+  constexpr double least = 1e-3;
+  const auto value = reader.number(key, um);
+  if (value && *value != 0.0 && std::fabs(*value) < least * um)
+    reader.error(key, "expected um/(m K), 11.5 for steel, 0 for none; found " +
+                          short_text(*value / um, 4) + ", which looks like 1/K");
+  return value;
+}
+
+/// Nothing where nobody says it; empty where it is said that there was none.
+std::optional<std::string> table_on(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  return text == "none" ? std::string() : text;
+}
+
+Axis read_axis(const std::string& name, TableReader& reader) {
+  Axis axis{.name = name, .rotary = rotary_by_name(name)};
+  const std::string kind = reader.text("kind");
+  if (!kind.empty()) axis.rotary = kind == "rotary";
+  reader.settle("kind", axis.rotary ? "rotary" : "linear");
+  axis.travel = reader.span("travel", axis.rotary ? deg : mm);
+  if (axis.rotary) {
+    axis.teeth = reader.integer("teeth");
+  } else {
+    axis.screw_pitch = reader.number("screw_pitch_mm", mm);
+    axis.fixed_point = reader.number("fixed_point_mm", mm);
+    axis.expansion = expansion_of(reader);
+    axis.slave = reader.text("slave");
+    if (axis.slave == axis.name && !axis.slave.empty())
+      reader.error("slave", "expected another axis than " + axis.name + ", which is the master");
+  }
+  axis.table_on = table_on(reader.text("table_on"));
+  axis.backlash_on = axis.rotary ? reader.number_or_none("backlash_on_deg", deg)
+                                 : reader.number_or_none("backlash_on_mm", mm);
+  for (const auto& [result, limit] : axis.rotary ? reader.number_table("tolerance_arcsec", arcsec)
+                                                 : reader.number_table("tolerance_um", um))
+    axis.tolerance[result] = limit;
+  reader.finish();
+  return axis;
+}
+
+Machine read_machine(TableReader& top) {
+  Machine machine;
+  auto reader = top.table("machine");
+  if (!reader) return machine;
+  machine.asset = reader->text("asset");
+  machine.maker = reader->text("maker");
+  machine.model = reader->text("model");
+  machine.serial = reader->text("serial");
+  machine.description = reader->text("description");
+  machine.condition = reader->text("condition");
+  machine.control = reader->text("control");
+  machine.structure = reader->text("structure");
+  for (auto& [name, axis] : reader->named_tables("axes"))
+    machine.axes.push_back(read_axis(name, axis));
+  reader->finish();
+  return machine;
+}
+
+Instrument read_instrument(TableReader& top) {
+  Instrument instrument;
+  auto reader = top.table("instrument");
+  if (!reader) return instrument;
+  instrument.maker = reader->text("maker");
+  instrument.model = reader->text("model");
+  instrument.serial = reader->text("serial");
+  instrument.calibrated = reader->date("calibrated");
+  instrument.certificate = reader->text("certificate");
+  instrument.issuer = reader->text("issuer");
+  instrument.valid_until = reader->date("valid_until");
+  instrument.U_fixed = reader->number("U_fixed_um", um);
+  instrument.U_per_length = reader->number("U_per_m_um", um);
+  instrument.U_angle = reader->number("U_arcsec", arcsec);
+  instrument.sphere = reader->number("sphere_um", um);
+  instrument.probe = reader->number("probe_um", um);
+  instrument.expansion = expansion_of(*reader);
+  instrument.temperature_range = reader->number("temperature_range_K");
+  instrument.expansion_range = reader->number("expansion_range_um_per_m_K", um);
+  reader->finish();
+  return instrument;
+}
+
+std::vector<Sensor> read_sensors(TableReader& top) {
+  std::vector<Sensor> sensors;
+  for (TableReader& reader : top.tables("sensor")) {
+    Sensor s;
+    s.measures = reader.text("measures");
+    s.maker = reader.text("maker");
+    s.model = reader.text("model");
+    s.serial = reader.text("serial");
+    s.calibrated = reader.date("calibrated");
+    s.valid_until = reader.date("valid_until");
+    s.certificate = reader.text("certificate");
+    s.issuer = reader.text("issuer");
+    reader.finish();
+    sensors.push_back(std::move(s));
+  }
+  return sensors;
+}
+
+Environment read_environment(TableReader& top) {
+  Environment environment;
+  auto reader = top.table("environment");
+  if (!reader) return environment;
+  environment.misalignment = reader->number("misalignment_mm", mm);
+  environment.temperature_range = reader->number("temperature_range_K");
+  environment.temperature_difference = reader->number("temperature_difference_K");
+  environment.expansion_range = reader->number("expansion_range_um_per_m_K", um);
+  environment.drift = reader->number("drift_um", um);
+  environment.drift_angle = reader->number("drift_arcsec", arcsec);
+  environment.warm_up = reader->text("warm_up");
+  environment.sensors = reader->text("sensors");
+  environment.drift_time = reader->number("drift_minutes", 60.0);
+  reader->finish();
+  return environment;
+}
+
+/// What stands in one of several keys, or needs another one.
+void check_signing(TableReader& reader, const Signing& s) {
+  if (s.pkcs12.empty() == s.pkcs11.empty())
+    reader.error("pkcs12", "expected the key in either pkcs12 (a file) or pkcs11 (a token)");
+  if (!s.pkcs11.empty() && s.module.empty())
+    reader.error("module", "is missing: the PKCS#11 library of the token");
+  const int passwords = int{!s.password_file.empty()} + int{!s.password_env.empty()} +
+                        int{!s.password_credential.empty()};
+  if (passwords != 1)
+    reader.error("password_file",
+                 "expected one of password_file, password_env, password_credential (of systemd)");
+  if (!s.time_stamp.empty() && s.trust.empty())
+    reader.error("trust", "is missing: a PEM file with the root of the time-stamp server");
+}
+
+Signing read_signing(TableReader& reader) {
+  Signing s;
+  s.pkcs12 = reader.text("pkcs12");
+  s.pkcs11 = reader.text("pkcs11");
+  s.module = reader.text("module");
+  s.certificates = reader.text("certificates");
+  s.password_file = reader.text("password_file");
+  s.password_env = reader.text("password_env");
+  s.password_credential = reader.text("password_credential");
+  s.trust = reader.text("trust");
+  s.revocation = reader.text("revocation");
+  s.signer = reader.text("signer");
+  s.time_stamp = reader.text("time_stamp");
+  s.time_stamp_required = reader.text("time_stamp_missing") != "sign";
+  s.time_stamp_seconds = reader.integer("time_stamp_seconds").value_or(s.time_stamp_seconds);
+  check_signing(reader, s);
+  reader.finish();
+  return s;
+}
+
+/// One key for linear and one for rotary axes.
+std::optional<double> either(TableReader& reader, const char* linear, double linear_unit,
+                             const char* rotary, double rotary_unit) {
+  const auto length = reader.number(linear, linear_unit),
+             angle = reader.number(rotary, rotary_unit);
+  if (length && angle)
+    reader.error(rotary, "stands beside " + std::string(linear) + "; expected one of them");
+  return length ? length : angle;
+}
+
+void read_test(TableReader& reader, Measurement& m) {
+  constexpr double minute = 60.0;
+  m.feed = either(reader, "feed_mm_per_min", mm / minute, "feed_deg_per_min", deg / minute);
+  m.dwell = reader.number("dwell_s");
+  m.over_travel = either(reader, "over_travel_mm", mm, "over_travel_deg", deg);
+  for (const auto& [axis, offset] : reader.number_table("tool_offset", mm))
+    m.tool_offset[axis] = offset;
+  for (const auto& [axis, offset] : reader.number_table("workpiece_offset", mm))
+    m.workpiece_offset[axis] = offset;
+  m.compensation = reader.text("compensation");
+}
+
+Measurement read_measurement(TableReader& reader) {
+  Measurement m;
+  m.id = reader.text("id");
+  m.kind = reader.text("kind");
+  m.file = reader.text("file");
+  m.reader = reader.text("reader");
+  m.axis = reader.text("axis");
+  m.lateral = reader.text("lateral");
+  m.adjustment = reader.text("adjustment");
+  m.order = reader.text("order");
+  if (m.kind == "axis") m.side = reader.text("side");
+  if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
+    reader.error("lateral", "expected another axis than " + m.axis +
+                                ", which moves: along it the deviation is one of positioning");
+  if (m.kind == "angle") m.lateral = reader.text("about");
+  m.exclude = reader.integers("exclude");
+  m.exclude_reason = reader.text("exclude_reason");
+  for (const auto& [axis, position] : reader.number_table("from", mm)) m.from[axis] = position;
+  for (const auto& [axis, position] : reader.number_table("to", mm)) m.to[axis] = position;
+  for (const auto& [axis, position] : reader.number_table("at", mm)) m.at[axis] = position;
+  if (m.at.contains(m.axis))
+    reader.error("at", "expected the axes that stood still, found " + m.axis + ", which moves");
+  read_test(reader, m);
+  reader.finish();
+  return m;
+}
+
+/// Where the machine's axes are named, a measured one that is not among them is worth a finding.
+void add_axis(const std::string& name, bool any_named, Manifest& manifest) {
+  manifest.campaign.machine.axes.push_back(Axis{.name = name, .rotary = rotary_by_name(name)});
+  if (any_named) manifest.undeclared_axes.push_back(name);
+}
+
+void read_measurements(TableReader& top, Manifest& manifest, bool plans) {
+  Campaign& campaign = manifest.campaign;
+  const bool any_named = !campaign.machine.axes.empty();
+
+  auto list = top.tables("measurement");
+  if (list.empty() && !plans)
+    top.error("measurement",
+              "is missing: a campaign has at least one [[measurement]], or, where it only plans, "
+              "[run] analyses and outputs");
+  std::set<std::string> ids;
+  for (TableReader& reader : list) {
+    Measurement m = read_measurement(reader);
+    if (!m.id.empty() && !ids.insert(m.id).second)
+      reader.error("id", "\"" + m.id + "\" is there twice");
+    if (!m.axis.empty() && campaign.machine.axis(m.axis) == nullptr)
+      add_axis(m.axis, any_named, manifest);
+    if (const Axis* axis = campaign.machine.axis(m.axis);
+        m.side == "slave" && axis != nullptr && axis->slave.empty())
+      reader.error("side", "expected [machine.axes." + m.axis +
+                               "] slave, the name of the control's axis on that side");
+    campaign.measurements.push_back(std::move(m));
+  }
+}
+
+void read_tables(TableReader& top, Manifest& manifest) {
+  auto reader = top.table("tables");
+  if (!reader) return;
+  for (TableReader& one : reader->tables("may_stand")) {
+    StandingFinding standing{one.text("finding"), one.text("reason"), one.line_of("finding")};
+    if (!standing.reason.empty() && !says_something(standing.reason))
+      one.error("reason", "expected why a table may be written all the same, found \"" +
+                              standing.reason + "\"");
+    one.finish();
+    manifest.tables_may_stand.push_back(std::move(standing));
+  }
+  reader->finish();
+}
+
+void read_campaign(TableReader& top, Campaign& campaign) {
+  auto reader = top.table("campaign");
+  if (!reader) return;
+  campaign.id = reader->text("id");
+  campaign.customer = reader->text("customer");
+  campaign.site = reader->text("site");
+  campaign.operator_name = reader->text("operator");
+  campaign.customer_address = reader->text("customer_address");
+  campaign.date = reader->date("date");
+  campaign.end_date = reader->date("end_date");
+  campaign.received = reader->date("received");
+  if (!campaign.end_date.empty() && campaign.end_date < campaign.date)
+    reader->error("end_date", "expected a day that is not before date, " + campaign.date);
+  reader->finish();
+}
+
+/// toml++ keeps tables sorted by name; the order in which a machine's axes are written matters to
+/// controllers that number them.
+void restore_axis_order(const toml::table& root, Machine& machine) {
+  const toml::table* axes = root["machine"]["axes"].as_table();
+  if (axes == nullptr) return;
+  const auto line = [&](const Axis& axis) {
+    const toml::node* node = axes->get(axis.name);
+    return node == nullptr ? std::numeric_limits<std::uint64_t>::max()
+                           : std::uint64_t{node->source().begin.line};
+  };
+  std::stable_sort(machine.axes.begin(), machine.axes.end(),
+                   [&](const Axis& a, const Axis& b) { return line(a) < line(b); });
+}
+
+}  // namespace
+
+bool is_campaign_id(std::string_view id) { return !id.empty() && obeys(id, campaign_id_rule); }
+
+Checked<Manifest> parse_manifest(std::string_view text, const std::string& file) {
+  auto root = parse_toml(text, file);
+  if (!root) return tl::unexpected(std::vector<Error>{root.error()});
+  std::vector<Error> errors;
+  Manifest manifest;
+  Campaign& campaign = manifest.campaign;
+  TableReader top(*root, campaign_file(), file, errors);
+  top.integer("format");
+  read_campaign(top, campaign);
+  campaign.machine = read_machine(top);
+  restore_axis_order(*root, campaign.machine);
+  campaign.instrument = read_instrument(top);
+  campaign.sensors = read_sensors(top);
+  campaign.environment = read_environment(top);
+  if (auto reader = top.table("certificate")) {
+    campaign.certificate = read_certificate(*reader);
+    read_certificate_of_campaign(*reader, campaign.certificate);
+    reader->finish();
+  }
+  manifest.run = read_run(top);
+  read_measurements(top, manifest, manifest.run.analyses && manifest.run.outputs);
+  if (auto reader = top.table("model")) {
+    if (auto effects = reader->texts("effects")) campaign.model = std::move(*effects);
+    campaign.compensate_model = reader->text("compensate") == "model";
+    campaign.formulas = read_formulas(*reader, campaign.machine);
+    reader->finish();
+  }
+  read_tables(top, manifest);
+  manifest.options = read_options(top, errors);
+  top.finish();
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  note_lines(*root, "", manifest.lines);
+  return manifest;
+}
+
+namespace {
+
+Cmc read_cmc(TableReader& laboratory) {
+  Cmc cmc;
+  auto reader = laboratory.table("cmc");
+  if (!reader) return cmc;
+  cmc.fixed = reader->number("fixed_um", um);
+  cmc.per_length = reader->number("per_m_um", um);
+  cmc.angle = reader->number("arcsec", arcsec);
+  reader->finish();
+  return cmc;
+}
+
+std::string settings_of(const toml::table& root, std::initializer_list<const char*> keys) {
+  toml::table out;
+  for (const char* key : keys)
+    if (const toml::table* table = root[key].as_table()) out.insert(key, *table);
+  if (out.empty()) return {};
+  std::ostringstream text;
+  text << out << "\n";
+  return text.str();
+}
+
+}  // namespace
+
+Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
+  auto root = parse_toml(text, file);
+  if (!root) return tl::unexpected(std::vector<Error>{root.error()});
+  std::vector<Error> errors;
+  SiteFile site;
+  TableReader top(*root, site_file(), file, errors);
+  top.integer("format");
+  if (auto reader = top.table("laboratory")) {
+    site.laboratory = {reader->text("name"),       reader->text("address"),
+                       reader->text("country"),    reader->text("accreditation"),
+                       reader->text("authoriser"), reader->text("contact"),
+                       read_cmc(*reader)};
+    reader->finish();
+  }
+  if (auto reader = top.table("limits")) {
+    site.limits.seconds = reader->number("seconds").value_or(site.limits.seconds);
+    site.limits.memory_MB = reader->number("memory_MB").value_or(site.limits.memory_MB);
+    site.limits.disk_seconds = reader->number("disk_seconds").value_or(site.limits.disk_seconds);
+    reader->finish();
+  }
+  if (auto reader = top.table("results")) {
+    site.hashed_folders = reader->text("folders") == "hashed";
+    reader->finish();
+  }
+  site.run = read_run(top);
+  site.options = read_options(top, errors);
+  site.evaluation = settings_of(*root, {"run", "options"});
+  toml::table printed = *root;
+  // How it comes to a release is the laboratory's own business, and nothing that is printed.
+  if (toml::table* certificate = printed["certificate"].as_table())
+    for (const char* key : {"release", "may_stand", "two_persons", "register", "register_seconds"})
+      certificate->erase(key);
+  site.settings = settings_of(printed, {"run", "options", "laboratory", "certificate"});
+  if (const toml::table* laboratory = (*root)["laboratory"].as_table())
+    site.evaluation += settings_of(*laboratory, {"cmc"});
+  // Decides anew what conforms. The default is what certificates were issued by before there was a
+  // choice, and says nothing new.
+  if (const auto rule = (*root)["certificate"]["decision_rule"].value<std::string>();
+      rule && *rule != "iso14253-1")
+    site.evaluation += "decision_rule = \"" + *rule + "\"\n";
+  if (auto reader = top.table("signing")) site.signing = read_signing(*reader);
+  if (auto reader = top.table("certificate")) {
+    site.certificate = read_certificate(*reader);
+    site.numbering = read_numbering(*reader);
+    reader->finish();
+  }
+  if (top.anything("database") != nullptr)
+    site.notes.push_back(file + ", line " + std::to_string(top.line_of("database")) +
+                         ": [database] has no effect in this version");
+  top.finish();
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  note_lines(*root, "", site.lines);
+  return site;
+}
+
+std::string extract_id(std::string_view text) {
+  std::size_t at = text.find("[campaign]");
+  if (at == std::string_view::npos) return {};
+  at = text.find('\n', at);
+  while (at != std::string_view::npos) {
+    const std::size_t next = text.find('\n', at + 1);
+    std::string_view line =
+        text.substr(at + 1, next == std::string_view::npos ? next : next - at - 1);
+    at = next;
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    if (line.starts_with('[')) return {};
+    if (!line.starts_with("id")) continue;
+    const std::size_t open = line.find_first_of("\"'");
+    const std::size_t close = line.find_first_of("\"'", open + 1);
+    if (open == std::string_view::npos || close == std::string_view::npos) return {};
+    const std::string_view id = line.substr(open + 1, close - open - 1);
+    return is_campaign_id(id) ? std::string(id) : std::string();
+  }
+  return {};
+}
+
+}  // namespace nonio::host::config

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/sdk/campaign.h"
+#include "nonio/sdk/error.h"
+#include "nonio/sdk/plugin.h"
+#include "nonio/sdk/settings.h"
+
+namespace nonio::host::config {
+
+inline constexpr const char* manifest_name = "campaign.toml";
+inline constexpr const char* site_name = "site.toml";
+
+/// Stands for the SHA-256 of a file that cannot be read.
+inline constexpr const char* absent = "absent";
+
+/// `[options.<plugin>]` as written, with the line of each key.
+struct RawOption {
+  Setting value;
+  std::string file;
+  std::uint64_t line = 0;
+};
+using RawOptions = std::map<std::string, std::map<std::string, RawOption>>;
+
+/// Line of each key of a file: "campaign.customer", "measurement.X.file" for the measurement with
+/// id X.
+using KeyLines = std::map<std::string, std::uint64_t, std::less<>>;
+
+struct RunChoice {
+  std::optional<std::vector<std::string>> analyses, outputs;  ///< absent: all that apply
+};
+
+/// `[[tables.may_stand]]`: a finding that makes readings implausible, and why a table may be
+/// written from them all the same.
+struct StandingFinding {
+  std::string finding, reason;
+  std::uint64_t line = 0;
+};
+
+struct Manifest {
+  Campaign campaign;
+  std::vector<std::string> undeclared_axes{};  ///< measured, and not among [machine.axes]
+  std::vector<StandingFinding> tables_may_stand{};
+  RunChoice run;
+  RawOptions options;
+  KeyLines lines;
+};
+
+struct Limits {
+  double seconds = 600.0;
+  double memory_MB = 4096.0;
+  double disk_seconds = 60.0;  ///< without a sign of life, in the survey
+};
+
+/// `[signing]` of site.toml: where the key is, where its password comes from, time stamps, and whom
+/// `verify` expects and trusts. Paths are relative to the site.
+struct Signing {
+  std::string pkcs12, pkcs11, module, certificates;
+  std::string password_file, password_env, password_credential;  ///< exactly one
+  std::string trust, revocation, signer;
+  std::string time_stamp;           ///< address of the server; empty: none
+  bool time_stamp_required = true;  ///< no answer: no certificate
+  int time_stamp_seconds = 10;
+};
+
+/// Of `[certificate]`: a finding that does not hold up an automatic release.
+struct StandingRule {
+  std::string finding;  ///< its id, or "kind.*": all whose id begins with "kind."
+  std::string reason;
+};
+
+/// `[certificate]` of site.toml: how its certificates are released and numbered.
+struct Numbering {
+  std::string pattern = "{year}-{number:4}";          ///< the sequence begins anew with each year
+  std::string register_file = "certificates.sqlite";  ///< relative to the site
+  double patience = 60.0;  ///< s, with a register that another process keeps locked
+  bool automatic = false;  ///< a night may release what no finding holds up
+  std::vector<StandingRule> may_stand{};
+  bool two_persons = false;  ///< author and authoriser must not be the same
+};
+
+struct SiteFile {
+  std::optional<Signing> signing;
+  CertificateTexts certificate;
+  Numbering numbering;
+  Laboratory laboratory;
+  RunChoice run;
+  RawOptions options;
+  Limits limits;
+  KeyLines lines;
+  bool hashed_folders = false;     ///< results in OUT/ab/<id>
+  std::string settings;            ///< TOML: what of the file has a say in a certificate
+  std::string evaluation;          ///< TOML: what of it has a say in results
+  std::vector<std::string> notes;  ///< sections that this version does not use yet
+};
+
+template <class T>
+using Checked = tl::expected<T, std::vector<Error>>;
+
+/// All that is wrong with the file at once, each with its line.
+Checked<Manifest> parse_manifest(std::string_view text, const std::string& file);
+Checked<SiteFile> parse_site(std::string_view text, const std::string& file);
+
+/// The id of a manifest that may be broken elsewhere; empty if none can be seen.
+std::string extract_id(std::string_view text);
+bool is_campaign_id(std::string_view id);
+
+/// The options of one plugin: defaults, then the site's, then the campaign's; each checked for
+/// name, kind, range and choice.
+Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
+                                 const RawOptions& campaign);
+
+/// A TOML file of templates/ as flat settings.
+Expected<Settings> parse_settings(std::string_view text, const std::string& file);
+
+/// The options of a plugin from the texts of a command line, "axes" with commas between entries;
+/// the others have their defaults.
+Checked<Settings> options_from(const Info& plugin, const std::map<std::string, std::string>& texts);
+
+}  // namespace nonio::host::config

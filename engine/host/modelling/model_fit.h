@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/modelling/campaign_model.h"
+#include "nonio/sdk/results.h"
+
+/// The nightly analysis of campaigns with a [model]. It belongs to the host, as it needs the
+/// effects of all plugins; in results.json it stands as plugin "model-fit".
+namespace nonio::host::modelling {
+
+struct ModelFits {
+  std::vector<Results::Analysed> analyses;
+  std::vector<ModelFit> models;  ///< of those that could be fitted
+};
+
+/// One entry for each axis with readings, under its first measurement. A model that cannot be
+/// fitted is a finding; one that names what does not exist is an error.
+Expected<ModelFits> model_fit(const reading::ReadCampaign& read, const reading::Context& context);
+
+/// What a table takes where the manifest says compensate = "model": for each target and direction
+/// that was measured, one reading that is the sum of the model's compensable effects. None of an
+/// axis whose model has no such effect; measurements that are not of an axis stay as they are.
+Expected<std::vector<Observations>> compensable_readings(const reading::ReadCampaign& read,
+                                                         std::vector<Remark>& notes);
+
+}  // namespace nonio::host::modelling

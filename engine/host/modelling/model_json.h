@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "host/modelling/model_change.h"
+#include "host/modelling/model_words.h"
+
+namespace nonio::host::modelling {
+
+struct Explained {
+  PartModel part;
+  model::Explanation explanation;
+};
+
+/// The part whose verdict asks most: missing, unrepeatable, unknown, nothing.
+std::size_t most_severe(const std::vector<Explained>& all);
+
+/// Sentences about values below their uncertainty and effects that nothing here measures.
+std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
+                                     const ModelWords& words);
+
+/// docs/formats.md: nonio-compare/1, nonio-explain/1 and nonio-model/1. `all` is not empty;
+/// `warnings` and `errors` are those of the campaign.
+std::string compare_json(const std::vector<Compared>& all, const Campaign& campaign,
+                         const ModelWords& words, const std::vector<std::string>& warnings,
+                         const std::vector<Error>& errors);
+std::string explain_json(const std::vector<Explained>& all, const Campaign& campaign,
+                         const ModelWords& words, std::uint64_t seed,
+                         const std::vector<ModelStep>& steps,
+                         const std::vector<std::string>& warnings,
+                         const std::vector<Error>& errors);
+std::string change_json(const Change& change, const Campaign& campaign, const ModelWords& words);
+
+const char* to_text(model::Verdict::Kind kind);
+
+/// Pairs of parameters with |r| beyond 0.9.
+struct Correlated {
+  const model::Parameter *one, *other;
+  double r;
+};
+std::vector<Correlated> correlated(const model::Fit& fit);
+
+/// Candidates that have a score, best first; the others are what these readings cannot show.
+bool is_ranked(const model::Candidate& candidate);
+
+}  // namespace nonio::host::modelling

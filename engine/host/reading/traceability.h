@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "nonio/sdk/campaign.h"
+#include "nonio/sdk/results.h"
+
+/// Days that cannot be: what makes a measurement traceable holds on the day on which it was made.
+/// Source: ISO/IEC 17025:2017, 6.4.4 to 6.4.8 (equipment), 7.4 (items), 7.8.2.1 (dates).
+namespace nonio::host::reading {
+
+/// Years for which a calibration holds whose last day nobody stated.
+inline constexpr int unstated_validity = 2;
+
+/// Instruments that were calibrated after the measurement, or whose calibration held no longer; an
+/// item that came after it was measured. Any of them stops a certificate.
+std::vector<Finding> traceability_findings(const Campaign& campaign);
+
+/// Keys with a day that has not come yet on `today`, and why they stop a certificate. Days are
+/// YYYY-MM-DD.
+std::vector<std::string> days_to_come(const Campaign& campaign, const std::string& today);
+
+}  // namespace nonio::host::reading

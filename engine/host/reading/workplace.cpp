@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <optional>
+
+#include "host/config/secret_files.h"
+#include "host/config/site_files.h"
+#include "host/config/template_files.h"
+#include "host/process/apart.h"
+#include "host/reading/campaign_reader.h"
+#include "host/storage/files.h"
+
+namespace nonio::host::reading {
+namespace fs = std::filesystem;
+
+Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
+                                                    const std::vector<fs::path>& plugin_folders,
+                                                    const std::vector<fs::path>& template_folders,
+                                                    const std::string& version, TemplatesFor what) {
+  std::error_code error;
+  if (!fs::is_directory(campaign, error))
+    return fail("there is no folder " + campaign.string() + "; expected the folder of a campaign");
+  if (!fs::exists(campaign / config::manifest_name, error))
+    return fail("there is no " + std::string(config::manifest_name) + " in " + campaign.string() +
+                ": it is not the folder of a campaign");
+  auto place = std::make_unique<Workplace>();
+  Context& context = place->context;
+  context.version = version;
+  const fs::path site = config::site_of(campaign);
+  auto read = config::read_site(site, context.site_sha256);
+  if (!read) return fail(read.error().front());
+  context.site = std::move(*read);
+  auto machines = config::read_machines(site);
+  if (!machines) return fail(machines.error());
+  context.machines = std::move(*machines);
+  const auto folders = config::with_site_templates(template_folders, site);
+  if (!folders) return fail(folders.error());
+  auto templates = config::read_templates(*folders, context.templates_sha256, nullptr, {},
+                                          what == TemplatesFor::documents ? "" : "words/en/");
+  if (!templates) return fail(templates.error());
+  context.templates = std::move(*templates);
+  if (context.site.signing)
+    process::hide_from_plugins(config::secret_files(*context.site.signing, site));
+  place->plugins.load(plugin_folders);
+  if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
+  place->notes = place->plugins.refusal_notes();
+  context.plugins = &place->plugins;
+  return place;
+}
+
+}  // namespace nonio::host::reading

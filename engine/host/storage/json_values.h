@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "nonio/sdk/error.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio::host::storage {
+
+/// Keys stay in the order in which they are written.
+using Json = nlohmann::ordered_json;
+
+/// Indented by one, so that a diff of two nights reads well. Text that is not UTF-8 (a file name, a
+/// plugin's message) gets replacement characters instead of stopping the night.
+inline std::string dump(const Json& json) {
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+inline Json to_json(const Error& error) {
+  Json json = Json::object();
+  if (!error.file.empty()) json["file"] = error.file;
+  if (error.line != 0) json["line"] = error.line;
+  if (!error.column.empty()) json["column"] = error.column;
+  json["message"] = error.message;
+  return json;
+}
+
+/// A name with its unit: "rms_um".
+inline std::string key(const std::string& name, Quantity q) {
+  return name + std::string(unit_of(q).suffix);
+}
+
+/// What is not a number, or not there, is left out.
+inline void put(Json& json, const std::string& name, const std::optional<double>& value,
+                Quantity q) {
+  if (!value) return;
+  const double shown = printed(*value, q);
+  if (std::isfinite(shown)) json[key(name, q)] = shown;
+}
+
+}  // namespace nonio::host::storage

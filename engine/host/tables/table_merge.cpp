@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "host/process/guarded.h"
+#include "host/tables/table_check.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio::host::tables {
+namespace {
+
+using ReadTables = std::vector<LoadedTable>;
+
+bool is_own(const TableDifference& d, const std::string& axis) {
+  return d.output == axis && d.input == std::vector{axis};
+}
+
+/// The readings of this axis by themselves, as `on` leaves them.
+struct OneAxis {
+  Campaign campaign;
+  std::vector<Observations> readings, measured;
+};
+
+Expected<OneAxis> one_axis(const reading::ReadCampaign& read, const std::string& axis,
+                           const std::optional<Underlay>& on) {
+  const Campaign& campaign = read.manifest->campaign;
+  OneAxis one{campaign, {}, {}};
+  one.campaign.measurements.clear();
+  std::vector<std::string> others;
+  for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
+    const Measurement& m = campaign.measurements[i];
+    if (m.kind != "axis" || read.observations[i].size() == 0) continue;
+    if (const std::string of = control_axis(campaign.machine, m); of != axis) {
+      others.push_back(of);
+      continue;
+    }
+    one.campaign.measurements.push_back(m);
+    one.readings.push_back(on ? on->readings[i] : read.observations[i]);
+    one.measured.push_back(read.observations[i]);
+  }
+  if (one.readings.size() == 1) return one;
+  if (!one.readings.empty())
+    return fail("axis " + axis + " has " + std::to_string(one.readings.size()) +
+                " measurements; expected one");
+  std::string list;
+  for (const std::string& o : others) list += (list.empty() ? "" : ", ") + o;
+  return fail("no measurement of axis " + axis + "; there are " + (list.empty() ? "none" : list));
+}
+
+/// What the control would have after the merge, held against what it has and what is new.
+Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh,
+                              const ReadTables& next, const std::string& axis) {
+  constexpr double nothing = 1e-12;  // m, rad
+  for (const TableDifference& d : differences(present, next)) {
+    if (is_own(d, axis)) continue;
+    if (!d.present || !d.next || d.largest > nothing || d.present->backlash != d.next->backlash)
+      return fail("the table of " + d.output + " by " + d.input.front() +
+                  " would change too; nothing was written");
+  }
+  bool there = false;
+  for (const TableDifference& d : differences(fresh, next)) {
+    if (!is_own(d, axis)) continue;
+    there = d.present && d.next;
+    if (!there || d.largest > nothing)
+      return fail("the control would not read the new table of " + axis +
+                  " back from the merged file; nothing was written");
+    if (d.present->backlash && d.next->backlash != d.present->backlash)
+      return fail("the files of the backup hold another backlash value of " + axis +
+                  " than the new table needs; nothing was written");
+  }
+  return there ? Expected<void>{} : fail("the merged file holds no table of " + axis);
+}
+
+}  // namespace
+
+Expected<CampaignTables> tables_of_campaign(const reading::ReadCampaign& read, const Output& output,
+                                            const Settings& given, const Templates& templates) {
+  const auto on = what_was_on(read, output, given);
+  if (!on) return fail(on.error());
+  const Settings& options = *on ? (*on)->options : given;
+  const Campaign& campaign = read.manifest->campaign;
+  const Results none;
+  auto written = process::guarded("output " + output.info.name, [&] {
+    return output.write(
+        {campaign, *on ? (*on)->readings : read.observations, none, options, templates});
+  });
+  if (!written) return fail(written.error());
+  CampaignTables out{std::move(written->artifacts), {}, std::move(written->findings)};
+  if (out.files.empty()) return out;
+  auto tables = tables_in(output, out.files, campaign, options);
+  if (!tables) return fail(tables.error());
+  out.tables = std::move(*tables);
+  return out;
+}
+
+Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Output& output,
+                                    const Settings& given, const Templates& templates,
+                                    const std::vector<Artifact>& backup, const std::string& axis) {
+  const std::string who = "output " + output.info.name;
+  if (output.merge == nullptr)
+    return fail(output.info.name +
+                " does not merge: load the new file of the axis as it is, in place of the old one");
+  const auto on = what_was_on(read, output, given);
+  if (!on) return fail(on.error());
+  const Settings& options = *on ? (*on)->options : given;
+  const auto one = one_axis(read, axis, *on);
+  if (!one) return fail(one.error());
+  const Results none;
+  auto written = process::guarded(who, [&] {
+    return output.write({one->campaign, one->readings, none, options, templates});
+  });
+  if (!written) return fail(written.error());
+  MergedTables out{
+      .files = {}, .differences = {}, .findings = written->findings, .notes = written->notes};
+  if (written->artifacts.empty()) return out;  // refused; the findings say why
+  const Campaign& campaign = read.manifest->campaign;
+  auto changed = process::guarded(who, [&] {
+    return output.merge({backup, written->artifacts, axis, campaign, options});
+  });
+  if (!changed) return fail(changed.error());
+  std::vector<Artifact> whole = backup;
+  for (const Artifact& f : *changed) {
+    const auto same = std::find_if(whole.begin(), whole.end(),
+                                   [&](const Artifact& a) { return a.name == f.name; });
+    if (same != whole.end())
+      *same = f;
+    else
+      whole.push_back(f);
+  }
+  const auto present = tables_in(output, backup, campaign, options),
+             next = tables_in(output, whole, campaign, options),
+             fresh = tables_in(output, written->artifacts, campaign, options);
+  for (const auto* tables : {&present, &next, &fresh})
+    if (!*tables) return fail(tables->error());
+  if (auto only = only_this_axis(*present, *fresh, *next, axis); !only) return fail(only.error());
+  out.files = std::move(*changed);
+  out.differences = differences(*present, *next);
+  return out;
+}
+
+}  // namespace nonio::host::tables

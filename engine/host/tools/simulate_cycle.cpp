@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "host/config/toml_reader.h"
+#include "host/storage/files.h"
+#include "host/storage/nearest.h"
+#include "host/tools/simulate_spec.h"
+
+namespace nonio::host::tools {
+namespace {
+
+/// One [[cycle]].
+class CycleReader {
+ public:
+  CycleReader(const config::TableReader& reader, std::vector<Error>& errors)
+      : reader_(reader), errors_(errors) {
+    c_.line = reader.line();
+  }
+
+  CycleSpec read(const Campaign& campaign) {
+    if (!find_measurement(campaign)) return c_;
+    unit_ = c_.axis.rotary ? 1.0 / deg_per_rad : 1e-3;
+    reader_.settle(config::cycle_axis, c_.axis.rotary ? "rotary" : "linear");
+    read_targets();
+    read_order();
+    read_times();
+    c_.noise = (c_.axis.rotary ? reader_.number("noise_arcsec", 1.0 / arcsec_per_rad)
+                               : reader_.number("noise_um", 1e-6))
+                   .value_or(0.0);
+    read_misreadings();
+    read_temperature();
+    reader_.finish();
+    return c_;
+  }
+
+ private:
+  bool find_measurement(const Campaign& campaign) {
+    const std::string id = reader_.text("measurement");
+    std::vector<std::string> ids;
+    for (const Measurement& m : campaign.measurements) {
+      ids.push_back(m.id);
+      if (m.id == id) c_.measurement = m;
+    }
+    if (c_.measurement.id.empty()) {
+      if (!id.empty())
+        reader_.error("measurement", "no [[measurement]] has the id \"" + id + "\"" +
+                                         storage::suggestion(id, ids));
+      return false;
+    }
+    if (c_.measurement.kind != "axis")
+      reader_.error("measurement",
+                    "expected a measurement of kind axis, found " + c_.measurement.kind);
+    if (!storage::is_artifact_name(c_.measurement.file))
+      reader_.error("measurement", "its file is not a plain name: " + c_.measurement.file);
+    if (const Axis* axis = campaign.machine.axis(c_.measurement.axis)) c_.axis = *axis;
+    return true;
+  }
+
+  void read_targets() {
+    const std::string suffix = c_.axis.rotary ? "_deg" : "_mm";
+    const std::string list = "targets" + suffix, from = "from" + suffix, to = "to" + suffix,
+                      step = "step" + suffix;
+    const auto given = reader_.numbers(list);
+    const auto first = reader_.number(from), last = reader_.number(to),
+               distance = reader_.number(step);
+    const double share = reader_.number("random_offset_pct", 0.01).value_or(0.0);
+    if (share > 0.45) reader_.error("random_offset_pct", "expected at most 45, targets keep order");
+    if (given) {
+      if (first || last || distance) reader_.error(list, "stands beside a range");
+      c_.targets = *given;
+    } else if (first && last && distance && *distance > 0.0 && *last > *first &&
+               (*last - *first) / *distance < 1e5) {
+      for (int i = 0; *first + i * *distance <= *last + 1e-9 * *distance; ++i)
+        c_.targets.push_back(*first + i * *distance);
+    } else {
+      complain(reader_.place(list) + ": expected a list of targets, or a range by " + from + ", " +
+               to + " (the larger one) and " + step);
+      return;
+    }
+    const auto falls =
+        std::adjacent_find(c_.targets.begin(), c_.targets.end(), std::greater_equal<>());
+    if (c_.targets.size() < 2 || c_.targets.size() > 100000 || falls != c_.targets.end()) {
+      complain(reader_.place(list) +
+               ": expected 2 to 100000 targets, each larger than the "
+               "one before; found " +
+               std::to_string(c_.targets.size()) + " targets");
+      return;
+    }
+    double least = c_.targets[1] - c_.targets[0];
+    for (std::size_t i = 1; i < c_.targets.size(); ++i)
+      least = std::min(least, c_.targets[i] - c_.targets[i - 1]);
+    c_.offset = share * least * unit_;
+    for (double& target : c_.targets) target *= unit_;
+  }
+
+  void read_temperature() {
+    auto t = reader_.table("temperature");
+    if (!t) return;
+    CycleSpec::Course course;
+    course.start = t->number("start_c").value_or(course.start);
+    course.drift = t->number("drift_K_per_h", 1.0 / 3600.0).value_or(0.0);
+    course.swing = t->number("swing_K").value_or(0.0);
+    course.period = t->number("period_s").value_or(course.period);
+    t->finish();
+    c_.temperature = course;
+  }
+
+  void read_misreadings() {
+    auto m = reader_.table("misreadings");
+    if (!m) return;
+    c_.misread = m->number("fraction").value_or(0.0);
+    if (c_.misread > 1.0) m->error("fraction", "expected 0 to 1");
+    if (const auto size = m->numbers("size")) {
+      if (size->size() == 2 && (*size)[0] >= 0.0 && (*size)[0] <= (*size)[1])
+        c_.misread_size = {(*size)[0], (*size)[1]};
+      else
+        m->error("size", "expected two numbers, times the noise, the smaller one first");
+    }
+    m->finish();
+  }
+
+  void read_order() {
+    c_.pendulum = reader_.text("order") != "unidirectional";
+    const std::string direction = reader_.text("direction");
+    if (!direction.empty() && c_.pendulum)
+      reader_.error("direction", "stands only beside order = \"unidirectional\"");
+    c_.direction = direction == "-" ? -1.0 : 1.0;
+    if (const auto runs = reader_.integer("runs")) c_.runs = static_cast<std::uint32_t>(*runs);
+  }
+
+  void read_times() {
+    const char* feed = c_.axis.rotary ? "feed_deg_per_min" : "feed_mm_per_min";
+    c_.feed = reader_.number(feed, unit_ / 60.0).value_or(c_.axis.rotary ? 0.1 : 0.05);
+    c_.dwell = reader_.number("dwell_s").value_or(c_.dwell);
+    c_.pause = reader_.number("pause_s").value_or(c_.pause);
+    c_.timed = reader_.flag("times").value_or(true);
+  }
+
+  void complain(std::string message) {
+    errors_.push_back(Error{std::move(message), reader_.file(), c_.line});
+  }
+
+  CycleSpec c_;
+  double unit_ = 1e-3;  ///< of the targets
+  config::TableReader reader_;
+  std::vector<Error>& errors_;
+};
+
+}  // namespace
+
+std::vector<CycleSpec> read_cycles(config::TableReader& top, const Campaign& campaign,
+                                   std::vector<Error>& errors) {
+  const auto complain = [&](std::uint64_t line, std::string message) {
+    errors.push_back(Error{std::move(message), top.file(), line});
+  };
+  std::vector<CycleSpec> found, cycles;
+  for (const config::TableReader& reader : top.tables("cycle"))
+    found.push_back(CycleReader(reader, errors).read(campaign));
+  for (const Measurement& m : campaign.measurements) {
+    const auto is_its = [&](const CycleSpec& c) { return c.measurement.id == m.id; };
+    const auto of_it = std::find_if(found.begin(), found.end(), is_its);
+    if (of_it == found.end()) {
+      if (errors.empty())
+        complain(top.line_of("measurement"),
+                 "measurement \"" + m.id + "\" has no [[cycle]] that says how it is taken");
+      continue;
+    }
+    const auto again = std::find_if(of_it + 1, found.end(), is_its);
+    if (again != found.end()) complain(again->line, "measurement \"" + m.id + "\" has two cycles");
+    cycles.push_back(*of_it);
+  }
+  return cycles;
+}
+
+}  // namespace nonio::host::tools

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scatter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "data/whitening.h"
+#include "nonio/math/distributions.h"
+#include "nonio/math/statistics.h"
+
+namespace nonio::model {
+
+namespace {
+
+/// Residuals without what a whole pass shares.
+std::vector<double> within_passes(const Repeats& repeats, const std::vector<double>& residual,
+                                  const std::vector<double>& weight) {
+  Repeats alone = repeats;  // every reading a cell of its own would leave nothing: one cell a pass
+  alone.cell = alone.pass;
+  alone.cells = alone.passes;
+  return saturate(alone, residual, weight).e;
+}
+
+}  // namespace
+
+bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
+                const std::vector<double>& weight, double digit) {
+  std::vector<std::pair<double, std::uint32_t>> e;  // residual and cell
+  for (std::size_t i = 0; i < weight.size(); ++i)
+    if (weight[i] > 0.0) e.emplace_back(residual[i], repeats.cell[i]);
+  if (e.size() < 40) return false;
+  std::sort(e.begin(), e.end());
+  const auto n = static_cast<double>(e.size());
+  double sum = 0.0, squares = 0.0;
+  for (const auto& [x, cell] : e) sum += x, squares += x * x;
+  double left = 0.0, best = 0.0, best_apart = 0.0;
+  std::size_t split = 0;
+  for (std::size_t i = 0; i + 1 < e.size(); ++i) {
+    left += e[i].first;
+    const double k = static_cast<double>(i + 1);
+    if (k < 0.1 * n || k > 0.9 * n) continue;
+    const double apart = left / k - (sum - left) / (n - k);
+    const double between = apart * apart * k * (n - k) / n;
+    const double within = (squares - sum * sum / n - between) / n;
+    // Of normal noise 7, of evenly spread noise 12.
+    if (apart * apart / within > best)
+      best = apart * apart / within, best_apart = -apart, split = i + 1;
+  }
+  constexpr double one_digit = 1.6;  // two neighbouring digits of a coarse display
+  if (best < 18.0 || best_apart < one_digit * digit) return false;
+  std::vector<int> side(repeats.cells, 0);
+  for (std::size_t i = 0; i < e.size(); ++i) side[e[i].second] |= i < split ? 1 : 2;
+  const auto mixed = std::count(side.begin(), side.end(), 3);
+  return static_cast<double>(mixed) > 0.25 * static_cast<double>(repeats.cells);
+}
+
+namespace {
+
+/// Rows of lines with more than one run: of the others nobody knows whether a run is wild.
+std::vector<char> on_repeated_lines(const Observations& o) {
+  std::vector<std::uint32_t> first(lines_of(o), 0);
+  std::vector<char> several(lines_of(o), 0), out(o.size(), 0);
+  for (std::size_t i = 0; i < o.size() && !o.run.empty(); ++i) {
+    std::uint32_t& run = first[line_of(o, i)];
+    if (run == 0) run = o.run_of(i);
+    if (run != o.run_of(i)) several[line_of(o, i)] = 1;
+  }
+  for (std::size_t i = 0; i < o.size(); ++i) out[i] = several[line_of(o, i)];
+  return out;
+}
+
+}  // namespace
+
+std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
+                              const std::vector<double>& residual,
+                              const std::vector<double>& weight, const Noise& noise) {
+  const double display = noise.digit * noise.digit / 12.0;
+  std::vector<std::vector<double>> of_run;
+  const std::vector<double> e_of = within_passes(repeats, residual, weight);
+  const std::vector<char> repeated = on_repeated_lines(o);
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    const std::size_t run = o.run.empty() ? 0 : o.run[i];
+    if (run >= of_run.size()) of_run.resize(run + 1);
+    if (repeated[i] != 0)
+      of_run[run].push_back(noise.rough.empty() ? e_of[i] : e_of[i] / noise.rough[i]);
+  }
+  double all = 0.0, n = 0.0, runs = 0.0;
+  for (const auto& e : of_run) {
+    for (const double x : e) all += x * x, ++n;
+    runs += e.empty() ? 0.0 : 1.0;
+  }
+  std::optional<Place> worst;
+  for (std::size_t run = 0; run < of_run.size(); ++run) {
+    const auto k = static_cast<double>(of_run[run].size());
+    if (k < 6.0 || n - k < 6.0) continue;
+    // By its median, so that one misread value makes no wild run.
+    std::vector<double> size;
+    double squares = 0.0;
+    for (const double x : of_run[run]) size.push_back(std::fabs(x)), squares += x * x;
+    const double s = 1.4826 * math::median(size);
+    std::vector<double> others;
+    for (std::size_t r = 0; r < of_run.size(); ++r)
+      if (r != run)
+        for (const double x : of_run[r]) others.push_back(std::fabs(x));
+    const double s_others = 1.4826 * math::median(others);
+    const double F = math::test_ratio(s * s, std::max(s_others * s_others, display));
+    // A median knows a scatter as well as 0.37 times as many squares do.
+    const double p = math::f_upper(F, 0.37 * k, 0.37 * (n - k)) * runs;
+    if (F < 4.0 || p > 1e-4 || (worst && p >= worst->p)) continue;
+    worst = Place{"run", squares / all, p, s, static_cast<double>(run), Quantity::count};
+  }
+  return worst;
+}
+
+namespace {
+
+/// n ln(squares/n) + ln|V| of whitened columns, the last of them the readings.
+double deviance(const Observations& o, const std::vector<double>& weight, const Noise& noise,
+                const MatrixXd& columns) {
+  const Whitening white(o, weight, noise);
+  MatrixXd whole = white(columns);
+  white.take_out_zeros(whole);
+  const auto n = static_cast<double>((white.root().array() > 0.0).count());
+  const MatrixXd x = whole.leftCols(whole.cols() - 1);
+  VectorXd y = whole.rightCols(1);
+  double squares = y.squaredNorm();
+  if (x.cols() > 0) {
+    y.applyOnTheLeft(Eigen::HouseholderQR<MatrixXd>(x).householderQ().transpose());
+    squares = y.tail(y.size() - x.cols()).squaredNorm();
+  }
+  return n * std::log(squares / n) + white.log_det();
+}
+
+}  // namespace
+
+double criterion_of_walk(const Observations& o, const std::vector<double>& weight, Noise noise,
+                         const MatrixXd& model) {
+  constexpr int steps = 13;
+  const Index n = model.rows();
+  MatrixXd columns(n, model.cols() + 1);
+  columns << model, Eigen::Map<const VectorXd>(o.deviation.data(), n);
+  noise.zero = Noise::Zero::steady;
+  const double none = Whitening(o, weight, noise).log_det();
+  noise.zero = Noise::Zero::walks;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < steps; ++k) {
+    noise.zero_size = std::pow(10.0, 0.125 * k - 1.0);
+    least = std::min(least, deviance(o, weight, noise, columns) - none);
+  }
+  if (o.run.empty() || std::all_of(o.run.begin(), o.run.end(),
+                                   [&](std::uint32_t run) { return run == o.run.front(); }))
+    return least;
+  noise.zero = Noise::Zero::of_run;
+  for (const double size : {0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8}) {
+    noise.zero_size = size;
+    least = std::min(least, deviance(o, weight, noise, columns) - none);
+  }
+  return least;
+}
+
+}  // namespace nonio::model
