@@ -68,6 +68,11 @@ Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
                        const std::vector<char>& searched, std::vector<double> weight,
                        const Noise& noise = {});
 
+/// `fit_near` whose shapes are their best: `searched` are unknowns of the uncertainty only.
+Expected<Fit> fit_at(const Observations& o, std::vector<Term> terms,
+                     const std::vector<char>& searched, std::vector<double> weight,
+                     const Noise& noise);
+
 /// `rms` of a fit with shapes that are given, without the rest of it; infinite where there is none.
 double rms_with(const Observations& o, const std::vector<Term>& terms,
                 const std::vector<double>& weight);

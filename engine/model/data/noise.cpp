@@ -46,6 +46,11 @@ MatrixXd correlations(Index m, double rho) {
 }
 
 Moments moments(Index m, Index k, double rho) {
+  if (rho == 0.0) {
+    const MatrixXd q = powers_of_order(m, k);
+    const auto left = static_cast<double>(m - k);
+    return {left, -q.topRows(m - 1).cwiseProduct(q.bottomRows(m - 1)).sum(), left};
+  }
   const MatrixXd M = without_powers(powers_of_order(m, k), correlations(m, rho));
   return {M.trace(), M.diagonal<1>().sum(), M.squaredNorm()};
 }
@@ -175,7 +180,8 @@ struct TargetScatter {
   std::vector<double> at, squares, dof;
 };
 
-TargetScatter scatter_of(const Part& part, const Saturated& s, const std::vector<double>& weight) {
+TargetScatter scatter_of(const Part& part, const Saturated& s, const std::vector<double>& weight,
+                         double dof) {
   std::map<double, std::pair<double, double>> of;
   double used = 0.0;
   for (std::size_t i = 0; i < weight.size(); ++i) {
@@ -187,7 +193,7 @@ TargetScatter scatter_of(const Part& part, const Saturated& s, const std::vector
   for (const auto& [at, sum] : of) {
     out.at.push_back(at);
     out.squares.push_back(sum.first);
-    out.dof.push_back(sum.second * s.dof / used);
+    out.dof.push_back(sum.second * dof / used);
   }
   return out;
 }
@@ -207,8 +213,10 @@ void find_stretch(const Part& part, const Saturated& s, const std::vector<double
                   Noise& noise) {
   constexpr std::size_t fewest = 3, most_targets = 400;
   constexpr double least_ratio = 1.5, by_chance = 0.005;
+  const double rho2 = noise.in_repeats * noise.in_repeats;
+  const double independent = (1.0 - rho2) / (1.0 + rho2);  // squares of neighbours go together
   if (part.kind != Part::Kind::axis || !(s.dof >= 2.0 * least_dof)) return;
-  const TargetScatter scatter = scatter_of(part, s, weight);
+  const TargetScatter scatter = scatter_of(part, s, weight, s.dof * independent);
   const std::size_t targets = scatter.at.size();
   if (targets < 2 * fewest || targets > most_targets) return;
   std::vector<double> squares(targets + 1, 0.0), dof(targets + 1, 0.0);
@@ -244,7 +252,7 @@ void find_stretch(const Part& part, const Saturated& s, const std::vector<double
 /// Inside and outside of a known stretch anew, from what is left with their weights.
 void measure_stretch(const Part& part, const Saturated& s, const std::vector<double>& weight,
                      Noise& noise) {
-  const TargetScatter scatter = scatter_of(part, s, weight);
+  const TargetScatter scatter = scatter_of(part, s, weight, s.dof);
   double in = 0.0, f = 0.0, out = 0.0, g = 0.0;
   for (std::size_t k = 0; k < scatter.at.size(); ++k) {
     const bool inside = scatter.at[k] >= noise.stretch->from && scatter.at[k] <= noise.stretch->to;
@@ -290,15 +298,18 @@ Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<doubl
   noise.pass = repeats.pass;
   noise.digit = digit_of(part.table);
   Saturated left = saturate(repeats, part.table.deviation, weight);
+  find_neighbours(repeats, left, weight, noise);
   find_stretch(part, left, weight, noise);
+  if (!noise.stretch) return noise;
   std::vector<double> with = with_scatter(weight, noise);
   // What a pass shares carries scatter of the stretch to the others: less with its weights.
-  for (int round = 0; round < 3 && noise.stretch; ++round) {
+  for (int round = 0; round < 3; ++round) {
     left = saturate(repeats, part.table.deviation, with);
     measure_stretch(part, left, weight, noise);
     with = with_scatter(weight, noise);
   }
-  if (noise.stretch) left = saturate(repeats, part.table.deviation, with);
+  left = saturate(repeats, part.table.deviation, with);
+  noise.neighbours = noise.in_repeats = noise.u_neighbours = 0.0;
   find_neighbours(repeats, left, with, noise);
   return noise;
 }

@@ -235,4 +235,71 @@ Noise with_zero(const Observations& o, const std::vector<Term>& terms,
   return search.found();
 }
 
+namespace {
+
+/// n ln(squares/n) + ln|V| of whitened columns, the last of them the readings.
+double deviance(const Observations& o, const std::vector<double>& weight, const Noise& noise,
+                const MatrixXd& columns) {
+  const Whitening white(o, weight, noise);
+  MatrixXd whole = white(columns);
+  white.take_out_zeros(whole);
+  const auto n = static_cast<double>((white.root().array() > 0.0).count());
+  const MatrixXd x = whole.leftCols(whole.cols() - 1);
+  VectorXd y = whole.rightCols(1);
+  double squares = y.squaredNorm();
+  if (x.cols() > 0) {
+    y.applyOnTheLeft(Eigen::HouseholderQR<MatrixXd>(x).householderQ().transpose());
+    squares = y.tail(y.size() - x.cols()).squaredNorm();
+  }
+  return n * std::log(squares / n) + white.log_det();
+}
+
+}  // namespace
+
+double criterion_of_walk(const Observations& o, const std::vector<double>& weight, Noise noise,
+                         const MatrixXd& model) {
+  constexpr int steps = 13;
+  constexpr double beyond_minimum = 12.0;
+  const Index n = model.rows();
+  MatrixXd columns(n, model.cols() + 1);
+  columns << model, Eigen::Map<const VectorXd>(o.deviation.data(), n);
+  noise.zero = Noise::Zero::steady;
+  const double none = Whitening(o, weight, noise).log_det();
+  noise.zero = Noise::Zero::walks;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < steps; ++k) {
+    noise.zero_size = std::pow(10.0, 0.125 * k - 1.0);
+    const double value = deviance(o, weight, noise, columns) - none;
+    least = std::min(least, value);
+    if (value > least + beyond_minimum) break;
+  }
+  if (o.run.empty() || std::all_of(o.run.begin(), o.run.end(),
+                                   [&](std::uint32_t run) { return run == o.run.front(); }))
+    return least;
+  noise.zero = Noise::Zero::of_run;
+  double least_of_runs = std::numeric_limits<double>::infinity();
+  for (const double size : {0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8}) {
+    noise.zero_size = size;
+    const double value = deviance(o, weight, noise, columns) - none;
+    least_of_runs = std::min(least_of_runs, value);
+    if (value > least_of_runs + beyond_minimum) break;
+  }
+  return std::min(least, least_of_runs);
+}
+
+double criterion_of_neighbours(const Observations& o, const std::vector<double>& weight,
+                               Noise noise, const MatrixXd& model) {
+  MatrixXd columns(model.rows(), model.cols() + 1);
+  columns << model, Eigen::Map<const VectorXd>(o.deviation.data(), model.rows());
+  noise.zero = Noise::Zero::steady;
+  noise.neighbours = 0.0;
+  const double none = Whitening(o, weight, noise).log_det();
+  double least = std::numeric_limits<double>::infinity();
+  for (const double rho : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95}) {
+    noise.neighbours = rho;
+    least = std::min(least, deviance(o, weight, noise, columns) - none);
+  }
+  return least;
+}
+
 }  // namespace nonio::model

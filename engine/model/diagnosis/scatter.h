@@ -18,10 +18,4 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
                               const std::vector<double>& residual,
                               const std::vector<double>& weight, const Noise& noise);
 
-/// n ln(squares/n) + ln|V| of the model beside a zero that walks, reading by reading, or that each
-/// run has for itself, as far as makes this least: what `Workbench::State::criterion` is without
-/// its price. `model` holds the model's columns; rows in their order, of weight 0 are left out.
-double criterion_of_walk(const Observations& o, const std::vector<double>& weight, Noise noise,
-                         const MatrixXd& model);
-
 }  // namespace nonio::model

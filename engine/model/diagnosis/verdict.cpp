@@ -91,27 +91,10 @@ class Judge {
   }
 
  private:
-  /// Evidence of the model beside a zero that walks.
-  double criterion_beside_walk(const std::vector<Term>& terms) const {
-    const auto blocks = blocks_of(f_.part.table, terms, f_.bench->root_weight());
-    if (!blocks) return std::numeric_limits<double>::infinity();
-    MatrixXd model(static_cast<Index>(f_.part.table.size()), 0);
-    for (const MatrixXd& block : *blocks) {
-      model.conservativeResize(Eigen::NoChange, model.cols() + block.cols());
-      model.rightCols(block.cols()) = block;
-    }
-    return criterion_of_walk(f_.part.table, f_.weight, f_.noise, model);
-  }
-
-  /// What a zero that is not steady costs: one parameter, one name.
-  double price_of_zero() const {
-    return std::log(f_.bench->readings()) + 2.0 * std::log(static_cast<double>(f_.terms.size()));
-  }
-
   /// Whether the model beside a zero that walks, or that each run has for itself, is better
   /// evidence than the best set of effects.
   bool zero_walks() const {
-    return criterion_beside_walk(f_.of_model.fit.terms) + f_.start.price + price_of_zero() <
+    return f_.criterion_of_walk(f_.of_model.fit.terms) + f_.start.price + f_.price_of_zero() <
            f_.best.criterion;
   }
 
@@ -119,14 +102,14 @@ class Judge {
   bool walks_instead(const std::string& name) const {
     std::vector<Term> terms = f_.of_best.fit.terms;
     std::erase_if(terms, [&](const Term& t) { return t.name() == name; });
-    const double price = f_.bench->without(f_.best, f_.index_of(name)).price + price_of_zero();
-    return criterion_beside_walk(terms) + price < f_.best.criterion;
+    const double price = f_.bench->without(f_.best, f_.index_of(name)).price + f_.price_of_zero();
+    return f_.criterion_of_walk(terms) + price < f_.best.criterion;
   }
 
   /// Whether an effect of the best set is there also if the zero walks.
   bool beside_walk(const std::string& name) const {
     std::vector<Term> terms = f_.of_model.fit.terms;
-    const double without = criterion_beside_walk(terms);
+    const double without = f_.criterion_of_walk(terms);
     double price = 0.0;
     for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t)
       if (f_.of_best.fit.terms[t].name() == name) {
@@ -134,7 +117,7 @@ class Judge {
         price = f_.bench->price(block);
         terms.push_back(f_.of_best.fit.terms[t]);
       }
-    return without - criterion_beside_walk(terms) - price > certain_evidence;
+    return without - f_.criterion_of_walk(terms) - price > certain_evidence;
   }
 
   /// Whether something else is left in the places where this effect works: then it may be no more
@@ -283,7 +266,8 @@ class Judge {
   std::vector<std::string> places_of(const std::vector<double>& says) const {
     const VectorXd part = Eigen::Map<const VectorXd>(says.data(), static_cast<Index>(says.size()));
     const VectorXd centred = part.array() - part.mean();
-    return factors_of(f_.part, f_.repeats, f_.bench->white(), f_.bench->white()(centred));
+    if (!factors_) factors_.emplace(f_.part, f_.repeats, f_.bench->white());
+    return (*factors_)(f_.bench->white()(centred));
   }
 
   /// Structure smaller than this is not worth a verdict.
@@ -362,6 +346,7 @@ class Judge {
 
   const Finding& f_;
   Explanation& out_;
+  mutable std::optional<FactorsOf> factors_{};
 };
 
 }  // namespace

@@ -413,6 +413,15 @@ Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
     step_shapes(o, terms, searched, white, y);
   else
     refine_shapes(o, terms, searched, white, y);
+  return fit_at(o, std::move(terms), searched, std::move(weight), noise);
+}
+
+Expected<Fit> fit_at(const Observations& o, std::vector<Term> terms,
+                     const std::vector<char>& searched, std::vector<double> weight,
+                     const Noise& noise) {
+  const Whitening white(o, weight, Whitening::of_repeats(noise));
+  const VectorXd y =
+      Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.deviation.size()));
   auto design = design_of(o, terms, white);
   if (!design) return fail(design.error());
   const auto used = static_cast<Index>((white.root().array() > 0.0).count());

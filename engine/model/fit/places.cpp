@@ -234,12 +234,16 @@ class Cells {
  public:
   Cells(const Repeats& r, const Whitening& white) : r_(r), root_(white.root()) {
     constexpr std::size_t most = 400;  // beyond, their means do
-    if (!white.independent() && r.cells <= most)
-      basis_ = orthonormal(white(dummies({r.cell.begin(), r.cell.end()}, r.cells)));
+    if (white.independent() || r.cells > most) return;
+    columns_ = white(dummies({r.cell.begin(), r.cell.end()}, r.cells));
+    MatrixXd products = columns_.transpose() * columns_;
+    for (double& x : products.diagonal())
+      if (!(x > 0.0)) x = 1.0;  // all its readings are suspected
+    products_.compute(products);
   }
   void take_out(MatrixXd& columns) const {
-    if (basis_)
-      columns -= *basis_ * (basis_->transpose() * columns);
+    if (columns_.cols() > 0)
+      columns -= columns_ * products_.solve(columns_.transpose() * columns);
     else
       take_out_means(columns);
   }
@@ -262,7 +266,8 @@ class Cells {
 
   const Repeats& r_;
   const VectorXd& root_;
-  std::optional<MatrixXd> basis_;
+  MatrixXd columns_{};  // of the cells, where whitened ones are not each other's strangers
+  Eigen::LLT<MatrixXd> products_{};
 };
 
 /// Whether what a factor says differs between repeats of a cell: what comes back in every run sits
@@ -303,14 +308,18 @@ std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
   return out;
 }
 
+/// Whitened columns of a factor whose levels can be told apart; of another none.
+MatrixXd levels_of(const Factor& f, const Whitening& white) {
+  return f.levels.size() < 3 ? MatrixXd(f.columns.rows(), 0) : white(f.columns);
+}
+
 /// The level of a factor of dummies that holds most of its sum of squares, if one does; `s2` known
 /// from `dof`.
-void find_level(const Factor& f, const Whitening& white, const VectorXd& residual, double s2,
+void find_level(const Factor& f, const MatrixXd& columns, const VectorXd& residual, double s2,
                 double dof, Place& place) {
-  if (f.levels.size() < 3) return;
+  if (columns.cols() == 0) return;
   double most = 0.0, total = 0.0, t_most = 0.0;
-  const MatrixXd columns = white(f.columns);
-  for (Index k = 0; k < f.columns.cols(); ++k) {
+  for (Index k = 0; k < columns.cols(); ++k) {
     const double norm2 = columns.col(k).squaredNorm(), sum = columns.col(k).dot(residual);
     if (!(norm2 > 0.0)) continue;
     total += sum * sum / norm2;
@@ -330,7 +339,7 @@ void find_level(const Factor& f, const Whitening& white, const VectorXd& residua
 struct PlaceTests::Tests {
   Factors factors;
   std::vector<MatrixXd> bases;
-  Whitening white;
+  std::vector<MatrixXd> levels;
   double dof;
 };
 
@@ -338,7 +347,10 @@ PlaceTests::PlaceTests(const Part& part, const Repeats& repeats, const Whitening
                        const MatrixXd& basis, double dof) {
   Factors factors(part, repeats);
   auto bases = bases_of(factors, repeats, white, basis);
-  tests_ = std::make_shared<const Tests>(Tests{std::move(factors), std::move(bases), white, dof});
+  std::vector<MatrixXd> levels;
+  for (const Factor& f : factors.all()) levels.push_back(levels_of(f, white));
+  tests_ = std::make_shared<const Tests>(
+      Tests{std::move(factors), std::move(bases), std::move(levels), dof});
 }
 
 std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
@@ -364,7 +376,7 @@ std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
     place.line = tests_->factors.all()[f].line;
     place.p = math::f_upper(math::test_ratio(here / k, s2), k, dof);
     place.share = squares > 0.0 ? excess / squares : 0.0;
-    find_level(tests_->factors.all()[f], tests_->white, residual, s2,
+    find_level(tests_->factors.all()[f], tests_->levels[f], residual, s2,
                floor ? floor->dof : tests_->dof, place);
     places.push_back(std::move(place));
   }
@@ -411,7 +423,7 @@ std::vector<Place> seats_of(const Residuals& left) {
     const double dof = left.dof - k;
     seat.p = math::f_upper(math::test_ratio(fall / k, (rest.squaredNorm() - fall) / dof), k, dof) *
              static_cast<double>(bases.size());
-    find_level(factors.all()[best], left.white, rest, (rest.squaredNorm() - fall) / dof,
+    find_level(factors.all()[best], levels_of(factors.all()[best], left.white), rest, (rest.squaredNorm() - fall) / dof,
                left.floor ? left.floor->dof : left.dof, seat);
     seats.push_back(std::move(seat));
     const MatrixXd chosen = bases[best];
@@ -425,14 +437,17 @@ std::vector<Place> seats_of(const Residuals& left) {
   return seats;
 }
 
-std::vector<std::string> factors_of(const Part& part, const Repeats& repeats,
-                                    const Whitening& white, const VectorXd& signal) {
+FactorsOf::FactorsOf(const Part& part, const Repeats& repeats, const Whitening& white) {
   const Factors factors(part, repeats);
-  const auto bases = bases_of(factors, repeats, white, MatrixXd(signal.size(), 0));
+  bases_ = bases_of(factors, repeats, white, MatrixXd(white.root().size(), 0));
+  for (const Factor& f : factors.all()) names_.push_back(f.name);
+}
+
+std::vector<std::string> FactorsOf::operator()(const VectorXd& part) const {
   std::vector<std::string> out;
-  for (std::size_t f = 0; f < bases.size(); ++f)
-    if ((bases[f].transpose() * signal).squaredNorm() > 0.05 * signal.squaredNorm())
-      out.push_back(factors.all()[f].name);
+  for (std::size_t f = 0; f < bases_.size(); ++f)
+    if ((bases_[f].transpose() * part).squaredNorm() > 0.05 * part.squaredNorm())
+      out.push_back(names_[f]);
   return out;
 }
 

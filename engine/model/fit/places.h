@@ -44,7 +44,15 @@ std::vector<Place> seats_of(const Residuals&);
 /// The factors that a term's part varies with ("direction", "position", "time", ...), by the share
 /// of its sum of squares: those whose own share is at least a twentieth, or whose product with
 /// another is.
-std::vector<std::string> factors_of(const Part& part, const Repeats& repeats,
-                                    const Whitening& white, const VectorXd& signal);
+class FactorsOf {
+ public:
+  FactorsOf(const Part& part, const Repeats& repeats, const Whitening& white);
+  /// Of a whitened part.
+  std::vector<std::string> operator()(const VectorXd& part) const;
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<MatrixXd> bases_;
+};
 
 }  // namespace nonio::model

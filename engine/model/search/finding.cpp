@@ -34,6 +34,10 @@ class Finder {
       if (auto searched = search(); !searched) return fail(searched.error());
       if (!suspect_again()) break;
     }
+    if (walks_rather()) {
+      alone_ = true;
+      if (auto searched = search(); !searched) return fail(searched.error());
+    }
     f_.chance = measure_chance(
         *f_.bench, f_.best,
         shuffled(*f_.bench, f_.best, f_.residual(f_.best), f_.repeats.pass, f_.seed));
@@ -46,6 +50,7 @@ class Finder {
   Expected<void> search() {
     f_.weight = weights_without(f_.part.table.size(), f_.suspects);
     f_.noise = noise_of(f_.part, f_.repeats, f_.weight);
+    if (alone_) f_.noise.in_repeats = f_.noise.neighbours = 0.0;
     f_.bench.emplace(f_.part.table, f_.terms, f_.weight, f_.repeats.target, f_.in_model, &made_,
                      f_.noise);
     auto start = best_start();
@@ -63,6 +68,24 @@ class Finder {
       if (!(f_.best.criterion < before - worth_another_round)) break;
     }
     return {};
+  }
+
+  /// Within a pass a zero that walks looks like neighbours that are alike. Whether it is the better
+  /// explanation, beside the model, than those with all that was found: then readings are taken for
+  /// independent, and the walk stays to be seen.
+  bool walks_rather() {
+    if (!(f_.noise.in_repeats > 0.0)) return false;
+    Noise alone = f_.noise;
+    alone.in_repeats = alone.neighbours = 0.0;
+    const Observations& o = f_.part.table;
+    const auto model = f_.columns_of(terms_of_state(f_.start));
+    const auto all = f_.columns_of(terms_of_state(f_.best));
+    if (!model || !all) return false;
+    const double alike = criterion_of_neighbours(o, f_.weight, alone, *all) + f_.best.price +
+                         std::log(f_.bench->readings());
+    const double walk =
+        criterion_of_walk(o, f_.weight, alone, *model) + f_.start.price + f_.price_of_zero();
+    return walk < alike;
   }
 
   /// Each effect of the best explanation alone beside the model: what a coarse grid leaves of a
@@ -307,6 +330,10 @@ class Finder {
       of_model = with_its_zero(f_.part.table, std::move(*of_model), flags(f_.start, true));
     if (!of_model) return fail(of_model.error());
     f_.of_model = comparison_of(f_.part, f_.repeats, std::move(*of_model), f_.suspects);
+    if (f_.best.blocks == f_.start.blocks) {  // nothing was found
+      f_.of_best = f_.of_model;
+      return {};
+    }
     auto of_best =
         fit_near(f_.part.table, terms_of_state(f_.best), flags(true), f_.weight, f_.noise);
     if (of_best) of_best = with_its_zero(f_.part.table, std::move(*of_best), flags(true));
@@ -316,6 +343,7 @@ class Finder {
   }
 
   Finding f_;
+  bool alone_ = false;  ///< readings are taken for independent
   const std::vector<Term>& model_;
   Workbench::Made made_;
 };
@@ -333,6 +361,27 @@ double Finding::dof(const State& state) const {
 }
 
 double Finding::left() const { return std::sqrt(best.squares / std::max(dof(best), 1.0)); }
+
+double Finding::criterion_of_walk(const std::vector<Term>& some) const {
+  const auto columns = columns_of(some);
+  return columns ? model::criterion_of_walk(part.table, weight, noise, *columns)
+                 : std::numeric_limits<double>::infinity();
+}
+
+Expected<MatrixXd> Finding::columns_of(const std::vector<Term>& some) const {
+  const auto blocks = blocks_of(part.table, some, bench->root_weight());
+  if (!blocks) return fail(blocks.error());
+  MatrixXd out(static_cast<Index>(part.table.size()), 0);
+  for (const MatrixXd& block : *blocks) {
+    out.conservativeResize(Eigen::NoChange, out.cols() + block.cols());
+    out.rightCols(block.cols()) = block;
+  }
+  return out;
+}
+
+double Finding::price_of_zero() const {
+  return std::log(bench->readings()) + 2.0 * std::log(static_cast<double>(terms.size()));
+}
 
 VectorXd Finding::residual(const State& state) const {
   const MatrixXd basis = bench->basis(state);

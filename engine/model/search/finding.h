@@ -39,6 +39,13 @@ struct Finding {
   double dof(const Workbench::State& state) const;
   /// Standard deviation that the best explanation leaves.
   double left() const;
+  /// Of these terms, one beside the other.
+  Expected<MatrixXd> columns_of(const std::vector<Term>& some) const;
+  /// `criterion` of these terms beside a zero that walks, or that each run has for itself, without
+  /// its price.
+  double criterion_of_walk(const std::vector<Term>& some) const;
+  /// What a zero that is not steady costs: one parameter, one name.
+  double price_of_zero() const;
   /// What a state leaves, whitened.
   VectorXd residual(const Workbench::State& state) const;
 };
