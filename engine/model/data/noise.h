@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -32,14 +34,19 @@ std::optional<NoiseFloor> noise_floor(const Repeats& repeats, const Saturated& s
 Noise with_zero(const Observations& o, const std::vector<Term>& terms,
                 const std::vector<double>& weight, const Noise& noise);
 
-/// n ln(squares/n) + ln|V| of the model beside a zero that walks, reading by reading, or that each
-/// run has for itself, as far as makes this least: what `Workbench::State::criterion` is without
-/// its price. `model` holds the model's columns; rows in their order, of weight 0 are left out.
-double criterion_of_walk(const Observations& o, const std::vector<double>& weight, Noise noise,
-                         const MatrixXd& model);
+/// n ln(squares/n) + ln|V| of a model beside a zero that is not steady, as far as a size of it
+/// makes this least: what `Workbench::State::criterion` is without its price.
+struct Unsteady {
+  double walks = std::numeric_limits<double>::infinity();   ///< a zero that walks, row by row
+  double of_run = std::numeric_limits<double>::infinity();  ///< each run has its own
+  double least() const { return std::min(walks, of_run); }
+};
+/// `model` holds the model's columns; rows in their order, of weight 0 are left out.
+Unsteady beside_walk(const Observations& o, const std::vector<double>& weight, Noise noise,
+                     const MatrixXd& model);
 
-/// The same of neighbours that are alike, of a steady zero, with the correlation that makes it
-/// least; 0 of |V| are the independent readings of `criterion_of_walk`.
+/// The criterion of neighbours that are alike, of a steady zero, with the correlation that makes it
+/// least; 0 of |V| are the independent readings.
 double criterion_of_neighbours(const Observations& o, const std::vector<double>& weight,
                                Noise noise, const MatrixXd& model);
 

@@ -208,7 +208,7 @@ class Search {
 Noise with_zero(const Observations& o, const std::vector<Term>& terms,
                 const std::vector<double>& weight, const Noise& noise) {
   constexpr double worth = 1.5;       // an uncertainty too small is worse than one too large
-  constexpr double no_sign = 1.0;     // score, where a gain of `worth` is hardly to be had
+  constexpr double no_sign = 1.2;     // score, where a gain of `worth` is hardly to be had
   constexpr std::size_t most = 1500;  // beyond, the covariance of all readings is too large
   if (o.size() > most || o.size() < 10 || noise.pass.empty()) return noise;
   const auto blocks = blocks_of(o, terms, root_weights(o, weight));
@@ -256,35 +256,32 @@ double deviance(const Observations& o, const std::vector<double>& weight, const 
 
 }  // namespace
 
-double criterion_of_walk(const Observations& o, const std::vector<double>& weight, Noise noise,
-                         const MatrixXd& model) {
-  constexpr int steps = 13;
+Unsteady beside_walk(const Observations& o, const std::vector<double>& weight, Noise noise,
+                     const MatrixXd& model) {
   constexpr double beyond_minimum = 12.0;
-  const Index n = model.rows();
-  MatrixXd columns(n, model.cols() + 1);
-  columns << model, Eigen::Map<const VectorXd>(o.deviation.data(), n);
+  MatrixXd columns(model.rows(), model.cols() + 1);
+  columns << model, Eigen::Map<const VectorXd>(o.deviation.data(), model.rows());
   noise.zero = Noise::Zero::steady;
   const double none = Whitening(o, weight, noise).log_det();
-  noise.zero = Noise::Zero::walks;
-  double least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < steps; ++k) {
-    noise.zero_size = std::pow(10.0, 0.125 * k - 1.0);
-    const double value = deviance(o, weight, noise, columns) - none;
-    least = std::min(least, value);
-    if (value > least + beyond_minimum) break;
-  }
-  if (o.run.empty() || std::all_of(o.run.begin(), o.run.end(),
-                                   [&](std::uint32_t run) { return run == o.run.front(); }))
+  const auto least_of = [&](Noise::Zero zero, const std::vector<double>& sizes) {
+    double least = std::numeric_limits<double>::infinity();
+    noise.zero = zero;
+    for (const double size : sizes) {
+      noise.zero_size = size;
+      const double value = deviance(o, weight, noise, columns) - none;
+      least = std::min(least, value);
+      if (value > least + beyond_minimum) break;
+    }
     return least;
-  noise.zero = Noise::Zero::of_run;
-  double least_of_runs = std::numeric_limits<double>::infinity();
-  for (const double size : {0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8}) {
-    noise.zero_size = size;
-    const double value = deviance(o, weight, noise, columns) - none;
-    least_of_runs = std::min(least_of_runs, value);
-    if (value > least_of_runs + beyond_minimum) break;
-  }
-  return std::min(least, least_of_runs);
+  };
+  std::vector<double> steps;
+  for (int k = 0; k <= 12; ++k) steps.push_back(std::pow(10.0, 0.125 * k - 1.0));
+  Unsteady out;
+  out.walks = least_of(Noise::Zero::walks, steps);
+  if (std::any_of(o.run.begin(), o.run.end(),
+                  [&](std::uint32_t run) { return run != o.run.front(); }))
+    out.of_run = least_of(Noise::Zero::of_run, {0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8});
+  return out;
 }
 
 double criterion_of_neighbours(const Observations& o, const std::vector<double>& weight,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -61,9 +62,9 @@ class Judge {
     for (const Place& place : f_.of_model.places)
       if (place.p < place_p) out_.fails.push_back(place);
     std::vector<Place> serious = Judge::serious(f_.of_best.places, least_serious(f_.of_best.floor));
-    const bool walks =
-        !out_.together.empty() && (zero_walks() || walks_instead(out_.together.front()));
-    if (contradictory()) {
+    const Noise::Zero zero = unsteady_zero();
+    const bool walks = zero != Noise::Zero::steady;
+    if (contradictory(zero)) {
       v.kind = Verdict::Kind::unrepeatable;
       return;
     }
@@ -87,29 +88,43 @@ class Judge {
         out_.fails = std::move(seats);
       else if (!serious.empty())
         out_.fails = std::move(serious);
+      if (zero == Noise::Zero::of_run) tell_runs();
     }
   }
 
  private:
-  /// Whether the model beside a zero that walks, or that each run has for itself, is better
-  /// evidence than the best set of effects.
-  bool zero_walks() const {
-    return f_.criterion_of_walk(f_.of_model.fit.terms) + f_.start.price + f_.price_of_zero() <
-           f_.best.criterion;
-  }
-
-  /// Whether such a zero in its place is better evidence than this effect of the best set.
-  bool walks_instead(const std::string& name) const {
+  /// The zero that is not steady, if the model beside it, or it in the place of the first effect,
+  /// is a better explanation than the best set of effects.
+  Noise::Zero unsteady_zero() const {
+    if (out_.together.empty()) return Noise::Zero::steady;
+    const Noise::Zero instead = better_zero(f_.of_model.fit.terms, f_.start);
+    if (instead != Noise::Zero::steady) return instead;
+    const std::string& name = out_.together.front();
     std::vector<Term> terms = f_.of_best.fit.terms;
     std::erase_if(terms, [&](const Term& t) { return t.name() == name; });
-    const double price = f_.bench->without(f_.best, f_.index_of(name)).price + f_.price_of_zero();
-    return f_.criterion_of_walk(terms) + price < f_.best.criterion;
+    return better_zero(terms, f_.bench->without(f_.best, f_.index_of(name)));
+  }
+
+  Noise::Zero better_zero(const std::vector<Term>& terms, const Workbench::State& state) const {
+    const Unsteady beside = f_.beside_walk(terms);
+    const double own = f_.best.criterion - state.price - f_.price_of_zero();
+    const double evidence = state.criterion - f_.best.criterion;
+    if (beside.of_run < std::min(beside.walks, own + as_good_as(evidence)))
+      return Noise::Zero::of_run;
+    return beside.walks < own ? Noise::Zero::walks : Noise::Zero::steady;
+  }
+
+  /// How much less evidence is as good for zeros of runs, of so much: a small effect is not lost
+  /// for zeros that might be there; a large one would leave far more of itself beside them.
+  static double as_good_as(double evidence) {
+    constexpr double share = 0.1;
+    return std::clamp(share * evidence, 0.0, alias_evidence);
   }
 
   /// Whether an effect of the best set is there also if the zero walks.
   bool beside_walk(const std::string& name) const {
     std::vector<Term> terms = f_.of_model.fit.terms;
-    const double without = f_.criterion_of_walk(terms);
+    const double without = f_.beside_walk(terms).least();
     double price = 0.0;
     for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t)
       if (f_.of_best.fit.terms[t].name() == name) {
@@ -117,7 +132,7 @@ class Judge {
         price = f_.bench->price(block);
         terms.push_back(f_.of_best.fit.terms[t]);
       }
-    return without - f_.criterion_of_walk(terms) - price > certain_evidence;
+    return without - f_.beside_walk(terms).least() - price > certain_evidence;
   }
 
   /// Whether something else is left in the places where this effect works: then it may be no more
@@ -325,14 +340,41 @@ class Judge {
     v.false_alarms = alarms / static_cast<double>(named.size());
   }
 
-  bool contradictory() {
+  /// Zeros of runs sit in the runs, also where waves in time describe them with fewer columns.
+  void tell_runs() {
+    const auto is_run = [](const Place& place) { return place.where == "run"; };
+    auto& told = out_.fails;
+    auto at = std::find_if(told.begin(), told.end(), is_run);
+    if (at == told.end()) {
+      const auto& all = f_.of_model.places;
+      const auto seen = std::find_if(all.begin(), all.end(), is_run);
+      if (seen == all.end()) return;
+      at = told.insert(told.end(), *seen);
+    }
+    std::rotate(told.begin(), at, at + 1);
+  }
+
+  /// What the best explanation leaves, without zeros of runs if there are such.
+  std::vector<double> without_runs(Noise::Zero zero) const {
+    std::vector<double> e = f_.of_best.fit.residual;
+    const std::vector<std::uint32_t>& run = f_.part.table.run;
+    if (zero != Noise::Zero::of_run) return e;
+    std::map<std::uint32_t, std::pair<double, double>> sum;
+    for (std::size_t i = 0; i < e.size(); ++i)
+      sum[run[i]].first += f_.weight[i] * e[i], sum[run[i]].second += f_.weight[i];
+    for (std::size_t i = 0; i < e.size(); ++i)
+      if (const auto& [of_run, n] = sum[run[i]]; n > 0.0) e[i] -= of_run / n;
+    return e;
+  }
+
+  bool contradictory(Noise::Zero zero) {
     if (const auto run =
             wild_run(f_.part.table, f_.repeats, f_.of_best.fit.residual, f_.weight, f_.noise)) {
       out_.fails.insert(out_.fails.begin(), *run);
       return true;
     }
     return too_many(f_.suspects.size(), f_.part.table.size()) ||
-           two_valued(f_.repeats, f_.of_best.fit.residual, f_.weight, f_.noise.digit);
+           two_valued(f_.repeats, without_runs(zero), f_.weight, f_.noise.digit);
   }
 
   /// The verdict's effect leads the list, also where one with more evidence is in doubt.

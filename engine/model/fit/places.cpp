@@ -423,8 +423,8 @@ std::vector<Place> seats_of(const Residuals& left) {
     const double dof = left.dof - k;
     seat.p = math::f_upper(math::test_ratio(fall / k, (rest.squaredNorm() - fall) / dof), k, dof) *
              static_cast<double>(bases.size());
-    find_level(factors.all()[best], levels_of(factors.all()[best], left.white), rest, (rest.squaredNorm() - fall) / dof,
-               left.floor ? left.floor->dof : left.dof, seat);
+    find_level(factors.all()[best], levels_of(factors.all()[best], left.white), rest,
+               (rest.squaredNorm() - fall) / dof, left.floor ? left.floor->dof : left.dof, seat);
     seats.push_back(std::move(seat));
     const MatrixXd chosen = bases[best];
     rest -= chosen * (chosen.transpose() * rest);

@@ -84,7 +84,7 @@ class Finder {
     const double alike = criterion_of_neighbours(o, f_.weight, alone, *all) + f_.best.price +
                          std::log(f_.bench->readings());
     const double walk =
-        criterion_of_walk(o, f_.weight, alone, *model) + f_.start.price + f_.price_of_zero();
+        beside_walk(o, f_.weight, alone, *model).least() + f_.start.price + f_.price_of_zero();
     return walk < alike;
   }
 
@@ -362,10 +362,9 @@ double Finding::dof(const State& state) const {
 
 double Finding::left() const { return std::sqrt(best.squares / std::max(dof(best), 1.0)); }
 
-double Finding::criterion_of_walk(const std::vector<Term>& some) const {
+Unsteady Finding::beside_walk(const std::vector<Term>& some) const {
   const auto columns = columns_of(some);
-  return columns ? model::criterion_of_walk(part.table, weight, noise, *columns)
-                 : std::numeric_limits<double>::infinity();
+  return columns ? model::beside_walk(part.table, weight, noise, *columns) : Unsteady{};
 }
 
 Expected<MatrixXd> Finding::columns_of(const std::vector<Term>& some) const {

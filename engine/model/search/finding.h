@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "data/noise.h"
 #include "data/repeats.h"
 #include "fit/workbench.h"
 #include "nonio/model/explain.h"
@@ -41,9 +42,8 @@ struct Finding {
   double left() const;
   /// Of these terms, one beside the other.
   Expected<MatrixXd> columns_of(const std::vector<Term>& some) const;
-  /// `criterion` of these terms beside a zero that walks, or that each run has for itself, without
-  /// its price.
-  double criterion_of_walk(const std::vector<Term>& some) const;
+  /// These terms beside a zero that is not steady.
+  Unsteady beside_walk(const std::vector<Term>& some) const;
   /// What a zero that is not steady costs: one parameter, one name.
   double price_of_zero() const;
   /// What a state leaves, whitened.

@@ -200,6 +200,17 @@ TEST(Noise, a_rough_stretch_is_found_and_weighted) {
   EXPECT_FALSE(compared(table).fit.noise.stretch);
 }
 
+TEST(Noise, neighbours_that_are_alike_are_no_rough_stretch) {
+  std::mt19937_64 random(52);  // taken for independent, a third of such tables has a stretch
+  int stretches = 0;
+  for (int k = 0; k < 40; ++k) {
+    Table table(31, 3);
+    add_noise(table, 0.8, 1e-6, random);
+    stretches += compared(table).fit.noise.stretch ? 1 : 0;
+  }
+  EXPECT_LE(stretches, 4);
+}
+
 TEST(Noise, a_zero_of_each_run_is_in_u) {
   std::mt19937_64 random(61);
   std::normal_distribution<double> normal;
