@@ -28,6 +28,9 @@ constexpr double certain_share = 0.06;
 // Far more than chance asks for: what is left beside it is no independent noise.
 constexpr double certain_evidence = 50.0;
 constexpr double most_of_one_target = 0.3;
+// Evidence of effects below it is not asked whether a zero that is not steady gives as much: sizes
+// that are printed as the smallest would be lost.
+constexpr double least_against_zero = 30.0;
 // Two effects whose parts run against each other like this are one thing without a name.
 constexpr double cancels_beyond = 0.95;
 
@@ -109,6 +112,7 @@ class Judge {
     const Unsteady beside = f_.beside_walk(terms);
     const double own = f_.best.criterion - state.price - f_.price_of_zero();
     const double evidence = state.criterion - f_.best.criterion;
+    if (evidence < least_against_zero) return Noise::Zero::steady;
     if (beside.of_run < std::min(beside.walks, own + as_good_as(evidence)))
       return Noise::Zero::of_run;
     return beside.walks < own ? Noise::Zero::walks : Noise::Zero::steady;
