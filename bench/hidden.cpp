@@ -5,11 +5,14 @@
 //                [--size PERCENT]
 //                [--verbose] [--plugins FOLDER]
 //                [--write FOLDER] [--right PERCENT] [--wrong PERCENT]
+//                [--ar RHO] [--run-zero SIZE] [--walk SIZE] [--rough TIMES] [--digit SIZE]
+// Sizes in units of the noise: what makes the noise other than independent (hidden::Unrest).
 // Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio explain --auto` does. Fails
 // if fewer are right, or more named wrongly, than --right and --wrong say.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <map>
@@ -41,9 +44,21 @@ struct Arguments {
   std::uint64_t count = 0, seed = 0;
   bool verbose = false;
   std::uint64_t size = 100;  ///< smallest: % of the printed smallest size
-  fs::path plugins, write;
+  fs::path plugins{}, write{};
   std::uint64_t least_right = 0, most_wrong = 100;  // %
+  hidden::Unrest unrest{};
 };
+
+/// The number of the noise that an option names.
+double* unrest_of(Arguments& a, const std::string& option) {
+  const std::map<std::string, double*> all = {{"--ar", &a.unrest.correlation},
+                                              {"--run-zero", &a.unrest.run_zero},
+                                              {"--walk", &a.unrest.walk},
+                                              {"--rough", &a.unrest.rough},
+                                              {"--digit", &a.unrest.digit}};
+  const auto at = all.find(option);
+  return at == all.end() ? nullptr : at->second;
+}
 
 struct Step {
   model::Explanation said;
@@ -164,9 +179,11 @@ struct Score {
   Tally certain,
       described;  ///< names said to be certain that are hidden; descriptions to the floor
   Tally answered, right, kind, floor, wrong_name, place, alias, ends, noise, above_floor, values;
+  Tally without_u;  ///< values whose u is not printed
   std::map<std::string, Tally> of_effect, of_value;
   std::map<std::string, Tally> named_of;                ///< outside: `missing`, by cause
   std::map<std::string, std::uint64_t> certain_beside;  ///< certain, and not hidden
+  std::map<std::string, std::uint64_t> other_words;     ///< complete: verdicts but `nothing`
   double false_alarms = 0.0;
   double above_floor_expected = 0.0;  ///< sum of chances, of those in `above_floor`
   std::vector<double> cpu;            ///< of each explanation, s
@@ -179,6 +196,8 @@ void score_values(Score& score, const Hidden& h, const model::Fit& fit) {
   for (const hidden::TrueValue& truth : h.truth.values)
     for (const model::Parameter& p : fit.parameters) {
       if (p.effect != truth.effect || p.name != truth.name) continue;
+      score.without_u.add(!std::isfinite(p.u));
+      if (!std::isfinite(p.u)) continue;
       const bool in = std::fabs(p.value - truth.value) <= 2.0 * p.u;
       score.values.add(in);
       score.of_value[truth.effect.substr(0, truth.effect.find(':')) + " " + p.name].add(in);
@@ -254,6 +273,16 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
     right = to_text(first.verdict.kind) == h.truth.verdict;
     if (h.scenario.kind == Kind::complete) {
       score_fit(score, h, first.comparison);
+      // True words on what the runs show.
+      const bool unsteady = h.scenario.unrest.run_zero > 0.0 || h.scenario.unrest.walk > 0.0;
+      if (unsteady && first.verdict.kind == Verdict::Kind::unknown && !first.fails.empty() &&
+          (first.fails.front().where == "run" || first.fails.front().where == "time"))
+        right = true;
+      if (!right)
+        ++score.other_words[std::string(to_text(first.verdict.kind)) + " " +
+                            (named                 ? first.verdict.effect
+                             : first.fails.empty() ? ""
+                                                   : first.fails.front().where)];
       for (const std::string& name : h.truth.model)
         score.of_effect[name.substr(0, name.find(':'))].add(right);
     } else {
@@ -319,7 +348,10 @@ void print_score(const Score& s, Kind kind) {
     print("ends with: nothing", s.ends);
   }
   if (kind == Kind::beside) print("named, by verdict or as certain", s.right);
-  if (kind == Kind::complete) print("verdict: nothing", s.right);
+  if (kind == Kind::complete)
+    print("verdict: nothing; a zero that moves: or that it does", s.right);
+  for (const auto& [words, count] : s.other_words)
+    std::printf("    %-40s %llu\n", words.c_str(), static_cast<unsigned long long>(count));
   if (kind == Kind::outside) {
     print("right verdict", s.kind);
     print("right verdict, and the right place named first", s.right);
@@ -337,6 +369,7 @@ void print_score(const Score& s, Kind kind) {
     std::printf("    of right models that is expected (F distribution) %12.2f %%\n",
                 100.0 * s.above_floor_expected / static_cast<double>(s.above_floor.of));
   print("floor of the repeats within 2 u of the true noise", s.floor);
+  if (s.without_u.yes > 0) print("values whose u not printed", s.without_u);
   print("true value within 2 u", s.values);
   for (const auto& [name, tally] : s.of_value) print("    " + name, tally);
   std::printf(" by effect or cause\n");
@@ -421,6 +454,8 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
       if (!percent) return {};
       (words[i] == "--right" ? a.least_right : a.most_wrong) = *percent;
       ++i;
+    } else if (double* size = unrest_of(a, words[i]); size != nullptr && i + 1 < words.size()) {
+      *size = std::strtod(words[++i].c_str(), nullptr);
     } else
       return {};
   }
@@ -438,7 +473,9 @@ int main(int argc, char** argv) {
         "         grouped|beside|fixed-end|blank-temperatures|day-wave|short-misread|smallest\n"
         "             COUNT SEED\n"
         "             [--verbose] [--plugins FOLDER] [--write FOLDER] [--right PERCENT] "
-        "[--wrong PERCENT]\n");
+        "[--wrong PERCENT]\n"
+        "             [--ar RHO] [--run-zero SIZE] [--walk SIZE] [--rough TIMES] "
+        "[--digit SIZE]\n");
     return 2;
   }
   host::loader::Plugins plugins;
@@ -450,6 +487,7 @@ int main(int argc, char** argv) {
   Score score;
   for (std::uint64_t seed = a->seed; seed < a->seed + a->count; ++seed) {
     hidden::Scenario scenario = hidden::random_scenario(a->kind, seed);
+    scenario.unrest = a->unrest;
     if (a->kind == Kind::smallest)
       scenario = as_small_as_printed(std::move(scenario), plugins.effects(), a->size);
     if (a->kind == Kind::smallest && scenario.hidden.empty()) continue;

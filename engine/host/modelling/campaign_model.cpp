@@ -170,7 +170,7 @@ std::vector<std::string> below_uncertainty(const model::Fit& fit) {
     for (const model::Parameter& p : fit.parameters) {
       if (p.effect != term.name() || p.shape) continue;
       any = true;
-      small = small && !(std::fabs(p.value) >= 2.0 * p.u);
+      small = small && std::fabs(p.value) < 2.0 * p.u;
     }
     if (any && small) out.push_back(term.name());
   }

@@ -399,6 +399,41 @@ std::string ModelWords::not_told(const std::string& effect, std::size_t paramete
 
 std::string ModelWords::stood_somewhere() const { return says("stood-somewhere", {}, {}); }
 
+std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartModel& part) const {
+  using Zero = model::Noise::Zero;
+  constexpr double told_below = 0.01;
+  const model::Noise& noise = fit.noise;
+  const Quantity q = part.deviation();
+  std::vector<std::string> out;
+  if (noise.neighbours > 0.0 && noise.p < told_below)
+    out.push_back(says("noise.neighbours",
+                       {{"r", std::round(100.0 * noise.measured) / 100.0, Quantity::number},
+                        {"p", noise.p, Quantity::probability}},
+                       {}));
+  if (noise.zero != Zero::steady)
+    out.push_back(says(noise.zero == Zero::walks    ? "noise.walks"
+                       : noise.zero == Zero::of_run ? "noise.of-run"
+                                                    : "noise.of-pass",
+                       {{"s", noise.zero_found * fit.s, q}}, {}));
+  std::string open;
+  for (const model::Parameter& p : fit.parameters)
+    if (noise.zero_open && !p.shape && !std::isfinite(p.u))
+      open += (open.empty() ? "" : ", ") + p.effect + " " + p.name;
+  if (!open.empty()) out.push_back(says("noise.open", {}, {{"parameters", open}}));
+  if (const auto& stretch = noise.stretch) {
+    const Quantity at = part.position();
+    out.push_back(says("noise.stretch",
+                       {{"from", stretch->from, at},
+                        {"to", stretch->to, at},
+                        {"inside", stretch->inside * fit.s, q},
+                        {"outside", stretch->outside * fit.s, q}},
+                       {}));
+  }
+  if (noise.digit / std::sqrt(12.0) > fit.s)
+    out.push_back(says("noise.digit", {{"q", noise.digit, q}}, {}));
+  return out;
+}
+
 std::string ModelWords::order_assumed(const std::string& measurement) const {
   return says("order-assumed", {}, {{"measurement", measurement}});
 }

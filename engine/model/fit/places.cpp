@@ -252,21 +252,6 @@ class Factors {
 
 namespace {
 
-/// Mean of each cell taken out of each column (rows times root weights).
-void take_out_cells(const Repeats& r, const VectorXd& root, MatrixXd& columns) {
-  MatrixXd sum = MatrixXd::Zero(static_cast<Index>(r.cells), columns.cols());
-  VectorXd weight = VectorXd::Zero(static_cast<Index>(r.cells));
-  for (Index i = 0; i < columns.rows(); ++i) {
-    const auto c = static_cast<Index>(r.cell[static_cast<std::size_t>(i)]);
-    sum.row(c) += root(i) * columns.row(i);
-    weight(c) += root(i) * root(i);
-  }
-  for (Index c = 0; c < sum.rows(); ++c)
-    if (weight(c) > 0.0) sum.row(c) /= weight(c);
-  for (Index i = 0; i < columns.rows(); ++i)
-    columns.row(i) -= root(i) * sum.row(static_cast<Index>(r.cell[static_cast<std::size_t>(i)]));
-}
-
 MatrixXd orthonormal(MatrixXd columns) {
   const VectorXd norm = columns.colwise().norm().transpose();
   if (columns.cols() == 0 || !(norm.maxCoeff() > 0.0)) return MatrixXd(columns.rows(), 0);
@@ -275,27 +260,68 @@ MatrixXd orthonormal(MatrixXd columns) {
   return qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
 }
 
+/// Takes out of whitened columns what is the same in all repeats of a cell.
+class Cells {
+ public:
+  Cells(const Repeats& r, const Whitening& white) : r_(r), root_(white.root()) {
+    constexpr std::size_t most = 400;  // beyond, their means do
+    if (white.independent() || r.cells > most) return;
+    columns_ = white(dummies({r.cell.begin(), r.cell.end()}, r.cells));
+    MatrixXd products = columns_.transpose() * columns_;
+    for (double& x : products.diagonal())
+      if (!(x > 0.0)) x = 1.0;  // all its readings are suspected
+    products_.compute(products);
+  }
+  void take_out(MatrixXd& columns) const {
+    if (columns_.cols() > 0)
+      columns -= columns_ * products_.solve(columns_.transpose() * columns);
+    else
+      take_out_means(columns);
+  }
+
+ private:
+  void take_out_means(MatrixXd& columns) const {
+    MatrixXd sum = MatrixXd::Zero(static_cast<Index>(r_.cells), columns.cols());
+    VectorXd weight = VectorXd::Zero(static_cast<Index>(r_.cells));
+    for (Index i = 0; i < columns.rows(); ++i) {
+      const auto c = static_cast<Index>(r_.cell[static_cast<std::size_t>(i)]);
+      sum.row(c) += root_(i) * columns.row(i);
+      weight(c) += root_(i) * root_(i);
+    }
+    for (Index c = 0; c < sum.rows(); ++c)
+      if (weight(c) > 0.0) sum.row(c) /= weight(c);
+    for (Index i = 0; i < columns.rows(); ++i)
+      columns.row(i) -=
+          root_(i) * sum.row(static_cast<Index>(r_.cell[static_cast<std::size_t>(i)]));
+  }
+
+  const Repeats& r_;
+  const VectorXd& root_;
+  MatrixXd columns_{};  // of the cells, where whitened ones are not each other's strangers
+  Eigen::LLT<MatrixXd> products_{};
+};
+
 /// Whether what a factor says differs between repeats of a cell: what comes back in every run sits
 /// in the cells, even where a wave of time describes it with fewer columns.
-bool tells_repeats_apart(const Repeats& r, const VectorXd& root, const MatrixXd& basis,
-                         const VectorXd& residual) {
+bool tells_repeats_apart(const Cells& cells, const MatrixXd& basis, const VectorXd& residual) {
   constexpr double least = 0.1;  // of its squares; of a line in time over two runs, a fifth
   MatrixXd said = basis * (basis.transpose() * residual);
   const double all = said.squaredNorm();
-  take_out_cells(r, root, said);
+  cells.take_out(said);
   return said.squaredNorm() > least * all;
 }
 
 /// Orthonormal columns of every factor: without zeros of lines, without what the model can say,
 /// pairs without their factors.
-std::vector<MatrixXd> bases_of(const Factors& factors, const Part& part, const Repeats& repeats,
-                               const VectorXd& root, const MatrixXd& model) {
+std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
+                               const Whitening& white, const MatrixXd& model) {
+  const Cells cells(repeats, white);
   std::vector<MatrixXd> out;
   std::map<std::pair<Factor, std::string>, MatrixXd> single;  // with its line
   for (const FactorColumns& f : factors.all()) {
-    MatrixXd columns = root.asDiagonal() * f.columns;
-    take_out_zeros(part.table, root, columns);
-    if (f.repeated) take_out_cells(repeats, root, columns);
+    MatrixXd columns = white(f.columns);
+    white.take_out_zeros(columns);
+    if (f.repeated) cells.take_out(columns);
     const VectorXd before = columns.colwise().norm().transpose();
     if (model.cols() > 0) columns -= model * (model.transpose() * columns);
     if (f.of.second)
@@ -312,19 +338,19 @@ std::vector<MatrixXd> bases_of(const Factors& factors, const Part& part, const R
   return out;
 }
 
+/// Whitened columns of a factor whose levels can be told apart; of another none.
+MatrixXd levels_of(const FactorColumns& f, const Whitening& white) {
+  return f.levels.size() < 3 ? MatrixXd(f.columns.rows(), 0) : white(f.columns);
+}
+
 /// The level of a factor of dummies that holds most of its sum of squares, if one does; `s2` known
 /// from `dof`.
-void find_level(const FactorColumns& f, const VectorXd& root, const VectorXd& residual, double s2,
+void find_level(const FactorColumns& f, const MatrixXd& columns, const VectorXd& residual, double s2,
                 double dof, Place& place) {
-  if (f.levels.size() < 3) return;
+  if (columns.cols() == 0) return;
   double most = 0.0, total = 0.0, t_most = 0.0;
-  for (Index k = 0; k < f.columns.cols(); ++k) {
-    double norm2 = 0.0, sum = 0.0;
-    for (Index i = 0; i < root.size(); ++i) {
-      const double x = root(i) * f.columns(i, k);
-      norm2 += x * x;
-      sum += x * residual(i);
-    }
+  for (Index k = 0; k < columns.cols(); ++k) {
+    const double norm2 = columns.col(k).squaredNorm(), sum = columns.col(k).dot(residual);
     if (!(norm2 > 0.0)) continue;
     total += sum * sum / norm2;
     if (sum * sum / norm2 <= most) continue;
@@ -343,16 +369,18 @@ void find_level(const FactorColumns& f, const VectorXd& root, const VectorXd& re
 struct PlaceTests::Tests {
   Factors factors;
   std::vector<MatrixXd> bases;
-  VectorXd root;
+  std::vector<MatrixXd> levels;
   double dof;
 };
 
-PlaceTests::PlaceTests(const Part& part, const Repeats& repeats, const VectorXd& root_weight,
+PlaceTests::PlaceTests(const Part& part, const Repeats& repeats, const Whitening& white,
                        const MatrixXd& basis, double dof) {
   Factors factors(part, repeats);
-  auto bases = bases_of(factors, part, repeats, root_weight, basis);
-  tests_ =
-      std::make_shared<const Tests>(Tests{std::move(factors), std::move(bases), root_weight, dof});
+  auto bases = bases_of(factors, repeats, white, basis);
+  std::vector<MatrixXd> levels;
+  for (const Factor& f : factors.all()) levels.push_back(levels_of(f, white));
+  tests_ = std::make_shared<const Tests>(
+      Tests{std::move(factors), std::move(bases), std::move(levels), dof});
 }
 
 std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
@@ -378,7 +406,7 @@ std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
     place.line = tests_->factors.all()[f].line;
     place.p = math::f_upper(math::test_ratio(here / k, s2), k, dof);
     place.share = squares > 0.0 ? excess / squares : 0.0;
-    find_level(tests_->factors.all()[f], tests_->root, residual, s2,
+    find_level(tests_->factors.all()[f], tests_->levels[f], residual, s2,
                floor ? floor->dof : tests_->dof, place);
     places.push_back(std::move(place));
   }
@@ -390,12 +418,13 @@ std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
 
 std::vector<Place> seats_of(const Residuals& left) {
   const Factors factors(left.part, left.repeats);
+  const Cells cells(left.repeats, left.white);
   const double n = static_cast<double>(left.residual.size());
   const double squares = left.residual.squaredNorm();
   std::vector<MatrixXd> bases;
   for (const FactorColumns& f : factors.all()) {
-    MatrixXd columns = left.root_weight.asDiagonal() * factors.whole(f);
-    take_out_zeros(left.part.table, left.root_weight, columns);
+    MatrixXd columns = left.white(factors.whole(f));
+    left.white.take_out_zeros(columns);
     if (left.basis.cols() > 0) columns -= left.basis * (left.basis.transpose() * columns);
     bases.push_back(orthonormal(std::move(columns)));
   }
@@ -410,8 +439,8 @@ std::vector<Place> seats_of(const Residuals& left) {
       const double here = (bases[f].transpose() * rest).squaredNorm();
       const double value = -n * std::log1p(-std::min(here / rest.squaredNorm(), 1.0 - 1e-12)) -
                            k * std::log(n) - 10.0;  // 10: one place in a hundred by chance
-      if (value > gain && (!factors.all()[f].repeated ||
-                           tells_repeats_apart(left.repeats, left.root_weight, bases[f], rest)))
+      if (value > gain &&
+          (!factors.all()[f].repeated || tells_repeats_apart(cells, bases[f], rest)))
         best = f, gain = value, fall = here;
     }
     if (best == bases.size()) break;
@@ -424,8 +453,8 @@ std::vector<Place> seats_of(const Residuals& left) {
     const double dof = left.dof - k;
     seat.p = math::f_upper(math::test_ratio(fall / k, (rest.squaredNorm() - fall) / dof), k, dof) *
              static_cast<double>(bases.size());
-    find_level(factors.all()[best], left.root_weight, rest, (rest.squaredNorm() - fall) / dof,
-               left.floor ? left.floor->dof : left.dof, seat);
+    find_level(factors.all()[best], levels_of(factors.all()[best], left.white), rest,
+               (rest.squaredNorm() - fall) / dof, left.floor ? left.floor->dof : left.dof, seat);
     seats.push_back(std::move(seat));
     const MatrixXd chosen = bases[best];
     rest -= chosen * (chosen.transpose() * rest);
@@ -438,14 +467,17 @@ std::vector<Place> seats_of(const Residuals& left) {
   return seats;
 }
 
-std::vector<Where> factors_of(const Part& part, const Repeats& repeats, const VectorXd& root_weight,
-                              const VectorXd& signal) {
+FactorsOf::FactorsOf(const Part& part, const Repeats& repeats, const Whitening& white) {
   const Factors factors(part, repeats);
-  const auto bases = bases_of(factors, part, repeats, root_weight, MatrixXd(signal.size(), 0));
+  bases_ = bases_of(factors, repeats, white, MatrixXd(white.root().size(), 0));
+  for (const FactorColumns& f : factors.all()) of_.push_back(f.of);
+}
+
+std::vector<Where> FactorsOf::operator()(const VectorXd& signal) const {
   std::vector<Where> out;
-  for (std::size_t f = 0; f < bases.size(); ++f)
-    if ((bases[f].transpose() * signal).squaredNorm() > 0.05 * signal.squaredNorm())
-      out.push_back(factors.all()[f].of);
+  for (std::size_t f = 0; f < bases_.size(); ++f)
+    if ((bases_[f].transpose() * signal).squaredNorm() > 0.05 * signal.squaredNorm())
+      out.push_back(of_[f]);
   return out;
 }
 

@@ -63,7 +63,8 @@ Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
                                      const std::vector<Effect>& effects);
 
 /// Scatter of repeated readings of one target in one direction, after what a whole pass shares
-/// (its own zero and slope) is taken out: no model of the catalogue is in it.
+/// (its own zero, slope and curvature) is taken out: no model of the catalogue is in it. Not below
+/// what a display of coarse digits hides, digit/sqrt(12).
 struct NoiseFloor {
   double s = 0.0;    ///< m or rad
   double u = 0.0;    ///< its standard uncertainty, s / sqrt(2 dof)

@@ -88,6 +88,15 @@ struct Piece {
   double size;  ///< RMS of its noiseless deviation, mean taken out, in units of the noise
 };
 
+/// How the noise differs from independent readings of one scatter.
+struct Unrest {
+  double correlation = 0.0;  ///< of a reading with the one before: AR(1), on through all passes
+  double run_zero = 0.0;     ///< each run its own zero: standard deviation in units of the noise
+  double walk = 0.0;         ///< of the zero, RMS about its mean in units of the noise
+  double rough = 1.0;        ///< a stretch of a quarter to a half scatters so many times as much
+  double digit = 0.0;        ///< last digit of the display in units of the noise; 0: fine
+};
+
 /// One campaign as it is to be made.
 struct Scenario {
   Kind kind = Kind::one;
@@ -112,6 +121,7 @@ struct Scenario {
   double noise = 5e-7;        ///< standard deviation of a reading, m or rad
   double misread = 0.0;       ///< share of readings that are wrong by 8 to 40 times the noise
   bool one_misread = false;   ///< instead: exactly one
+  Unrest unrest{};
   std::vector<Piece> model;   ///< causes that the campaign's model holds already
   std::vector<Piece> hidden;  ///< causes that it does not
 };
