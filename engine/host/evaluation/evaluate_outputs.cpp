@@ -324,7 +324,8 @@ Expected<void> check_output(const OutputResult& result,
     for (const Artifact& a : w.result.artifacts) names.insert(a.name);
   for (const Artifact& a : result.artifacts) {
     if (!storage::is_artifact_name(a.name))
-      return fail("the file name \"" + a.name + "\": expected a plain name inside the output folder");
+      return fail("the file name \"" + a.name +
+                  "\": expected a plain name inside the output folder");
     if (!names.insert(a.name).second)
       return fail("the file name \"" + a.name + "\", which is already taken");
   }
