@@ -160,7 +160,8 @@ Document page(const std::string& text) {
 }
 
 TEST(WideFont, ADocumentEmbedsWhatItUsesAndNothingElse) {
-  const auto plain = pdf_bytes(page("Torino"), fonts()), chinese = pdf_bytes(page("校准证书"), fonts()),
+  const auto plain = pdf_bytes(page("Torino"), fonts()),
+             chinese = pdf_bytes(page("校准证书"), fonts()),
              again = pdf_bytes(page("校准证书"), fonts());
   ASSERT_TRUE(plain && chinese && again);
   EXPECT_EQ(*chinese, *again);

@@ -23,7 +23,8 @@
 ///     turn_cos,    the same of one turn of a rotary axis
 ///     turn_sin
 ///     B_mean       mean of B_i
-///     ln_s         ln of the root of the mean of s_i^2 over targets and directions, s in um or arcsec
+///     ln_s         ln of the root of the mean of s_i^2 over targets and directions, s in um or
+///     arcsec
 ///
 /// Each is f = sum J_k y_k over the readings (ln_s aside). Its uncertainty u is of what is new in
 /// each campaign. Of the readings: with e of a single reading, and of each run the offset and slope
