@@ -38,7 +38,7 @@ struct Evaluated {
   reading::Inputs inputs;  ///< of the campaign's own files, manifest first
   std::string status;      ///< ok, attention, failed
   std::optional<Certificate> certificate{};
-  bool retry = false;  ///< it failed for a reason that does not lie in its files
+  bool retry = false;     ///< it failed for a reason that does not lie in its files
   std::string purpose{};  ///< as the manifest says it
 };
 
