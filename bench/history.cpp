@@ -13,9 +13,8 @@ int main(int argc, char** argv) {
   const std::string what = argv[1];
   const std::vector<std::string> campaigns(argv + 3, argv + argc);
   const auto begin = std::chrono::steady_clock::now();
-  const auto done = what == "rebuild"
-                        ? history::rebuild(argv[2], {}, [] {})
-                        : history::update(argv[2], false, campaigns, {}, [] {});
+  const auto done = what == "rebuild" ? history::rebuild(argv[2], {}, [] {})
+                                      : history::update(argv[2], false, campaigns, {}, [] {});
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   if (!done) {
     std::fprintf(stderr, "%s\n", done.error().message.c_str());

@@ -117,7 +117,10 @@ int acknowledge(AckWish& wish, const Common& common) {
   if (const auto added = config::add_acknowledgement(wish.site, a); !added)
     return refuse_all(verb, added.error());
   say(common, wish.site, config::acknowledged_name,
-      {{"schema", "nonio-ack/1"}, {"finding", a.finding}, {"machine", a.machine}, {"until", a.until}});
+      {{"schema", "nonio-ack/1"},
+       {"finding", a.finding},
+       {"machine", a.machine},
+       {"until", a.until}});
   return exit_done;
 }
 
@@ -185,39 +188,41 @@ Verb ack_verb(Common& common) {
            {"--axis", &a.axis, "The axis; without it all"},
            {"--quantity", &a.quantity, "The quantity, such as B_mean; without it all"},
            required({"--until", &a.until, "Last day on which it is known, YYYY-MM-DD"}),
-           {"--value", &wish->value, "The quantity's value now, in its unit: it returns where it\n"
-                                     "moves by more than --U"},
+           {"--value", &wish->value,
+            "The quantity's value now, in its unit: it returns where it\n"
+            "moves by more than --U"},
            {"--U", &wish->U, "Expanded uncertainty (k = 2) of that value"},
            required({"--by", &a.by, "Who says so"}),
            required({"--why", &a.why, "Why it may stand until then"}),
            {"--date", &a.date, "The day on which it is said, YYYY-MM-DD; without it today"}},
           common_arguments(common)),
-      .footer = "The entry goes to the end of SITE/acknowledged.toml; comments stay. Nothing is "
-                "hidden by it:\nwhat is known stays in the results and in the history.\n\n"
-                "Example: nonio ack site --finding reversal.constant --machine S-0042 --axis X "
-                "--until 2026-06-30\n         --by \"B. Sample\" --why \"nut is ordered\"",
+      .footer =
+          "The entry goes to the end of SITE/acknowledged.toml; comments stay. Nothing is "
+          "hidden by it:\nwhat is known stays in the results and in the history.\n\n"
+          "Example: nonio ack site --finding reversal.constant --machine S-0042 --axis X "
+          "--until 2026-06-30\n         --by \"B. Sample\" --why \"nut is ordered\"",
       .run = [wish, &common] { return acknowledge(*wish, common); }};
 }
 
 Verb forget_verb(Common& common) {
   auto wish = std::make_shared<ForgetWish>();
-  return {
-      .name = "forget",
-      .summary = "Say that campaigns are meant to be gone from the site",
-      .arguments = joined(
-          {site_argument(wish->site),
-           required({"CAMPAIGN", &wish->campaigns, "Their ids"}),
-           required({"--by", &wish->by, "Who says so"}),
-           required({"--why", &wish->why, "Why they are gone"}),
-           {"--date", &wish->date, "The day on which it is said, YYYY-MM-DD; without it today"}},
-          common_arguments(common)),
-      .footer = "A campaign that the night before has seen and this one does not is named every "
-                "night, with exit\nstatus 1, until it is back or forgotten. The entry goes to the "
-                "end of SITE/forgotten.toml. What was\nknown of the campaign stays in the output "
-                "folder and in the history.\n\n"
-                "Example: nonio forget site 2021-03-02-rossi --by \"B. Sample\" --why \"machine "
-                "was sold\"",
-      .run = [wish, &common] { return forget(*wish, common); }};
+  return {.name = "forget",
+          .summary = "Say that campaigns are meant to be gone from the site",
+          .arguments = joined({site_argument(wish->site),
+                               required({"CAMPAIGN", &wish->campaigns, "Their ids"}),
+                               required({"--by", &wish->by, "Who says so"}),
+                               required({"--why", &wish->why, "Why they are gone"}),
+                               {"--date", &wish->date,
+                                "The day on which it is said, YYYY-MM-DD; without it today"}},
+                              common_arguments(common)),
+          .footer =
+              "A campaign that the night before has seen and this one does not is named every "
+              "night, with exit\nstatus 1, until it is back or forgotten. The entry goes to the "
+              "end of SITE/forgotten.toml. What was\nknown of the campaign stays in the output "
+              "folder and in the history.\n\n"
+              "Example: nonio forget site 2021-03-02-rossi --by \"B. Sample\" --why \"machine "
+              "was sold\"",
+          .run = [wish, &common] { return forget(*wish, common); }};
 }
 
 }  // namespace nonio::app

@@ -100,14 +100,16 @@ Json to_json(const std::vector<Spelling>& spellings) {
 
 /// How many characters a terminal shows of UTF-8, as good as nobody asks more.
 std::size_t shown_width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  }));
 }
 
 void print_rows(const std::vector<std::vector<std::string>>& rows, const std::string& right) {
   std::vector<std::size_t> widths(rows.front().size());
   for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], shown_width(row[i]));
+    for (std::size_t i = 0; i < row.size(); ++i)
+      widths[i] = std::max(widths[i], shown_width(row[i]));
   for (const auto& row : rows) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {
@@ -132,7 +134,8 @@ void print_table(const std::vector<Point>& points) {
       {"machine", "axis", "quantity", "day", "state", "value", "unit", "u", "U", "campaign"}};
   for (const Point& p : points) {
     rows.push_back({p.machine, p.axis, p.quantity, p.day, p.state, p.value, p.unit,
-                    three_digits(p.u_repeat), p.expanded, p.campaign + (p.superseded_by.empty() ? "" : " (superseded)")});
+                    three_digits(p.u_repeat), p.expanded,
+                    p.campaign + (p.superseded_by.empty() ? "" : " (superseded)")});
     for (std::string& cell : rows.back()) cell = printable(cell);
   }
   print_rows(rows, "lllllrlrrl");
@@ -219,7 +222,8 @@ Verb query_verb(Common& common) {
           "u is the standard uncertainty of what is new in each campaign, U the expanded one (k = "
           "2);\n"
           "what campaigns share (the instrument, the expansion) is u_common in --csv and --json.\n"
-          "The numbers are those of results.json, digit for digit. The history is OUT/history.sqlite,"
+          "The numbers are those of results.json, digit for digit. The history is "
+          "OUT/history.sqlite,"
           "\nwhich any SQLite tool reads: tables `evaluation`, `result`, ..., view `point`.\n\n"
           "Example: nonio query out S-0042 --axis X --quantity B_mean --csv",
       .run = [wish, &common] { return query(*wish, common); }};

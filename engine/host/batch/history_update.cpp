@@ -26,7 +26,12 @@ std::vector<config::Event> events_of(const config::MachineRecords& records) {
       if (recorded.since.empty()) continue;
       std::string text = !recorded.table ? "" : recorded.table->empty() ? "none" : *recorded.table;
       const auto line = file.record->lines.find("axes." + axis + ".since");
-      events.push_back({recorded.since, file.asset, axis, "compensation", std::move(text), {},
+      events.push_back({recorded.since,
+                        file.asset,
+                        axis,
+                        "compensation",
+                        std::move(text),
+                        {},
                         line == file.record->lines.end() ? 0 : line->second});
     }
   }
@@ -59,17 +64,16 @@ Expected<std::vector<std::string>> HistoryUpdate::end(std::uint64_t last, std::u
                                                       const std::vector<std::string>& campaigns,
                                                       const Expected<history::Told>& told) const {
   if (!told) return fail(told.error());
-  auto updated = read_apart<history::Updated>(
-      "the history", context_.site.limits.disk_seconds,
-      [&](process::SignsOfLife& signs) -> Expected<history::Updated> {
-        signs.reading((options_.out / history::store_name).string());
-        return history::update(options_.out, known_ != last, campaigns, *told,
-                               [&] { signs.beat(); });
-      });
+  auto updated =
+      read_apart<history::Updated>("the history", context_.site.limits.disk_seconds,
+                                   [&](process::SignsOfLife& signs) -> Expected<history::Updated> {
+                                     signs.reading((options_.out / history::store_name).string());
+                                     return history::update(options_.out, known_ != last, campaigns,
+                                                            *told, [&] { signs.beat(); });
+                                   });
   if (!updated) return fail(updated.error());
   std::vector<std::string> notes;
-  for (const std::string& left : updated->left_out)
-    notes.push_back("not in the history: " + left);
+  for (const std::string& left : updated->left_out) notes.push_back("not in the history: " + left);
   if (!notes.empty()) return notes;
   if (auto noted = history::note_known_night(options_.out, night); !noted)
     return fail(noted.error());

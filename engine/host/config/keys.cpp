@@ -1287,11 +1287,10 @@ constexpr Key machine_file_keys[] = {
 constexpr Words an_asset_or_serial =
     "The machine as `nonio query` calls it: its asset, or maker and serial with a space between "
     "them.";
-constexpr Key written_by = {
-    .name = "by", .holds = text, .help = "Who says so.", .required = true};
+constexpr Key written_by = {.name = "by", .holds = text, .help = "Who says so.", .required = true};
 
-constexpr Choice event_kinds[] = {
-    {"crash"}, {"repair"}, {"compensation"}, {"moved"}, {"instrument"}, {"software"}, {"other"}};
+constexpr Choice event_kinds[] = {{"crash"},      {"repair"},   {"compensation"}, {"moved"},
+                                  {"instrument"}, {"software"}, {"other"}};
 
 constexpr Key event_keys[] = {
     {.name = "date", .holds = date, .help = "Day on which it happened.", .required = true},

@@ -188,9 +188,9 @@ Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
                                                          const std::string& file) {
   return parse_log<Acknowledgement>(
       text, file, acknowledged_file(), "acknowledged", [](TableReader& reader) {
-        Acknowledgement a{reader.date("date"),   reader.text("finding"), reader.text("machine"),
-                          reader.text("axis"),   reader.text("quantity"), reader.date("until"),
-                          reader.number("value"), reader.number("U"),    reader.text("by"),
+        Acknowledgement a{reader.date("date"),    reader.text("finding"),  reader.text("machine"),
+                          reader.text("axis"),    reader.text("quantity"), reader.date("until"),
+                          reader.number("value"), reader.number("U"),      reader.text("by"),
                           reason_of(reader)};
         if (!a.until.empty() && a.until < a.date)
           reader.error("until", "expected a day that is not before date, " + a.date);

@@ -55,7 +55,7 @@ struct Record {
   reading::Inputs inputs;
   std::optional<IndexedSince> indexed{};  ///< none: it failed for a reason that may pass
   std::string certificate;                ///< its number; empty: none
-  bool draft = false;       ///< of a certificate that waits for its release
+  bool draft = false;                     ///< of a certificate that waits for its release
   std::vector<RecordedFile> files;
   std::vector<Error> errors;
   std::vector<KnownFinding> findings, previous;  ///< previous: of the last night before this one

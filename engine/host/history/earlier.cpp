@@ -145,9 +145,8 @@ std::string extended(const std::string& before, const std::vector<CertificateRow
 
 void add_number(const std::optional<CertificateRow>& more, std::vector<CertificateRow>& numbers) {
   if (!more) return;
-  const bool known =
-      std::any_of(numbers.begin(), numbers.end(),
-                  [&](const CertificateRow& c) { return c.number == more->number; });
+  const bool known = std::any_of(numbers.begin(), numbers.end(),
+                                 [&](const CertificateRow& c) { return c.number == more->number; });
   if (!known) numbers.push_back(*more);
 }
 
@@ -178,8 +177,7 @@ Expected<void> put_aside(const Kept& kept, const fs::path& folder, const std::st
   const bool same = carried.indexed && since.sha256 == carried.indexed->sha256;
   if (same) carried.indexed = since;
   const auto is_it = [&](const Known& known) {
-    return known.since.sha256 == since.sha256 &&
-           known.since.night.number == since.night.number;
+    return known.since.sha256 == since.sha256 && known.since.night.number == since.night.number;
   };
   const bool superseded =
       !same && (history->evaluations.empty() || !is_it(history->evaluations.back()));
@@ -245,8 +243,8 @@ Expected<Carried> carry_over(const fs::path& folder, const Record& fresh, std::s
   }
   const auto entry = entry_of(results, fresh.inputs, id);
   if (!entry) return fail(entry.error());
-  carried.indexed = IndexedSince{
-      {fresh.night, fresh.date}, input(fresh.inputs, "version"), digest_of(*entry)};
+  carried.indexed =
+      IndexedSince{{fresh.night, fresh.date}, input(fresh.inputs, "version"), digest_of(*entry)};
   if (!*kept) return carried;
   const Record& old = (*kept)->record;
   const bool same = old.indexed && old.indexed->sha256 == carried.indexed->sha256;

@@ -11,8 +11,8 @@
 #include "host/evaluation/record.h"
 #include "host/history/entry.h"
 
-/// What was known of a campaign before its results were replaced: OUT/<campaign>/earlier.json, which
-/// is there where something else was known.
+/// What was known of a campaign before its results were replaced: OUT/<campaign>/earlier.json,
+/// which is there where something else was known.
 namespace nonio::host::history {
 
 inline constexpr const char* earlier_name = "earlier.json";
@@ -25,8 +25,8 @@ struct Known {
 
 /// What the output folder of a campaign says.
 struct FolderHistory {
-  std::vector<Known> evaluations;           ///< each supersedes the one before
-  std::vector<CertificateRow> certificates; ///< all numbers that it was issued
+  std::vector<Known> evaluations;            ///< each supersedes the one before
+  std::vector<CertificateRow> certificates;  ///< all numbers that it was issued
 };
 
 /// The results that count: those of the record, or the last good ones where it failed for a reason

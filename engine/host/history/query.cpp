@@ -47,8 +47,8 @@ Expected<std::string> known_machine(Database& database, const std::string& name)
   const std::string alias =
       database.first("SELECT machine FROM machine_alias WHERE alias = ?", {name});
   const std::string machine = alias.empty() ? name : alias;
-  const bool known =
-      !database.rows("SELECT 1 FROM machine WHERE machine = ?", {machine}).empty() || !alias.empty();
+  const bool known = !database.rows("SELECT 1 FROM machine WHERE machine = ?", {machine}).empty() ||
+                     !alias.empty();
   if (auto well = database.take_error(); !well) return fail(well.error());
   if (known) return machine;
   std::vector<std::string> names;
@@ -117,8 +117,8 @@ Expected<std::vector<Point>> query(const fs::path& out, const Query& wanted) {
       !well)
     return fail(well.error());
   if (auto well =
-          check_name(database, "quantity",
-                     "SELECT DISTINCT quantity FROM result ORDER BY quantity", wanted.quantity);
+          check_name(database, "quantity", "SELECT DISTINCT quantity FROM result ORDER BY quantity",
+                     wanted.quantity);
       !well)
     return fail(well.error());
   std::vector<Point> found;

@@ -49,11 +49,10 @@ void insert_campaign(Database& database, const Entry& e) {
 
 void insert_result(Database& database, std::int64_t evaluation, std::int64_t item,
                    const ResultRow& r) {
-  database.rows(
-      "INSERT INTO result VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-      {evaluation, item, r.measurement, r.axis, r.quantity, r.source, r.unit, r.state, r.value,
-       value_of(r.u_repeat), value_of(together(r.common)), value_of(r.expanded), value_of(r.k),
-       value_of(r.tolerance), r.decision, r.conditions, r.not_stated});
+  database.rows("INSERT INTO result VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                {evaluation, item, r.measurement, r.axis, r.quantity, r.source, r.unit, r.state,
+                 r.value, value_of(r.u_repeat), value_of(together(r.common)), value_of(r.expanded),
+                 value_of(r.k), value_of(r.tolerance), r.decision, r.conditions, r.not_stated});
   for (std::size_t i = 0; i < r.common.size(); ++i)
     database.rows("INSERT INTO common_part VALUES (?, ?, ?, ?, ?)",
                   {evaluation, item, number(i), r.common[i].source, r.common[i].u});
@@ -67,17 +66,16 @@ const char* why(const Known& known, const Before& before) {
 
 }  // namespace
 
-void insert(Database& database, std::int64_t evaluation, const Known& known,
-            const Before& before) {
+void insert(Database& database, std::int64_t evaluation, const Known& known, const Before& before) {
   const Entry& e = known.entry;
   insert_campaign(database, e);
   const Database::Value supersedes = before.evaluation == 0 ? Database::Value(Database::Null{})
                                                             : Database::Value(before.evaluation);
-  database.rows("INSERT INTO evaluation VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                {evaluation, known.since.sha256, e.campaign, e.campaign_sha256,
-                 static_cast<std::int64_t>(known.since.night.number), known.since.night.date,
-                 known.since.version, e.status, e.message, supersedes,
-                 std::string_view(why(known, before))});
+  database.rows(
+      "INSERT INTO evaluation VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+      {evaluation, known.since.sha256, e.campaign, e.campaign_sha256,
+       static_cast<std::int64_t>(known.since.night.number), known.since.night.date,
+       known.since.version, e.status, e.message, supersedes, std::string_view(why(known, before))});
   for (std::size_t i = 0; i < e.results.size(); ++i)
     insert_result(database, evaluation, number(i), e.results[i]);
   for (const CovarianceRow& c : e.covariance) {
@@ -117,10 +115,10 @@ void replace_logs(Database& database, const config::SiteLogs& logs,
   for (const config::Event& e : of_records) put_event(e, "machines");
   item = 0;
   for (const config::Acknowledgement& a : logs.acknowledged)
-    database.rows("INSERT INTO acknowledgement VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                  {++item, a.date, a.finding, a.machine, a.axis, a.quantity, a.until,
-                   value_of(a.value), value_of(a.U), a.by, a.why,
-                   static_cast<std::int64_t>(a.line)});
+    database.rows(
+        "INSERT INTO acknowledgement VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        {++item, a.date, a.finding, a.machine, a.axis, a.quantity, a.until, value_of(a.value),
+         value_of(a.U), a.by, a.why, static_cast<std::int64_t>(a.line)});
   item = 0;
   for (const config::Forgotten& f : logs.forgotten)
     database.rows("INSERT INTO forgotten VALUES (?, ?, ?, ?, ?, ?)",

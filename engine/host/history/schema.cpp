@@ -73,13 +73,13 @@ CREATE TABLE covariance (
 )sql";
 
 /// What campaigns say; the others are copies of the site's files as they are now.
-constexpr const char* append_only[] = {"machine",    "campaign",   "evaluation", "result",
+constexpr const char* append_only[] = {"machine",     "campaign",   "evaluation", "result",
                                        "common_part", "covariance", "finding",    "certificate"};
 /// Children first.
 constexpr const char* all_tables[] = {
-    "common_part", "covariance",    "finding", "result",          "certificate", "evaluation",
-    "campaign",    "machine",       "event",   "acknowledgement", "forgotten",   "machine_alias",
-    "store"};
+    "common_part", "covariance",    "finding", "result", "certificate",
+    "evaluation",  "campaign",      "machine", "event",  "acknowledgement",
+    "forgotten",   "machine_alias", "store"};
 
 std::string triggers() {
   std::string sql;

@@ -115,8 +115,8 @@ class Filling {
   }
 
   Place last_place() {
-    const auto rows = database_.rows(
-        "SELECT night, campaign FROM evaluation ORDER BY evaluation DESC LIMIT 1");
+    const auto rows =
+        database_.rows("SELECT night, campaign FROM evaluation ORDER BY evaluation DESC LIMIT 1");
     return rows.empty() ? Place{} : Place{std::stoull(rows[0][0]), rows[0][1], 0};
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the host takes manifests, many at a time: schema_reads campaign|site|machine|events|..., the paths
-// on stdin; a line for each, "ok" or the first error.
+// Whether the host takes manifests, many at a time: schema_reads campaign|site|machine|events|...,
+// the paths on stdin; a line for each, "ok" or the first error.
 #include <iostream>
 #include <string>
 

@@ -24,7 +24,7 @@ WRONG = [7, -7, 0, 2.5, 1e12, True, "some text", "X", "2025-01-02", "", "a\tb", 
 DAYS = [f"= {toml.written(value)}" for value in WRONG if isinstance(value, (datetime.date, datetime.time))]
 # Where the schema accepts what the program refuses: (place, why).
 ONLY_PROGRAM = [
-    (r".*\b(date|end_date|received|calibrated|valid_until)", "a date in quotes; the last day before the first one"),
+    (r".*\b(date|end_date|received|calibrated|valid_until|until)", "a date in quotes; the last day before the first one"),
     (r"machine\.axes\.X\.slave", "the master"),
     (r"measurement\.\d+\.lateral", "the axis that moves"),
     (r"measurement\.\d+\.at", "the axis that moves"),

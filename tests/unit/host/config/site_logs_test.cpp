@@ -36,8 +36,12 @@ class SiteFolder {
 };
 
 config::Event an_event() {
-  return {.date = "2026-03-04", .machine = "S-0042", .axis = "X", .kind = "crash",
-          .text = "tool hit the vice", .by = "B. Sample"};
+  return {.date = "2026-03-04",
+          .machine = "S-0042",
+          .axis = "X",
+          .kind = "crash",
+          .text = "tool hit the vice",
+          .by = "B. Sample"};
 }
 
 std::string first_error(const config::Checked<void>& done) {
@@ -54,8 +58,9 @@ TEST(SiteLogs, AnEntryGoesToTheEndAndCommentsStay) {
   EXPECT_EQ(site.read("events.toml"),
             "format = 1\n\n[[event]]\ndate = 2026-03-04\nmachine = \"S-0042\"\naxis = \"X\"\n"
             "kind = \"crash\"\ntext = \"tool hit the vice\"\nby = \"B. Sample\"\n");
-  const std::string hand = "# ours\nformat = 1 # one\n\n[[event]] # first\ndate = 2020-01-02\n"
-                           "machine = 'A'\nkind = \"other\"\ntext = \"x y\"   # no newline at the end";
+  const std::string hand =
+      "# ours\nformat = 1 # one\n\n[[event]] # first\ndate = 2020-01-02\n"
+      "machine = 'A'\nkind = \"other\"\ntext = \"x y\"   # no newline at the end";
   site.write("events.toml", hand);
   ASSERT_TRUE(config::add_event(site.root(), an_event()));
   EXPECT_TRUE(site.read("events.toml").starts_with(hand + "\n\n[[event]]\n"));
@@ -92,7 +97,8 @@ TEST(SiteLogs, WhatIsWrongIsRefusedAndNothingIsWritten) {
   a.why = "--";
   EXPECT_NE(first_error(config::add_acknowledgement(site.root(), a)).find("a reason in words"),
             std::string::npos);
-  EXPECT_NE(first_error(config::add_forgotten(site.root(), {"2026-03-04", "A B", "B", "sold"})), "");
+  EXPECT_NE(first_error(config::add_forgotten(site.root(), {"2026-03-04", "A B", "B", "sold"})),
+            "");
 }
 
 TEST(SiteLogs, AFileThatIsWrongIsLeftAsItIs) {
@@ -124,9 +130,16 @@ TEST(SiteLogs, AnyTextComesBackAsItWas) {
   const auto logs = config::read_site_logs(site.root());
   ASSERT_TRUE(logs);
   EXPECT_EQ(logs->events.at(0).text, text);
-  config::Acknowledgement a{.date = "2026-03-04", .finding = "f", .machine = "S", .axis = "X",
-                            .quantity = "B_mean", .until = "2026-06-01", .value = -5.25, .U = 0.4,
-                            .by = "B", .why = "nut is ordered"};
+  config::Acknowledgement a{.date = "2026-03-04",
+                            .finding = "f",
+                            .machine = "S",
+                            .axis = "X",
+                            .quantity = "B_mean",
+                            .until = "2026-06-01",
+                            .value = -5.25,
+                            .U = 0.4,
+                            .by = "B",
+                            .why = "nut is ordered"};
   ASSERT_TRUE(config::add_acknowledgement(site.root(), a));
   a.value = 5.0;
   ASSERT_TRUE(config::add_acknowledgement(site.root(), a));
@@ -140,7 +153,8 @@ TEST(SiteLogs, AnyTextComesBackAsItWas) {
 
 TEST(SiteLogs, AnAliasLeadsToAMachineAndNoFurther) {
   const auto site = config::parse_site(
-      "[[alias]]\nname = \"a\"\nasset = \"S\"\nwhy = \"plate\"\n[limits]\nvanished = 3\n", "site.toml");
+      "[[alias]]\nname = \"a\"\nasset = \"S\"\nwhy = \"plate\"\n[limits]\nvanished = 3\n",
+      "site.toml");
   ASSERT_TRUE(site);
   ASSERT_EQ(site->aliases.size(), 1U);
   EXPECT_EQ(site->limits.vanished, 3U);

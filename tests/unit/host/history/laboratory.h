@@ -68,7 +68,8 @@ struct Made {
 class Output {
  public:
   explicit Output(const std::string& name)
-      : root_(fs::temp_directory_path() / ("nonio-history-" + name + "-" + std::to_string(::getpid()))) {
+      : root_(fs::temp_directory_path() /
+              ("nonio-history-" + name + "-" + std::to_string(::getpid()))) {
     fs::remove_all(root_);
     fs::create_directories(root_ / ".nonio");
   }
@@ -93,7 +94,9 @@ class Output {
     record.status = made.status;
     record.retry = retry;
     record.certificate = made.certificate;
-    record.inputs = {{"site.toml", "s"}, {"version", version}, {"campaign.toml", "m" + made.id},
+    record.inputs = {{"site.toml", "s"},
+                     {"version", version},
+                     {"campaign.toml", "m" + made.id},
                      {"file x.csv", readings}};
     const std::string results = made.json();
     const auto carried = history::carry_over(folder, record, results, made.id);
@@ -125,17 +128,18 @@ class Output {
 
 /// All rows of all tables and of the view, in order.
 inline std::string rows_of(const fs::path& out) {
-  auto database = host::storage::Database::open(out / history::store_name,
-                                                host::storage::Database::Use::write);
+  auto database =
+      host::storage::Database::open(out / history::store_name, host::storage::Database::Use::write);
   if (!database) return "no store: " + database.error().message;
   std::string all;
   for (const std::string of :
-       {"store ORDER BY name", "machine ORDER BY machine", "campaign ORDER BY campaign, campaign_sha256",
-        "evaluation ORDER BY evaluation", "result ORDER BY evaluation, item",
-        "common_part ORDER BY evaluation, item, part", "covariance ORDER BY evaluation, first_item",
-        "finding ORDER BY evaluation, item", "certificate ORDER BY number",
-        "machine_alias ORDER BY alias", "event ORDER BY item", "acknowledgement ORDER BY item",
-        "forgotten ORDER BY item", "point ORDER BY evaluation, item"}) {
+       {"store ORDER BY name", "machine ORDER BY machine",
+        "campaign ORDER BY campaign, campaign_sha256", "evaluation ORDER BY evaluation",
+        "result ORDER BY evaluation, item", "common_part ORDER BY evaluation, item, part",
+        "covariance ORDER BY evaluation, first_item", "finding ORDER BY evaluation, item",
+        "certificate ORDER BY number", "machine_alias ORDER BY alias", "event ORDER BY item",
+        "acknowledgement ORDER BY item", "forgotten ORDER BY item",
+        "point ORDER BY evaluation, item"}) {
     all += of + "\n";
     for (const auto& row : database->rows(("SELECT * FROM " + of).c_str())) {
       for (const std::string& cell : row) all += cell + '|';
@@ -147,8 +151,8 @@ inline std::string rows_of(const fs::path& out) {
 }
 
 inline std::string ask(const fs::path& out, const char* sql) {
-  auto database = host::storage::Database::open(out / history::store_name,
-                                                host::storage::Database::Use::write);
+  auto database =
+      host::storage::Database::open(out / history::store_name, host::storage::Database::Use::write);
   if (!database) return database.error().message;
   std::string all;
   for (const auto& row : database->rows(sql)) {

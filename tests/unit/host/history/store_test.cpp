@@ -81,8 +81,9 @@ TEST(HistoryStore, MadeAgainHasTheSameRows) {
 TEST(HistoryStore, KeepsWhatWasSupersededAndWhy) {
   Output out("chain");
   live(out);
-  EXPECT_EQ(ask(out.root(), "SELECT evaluation, campaign, night, version, status, supersedes, why "
-                            "FROM evaluation ORDER BY evaluation"),
+  EXPECT_EQ(ask(out.root(),
+                "SELECT evaluation, campaign, night, version, status, supersedes, why "
+                "FROM evaluation ORDER BY evaluation"),
             "1|a|1|1.0|ok||;2|b|1|1.0|ok||;3|gone|1|1.0|ok||;"
             "4|a|2|1.0|ok|1|settings;5|b|2|1.0|ok|2|files;6|late|2|1.0|ok||;"
             "7|a|3|1.0|ok|4|settings;"
@@ -91,8 +92,9 @@ TEST(HistoryStore, KeepsWhatWasSupersededAndWhy) {
             "N-1|a;N-2|a;");
   EXPECT_EQ(ask(out.root(), "SELECT evaluation FROM latest ORDER BY evaluation"), "3;8;9;10;");
   // What the first night knew is still there, to the last digit.
-  EXPECT_EQ(ask(out.root(), "SELECT value FROM result r JOIN evaluation e ON e.evaluation = "
-                            "r.evaluation WHERE campaign = 'b' AND quantity = 'scale' ORDER BY 1"),
+  EXPECT_EQ(ask(out.root(),
+                "SELECT value FROM result r JOIN evaluation e ON e.evaluation = "
+                "r.evaluation WHERE campaign = 'b' AND quantity = 'scale' ORDER BY 1"),
             "1.25;1.5;1.75;");
   EXPECT_EQ(ask(out.root(), "SELECT message FROM evaluation WHERE evaluation = 10"),
             "no readings;");
@@ -101,17 +103,20 @@ TEST(HistoryStore, KeepsWhatWasSupersededAndWhy) {
 TEST(HistoryStore, HasTheParts) {
   Output out("parts");
   live(out);
-  EXPECT_EQ(ask(out.root(), "SELECT quantity, source, u_repeat, u_common, expanded, k, tolerance, "
-                            "decision, not_stated FROM result WHERE evaluation = 1 ORDER BY item"),
+  EXPECT_EQ(ask(out.root(),
+                "SELECT quantity, source, u_repeat, u_common, expanded, k, tolerance, "
+                "decision, not_stated FROM result WHERE evaluation = 1 ORDER BY item"),
             "scale|followed|0.1|0.5|||||a.b, c.d;B_mean|followed|0.2||||||;"
             "A|iso230-2|0.5|0.5|1.9|2|10|conforms|;");
-  EXPECT_EQ(ask(out.root(), "SELECT item, part, source, u FROM common_part WHERE evaluation = 1 "
-                            "ORDER BY item, part"),
+  EXPECT_EQ(ask(out.root(),
+                "SELECT item, part, source, u FROM common_part WHERE evaluation = 1 "
+                "ORDER BY item, part"),
             "0|0|instrument O L-1 C-7 2026-01-01|0.3;0|1|expansion of axis X|-0.4;"
             "2|0|instrument O L-1 C-7 2026-01-01|0.3;2|1|expansion of axis X|0.4;");
   // Doubles, least significant byte first: 0.01 is 0x3F847AE147AE147B.
-  EXPECT_EQ(ask(out.root(), "SELECT first_item, items, length(upper_triangle), "
-                            "hex(substr(upper_triangle, 1, 8)) FROM covariance WHERE evaluation = 1"),
+  EXPECT_EQ(ask(out.root(),
+                "SELECT first_item, items, length(upper_triangle), "
+                "hex(substr(upper_triangle, 1, 8)) FROM covariance WHERE evaluation = 1"),
             "0|2|24|7B14AE47E17A843F;");
   EXPECT_EQ(ask(out.root(), "SELECT day, machine, axis, kind, note, line FROM event"),
             "2026-02-03|S-1|X|crash|tool \"T1\" hit the vice; O'Brien|3;");
@@ -125,8 +130,8 @@ TEST(HistoryStore, IsAppendOnly) {
                                   "covariance", "finding", "certificate"}) {
     EXPECT_EQ(ask(out.root(), ("DELETE FROM " + table).c_str()),
               (out.root() / "history.sqlite").string() + ": " + table + " is append-only");
-    const std::string first = ask(out.root(), ("SELECT name FROM pragma_table_info('" + table +
-                                               "') LIMIT 1").c_str());
+    const std::string first =
+        ask(out.root(), ("SELECT name FROM pragma_table_info('" + table + "') LIMIT 1").c_str());
     const std::string column = first.substr(0, first.size() - 1);
     EXPECT_NE(ask(out.root(), ("UPDATE " + table + " SET " + column + " = " + column).c_str())
                   .find("append-only"),
@@ -234,8 +239,9 @@ TEST(HistoryStore, AnErrorLeavesTheOldOne) {
   live(out);
   const std::string before = rows_of(out.root());
   ASSERT_TRUE(out.store({.id = "b", .scale = 2.5}, 6, "r9"));
-  ask(out.root(), "CREATE TRIGGER full BEFORE INSERT ON finding BEGIN SELECT RAISE(ABORT, "
-                  "'database or disk is full'); END");
+  ask(out.root(),
+      "CREATE TRIGGER full BEFORE INSERT ON finding BEGIN SELECT RAISE(ABORT, "
+      "'database or disk is full'); END");
   const auto done = history::update(out.root(), false, {"b"}, told(), nothing);
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().message.find("disk is full"), std::string::npos);
@@ -293,9 +299,8 @@ TEST(HistoryStore, DamagedMemoryIsSaidAndNeverTakenForNone) {
   ASSERT_TRUE(out.store({.id = "a", .scale = 2.0}, 2, "r1"));
   const fs::path path = out.root() / "a" / "earlier.json";
   const std::string whole = host::storage::read_file(path).value();
-  for (const std::string& damage :
-       {whole.substr(0, whole.size() / 2), std::string("{}"), "x" + whole,
-        whole.substr(0, 60) + "\1" + whole.substr(61)}) {
+  for (const std::string& damage : {whole.substr(0, whole.size() / 2), std::string("{}"),
+                                    "x" + whole, whole.substr(0, 60) + "\1" + whole.substr(61)}) {
     Output::write(path, damage);
     EXPECT_FALSE(out.store({.id = "a", .scale = 3.0}, 3, "r1"));
     EXPECT_NE(out.why().find("earlier.json is damaged"), std::string::npos) << out.why();
@@ -350,8 +355,10 @@ TEST(HistoryQuery, JoinsAliasesAndOrdersByDay) {
   std::string seen;
   for (const auto& p : *found) seen += p.day + " " + p.campaign + " " + p.value + ";";
   EXPECT_EQ(seen, "2026-01-05 b -5;2026-01-05 gone -5;2026-01-09 a -5;");
-  const auto all = history::query(out.root(), {.machine = "S-1", .quantity = "B_mean",
-                                               .from = "2021-01-01", .to = "2021-12-31",
+  const auto all = history::query(out.root(), {.machine = "S-1",
+                                               .quantity = "B_mean",
+                                               .from = "2021-01-01",
+                                               .to = "2021-12-31",
                                                .superseded = true});
   ASSERT_TRUE(all);
   ASSERT_EQ(all->size(), 1U) << "the alias' campaign, which failed since";
@@ -371,16 +378,19 @@ TEST(HistoryQuery, ACheckIsAStateOfItsOwn) {
 
 TEST(HistoryIdentity, SpellingsAreProposedAndNeverJoined) {
   using history::NamedMachine;
-  const std::vector<NamedMachine> machines{
-      {"S-0042", {"S-0042", "", "", ""}, 9}, {"s 0O42", {"s 0O42", "", "", ""}, 1},
-      {"S-0043", {"S-0043", "M", "V", "77"}, 3}, {"M 77", {"", "M", "V", "77"}, 2},
-      {"T-Il1", {"T-Il1", "", "", ""}, 1}, {"T-111", {"T-111", "", "", ""}, 1},
-      {"", {}, 4}};
+  const std::vector<NamedMachine> machines{{"S-0042", {"S-0042", "", "", ""}, 9},
+                                           {"s 0O42", {"s 0O42", "", "", ""}, 1},
+                                           {"S-0043", {"S-0043", "M", "V", "77"}, 3},
+                                           {"M 77", {"", "M", "V", "77"}, 2},
+                                           {"T-Il1", {"T-Il1", "", "", ""}, 1},
+                                           {"T-111", {"T-111", "", "", ""}, 1},
+                                           {"", {}, 4}};
   std::string seen;
   for (const history::Spelling& s : history::spellings(machines))
     seen += s.one + "/" + s.other + ": " + s.why + ";";
-  EXPECT_EQ(seen, "S-0042/s 0O42: spelled alike;T-111/T-Il1: spelled alike;"
-                  "S-0043/M 77: same maker and serial;");
+  EXPECT_EQ(seen,
+            "S-0042/s 0O42: spelled alike;T-111/T-Il1: spelled alike;"
+            "S-0043/M 77: same maker and serial;");
   Output out("spell");
   ASSERT_TRUE(out.store({.id = "a"}, 1, "r1"));
   ASSERT_TRUE(out.store({.id = "b", .asset = "s1"}, 1, "r1"));
