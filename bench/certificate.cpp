@@ -91,7 +91,7 @@ double signing_ms(const std::string& pdf, const std::string& kind) {
   sign_tests::Wish wish;
   wish.key = kind;
   const sign::Key key = sign_tests::open(sign_tests::issue(wish, &root), root);
-  const auto reserved = sign::reserve(pdf, {}, sign_tests::now);
+  const auto reserved = pdf::reserve(pdf, {}, sign_tests::now);
   return median_ms([&] {
     if (!reserved || !key.sign(*reserved, sign_tests::now)) std::exit(1);
   });
@@ -128,7 +128,7 @@ int main(int argc, char** argv) {
   say("the same in Chinese", timed("zh", b.templates));
   say("DCC", median_ms([&] { b.dcc(); }));
   say("Flate of the pages", flate_ms(pdf));
-  say("room for a signature", median_ms([&] { (void)sign::reserve(pdf, {}, sign_tests::now); }));
+  say("room for a signature", median_ms([&] { (void)pdf::reserve(pdf, {}, sign_tests::now); }));
   say("CMS, P-256", signing_ms(pdf, "P-256"));
   say("CMS, RSA-3072", signing_ms(pdf, "RSA-3072"));
   return 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well `explain` finds what the second generator (tests/hidden) has hidden:
+// How well `explain` finds what the second generator (tests/support/hidden) has hidden:
 //   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped|beside|
 //                fixed-end|blank-temperatures|day-wave|short-misread|smallest COUNT SEED
 //                [--size PERCENT]

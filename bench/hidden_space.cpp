@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well `explain` finds what is hidden on a machine with several axes (tests/hidden/space.cpp):
+// How well `explain` finds what is hidden on a machine with several axes
+// (tests/support/hidden/space.cpp):
 //   bench_hidden_space STORY|all COUNT SEED [--verbose] [--right PERCENT]
 // Campaigns of seeds SEED .. SEED+COUNT-1 of each story; one error of 3 times the noise is not in
 // the model. Fails if fewer are named first, or in the alias group that is said, than --right says.

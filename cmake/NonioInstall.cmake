@@ -4,9 +4,13 @@ include(CMakePackageConfigHelpers)
 
 # In a folder of their own: no program but nonio and its plugins is to link with them, and they keep no ABI between versions.
 install(TARGETS nonio_sdk nonio_math EXPORT nonio LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_COMPONENT dev)
-install(TARGETS nonio_model nonio_sign nonio_host nonio_reports LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_SKIP)
-foreach(part sdk math)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/${part}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+install(TARGETS nonio_model nonio_pdf nonio_sign nonio_host nonio_reports LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_SKIP)
+set(public sdk)
+foreach(room statistics axis uncertainty planning findings volumetric rotary compensation)
+  list(APPEND public math/${room})
+endforeach()
+foreach(folder IN LISTS public)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/${folder}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 endforeach()
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/nonio)

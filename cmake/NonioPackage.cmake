@@ -16,7 +16,7 @@ endif()
 # Version and revision are those of the changelog's first line.
 file(STRINGS ${parts}/changelog newest LIMIT_COUNT 1)
 if(NOT newest MATCHES "^nonio \\((.+)-([^-]+)\\) " OR NOT CMAKE_MATCH_1 STREQUAL PROJECT_VERSION)
-  message(FATAL_ERROR "cmake/package/changelog: wanted version ${PROJECT_VERSION} of the project on top, found \"${newest}\"")
+  message(FATAL_ERROR "cmake/package/changelog: expected version ${PROJECT_VERSION} of the project on top, found \"${newest}\"")
 endif()
 set(revision ${CMAKE_MATCH_2})
 configure_file(${parts}/changelog ${CMAKE_BINARY_DIR}/package/changelog.Debian @ONLY)

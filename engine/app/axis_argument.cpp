@@ -13,7 +13,7 @@ Expected<double> length_of(const std::string& option, const std::string& text) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   if (error == std::errc() && stop == end) return value / 1e3;
-  return fail(option + ": wanted a number in mm, with a point for decimals; found \"" + text +
+  return fail(option + ": expected a number in mm, with a point for decimals; found \"" + text +
               "\"");
 }
 
@@ -32,7 +32,7 @@ Expected<Axis> axis_of(const std::string& text) {
   const std::string name = text.substr(0, std::min(equals, text.size()));
   const auto wrong = [&] {
     return fail(
-        "--axis: wanted NAME=FROM:TO in mm or deg, FROM below TO, such as X=0:12000; found \"" +
+        "--axis: expected NAME=FROM:TO in mm or deg, FROM below TO, such as X=0:12000; found \"" +
         text + "\"");
   };
   if (equals == std::string::npos || colon == std::string::npos || colon < equals ||

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign_verb.h"
 
+#include "nonio/sdk/format.h"
+
 namespace nonio::app {
 
 tl::expected<OpenCampaign, int> open_campaign(const char* verb, const std::string& folder,
@@ -17,7 +19,8 @@ tl::expected<OpenCampaign, int> open_campaign(const char* verb, const std::strin
       host::reading::read_campaign(open.folder, open.place->context, [](const std::string&) {});
   for (const Error& e : open.read.errors) complain(verb, text_of(e));
   if (!common.quiet)
-    for (const Remark& note : open.read.notes) complain(verb, note.english);
+    for (const Remark& note : open.read.notes)
+      complain(verb, remark_text(open.place->context.templates, "en", note));
   if (!open.read.manifest) return tl::unexpected(exit_usage);
   for (const Observations& o : open.read.observations)
     if (o.size() > 0) return open;

@@ -37,8 +37,8 @@ CLI::Validator member_of(const std::vector<std::string>& choices) {
   return {[choices](const std::string& found) {
             if (std::find(choices.begin(), choices.end(), found) != choices.end())
               return std::string();
-            return "wanted one of " + host::storage::listed(choices) + "; found \"" + found + "\"" +
-                   host::storage::suggestion(found, choices);
+            return "expected one of " + host::storage::listed(choices) + "; found \"" + found +
+                   "\"" + host::storage::suggestion(found, choices);
           },
           "{" + host::storage::listed(choices) + "}"};
 }
@@ -139,7 +139,7 @@ std::string complaint_about(const Found& found, const std::vector<std::string>& 
   if (const std::string wrong = unknown_option(*found.verb, own, rest); !wrong.empty())
     return found.path + ": " + wrong;
   if (!at_top && rest.empty() && !found.verb->verbs.empty())
-    return found.path + ": wanted a verb: " + host::storage::listed(names_of(found.verb->verbs));
+    return found.path + ": expected a verb: " + host::storage::listed(names_of(found.verb->verbs));
   return {};
 }
 

@@ -67,7 +67,7 @@ Expected<std::map<std::string, std::string>> settings_of(const std::vector<std::
   for (const std::string& one : given) {
     const std::size_t equals = one.find('=');
     if (equals == std::string::npos || equals == 0)
-      return fail("--set: wanted NAME=VALUE, found \"" + one + "\"");
+      return fail("--set: expected NAME=VALUE, found \"" + one + "\"");
     out[one.substr(0, equals)] = one.substr(equals + 1);
   }
   return out;

@@ -85,7 +85,7 @@ void print(const host::tools::ImportReport& report) {
                   : c.whole() ? ": whole"
                               : ": not written")
               << (c.whole() ? "" : ", something is missing") << "\n";
-    for (const std::string& lack : c.lacks) std::cout << "  wanted: " << lack << "\n";
+    for (const std::string& lack : c.lacks) std::cout << "  expected: " << lack << "\n";
     for (const host::tools::ImportedFile& f : c.files) {
       if (!f.same_as.empty()) {  // said once, and nothing more of this file
         std::cout << "  " << f.file << ": " << f.lacks.front() << "\n";
@@ -96,7 +96,7 @@ void print(const host::tools::ImportReport& report) {
                 << (f.reader.empty() ? "?" : f.reader) << ", " << f.readings << " readings, "
                 << f.missing << " not taken\n";
       for (const std::string& what : f.assumed) std::cout << "    assumed: " << what << "\n";
-      for (const std::string& lack : f.lacks) std::cout << "    wanted: " << lack << "\n";
+      for (const std::string& lack : f.lacks) std::cout << "    expected: " << lack << "\n";
     }
   }
   print("The same as another, left out:", report.duplicates);

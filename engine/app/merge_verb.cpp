@@ -34,7 +34,7 @@ Expected<std::string> merged_axis(const MergeWish& w, const Campaign& campaign) 
   std::string list;
   for (const std::string& a : measured) list += (list.empty() ? "" : ", ") + a;
   return fail(measured.empty() ? "the campaign has no measurement of an axis"
-                               : "wanted --axis, one of " + list);
+                               : "expected --axis, one of " + list);
 }
 
 int tell_merged(const host::tables::MergedTables& merged, const Loaded& present,

@@ -8,6 +8,7 @@
 
 #include "host/tools/schema.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/splitmix64.h"
 
 namespace nonio::app {
 
@@ -130,21 +131,16 @@ std::string instrument_text(const NewCampaign& c) {
          offered("environment", "sensors", "\"on the table and on the column\"");
 }
 
-/// Even, and the same on every machine: 53 bits of a splitmix64.
+/// The same on every machine.
 class Noise {
  public:
-  explicit Noise(std::uint64_t seed) : state_(seed) {}
+  explicit Noise(std::uint64_t seed) : numbers_(seed) {}
   /// -1 .. 1, most often near 0.
   double operator()() { return (even() + even() + even()) * 2.0 / 3.0 - 1.0; }
 
  private:
-  double even() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
-  }
-  std::uint64_t state_;
+  double even() { return numbers_.uniform(); }
+  SplitMix64 numbers_;
 };
 
 }  // namespace

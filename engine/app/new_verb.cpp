@@ -98,7 +98,7 @@ fs::path holder_of(const std::string& id, const fs::path& site) {
     if (it->path().filename().string().starts_with('.')) it.disable_recursion_pending();
     if (it->path().filename() != host::config::manifest_name) continue;
     if (const auto text = host::storage::read_file(it->path());
-        text && host::config::salvage_id(*text) == id)
+        text && host::config::extract_id(*text) == id)
       return it->path().parent_path();
   }
   return {};
@@ -124,7 +124,7 @@ bool is_date(const std::string& text) {
 Expected<void> one_line(const char* option, const std::string& text) {
   for (const char c : text)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-      return fail(std::string(option) + ": wanted a text of one line");
+      return fail(std::string(option) + ": expected a text of one line");
   return {};
 }
 
@@ -150,11 +150,11 @@ std::string lower(std::string text) {
 Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
-    return fail("--file: wanted AXIS=PATH such as X=x.csv, found \"" + text + "\"");
+    return fail("--file: expected AXIS=PATH such as X=x.csv, found \"" + text + "\"");
   const std::string name = text.substr(0, equals);
   const fs::path path = text.substr(equals + 1);
   if (!is_axis_name(name))
-    return fail("--file: wanted an axis of capital letters and digits, found \"" + name + "\"");
+    return fail("--file: expected an axis of capital letters and digits, found \"" + name + "\"");
   auto it =
       std::find_if(axes.begin(), axes.end(), [&](const NewAxis& a) { return a.axis.name == name; });
   if (it == axes.end())
@@ -165,7 +165,7 @@ Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
   if (bytes->empty()) return fail("--file: " + path.string() + " is empty");
   it->file = path.filename().string();
   if (!host::storage::is_artifact_name(it->file) || it->file == host::config::manifest_name)
-    return fail("--file: wanted a plain file name, found \"" + it->file + "\"");
+    return fail("--file: expected a plain file name, found \"" + it->file + "\"");
   it->bytes = std::move(*bytes);
   return {};
 }
@@ -179,12 +179,13 @@ Expected<std::string> id_of(const NewWish& wish, const fs::path& folder, Questio
   if (!host::config::is_campaign_id(id)) {
     const std::string nearest = valid_id(id);
     return fail(
-        "id: wanted a-z 0-9 . _ - and no more than 100, not starting with a point; found \"" + id +
-        "\"" + (host::config::is_campaign_id(nearest) ? " (nearest: \"" + nearest + "\")" : ""));
+        "id: expected a-z 0-9 . _ - and no more than 100, not starting with a point; found \"" +
+        id + "\"" +
+        (host::config::is_campaign_id(nearest) ? " (nearest: \"" + nearest + "\")" : ""));
   }
   if (const auto site = site_above(folder))
     if (const fs::path other = holder_of(id, *site); !other.empty())
-      return fail("id: " + other.string() + " has the id \"" + id + "\"; wanted another (--id)");
+      return fail("id: " + other.string() + " has the id \"" + id + "\"; expected another (--id)");
   return id;
 }
 
@@ -244,7 +245,7 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
   }
   if (auto done = one_line("--control", c.control); !done) return fail(done.error());
   if (!is_date(c.date))
-    return fail("--date: wanted a day such as 2026-11-03, found \"" + c.date + "\"");
+    return fail("--date: expected a day such as 2026-11-03, found \"" + c.date + "\"");
   auto axes = axes_with_files(wish, ask);
   if (!axes) return fail(axes.error());
   c.axes = std::move(*axes);
@@ -379,7 +380,7 @@ int new_campaign(const NewWish& wish, const fs::path& folder, const Common& comm
 int new_machine(const NewWish& wish, const fs::path& path, const Common& common) {
   NewMachine machine{path.stem().string(), wish.machine, wish.serial, wish.control, {}};
   if (path.extension() != ".toml" || path.parent_path().filename() != host::config::machines_folder)
-    return complain(new_name, "wanted SITE/machines/<asset>.toml, found " + wish.folder);
+    return complain(new_name, "expected SITE/machines/<asset>.toml, found " + wish.folder);
   const auto axes = axes_of(wish.axes.empty() ? std::vector<std::string>{"X=0:500"} : wish.axes);
   if (!axes) return complain(new_name, axes.error().message);
   for (const NewAxis& a : *axes) machine.axes.push_back(a.axis);
@@ -388,7 +389,7 @@ int new_machine(const NewWish& wish, const fs::path& path, const Common& common)
   if (const auto read = host::config::parse_machine(text, file, machine.asset); !read)
     return complain(new_name, text_of(read.error().front()) + "; nothing was written");
   if (!host::storage::is_artifact_name(file))
-    return complain(new_name, "wanted a plain name, found " + file);
+    return complain(new_name, "expected a plain name, found " + file);
   std::vector<NewFiles> all{{path.parent_path(), {{file, text}}}};
   return write_new(all, wish, "machine", false, common);
 }
@@ -397,9 +398,9 @@ int make_new(NewWish wish, const Common& common) {
   const std::vector<std::string> kinds{"site", "campaign", "machine"};
   const bool named = std::find(kinds.begin(), kinds.end(), wish.what) != kinds.end();
   if (wish.folder.empty() && named)
-    return complain(new_name, "wanted a folder after \"" + wish.what + "\"");
+    return complain(new_name, "expected a folder after \"" + wish.what + "\"");
   if (!wish.folder.empty() && !named)
-    return complain(new_name, "wanted site, campaign or machine, found \"" + wish.what + "\"" +
+    return complain(new_name, "expected site, campaign or machine, found \"" + wish.what + "\"" +
                                   host::storage::suggestion(wish.what, kinds));
   if (wish.folder.empty()) wish.folder = std::exchange(wish.what, {});
   fs::path folder = fs::absolute(wish.folder).lexically_normal();

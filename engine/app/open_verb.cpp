@@ -84,7 +84,7 @@ Expected<fs::path> document(const OpenWish& wish, const Common& common) {
       const fs::path results = host::storage::results_folder(wish.out, id_of_campaign(folder));
       if (what_holds(results) == Holds::results) return document_of(results);
       return fail("there are no results of " + folder.string() + " in " + wish.out +
-                  "; wanted --out OUT, the folder that `nonio run` wrote them to");
+                  "; expected --out OUT, the folder that `nonio run` wrote them to");
     }
     case Holds::nothing:
       break;

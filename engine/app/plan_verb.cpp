@@ -32,7 +32,7 @@ struct Programs {
 
 struct Plan {
   Lengths mm;
-  math::TripleWish wish;
+  math::TripleRequest wish;
   std::string even = "any";
   std::int64_t count = 5, choose = 1;
   Programs programs;
@@ -45,7 +45,7 @@ struct ProgramWish {
 };
 
 Expected<void> settle(Plan& plan) {
-  math::TripleWish& w = plan.wish;
+  math::TripleRequest& w = plan.wish;
   const auto one = [](const char* option, const std::string& text, double& to) -> Expected<void> {
     const auto length = length_of(option, text);
     if (!length) return fail(length.error());
@@ -65,7 +65,7 @@ Expected<void> settle(Plan& plan) {
            : plan.even == "prefer" ? math::EvenSteps::prefer
                                    : math::EvenSteps::any;
   if (plan.count < 1)
-    return fail("--count: wanted at least 1, found " + std::to_string(plan.count));
+    return fail("--count: expected at least 1, found " + std::to_string(plan.count));
   w.count = static_cast<std::size_t>(plan.count);
   return {};
 }
@@ -93,7 +93,7 @@ void print_plan(std::size_t number, const math::TriplePlan& p, const math::Tripl
 }
 
 void print_plans(const Plan& plan, const math::TriplePlans& found) {
-  const math::TripleWish& w = plan.wish;
+  const math::TripleRequest& w = plan.wish;
   std::cout << "X " << mm_text(w.x) << " mm, Y " << mm_text(w.y) << " mm, over-travel "
             << mm_text(w.over_travel) << " mm at each end; steps are multiples of "
             << mm_text(w.resolution) << " mm" << (w.largest_step > 0.0 ? ", at most " : "")
@@ -150,7 +150,7 @@ int plan_triples(Plan plan, const Common& common) {
   }
   if (plan.programs.out.empty() && plan.programs.control.empty()) return exit_done;
   if (plan.choose < 1 || plan.choose > static_cast<std::int64_t>(found->plans.size()))
-    return complain(verb, "--choose: wanted 1 to " + std::to_string(found->plans.size()) +
+    return complain(verb, "--choose: expected 1 to " + std::to_string(found->plans.size()) +
                               ", found " + std::to_string(plan.choose));
   Machine machine;
   machine.axes = {Axis{.name = "X", .travel = std::pair(0.0, plan.wish.x)},
@@ -168,14 +168,14 @@ Expected<PointTable> grid_of(const ProgramWish& p) {
   const char* const end = p.n.data() + p.n.size();
   const auto [stop, error] = std::from_chars(p.n.data(), end, n);
   if (error != std::errc() || stop != end || n < 1 || n > 100000)
-    return fail("--n: wanted a whole number of steps from 1 to 100000, found \"" + p.n + "\"");
+    return fail("--n: expected a whole number of steps from 1 to 100000, found \"" + p.n + "\"");
   rows.columns.push_back({"n", Quantity::count, {static_cast<double>(n)}});
   for (const auto& [option, text, name] :
        {std::tuple{"--step-x", &p.step_x, "step_x"}, {"--step-y", &p.step_y, "step_y"}}) {
     const auto step = length_of(option, *text);
     if (!step) return fail(step.error());
     if (!(*step > 0.0 && *step < 1e3))
-      return fail(std::string(option) + ": wanted more than 0 mm, found \"" + *text + "\"");
+      return fail(std::string(option) + ": expected more than 0 mm, found \"" + *text + "\"");
     rows.columns.push_back({name, Quantity::length, {*step}});
   }
   return rows;

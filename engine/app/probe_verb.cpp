@@ -158,7 +158,7 @@ void print_probe(const host::tables::SignProbe& p, const std::string& file) {
 
 int probe(const ProbeWish& w, const Common& common) {
   const char* const verb = "nonio plan sign-probe";
-  if (!(w.feed > 0.0)) return complain(verb, "--feed: wanted more than 0");
+  if (!(w.feed > 0.0)) return complain(verb, "--feed: expected more than 0");
   const auto opened = open_campaign(verb, w.folder, common);
   if (!opened) return opened.error();
   const OpenCampaign& open = *opened;

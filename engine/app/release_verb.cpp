@@ -112,7 +112,7 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
       for (const std::string& key : done.without_reason)
         complain(release_name,
                  key +
-                     " asks for attention and no reason is given why it may stand; wanted "
+                     " asks for attention and no reason is given why it may stand; expected "
                      "--reason \"" +
                      key + "=TEXT\"");
       return exit_failed;
@@ -143,7 +143,7 @@ int release(const ReleaseVerbWish& wish, const Common& common) {
   if (wish.list) return list_drafts(wish, common);
   if (wish.by.empty())
     return complain(release_name, "--by NAME is missing: who releases it? Or --list");
-  host::batch::ReleaseWish wanted{wish.folder, wish.by, wish.role, {}, wish.out};
+  host::batch::ReleaseRequest wanted{wish.folder, wish.by, wish.role, {}, wish.out};
   for (const std::string& given : wish.reasons) {
     const std::size_t equals = given.find('=');
     if (equals == std::string::npos || equals == 0)

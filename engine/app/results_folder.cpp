@@ -28,7 +28,7 @@ std::string id_of_campaign(const fs::path& folder) {
   std::string id;
   if (const auto text = host::storage::read_file(folder / host::config::manifest_name)) {
     const auto manifest = host::config::parse_manifest(*text, host::config::manifest_name);
-    id = manifest ? manifest->campaign.id : host::config::salvage_id(*text);
+    id = manifest ? manifest->campaign.id : host::config::extract_id(*text);
   }
   return id.empty() ? fs::absolute(folder).lexically_normal().filename().string() : id;
 }

@@ -115,10 +115,10 @@ bool is_date(const std::string& text) {
 
 int run_night(RunWish& wish, const Common& common) {
   const char* const verb = "nonio run";
-  if (wish.out.empty()) return complain(verb, "--out is empty; wanted a folder");
+  if (wish.out.empty()) return complain(verb, "--out is empty; expected a folder");
   host::batch::RunOptions& options = wish.options;
   if (!options.date.empty() && !is_date(options.date))
-    return complain(verb, "--date: wanted a day as YYYY-MM-DD, found \"" + options.date + "\"");
+    return complain(verb, "--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
   options.site = wish.site;
   options.out = fs::absolute(wish.out);
   options.plugin_folders = common.plugin_folders();
@@ -128,7 +128,7 @@ int run_night(RunWish& wish, const Common& common) {
   options.as_root = options.as_root || std::getenv("NONIO_ALLOW_ROOT") != nullptr;
   catch_signals();
   if (::geteuid() == 0 && !options.as_root && !common.quiet)
-    std::cerr << "nonio: this runs as root, for whom nothing needs it: wanted a user of its own "
+    std::cerr << "nonio: this runs as root, for whom nothing needs it: expected a user of its own "
                  "(the package's service runs as nonio), or --root to say that it is meant\n";
   Progress progress(common.quiet, common.json);
   const host::batch::Night night = host::batch::run_site(options, progress.events());

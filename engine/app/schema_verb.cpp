@@ -29,7 +29,7 @@ int write_schema(const std::string& verb, Schema schema, const std::string& out,
   }
   const fs::path path = fs::absolute(out);
   if (!path.has_filename() || fs::is_directory(path))
-    return complain(verb, out + " is a folder; wanted a file");
+    return complain(verb, out + " is a folder; expected a file");
   const auto written =
       host::storage::publish(path.parent_path(), {{path.filename().string(), text}});
   return written ? exit_done : complain(verb, text_of(written.error()), exit_failed);

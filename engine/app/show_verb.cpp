@@ -317,7 +317,7 @@ int show(const ShowWish& wish, const Common& common) {
   const fs::path folder = wish.folder;
   const Holds holds = what_holds(folder);
   if (holds == Holds::night)
-    return complain(verb, folder.string() + " holds the results of a night; wanted " +
+    return complain(verb, folder.string() + " holds the results of a night; expected " +
                               (folder / "ID").string() + " (summary.txt lists them)");
   if (holds == Holds::nothing) return complain(verb, holds_nothing(folder));
   const auto shown =
@@ -332,7 +332,7 @@ int show(const ShowWish& wish, const Common& common) {
     return results.at("status") == "failed" ? exit_failed : exit_done;
   } catch (const Json::exception& e) {
     return complain(verb, (folder / host::evaluation::results_name).string() +
-                              ": wanted results of a campaign (nonio-results/1): " + e.what());
+                              ": expected results of a campaign (nonio-results/1): " + e.what());
   }
 }
 

@@ -32,7 +32,7 @@ std::string not_to_be_written(const fs::path& out, const fs::path& truth) {
 
 int simulate(const SimulateWish& w, const Common& common) {
   const char* const verb = "nonio simulate";
-  if (w.out.empty()) return complain(verb, "--out is empty; wanted a folder");
+  if (w.out.empty()) return complain(verb, "--out is empty; expected a folder");
   fs::path out = fs::absolute(w.out).lexically_normal();
   if (!out.has_filename()) out = out.parent_path();
   const fs::path truth = w.truth.empty() ? fs::path(out.string() + ".truth.json")

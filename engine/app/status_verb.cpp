@@ -42,7 +42,7 @@ std::string trouble(const NightStatus& s, const StatusWish& wish) {
   if (s.state == NightStatus::State::cut_short)
     return night_text(s.night) + " began and did not end";
   if (!s.last) return s.state == NightStatus::State::running ? "" : "no night is complete";
-  if (s.age < -60.0) return "summary.json is from the future; wanted a clock that is right";
+  if (s.age < -60.0) return "summary.json is from the future; expected a clock that is right";
   if (wish.max_age > 0.0 && s.age > wish.max_age * 3600.0)
     return "older than " + hours_text(wish.max_age);
   return {};

@@ -179,7 +179,7 @@ Expected<std::vector<BacklashWas>> backlash_was(const std::vector<std::string>& 
     const bool number = end.ec == std::errc() && end.ptr == value.data() + value.size();
     if (value != "none" && !(number && std::isfinite(one.value) && std::fabs(one.value) <= 10.0))
       return fail(
-          "--backlash-was: wanted a number of mm or deg, none, or AXIS= and one of these; found "
+          "--backlash-was: expected a number of mm or deg, none, or AXIS= and one of these; found "
           "\"" +
           text + "\"");
     if (value == "none") one.value = 0.0;
@@ -219,7 +219,7 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
   for (std::size_t i = 0; i < used.size(); ++i)
     if (!used[i])
       return fail("--backlash-was " + w.backlash_was[i] + ": " +
-                  ((*said)[i].axis.empty() ? "these files hold several tables; wanted AXIS=VALUE"
+                  ((*said)[i].axis.empty() ? "these files hold several tables; expected AXIS=VALUE"
                                            : "these files hold no table of that axis"));
   return {};
 }

@@ -3,11 +3,11 @@
 
 #include <array>
 
-#include "bytes.h"
+#include "nonio/pdf/bytes.h"
 
 namespace nonio::reports {
 
-void Canvas::number(double value) { append_real(ops, value, ' '); }
+void Canvas::number(double value) { pdf::append_real(ops, value, ' '); }
 
 void Canvas::colour(Colour c, const char* op) {
   for (const float part : {c.red, c.green, c.blue}) number(part);
@@ -131,7 +131,7 @@ void Canvas::leave() {
 void Canvas::font(int which, double size) {
   if (which == state_.font && size == state_.size) return;
   ops += "/F";
-  append_int(ops, which);
+  pdf::append_int(ops, which);
   ops += ' ';
   number(size);
   ops += "Tf ";
@@ -222,7 +222,7 @@ void Canvas::picture(long which, double x, double y, double w, double h) {
   ops += "0 0 ";
   for (const double v : {h, x, y}) number(v);
   ops += "cm /P";
-  append_int(ops, which);
+  pdf::append_int(ops, which);
   ops += " Do Q\n";
 }
 

@@ -1,67 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "characters.h"
 
-#include <algorithm>
+#include <utf8proc.h>
+
 #include <array>
-#include <tuple>
 
 namespace nonio::reports {
 namespace {
 
-struct Composition {
-  std::uint16_t first, second, composed;
-};
-constexpr Composition compositions[] = {
-#include "compositions.inc"
-};
-
-/// The one character for both, or 0; `second` 0: the character that stands for the first.
+/// The one character that NFC makes of both (of the first alone where `second` is 0), or 0.
 char32_t composed(char32_t first, char32_t second) {
-  const auto less = [](const Composition& c, const std::pair<char32_t, char32_t>& both) {
-    return std::tuple<char32_t, char32_t>(c.first, c.second) < std::tie(both.first, both.second);
-  };
-  const auto* it = std::lower_bound(std::begin(compositions), std::end(compositions),
-                                    std::pair(first, second), less);
-  return it != std::end(compositions) && it->first == first && it->second == second ? it->composed
-                                                                                    : 0;
+  std::array<utf8proc_int32_t, 32> parts{};
+  utf8proc_ssize_t size = 0;
+  for (const char32_t c : {first, second}) {
+    if (c == 0) continue;
+    const auto left = static_cast<utf8proc_ssize_t>(parts.size()) - size;
+    int boundary = 0;
+    const utf8proc_ssize_t more = utf8proc_decompose_char(
+        static_cast<utf8proc_int32_t>(c), parts.data() + size, left, UTF8PROC_DECOMPOSE, &boundary);
+    if (more < 0 || more > left) return 0;
+    size += more;
+  }
+  const auto made = utf8proc_normalize_utf32(
+      parts.data(), size, static_cast<utf8proc_option_t>(UTF8PROC_STABLE | UTF8PROC_COMPOSE));
+  return made == 1 ? static_cast<char32_t>(parts[0]) : 0;
 }
 
 }  // namespace
 
 char32_t next_character(std::string_view text, std::size_t& i) {
-  const auto byte = [&](std::size_t at) {
-    return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U;
-  };
-  const unsigned lead = byte(i);
-  const std::size_t size = lead < 0x80                    ? 1
-                           : lead >= 0xC2 && lead <= 0xDF ? 2
-                           : lead >= 0xE0 && lead <= 0xEF ? 3
-                           : lead >= 0xF0 && lead <= 0xF4 ? 4
-                                                          : 0;
-  char32_t c = size == 1 ? lead : lead & (0x7FU >> size);
-  bool right = size != 0;
-  for (std::size_t k = 1; k < size; ++k) {
-    right = right && (byte(i + k) & 0xC0) == 0x80;
-    c = c << 6 | (byte(i + k) & 0x3F);
-  }
-  constexpr std::array<char32_t, 5> least = {0, 0, 0x80, 0x800, 0x10000};
-  if (!right || c < least[size] || (c >= 0xD800 && c < 0xE000) || c > 0x10FFFF) {
+  utf8proc_int32_t c = -1;
+  const auto size = utf8proc_iterate(reinterpret_cast<const utf8proc_uint8_t*>(text.data()) + i,
+                                     static_cast<utf8proc_ssize_t>(text.size() - i), &c);
+  if (size <= 0) {
     ++i;
     return not_utf8;
   }
-  i += size;
-  return c;
+  i += static_cast<std::size_t>(size);
+  return static_cast<char32_t>(c);
 }
 
 char32_t next_composed(std::string_view text, std::size_t& i) {
   char32_t c = next_character(text, i);
-  if (c >= 0x80 && c < 0x2200)
+  if (c == not_utf8) return c;
+  if (c >= 0x80)
     if (const char32_t other = composed(c, 0); other != 0) c = other;
   while (i < text.size() && static_cast<unsigned char>(text[i]) >= 0x80) {
     std::size_t behind = i;
-    char32_t mark = next_character(text, behind);
+    const char32_t mark = next_character(text, behind);
     if (mark < 0x0300 || mark > 0x036F) break;
-    if (const char32_t other = composed(mark, 0); other != 0) mark = other;
     const char32_t both = composed(c, mark);
     if (both == 0) break;
     c = both;

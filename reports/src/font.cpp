@@ -5,9 +5,9 @@
 #include <mutex>
 #include <optional>
 
-#include "bytes.h"
 #include "font_reader.h"
 #include "font_subset.h"
+#include "nonio/pdf/bytes.h"
 
 namespace nonio::reports {
 namespace {
@@ -79,7 +79,7 @@ std::string to_unicode(const Font& font, const Numbers& numbers) {
   constexpr std::size_t most = 100;  // entries of one block, by the CMap specification
   for (std::size_t i = 0; i < lines.size(); i += most) {
     const std::size_t n = std::min(most, lines.size() - i);
-    append_int(out, static_cast<long long>(n));
+    pdf::append_int(out, static_cast<long long>(n));
     out += " beginbfchar\n";
     for (std::size_t k = i; k < i + n; ++k) out += lines[k];
     out += "endbfchar\n";
@@ -93,10 +93,10 @@ std::string widths_array(const std::vector<std::uint16_t>& advance, const Number
   for (std::size_t n = 0; n < numbers.size(); ++n) {
     if (numbers[n] == no_glyph) continue;
     if (n == 0 || numbers[n - 1] == no_glyph) {
-      append_int(out, static_cast<long long>(n));
+      pdf::append_int(out, static_cast<long long>(n));
       out += " [";
     }
-    append_int(out, advance[static_cast<unsigned>(numbers[n])]);
+    pdf::append_int(out, advance[static_cast<unsigned>(numbers[n])]);
     out += n + 1 < numbers.size() && numbers[n + 1] != no_glyph ? ' ' : ']';
   }
   return out + "]";
@@ -124,9 +124,10 @@ bool is_common(std::size_t c) {
          signs.find(static_cast<char16_t>(c)) != std::u16string_view::npos;
 }
 
-Embedded embedded(const Font& font, const std::string& file, const Numbers& numbers, int level) {
-  return {subset_name(file, font.name), file.size(), deflated(file, level),
-          widths_array(font.advance, numbers), deflated(to_unicode(font, numbers), level)};
+pdf::EmbeddedFont embedded(const Font& font, const std::string& file, const Numbers& numbers,
+                           int level) {
+  return {subset_name(file, font.name), file.size(), pdf::deflated(file, level),
+          widths_array(font.advance, numbers), pdf::deflated(to_unicode(font, numbers), level)};
 }
 
 /// For a font of which documents embed all, or the common part.
@@ -152,10 +153,10 @@ bool same_font(const Font& font, FontFile file) {
 
 }  // namespace
 
-Embedded embedded_part(const Font& font, const std::vector<std::uint16_t>& glyphs) {
+pdf::EmbeddedFont embedded_part(const Font& font, const std::vector<std::uint16_t>& glyphs) {
   constexpr int level = 1;  // as pages
   const std::string part = font_part(font.bytes, glyphs);
-  return part.empty() ? Embedded{}
+  return part.empty() ? pdf::EmbeddedFont{}
                       : embedded(font, part, Numbers(glyphs.begin(), glyphs.end()), level);
 }
 

@@ -20,6 +20,6 @@ std::string font_subset(std::string_view font, const std::vector<char>& glyphs);
 std::string font_part(std::string_view font, std::vector<std::uint16_t> glyphs);
 
 /// The part for one document; without a name if that cannot be made.
-Embedded embedded_part(const Font&, const std::vector<std::uint16_t>& glyphs);
+pdf::EmbeddedFont embedded_part(const Font&, const std::vector<std::uint16_t>& glyphs);
 
 }  // namespace nonio::reports

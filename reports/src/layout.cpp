@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "font_subset.h"
+#include "nonio/pdf/writer.h"
 #include "nonio/sdk/format.h"
-#include "pdf_file.h"
 #include "pieces.h"
 
 namespace nonio::reports {
@@ -48,7 +49,7 @@ class Pages {
     if (pages_.size() == 1) end_first_page();
     return std::move(pages_);
   }
-  const std::optional<SignaturePlace>& signature() const { return signature_; }
+  const std::optional<pdf::SignaturePlace>& signature() const { return signature_; }
 
  private:
   double room() const { return pages_.size() > 1 ? room_ : room_ - kept_; }
@@ -76,7 +77,7 @@ class Pages {
   const Laid& foot_;
   std::vector<Canvas> pages_;
   double y_ = 0.0, kept_ = 0.0;
-  std::optional<SignaturePlace> signature_;
+  std::optional<pdf::SignaturePlace> signature_;
 };
 
 /// What stands at the foot of the first page.
@@ -92,9 +93,9 @@ Expected<Laid> lay_first_foot(const Document& document, double width, const Cont
     }
   }
   if (height > context.page_room / 2)
-    return fail("the foot of the first page takes " + fixed_text(height, 0) + " pt, wanted up to " +
-                fixed_text(context.page_room / 2, 0) + " pt: shorter texts in " +
-                document.first_foot.front().field);
+    return fail("the foot of the first page takes " + fixed_text(height, 0) +
+                " pt, expected up to " + fixed_text(context.page_room / 2, 0) +
+                " pt: shorter texts in " + document.first_foot.front().field);
   return foot;
 }
 
@@ -169,13 +170,41 @@ Expected<void> add_mark(std::vector<Canvas>& pages, const Document& document,
   return {};
 }
 
+pdf::Font as_embedded(const Font& font, bool common_only, int stem) {
+  return {common_only ? &font.with_common : &font.with_all,
+          font.box,
+          font.ascent,
+          font.descent,
+          font.cap_height,
+          stem};
+}
+
+/// Without pages and the font for what the other two lack.
+pdf::NewFile new_file(const Document& document, const Fonts& fonts, Used& used) {
+  pdf::NewFile file;
+  file.title = document.title;
+  file.author = document.author;
+  file.subject = document.subject;
+  file.language = document.language;
+  file.date = document.date;
+  file.width = document.style.page_width;
+  file.height = document.style.page_height;
+  file.see_through = document.style.see_through;
+  file.fonts[0] = as_embedded(fonts.regular, used.common_only, 80);
+  file.fonts[1] = as_embedded(fonts.bold, used.common_only, 140);
+  file.fonts[2] = as_embedded(fonts.wide, used.common_only, 80);
+  file.pictures = std::move(used.pictures);
+  file.profile = document.profile;
+  return file;
+}
+
 }  // namespace
 
 double page_room(const Style& style) {
   return style.page_height - style.top - style.bottom - head_room - foot_room;
 }
 
-Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
+Expected<std::string> pdf_bytes(const Document& document, const Fonts& fonts) {
   const Style& style = document.style;
   const double width = style.page_width - style.left - style.right;
   const double room = page_room(style);
@@ -220,13 +249,16 @@ Expected<std::string> pdf(const Document& document, const Fonts& fonts) {
   std::vector<Canvas> drawn = pages.take();
   if (auto ok = add_heads_and_feet(drawn, document, context); !ok) return fail(ok.error());
   if (auto ok = add_mark(drawn, document, context); !ok) return fail(ok.error());
-  PdfFile file{document.title,   document.author,      document.subject,         document.language,
-               document.date,    style.page_width,     style.page_height,        style.see_through,
-               used.common_only, std::move(used.wide), std::move(used.pictures), {}};
-  file.profile = document.profile;
+  pdf::EmbeddedFont wide;  // outlives the file
+  if (!used.wide.empty()) wide = embedded_part(fonts.wide, used.wide);
+  if (!used.wide.empty() && wide.name.empty())
+    return fail(
+        Error{"a TrueType font was expected, but no part of it can be taken out", fonts.wide.name});
+  pdf::NewFile file = new_file(document, fonts, used);
+  file.fonts[2].embedded = used.wide.empty() ? nullptr : &wide;
   file.signature = pages.signature();
   for (Canvas& canvas : drawn) file.pages.push_back(std::move(canvas.ops));
-  return write_pdf(std::move(file), fonts);
+  return pdf::write(std::move(file));
 }
 
 }  // namespace nonio::reports

@@ -9,8 +9,8 @@
 #include <mutex>
 #include <vector>
 
-#include "bytes.h"
 #include "font_reader.h"
+#include "nonio/pdf/bytes.h"
 
 namespace nonio::reports {
 namespace {
@@ -38,8 +38,8 @@ void compress(const std::string& pixels, Picture& picture) {
     colours.append(pixels, i, picture.grey ? 1 : 3);
     if (!opaque) opacity += pixels[i + 3];
   }
-  picture.colours = deflated(colours, level);
-  if (!opaque) picture.opacity = deflated(opacity, level);
+  picture.colours = pdf::deflated(colours, level);
+  if (!opaque) picture.opacity = pdf::deflated(opacity, level);
 }
 
 /// What is wrong with it; empty: nothing.

@@ -23,7 +23,7 @@ double position_unit(const Case& c) { return unit_of(position_of(c.rotary())).pe
 
 std::string give_readings(Case& c, const std::vector<std::string>& words, double target) {
   const bool minus = words[2] == "-";
-  if (!minus && words[2] != "+") return "wanted direction + or -, found " + words[2];
+  if (!minus && words[2] != "+") return "expected direction + or -, found " + words[2];
   Observations& o = c.observations;
   for (std::size_t k = 3; k < words.size(); ++k) {
     if (words[k] == "x") {
@@ -31,7 +31,7 @@ std::string give_readings(Case& c, const std::vector<std::string>& words, double
       continue;
     }
     const auto value = Expression::value(words[k]);
-    if (!value) return "wanted a number, found " + words[k];
+    if (!value) return "expected a number, found " + words[k];
     o.axes[0].position.push_back(target / position_unit(c));
     o.axes[0].approach.push_back(minus ? -1 : 1);
     o.deviation.push_back(*value / deviation_unit(c));
@@ -185,10 +185,10 @@ Case begin_case(const std::vector<std::string>& operation) {
 }
 
 std::string give(Case& c, const std::vector<std::string>& words) {
-  if (words.size() < 3) return "wanted: given TARGET DIRECTION x x x, or: given KEY VALUE";
+  if (words.size() < 3) return "expected: given TARGET DIRECTION x x x, or: given KEY VALUE";
   if (const auto target = Expression::value(words[1])) return give_readings(c, words, *target);
   const auto value = Expression::value(words[2]);
-  if (!value) return "wanted a number, found " + words[2];
+  if (!value) return "expected a number, found " + words[2];
   return give_key(c, words[1], *value);
 }
 

@@ -34,7 +34,7 @@ const nonio::Finding* find(const Outcome& out, const std::string& id) {
 std::string compare(std::optional<double> found, const std::vector<std::string>& words,
                     std::size_t from) {
   if (from < words.size() && words[from] == "absent")
-    return !found || std::isnan(*found) ? "" : "wanted absent, found " + std::to_string(*found);
+    return !found || std::isnan(*found) ? "" : "expected absent, found " + std::to_string(*found);
   double tolerance = 1e-9;
   std::string text;
   for (std::size_t k = from; k < words.size(); ++k) {
@@ -43,17 +43,17 @@ std::string compare(std::optional<double> found, const std::vector<std::string>&
       continue;
     }
     const auto t = k + 1 < words.size() ? Expression::value(words[k + 1]) : std::nullopt;
-    if (!t || k + 2 != words.size()) return "wanted a number after tolerance";
+    if (!t || k + 2 != words.size()) return "expected a number after tolerance";
     tolerance = *t;
     break;
   }
   const auto wanted = Expression::value(text);
   if (!wanted) return "cannot read the number " + text;
-  if (!found || std::isnan(*found)) return "wanted " + text + ", found nothing";
+  if (!found || std::isnan(*found)) return "expected " + text + ", found nothing";
   if (std::fabs(*found - *wanted) <= tolerance) return "";
   std::ostringstream why;
   why.precision(12);
-  why << "wanted " << *wanted << ", found " << *found;
+  why << "expected " << *wanted << ", found " << *found;
   return why.str();
 }
 
@@ -65,20 +65,20 @@ std::optional<double> evidence(const nonio::Finding& f, const std::string& name)
 
 // expect NAME NUMBER [tolerance T] | NAME absent | NAME WORD | [no] finding ID [NAME NUMBER ...]
 std::string check(const Outcome& out, const std::vector<std::string>& words) {
-  if (words.size() < 3) return "wanted: expect NAME NUMBER";
+  if (words.size() < 3) return "expected: expect NAME NUMBER";
   const bool no = words[1] == "no";
   if (no || words[1] == "finding") {
-    if (no && words.size() != 4) return "wanted: expect no finding ID";
+    if (no && words.size() != 4) return "expected: expect no finding ID";
     const auto* f = find(out, words[no ? 3 : 2]);
-    if (no) return f == nullptr ? "" : "wanted no finding " + words[3];
-    if (f == nullptr) return "wanted finding " + words[2] + ", not found";
+    if (no) return f == nullptr ? "" : "expected no finding " + words[3];
+    if (f == nullptr) return "expected finding " + words[2] + ", not found";
     if (words.size() == 3) return "";
     if (words[3] == "attention" || words[3] == "info")
-      return f->attention == (words[3] == "attention") ? "" : "wanted severity " + words[3];
+      return f->attention == (words[3] == "attention") ? "" : "expected severity " + words[3];
     return compare(evidence(*f, words[3]), words, 4);
   }
   if (const auto it = out.words.find(words[1]); it != out.words.end())
-    return it->second == words[2] ? "" : "wanted " + words[2] + ", found " + it->second;
+    return it->second == words[2] ? "" : "expected " + words[2] + ", found " + it->second;
   const auto it = out.values.find(words[1]);
   return compare(it == out.values.end() ? std::nullopt : std::optional(it->second), words, 2);
 }
@@ -108,7 +108,7 @@ bool run_file(const std::string& path, Counts& counts) {
       complaint = check(*outcome, words);
       ++(complaint.empty() ? counts.held : counts.failed);
     } else {
-      complaint = "wanted operation, given or expect, found " + words[0];
+      complaint = "expected operation, given or expect, found " + words[0];
       ++counts.broken;
     }
     if (!complaint.empty())

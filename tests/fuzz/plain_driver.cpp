@@ -30,7 +30,8 @@ void run(const std::string& text) {
 std::size_t place(const std::string& text, Random& random) { return random() % (text.size() + 1); }
 
 void mutate(std::string& text, const std::vector<std::string>& corpus, Random& random) {
-  static const std::string alphabet = "0123456789+-.,;\t\"#\r\n eEnaif/\\x\0\x80\xFF_";
+  static const std::string alphabet =
+      "0123456789+-.,;\t\"#\r\n eEnaif/\\x\x80\xFF_" + std::string(1, '\0');
   const std::size_t at = place(text, random);
   const std::size_t length = std::min<std::size_t>(random() % 12, text.size() - at);
   const char c =

@@ -102,7 +102,7 @@ grep -q 'run SITE' "$work/man" || fail "the man page does not say what nonio run
 offers=$(in_root "$root" bash -euc 'source /usr/share/bash-completion/completions/nonio
   COMP_WORDS=(nonio ru) COMP_CWORD=1 COMP_LINE="nonio ru" COMP_POINT=8; set +eu
   eval "$(complete -p nonio | sed "s/.*-F \([^ ]*\).*/\1/") nonio ru nonio"; echo "${COMPREPLY[*]}"')
-[ "${offers% }" = run ] || fail "completion of \"nonio ru\": wanted \"run\", found \"$offers\""
+[ "${offers% }" = run ] || fail "completion of \"nonio ru\": expected \"run\", found \"$offers\""
 if [ -n "$(type -P zsh)" ]; then zsh -n "$root/usr/share/zsh/vendor-completions/_nonio"
 else echo "         zsh is missing: its completion is not read"; fi
 [ -z "$(find "$root/etc/systemd" -name 'nonio*')" ] || fail "the timer is enabled by installing"
@@ -136,7 +136,7 @@ booted=$(status "$here/booted.sh" "$work/workshop" sh -euc 'systemctl enable -q 
 if [ "$booted" = 77 ]; then echo "         systemd does not start here: the service was not run"
 else
   for words in Result=success ExecMainStatus=1 'failed .*08-broken-file.*x.csv:17' 'NextElapse.* 22:15:00'; do
-    grep -q "$words" "$work/service" || { cat "$work/service"; fail "nonio.service: wanted \"$words\""; }
+    grep -q "$words" "$work/service" || { cat "$work/service"; fail "nonio.service: expected \"$words\""; }
   done
   diff -r --exclude=run.json --exclude=.nonio "$work/ours" "$work/workshop/srv/nonio/out" || fail "the service's night has other bytes"
   step "nonio.service, the same bytes (exposure $exposed); nonio.timer"

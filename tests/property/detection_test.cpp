@@ -28,7 +28,7 @@ void PrintTo(const Planted& p, std::ostream* out) { *out << p.name; }
 
 class Detection : public testing::TestWithParam<Planted> {};
 
-TEST_P(Detection, Works) {
+TEST_P(Detection, APlantedErrorIsFoundAtItsRate) {
   const Planted& c = GetParam();
   constexpr int campaigns = 300;
   int found = 0, wrong = 0;

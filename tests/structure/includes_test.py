@@ -10,10 +10,11 @@ MAY = {
     "engine/sdk": {"sdk"},
     "engine/math": {"sdk", "math"},
     "engine/model": {"sdk", "math", "model"},
-    "engine/sign": {"sdk", "sign"},
-    "engine/host": {"sdk", "math", "model", "sign", "host"},
+    "engine/pdf": {"sdk", "pdf"},
+    "engine/sign": {"sdk", "pdf", "sign"},
+    "engine/host": {"sdk", "math", "model", "pdf", "sign", "host"},
     "engine/app": {"sdk", "host", "app"},
-    "reports": {"sdk", "reports"},
+    "reports": {"sdk", "pdf", "reports"},
     "plugins/readers": {"sdk", "math"},
     "plugins/analyses": {"sdk", "math"},
     "plugins/effects": {"sdk", "math"},
@@ -41,10 +42,10 @@ PARTS_OF_ROOMS = {"reading": {"model"}, "modelling": {"model"}, "evaluation": {"
 SHARED = {"common"}
 # third-party header -> the parts that are its home
 HOMES = {
-    "Poco/": {"engine/host"}, "boost/dll": {"engine/host"}, "boost/math": {"engine/math"},
-    "boost/": {"engine/host", "engine/math"}, "toml++": {"engine/host"}, "muParser": {"engine/host"}, "hpdf": {"reports"}, "qrencode": {"reports"},
-    "libdeflate": {"reports", "engine/sign"}, "openssl/": {"engine/sign", "engine/host", "reports"}, "xmlsec/": {"engine/sign"},
-    "libxml/": {"engine/sign"}, "CLI/": {"engine/app"}, "nlohmann": {"engine/host", "engine/app", "plugins/outputs"},
+    "Poco/": {"engine/host", "plugins/readers"}, "boost/dll": {"engine/host"}, "boost/math": {"engine/math"},
+    "boost/": {"engine/host", "engine/math"}, "toml++": {"engine/host"}, "muParser": {"engine/host"}, "hpdf": {"engine/pdf"}, "qrencode": {"reports"},
+    "libdeflate": {"engine/pdf"}, "openssl/": {"engine/pdf", "engine/sign", "engine/host"}, "xmlsec/": {"engine/sign"},
+    "libxml/": {"engine/sign", "plugins/readers"}, "utf8proc": {"reports"}, "CLI/": {"engine/app"}, "nlohmann": {"engine/host", "engine/app", "plugins/outputs"},
     "Eigen": {"engine/math", "engine/model", "plugins/analyses", "plugins/effects"}, "tl/": {"engine/sdk"}, "sqlite3": {"engine/host"},
 }
 

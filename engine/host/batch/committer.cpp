@@ -33,7 +33,7 @@ StoredMessage message_of(std::size_t campaign, const Expected<void>& result) {
 }
 
 [[noreturn]] void serve(const Committer::Task& task, int channel) noexcept {
-  process::settle_child();
+  process::init_child();
   process::keep_silent();
   for (Committer::Given given; ::read(channel, &given, sizeof given) == sizeof given;) {
     std::vector<Committer::Given> batch{given};

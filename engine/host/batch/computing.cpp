@@ -9,6 +9,7 @@
 #include <set>
 
 #include "host/batch/wire.h"
+#include "host/evaluation/evaluation.h"
 #include "host/process/channel.h"
 #include "host/process/child.h"
 #include "host/storage/files.h"
@@ -19,15 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // What the process with the plugins says, first byte.
-constexpr char wants_file = 'f', wants_draw = 'd', has_done = 'e';
-
-/// What the other side asks for, and what it gets.
-struct Drawn {
-  bool well = false;
-  evaluation::Certificate certificate;
-  Error error;
-  std::vector<std::string> missing;
-};
+constexpr char wants_file = 'f', has_analysed = 'a', has_done = 'e';
 
 int ask_for_file(int stream, const fs::path& path) {
   if (!process::write_text(stream, wants_file + path.string())) ::_exit(0);
@@ -38,17 +31,20 @@ int ask_for_file(int stream, const fs::path& path) {
   return -1;
 }
 
-Expected<evaluation::Certificate> ask_for_draw(int stream, const evaluation::Evaluated& evaluated,
-                                               std::vector<std::string>& missing) {
+/// Says what is analysed; where a number is wanted, all of it, and waits for the number.
+std::optional<evaluation::AssignedNumber> ask_for_number(
+    int stream, const evaluation::AnalysedCampaign& analysed) {
+  if (!analysed.number) {
+    if (!process::write_text(stream, std::string(1, has_analysed))) ::_exit(0);
+    return std::nullopt;
+  }
+  evaluation::AssignedNumber assigned;
   std::string reply;
-  if (!process::write_text(stream, wants_draw + wire::pack(evaluated, missing)) ||
-      !process::read_text(stream, reply))
+  if (!process::write_text(
+          stream, has_analysed + wire::pack(analysed.evaluated, analysed.number->missing)) ||
+      !process::read_text(stream, reply) || !wire::unpack(reply, assigned))
     ::_exit(0);
-  Drawn drawn;
-  if (!wire::unpack(reply, drawn.well, drawn.certificate, drawn.error, drawn.missing)) ::_exit(0);
-  missing = std::move(drawn.missing);
-  if (!drawn.well) return fail(std::move(drawn.error));
-  return std::move(drawn.certificate);
+  return assigned;
 }
 
 /// What no honest process says: these values decide which files are written.
@@ -66,7 +62,7 @@ std::string unsound_answer(const evaluation::Evaluated& e, const std::string& id
 
 }  // namespace
 
-void evaluate_for(int stream, const reading::Context& context, process::SharedWords& stage,
+void evaluate_for(int stream, const reading::Context& context, process::SharedStatus& stage,
                   Prints& prints) {
   storage::open_files_with([stream](const fs::path& path) { return ask_for_file(stream, path); });
   process::keep_freed_memory();
@@ -80,16 +76,13 @@ void evaluate_for(int stream, const reading::Context& context, process::SharedWo
   for (std::string request; process::read_text(stream, request);) {
     fs::path folder;
     std::string id;
-    bool draws = false;
     reading::Twins twins;
-    if (!wire::unpack(request, folder, id, draws, twins)) return;
-    evaluation::Draw draw;
-    if (draws)
-      draw = [stream](const evaluation::Evaluated& e, std::vector<std::string>& missing) {
-        return ask_for_draw(stream, e, missing);
-      };
-    const evaluation::Evaluated evaluated =
-        evaluation::evaluate(folder, id, context, tell, draw, twins);
+    if (!wire::unpack(request, folder, id, twins)) return;
+    evaluation::AnalysedCampaign analysed = evaluation::analyse(
+        reading::read_campaign(folder, context, tell), id, context, tell, twins);
+    const auto number = ask_for_number(stream, analysed);
+    const evaluation::Evaluated evaluated = evaluation::write_documents(
+        std::move(analysed), number ? &*number : nullptr, context, tell);
     prints.pass_on(now);
     const bool grown = process::has_grown(at_start);
     if (!process::write_text(stream, has_done + wire::pack(evaluated, grown))) return;
@@ -115,47 +108,53 @@ bool Evaluator::hand_out(const fs::path& folder, const std::string& path) const 
               : process::send_descriptors(stream_, static_cast<char>(code), {});
 }
 
-Expected<evaluation::Evaluated> Evaluator::evaluate(const fs::path& folder, const std::string& id,
-                                                    const evaluation::Draw& draw,
-                                                    const reading::Twins& twins) {
-  std::optional<evaluation::Certificate> drawn;
-  if (!process::write_text(stream_, wire::pack(folder, id, draw != nullptr, twins))) ::_exit(0);
+namespace {
+
+constexpr const char* no_process_of_ours =
+    "the process that evaluates says what no process of ours says";
+
+}  // namespace
+
+Expected<Evaluator::Analysed> Evaluator::analyse(const fs::path& folder, const std::string& id,
+                                                 const reading::Twins& twins) {
+  if (!process::write_text(stream_, wire::pack(folder, id, twins))) ::_exit(0);
   for (std::string said;;) {
     if (!process::read_text(stream_, said)) ::_exit(0);
     if (said.empty()) break;
     const std::string_view rest = std::string_view(said).substr(1);
-    evaluation::Evaluated evaluated;
     if (said[0] == wants_file) {
       if (!hand_out(folder, std::string(rest))) ::_exit(0);
-    } else if (said[0] == wants_draw) {
-      Drawn reply;
-      if (!draw || !wire::unpack(rest, evaluated, reply.missing) || evaluated.campaign.id != id)
-        break;
-      auto certificate = draw(evaluated, reply.missing);
-      reply.well = certificate.has_value();
-      if (certificate)
-        reply.certificate = *(drawn = std::move(*certificate));
-      else
-        reply.error = certificate.error();
-      if (!process::write_text(
-              stream_, wire::pack(reply.well, reply.certificate, reply.error, reply.missing)))
-        ::_exit(0);
-    } else if (said[0] == has_done) {
-      if (!wire::unpack(rest, evaluated, grown_)) break;
-      if (const std::string why = unsound_answer(evaluated, id); !why.empty())
-        return fail("the process that evaluates gave " + why);
-      // A certificate is what was drawn here; of it the other side says only whose it is.
-      if (evaluated.certificate) {
-        if (!drawn) break;
-        drawn->output = evaluated.certificate->output;
-        evaluated.certificate = std::move(drawn);
-      }
-      return evaluated;
-    } else {
-      break;
+      continue;
     }
+    Analysed analysed;
+    if (said[0] != has_analysed) break;
+    if (rest.empty()) return analysed;
+    if (!wire::unpack(rest, analysed.evaluated, analysed.missing.emplace()) ||
+        analysed.evaluated.campaign.id != id)
+      break;
+    return analysed;
   }
-  return fail("the process that evaluates says what no process of ours says");
+  return fail(no_process_of_ours);
+}
+
+Expected<evaluation::Evaluated> Evaluator::write_documents(
+    const std::string& id, std::optional<evaluation::AssignedNumber> assigned) {
+  if (assigned && !process::write_text(stream_, wire::pack(*assigned))) ::_exit(0);
+  std::string said;
+  evaluation::Evaluated evaluated;
+  if (!process::read_text(stream_, said)) ::_exit(0);
+  if (said.empty() || said[0] != has_done ||
+      !wire::unpack(std::string_view(said).substr(1), evaluated, grown_))
+    return fail(no_process_of_ours);
+  if (const std::string why = unsound_answer(evaluated, id); !why.empty())
+    return fail("the process that evaluates gave " + why);
+  // A certificate is what was assigned here; of it the other side says only whose it is.
+  if (evaluated.certificate) {
+    if (!assigned || !assigned->certificate) return fail(no_process_of_ours);
+    assigned->certificate->output = evaluated.certificate->output;
+    evaluated.certificate = std::move(assigned->certificate);
+  }
+  return evaluated;
 }
 
 }  // namespace nonio::host::batch

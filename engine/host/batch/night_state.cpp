@@ -87,7 +87,7 @@ std::string other_site(const std::string& other, const std::string& site, const 
       fs::equivalent(other, site, error))
     return {};
   return "the output folder " + out.string() + " holds the results of the site " + other +
-         "; wanted a folder of its own for " + site;
+         "; expected a folder of its own for " + site;
 }
 
 /// How the first results that are met in an output folder lie; nothing if there are none.
@@ -176,7 +176,7 @@ Expected<NightStatus> night_status(const fs::path& out) {
   if (!state) return fail(state.error());
   if (!*state)
     return fail("no night was begun in " + out.string() +
-                "; wanted the output folder of `nonio run`");
+                "; expected the output folder of `nonio run`");
   const storage::Json& json = **state;
   NightStatus status;
   status.night = {*known_count(json, "night"), known_text(json, "date")};
@@ -207,7 +207,7 @@ Expected<void> settle_folders(const fs::path& out, bool hashed, bool dry_run) {
     return fail("the output folder " + out.string() + " has its results in OUT/" +
                 (hashed ? "<id>" : "ab/<id>") + ", and site.toml wants them in OUT/" +
                 (hashed ? "ab/<id> ([results] folders = \"hashed\")" : "<id>") +
-                "; wanted a new output folder, or the layout that is there");
+                "; expected a new output folder, or the layout that is there");
   if (dry_run || !hashed) return {};
   return storage::publish((out / storage::hashed_mark).parent_path(),
                           {{(out / storage::hashed_mark).filename().string(), "OUT/ab/<id>\n"}});
@@ -234,7 +234,7 @@ Expected<OutputLock> OutputLock::take(const fs::path& out) {
   if (code == EWOULDBLOCK || code == EINTR)
     return fail("another run is using the output folder " + out.string());
   return fail("cannot lock " + path.string() + ": " + std::strerror(code) +
-              "; wanted an output folder on a file system with locks (flock)");
+              "; expected an output folder on a file system with locks (flock)");
 }
 
 OutputLock::OutputLock(OutputLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}

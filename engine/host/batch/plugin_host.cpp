@@ -68,7 +68,7 @@ std::vector<fs::path> library_folders(const fs::path& own_plugins) {
   return folders;
 }
 
-PluginHost::PluginHost(Wish wish) : wish_(std::move(wish)) {
+PluginHost::PluginHost(Request request) : request_(std::move(request)) {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   children_before_ = process::own_children();
   for (std::string& words : process::lacking_confinement()) notes_.push_back(std::move(words));
@@ -100,7 +100,7 @@ Expected<loader::Catalogue> PluginHost::start() {
 
 Expected<loader::Catalogue> PluginHost::load_once() {
   end();
-  process::SharedWords progress;
+  process::SharedStatus progress;
   if (!progress.valid()) return fail("no memory for " + std::string(loading_process));
   auto control = process::channel_pair(SOCK_SEQPACKET, loading_process);
   auto answers = process::channel_pair(SOCK_STREAM, loading_process);
@@ -139,13 +139,13 @@ Expected<loader::Catalogue> PluginHost::load_once() {
 }
 
 /// Every step has a limit of its own.
-Expected<std::string> PluginHost::answer(int stream, process::SharedWords& progress,
+Expected<std::string> PluginHost::answer(int stream, process::SharedStatus& progress,
                                          std::string& hung) {
   std::string last;
   auto deadline = Steady::now() + std::chrono::duration<double>(load_seconds);
   while (!is_ready(stream)) {
     pass_on_prints();
-    if (wish_.stopped != nullptr && wish_.stopped()) hung = "stopped";
+    if (request_.stopped != nullptr && request_.stopped()) hung = "stopped";
     const std::string now = progress.get();
     const double limit = now.starts_with(preparing) ? prepare_seconds : load_seconds;
     if (now != last) deadline = Steady::now() + std::chrono::duration<double>(limit);
@@ -172,7 +172,7 @@ void PluginHost::leave_out(const std::string& progress, const std::string& why) 
 }
 
 Expected<pid_t> PluginHost::make_process(process::Handle stream,
-                                         const process::SharedWords& stage) {
+                                         const process::SharedStatus& stage) {
   constexpr int most_deaths = 5;
   for (; deaths_ <= most_deaths; ++deaths_) {
     if (pid_ < 0 || !control_)
@@ -191,7 +191,7 @@ Expected<pid_t> PluginHost::make_process(process::Handle stream,
         if (hello->descriptors.size() == 1)
           last_words_.push_back(
               {hello->sender, std::move(hello->descriptors.front()),
-               process::SharedWords(::fcntl(stage.descriptor(), F_DUPFD_CLOEXEC, 3))});
+               process::SharedStatus(::fcntl(stage.descriptor(), F_DUPFD_CLOEXEC, 3))});
         return hello->sender;
       }
     }
@@ -228,11 +228,11 @@ void PluginHost::say(std::string_view text) {
 
 std::string PluginHost::check_secrets() const {
   if (!process::lacking_confinement().empty()) return {};  // said already
-  for (const fs::path& secret : wish_.secrets) {
+  for (const fs::path& secret : request_.secrets) {
     const process::Handle file(::open(secret.c_str(), O_RDONLY | O_CLOEXEC));
     if (file)
       return secret.string() + " lies where plugins have their libraries and could read it; " +
-             "wanted the signing key and its password elsewhere";
+             "expected the signing key and its password elsewhere";
   }
   return {};
 }
@@ -250,10 +250,10 @@ bool is_prepared(const Output& output, const Templates& templates) {
 
 }  // namespace
 
-loader::Plugins& PluginHost::load_all(process::SharedWords& progress,
+loader::Plugins& PluginHost::load_all(process::SharedStatus& progress,
                                       std::vector<std::string>& said, Prints& prints) const {
   auto* plugins = new loader::Plugins;  // never unloaded
-  for (const fs::path& path : plugins->files_in(wish_.folders)) {
+  for (const fs::path& path : plugins->files_in(request_.folders)) {
     progress.set(path.string());
     const auto known = refused_.find(path);
     plugins->load_file(path, known == refused_.end() ? "" : known->second);
@@ -267,8 +267,8 @@ loader::Plugins& PluginHost::load_all(process::SharedWords& progress,
     if (output.prepare == nullptr || unprepared_.contains(output.info.name)) continue;
     progress.set(std::string(preparing) + output.info.name);
     // What the system refuses now it may give in a moment.
-    if (!is_prepared(output, wish_.context.templates) &&
-        !is_prepared(output, wish_.context.templates))
+    if (!is_prepared(output, request_.context.templates) &&
+        !is_prepared(output, request_.context.templates))
       said.push_back("output " + output.info.name + " could not prepare: it threw an exception");
     prints.pass_on("output " + output.info.name);
     process::restore_process_state();
@@ -278,8 +278,8 @@ loader::Plugins& PluginHost::load_all(process::SharedWords& progress,
 }
 
 void PluginHost::serve(int control, int catalogue, int prints,
-                       process::SharedWords& progress) noexcept {
-  process::settle_child();
+                       process::SharedStatus& progress) noexcept {
+  process::init_child();
   take_input();
   Prints own(prints);
   if (!own.valid()) ::_exit(1);
@@ -288,16 +288,16 @@ void PluginHost::serve(int control, int catalogue, int prints,
   process::close_others(kept);
   process::forget_environment();
   storage::sha256("");  // the library behind it reads its settings now or never
-  std::vector<fs::path> readable = wish_.folders;
-  readable.insert(readable.end(), wish_.readable.begin(), wish_.readable.end());
+  std::vector<fs::path> readable = request_.folders;
+  readable.insert(readable.end(), request_.readable.begin(), request_.readable.end());
   Ready ready;
-  if (wish_.confine) ready.refused = process::confine_loading(readable);
-  if (wish_.confine && ready.refused.empty()) ready.refused = check_secrets();
+  if (request_.confine) ready.refused = process::confine_loading(readable);
+  if (request_.confine && ready.refused.empty()) ready.refused = check_secrets();
   if (ready.refused.empty()) {
     process::keep_process_state();
-    wish_.context.plugins = &load_all(progress, ready.said, own);
-    ready.catalogue = wish_.context.plugins->catalogue();
-    if (wish_.confine) ready.refused = process::confine_files();
+    request_.context.plugins = &load_all(progress, ready.said, own);
+    ready.catalogue = request_.context.plugins->catalogue();
+    if (request_.confine) ready.refused = process::confine_files();
   }
   if (!process::write_text(catalogue, wire::pack(ready.catalogue, ready.said, ready.refused)))
     ::_exit(0);
@@ -314,8 +314,8 @@ void PluginHost::make_sibling(int control, int prints) noexcept {
   // has one thread.
   const long pid = ::syscall(SYS_clone, CLONE_PARENT | SIGCHLD, nullptr, nullptr, nullptr, nullptr);
   if (pid != 0) return;
-  process::settle_child();
-  process::SharedWords stage(asked->descriptors[1].release());
+  process::init_child();
+  process::SharedStatus stage(asked->descriptors[1].release());
   const int stream = asked->descriptors[0].get();
   Prints own(prints);
   if (!stage.valid() || !own.valid() || !process::send_descriptors(control, 'h', {own.reading()}))
@@ -323,12 +323,12 @@ void PluginHost::make_sibling(int control, int prints) noexcept {
   std::vector<int> kept{stream, prints, own.reading()};
   std::sort(kept.begin(), kept.end());
   process::close_others(kept);
-  process::limit_memory(wish_.context.site.limits.memory_MB);
-  if (const std::string why = wish_.confine ? process::confine_computing() : ""; !why.empty()) {
+  process::limit_memory(request_.context.site.limits.memory_MB);
+  if (const std::string why = request_.confine ? process::confine_computing() : ""; !why.empty()) {
     stage.set("confining the process: " + why);
     ::_exit(1);
   }
-  evaluate_for(stream, wish_.context, stage, own);
+  evaluate_for(stream, request_.context, stage, own);
   ::_exit(0);
 }
 

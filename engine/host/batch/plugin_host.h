@@ -25,7 +25,7 @@ std::vector<std::filesystem::path> library_folders(const std::filesystem::path& 
 /// while it is loaded or prepared is left out the next time; one that hangs costs its limit once.
 class PluginHost {
  public:
-  struct Wish {
+  struct Request {
     std::vector<std::filesystem::path> folders;  ///< of plugins
     /// Where libraries of plugins lie besides.
     std::vector<std::filesystem::path> readable;
@@ -35,7 +35,7 @@ class PluginHost {
     bool (*stopped)();          ///< may be null
     bool confine = true;
   };
-  explicit PluginHost(Wish wish);
+  explicit PluginHost(Request request);
   PluginHost(const PluginHost&) = delete;
   PluginHost& operator=(const PluginHost&) = delete;
   /// Ends it, and whatever plugins have left running.
@@ -48,25 +48,25 @@ class PluginHost {
 
   /// A process that evaluates campaigns for whoever has the other end of `stream`, and says in
   /// `stage` what it is about to call. Made anew if the process that loads has died.
-  Expected<pid_t> make_process(process::Handle stream, const process::SharedWords& stage);
+  Expected<pid_t> make_process(process::Handle stream, const process::SharedStatus& stage);
   /// Passes on what plugins have printed, up to a limit.
   void pass_on_prints();
 
  private:
   Expected<loader::Catalogue> load_once();
   [[noreturn]] void serve(int control, int catalogue, int prints,
-                          process::SharedWords& progress) noexcept;
-  loader::Plugins& load_all(process::SharedWords& progress, std::vector<std::string>& said,
+                          process::SharedStatus& progress) noexcept;
+  loader::Plugins& load_all(process::SharedStatus& progress, std::vector<std::string>& said,
                             Prints& prints) const;
   /// With a limit for all plugins together.
   void say(std::string_view text);
   void make_sibling(int control, int prints) noexcept;
   std::string check_secrets() const;
-  Expected<std::string> answer(int stream, process::SharedWords& progress, std::string& hung);
+  Expected<std::string> answer(int stream, process::SharedStatus& progress, std::string& hung);
   void leave_out(const std::string& progress, const std::string& why);
   void end();
 
-  Wish wish_;
+  Request request_;
   std::vector<std::string> notes_;
   std::map<std::filesystem::path, std::string> refused_;  ///< and why
   std::map<std::string, std::string> unprepared_;         ///< outputs, and why
@@ -78,7 +78,7 @@ class PluginHost {
   struct LastWords {
     pid_t pid;
     process::Handle reading;
-    process::SharedWords stage;
+    process::SharedStatus stage;
   };
   std::vector<LastWords> last_words_;
   std::size_t printed_ = 0;

@@ -39,31 +39,31 @@ bool is_one_line(const std::string& text) {
 }
 
 /// What is wrong with names and reasons; empty if nothing.
-std::string mistake_in(const ReleaseWish& wish) {
+std::string mistake_in(const ReleaseRequest& request) {
   constexpr std::size_t longest = 100;
-  if (!says_something(wish.by) || wish.by.size() > longest || !is_one_line(wish.by))
+  if (!says_something(request.by) || request.by.size() > longest || !is_one_line(request.by))
     return "--by wants the name of a person, one line of up to 100 characters";
-  for (const auto& [finding, reason] : wish.reasons)
+  for (const auto& [finding, reason] : request.reasons)
     if (!says_something(reason) || !is_one_line(reason))
       return "the reason for " + finding +
-             " says nothing or has a control character; wanted one line of text";
+             " says nothing or has a control character; expected one line of text";
   return {};
 }
 
 /// Sorted by the findings themselves; what matches no finding comes out as a mistake.
 Expected<std::map<std::string, std::string>> reasons_for(const certificates::WaitingDraft& draft,
-                                                         const ReleaseWish& wish) {
+                                                         const ReleaseRequest& request) {
   std::map<std::string, std::string> reasons;
   std::string known;
   for (const evaluation::KnownFinding& f : draft.findings) {
     known += (known.empty() ? "" : ", ") + certificates::finding_key(f);
     for (const std::string& name : {certificates::finding_key(f), f.id})
-      if (const auto given = wish.reasons.find(name); given != wish.reasons.end()) {
+      if (const auto given = request.reasons.find(name); given != request.reasons.end()) {
         reasons[certificates::finding_key(f)] = given->second;
         break;
       }
   }
-  for (const auto& given : wish.reasons) {
+  for (const auto& given : request.reasons) {
     const std::string& name = given.first;
     if (std::none_of(draft.findings.begin(), draft.findings.end(),
                      [&](const evaluation::KnownFinding& f) {
@@ -77,17 +77,17 @@ Expected<std::map<std::string, std::string>> reasons_for(const certificates::Wai
 
 class Releaser {
  public:
-  Releaser(const ReleaseWish& wish, const RunOptions& base, const RunEvents& events)
-      : wish_(wish), options_(base), events_(events) {}
+  Releaser(const ReleaseRequest& request, const RunOptions& base, const RunEvents& events)
+      : request_(request), options_(base), events_(events) {}
 
   Released run() {
     if (auto well = open_campaign(); !well) return refuse(well.error().message);
     if (auto well = open_draft(); !well) return refuse(well.error().message);
     if (auto well = take_output(); !well) return refuse(well.error().message);
     const certificates::WaitingDraft& draft = *out_.draft;
-    auto reasons = reasons_for(draft, wish_);
+    auto reasons = reasons_for(draft, request_);
     if (!reasons) return refuse(reasons.error().message);
-    const certificates::Approval approval{wish_.by, role_, {}, std::move(*reasons)};
+    const certificates::Approval approval{request_.by, role_, {}, std::move(*reasons)};
     for (const evaluation::KnownFinding& f : draft.findings) {
       const auto has = [&](const certificates::Approval& a) {
         return a.reasons.contains(certificates::finding_key(f));
@@ -111,8 +111,8 @@ class Releaser {
   }
 
   Expected<void> open_campaign() {
-    if (const std::string mistake = mistake_in(wish_); !mistake.empty()) return fail(mistake);
-    auto text = storage::read_file(wish_.campaign / config::manifest_name);
+    if (const std::string mistake = mistake_in(request_); !mistake.empty()) return fail(mistake);
+    auto text = storage::read_file(request_.campaign / config::manifest_name);
     if (!text) return fail(text.error().message + ": it is not the folder of a campaign");
     const auto manifest = config::parse_manifest(*text, config::manifest_name);
     if (!manifest) {
@@ -120,11 +120,11 @@ class Releaser {
       return fail(e.file + ":" + std::to_string(e.line) + ": " + e.message);
     }
     id_ = manifest->campaign.id;
-    options_.site = config::site_of(wish_.campaign);
+    options_.site = config::site_of(request_.campaign);
     const auto numbering = certificates::numbering_of(options_.site);
     if (!numbering) return fail("site.toml: " + numbering.error().message);
     numbering_ = *numbering;
-    role_ = !wish_.role.empty() ? wish_.role : numbering_.two_persons ? author : authoriser;
+    role_ = !request_.role.empty() ? request_.role : numbering_.two_persons ? author : authoriser;
     return {};
   }
 
@@ -147,7 +147,7 @@ class Releaser {
                         : none);
     out_.draft = std::move(*draft);
     std::error_code error;
-    const fs::path folder = fs::canonical(wish_.campaign, error)
+    const fs::path folder = fs::canonical(request_.campaign, error)
                                 .lexically_relative(fs::canonical(options_.site, error));
     if (folder.generic_string() != out_.draft->folder)
       return fail("the draft of " + id_ + " was made from the folder " + out_.draft->folder +
@@ -158,16 +158,16 @@ class Releaser {
         return fail(
             "two_persons = true in site.toml: the author has to approve it first "
             "(nonio release CAMPAIGN --by NAME --as author)");
-      if (plain_name(by_author->by) == plain_name(wish_.by))
+      if (plain_name(by_author->by) == plain_name(request_.by))
         return fail("two_persons = true in site.toml: " + by_author->by +
-                    " is the author; wanted another person as authoriser");
+                    " is the author; expected another person as authoriser");
     }
     return {};
   }
 
   /// And holds the draft there against the one that was entered.
   Expected<void> take_output() {
-    if (!wish_.out.empty()) out_.draft->out = fs::absolute(wish_.out).string();
+    if (!request_.out.empty()) out_.draft->out = fs::absolute(request_.out).string();
     options_.out = out_.draft->out;
     if (const std::string why = why_stale(*out_.draft); !why.empty()) return fail(why);
     auto taken = OutputLock::take(options_.out);
@@ -193,14 +193,14 @@ class Releaser {
     auto place = set_up(options_);
     if (!place) return refuse(place.error().message);
     out_.notes = (*place)->notes;
-    if (!(*place)->signer) return refuse("site.toml says nothing of a key; wanted [signing]");
+    if (!(*place)->signer) return refuse("site.toml says nothing of a key; expected [signing]");
     if (!(*place)->no_key.empty()) return refuse((*place)->no_key);
     const certificates::Releasing releasing{*out_.draft, approval, twins_};
     const ReleaseDesk desk{&*(*place)->signer, &releasing, {}, &*(*place)->host};
     CampaignState campaign;
     campaign.id = id_;
     campaign.folder = out_.draft->folder;
-    campaign.reason = "released by " + wish_.by;
+    campaign.reason = "released by " + request_.by;
     std::vector<CampaignState> campaigns{campaign};
     if (!do_campaigns(options_, events_, (*place)->context, night_, desk, campaigns))
       return fail_with("interrupted");
@@ -225,7 +225,7 @@ class Releaser {
     return std::move(out_);
   }
 
-  const ReleaseWish& wish_;
+  const ReleaseRequest& request_;
   RunOptions options_;
   const RunEvents& events_;
   config::Numbering numbering_;
@@ -246,8 +246,8 @@ std::string why_stale(const certificates::WaitingDraft& draft) {
          ": run the night again (or name its output folder with --out, if that was moved)";
 }
 
-Released release(const ReleaseWish& wish, const RunOptions& base, const RunEvents& events) {
-  return Releaser(wish, base, events).run();
+Released release(const ReleaseRequest& request, const RunOptions& base, const RunEvents& events) {
+  return Releaser(request, base, events).run();
 }
 
 Expected<std::vector<certificates::WaitingDraft>> waiting_drafts(const fs::path& folder) {

@@ -12,7 +12,7 @@
 namespace nonio::host::batch {
 
 /// What `nonio release` is told.
-struct ReleaseWish {
+struct ReleaseRequest {
   std::filesystem::path campaign;              ///< its folder
   std::string by;                              ///< a person's name, as it is printed
   std::string role;                            ///< author, authoriser; empty: what the site wants
@@ -38,7 +38,7 @@ struct Released {
 
 /// Issues what a night has left as a draft, exactly that: its data, plugins, templates and version
 /// must be the same. `base` gives plugins, templates and version.
-Released release(const ReleaseWish& wish, const RunOptions& base, const RunEvents& events);
+Released release(const ReleaseRequest& request, const RunOptions& base, const RunEvents& events);
 
 /// The drafts of the site that `folder` is or lies in; of a campaign's folder its own alone.
 Expected<std::vector<certificates::WaitingDraft>> waiting_drafts(

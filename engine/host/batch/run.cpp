@@ -29,11 +29,11 @@ std::string unfit_output(const fs::path& site, const fs::path& out) {
   std::error_code error;
   const fs::path root = fs::weakly_canonical(site, error);
   fs::path folder = fs::weakly_canonical(out, error);
-  if (folder == root) return "the output folder is the site itself; wanted another folder";
+  if (folder == root) return "the output folder is the site itself; expected another folder";
   for (; folder != folder.parent_path(); folder = folder.parent_path())
     if (fs::exists(folder / config::manifest_name, error))
       return "the output folder lies in the campaign " + folder.string() +
-             "; wanted another folder";
+             "; expected another folder";
   return {};
 }
 
@@ -95,7 +95,7 @@ Expected<void> check_register_place(const RunOptions& options, const reading::Co
   const fs::path out = fs::weakly_canonical(options.out, error);
   if (is_below(*path, out) && is_below(out, fs::weakly_canonical(options.site, error)))
     return fail("the register of certificates " + path->string() +
-                " would lie in the output folder; wanted it elsewhere in the site");
+                " would lie in the output folder; expected it elsewhere in the site");
   return {};
 }
 

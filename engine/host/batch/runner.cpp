@@ -110,7 +110,7 @@ class Runner {
 
   void start(std::size_t campaign) {
     const auto task = [this](int stream) {
-      return [this, stream](std::size_t c, bool first, process::SharedWords& stage) {
+      return [this, stream](std::size_t c, bool first, process::SharedStatus& stage) {
         Evaluator evaluator(stream, secrets_);
         const Answer answer = work_guarded(c, first, stage, evaluator);
         return Outcome(answer, evaluator.grown());
@@ -184,32 +184,52 @@ class Runner {
     again_ = std::exchange(waiting_, {});
   }
 
+  /// Read, analysed, numbered, written. `as_draft`: without a number, whatever the rules say.
+  Expected<evaluation::Evaluated> evaluated_apart(const CampaignState& c, const fs::path& folder,
+                                                  certificates::CampaignFiles& files, bool as_draft,
+                                                  bool& locked, Evaluator& evaluator) const {
+    const auto analysed =
+        evaluator.analyse(folder, c.id, releasing_ ? *twins_ : twins_of(c, campaigns_));
+    if (!analysed) return fail(analysed.error());
+    std::optional<evaluation::AssignedNumber> number;
+    if (analysed->missing)
+      number = number_of(analysed->evaluated, *analysed->missing, files, as_draft, locked);
+    return evaluator.write_documents(c.id, std::move(number));
+  }
+
+  /// Refused while the register is not known to be sound, or another process keeps it to itself.
+  evaluation::AssignedNumber number_of(const evaluation::Evaluated& evaluated,
+                                       const std::vector<std::string>& missing,
+                                       certificates::CampaignFiles& files, bool as_draft,
+                                       bool& locked) const {
+    evaluation::AssignedNumber assigned{std::nullopt, missing, std::nullopt};
+    if (!unsound_.empty()) {
+      assigned.error = Error{unsound_};
+    } else if (recheck_ != nullptr) {
+      locked = true;
+      assigned.error = Error{register_locked};
+    } else {
+      assigned = numbers_.assign(evaluated, files, missing, as_draft);
+      locked = locked || (assigned.error && storage::is_locked(*assigned.error));
+    }
+    return assigned;
+  }
+
   /// Evaluated and, where it is to be, signed and entered. `locked`: not yet, since the register
   /// is.
-  Expected<evaluation::Evaluated> certified(const CampaignState& c, process::SharedWords& stage,
+  Expected<evaluation::Evaluated> certified(const CampaignState& c, process::SharedStatus& stage,
                                             bool& locked, Evaluator& evaluator) const {
     const fs::path folder = options_.site / c.folder;
-    const auto try_it = [&](bool as_draft) {
-      return evaluator.evaluate(
-          folder, c.id,
-          [&](const evaluation::Evaluated& e, std::vector<std::string>& missing) {
-            if (!unsound_.empty()) return Expected<evaluation::Certificate>(fail(unsound_));
-            locked = locked || recheck_ != nullptr;
-            if (recheck_) return Expected<evaluation::Certificate>(fail(register_locked));
-            auto drawn = numbers_.draw(e, folder, missing, as_draft);
-            locked = locked || (!drawn && storage::is_locked(drawn.error()));
-            return drawn;
-          },
-          releasing_ ? *twins_ : twins_of(c, campaigns_));
-    };
-    auto evaluation = try_it(false);
-    if (evaluation && numbers_.held_up(*evaluation)) evaluation = try_it(true);
+    certificates::CampaignFiles files(folder);
+    auto evaluation = evaluated_apart(c, folder, files, false, locked, evaluator);
+    if (evaluation && numbers_.held_up(*evaluation))
+      evaluation = evaluated_apart(c, folder, files, true, locked, evaluator);
     if (!evaluation) return evaluation;
     evaluation::Evaluated& evaluated = *evaluation;
     if (evaluated.status != "failed") numbers_.hold_unreleased(evaluated);
     stage.set("signing");
     auto done =
-        certificates::sign_artifacts(evaluated, folder, context_, signer_, std::time(nullptr));
+        certificates::sign_artifacts(evaluated, files, context_, signer_, std::time(nullptr));
     if (done) done = numbers_.issue(evaluated, c.folder);
     locked = locked || (!done && storage::is_locked(done.error()));
     if (!done) fail_certificate(evaluated, done.error());
@@ -217,7 +237,7 @@ class Runner {
   }
 
   /// What plugins throw is caught where they are called.
-  Answer work_guarded(std::size_t index, bool first, process::SharedWords& stage,
+  Answer work_guarded(std::size_t index, bool first, process::SharedStatus& stage,
                       Evaluator& evaluator) const {
     try {
       return work(index, first, stage, evaluator);
@@ -232,7 +252,7 @@ class Runner {
   }
 
   /// In the worker's process, which has no plugin code: that runs at the other end of the stream.
-  Answer work(std::size_t index, bool first, process::SharedWords& stage,
+  Answer work(std::size_t index, bool first, process::SharedStatus& stage,
               Evaluator& evaluator) const {
     if (first && signer_ != nullptr) signer_->leave_to_worker();
     const CampaignState& c = campaigns_[index];

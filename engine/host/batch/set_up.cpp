@@ -73,14 +73,14 @@ Expected<void> check_user(const RunOptions& options) {
   if (::geteuid() != 0 || options.as_root) return {};
   if (const std::string path = changeable_by_others(options); !path.empty())
     return fail("root would run code that other users can change: " + path +
-                "; wanted another user (the package's service runs as nonio), or --root");
+                "; expected another user (the package's service runs as nonio), or --root");
   return {};
 }
 
 /// In a process of their own.
 Expected<void> load_plugins(SetUp& place, const RunOptions& options) {
   const auto& signing = place.context.site.signing;
-  PluginHost& host = place.host.emplace(PluginHost::Wish{
+  PluginHost& host = place.host.emplace(PluginHost::Request{
       options.plugin_folders, library_folders(options.own_plugins),
       signing ? config::secret_files(*signing, options.site) : std::vector<fs::path>(),
       place.context, process::is_stop_requested, options.confine});

@@ -164,7 +164,7 @@ class Walker {
         look_at_link(link, names.has_manifest);
     if (names.has_manifest) return;
     for (const std::string& name : names.nearly)
-      remark(storage::path_text(below(folder, name)) + " is not read: wanted a file called " +
+      remark(storage::path_text(below(folder, name)) + " is not read: expected a file called " +
              config::manifest_name);
   }
 

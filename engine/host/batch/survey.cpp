@@ -78,7 +78,7 @@ void fail_collisions(std::vector<CampaignState>& states) {
         states[k].status = "failed";
         states[k].reason = "no result: its id is not unique";
         states[k].errors = {Error{"campaign.id \"" + states[k].id + "\" is used by " + folders +
-                                      "; wanted one id for one campaign",
+                                      "; expected one id for one campaign",
                                   config::manifest_name}};
       }
     }

@@ -28,13 +28,13 @@ bool is_younger(const struct stat& a, const struct stat& b) {
 
 }  // namespace
 
-Look::Look(const SurveyInput& input, process::SignsOfLife& signs)
+ChangeDetector::ChangeDetector(const SurveyInput& input, process::SignsOfLife& signs)
     : in_(input), signs_(signs), shared_(reading::shared_inputs(input.context)) {
   if (input.numbers)
     for (const certificates::RegisterEntry& e : *input.numbers) numbers_[e.number] = &e;
 }
 
-CampaignState Look::at(const CampaignState& known, bool rough) {
+CampaignState ChangeDetector::at(const CampaignState& known, bool rough) {
   CampaignState state;
   state.folder = known.folder;
   state.id = known.id;
@@ -48,7 +48,7 @@ CampaignState Look::at(const CampaignState& known, bool rough) {
   }
   const std::string digest = storage::sha256(*text);
   // Parsed in full only where a full reading did not say the same before.
-  if (state.id.empty()) state.id = config::salvage_id(*text);
+  if (state.id.empty()) state.id = config::extract_id(*text);
   Last last = last_of(state.id);
   const bool as_before = last && *last &&
                          (*last)->record.folder == storage::path_text(known.folder) &&
@@ -67,7 +67,8 @@ CampaignState Look::at(const CampaignState& known, bool rough) {
   return state;
 }
 
-std::string Look::read_whole(CampaignState& state, const std::string& manifest, bool rough) {
+std::string ChangeDetector::read_whole(CampaignState& state, const std::string& manifest,
+                                       bool rough) {
   if (rough) return {};
   signs_.reads = false;
   const auto parsed = config::parse_manifest(manifest, config::manifest_name);
@@ -85,7 +86,7 @@ std::string Look::read_whole(CampaignState& state, const std::string& manifest, 
   return parsed->campaign.id;
 }
 
-Look::Last Look::last_of(const std::string& id) {
+ChangeDetector::Last ChangeDetector::last_of(const std::string& id) {
   if (id.empty()) return std::nullopt;
   auto last = evaluation::last_record(storage::results_folder(in_.out, id));
   if (!last || !*last) return last;
@@ -96,12 +97,13 @@ Look::Last Look::last_of(const std::string& id) {
 
 /// Where storing tonight's results was cut short: why the campaign was done. The files that would
 /// tell are no longer those of the night before.
-std::string Look::staged_reason(const CampaignState& state) const {
+std::string ChangeDetector::staged_reason(const CampaignState& state) const {
   const auto staged = evaluation::staged_record(storage::results_folder(in_.out, state.id));
   return staged && *staged && (*staged)->night == in_.night ? (*staged)->reason : "";
 }
 
-void Look::judge(CampaignState& state, const Last& last, const std::string& manifest_digest) {
+void ChangeDetector::judge(CampaignState& state, const Last& last,
+                           const std::string& manifest_digest) {
   if (!last)
     state.reason = last.error().message;
   else if (!*last)
@@ -121,8 +123,8 @@ void Look::judge(CampaignState& state, const Last& last, const std::string& mani
   state.errors = record.errors;
 }
 
-std::string Look::changes(CampaignState& state, const evaluation::Record& record,
-                          const std::string& manifest_digest) {
+std::string ChangeDetector::changes(CampaignState& state, const evaluation::Record& record,
+                                    const std::string& manifest_digest) {
   std::vector<std::string> why;
   if (record.retry && record.night != in_.night)
     why.push_back("it failed for a reason that may have passed");
@@ -148,12 +150,12 @@ std::string Look::changes(CampaignState& state, const evaluation::Record& record
   return words;
 }
 
-Expected<std::string> Look::digest_with_signs(const fs::path& path) {
+Expected<std::string> ChangeDetector::digest_with_signs(const fs::path& path) {
   return storage::sha256_of_file(path, [this] { signs_.beat(); });
 }
 
-void Look::look_at_file(CampaignState& state, const std::string& name, const std::string& digest,
-                        std::vector<std::string>& why) {
+void ChangeDetector::look_at_file(CampaignState& state, const std::string& name,
+                                  const std::string& digest, std::vector<std::string>& why) {
   signs_.reading((fs::path(state.folder) / name).string());
   const auto path = storage::path_inside(in_.site / state.folder, name);
   const auto now = path ? digest_with_signs(*path) : fail(path.error());
@@ -168,8 +170,8 @@ void Look::look_at_file(CampaignState& state, const std::string& name, const std
 
 /// A file of the right size that is not younger than the record was not touched since; of another
 /// one the content decides.
-void Look::look_at_outputs(const CampaignState& state, const evaluation::Record& record,
-                           std::vector<std::string>& why) {
+void ChangeDetector::look_at_outputs(const CampaignState& state, const evaluation::Record& record,
+                                     std::vector<std::string>& why) {
   const fs::path folder = storage::results_folder(in_.out, state.id);
   signs_.reading(folder.string());
   struct stat written {};
@@ -186,8 +188,8 @@ void Look::look_at_outputs(const CampaignState& state, const evaluation::Record&
   }
 }
 
-void Look::look_at_number(const CampaignState& state, const evaluation::Record& record,
-                          std::vector<std::string>& why) const {
+void ChangeDetector::look_at_number(const CampaignState& state, const evaluation::Record& record,
+                                    std::vector<std::string>& why) const {
   if (in_.numbers && record.draft && !in_.drafts.contains(state.id))
     why.push_back("its draft was released, or the register does not know it");
   const auto number = numbers_.find(record.certificate);

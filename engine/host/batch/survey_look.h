@@ -13,9 +13,9 @@ namespace nonio::host::batch {
 
 /// What is to be done with a campaign, and why: its contents against those of its last result. Runs
 /// in a child process of the survey, since it reads the site.
-class Look {
+class ChangeDetector {
  public:
-  Look(const SurveyInput& input, process::SignsOfLife& signs);
+  ChangeDetector(const SurveyInput& input, process::SignsOfLife& signs);
 
   /// Of a campaign of which the folder is known, and the id where its manifest gives none. `rough`:
   /// without parsing the manifest, which brought down the process before.

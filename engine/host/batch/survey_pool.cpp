@@ -95,7 +95,7 @@ class Pool {
     todo_.pop_back();
     auto child = process::Watched::start(
         [&](process::SignsOfLife& signs, const process::Watched::Send& send) {
-          Look look(in_, signs);
+          ChangeDetector look(in_, signs);
           for (std::size_t i = 0; i < batch.campaigns.size(); ++i) {
             signs.index = i;
             const CampaignState state = look.at(states_[batch.campaigns[i]], batch.rough);

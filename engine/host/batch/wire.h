@@ -240,7 +240,11 @@ NONIO_ON_THE_WIRE(Campaign, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r
 
 NONIO_ON_THE_WIRE(evaluation::IssuedFile, a, b, c, d)
 NONIO_ON_THE_WIRE(evaluation::Certificate, a, b, c, d, e, f, g, h)
-NONIO_ON_THE_WIRE(evaluation::Evaluated, a, b, c, d, e, f)
+NONIO_ON_THE_WIRE(evaluation::AssignedNumber, a, b, c)
+NONIO_ON_THE_WIRE(evaluation::FollowedQuantity::Common, a, b)
+NONIO_ON_THE_WIRE(evaluation::FollowedQuantity, a, b, c, d, e, f, g, h, i, j, k)
+NONIO_ON_THE_WIRE(evaluation::FollowedGroup, a, b)
+NONIO_ON_THE_WIRE(evaluation::Evaluated, a, b, c, d, e, f, g)
 
 NONIO_ON_THE_WIRE(config::TemplateFiles, a, b)
 NONIO_ON_THE_WIRE(config::SiteFiles, a, b)

@@ -26,8 +26,8 @@ struct Message {
 };
 
 [[noreturn]] void serve(const Worker::Task& task, int channel, double memory_MB,
-                        process::SharedWords& stage) noexcept {
-  process::settle_child();
+                        process::SharedStatus& stage) noexcept {
+  process::init_child();
   process::keep_silent();
   process::limit_memory(memory_MB);
   const std::size_t at_start = process::memory_held();
@@ -44,7 +44,7 @@ struct Message {
 }  // namespace
 
 Expected<Worker> Worker::prepare(int& theirs) {
-  process::SharedWords stage;
+  process::SharedStatus stage;
   if (!stage.valid()) return fail("no memory for a worker");
   auto ends = process::channel_pair(SOCK_SEQPACKET, "a worker");
   if (!ends) return fail(ends.error());
@@ -96,7 +96,7 @@ Expected<Worker> Worker::start(PluginHost& plugins, const std::function<Task(int
   return worker;
 }
 
-Worker::Worker(int channel, process::SharedWords stage)
+Worker::Worker(int channel, process::SharedStatus stage)
     : channel_(channel), stage_(std::move(stage)) {}
 
 Worker::Worker(Worker&& other) noexcept

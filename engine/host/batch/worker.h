@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "host/process/child.h"
-#include "host/process/shared_words.h"
+#include "host/process/shared_status.h"
 #include "nonio/sdk/error.h"
 
 namespace nonio::host::batch {
@@ -43,7 +43,7 @@ class Worker {
   using Clock = std::chrono::steady_clock;
   /// Run in the process; `first`: no campaign was done in it before.
   using Task =
-      std::function<Outcome(std::size_t campaign, bool first, process::SharedWords& stage)>;
+      std::function<Outcome(std::size_t campaign, bool first, process::SharedStatus& stage)>;
 
   static Expected<Worker> start(const Task& task, double memory_MB);
   /// With a process that has the plugins at the other end of the stream that the task is made with.
@@ -68,13 +68,13 @@ class Worker {
   process::ChildEnd end();
 
  private:
-  Worker(int channel, process::SharedWords stage);
+  Worker(int channel, process::SharedStatus stage);
   static Expected<Worker> prepare(int& theirs);
   Expected<void> fork_with(const Task& task, double memory_MB, int theirs);
 
   pid_t pid_ = -1, plugins_ = -1;  ///< -1: there is none
   int channel_;
-  process::SharedWords stage_;
+  process::SharedStatus stage_;
   std::size_t campaign_ = 0, given_ = 0;
   Clock::time_point deadline_{};
   bool grown_ = false;

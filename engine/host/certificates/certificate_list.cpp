@@ -31,10 +31,10 @@ Expected<void> withdraw(const fs::path& site, const config::Numbering& numbering
                         const std::string& number, const std::string& why, const std::string& by) {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
   if (std::any_of(by.begin(), by.end(), control))
-    return fail("the name has a control character; wanted one line of text");
-  if (!says_something(why)) return fail("the reason says nothing; wanted why it is withdrawn");
+    return fail("the name has a control character; expected one line of text");
+  if (!says_something(why)) return fail("the reason says nothing; expected why it is withdrawn");
   if (std::any_of(why.begin(), why.end(), control))
-    return fail("the reason has a control character; wanted one line of text");
+    return fail("the reason has a control character; expected one line of text");
   const auto entries = Register::entries(site, numbering);
   if (!entries) return fail(entries.error());
   if (entries->empty()) return fail("no number " + number + " was ever drawn");

@@ -6,7 +6,6 @@
 #include "host/evaluation/results_json.h"
 #include "host/storage/digest.h"
 #include "host/storage/files.h"
-#include "nonio/sdk/format.h"
 
 namespace nonio::host::certificates {
 namespace fs = std::filesystem;
@@ -29,171 +28,181 @@ struct Draft {
   Artifact artifact;
 };
 
-class Desk {
- public:
-  Desk(evaluation::Evaluated& evaluated, const fs::path& folder, const reading::Context& context,
-       const SignWith& how, sign::Time now)
-      : e_(evaluated), folder_(folder), context_(context), how_(how), now_(now) {}
+using Attachments = std::vector<pdf::Attachment>;
 
-  Expected<void> run() {
-    auto done = sign_all();
-    if (!done) return done;
-    if (e_.certificate) return keep_for_register();
-    for (const evaluation::IssuedFile& file : signed_)
-      note_time_stamp(e_, file, context_.templates);
-    for (auto& w : outputs())
-      for (Artifact& a : w.result.artifacts) a.sign = false;
-    return done;
-  }
+Expected<evaluation::IssuedFile> signed_by(const SignWith& how, Artifact& a,
+                                           const std::string& output) {
+  auto done = how.sign(a);
+  if (!done) return fail(a.name + " could not be signed: " + done.error().message);
+  a.bytes = std::move(done->bytes);
+  return evaluation::IssuedFile{output, a.name, a.bytes, std::move(done->no_time_stamp)};
+}
 
- private:
-  Expected<void> sign_all() {
-    auto done = sign_documents();
-    if (done) done = attach_inputs();
-    if (done) done = attach_results();
-    for (Draft& d : drafts_) {
-      if (done) done = sign_pdf(d);
-      auto& artifacts = e_.results.outputs[d.output].result.artifacts;
-      artifacts.insert(artifacts.begin() + static_cast<std::ptrdiff_t>(d.place),
-                       std::move(d.artifact));
+/// Of all outputs what is to be signed and is no PDF; it is attached, too.
+Expected<void> sign_documents(evaluation::Evaluated& evaluated, const SignWith& how,
+                              std::vector<evaluation::IssuedFile>& done, Attachments& attachments) {
+  for (Results::Written& w : evaluated.results.outputs)
+    for (Artifact& a : w.result.artifacts) {
+      if (!a.sign || is_pdf(a)) continue;
+      auto file = signed_by(how, a, w.plugin);
+      if (!file) return fail(file.error());
+      done.push_back(std::move(*file));
+      attachments.push_back({a.name, a.bytes, "application/xml", "Data",
+                             "digital calibration certificate, with a signature of its own"});
     }
-    return done;
-  }
+  return {};
+}
 
-  /// All that the numbered output has made, and what of the others is signed with it.
-  Expected<void> keep_for_register() {
-    evaluation::Certificate& certificate = *e_.certificate;
-    const auto is_own = [&](const evaluation::IssuedFile& f) {
-      return f.output == certificate.output;
-    };
-    if (std::none_of(signed_.begin(), signed_.end(), is_own))
-      return fail("output " + certificate.output +
-                  " makes nothing that is signed, and nothing else is issued under a number");
-    for (const auto& w : outputs())
-      if (w.plugin == certificate.output)
-        for (const Artifact& a : w.result.artifacts)
-          certificate.files.push_back({w.plugin, a.name, a.bytes, time_stamp_of(a.name)});
-    for (evaluation::IssuedFile& file : signed_)
-      if (!is_own(file)) certificate.files.push_back(std::move(file));
-    certificate.results = std::move(attachments_.back().bytes);
-    return {};
-  }
-
-  std::string time_stamp_of(const std::string& name) const {
-    for (const evaluation::IssuedFile& file : signed_)
-      if (file.name == name) return file.no_time_stamp;
-    return {};
-  }
-
-  std::vector<Results::Written>& outputs() { return e_.results.outputs; }
-
-  Expected<void> sign(Artifact& a, std::size_t output) {
-    auto done = how_.sign(a);
-    if (!done) return fail(a.name + " could not be signed: " + done.error().message);
-    a.bytes = std::move(done->bytes);
-    signed_.push_back({outputs()[output].plugin, a.name, a.bytes, std::move(done->no_time_stamp)});
-    return {};
-  }
-
-  /// And takes the certificates out.
-  Expected<void> sign_documents() {
-    for (std::size_t o = 0; o < outputs().size(); ++o) {
-      auto& artifacts = outputs()[o].result.artifacts;
-      for (std::size_t i = 0; i < artifacts.size(); ++i)
-        if (artifacts[i].sign && !is_pdf(artifacts[i])) {
-          if (auto done = sign(artifacts[i], o); !done) return done;
-          add(artifacts[i].name, artifacts[i].bytes, "application/xml", "Data",
-              "digital calibration certificate, with a signature of its own");
-        }
-      for (std::size_t i = 0, place = 0; i < artifacts.size(); ++place) {
-        if (!artifacts[i].sign || !is_pdf(artifacts[i])) {
-          ++i;
-          continue;
-        }
-        drafts_.push_back({o, place, std::move(artifacts[i])});
-        artifacts.erase(artifacts.begin() + static_cast<std::ptrdiff_t>(i));
-      }
-    }
-    return {};
-  }
-
-  void add(std::string name, std::string bytes, const char* type, const char* relation,
-           const char* says) {
-    attachments_.push_back({std::move(name), std::move(bytes), type, relation, says});
-  }
-
-  void attach_machine() {
-    const auto record = config::record_of(context_.machines, e_.campaign.machine);
-    if (record && *record != nullptr)
-      add(config::machine_record_name, config::packed(**record), "application/json", "Source",
-          "what the site knows of the machine");
-  }
-
-  /// As they were evaluated, byte by byte.
-  Expected<void> attach_inputs() {
-    if (drafts_.empty() && !e_.certificate) return {};
-    const std::string prefix = reading::input_name("");
-    for (const auto& [input, digest] : e_.inputs) {
-      if (input.starts_with(reading::shared_name(""))) continue;  // what another campaign has
-      if (input.starts_with(config::machine_prefix)) {
-        attach_machine();
+/// The PDFs that are to be signed, out of the artifacts.
+std::vector<Draft> take_drafts(evaluation::Evaluated& evaluated) {
+  std::vector<Draft> drafts;
+  auto& outputs = evaluated.results.outputs;
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    auto& artifacts = outputs[o].result.artifacts;
+    for (std::size_t i = 0, place = 0; i < artifacts.size(); ++place) {
+      if (!artifacts[i].sign || !is_pdf(artifacts[i])) {
+        ++i;
         continue;
       }
-      const bool is_file = input.starts_with(prefix);
-      const std::string name = is_file ? input.substr(prefix.size()) : input;
-      const auto path = storage::path_inside(folder_, name);
-      if (!path) return fail(path.error());
-      auto bytes = storage::read_file(*path);
-      if (!bytes) return fail(bytes.error());
-      if (storage::sha256(*bytes) != digest)
-        return fail(name + " was changed while the campaign was evaluated");
-      const bool csv = name.ends_with(".csv");
-      add(name, std::move(*bytes),
-          !is_file ? "application/toml"
-          : csv    ? "text/csv"
-                   : "application/octet-stream",
-          source_relation,
-          is_file ? "readings" : "the campaign: what was measured, and how it is evaluated");
+      drafts.push_back({o, place, std::move(artifacts[i])});
+      artifacts.erase(artifacts.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    if (!context_.site.settings.empty())
-      add(settings_name, context_.site.settings, "application/toml", source_relation,
-          "what of the laboratory's settings has a say in the results");
-    if (!context_.templates_json.empty())
-      add(templates_name, context_.templates_json, "application/json", "Source",
-          "words and layout of the documents");
-    return {};
   }
+  return drafts;
+}
 
-  Expected<void> attach_results() {
-    if (drafts_.empty() && !e_.certificate) return {};
-    std::vector<evaluation::RecordedFile> files;
-    for (const auto& w : outputs())
-      for (const Artifact& a : w.result.artifacts)
-        files.push_back({a.name, a.bytes.size(), storage::sha256(a.bytes)});
-    auto text = Expected<std::string>(evaluation::results_json(e_, context_, files));
-    if (how_.results) text = how_.results(std::move(*text));
-    if (!text) return fail(text.error());
-    add(evaluation::results_name, std::move(*text), "application/json", "Data",
-        "the results as numbers");
-    return {};
+void put_back(evaluation::Evaluated& evaluated, std::vector<Draft>& drafts) {
+  for (Draft& d : drafts) {
+    auto& artifacts = evaluated.results.outputs[d.output].result.artifacts;
+    artifacts.insert(artifacts.begin() + static_cast<std::ptrdiff_t>(d.place),
+                     std::move(d.artifact));
   }
+}
 
-  Expected<void> sign_pdf(Draft& d) {
-    auto reserved = sign::reserve(d.artifact.bytes, attachments_, now_);
+/// The manifest or a file of readings, byte by byte as it was evaluated.
+Expected<pdf::Attachment> attached_input(const std::string& input, const std::string& digest,
+                                         CampaignFiles& files) {
+  const bool is_manifest = input == config::manifest_name;
+  const std::string name = file_of_input(input);
+  const auto bytes = files.bytes(name, digest);
+  if (!bytes) return fail(bytes.error());
+  const bool csv = name.ends_with(".csv");
+  return pdf::Attachment{
+      name, std::string(*bytes),
+      is_manifest ? "application/toml"
+      : csv       ? "text/csv"
+                  : "application/octet-stream",
+      source_relation,
+      is_manifest ? "the campaign: what was measured, and how it is evaluated" : "readings"};
+}
+
+/// From what the results were made: campaign, machine, settings of the site, words.
+Expected<void> attach_sources(const evaluation::Evaluated& evaluated, CampaignFiles& files,
+                              const reading::Context& context, Attachments& to) {
+  for (const auto& [input, digest] : evaluated.inputs) {
+    if (input.starts_with(reading::shared_name(""))) continue;  // what another campaign has
+    if (input.starts_with(config::machine_prefix)) {
+      const auto record = config::record_of(context.machines, evaluated.campaign.machine);
+      if (record && *record != nullptr)
+        to.push_back({config::machine_record_name, config::packed(**record), "application/json",
+                      "Source", "what the site knows of the machine"});
+      continue;
+    }
+    auto one = attached_input(input, digest, files);
+    if (!one) return fail(one.error());
+    to.push_back(std::move(*one));
+  }
+  if (!context.site.settings.empty())
+    to.push_back({settings_name, context.site.settings, "application/toml", source_relation,
+                  "what of the laboratory's settings has a say in the results"});
+  if (!context.templates_json.empty())
+    to.push_back({templates_name, context.templates_json, "application/json", "Source",
+                  "words and layout of the documents"});
+  return {};
+}
+
+Expected<void> attach_results(const evaluation::Evaluated& evaluated,
+                              const reading::Context& context, const SignWith& how,
+                              Attachments& to) {
+  std::vector<evaluation::RecordedFile> files;
+  for (const auto& w : evaluated.results.outputs)
+    for (const Artifact& a : w.result.artifacts)
+      files.push_back({a.name, a.bytes.size(), storage::sha256(a.bytes)});
+  auto text = Expected<std::string>(evaluation::results_json(evaluated, context, files));
+  if (how.results) text = how.results(std::move(*text));
+  if (!text) return fail(text.error());
+  to.push_back({evaluation::results_name, std::move(*text), "application/json", "Data",
+                "the results as numbers"});
+  return {};
+}
+
+/// What a certificate carries, results.json last. `to`: the documents that are signed already.
+Expected<void> attach_all(const evaluation::Evaluated& evaluated, CampaignFiles& files,
+                          const reading::Context& context, const SignWith& how, Attachments& to) {
+  if (auto done = attach_sources(evaluated, files, context, to); !done) return done;
+  return attach_results(evaluated, context, how, to);
+}
+
+Expected<void> sign_drafts(std::vector<Draft>& drafts, const evaluation::Evaluated& evaluated,
+                           const SignWith& how, sign::Time now, const Attachments& attachments,
+                           std::vector<evaluation::IssuedFile>& done) {
+  for (Draft& d : drafts) {
+    auto reserved = pdf::reserve(d.artifact.bytes, attachments, now);
     if (!reserved) return fail(d.artifact.name + " " + reserved.error().message);
     d.artifact.bytes = std::move(*reserved);
-    return sign(d.artifact, d.output);
+    auto file = signed_by(how, d.artifact, evaluated.results.outputs[d.output].plugin);
+    if (!file) return fail(file.error());
+    done.push_back(std::move(*file));
   }
+  return {};
+}
 
-  evaluation::Evaluated& e_;
-  const fs::path& folder_;
-  const reading::Context& context_;
-  const SignWith& how_;
-  const sign::Time now_;
-  std::vector<Draft> drafts_;
-  std::vector<sign::Attachment> attachments_;
-  std::vector<evaluation::IssuedFile> signed_;
-};
+/// All that the numbered output has made, and what of the others is signed with it.
+Expected<void> keep_for_register(const evaluation::Evaluated& evaluated,
+                                 std::vector<evaluation::IssuedFile> done, std::string results,
+                                 evaluation::Certificate& certificate) {
+  const auto is_own = [&](const evaluation::IssuedFile& f) {
+    return f.output == certificate.output;
+  };
+  if (std::none_of(done.begin(), done.end(), is_own))
+    return fail("output " + certificate.output +
+                " makes nothing that is signed, and nothing else is issued under a number");
+  const auto time_stamp_of = [&](const std::string& name) {
+    const auto file =
+        std::find_if(done.begin(), done.end(), [&](const auto& f) { return f.name == name; });
+    return file == done.end() ? std::string() : file->no_time_stamp;
+  };
+  for (const auto& w : evaluated.results.outputs)
+    if (w.plugin == certificate.output)
+      for (const Artifact& a : w.result.artifacts)
+        certificate.files.push_back({w.plugin, a.name, a.bytes, time_stamp_of(a.name)});
+  for (evaluation::IssuedFile& file : done)
+    if (!is_own(file)) certificate.files.push_back(std::move(file));
+  certificate.results = std::move(results);
+  return {};
+}
+
+/// Documents first, which PDFs carry; then the PDFs.
+Expected<void> sign_all(evaluation::Evaluated& evaluated, CampaignFiles& files,
+                        const reading::Context& context, const SignWith& how, sign::Time now) {
+  std::vector<evaluation::IssuedFile> signed_files;
+  Attachments attachments;
+  auto done = sign_documents(evaluated, how, signed_files, attachments);
+  if (!done) return done;
+  std::vector<Draft> drafts = take_drafts(evaluated);
+  if (!drafts.empty() || evaluated.certificate)
+    done = attach_all(evaluated, files, context, how, attachments);
+  if (done) done = sign_drafts(drafts, evaluated, how, now, attachments, signed_files);
+  put_back(evaluated, drafts);
+  if (!done) return done;
+  if (evaluated.certificate)
+    return keep_for_register(evaluated, std::move(signed_files),
+                             std::move(attachments.back().bytes), *evaluated.certificate);
+  for (const evaluation::IssuedFile& file : signed_files) note_time_stamp(evaluated, file);
+  for (auto& w : evaluated.results.outputs)
+    for (Artifact& a : w.result.artifacts) a.sign = false;
+  return done;
+}
 
 }  // namespace
 
@@ -227,25 +236,21 @@ std::string draft_name(const std::string& pdf) {
   return name.stem().string() + "-draft" + name.extension().string();
 }
 
-void note_finding(evaluation::Evaluated& evaluated, const std::string& output, Finding finding,
-                  const Templates& templates) {
-  finding.advice = finding_text(templates, "en", finding, "advice");
+void note_finding(evaluation::Evaluated& evaluated, const std::string& output, Finding finding) {
   if (finding.attention) evaluated.status = "attention";
   for (Results::Written& w : evaluated.results.outputs)
     if (w.plugin == output) return w.result.findings.push_back(std::move(finding));
 }
 
-void note_time_stamp(evaluation::Evaluated& evaluated, const evaluation::IssuedFile& file,
-                     const Templates& templates) {
+void note_time_stamp(evaluation::Evaluated& evaluated, const evaluation::IssuedFile& file) {
   if (file.no_time_stamp.empty()) return;
   note_finding(evaluated, file.output,
                {.id = "signature.no-time-stamp",
                 .attention = true,
-                .texts = {{"file", file.name}, {"why", file.no_time_stamp}}},
-               templates);
+                .texts = {{"file", file.name}, {"why", file.no_time_stamp}}});
 }
 
-Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, const fs::path& folder,
+Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, CampaignFiles& files,
                               const reading::Context& context, const Signer* signer,
                               sign::Time now) {
   const auto sign = [&](const Artifact& a) -> Expected<sign::Signed> {
@@ -256,10 +261,10 @@ Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, const fs::path& 
   const bool is_wanted =
       certificate ? !certificate->issued && !certificate->draft : is_asked(evaluated.results);
   if (is_wanted && signer == nullptr && evaluated.status != "failed") return fail(no_key);
-  return sign_artifacts(evaluated, folder, context, SignWith{sign}, now);
+  return sign_artifacts(evaluated, files, context, SignWith{sign}, now);
 }
 
-Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, const fs::path& folder,
+Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, CampaignFiles& files,
                               const reading::Context& context, const SignWith& how,
                               sign::Time now) {
   if (!evaluated.certificate && !is_asked(evaluated.results)) return {};
@@ -272,7 +277,7 @@ Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, const fs::path& 
     keep_draft(evaluated);
     return {};
   }
-  return Desk(evaluated, folder, context, how, now).run();
+  return sign_all(evaluated, files, context, how, now);
 }
 
 }  // namespace nonio::host::certificates

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <functional>
+#include <string>
 
+#include "host/certificates/campaign_files.h"
 #include "host/certificates/signer.h"
 #include "host/evaluation/evaluate.h"
 #include "nonio/sign/sign.h"
@@ -18,7 +19,7 @@ inline constexpr const char* templates_name = "templates.json";
 
 /// Why nothing can be signed where `signer` is null.
 inline constexpr const char* no_key =
-    "an output is to be signed, and site.toml says nothing of a key; wanted [signing]";
+    "an output is to be signed, and site.toml says nothing of a key; expected [signing]";
 
 /// Signs the artifacts that outputs want signed: XML documents first, then PDFs, into which go the
 /// manifest, the readings, what of site.toml has a say in them, results.json and the signed XML
@@ -27,7 +28,7 @@ inline constexpr const char* no_key =
 /// pages are kept, unsigned; what else would be signed waits with it. Of a failed campaign nothing
 /// is signed: these artifacts are taken away. `signer` is null where site.toml has no
 /// [signing].
-Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, const std::filesystem::path& folder,
+Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, CampaignFiles& files,
                               const reading::Context& context, const Signer* signer,
                               sign::Time now);
 
@@ -41,17 +42,15 @@ struct SignWith {
   /// What is attached as results.json, from what was made of it now; none: that.
   std::function<Expected<std::string>(std::string made)> results{};
 };
-Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, const std::filesystem::path& folder,
+Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, CampaignFiles& files,
                               const reading::Context& context, const SignWith& how, sign::Time now);
 
 /// Takes away what is to be signed and is not, and all of a certificate that is not issued.
 void remove_unsigned(evaluation::Evaluated& evaluated);
 
 /// Adds a finding to what one of its outputs found.
-void note_finding(evaluation::Evaluated& evaluated, const std::string& output, Finding finding,
-                  const Templates& templates);
+void note_finding(evaluation::Evaluated& evaluated, const std::string& output, Finding finding);
 /// That a file was signed without time stamp, if it was.
-void note_time_stamp(evaluation::Evaluated& evaluated, const evaluation::IssuedFile& file,
-                     const Templates& templates);
+void note_time_stamp(evaluation::Evaluated& evaluated, const evaluation::IssuedFile& file);
 
 }  // namespace nonio::host::certificates

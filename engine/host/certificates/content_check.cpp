@@ -13,12 +13,13 @@
 #include "host/certificates/numbering.h"
 #include "host/certificates/recomputed.h"
 #include "host/config/template_files.h"
+#include "host/evaluation/evaluation.h"
 #include "host/evaluation/issue_json.h"
 #include "host/evaluation/record.h"
 #include "host/evaluation/results_json.h"
 #include "host/process/child.h"
 #include "host/process/guarded.h"
-#include "host/process/shared_words.h"
+#include "host/process/shared_status.h"
 #include "host/reading/campaign_reader.h"
 #include "host/reading/plausibility.h"
 #include "host/storage/digest.h"
@@ -28,8 +29,8 @@
 namespace nonio::host::certificates {
 namespace fs = std::filesystem;
 
-const sign::Attachment* find_attachment(const sign::Verified& v, std::string_view name) {
-  for (const sign::Attachment& a : v.attachments)
+const pdf::Attachment* find_attachment(const sign::Verified& v, std::string_view name) {
+  for (const pdf::Attachment& a : v.attachments)
     if (a.name == name) return &a;
   return nullptr;
 }
@@ -59,7 +60,7 @@ class ScratchFolder {
 
 /// The campaign's folder as it was, from what is attached.
 Expected<void> unpack(const sign::Verified& v, const fs::path& folder) {
-  for (const sign::Attachment& a : v.attachments) {
+  for (const pdf::Attachment& a : v.attachments) {
     const fs::path name = fs::path(a.name).lexically_normal();
     if (a.name.find('\0') != std::string::npos || name.is_absolute() || name.empty() ||
         *name.begin() == "..")
@@ -134,29 +135,30 @@ class Again {
         stated_(stated_in(results_)) {}
 
   Expected<Content> run() {
-    if (const sign::Attachment* settings = find_attachment(v_, settings_name)) {
+    if (const pdf::Attachment* settings = find_attachment(v_, settings_name)) {
       auto site = config::parse_site(settings->bytes, settings_name);
       if (!site) return fail(site.error().front());
       context_.site = std::move(*site);
     }
     context_.machines.clear();
-    if (const sign::Attachment* machine = find_attachment(v_, config::machine_record_name)) {
+    if (const pdf::Attachment* machine = find_attachment(v_, config::machine_record_name)) {
       auto record = config::unpacked_record(machine->bytes);
       if (!record) return fail(record.error());
       context_.machines.push_back(std::move(*record));
     }
-    auto manifest = config::parse_manifest(find_attachment(v_, config::manifest_name)->bytes,
-                                           config::manifest_name);
-    if (!manifest) return fail(manifest.error().front());
     Content content;
     content.templates = take_templates();
     const std::string why = why_not_drawn(content.templates);
-    const auto draw = [this](const evaluation::Evaluated& e, std::vector<std::string>&) {
-      return drawn(e);
-    };
-    evaluation::Evaluated again = evaluation::evaluate(
-        folder_, manifest->campaign.id, context_, [](const std::string&) {},
-        stated_.certificate && why.empty() ? evaluation::Draw(draw) : evaluation::Draw(), shared());
+    const auto quiet = [](const std::string&) {};
+    reading::ReadCampaign read = reading::read_campaign(folder_, context_, quiet);
+    if (!read.manifest) return fail(read.errors.front());
+    const std::string id = read.manifest->campaign.id;
+    evaluation::AnalysedCampaign analysed =
+        evaluation::analyse(std::move(read), id, context_, quiet, shared());
+    std::optional<evaluation::AssignedNumber> number;
+    if (analysed.number && stated_.certificate && why.empty()) number = stated_number(analysed);
+    evaluation::Evaluated again = evaluation::write_documents(
+        std::move(analysed), number ? &*number : nullptr, context_, quiet);
     content.attachments = answered("content.attachments", check_names(again));
     evaluation::Evaluated numbers = again;
     numbers.results.outputs.clear();
@@ -171,7 +173,7 @@ class Again {
   reading::Twins shared() const {
     reading::Twins twins;
     for (const auto& [file, campaign] : stated_.shared)
-      if (const sign::Attachment* a = find_attachment(v_, file))
+      if (const pdf::Attachment* a = find_attachment(v_, file))
         twins.emplace_back(storage::short_digest(storage::sha256(a->bytes)), campaign);
     return twins;
   }
@@ -182,7 +184,7 @@ class Again {
     constexpr const char* id = "content.templates";
     if (stated_.nonio != context_.version)
       return not_checked(id, "the file was made by another version");
-    const sign::Attachment* carried = find_attachment(v_, templates_name);
+    const pdf::Attachment* carried = find_attachment(v_, templates_name);
     if (carried == nullptr) return {id, State::fails, "none are attached"};
     auto own =
         config::templates_from(carried->bytes, installed_.templates, installed_.templates_json);
@@ -210,12 +212,14 @@ class Again {
     return {};
   }
 
-  Expected<evaluation::Certificate> drawn(const evaluation::Evaluated& e) const {
-    evaluation::Certificate certificate = *stated_.certificate;
-    const auto readings = readings_digest(e.inputs, folder_);
-    if (!readings) return fail(readings.error());
-    certificate.issue.readings_sha256 = *readings;
-    return certificate;
+  evaluation::AssignedNumber stated_number(const evaluation::AnalysedCampaign& analysed) {
+    evaluation::AssignedNumber number{stated_.certificate, analysed.number->missing, std::nullopt};
+    auto readings = files_.readings_sha256(analysed.evaluated.inputs);
+    if (readings)
+      number.certificate->issue.readings_sha256 = std::move(*readings);
+    else
+      number.error = readings.error();
+    return number;
   }
 
   /// The manifest, the readings that it names, what the host adds, and documents that results.json
@@ -229,11 +233,11 @@ class Again {
         wanted.push_back(input.starts_with(prefix) ? input.substr(prefix.size()) : input);
     for (const char* name : {settings_name, templates_name, config::machine_record_name})
       if (find_attachment(v_, name) != nullptr) wanted.emplace_back(name);
-    for (const sign::Attachment& a : v_.attachments)
+    for (const pdf::Attachment& a : v_.attachments)
       if (is_document(a) && is_listed(a)) wanted.push_back(a.name);
     std::sort(wanted.begin(), wanted.end());
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-    for (const sign::Attachment& a : v_.attachments)
+    for (const pdf::Attachment& a : v_.attachments)
       if (!std::binary_search(wanted.begin(), wanted.end(), a.name))
         return fail("the attachment \"" + a.name + "\" belongs to nothing");
     for (const std::string& name : wanted)
@@ -242,7 +246,7 @@ class Again {
   }
 
   /// With the digest that it has.
-  bool is_listed(const sign::Attachment& a) const {
+  bool is_listed(const pdf::Attachment& a) const {
     const storage::Json json = storage::Json::parse(results_, nullptr, false);
     if (!json.is_object() || !json.contains("outputs") || !json["outputs"].is_array()) return false;
     return std::any_of(
@@ -254,33 +258,33 @@ class Again {
 
   /// The night's own way up to the signature, which holds what is to be signed against what is
   /// there.
-  Expected<std::string> same_file(evaluation::Evaluated& again) const {
+  Expected<std::string> same_file(evaluation::Evaluated& again) {
     if (again.status == "failed")
       return fail("the attached readings cannot be evaluated: " +
                   again.results.errors.front().message);
-    const auto time = sign::stated_time(pdf_);
+    const auto time = pdf::stated_time(pdf_);
     if (!time) return fail(time.error());
     std::size_t pages = 0;
     std::string difference;
     SignWith how;
     how.sign = [&](const Artifact& a) -> Expected<sign::Signed> {
       if (!a.bytes.starts_with("%PDF-")) return same_dcc(a);
-      const auto same = sign::same_pdf(pdf_, a.bytes);
+      const auto same = pdf::same_pdf(pdf_, a.bytes);
       if (!same)
         difference += (difference.empty() ? "" : "; ") + a.name +
                       " from the attached readings: " + where_pages_differ(a.bytes) +
                       same.error().message;
-      else if (const auto drawn = sign::page_contents(a.bytes))
+      else if (const auto drawn = pdf::page_contents(a.bytes))
         pages = drawn->size();
       return sign::Signed{a.bytes};
     };
     how.results = [&](const std::string& made) -> Expected<std::string> {
       std::vector<std::string> names;
-      for (const sign::Attachment& a : v_.attachments) names.push_back(a.name);
+      for (const pdf::Attachment& a : v_.attachments) names.push_back(a.name);
       if (auto same = same_results(results_, made, names); !same) return fail(same.error());
       return results_;
     };
-    if (const auto done = sign_artifacts(again, folder_, context_, how, *time); !done)
+    if (const auto done = sign_artifacts(again, files_, context_, how, *time); !done)
       return fail(done.error());
     if (pages != 0)
       return "the attached readings give this file and the same " + std::to_string(pages) +
@@ -290,7 +294,7 @@ class Again {
   }
 
   Expected<sign::Signed> same_dcc(const Artifact& made) const {
-    const sign::Attachment* attached = find_attachment(v_, made.name);
+    const pdf::Attachment* attached = find_attachment(v_, made.name);
     if (attached == nullptr) return fail("it is not attached");
     if (auto same = sign::same_document(attached->bytes, made.bytes); !same)
       return fail(same.error());
@@ -298,7 +302,7 @@ class Again {
   }
 
   std::string where_pages_differ(std::string_view made) const {
-    const auto now = sign::page_contents(made), then = sign::page_contents(pdf_);
+    const auto now = pdf::page_contents(made), then = pdf::page_contents(pdf_);
     if (!now || !then) return {};
     const auto differ = std::mismatch(now->begin(), now->end(), then->begin(), then->end());
     if (differ.first == now->end() && differ.second == then->end()) return {};
@@ -308,6 +312,7 @@ class Again {
   const sign::Verified& v_;
   std::string_view pdf_;
   const fs::path& folder_;
+  CampaignFiles files_{folder_};
   const reading::Context& installed_;
   reading::Context context_;
   const std::string& results_;
@@ -346,13 +351,13 @@ Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view 
     if (find_attachment(v, name) == nullptr)
       return fail(std::string("cannot be recomputed: ") + name + " is not attached");
   const ScratchFolder scratch;
-  process::SharedWords words;
+  process::SharedStatus words;
   if (scratch.path().empty()) return fail("no folder for temporary files");
   if (!words.valid()) return fail("no memory");
   if (auto unpacked = unpack(v, scratch.path()); !unpacked) return fail(unpacked.error());
   const pid_t child = ::fork();
   if (child == 0) {
-    process::settle_child();
+    process::init_child();
     process::limit_memory(context.site.limits.memory_MB);
     const auto content = process::guarded(
         "the evaluation", [&] { return Again(v, pdf, scratch.path(), context).run(); });
@@ -371,7 +376,7 @@ Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view 
 
 }  // namespace
 
-bool is_document(const sign::Attachment& a) {
+bool is_document(const pdf::Attachment& a) {
   return a.name.ends_with(".xml") && a.type == "application/xml";
 }
 

@@ -18,7 +18,7 @@ std::vector<sign::Check> check_content(const sign::Verified& verified, std::stri
                                        const reading::Context& context);
 
 /// Whether an attachment is a DCC.
-bool is_document(const sign::Attachment& attachment);
-const sign::Attachment* find_attachment(const sign::Verified& verified, std::string_view name);
+bool is_document(const pdf::Attachment& attachment);
+const pdf::Attachment* find_attachment(const sign::Verified& verified, std::string_view name);
 
 }  // namespace nonio::host::certificates

@@ -58,7 +58,7 @@ Expected<Files> attached_files(const std::vector<evaluation::IssuedFile>& issued
     if (!f.bytes.starts_with("%PDF-")) continue;
     auto attached = sign::unverified_attachments(f.bytes);
     if (!attached) return fail(f.name + " in the register: " + attached.error().message);
-    for (sign::Attachment& a : *attached)
+    for (pdf::Attachment& a : *attached)
       if (a.relation == source_relation && a.name != templates_name &&
           a.name != config::machine_record_name)
         files.emplace_back(a.name == settings_name ? config::site_name : std::move(a.name),
@@ -69,17 +69,14 @@ Expected<Files> attached_files(const std::vector<evaluation::IssuedFile>& issued
 }
 
 Expected<Files> current_files(const evaluation::Evaluated& evaluated,
-                              const reading::Context& context, const fs::path& folder) {
+                              const reading::Context& context, CampaignFiles& of_campaign) {
   Files files;
-  const std::string prefix = reading::input_name("");
   for (const auto& [input, digest] : evaluated.inputs) {
-    if (is_foreign(input)) continue;
-    const std::string name = input.starts_with(prefix) ? input.substr(prefix.size()) : input;
-    const auto path = storage::path_inside(folder, name);
-    if (!path) return fail(path.error());
-    auto bytes = storage::read_file(*path);
+    const std::string name = file_of_input(input);
+    if (name.empty()) continue;
+    const auto bytes = of_campaign.bytes(name, digest);
     if (!bytes) return fail(bytes.error());
-    files.emplace_back(name, std::move(*bytes));
+    files.emplace_back(name, *bytes);
   }
   if (!context.site.settings.empty()) files.emplace_back(config::site_name, context.site.settings);
   return files;
@@ -114,22 +111,6 @@ void take_issued(evaluation::Evaluated& evaluated) {
 }
 
 }  // namespace
-
-Expected<std::string> readings_digest(const reading::Inputs& inputs, const fs::path& folder) {
-  std::string all;
-  const std::string prefix = reading::input_name("");
-  for (const auto& [input, digest] : inputs) {
-    if (!input.starts_with(prefix)) continue;
-    const auto path = storage::path_inside(folder, input.substr(prefix.size()));
-    if (!path) return fail(path.error());
-    const auto bytes = storage::read_file(*path);
-    if (!bytes) return fail(bytes.error());
-    if (storage::sha256(*bytes) != digest)
-      return fail(path->filename().string() + " was changed while the campaign was evaluated");
-    all += *bytes;
-  }
-  return storage::sha256(all);
-}
 
 const config::StandingRule* rule_for(const config::Numbering& numbering,
                                      const evaluation::KnownFinding& finding) {
@@ -195,8 +176,7 @@ void Numbers::hold_unreleased(evaluation::Evaluated& evaluated) const {
     note_finding(evaluated, w.plugin,
                  {.id = "signature.not-released",
                   .attention = true,
-                  .texts = {{"file", files}, {"output", w.plugin}}},
-                 context_.templates);
+                  .texts = {{"file", files}, {"output", w.plugin}}});
   }
 }
 
@@ -220,14 +200,14 @@ Expected<void> Numbers::check_release(const reading::Inputs& now) const {
 }
 
 Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
-                              const evaluation::Evaluated& evaluated, const fs::path& folder,
+                              const evaluation::Evaluated& evaluated, CampaignFiles& files,
                               Issue& issue, std::vector<std::string>& missing) const {
   const auto old_files = opened.files(before.number);
   if (!old_files) return fail(old_files.error());
   auto attached = attached_files(*old_files);
   if (!attached) return fail(attached.error());
   const Files then = std::move(*attached);
-  const auto now = current_files(evaluated, context_, folder);
+  const auto now = current_files(evaluated, context_, files);
   if (!now) return fail(now.error());
   issue.replaces = before.number;
   issue.replaces_date = before.date;
@@ -246,10 +226,23 @@ Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
   return {};
 }
 
-Expected<evaluation::Certificate> Numbers::draw(const evaluation::Evaluated& evaluated,
-                                                const fs::path& folder,
-                                                std::vector<std::string>& missing,
-                                                bool as_draft) const {
+evaluation::AssignedNumber Numbers::assign(const evaluation::Evaluated& evaluated,
+                                           CampaignFiles& files, std::vector<std::string> missing,
+                                           bool as_draft) const {
+  auto certificate = find_or_draw(evaluated, files, missing, as_draft);
+  evaluation::AssignedNumber assigned;
+  assigned.missing = std::move(missing);
+  if (!certificate)
+    assigned.error = certificate.error();
+  else if (certificate->draft || !certificate->issue.number.empty())
+    assigned.certificate = std::move(*certificate);
+  return assigned;
+}
+
+Expected<evaluation::Certificate> Numbers::find_or_draw(const evaluation::Evaluated& evaluated,
+                                                        CampaignFiles& files,
+                                                        std::vector<std::string>& missing,
+                                                        bool as_draft) const {
   for (std::string& key : reading::days_to_come(evaluated.campaign, where_.today))
     missing.push_back(std::move(key));
   if (!missing.empty()) {
@@ -275,11 +268,11 @@ Expected<evaluation::Certificate> Numbers::draw(const evaluation::Evaluated& eva
   evaluation::Certificate certificate;
   Issue& issue = certificate.issue;
   if (*before)
-    if (auto done = amend(*opened, **before, evaluated, folder, issue, missing); !done)
+    if (auto done = amend(*opened, **before, evaluated, files, issue, missing); !done)
       return fail(done.error());
   if (!missing.empty()) return evaluation::Certificate{};
   if (!where_.can_sign) return fail(no_key);
-  const auto readings = readings_digest(evaluated.inputs, folder);
+  auto readings = files.readings_sha256(evaluated.inputs);
   if (!readings) return fail(readings.error());
   issue.readings_sha256 = *readings;
   certificate.templates_sha256 = context_.templates_sha256;
@@ -383,7 +376,7 @@ Expected<void> Numbers::issue(evaluation::Evaluated& evaluated, const std::strin
     return done;
   }
   for (const evaluation::IssuedFile& file : evaluated.certificate->files)
-    note_time_stamp(evaluated, file, context_.templates);
+    note_time_stamp(evaluated, file);
   return {};
 }
 
@@ -398,8 +391,7 @@ void Numbers::note_differences(evaluation::Evaluated& evaluated) const {
       evaluated, evaluated.certificate->output,
       {.id = "certificate.differs",
        .attention = true,
-       .texts = {{"number", evaluated.certificate->issue.number}, {"why", same.error().message}}},
-      context_.templates);
+       .texts = {{"number", evaluated.certificate->issue.number}, {"why", same.error().message}}});
 }
 
 void Numbers::note_failure(const std::string& campaign, const std::string& why) const {

@@ -4,14 +4,11 @@
 #include <filesystem>
 #include <string>
 
+#include "host/certificates/campaign_files.h"
 #include "host/certificates/register.h"
 #include "host/evaluation/evaluate.h"
 
 namespace nonio::host::certificates {
-
-/// SHA-256 of the files of readings, one behind the other, as they were evaluated.
-Expected<std::string> readings_digest(const reading::Inputs& inputs,
-                                      const std::filesystem::path& folder);
 
 /// Whether a rule of the site lets this finding stand.
 const config::StandingRule* rule_for(const config::Numbering& numbering,
@@ -37,10 +34,10 @@ class Numbers {
   Numbers(Where where, const reading::Context& context, const Releasing* releasing)
       : where_(std::move(where)), context_(context), releasing_(releasing) {}
 
-  /// See `Draw`. `as_draft`: no number, whatever the rules say.
-  Expected<evaluation::Certificate> draw(const evaluation::Evaluated& evaluated,
-                                         const std::filesystem::path& folder,
-                                         std::vector<std::string>& missing, bool as_draft) const;
+  /// What was issued for what is evaluated here, whatever is `missing` for it today; else, if
+  /// nothing is, a draft or a number; else neither. `as_draft`: no number, whatever the rules say.
+  evaluation::AssignedNumber assign(const evaluation::Evaluated& evaluated, CampaignFiles& files,
+                                    std::vector<std::string> missing, bool as_draft) const;
   /// Whether a finding that no rule lets stand came after a number was drawn by the rules.
   bool held_up(const evaluation::Evaluated& evaluated) const;
   /// After signing: enters what is issued into the register, and gives the campaign what the
@@ -59,9 +56,14 @@ class Numbers {
   Expected<Register> open() const;
   Expected<bool> has_register() const;
   bool may_issue(const evaluation::Evaluated& evaluated) const;
+  /// No number: `missing` says what for.
+  Expected<evaluation::Certificate> find_or_draw(const evaluation::Evaluated& evaluated,
+                                                 CampaignFiles& files,
+                                                 std::vector<std::string>& missing,
+                                                 bool as_draft) const;
   Expected<void> amend(Register& opened, const RegisterEntry& before,
-                       const evaluation::Evaluated& evaluated, const std::filesystem::path& folder,
-                       Issue& issue, std::vector<std::string>& missing) const;
+                       const evaluation::Evaluated& evaluated, CampaignFiles& files, Issue& issue,
+                       std::vector<std::string>& missing) const;
   Expected<void> check_release(const reading::Inputs& now) const;
   Expected<void> enter_draft(const evaluation::Evaluated& evaluated,
                              const std::string& folder) const;

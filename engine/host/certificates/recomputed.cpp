@@ -185,7 +185,7 @@ std::string contradiction(const sign::DccValue& v, const storage::Json& results)
 
 }  // namespace
 
-sign::Check check_dcc(const sign::Attachment& dcc, const sign::Attachment* results) {
+sign::Check check_dcc(const pdf::Attachment& dcc, const pdf::Attachment* results) {
   using State = sign::Check::State;
   sign::Check check{"dcc.values", State::fails, {}};
   const auto values = sign::read_dcc(dcc.bytes);

@@ -20,6 +20,6 @@ Expected<void> same_results(std::string_view results, std::string_view recompute
                             const std::vector<std::string>& attached);
 
 /// A DCC's units and list lengths, and its numbers against those of results.json if it is there.
-sign::Check check_dcc(const sign::Attachment& dcc, const sign::Attachment* results);
+sign::Check check_dcc(const pdf::Attachment& dcc, const pdf::Attachment* results);
 
 }  // namespace nonio::host::certificates

@@ -119,7 +119,7 @@ class Auditor {
       if (!row[0].starts_with("%PDF-")) continue;
       const auto attached = sign::unverified_attachments(row[0]);
       if (!attached) return wrong(number + ": " + attached.error().message);
-      for (const sign::Attachment& a : *attached) {
+      for (const pdf::Attachment& a : *attached) {
         if (a.name != evaluation::results_name) continue;
         const storage::Json results = storage::Json::parse(a.bytes, nullptr, false);
         const storage::Json certificate = results.is_object() && results.contains("certificate")

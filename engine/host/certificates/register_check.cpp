@@ -36,7 +36,7 @@ StatedNumber stated_in_dcc(std::string_view xml) {
 }
 
 StatedNumber stated_in_pdf(const sign::Verified& v) {
-  const sign::Attachment* results = find_attachment(v, evaluation::results_name);
+  const pdf::Attachment* results = find_attachment(v, evaluation::results_name);
   if (results == nullptr) return {};
   const storage::Json json = storage::Json::parse(results->bytes, nullptr, false);
   if (!json.is_object() || !json.contains("certificate")) return {};

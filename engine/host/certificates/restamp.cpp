@@ -34,9 +34,9 @@ config::Checked<sign::Prolonging> prolonging_of(const RestampOptions& options) {
   }
   if (!options.with_time_stamp) how.stamping.url.clear();
   if (options.with_time_stamp && how.stamping.url.empty())
-    return as_errors(
-        Error{"no time-stamp server: wanted --time-stamp URL, time_stamp in [signing] of site.toml "
-              "(--site), or --no-time-stamp for the revocation data alone"});
+    return as_errors(Error{
+        "no time-stamp server: expected --time-stamp URL, time_stamp in [signing] of site.toml "
+        "(--site), or --no-time-stamp for the revocation data alone"});
   how.stamping.trust = how.verifier.trust;
   for (const fs::path& path : options.answers) {
     auto answer = storage::read_file(path);
@@ -54,7 +54,7 @@ Expected<Restamped> restamp(const fs::path& file, const sign::Prolonging& how,
   std::error_code error;
   if (fs::exists(folder / evaluation::record_name, error))
     return fail(
-        "lies in the output of a night, which writes it again as it was issued: wanted "
+        "lies in the output of a night, which writes it again as it was issued: expected "
         "another folder (--out), found " +
         (folder / evaluation::record_name).string());
   const auto bytes = read_bounded(file);

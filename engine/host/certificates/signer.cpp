@@ -68,7 +68,7 @@ Expected<void> check_key_file(const fs::path& key) {
   std::array<char, 8> mode{};
   std::snprintf(mode.data(), mode.size(), "%04o", info.st_mode & 07777U);
   return fail("other users can get at the signing key " + key.string() + " (mode " + mode.data() +
-              "); wanted a file for the user alone who signs: chmod 600 " + key.string() +
+              "); expected a file for the user alone who signs: chmod 600 " + key.string() +
               (info.st_uid == ::geteuid()
                    ? ""
                    : ", and chown " + std::to_string(::geteuid()) + " " + key.string()));
@@ -176,7 +176,7 @@ Expected<void> Signer::fork_process() {
 }
 
 void Signer::serve() const noexcept {
-  process::settle_child();
+  process::init_child();
   process::keep_silent();
   ::prctl(PR_SET_DUMPABLE, 0);  // nobody may look into its memory
   ::close(to_);

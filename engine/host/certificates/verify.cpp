@@ -24,7 +24,7 @@ void check_documents(sign::Verified& v, const sign::Verifier& verifier) {
   bool any = false;
   sign::Verifier inside = verifier;
   inside.existed = v.existed;
-  for (const sign::Attachment& a : v.attachments) {
+  for (const pdf::Attachment& a : v.attachments) {
     if (!is_document(a)) continue;
     any = true;
     for (sign::Check& c : sign::verify_xml(a.bytes, inside, v.certificate).checks) {
@@ -92,7 +92,7 @@ Expected<std::string> read_bounded(const fs::path& path) {
                 ": no certificate of Nonio is");
   };
   std::error_code error;
-  if (fs::is_directory(path, error)) return fail(path.string() + " is a folder, wanted a file");
+  if (fs::is_directory(path, error)) return fail(path.string() + " is a folder, expected a file");
   if (const auto size = fs::file_size(path, error); !error && size > sign::max_bytes)
     return refuse(" (" + std::to_string(size) + " bytes)");
   std::ifstream file(path, std::ios::binary);

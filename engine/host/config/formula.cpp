@@ -9,6 +9,7 @@
 #include "host/config/formula_units.h"
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/splitmix64.h"
 
 namespace nonio::host::config {
 
@@ -18,21 +19,6 @@ std::string symbol_of(Quantity q) { return std::string(FormulaUnit{q, {}}.symbol
 
 /// One printed unit, in SI.
 double amount(const Formula::Parameter& p) { return 1.0 / unit_of(p.quantity).per_si; }
-
-/// Deterministic numbers in 0..1 for the trials (splitmix64).
-class Numbers {
- public:
-  double next() {
-    state_ += 0x9e3779b97f4a7c15U;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-    return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1p-53;
-  }
-
- private:
-  std::uint64_t state_ = 1;
-};
 
 /// Proves on readings made up for it that the expression is finite, linear in its linear
 /// parameters and of the unit of a deviation.
@@ -65,12 +51,12 @@ class Trial {
   /// The first point is the middle of the stretch at the start, with shapes at the low end.
   void draw(int n) {
     const auto between = [&](double low, double high) {
-      return low + (high - low) * numbers_.next();
+      return low + (high - low) * numbers_.uniform();
     };
     const auto sized = [&](double low, double high) {
-      return low * std::pow(high / low, numbers_.next());
+      return low * std::pow(high / low, numbers_.uniform());
     };
-    const auto sign = [&] { return numbers_.next() < 0.5 ? -1.0 : 1.0; };
+    const auto sign = [&] { return numbers_.uniform() < 0.5 ? -1.0 : 1.0; };
     using E = Expression;
     point_[E::p] = n == 0 ? 0.0 : sign() * sized(1e-3, 1.0);
     point_[E::theta] = n == 0 ? 0.0 : sign() * sized(1e-3, 6.0);
@@ -175,7 +161,7 @@ class Trial {
   Expression& expression_;
   std::vector<double> point_;
   std::vector<double> largest_;
-  Numbers numbers_;
+  SplitMix64 numbers_{1};
 };
 
 std::vector<double> search(const Formula::Parameter& p) {
@@ -208,7 +194,7 @@ Expected<Effect::Columns> columns(const Formula& formula, const Observations& o,
       slots[Expression::parameter_slot(k)] = shape[shapes - 1];
   }
   if (shapes != shape.size())
-    return fail("formula " + formula.name + ": wanted " + std::to_string(shapes) +
+    return fail("formula " + formula.name + ": expected " + std::to_string(shapes) +
                 " shape parameters, found " + std::to_string(shape.size()));
   Effect::Columns out(linear.size(), std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i) {
@@ -251,7 +237,7 @@ Expected<Effect> formula_effect(const Formula& formula, const Axis& axis) {
       e.shapes.push_back(
           {parameter, [p](const Observations&, const Axis&) { return search(p); }, true});
   }
-  if (e.linear.empty()) return wrong("wanted a linear parameter, one without start and range");
+  if (e.linear.empty()) return wrong("expected a linear parameter, one without start and range");
   if (e.linear.size() > most_linear || e.shapes.size() > most_shapes)
     return wrong("too many parameters: at most " + std::to_string(most_linear) +
                  " linear ones and " + std::to_string(most_shapes) + " with a range");

@@ -44,7 +44,7 @@ constexpr std::size_t most_characters = 400;
 /// What the parser would take and no formula needs: assignments, texts, several results.
 std::string forbidden(const std::string& text) {
   if (text.size() > most_characters)
-    return "wanted " + std::to_string(most_characters) + " characters at most, found " +
+    return "expected " + std::to_string(most_characters) + " characters at most, found " +
            std::to_string(text.size());
   int depth = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -54,7 +54,7 @@ std::string forbidden(const std::string& text) {
       return "a character that formulas do not have" + at;
     depth += c == '(' ? 1 : c == ')' ? -1 : 0;
     if (c == ',' && depth <= 0)
-      return "a comma outside of a function" + at + ": one value is wanted";
+      return "a comma outside of a function" + at + ": one value is expected";
     const bool pair =
         i + 1 < text.size() && text[i + 1] == '=' && (c == '=' || c == '<' || c == '>' || c == '!');
     if (pair)
@@ -147,13 +147,13 @@ Expected<Expression> Expression::parse(const Formula& formula, const Axis& axis)
     for (std::size_t k = 0; k < names.size(); ++k) own.parser.DefineVar(names[k], &own.slots[k]);
   } catch (const mu::ParserError&) {
     return fail(
-        "the name of a parameter is no name: wanted letters, digits and _, not the name of a "
+        "the name of a parameter is no name: expected letters, digits and _, not the name of a "
         "function");
   }
   try {
     own.parser.SetExpr(formula.expression);
     own.parser.Eval();
-    if (own.parser.GetNumResults() != 1) return fail("wanted one value");
+    if (own.parser.GetNumResults() != 1) return fail("expected one value");
   } catch (const mu::ParserError& e) {
     return fail(words_of(e, own.parser));
   } catch (const std::exception& e) {

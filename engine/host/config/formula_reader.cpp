@@ -19,10 +19,10 @@ Formula::Parameter read_parameter(TableReader& reader) {
   const auto start = reader.number("start", si);
   p.range = reader.span("range", si);
   if (reader.raw().contains("start") != reader.raw().contains("range"))
-    reader.error(start ? "start" : "range", "wanted start and range together, or neither");
+    reader.error(start ? "start" : "range", "expected start and range together, or neither");
   p.start = start.value_or(p.start);
   if (start && p.range && !(p.start >= p.range->first && p.start <= p.range->second))
-    reader.error("start", "wanted a value within the range");
+    reader.error("start", "expected a value within the range");
   reader.finish();
   return p;
 }

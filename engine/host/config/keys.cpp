@@ -14,18 +14,18 @@ namespace declared {
 using enum Key::Holds;
 using Words = std::string_view;
 
-constexpr Words not_negative = "wanted a number that is not negative";
-constexpr Words above_0 = "wanted a number above 0";
+constexpr Words not_negative = "expected a number that is not negative";
+constexpr Words above_0 = "expected a number above 0";
 // Beyond these nobody measures: a slip of the unit or of the keyboard.
-constexpr Words some_um = "wanted a number that is not negative, at most 10000 um";
-constexpr Words some_arcsec = "wanted a number that is not negative, at most 36000 arcsec";
-constexpr Words some_K = "wanted a number that is not negative, a difference of at most 60 K";
-constexpr Words an_expansion = "wanted um/(m K) from -5 to 200, 11.5 for steel";
-constexpr Words an_expansion_range = "wanted a number that is not negative, at most 100 um/(m K)";
+constexpr Words some_um = "expected a number that is not negative, at most 10000 um";
+constexpr Words some_arcsec = "expected a number that is not negative, at most 36000 arcsec";
+constexpr Words some_K = "expected a number that is not negative, a difference of at most 60 K";
+constexpr Words an_expansion = "expected um/(m K) from -5 to 200, 11.5 for steel";
+constexpr Words an_expansion_range = "expected a number that is not negative, at most 100 um/(m K)";
 constexpr double most_um = 1e4, most_arcsec = 36000.0, most_K = 60.0, most_mm = 1e6;
 constexpr double least_expansion = -5.0, most_expansion = 200.0, most_expansion_range = 100.0;
 constexpr Words two_numbers =
-    "wanted two numbers, the smaller one first, none beyond 1000000 in size";
+    "expected two numbers, the smaller one first, none beyond 1000000 in size";
 
 constexpr Choice structures[] = {{"gantry"}, {"single-column"}, {"bridge"}, {"other"}};
 constexpr Choice axis_kinds[] = {{"linear"}, {"rotary"}};
@@ -35,10 +35,10 @@ constexpr When if_linear{"kind", linear}, if_rotary{"kind", rotary};
 constexpr Choice sides[] = {{"master"}, {"slave"}};
 constexpr Words axis_runs[] = {"axis"};
 
-constexpr Words some_backlash = "wanted a number from -10 to 10, or \"none\"";
+constexpr Words some_backlash = "expected a number from -10 to 10, or \"none\"";
 constexpr double most_backlash = 10.0;
 constexpr Words an_asset =
-    "wanted up to 100 characters without / and \\, not starting with a point; found \"{}\"";
+    "expected up to 100 characters without / and \\, not starting with a point; found \"{}\"";
 
 constexpr Key axis_keys[] = {
     {.name = "kind",
@@ -64,7 +64,7 @@ constexpr Key axis_keys[] = {
      .help = "Period of the drive or scale.",
      .unit = "mm",
      .only = if_linear,
-     .wanted = "wanted a pitch above 0, at most 10000 mm",
+     .wanted = "expected a pitch above 0, at most 10000 mm",
      .least = 0.0,
      .most = 1e4,
      .above = true},
@@ -74,7 +74,7 @@ constexpr Key axis_keys[] = {
              "bearing, the clamp); without it the readings are asked.",
      .unit = "mm",
      .only = if_linear,
-     .wanted = "wanted a position within 1000000 mm",
+     .wanted = "expected a position within 1000000 mm",
      .least = -most_mm,
      .most = most_mm},
     {.name = "expansion_um_per_m_K",
@@ -119,7 +119,7 @@ constexpr Key axis_keys[] = {
      .help = "Upper limits of results by their names, { A = 15.0, \"R+\" = 6.0 }.",
      .unit = "um",
      .only = if_linear,
-     .wanted = "wanted a tolerance above 0",
+     .wanted = "expected a tolerance above 0",
      .least = 0.0,
      .above = true},
     {.name = "tolerance_arcsec",
@@ -127,7 +127,7 @@ constexpr Key axis_keys[] = {
      .help = "Upper limits of results by their names, { A = 8.0, \"R+\" = 3.0 }.",
      .unit = "arcsec",
      .only = if_rotary,
-     .wanted = "wanted a tolerance above 0",
+     .wanted = "expected a tolerance above 0",
      .least = 0.0,
      .above = true},
 };
@@ -172,7 +172,7 @@ constexpr Key campaign_keys[] = {
      .holds = text,
      .help = "Name of the campaign, unique in the site: a-z 0-9 . _ -, at most 100.",
      .required = true,
-     .wanted = "wanted a-z 0-9 . _ - and no more than 100, not starting with a point; found "
+     .wanted = "expected a-z 0-9 . _ - and no more than 100, not starting with a point; found "
                "\"{}\"",
      .text = campaign_id_rule},
     {.name = "customer", .holds = text, .help = "Name of the customer."},
@@ -292,7 +292,7 @@ constexpr Key environment_keys[] = {
      .holds = number,
      .help = "Largest distance of beam and axis over the travel.",
      .unit = "mm",
-     .wanted = "wanted a number that is not negative, at most 10000 mm",
+     .wanted = "expected a number that is not negative, at most 10000 mm",
      .least = 0.0,
      .most = 1e4},
     {.name = "temperature_range_K",
@@ -341,7 +341,7 @@ constexpr Key environment_keys[] = {
      .help = "How long the drift test took; of a measurement that took longer, the drift counts "
              "so much more.",
      .unit = "min",
-     .wanted = "wanted a number above 0",
+     .wanted = "expected a number above 0",
      .least = 0.0,
      .above = true},
 };
@@ -364,7 +364,7 @@ constexpr Key measurement_keys[] = {
      .help = "Name of the measurement, unique in the campaign; what follows its first space is "
              "the state of the machine.",
      .required = true,
-     .wanted = "wanted up to 60 characters without / and \\, not starting with a point",
+     .wanted = "expected up to 60 characters without / and \\, not starting with a point",
      .text = {.not_letters = "/\\\n\t", .not_first = ". ", .longest = 60}},
     {.name = "kind",
      .holds = text,
@@ -418,7 +418,7 @@ constexpr Key measurement_keys[] = {
      .holds = wholes,
      .help = "Lines of the file whose readings do not count for any analysis; each is noted in "
              "the results.",
-     .wanted = "wanted line numbers of the file, whole and from 1",
+     .wanted = "expected line numbers of the file, whole and from 1",
      .least = 1.0,
      .most = 4e9},
     {.name = "exclude_reason",
@@ -506,7 +506,7 @@ constexpr Key parameter_keys[] = {
      .holds = text,
      .help = "Unit of the parameter.",
      .required = true,
-     .missing = "wanted one of {}",
+     .missing = "expected one of {}",
      .choices = unit_choices},
     {.name = "start",
      .holds = number,
@@ -524,7 +524,7 @@ constexpr Key formula_keys[] = {
      .holds = text,
      .help = "Name of the effect, up to 40 of a-z 0-9 -; [model] effects has it as name:axis.",
      .required = true,
-     .wanted = "wanted up to 40 of a-z 0-9 -; found \"{}\"",
+     .wanted = "expected up to 40 of a-z 0-9 -; found \"{}\"",
      .text = {.letters = "a-z0-9-", .longest = 40}},
     {.name = "axis",
      .holds = text,
@@ -539,7 +539,7 @@ constexpr Key formula_keys[] = {
      .help = "The parameters of the expression, 12 at most.",
      .required = true,
      .missing = "[{ name = \"a\", unit = \"um\" }], one at least",
-     .wanted = "wanted 12 parameters at most, found {}",
+     .wanted = "expected 12 parameters at most, found {}",
      .longest_list = 12,
      .keys = parameter_keys},
 };
@@ -587,7 +587,7 @@ constexpr Key languages_key = {.name = "languages",
                                .help =
                                    "One or two languages of the certificate: de, en, es, it, "
                                    "zh. Without it en.",
-                               .wanted = "wanted one or two languages, [\"it\", \"en\"]",
+                               .wanted = "expected one or two languages, [\"it\", \"en\"]",
                                .text = language,
                                .longest_list = 2,
                                .distinct = true};
@@ -596,7 +596,7 @@ constexpr Key template_key = {
     .holds = text,
     .help = "Template of the certificate: a file in templates/, without .toml.",
     .otherwise = "certificate",
-    .wanted = "wanted the name of a file in templates/, without .toml",
+    .wanted = "expected the name of a file in templates/, without .toml",
     .text = {.letters = "a-z0-9_-"}};
 constexpr Key location_key = {.name = "location",
                               .holds = text,
@@ -612,7 +612,7 @@ constexpr Key title_key = {
     .help =
         "Title of the certificate: a text, or texts by language, { it = \"...\", en = "
         "\"...\" }.",
-    .wanted = "wanted a text, or texts by language, { it = \"...\", en = \"...\" }",
+    .wanted = "expected a text, or texts by language, { it = \"...\", en = \"...\" }",
     .text = language};
 constexpr Key decision_rule_key = {.name = "decision_rule",
                                    .holds = text,
@@ -639,7 +639,8 @@ constexpr Key certificate_of_campaign[] = {
          "method, changed in it or left out of it. Without it no such statement is printed."},
     {.name = "conditions",
      .holds = text,
-     .help = "Conditions that influence the results; wanted where no readings have temperatures."},
+     .help =
+         "Conditions that influence the results; expected where no readings have temperatures."},
     {.name = "opinions",
      .holds = text,
      .help = "Opinions and interpretations; the certificate marks them as such."},
@@ -658,14 +659,14 @@ constexpr Key standing_keys[] = {
      .holds = text,
      .help = "Id of a finding, \"plan.few-runs\"; with \".*\" at its end all of a kind.",
      .required = true,
-     .missing = "wanted the id of a finding",
-     .wanted = "wanted the id of a finding, or of a kind, \"tolerance.*\"; found \"{}\"",
+     .missing = "expected the id of a finding",
+     .wanted = "expected the id of a finding, or of a kind, \"tolerance.*\"; found \"{}\"",
      .text = {.letters = "a-zA-Z0-9.*+_-"}},
     {.name = "reason",
      .holds = text,
      .help = "Why a certificate may be issued although it is there; kept in the register.",
      .required = true,
-     .missing = "wanted why a certificate may be issued although the finding is there"},
+     .missing = "expected why a certificate may be issued although the finding is there"},
 };
 
 constexpr Key certificate_of_site[] = {
@@ -690,7 +691,7 @@ constexpr Key certificate_of_site[] = {
              "another process keeps locked; what waits in vain is done again in the next night.",
      .unit = "s",
      .otherwise = "60",
-     .wanted = "wanted a number from 0 to 86400",
+     .wanted = "expected a number from 0 to 86400",
      .least = 0.0,
      .most = 86400.0},
     {.name = "release",
@@ -715,14 +716,14 @@ constexpr Key format_key = {.name = "format",
                             .holds = whole,
                             .help = "Version of this format.",
                             .wanted =
-                                "wanted 1, found {}: this file is for another version of "
+                                "expected 1, found {}: this file is for another version of "
                                 "nonio",
                             .least = 1,
                             .most = 1};
 constexpr Key required_format() {
   Key key = format_key;
   key.required = true;
-  key.missing = "wanted format = 1 as the first line";
+  key.missing = "expected format = 1 as the first line";
   return key;
 }
 constexpr Key run_key = {.name = "run",
@@ -741,14 +742,14 @@ constexpr Key table_standing_keys[] = {
      .help = "Id of a finding that makes readings implausible, "
              "\"plausibility.passes-identical\".",
      .required = true,
-     .missing = "wanted the id of a finding",
-     .wanted = "wanted the id of a finding, \"plausibility.passes-identical\"; found \"{}\"",
+     .missing = "expected the id of a finding",
+     .wanted = "expected the id of a finding, \"plausibility.passes-identical\"; found \"{}\"",
      .text = {.letters = "a-z.-", .begins = "plausibility."}},
     {.name = "reason",
      .holds = text,
      .help = "Why a table may be written from these readings all the same.",
      .required = true,
-     .missing = "wanted why a table may be written although the finding is there"},
+     .missing = "expected why a table may be written although the finding is there"},
 };
 
 constexpr Key tables_keys[] = {
@@ -849,7 +850,7 @@ constexpr Key limits_keys[] = {
      .help = "Time that one campaign may take.",
      .unit = "s",
      .otherwise = "600",
-     .wanted = "wanted a number above 0 and at most 1000000",
+     .wanted = "expected a number above 0 and at most 1000000",
      .least = 0.0,
      .most = 1e6,
      .above = true},
@@ -858,7 +859,7 @@ constexpr Key limits_keys[] = {
      .help = "Memory that one campaign may take.",
      .unit = "MB",
      .otherwise = "4096",
-     .wanted = "wanted 64 or more, and at most 1000000000",
+     .wanted = "expected 64 or more, and at most 1000000000",
      .least = 64.0,
      .most = 1e9},
     {.name = "disk_seconds",
@@ -868,7 +869,7 @@ constexpr Key limits_keys[] = {
          "what there is to do; after that it is a failed one.",
      .unit = "s",
      .otherwise = "60",
-     .wanted = "wanted a number above 0 and at most 1000000",
+     .wanted = "expected a number above 0 and at most 1000000",
      .least = 0.0,
      .most = 1e6,
      .above = true},
@@ -920,7 +921,7 @@ constexpr Key signing_keys[] = {
     {.name = "time_stamp",
      .holds = text,
      .help = "Address of a time-stamp server, http://...",
-     .wanted = "wanted http://..., found \"{}\" (a time stamp is signed; it needs no https)",
+     .wanted = "expected http://..., found \"{}\" (a time stamp is signed; it needs no https)",
      .text = {.begins = "http://"}},
     {.name = "time_stamp_missing",
      .holds = text,
@@ -933,7 +934,7 @@ constexpr Key signing_keys[] = {
      .help = "How long to wait for the time-stamp server.",
      .unit = "s",
      .otherwise = "10",
-     .wanted = "wanted 1 to 300",
+     .wanted = "expected 1 to 300",
      .least = 1,
      .most = 300},
 };
@@ -965,7 +966,7 @@ constexpr Key site_file_keys[] = {
     {.name = "database", .holds = anything, .help = "Without effect in this version."},
 };
 
-constexpr Words from_0 = "wanted a number from 0";
+constexpr Words from_0 = "expected a number from 0";
 constexpr When linear_cycle{cycle_axis, linear}, rotary_cycle{cycle_axis, rotary};
 
 constexpr Key misreading_keys[] = {
@@ -1045,7 +1046,7 @@ constexpr Key cycle_keys[] = {
     {.name = "runs",
      .holds = whole,
      .help = "Number of runs.",
-     .wanted = "wanted 1 to 100000",
+     .wanted = "expected 1 to 100000",
      .least = 1,
      .most = 100000},
     of_axis(feed("feed_mm_per_min"), "mm/min"),
@@ -1096,9 +1097,9 @@ constexpr Key specification_keys[] = {
     {.name = "effect", .holds = tables, .help = "A known effect.", .keys = effect_keys},
 };
 
-constexpr Words a_limit = "wanted a limit above 0";
-constexpr Words a_position = "wanted a position of at most 1000000 in size";
-constexpr Words taken_numbers = "wanted numbers or ranges of them, [\"0\", \"100-227\"]";
+constexpr Words a_limit = "expected a limit above 0";
+constexpr Words a_position = "expected a position of at most 1000000 in size";
+constexpr Words taken_numbers = "expected numbers or ranges of them, [\"0\", \"100-227\"]";
 
 constexpr Key recorded_axis_keys[] = {
     {.name = "kind",
@@ -1109,7 +1110,7 @@ constexpr Key recorded_axis_keys[] = {
     {.name = "number",
      .holds = whole,
      .help = "The axis' number as the control counts: n of AXn, controlled axis, joint, motor.",
-     .wanted = "wanted a whole number from 0 to 99",
+     .wanted = "expected a whole number from 0 to 99",
      .least = 0,
      .most = 99},
     {.name = "name", .holds = text, .help = "What the control calls the axis, where it is not so."},

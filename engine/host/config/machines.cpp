@@ -32,7 +32,7 @@ void read_settings(TableReader& reader, RecordedAxis& axis) {
   const auto keep = [&](const char* key, std::optional<double> value) {
     if (value) axis.settings[key] = *value;
   };
-  if (const auto number = reader.whole("number")) axis.settings["number"] = *number;
+  if (const auto number = reader.integer("number")) axis.settings["number"] = *number;
   const auto travel = reader.span("travel");
   if (axis.rotary) {
     keep("reference_deg", reader.number("reference_deg"));
@@ -144,11 +144,11 @@ Checked<MachineRecord> parse_machine(std::string_view text, const std::string& f
   MachineRecord record;
   record.file = file;
   TableReader top(*root, machine_file(), file, errors);
-  top.whole("format");
+  top.integer("format");
   record.asset = top.text("asset");
   if (!record.asset.empty() && record.asset != asset)
     top.error("asset",
-              "wanted \"" + asset + "\", as the file is called; found \"" + record.asset + "\"");
+              "expected \"" + asset + "\", as the file is called; found \"" + record.asset + "\"");
   record.maker = top.text("maker");
   record.model = top.text("model");
   record.serial = top.text("serial");
@@ -156,7 +156,7 @@ Checked<MachineRecord> parse_machine(std::string_view text, const std::string& f
   record.control_version = top.text("control_version");
   record.taken = top.texts("taken").value_or(std::vector<std::string>{});
   if (!std::all_of(record.taken.begin(), record.taken.end(), is_range))
-    top.error("taken", "wanted numbers or ranges of them, [\"0\", \"100-227\"]");
+    top.error("taken", "expected numbers or ranges of them, [\"0\", \"100-227\"]");
   for (auto& [name, axis] : top.named_tables("axes"))
     record.axes[name] = read_recorded_axis(name, axis);
   same_number_twice(record, top);
@@ -248,7 +248,7 @@ Expected<RecordFile> unpacked_record(std::string_view text) {
     for (const auto& axis : json["tables"].items())
       for (const auto& one : axis.value().items()) {
         auto bytes = one.value().is_string() ? from_hex(one.value().get<std::string>())
-                                             : fail("wanted hexadecimal digits");
+                                             : fail("expected hexadecimal digits");
         if (!bytes) return fail("the attached table " + one.key() + ": " + bytes.error().message);
         file.tables[axis.key()].push_back({one.key(), std::move(*bytes)});
       }

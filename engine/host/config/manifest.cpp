@@ -40,8 +40,8 @@ RawOptions read_options(TableReader& top, std::vector<Error>& errors) {
     const std::string name(plugin.str());
     const toml::table* entries = node.as_table();
     if (entries == nullptr) {
-      errors.push_back(Error{"options." + name + ": wanted a table, found " + type_name(node), file,
-                             node.source().begin.line});
+      errors.push_back(Error{"options." + name + ": expected a table, found " + type_name(node),
+                             file, node.source().begin.line});
       continue;
     }
     auto& of_plugin = options[name];
@@ -51,7 +51,7 @@ RawOptions read_options(TableReader& top, std::vector<Error>& errors) {
         of_plugin[std::string(key.str())] = RawOption{std::move(*setting), file, line};
       else
         errors.push_back(Error{"options." + name + "." + std::string(key.str()) +
-                                   ": wanted a value, found " + type_name(value),
+                                   ": expected a value, found " + type_name(value),
                                file, line});
     }
   }
@@ -64,7 +64,7 @@ std::optional<double> expansion_of(TableReader& reader) {
   constexpr double least = 1e-3;
   const auto value = reader.number(key, um);
   if (value && *value != 0.0 && std::fabs(*value) < least * um)
-    reader.error(key, "wanted um/(m K), 11.5 for steel, 0 for none; found " +
+    reader.error(key, "expected um/(m K), 11.5 for steel, 0 for none; found " +
                           short_text(*value / um, 4) + ", which looks like 1/K");
   return value;
 }
@@ -82,14 +82,14 @@ Axis read_axis(const std::string& name, TableReader& reader) {
   reader.settle("kind", axis.rotary ? "rotary" : "linear");
   axis.travel = reader.span("travel", axis.rotary ? deg : mm);
   if (axis.rotary) {
-    axis.teeth = reader.whole("teeth");
+    axis.teeth = reader.integer("teeth");
   } else {
     axis.screw_pitch = reader.number("screw_pitch_mm", mm);
     axis.fixed_point = reader.number("fixed_point_mm", mm);
     axis.expansion = expansion_of(reader);
     axis.slave = reader.text("slave");
     if (axis.slave == axis.name && !axis.slave.empty())
-      reader.error("slave", "wanted another axis than " + axis.name + ", which is the master");
+      reader.error("slave", "expected another axis than " + axis.name + ", which is the master");
   }
   axis.table_on = table_on(reader.text("table_on"));
   axis.backlash_on = axis.rotary ? reader.number_or_none("backlash_on_deg", deg)
@@ -180,14 +180,14 @@ Environment read_environment(TableReader& top) {
 /// What stands in one of several keys, or needs another one.
 void check_signing(TableReader& reader, const Signing& s) {
   if (s.pkcs12.empty() == s.pkcs11.empty())
-    reader.error("pkcs12", "wanted the key in either pkcs12 (a file) or pkcs11 (a token)");
+    reader.error("pkcs12", "expected the key in either pkcs12 (a file) or pkcs11 (a token)");
   if (!s.pkcs11.empty() && s.module.empty())
     reader.error("module", "is missing: the PKCS#11 library of the token");
   const int passwords = int{!s.password_file.empty()} + int{!s.password_env.empty()} +
                         int{!s.password_credential.empty()};
   if (passwords != 1)
     reader.error("password_file",
-                 "wanted one of password_file, password_env, password_credential (of systemd)");
+                 "expected one of password_file, password_env, password_credential (of systemd)");
   if (!s.time_stamp.empty() && s.trust.empty())
     reader.error("trust", "is missing: a PEM file with the root of the time-stamp server");
 }
@@ -206,7 +206,7 @@ Signing read_signing(TableReader& reader) {
   s.signer = reader.text("signer");
   s.time_stamp = reader.text("time_stamp");
   s.time_stamp_required = reader.text("time_stamp_missing") != "sign";
-  s.time_stamp_seconds = reader.whole("time_stamp_seconds").value_or(s.time_stamp_seconds);
+  s.time_stamp_seconds = reader.integer("time_stamp_seconds").value_or(s.time_stamp_seconds);
   check_signing(reader, s);
   reader.finish();
   return s;
@@ -218,7 +218,7 @@ std::optional<double> either(TableReader& reader, const char* linear, double lin
   const auto length = reader.number(linear, linear_unit),
              angle = reader.number(rotary, rotary_unit);
   if (length && angle)
-    reader.error(rotary, "stands beside " + std::string(linear) + "; wanted one of them");
+    reader.error(rotary, "stands beside " + std::string(linear) + "; expected one of them");
   return length ? length : angle;
 }
 
@@ -246,16 +246,16 @@ Measurement read_measurement(TableReader& reader) {
   m.order = reader.text("order");
   if (m.kind == "axis") m.side = reader.text("side");
   if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
-    reader.error("lateral", "wanted another axis than " + m.axis +
+    reader.error("lateral", "expected another axis than " + m.axis +
                                 ", which moves: along it the deviation is one of positioning");
   if (m.kind == "angle") m.lateral = reader.text("about");
-  m.exclude = reader.wholes("exclude");
+  m.exclude = reader.integers("exclude");
   m.exclude_reason = reader.text("exclude_reason");
   for (const auto& [axis, position] : reader.number_table("from", mm)) m.from[axis] = position;
   for (const auto& [axis, position] : reader.number_table("to", mm)) m.to[axis] = position;
   for (const auto& [axis, position] : reader.number_table("at", mm)) m.at[axis] = position;
   if (m.at.contains(m.axis))
-    reader.error("at", "wanted the axes that stood still, found " + m.axis + ", which moves");
+    reader.error("at", "expected the axes that stood still, found " + m.axis + ", which moves");
   read_test(reader, m);
   reader.finish();
   return m;
@@ -285,7 +285,7 @@ void read_measurements(TableReader& top, Manifest& manifest, bool plans) {
       add_axis(m.axis, any_named, manifest);
     if (const Axis* axis = campaign.machine.axis(m.axis);
         m.side == "slave" && axis != nullptr && axis->slave.empty())
-      reader.error("side", "wanted [machine.axes." + m.axis +
+      reader.error("side", "expected [machine.axes." + m.axis +
                                "] slave, the name of the control's axis on that side");
     campaign.measurements.push_back(std::move(m));
   }
@@ -297,7 +297,7 @@ void read_tables(TableReader& top, Manifest& manifest) {
   for (TableReader& one : reader->tables("may_stand")) {
     StandingFinding standing{one.text("finding"), one.text("reason"), one.line_of("finding")};
     if (!standing.reason.empty() && !says_something(standing.reason))
-      one.error("reason", "wanted why a table may be written all the same, found \"" +
+      one.error("reason", "expected why a table may be written all the same, found \"" +
                               standing.reason + "\"");
     one.finish();
     manifest.tables_may_stand.push_back(std::move(standing));
@@ -317,7 +317,7 @@ void read_campaign(TableReader& top, Campaign& campaign) {
   campaign.end_date = reader->date("end_date");
   campaign.received = reader->date("received");
   if (!campaign.end_date.empty() && campaign.end_date < campaign.date)
-    reader->error("end_date", "wanted a day that is not before date, " + campaign.date);
+    reader->error("end_date", "expected a day that is not before date, " + campaign.date);
   reader->finish();
 }
 
@@ -346,7 +346,7 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
   Manifest manifest;
   Campaign& campaign = manifest.campaign;
   TableReader top(*root, campaign_file(), file, errors);
-  top.whole("format");
+  top.integer("format");
   read_campaign(top, campaign);
   campaign.machine = read_machine(top);
   restore_axis_order(*root, campaign.machine);
@@ -405,7 +405,7 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   std::vector<Error> errors;
   SiteFile site;
   TableReader top(*root, site_file(), file, errors);
-  top.whole("format");
+  top.integer("format");
   if (auto reader = top.table("laboratory")) {
     site.laboratory = {reader->text("name"),       reader->text("address"),
                        reader->text("country"),    reader->text("accreditation"),
@@ -454,7 +454,7 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   return site;
 }
 
-std::string salvage_id(std::string_view text) {
+std::string extract_id(std::string_view text) {
   std::size_t at = text.find("[campaign]");
   if (at == std::string_view::npos) return {};
   at = text.find('\n', at);

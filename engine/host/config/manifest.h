@@ -108,7 +108,7 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
 Checked<SiteFile> parse_site(std::string_view text, const std::string& file);
 
 /// The id of a manifest that may be broken elsewhere; empty if none can be seen.
-std::string salvage_id(std::string_view text);
+std::string extract_id(std::string_view text);
 bool is_campaign_id(std::string_view id);
 
 /// The options of one plugin: defaults, then the site's, then the campaign's; each checked for

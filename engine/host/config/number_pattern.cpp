@@ -50,7 +50,7 @@ Expected<std::string> number_text(const std::string& pattern, const std::string&
   const Place place = place_of(pattern);
   if (place.begin == std::string::npos)
     return refuse(
-        "has no place for the number; wanted {number} or {number:4} once, and {year} if the "
+        "has no place for the number; expected {number} or {number:4} once, and {year} if the "
         "numbers are to begin anew with each year");
   std::string digits = std::to_string(number);
   digits.insert(0, place.digits > digits.size() ? place.digits - digits.size() : 0, '0');
@@ -64,7 +64,7 @@ Expected<std::string> number_text(const std::string& pattern, const std::string&
   if (!plain || !storage::is_artifact_name(text) || text.front() == ' ' || text.back() == ' ' ||
       text.size() > longest)
     return refuse("gives \"" + text +
-                  "\"; wanted at most 60 letters, digits and signs of ASCII without / and \\, no "
+                  "\"; expected at most 60 letters, digits and signs of ASCII without / and \\, no "
                   "dot at the beginning, no blank at the ends: files are named by it");
   return text;
 }

@@ -50,7 +50,7 @@ std::string range_complaint(const Option& option, const Setting& setting) {
     return {};
   if ((!option.least || value >= *option.least) && (!option.most || value <= *option.most))
     return {};
-  std::string wanted = "wanted";
+  std::string wanted = "expected";
   if (option.least) wanted += " at least " + short_text(*option.least, 6);
   if (option.most)
     wanted += std::string(option.least ? " and" : "") + " at most " + short_text(*option.most, 6);
@@ -71,7 +71,7 @@ std::string choice_complaint(const Option& option, const Setting& setting) {
     if (choice == found) return {};
     list += (list.empty() ? "" : ", ") + choice;
   }
-  return "wanted one of " + list + "; found \"" + found + "\"" +
+  return "expected one of " + list + "; found \"" + found + "\"" +
          storage::suggestion(found, option.choices);
 }
 
@@ -100,7 +100,7 @@ Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
       }
       const auto value = as_declared(raw.value, option->otherwise);
       std::string complaint = value ? range_complaint(*option, *value)
-                                    : std::string("wanted ") + kind_of(option->otherwise) +
+                                    : std::string("expected ") + kind_of(option->otherwise) +
                                           ", found " + kind_of(raw.value);
       if (complaint.empty()) complaint = choice_complaint(*option, *value);
       if (complaint.empty())
@@ -124,7 +124,7 @@ Expected<void> flatten(const toml::table& table, const std::string& prefix, cons
     } else if (auto setting = to_setting(node)) {
       out.values[name] = std::move(*setting);
     } else {
-      return fail(Error{name + ": wanted a value or a list of one kind, found " + type_name(node),
+      return fail(Error{name + ": expected a value or a list of one kind, found " + type_name(node),
                         file, node.source().begin.line});
     }
   }

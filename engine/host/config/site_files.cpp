@@ -90,10 +90,10 @@ Expected<std::string> from_hex(const std::string& text) {
     return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
   };
   for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
-    if (value(text[i]) < 0 || value(text[i + 1]) < 0) return fail("wanted hexadecimal digits");
+    if (value(text[i]) < 0 || value(text[i + 1]) < 0) return fail("expected hexadecimal digits");
     out += static_cast<char>(value(text[i]) * 16 + value(text[i + 1]));
   }
-  if (text.size() % 2 != 0) return fail("wanted hexadecimal digits");
+  if (text.size() % 2 != 0) return fail("expected hexadecimal digits");
   return out;
 }
 

@@ -60,14 +60,14 @@ class Precheck {
       }
       const bool header = line_begins && c == '[' && open_.empty() && closing_.empty();
       if (c != ' ' && c != '\t') line_begins = false;
-      if (header && !key_follows()) return "wanted the name of a table after [";
+      if (header && !key_follows()) return "expected the name of a table after [";
       if (quote_within_word()) return "a quote in the middle of a word";
       if (goes_on_outside_ascii())
         return "after \\ and blanks a text in \"\"\" cannot go on with a letter outside ASCII "
                "here: "
                "leave the \\ out, or break the line elsewhere";
       if (dots_ > most_dots || open_.size() > most_open)
-        return "tables within tables, more than 32 with dots or 64 with brackets; wanted few";
+        return "tables within tables, more than 32 with dots or 64 with brackets; expected few";
       if (!step(c)) return "a letter outside a-z 0-9 _ - needs quotes around it";
     }
     return {};
@@ -272,7 +272,7 @@ void TableReader::refuse(const Key& key, const std::string& found) {
 
 void TableReader::wrong_type(std::string_view key, const toml::node& found,
                              std::string_view wanted) {
-  error(key, "wanted " + std::string(wanted) + ", found " + type_name(found));
+  error(key, "expected " + std::string(wanted) + ", found " + type_name(found));
 }
 
 std::optional<std::string> TableReader::one_line(const Key& key, const toml::node& node) {
@@ -283,10 +283,10 @@ std::optional<std::string> TableReader::one_line(const Key& key, const toml::nod
   }
   for (const char c : *value)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      error(key.name,
-            std::string("wanted one line of text, found ") + (c == '\n'   ? "a line break"
-                                                              : c == '\t' ? "a tab"
-                                                                          : "a control character"));
+      error(key.name, std::string("expected one line of text, found ") +
+                          (c == '\n'   ? "a line break"
+                           : c == '\t' ? "a tab"
+                                       : "a control character"));
       return std::nullopt;
     }
   return value;
@@ -297,7 +297,7 @@ void TableReader::check_choice(const Key& key, std::string& value) {
   if (key.choices.empty() || std::any_of(key.choices.begin(), key.choices.end(), is_it)) return;
   std::vector<std::string> names;
   for (const Choice& choice : key.choices) names.emplace_back(choice.name);
-  error(key.name, "wanted one of " + list_of(key.choices) + "; found \"" + value + "\"" +
+  error(key.name, "expected one of " + list_of(key.choices) + "; found \"" + value + "\"" +
                       storage::suggestion(value, names));
   value.clear();
 }
@@ -321,7 +321,7 @@ std::optional<double> TableReader::finite(std::string_view key, const toml::node
   if (!value) {
     wrong_type(key, node, "a number");
   } else if (!std::isfinite(*value)) {
-    error(key, "wanted a finite number");
+    error(key, "expected a finite number");
     return std::nullopt;
   }
   return value;
@@ -355,7 +355,7 @@ std::optional<double> TableReader::number_at(const Found& found, double scale) {
   return *value * scale;
 }
 
-std::optional<int> TableReader::whole(std::string_view name) {
+std::optional<int> TableReader::integer(std::string_view name) {
   const Found found = find(name, {Key::Holds::whole});
   if (found.node == nullptr) return std::nullopt;
   const auto value = found.node->value_exact<std::int64_t>();
@@ -364,7 +364,7 @@ std::optional<int> TableReader::whole(std::string_view name) {
     return std::nullopt;
   }
   if (*value < 0 || *value > 1'000'000'000) {
-    error(name, "wanted a whole number from 0 to 1000000000");
+    error(name, "expected a whole number from 0 to 1000000000");
     return std::nullopt;
   }
   if (!in_range(static_cast<double>(*value), found.key)) {
@@ -393,7 +393,7 @@ std::string TableReader::date(std::string_view name) {
   constexpr int first_year = 1950, last_year = 2100;
   if (value->year < first_year || value->year > last_year) {
     error(name,
-          "wanted a day from 1950 to 2100; found one of the year " + std::to_string(value->year));
+          "expected a day from 1950 to 2100; found one of the year " + std::to_string(value->year));
     return {};
   }
   const auto digits = [](unsigned n, std::size_t width) {
@@ -438,7 +438,7 @@ std::optional<std::vector<double>> TableReader::numbers(std::string_view name) {
   return number_list(find(name, {Key::Holds::numbers}));
 }
 
-std::vector<std::uint32_t> TableReader::wholes(std::string_view name) {
+std::vector<std::uint32_t> TableReader::integers(std::string_view name) {
   const Found found = find(name, {Key::Holds::wholes});
   std::vector<std::uint32_t> list;
   for (const double value : number_list(found).value_or(std::vector<double>{}))
@@ -549,7 +549,7 @@ std::vector<std::pair<std::string, TableReader>> TableReader::named_tables(std::
       out.emplace_back(key.str(), inside(*child, found.key, at));
     else
       errors_.push_back(
-          Error{at + ": wanted a table, found " + type_name(node), file_, line_of_node(node)});
+          Error{at + ": expected a table, found " + type_name(node), file_, line_of_node(node)});
   }
   return out;
 }

@@ -31,12 +31,12 @@ class TableReader {
   std::optional<double> number(std::string_view key, double scale = 1.0);
   /// 0 where the file says "none".
   std::optional<double> number_or_none(std::string_view key, double scale = 1.0);
-  std::optional<int> whole(std::string_view key);
+  std::optional<int> integer(std::string_view key);
   std::optional<bool> flag(std::string_view key);
   std::string date(std::string_view key);
   std::optional<std::vector<std::string>> texts(std::string_view key);
   std::optional<std::vector<double>> numbers(std::string_view key);
-  std::vector<std::uint32_t> wholes(std::string_view key);
+  std::vector<std::uint32_t> integers(std::string_view key);
   std::optional<std::pair<double, double>> span(std::string_view key, double scale = 1.0);
   /// A table of numbers, each multiplied by `scale`; none if absent.
   std::vector<std::pair<std::string, double>> number_table(std::string_view key, double scale);

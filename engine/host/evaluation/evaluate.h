@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/evaluation/followed.h"
 #include "host/reading/context.h"
 #include "nonio/sdk/results.h"
 
@@ -39,19 +40,21 @@ struct Evaluated {
   std::string status;      ///< ok, attention, failed
   std::optional<Certificate> certificate{};
   bool retry = false;  ///< it failed for a reason that does not lie in its files
+  std::vector<FollowedGroup> followed{};
 };
 
-/// What was issued for what is evaluated here, whatever is `missing` for it today; else, if nothing
-/// is, a draft or a number; else neither. Adds to `missing` what only the day and the register
-/// tell.
-using Draw =
-    std::function<Expected<Certificate>(const Evaluated&, std::vector<std::string>& missing)>;
+/// What has become of a campaign's wish to be issued under a number.
+struct AssignedNumber {
+  /// What was issued for the same data already, else a draft, else what has a new number.
+  std::optional<Certificate> certificate{};
+  std::vector<std::string> missing{};  ///< why there is none; what day and register tell, too
+  std::optional<Error> error{};        ///< the register could not be asked: to be tried again
+};
 
-/// One campaign from its folder to its artifacts; writes nothing. Without `draw` there is no
-/// certificate.
+/// One campaign from its folder to its artifacts, without a number; writes nothing. For verbs: a
+/// night does it in four steps (evaluation.h).
 Evaluated evaluate(const std::filesystem::path& folder, const std::string& id,
-                   const reading::Context& context, const reading::Stage& stage,
-                   const Draw& draw = {}, const reading::Twins& twins = {});
+                   const reading::Context& context, const reading::Stage& stage);
 
 /// With an upper limit: ISO 14253-1:2013, guard band U (k = 2) to both sides; ILAC-G8:09/2019,
 /// simple acceptance (4.2.1) and guard band w = U (4.2.2). Confidence of the reading: medium.

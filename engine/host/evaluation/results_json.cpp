@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <utility>
 
+#include "host/evaluation/followed.h"
 #include "host/evaluation/issue_json.h"
 #include "host/storage/json_writer.h"
 #include "nonio/sdk/format.h"
@@ -29,13 +30,15 @@ void put_texts(storage::JsonWriter& json, const char* key,
   json.end_object();
 }
 
-void put_notes(storage::JsonWriter& json, const std::vector<Remark>& notes) {
+/// results.json speaks English; documents look the words up in their own language.
+void put_notes(storage::JsonWriter& json, const std::vector<Remark>& notes,
+               const Templates& templates) {
   if (notes.empty()) return;
   json.key("notes");
   json.begin_array();
   for (const Remark& note : notes)
     json.value((note.measurement.empty() ? "" : "measurement " + note.measurement + ": ") +
-               note.english);
+               remark_text(templates, "en", note));
   json.end_array();
 }
 
@@ -51,6 +54,7 @@ void put_campaign(storage::JsonWriter& json, const Campaign& c) {
             {{"maker", c.machine.maker},
              {"model", c.machine.model},
              {"serial", c.machine.serial},
+             {"asset", c.machine.asset},
              {"structure", c.machine.structure},
              {"control", c.machine.control}});
   put_texts(json, "instrument",
@@ -189,7 +193,7 @@ void put_budget(storage::JsonWriter& json, const std::optional<UncertaintyBudget
 }
 
 void put_findings(storage::JsonWriter& json, const std::vector<Finding>& findings,
-                  bool with_measurement) {
+                  bool with_measurement, const Templates& templates) {
   json.key("findings");
   json.begin_array();
   for (const Finding& f : findings) {
@@ -205,14 +209,14 @@ void put_findings(storage::JsonWriter& json, const std::vector<Finding>& finding
     }
     for (const auto& [key, words_of] : f.texts) json.member(key, words_of);
     json.end_object();
-    json.member("advice", f.advice);
+    json.member("advice", finding_text(templates, "en", f, "advice"));
     json.end_object();
   }
   json.end_array();
 }
 
 void put_analysis(storage::JsonWriter& json, const Results::Analysed& a,
-                  const std::vector<Conformity>& conformity) {
+                  const std::vector<Conformity>& conformity, const Templates& templates) {
   json.begin_object();
   json.member("plugin", a.plugin);
   json.member("version", a.version);
@@ -232,8 +236,8 @@ void put_analysis(storage::JsonWriter& json, const Results::Analysed& a,
   put_table(json, a.evaluation.rows, "rows", "row_units");
   put_series(json, a.evaluation.series);
   put_budget(json, a.evaluation.budget);
-  put_findings(json, a.evaluation.findings, false);
-  put_notes(json, a.evaluation.notes);
+  put_findings(json, a.evaluation.findings, false, templates);
+  put_notes(json, a.evaluation.notes, templates);
   json.end_object();
 }
 
@@ -289,7 +293,8 @@ void put_predictions(storage::JsonWriter& json, const std::vector<Prediction>& p
 }
 
 /// What outputs predict, find and note stands once, not with each of their files.
-void put_tables(storage::JsonWriter& json, const std::vector<Results::Written>& outputs) {
+void put_tables(storage::JsonWriter& json, const std::vector<Results::Written>& outputs,
+                const Templates& templates) {
   const auto silent = [](const Results::Written& w) {
     return w.result.predictions.empty() && w.result.findings.empty() && w.result.notes.empty();
   };
@@ -302,8 +307,8 @@ void put_tables(storage::JsonWriter& json, const std::vector<Results::Written>& 
     json.member("plugin", w.plugin);
     json.member("version", w.version);
     put_predictions(json, w.result.predictions);
-    put_findings(json, w.result.findings, true);
-    put_notes(json, w.result.notes);
+    put_findings(json, w.result.findings, true, templates);
+    put_notes(json, w.result.notes, templates);
     json.end_object();
   }
   json.end_array();
@@ -337,13 +342,15 @@ std::string results_json(const Evaluated& e, const reading::Context& context,
   json.end_array();
   json.key("analyses");
   json.begin_array();
-  for (const Results::Analysed& a : e.results.analyses) put_analysis(json, a, e.results.conformity);
+  for (const Results::Analysed& a : e.results.analyses)
+    put_analysis(json, a, e.results.conformity, context.templates);
   json.end_array();
   put_conformity(json, e.results.conformity);
+  put_followed(json, e.followed);
   if (e.certificate) put_certificate(json, *e.certificate);
   put_files(json, e.results.outputs, files);
-  put_tables(json, e.results.outputs);
-  put_notes(json, e.results.notes);
+  put_tables(json, e.results.outputs, context.templates);
+  put_notes(json, e.results.notes, context.templates);
   json.end_object();
   return json.take();
 }

@@ -14,7 +14,7 @@
 #include "host/process/apart.h"
 #include "host/process/child.h"
 #include "host/process/confine.h"
-#include "host/process/shared_words.h"
+#include "host/process/shared_status.h"
 #include "host/storage/digest.h"
 #include "host/storage/files.h"
 #include "host/storage/nearest.h"
@@ -81,13 +81,13 @@ struct Probed {
 
 /// Loads and registers in a child, one after the other.
 Probed probe_in_child(std::span<const fs::path> paths) {
-  std::vector<process::SharedWords> said(paths.size());  // empty until that one is through
-  for (const process::SharedWords& words : said)
+  std::vector<process::SharedStatus> said(paths.size());  // empty until that one is through
+  for (const process::SharedStatus& words : said)
     if (!words.valid()) return {{}, {false, "no memory"}};
   std::cout.flush();
   const pid_t child = process::fork_patiently();
   if (child == 0) {
-    process::settle_child();
+    process::init_child();
     if (process::is_apart()) {
       if (const std::string why = process::confine_loading({"/"}); !why.empty()) ::_exit(1);
     }
@@ -97,7 +97,7 @@ Probed probe_in_child(std::span<const fs::path> paths) {
   Probed probed;
   probed.end = child < 0 ? process::ChildEnd{false, "no process"}
                          : process::wait_for_child(child, probe_seconds);
-  for (const process::SharedWords& words : said) {
+  for (const process::SharedStatus& words : said) {
     const std::string answer = words.get();
     if (answer.empty()) break;
     probed.refusals.push_back(answer.substr(1));

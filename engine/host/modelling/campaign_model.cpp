@@ -41,7 +41,7 @@ std::string mistake_of(const std::string& effect, const reading::ReadCampaign& r
   const auto known = std::find_if(read.effects.begin(), read.effects.end(), is_kind);
   const std::string nearest = storage::suggestion(effect, known_names(read));
   if (kind.empty() || axis.empty())
-    return "wanted kind:axis, such as backlash:X; found \"" + effect + "\"" + nearest;
+    return "expected kind:axis, such as backlash:X; found \"" + effect + "\"" + nearest;
   if (known == read.effects.end()) return "there is no effect \"" + kind + "\"" + nearest;
   if (known->always)
     return "\"" + effect + "\" belongs to the set-up: it is in every model, and not written";
@@ -49,7 +49,7 @@ std::string mistake_of(const std::string& effect, const reading::ReadCampaign& r
     return can_be_in_space(axis)
                ? ""
                : "\"" + effect +
-                     "\": wanted what the effect can be of, such as straightness:EYX, " +
+                     "\": expected what the effect can be of, such as straightness:EYX, " +
                      "squareness:XY or yaw:X" + nearest;
   if (read.manifest->campaign.machine.axis(axis) == nullptr)
     return "\"" + effect + "\": the machine has no axis \"" + axis + "\"" + nearest;

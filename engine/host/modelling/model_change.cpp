@@ -51,7 +51,7 @@ Expected<void> write(const fs::path& folder, const reading::ReadCampaign& read,
   std::error_code error;
   if (fs::is_symlink(folder / config::manifest_name, error))
     return fail(
-        Error{"is a link; wanted the file itself, which is written anew", config::manifest_name});
+        Error{"is a link; expected the file itself, which is written anew", config::manifest_name});
   const auto text = storage::read_file(folder / config::manifest_name);
   if (!text) return fail(text.error());
   if (storage::sha256(*text) != read.inputs.front().second)

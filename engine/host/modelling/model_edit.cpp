@@ -224,7 +224,7 @@ Expected<Parsed> look(std::string_view text) {
   out.line = node->source().begin.line;
   if (node->is_array()) out.list = list_at(text, offset_of(text, node->source().begin));
   if (!out.list || out.list->items.size() != names_in(out.root).size())
-    return refusal("wanted a list of texts", out.line);
+    return refusal("expected a list of texts", out.line);
   return out;
 }
 

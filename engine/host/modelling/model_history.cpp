@@ -53,7 +53,7 @@ Expected<std::vector<ModelStep>> parse_history(std::string_view text) {
     try {
       steps.push_back(step_of(storage::Json::parse(one)));
     } catch (const storage::Json::exception&) {
-      return fail(Error{"wanted a change of the model as `nonio model` writes it; found \"" +
+      return fail(Error{"expected a change of the model as `nonio model` writes it; found \"" +
                             std::string(one.substr(0, 60)) + "\" (the file may be deleted)",
                         history_name, line});
     }

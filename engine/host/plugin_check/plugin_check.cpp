@@ -20,7 +20,7 @@
 #include "host/plugin_check/plugin_checks.h"
 #include "host/process/child.h"
 #include "host/process/confine.h"
-#include "host/process/shared_words.h"
+#include "host/process/shared_status.h"
 #include "host/storage/files.h"
 #include "host/storage/nearest.h"
 #include "nonio/sdk/format.h"
@@ -70,11 +70,11 @@ double processor_seconds(int who = RUSAGE_SELF) {
 }
 
 /// Where the child that `pure` looks at leaves its answer.
-process::SharedWords* impure_answer = nullptr;
+process::SharedStatus* impure_answer = nullptr;
 
 [[noreturn]] void tell_impurity(const char* call) {
   impure_answer->set(std::string("fit calls ") + call +
-                     ": wanted nothing but its arguments, no file, socket or process");
+                     ": expected nothing but its arguments, no file, socket or process");
   ::_exit(0);
 }
 
@@ -279,7 +279,7 @@ class Checker {
   PluginCheck in_child(const std::string& plugin, const std::string& name,
                        const std::function<Verdict(Bench&)>& work) {
     PluginCheck result{shown_path_.string(), plugin, name, CheckState::passed, {}, bench_.seed};
-    process::SharedWords stage, answer;
+    process::SharedStatus stage, answer;
     if (!stage.valid() || !answer.valid()) {
       result.state = CheckState::crashed;
       result.says = "no memory to share with a child process";
@@ -290,7 +290,7 @@ class Checker {
     const double before = processor_seconds(RUSAGE_CHILDREN);
     const pid_t child = ::fork();
     if (child == 0) {
-      process::settle_child();
+      process::init_child();
       limit_child();
       impure_answer = &answer;
       answer.set(told(name == "loads", stage, work));
@@ -322,7 +322,7 @@ class Checker {
   }
 
   /// Run in the child: the first letter is the verdict.
-  std::string told(bool first, process::SharedWords& stage,
+  std::string told(bool first, process::SharedStatus& stage,
                    const std::function<Verdict(Bench&)>& work) {
     Verdict v;
     try {
@@ -369,7 +369,7 @@ class Checker {
     (*entry)->add_to(brought_);
     const double took = processor_seconds() - before;
     if (took > scan_seconds)
-      return kit::failed("it took " + fixed_text(took, 1) + " s to load and register: wanted " +
+      return kit::failed("it took " + fixed_text(took, 1) + " s to load and register: expected " +
                          fixed_text(scan_seconds, 0) + " s at most");
     std::string list;
     for (const auto& p : brought_.readers) list += "reader " + p.info.name + "\n";

@@ -242,7 +242,7 @@ Verdict analysis_shift(const Analysis& a, const Bench& bench) {
       if (std::isnan(v.value) && std::isnan(two.values[i].value)) continue;
       if (!near(moved, 0.0, scale) && !near(moved, c, scale) && !near(moved, -c, scale))
         return "readings shifted by " + short_text(c * 1e6, 4) + " um or urad move " + v.name +
-               " by " + number(v, moved) + ": wanted by nothing, or by the same";
+               " by " + number(v, moved) + ": expected by nothing, or by the same";
     }
     return {};
   });
@@ -296,7 +296,7 @@ Verdict analysis_scale(const Analysis& a, const Bench& bench) {
       // a deviation moves the place where the next one is read: of second order
       if (!near(two.values[i].value, wanted, 100.0 * scale_of(v.quantity, size_of(s)), 1e-4))
         return "with twice the deviations " + v.name + " is " + number(v, two.values[i].value) +
-               ": wanted " + number(v, wanted);
+               ": expected " + number(v, wanted);
     }
     return {};
   });
@@ -406,7 +406,7 @@ Verdict analysis_hostile(const Analysis& a, const Bench& bench) {
       for (const auto& v : said.values)
         if (std::isinf(v.value) || (std::isnan(v.value) && v.name.find('[') == v.name.npos))
           return failed("sample " + s.name + ", " + name + ": " + v.name +
-                        " is not a number: wanted a finite one, an error, or none");
+                        " is not a number: expected a finite one, an error, or none");
       for (const auto& v : said.evidence)
         if (!std::isfinite(v.value))
           return failed("sample " + s.name + ", " + name + ": evidence " + v.name +

@@ -191,7 +191,7 @@ std::string wrong_table(const Output& o, const KnownError& k, const Settings& op
   if (!w.files.empty() && !w.refused.empty()) return w.refused;
   if (!w.refused.empty()) return {};
   for (const LoadedTable& t : w.tables)
-    if (const auto sound = math::sound(t); !sound) return sound.error().message;
+    if (const auto sound = math::validate_table(t); !sound) return sound.error().message;
   const auto after = left(k, w.tables);
   if (!after) {
     refused = "no table of that axis alone";
@@ -202,7 +202,7 @@ std::string wrong_table(const Output& o, const KnownError& k, const Settings& op
       0.05 * range(k) + 3.0 * step_of(o, k.rotary) + 2.0 * steepest(k) * range(k);
   if (*after <= allowed) return {};
   return "an error of " + in_um(range(k)) + " is one of " + in_um(*after) +
-         " once its table is loaded: wanted " + in_um(allowed) + " at most";
+         " once its table is loaded: expected " + in_um(allowed) + " at most";
 }
 
 Verdict each_setting(const Output& o, const Bench& bench,
@@ -221,7 +221,7 @@ Verdict each_setting(const Output& o, const Bench& bench,
 
 Verdict table_declared(const Output& o, const Bench&) {
   const ControlTable& t = *o.control;
-  if (t.name.empty()) return failed("the table has no name: wanted the maker's");
+  if (t.name.empty()) return failed("the table has no name: expected the maker's");
   if (!o.parse) return failed("it declares a table and cannot read it back (Output::parse)");
   if (o.stage != Output::Stage::table) return failed("a controller is of stage `table`");
   for (const auto* scale : {&t.position_unit, &t.position_step, &t.value_unit, &t.value_step})
@@ -268,7 +268,7 @@ Verdict table_sign(const Output& o, const Bench& bench) {
       const double added = (*c)(k.targets.back(), 1) - (*c)(k.targets.front(), 1);
       if (!(std::fabs(added + slope) <= 0.05 * std::fabs(slope) + 2.0 * step_of(o, false)))
         return "over an error that rises by " + in_um(slope) + " the control adds " + in_um(added) +
-               ": wanted " + in_um(-slope);
+               ": expected " + in_um(-slope);
     }
     return {};
   });
@@ -301,7 +301,7 @@ Verdict table_rounding(const Output& o, const Bench& bench) {
       for (const int direction : {1, -1})
         if (const double off = added ? left_at_points(k, w.tables, *added, direction) : 0.0;
             off > 1.05 * step_of(o, false) + 1e-11)
-          return "its points leave the error by " + in_um(off) + ": wanted half a step of " +
+          return "its points leave the error by " + in_um(off) + ": expected half a step of " +
                  in_um(step_of(o, false)) + " to each side";
     }
     return {};

@@ -256,7 +256,7 @@ Verdict effect_neighbours(const Effect& e, const Bench& bench) {
       if (i + 1 < at.size()) best = std::max(best, alike(s.table(), at[i], at[i + 1]));
       if (!(best >= wanted))
         return "at " + short_text(grid[i], 4) + " (SI) of the grid the neighbours share " +
-               fixed_text(100.0 * best, 0) + " % of its columns: wanted 50 % at least";
+               fixed_text(100.0 * best, 0) + " % of its columns: expected 50 % at least";
     }
     return {};
   });
@@ -323,14 +323,14 @@ std::string missed(const Effect& e, const Planted& p, const model::Fit& fit) {
   const auto unknowns = static_cast<double>(p.parameters.size() + p.shape.size());
   const double allowed = 4.0 * planted_noise * std::sqrt((unknowns + 4.0) / n);
   if (const double rms = std::sqrt(sum / n); !(rms <= allowed))
-    return "least squares miss it by " + short_text(rms * 1e6, 3) + " um or urad (rms): wanted " +
+    return "least squares miss it by " + short_text(rms * 1e6, 3) + " um or urad (rms): expected " +
            short_text(allowed * 1e6, 3) + " at most";
   if (e.curve || !e.shapes.empty()) return {};
   for (std::size_t k = 0; k < p.parameters.size(); ++k) {
     const model::Parameter& q = fit.parameters[k];
     if (!(std::fabs(q.value - p.parameters[k]) <= 4.0 * q.u))
       return "planted " + q.name + " = " + short_text(p.parameters[k], 6) + ", found " +
-             short_text(q.value, 6) + " with u = " + short_text(q.u, 2) + " (SI): wanted 4 u";
+             short_text(q.value, 6) + " with u = " + short_text(q.u, 2) + " (SI): expected 4 u";
   }
   return {};
 }

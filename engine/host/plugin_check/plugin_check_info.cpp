@@ -32,15 +32,15 @@ std::string quoted(const std::string& text) { return "\"" + text + "\""; }
 Verdict check_names(const Info& info, const Bench&) {
   if (!is_plain(info.name, false, "-"))
     return failed("the name " + quoted(info.name) +
-                  ": wanted small letters, digits and '-', a letter first");
+                  ": expected small letters, digits and '-', a letter first");
   if (!is_version(info.version))
-    return failed("the version " + quoted(info.version) + ": wanted numbers and dots");
+    return failed("the version " + quoted(info.version) + ": expected numbers and dots");
   if (info.summary.empty() || info.summary.find('\n') != info.summary.npos)
-    return failed("no summary: wanted one sentence");
+    return failed("no summary: expected one sentence");
   std::set<std::string> seen;
   for (const Option& o : info.options) {
     if (!is_plain(o.name, true, "_"))
-      return failed("the option " + quoted(o.name) + ": wanted letters, digits and '_'");
+      return failed("the option " + quoted(o.name) + ": expected letters, digits and '_'");
     if (!seen.insert(o.name).second) return failed("two options are called " + quoted(o.name));
   }
   return passed();
@@ -59,11 +59,11 @@ std::string unit_in_name(std::string_view name) {
 
 /// What is wrong with an option; empty if nothing.
 std::string wrong_option(const Option& o) {
-  if (o.help.empty()) return "has no help: wanted one sentence";
+  if (o.help.empty()) return "has no help: expected one sentence";
   const bool number = std::holds_alternative<double>(o.otherwise) ||
                       std::holds_alternative<std::vector<double>>(o.otherwise);
   if (const std::string unit = unit_in_name(o.name); number && !unit.empty() && o.unit != unit)
-    return "ends in _" + unit + ", its unit is " + quoted(o.unit) + ": wanted " + quoted(unit);
+    return "ends in _" + unit + ", its unit is " + quoted(o.unit) + ": expected " + quoted(unit);
   const Settings own{{{o.name, o.otherwise}}};
   const double value = own.number(o.name, 0.0);
   if (!std::isfinite(value)) return "has a default that is not a number";

@@ -31,7 +31,7 @@ std::string unsound_output(const OutputResult& r) {
   std::set<std::string> names;
   for (const Artifact& a : r.artifacts) {
     if (!storage::is_artifact_name(a.name))
-      return "the file name \"" + a.name.substr(0, 60) + "\": wanted a plain name";
+      return "the file name \"" + a.name.substr(0, 60) + "\": expected a plain name";
     if (!names.insert(a.name).second) return "two files called " + a.name;
     if (a.name.ends_with(".json") && !nlohmann::json::accept(a.bytes))
       return a.name + " is not JSON";

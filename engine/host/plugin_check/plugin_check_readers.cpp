@@ -251,7 +251,7 @@ Verdict reader_sentinels(const Reader& r, const Bench& bench) {
           if (std::fabs(d) > no_reading) return what + "it became a reading";
         std::size_t lost = 0;
         if (const std::string why = strangers(base, whole.size(), *o, lost); !why.empty())
-          return what + why + " appears: wanted it missing or an error, the others as they are";
+          return what + why + " appears: expected it missing or an error, the others as they are";
         if (lost > readings_of_line(whole, f.bytes, t.at))
           return what + std::to_string(lost) + " readings are gone";
       }
@@ -296,7 +296,7 @@ Verdict reader_inch(const Reader& r, const Bench& bench) {
           const double times = one->axes[axis].rotary ? 1.0 : 25.4;  // an angle stays what it is
           if (std::fabs(times * a - b) > 1e-9 * std::fabs(b))
             return "a target of " + short_text(a * 1e3, 6) + " mm or mrad is one of " +
-                   short_text(b * 1e3, 6) + " in inch: wanted " + short_text(times, 3) + " times";
+                   short_text(b * 1e3, 6) + " in inch: expected " + short_text(times, 3) + " times";
         }
       return {};
     });

@@ -52,7 +52,8 @@ Expected<std::vector<std::string>> new_plugin(const fs::path& skeletons, const s
                 "; there are " + list);
   }
   if (!is_name_of_plugin(name))
-    return fail("the name \"" + name + "\": wanted small letters, digits and '-', a letter first");
+    return fail("the name \"" + name +
+                "\": expected small letters, digits and '-', a letter first");
   if (fs::exists(fs::symlink_status(folder)))
     return fail(folder.string() + " exists: nothing is written over it");
   std::vector<fs::path> sources;

@@ -16,7 +16,7 @@
 #include "host/process/confine.h"
 #include "host/process/keep_apart.h"
 #include "host/process/process_state.h"
-#include "host/process/shared_words.h"
+#include "host/process/shared_status.h"
 
 namespace nonio::host::process {
 
@@ -44,8 +44,8 @@ std::filesystem::path& own_folder() {
 }
 
 /// What the child says while it loads what was not tried; it has no value if there is no memory.
-SharedWords& loading_untried() {
-  static SharedWords words;
+SharedStatus& loading_untried() {
+  static SharedStatus words;
   return words;
 }
 

@@ -79,7 +79,7 @@ void end_children(const std::vector<pid_t>& kept) {
   }
 }
 
-void settle_child() {
+void init_child() {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   ::signal(SIGINT, SIG_DFL);

@@ -32,7 +32,7 @@ void end_children(const std::vector<pid_t>& kept);
 
 /// To be called first in a child: its own process group, ended with its parent, no core file, its
 /// standard output joined to the standard error so that results on stdout stay clean.
-void settle_child();
+void init_child();
 
 /// To be called then where nothing is printed: who reads what the parent prints waits until nobody
 /// can print any more, also for a child that was left behind.

@@ -56,7 +56,7 @@ class Outbox {
 
 [[noreturn]] void do_task(const Watched::Task& task, int channel, double memory_MB,
                           SignsOfLife& signs) noexcept {
-  settle_child();
+  init_child();
   keep_silent();
   if (memory_MB > 0.0) limit_memory(memory_MB);
   Outbox outbox(channel);

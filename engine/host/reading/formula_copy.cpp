@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "nonio/math/golden_section.h"
+
 namespace nonio::host::reading {
 
 namespace {
@@ -95,21 +97,10 @@ class Nearest {
     return at(shape);
   }
 
-  /// Golden section.
   double between(double low, double high) const {
-    constexpr double golden = 0.6180339887498949;
-    double a = high - golden * (high - low), b = low + golden * (high - low);
-    double at_a = with(a), at_b = with(b);
-    for (int step = 0; step < 60; ++step) {
-      if (at_a < at_b) {
-        high = b, b = a, at_b = at_a;
-        at_a = with(a = high - golden * (high - low));
-      } else {
-        low = a, a = b, at_a = at_b;
-        at_b = with(b = low + golden * (high - low));
-      }
-    }
-    return std::min(at_a, at_b);
+    const math::Bracket bracket =
+        math::golden_section([&](double x) { return with(x); }, low, high, 60);
+    return std::min(bracket.at_a, bracket.at_b);
   }
 
   const Observations& o_;

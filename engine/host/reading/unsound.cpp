@@ -19,11 +19,11 @@ bool direction(const std::array<double, 3>& s) { return std::all_of(s.begin(), s
 /// What is read by index: wrong numbers here would be read past the end.
 std::string unsound_lines(const Observations& o) {
   if (o.size() == 0) return {};
-  if (o.lines.empty()) return "readings of no line; wanted one line at least";
+  if (o.lines.empty()) return "readings of no line; expected one line at least";
   for (std::size_t i = 0; i < o.line.size(); ++i)
     if (o.line[i] >= o.lines.size())
       return "reading " + std::to_string(i + 1) + " of line " + std::to_string(o.line[i]) +
-             "; wanted 0 to " + std::to_string(o.lines.size() - 1);
+             "; expected 0 to " + std::to_string(o.lines.size() - 1);
   if (!std::all_of(o.sense.begin(), o.sense.end(), direction) ||
       !std::all_of(o.lines.begin(), o.lines.end(),
                    [](const Observations::Line& l) { return direction(l.sense); }))
@@ -52,7 +52,7 @@ std::string unsound(const Observations& o) {
     return "an uncertainty of a reading that is not a number above 0";
   for (const Finding& doubt : o.doubts)
     if (!doubt.attention || !doubt.id.starts_with("plausibility."))
-      return "the doubt " + doubt.id + "; wanted findings plausibility.* of attention";
+      return "the doubt " + doubt.id + "; expected findings plausibility.* of attention";
   return unsound_lines(o);
 }
 

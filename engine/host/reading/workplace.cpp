@@ -17,7 +17,7 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
                                                     const std::string& version, TemplatesFor what) {
   std::error_code error;
   if (!fs::is_directory(campaign, error))
-    return fail("there is no folder " + campaign.string() + "; wanted the folder of a campaign");
+    return fail("there is no folder " + campaign.string() + "; expected the folder of a campaign");
   if (!fs::exists(campaign / config::manifest_name, error))
     return fail("there is no " + std::string(config::manifest_name) + " in " + campaign.string() +
                 ": it is not the folder of a campaign");

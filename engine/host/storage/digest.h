@@ -4,12 +4,28 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include "nonio/sdk/error.h"
 
 namespace nonio::host::storage {
+
+/// SHA-256 of what is added, part by part, in lower-case hexadecimal.
+class RunningDigest {
+ public:
+  RunningDigest();
+  ~RunningDigest();
+  RunningDigest(const RunningDigest&) = delete;
+  RunningDigest& operator=(const RunningDigest&) = delete;
+  void add(std::string_view bytes);
+  std::string hex();  ///< once, in the end
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// SHA-256 in lower-case hexadecimal.
 std::string sha256(std::string_view bytes);

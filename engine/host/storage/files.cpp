@@ -147,7 +147,7 @@ Expected<ReadFile> ReadFile::open(const fs::path& path) {
     ::usleep(100'000);
   }
   return fail("cannot read " + path.string() +
-              ": somebody writes into it; wanted a file that stays as it is while it is read");
+              ": somebody writes into it; expected a file that stays as it is while it is read");
 }
 
 ReadFile::ReadFile(ReadFile&& other) noexcept
@@ -206,7 +206,7 @@ Expected<std::string> read_small_file(const fs::path& path) {
   struct stat info {};
   if (::stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode) && info.st_size > most)
     return fail("has " + std::to_string(info.st_size) +
-                " bytes and is not read; wanted at most 1 MB (1000000 bytes)");
+                " bytes and is not read; expected at most 1 MB (1000000 bytes)");
   std::string bytes;
   bool too_long = false;
   const auto read = read_parts(path, [&](std::string_view part) {
@@ -214,7 +214,7 @@ Expected<std::string> read_small_file(const fs::path& path) {
     if (!too_long) bytes += part;
   });
   if (!read) return fail(read.error());
-  if (too_long) return fail("grew while it was read; wanted at most 1 MB (1000000 bytes)");
+  if (too_long) return fail("grew while it was read; expected at most 1 MB (1000000 bytes)");
   return bytes;
 }
 

@@ -6,13 +6,16 @@
 #include <numbers>
 #include <random>
 
+#include "nonio/sdk/splitmix64.h"
+
 namespace nonio::host::storage {
 
 /// The same numbers with every standard library: the distributions of <random> are not specified.
 class Random {
  public:
   /// Each stream of a seed is independent of the others.
-  Random(std::uint64_t seed, std::uint64_t stream) : engine_(mixed(mixed(seed) + stream)) {}
+  Random(std::uint64_t seed, std::uint64_t stream)
+      : engine_(SplitMix64::mixed(SplitMix64::mixed(seed) + stream)) {}
 
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }  ///< in [0, 1)
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
@@ -23,13 +26,6 @@ class Random {
   }
 
  private:
-  /// splitmix64.
-  static std::uint64_t mixed(std::uint64_t z) {
-    z += 0x9e3779b97f4a7c15ULL;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return z ^ (z >> 31);
-  }
   std::mt19937_64 engine_;
 };
 

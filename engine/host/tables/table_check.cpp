@@ -345,7 +345,7 @@ Expected<SignProbe> sign_probe(const Measurement& m, const Observations& o) {
   const auto& e = curve.plus;
   if (e.size() < 3)
     return fail("measurement " + m.id +
-                ": wanted 3 targets or more that were reached moving "
+                ": expected 3 targets or more that were reached moving "
                 "towards plus, found " +
                 std::to_string(e.size()));
   SignProbe probe{m.id, m.axis, test.rotary, curve.position.front()};

@@ -40,7 +40,7 @@ Expected<OneAxis> one_axis(const reading::ReadCampaign& read, const std::string&
   if (one.readings.size() == 1) return one;
   if (!one.readings.empty())
     return fail("axis " + axis + " has " + std::to_string(one.readings.size()) +
-                " measurements; wanted one");
+                " measurements; expected one");
   std::string list;
   for (const std::string& o : others) list += (list.empty() ? "" : ", ") + o;
   return fail("no measurement of axis " + axis + "; there are " + (list.empty() ? "none" : list));

@@ -88,8 +88,8 @@ struct Found {
 
 class Importer {
  public:
-  Importer(const ImportWish& wish, const loader::Plugins& plugins)
-      : wish_(wish), plugins_(plugins) {}
+  Importer(const ImportRequest& request, const loader::Plugins& plugins)
+      : request_(request), plugins_(plugins) {}
 
   Expected<ImportReport> import() {
     if (auto ok = look(); !ok) return fail(ok.error());
@@ -102,12 +102,12 @@ class Importer {
   /// Every file of the folder in the order of their names; links are not followed.
   Expected<std::vector<std::string>> files() const {
     std::error_code error;
-    const fs::path root = fs::canonical(wish_.folder, error);
-    if (error) return fail("cannot find the folder " + wish_.folder.string());
-    const fs::path out = fs::weakly_canonical(wish_.out, error);
+    const fs::path root = fs::canonical(request_.folder, error);
+    if (error) return fail("cannot find the folder " + request_.folder.string());
+    const fs::path out = fs::weakly_canonical(request_.out, error);
     if (const fs::path below = out.lexically_relative(root);
         !below.empty() && *below.begin() != "..")
-      return fail("wanted a site outside of the folder that is imported, found " + out.string());
+      return fail("expected a site outside of the folder that is imported, found " + out.string());
     std::vector<std::string> names;
     fs::recursive_directory_iterator it(root, error), end;
     for (; !error && it != end; it.increment(error))
@@ -124,20 +124,20 @@ class Importer {
     std::map<std::string, std::string> first;  // by digest
     for (const std::string& name : *names) {
       const auto excluded =
-          std::find_if(wish_.rule.exclude.begin(), wish_.rule.exclude.end(),
+          std::find_if(request_.rule.exclude.begin(), request_.rule.exclude.end(),
                        [&](const std::string& part) { return name.find(part) != name.npos; });
-      if (excluded != wish_.rule.exclude.end()) {
+      if (excluded != request_.rule.exclude.end()) {
         report_.excluded.push_back({name, "its path holds \"" + *excluded + "\""});
         continue;
       }
-      const auto ways = readings_of_name(wish_.rule, name);
+      const auto ways = readings_of_name(request_.rule, name);
       if (ways.size() != 1) {
         report_.unmatched.push_back(
             {name, ways.empty() ? "its name does not follow the pattern"
                                 : "its name can be read in two ways by the pattern"});
         continue;
       }
-      const auto path = storage::path_inside(wish_.folder, name);
+      const auto path = storage::path_inside(request_.folder, name);
       auto bytes = path ? storage::read_file(*path) : fail(path.error());
       if (!bytes) return fail(bytes.error());
       const auto [same, fresh] = first.try_emplace(storage::sha256(*bytes), name);
@@ -145,7 +145,7 @@ class Importer {
         report_.duplicates.push_back({name, "the same bytes as " + same->second});
         continue;
       }
-      campaigns_[campaign_of(wish_.rule, ways[0])].push_back({name, std::move(*bytes), ways[0]});
+      campaigns_[campaign_of(request_.rule, ways[0])].push_back({name, std::move(*bytes), ways[0]});
     }
     return {};
   }
@@ -154,11 +154,11 @@ class Importer {
     ImportedCampaign campaign;
     campaign.id = id;
     if (!config::is_campaign_id(id))
-      campaign.lacks.push_back("wanted an id of a-z 0-9 . _ -, found \"" + id +
+      campaign.lacks.push_back("expected an id of a-z 0-9 . _ -, found \"" + id +
                                "\"; say it in the rule: campaign = \"{date}-{machine}\"");
     std::set<std::string> names, ids;
     for (const Found& f : found) campaign.files.push_back(file_of(f, names, ids));
-    if (config::is_campaign_id(id) && is_there(wish_.out / id, campaign, found)) {
+    if (config::is_campaign_id(id) && is_there(request_.out / id, campaign, found)) {
       campaign.there = true;
       for (ImportedFile& file : campaign.files) file.lacks.clear();
       report_.campaigns.push_back(std::move(campaign));
@@ -166,11 +166,11 @@ class Importer {
     }
     check(campaign, found);
     std::error_code error;
-    const fs::path folder = wish_.out / id;
+    const fs::path folder = request_.out / id;
     if (config::is_campaign_id(id) && fs::exists(fs::symlink_status(folder, error)))
       campaign.lacks.push_back(folder.string() + " is there; it is left as it is");
     const bool may = config::is_campaign_id(id) && !fs::exists(fs::symlink_status(folder, error));
-    if (may && !wish_.dry_run && (campaign.whole() || wish_.partial)) {
+    if (may && !request_.dry_run && (campaign.whole() || request_.partial)) {
       std::vector<Artifact> artifacts;
       for (std::size_t i = 0; i < found.size(); ++i)
         if (!campaign.files[i].name.empty())
@@ -213,20 +213,20 @@ class Importer {
                        std::set<std::string>& ids) const {
     ImportedFile file;
     file.file = f.file;
-    file.reader = wish_.rule.reader;
+    file.reader = request_.rule.reader;
     const std::string name = fs::path(f.file).filename().string();
     if (!storage::is_artifact_name(name) || name == config::manifest_name)
-      file.lacks.push_back("wanted a plain file name, found \"" + name + "\"");
+      file.lacks.push_back("expected a plain file name, found \"" + name + "\"");
     else if (!names.insert(name).second)
       file.lacks.push_back("another file of this campaign is called " + name);
     else
       file.name = name;
     if (const auto axis = f.places.find("axis"); axis != f.places.end())
       take_axis(axis->second, file);
-    else if (!wish_.rule.axis.empty())
-      file.axis = wish_.rule.axis,
+    else if (!request_.rule.axis.empty())
+      file.axis = request_.rule.axis,
       file.assumed.push_back("axis " + file.axis + ", as the rule says");
-    else if (wish_.rule.kind != "observations")
+    else if (request_.rule.kind != "observations")
       file.lacks.push_back(
           "axis: which axis of the machine was measured; no place {axis} says it, and it is not "
           "guessed");
@@ -242,19 +242,19 @@ class Importer {
 
   void take_axis(const std::string& word, ImportedFile& file) const {
     file.axis = word;
-    if (const auto stated = wish_.rule.axes.find(word); stated != wish_.rule.axes.end())
+    if (const auto stated = request_.rule.axes.find(word); stated != request_.rule.axes.end())
       file.axis = stated->second;
     else if (file.axis[0] >= 'a' && file.axis[0] <= 'z')
       file.axis[0] = static_cast<char>(file.axis[0] - 32);
     if (file.axis != word)
       file.assumed.push_back("axis " + file.axis + " for \"" + word + "\" in its name" +
-                             (wish_.rule.axes.empty() ? "" : ", as the rule says"));
+                             (request_.rule.axes.empty() ? "" : ", as the rule says"));
   }
 
   /// campaign.toml; what is still to be filled stands above it and in its place as a comment.
   std::string manifest_of(const ImportedCampaign& campaign, const Places& places) const {
     toml::table root;
-    if (auto extra = config::parse_toml(wish_.rule.manifest, "rule"); extra)
+    if (auto extra = config::parse_toml(request_.rule.manifest, "rule"); extra)
       root = std::move(*extra);
     if (!root.contains("campaign")) root.insert("campaign", toml::table{});
     if (toml::table* own = root["campaign"].as_table()) {
@@ -274,10 +274,10 @@ class Importer {
     for (const ImportedFile& f : campaign.files) {
       out << "\n[[measurement]]\n";
       for (const std::string& lack : f.lacks) out << "# to fill: " << one_line(lack) << "\n";
-      toml::table m{{"id", f.measurement}, {"kind", wish_.rule.kind}};
+      toml::table m{{"id", f.measurement}, {"kind", request_.rule.kind}};
       if (!f.axis.empty()) m.insert("axis", f.axis);
       m.insert("file", f.name);
-      if (!wish_.rule.reader.empty()) m.insert("reader", wish_.rule.reader);
+      if (!request_.rule.reader.empty()) m.insert("reader", request_.rule.reader);
       out << m << "\n";
     }
     return out.str();
@@ -317,7 +317,7 @@ class Importer {
   }
 
   bool can_be_read(const ImportedFile& file) const {
-    return !file.axis.empty() || wish_.rule.kind == "observations";
+    return !file.axis.empty() || request_.rule.kind == "observations";
   }
 
   /// All files that can be read, under names and ids of their own.
@@ -377,13 +377,13 @@ class Importer {
 
   /// Of site.toml, if the site is there already.
   config::RawOptions site_options() const {
-    const auto text = storage::read_file(wish_.out / "site.toml");
+    const auto text = storage::read_file(request_.out / "site.toml");
     if (!text) return {};
     auto site = config::parse_site(*text, "site.toml");
     return site ? std::move(site->options) : config::RawOptions{};
   }
 
-  const ImportWish& wish_;
+  const ImportRequest& request_;
   const loader::Plugins& plugins_;
   std::map<std::string, std::vector<Found>> campaigns_;
   ImportReport report_;
@@ -396,8 +396,8 @@ bool ImportedCampaign::whole() const {
                                       [](const ImportedFile& f) { return f.lacks.empty(); });
 }
 
-Expected<ImportReport> import_folder(const ImportWish& wish, const loader::Plugins& plugins) {
-  return Importer(wish, plugins).import();
+Expected<ImportReport> import_folder(const ImportRequest& request, const loader::Plugins& plugins) {
+  return Importer(request, plugins).import();
 }
 
 }  // namespace nonio::host::tools

@@ -65,7 +65,7 @@ struct ImportReport {
   std::vector<Passed> duplicates, unmatched, excluded;
 };
 
-struct ImportWish {
+struct ImportRequest {
   std::filesystem::path folder, out;
   ImportRule rule;
   bool partial = false;  ///< write campaigns that lack something too, with what is to be filled
@@ -74,6 +74,6 @@ struct ImportWish {
 
 /// Makes campaigns from a folder of files. A campaign's folder is new and appears whole; nothing
 /// that is there is touched. Where all of it is there already, there is nothing to do.
-Expected<ImportReport> import_folder(const ImportWish& wish, const loader::Plugins& plugins);
+Expected<ImportReport> import_folder(const ImportRequest& request, const loader::Plugins& plugins);
 
 }  // namespace nonio::host::tools

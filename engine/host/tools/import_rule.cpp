@@ -18,7 +18,7 @@ struct Token {
 Expected<std::vector<Token>> tokens_of(const std::string& pattern) {
   std::vector<Token> tokens;
   for (std::size_t i = 0; i < pattern.size();) {
-    if (pattern[i] == '}') return fail("pattern: wanted a { before }, found none: " + pattern);
+    if (pattern[i] == '}') return fail("pattern: expected a { before }, found none: " + pattern);
     if (pattern[i] != '{') {
       const std::size_t end = std::min(pattern.find_first_of("{}", i), pattern.size());
       tokens.push_back({pattern.substr(i, end - i)});
@@ -32,7 +32,7 @@ Expected<std::vector<Token>> tokens_of(const std::string& pattern) {
     });
     if (close == std::string::npos || !known)
       return fail(
-          "pattern: wanted {name} of small letters, or {*} for what does not count, found \"" +
+          "pattern: expected {name} of small letters, or {*} for what does not count, found \"" +
           pattern.substr(i) + "\"");
     // An axis and a date end where they are no axis and no date any more; what can be read in two
     // ways all the same is not imported.
@@ -42,7 +42,7 @@ Expected<std::vector<Token>> tokens_of(const std::string& pattern) {
     const bool told = !tokens.empty() && ((name == "*" && bounded(tokens.back().text)) ||
                                           (tokens.back().text == "*" && bounded(name)));
     if (!tokens.empty() && tokens.back().place && !told)
-      return fail("pattern: wanted something between {" + tokens.back().text + "} and {" + name +
+      return fail("pattern: expected something between {" + tokens.back().text + "} and {" + name +
                   "}: nobody could tell where one ends");
     tokens.push_back({name, true});
     i = close + 1;
@@ -163,15 +163,15 @@ void check_axes(const ImportRule& rule, config::TableReader& reader) {
   const auto axis = [](const std::string& name) {
     return is_axis(name) && name[0] >= 'A' && name[0] <= 'Z';
   };
-  const char* const wanted = "wanted an axis of capital letters and digits, found \"";
+  const char* const wanted = "expected an axis of capital letters and digits, found \"";
   if (!rule.axis.empty() && !axis(rule.axis)) reader.error("axis", wanted + rule.axis + "\"");
   for (const auto& [word, name] : rule.axes)
     if (!axis(name)) reader.error("axes", wanted + name + "\" for \"" + word + "\"");
   const bool place = rule.pattern.find("{axis}") != std::string::npos;
   if (!rule.axis.empty() && place)
-    reader.error("axis", "wanted the axis here or at {axis} of the pattern, found both");
+    reader.error("axis", "expected the axis here or at {axis} of the pattern, found both");
   if (!rule.axes.empty() && !place)
-    reader.error("axes", "wanted a place {axis} in the pattern, found none");
+    reader.error("axes", "expected a place {axis} in the pattern, found none");
 }
 
 Expected<void> check(const ImportRule& rule) {
@@ -209,7 +209,8 @@ config::Checked<ImportRule> parse_import_rule(std::string_view text, const std::
   if (const toml::table* manifest = reader.anything("manifest")) {
     for (const char* own : {"format", "measurement"})
       if (manifest->contains(own))
-        reader.error("manifest", std::string("wanted no \"") + own + "\", which the import writes");
+        reader.error("manifest",
+                     std::string("expected no \"") + own + "\", which the import writes");
     std::ostringstream out;
     out << *manifest;
     rule.manifest = out.str();

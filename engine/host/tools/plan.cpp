@@ -82,7 +82,7 @@ void append(std::string& list, const std::string& text, const char* between) {
   list += (list.empty() ? "" : between) + text;
 }
 
-storage::Json wish_json(const math::TripleWish& w) {
+storage::Json wish_json(const math::TripleRequest& w) {
   const auto in_mm = [](double m) { return printed(m, Quantity::length); };
   const auto all_mm = [&](const std::vector<double>& list) {
     storage::Json out = storage::Json::array();
@@ -168,7 +168,7 @@ std::string why_nothing(const math::TriplePlans& plans) {
   return "no plan fits; more than one of these limits must be eased: " + limits;
 }
 
-std::string triples_json(const math::TripleWish& wish, const math::TriplePlans& plans) {
+std::string triples_json(const math::TripleRequest& wish, const math::TriplePlans& plans) {
   storage::Json json = {
       {"schema", "nonio-triples/1"}, {"wish", wish_json(wish)}, {"tried", plans.tried}};
   const PointTable table = math::triple_table(plans.plans);

@@ -21,7 +21,7 @@ std::string aspect_warning(const math::TriplePlan& plan);
 std::string why_nothing(const math::TriplePlans& plans);
 
 /// nonio-triples/1
-std::string triples_json(const math::TripleWish& wish, const math::TriplePlans& plans);
+std::string triples_json(const math::TripleRequest& wish, const math::TriplePlans& plans);
 
 /// Part programs by the output plugin of that name ("program-" may be left out), with its options
 /// as texts: 2.5, true, axes,diagonals.

@@ -234,11 +234,11 @@ config::Checked<Simulated> simulate(std::string_view specification, const std::s
   const auto s = read_specification(specification, file, effects);
   if (!s) return tl::unexpected(s.error());
   std::vector<Error> errors;
-  storage::Json truth = {{"schema", "nonio-truth/1"},
-                         {"campaign", s->campaign.id},
-                         {"seed", s->seed},
-                         {"effects", storage::Json::array()},
-                         {"measurements", storage::Json::array()}};
+  Json truth = {{"schema", "nonio-truth/1"},
+                {"campaign", s->campaign.id},
+                {"seed", s->seed},
+                {"effects", Json::array()},
+                {"measurements", Json::array()}};
   std::vector<AxisTable> tables = tables_of(*s);
   for (std::size_t k = 0; k < s->effects.size(); ++k) {
     const EffectSpec& e = s->effects[k];

@@ -50,7 +50,7 @@ class CycleReader {
     }
     if (c_.measurement.kind != "axis")
       reader_.error("measurement",
-                    "wanted a measurement of kind axis, found " + c_.measurement.kind);
+                    "expected a measurement of kind axis, found " + c_.measurement.kind);
     if (!storage::is_artifact_name(c_.measurement.file))
       reader_.error("measurement", "its file is not a plain name: " + c_.measurement.file);
     if (const Axis* axis = campaign.machine.axis(c_.measurement.axis)) c_.axis = *axis;
@@ -65,7 +65,7 @@ class CycleReader {
     const auto first = reader_.number(from), last = reader_.number(to),
                distance = reader_.number(step);
     const double share = reader_.number("random_offset_pct", 0.01).value_or(0.0);
-    if (share > 0.45) reader_.error("random_offset_pct", "wanted at most 45, targets keep order");
+    if (share > 0.45) reader_.error("random_offset_pct", "expected at most 45, targets keep order");
     if (given) {
       if (first || last || distance) reader_.error(list, "stands beside a range");
       c_.targets = *given;
@@ -74,7 +74,7 @@ class CycleReader {
       for (int i = 0; *first + i * *distance <= *last + 1e-9 * *distance; ++i)
         c_.targets.push_back(*first + i * *distance);
     } else {
-      complain(reader_.place(list) + ": wanted a list of targets, or a range by " + from + ", " +
+      complain(reader_.place(list) + ": expected a list of targets, or a range by " + from + ", " +
                to + " (the larger one) and " + step);
       return;
     }
@@ -82,7 +82,7 @@ class CycleReader {
         std::adjacent_find(c_.targets.begin(), c_.targets.end(), std::greater_equal<>());
     if (c_.targets.size() < 2 || c_.targets.size() > 100000 || falls != c_.targets.end()) {
       complain(reader_.place(list) +
-               ": wanted 2 to 100000 targets, each larger than the "
+               ": expected 2 to 100000 targets, each larger than the "
                "one before; found " +
                std::to_string(c_.targets.size()) + " targets");
       return;
@@ -110,12 +110,12 @@ class CycleReader {
     auto m = reader_.table("misreadings");
     if (!m) return;
     c_.misread = m->number("fraction").value_or(0.0);
-    if (c_.misread > 1.0) m->error("fraction", "wanted 0 to 1");
+    if (c_.misread > 1.0) m->error("fraction", "expected 0 to 1");
     if (const auto size = m->numbers("size")) {
       if (size->size() == 2 && (*size)[0] >= 0.0 && (*size)[0] <= (*size)[1])
         c_.misread_size = {(*size)[0], (*size)[1]};
       else
-        m->error("size", "wanted two numbers, times the noise, the smaller one first");
+        m->error("size", "expected two numbers, times the noise, the smaller one first");
     }
     m->finish();
   }
@@ -126,7 +126,7 @@ class CycleReader {
     if (!direction.empty() && c_.pendulum)
       reader_.error("direction", "stands only beside order = \"unidirectional\"");
     c_.direction = direction == "-" ? -1.0 : 1.0;
-    if (const auto runs = reader_.whole("runs")) c_.runs = static_cast<std::uint32_t>(*runs);
+    if (const auto runs = reader_.integer("runs")) c_.runs = static_cast<std::uint32_t>(*runs);
   }
 
   void read_times() {

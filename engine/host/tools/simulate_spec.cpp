@@ -108,7 +108,7 @@ class EffectReader {
       if (e.info.name == kind) found = &e;
     }
     if (colon == std::string::npos)
-      reader.error("name", "wanted kind:axis, \"backlash:X\"; found \"" + name + "\"");
+      reader.error("name", "expected kind:axis, \"backlash:X\"; found \"" + name + "\"");
     else if (found == nullptr)
       reader.error("name",
                    "no effect is called \"" + kind + "\"" + storage::suggestion(kind, kinds));
@@ -157,8 +157,9 @@ class EffectReader {
 std::vector<Formula> read_simulation(config::TableReader& top, Specification& s) {
   auto reader = top.table("simulation");
   if (!reader) return {};
-  const auto seed = reader->whole("seed");
-  if (!seed) reader->error("seed", "wanted a whole number: the same seed gives the same readings");
+  const auto seed = reader->integer("seed");
+  if (!seed)
+    reader->error("seed", "expected a whole number: the same seed gives the same readings");
   s.seed = static_cast<std::uint64_t>(seed.value_or(1));
   std::vector<Formula> hidden = config::read_formulas(*reader, s.campaign.machine);
   reader->finish();

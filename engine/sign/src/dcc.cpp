@@ -35,7 +35,7 @@ Expected<double> number(const std::string& text) {
   const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
   if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size() ||
       !(value - value == 0.0))
-    return fail("wanted a number, found \"" + text.substr(0, 40) + "\"");
+    return fail("expected a number, found \"" + text.substr(0, 40) + "\"");
   return value;
 }
 
@@ -104,7 +104,7 @@ class Reader {
       if (!U) return in(v.name, U.error());
       const auto k = number(content_of(child(expanded, "coverageFactor")));
       if (!k) return in(v.name, k.error());
-      if (!(*k >= 1.0)) return in(v.name, {"wanted a coverage factor of 1 or more"});
+      if (!(*k >= 1.0)) return in(v.name, {"expected a coverage factor of 1 or more"});
       v.U = *U;
       v.k = *k;
     }

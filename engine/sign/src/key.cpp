@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "certificate_use.h"
-#include "pdf_signature.h"
+#include "nonio/pdf/signature_field.h"
 #include "signed_data.h"
 
 namespace nonio::sign {
@@ -126,11 +126,8 @@ namespace {
 
 Expected<Signed> sign_pdf(const Key::Impl& key, std::string bytes, Time now,
                           const TimeStamping& stamping) {
-  const auto file = pdf::parse(bytes);
-  if (!file) return fail("is not a PDF that can be signed: " + file.error().message);
-  const auto dictionary = find_signature(*file);
-  if (!dictionary) return fail("is not prepared for a signature: " + dictionary.error().message);
-  const auto place = signature_of(*file, **dictionary);
+  // By its place: `pdf::reserve` has just read what plugins wrote, and this process holds the key.
+  const auto place = pdf::signature_at_end(bytes);
   if (!place) return fail("is not prepared for a signature: " + place.error().message);
   if (place->contents.find_first_not_of('0') != std::string_view::npos)
     return fail("is signed already");
@@ -140,7 +137,7 @@ Expected<Signed> sign_pdf(const Key::Impl& key, std::string bytes, Time now,
   if (cms->size() > place->room())
     return fail("the signature has " + std::to_string(cms->size()) +
                 " bytes and does not fit into " + std::to_string(place->room()));
-  if (bytes.size() > max_file) return fail(too_large);
+  if (bytes.size() > pdf::max_file) return fail(too_large);
   bytes.replace(place->gap + 1, 2 * cms->size(), hex(*cms));
   out.bytes = std::move(bytes);
   return out;

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstdio>
 #include <ctime>
 
 namespace nonio::sign {
@@ -23,6 +24,14 @@ std::string_view bytes_of(const ASN1_STRING* text) {
   if (text == nullptr) return {};
   return {reinterpret_cast<const char*>(ASN1_STRING_get0_data(text)),
           static_cast<std::size_t>(ASN1_STRING_length(text))};
+}
+
+std::string text_of(Time time) {
+  const pdf::Calendar c = pdf::calendar(time);
+  std::array<char, 64> text{};
+  const int n = std::snprintf(text.data(), text.size(), "%04d-%02u-%02u %02d:%02d:%02d UTC", c.year,
+                              c.month, c.day, c.hours, c.minutes, c.seconds);
+  return {text.data(), static_cast<std::size_t>(n)};
 }
 
 std::string sha256(std::string_view one, std::string_view other) {
@@ -70,7 +79,7 @@ Expected<std::string> algorithm_of(EVP_PKEY* key, bool old) {
   switch (EVP_PKEY_get_base_id(key)) {
     case EVP_PKEY_RSA:
       if (bits >= (old ? 2048 : 3072)) return "RSA-" + std::to_string(bits);
-      return fail("an RSA key of " + std::to_string(bits) + " bits: wanted " +
+      return fail("an RSA key of " + std::to_string(bits) + " bits: expected " +
                   (old ? "2048" : "3072") + " or more");
     case EVP_PKEY_EC: {
       std::array<char, 64> name{};
@@ -80,14 +89,14 @@ Expected<std::string> algorithm_of(EVP_PKEY* key, bool old) {
         if (curve == "secp384r1" || curve == "P-384") return std::string("P-384");
       }
       return fail(std::string("an elliptic-curve key over ") + name.data() +
-                  ": wanted P-256 or P-384");
+                  ": expected P-256 or P-384");
     }
     default:
       break;
   }
   const char* name = EVP_PKEY_get0_type_name(key);
   return fail("a key of the kind " + std::string(name == nullptr ? "?" : name) +
-              ", which cannot sign a PDF: wanted RSA of 3072 bits or P-256");
+              ", which cannot sign a PDF: expected RSA of 3072 bits or P-256");
 }
 
 Expected<std::vector<CertificatePtr>> certificates_of(const std::string& pem) {

@@ -54,6 +54,9 @@ std::string der_of(T* object, Encode encode) {
 inline std::string der_of(const X509* certificate) { return der_of(certificate, &i2d_X509); }
 std::string_view bytes_of(const ASN1_STRING* text);
 
+/// Of what has more bytes than `pdf::max_file`.
+inline constexpr const char* too_large = "is larger than 100 MB";
+
 std::string sha256(std::string_view one, std::string_view other = {});
 std::string hex(std::string_view bytes);
 std::string subject_of(const X509* certificate);

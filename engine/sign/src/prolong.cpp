@@ -8,7 +8,7 @@
 #include <set>
 
 #include "http.h"
-#include "pdf_signature.h"
+#include "nonio/pdf/signature_field.h"
 #include "signed_data.h"
 #include "verify_parts.h"
 #include "verify_updates.h"
@@ -77,13 +77,13 @@ constexpr std::size_t longest_answer = 100'000, longest_list = 9'000'000;
 class Prolongation {
  public:
   Prolongation(std::string_view bytes, const Prolonging& how)
-      : bytes_(bytes), how_(how), ends_(ends_of_parts(bytes)) {}
+      : bytes_(bytes), how_(how), ends_(pdf::ends_of_parts(bytes)) {}
 
   Expected<Prolonged> run() {
     if (auto sound = check(bytes_, "is not prolonged"); !sound) return fail(sound.error());
     file_ = pdf::parse(bytes_.substr(0, ends_.front()));
     if (!file_) return fail(file_.error());
-    auto updater = Updater::of(*file_);
+    auto updater = pdf::Updater::of(*file_);
     if (!updater) return fail(updater.error());
     auto added = read_updates(bytes_, ends_, *updater);
     if (!added) return fail(added.error());
@@ -135,7 +135,7 @@ class Prolongation {
     const auto until = [&](std::size_t next) {
       return next < stamps->size() ? (*stamps)[next].time : std::numeric_limits<Time>::max();
     };
-    const auto place = signature_at_end(file_->bytes);
+    const auto place = pdf::signature_at_end(file_->bytes);
     const auto der = place ? der_in(place->contents) : fail("has no signature");
     if (!der) return fail(der.error());
     const auto data = SignedData::parse(*der, SignedData::Content::detached);
@@ -248,12 +248,13 @@ class Prolongation {
     return false;
   }
 
-  Expected<Prolonged> finish(Update& update) {
+  Expected<Prolonged> finish(pdf::Update& update) {
     Prolonged out;
     out.bytes = std::string(bytes_) + update.bytes;
-    if (out.bytes.size() > max_file || out.bytes.size() - ends_.front() > most_update_bytes ||
-        ends_.size() > most_updates)
-      return fail("would become too large, or get more than " + std::to_string(most_updates) +
+    if (out.bytes.size() > pdf::max_file ||
+        out.bytes.size() - ends_.front() > pdf::most_update_bytes ||
+        ends_.size() > pdf::most_updates)
+      return fail("would become too large, or get more than " + std::to_string(pdf::most_updates) +
                   " updates");
     if (update.has_stamp) {
       const std::string_view all = out.bytes;
@@ -261,9 +262,9 @@ class Prolongation {
           how_.stamping, sha256(all.substr(0, update.gap), all.substr(update.behind)),
           how_.verifier.now);
       if (!token) return fail("no time stamp: " + token.error().message);
-      if (token->size() > usual_room)
+      if (token->size() > pdf::usual_room)
         return fail("the time stamp has " + std::to_string(token->size()) +
-                    " bytes and does not fit into " + std::to_string(usual_room));
+                    " bytes and does not fit into " + std::to_string(pdf::usual_room));
       out.bytes.replace(update.gap + 1, 2 * token->size(), hex(*token));
       added_.push_back("time stamp of " + how_.stamping.url);
     }
@@ -280,7 +281,7 @@ class Prolongation {
   std::vector<Statement> at_hand_;
   std::vector<Used> used_;
   std::set<std::string> there_;  ///< DER that is in the file, or will be
-  Store store_;
+  pdf::Store store_;
   std::vector<std::string> added_;
 };
 

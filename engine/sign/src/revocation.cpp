@@ -58,7 +58,7 @@ Expected<void> check_list(const X509_CRL* list, X509* issuer, Time now) {
     return refuse_list(issuer, "is of " + text_of(made) + ", yet to come");
   if (next == 0) return refuse_list(issuer, "does not say how long it is good for (nextUpdate)");
   if (next < now)
-    return refuse_list(issuer, "was good until " + text_of(next) + ": wanted a newer one");
+    return refuse_list(issuer, "was good until " + text_of(next) + ": expected a newer one");
   return {};
 }
 

@@ -50,7 +50,7 @@ Expected<SignedData> SignedData::parse(std::string_view der, Content content) {
   }
   STACK_OF(CMS_SignerInfo)* signers = CMS_get0_SignerInfos(out.cms_.get());
   if (signers == nullptr || sk_CMS_SignerInfo_num(signers) != 1)
-    return malformed("wanted one signer");
+    return malformed("expected one signer");
   out.signer_ = sk_CMS_SignerInfo_value(signers, 0);
   if (auto read = out.read_outside(content); !read) return fail(read.error());
   if (auto key = algorithm_of(X509_get0_pubkey(out.signer_certificate_), true); !key)
@@ -77,13 +77,13 @@ Expected<void> SignedData::read_outside(Content content) {
     return malformed("the version");
   const auto algorithm = digests ? Der::only(digests->content, Der::sequence) : std::nullopt;
   digest_ = algorithm ? digest_of_algorithm(algorithm->content) : nullptr;
-  if (digest_ == nullptr) return malformed("wanted a digest by SHA-256, SHA-384 or SHA-512");
+  if (digest_ == nullptr) return malformed("expected a digest by SHA-256, SHA-384 or SHA-512");
   if (!inner || !certificates || !signers)
-    return malformed("wanted content, certificates and signers, and no more");
+    return malformed("expected content, certificates and signers, and no more");
   if (auto read = read_content(inner->content, content); !read) return read;
   if (auto read = read_certificates(certificates->content); !read) return read;
   const auto signer = Der::only(signers->content, Der::sequence);
-  if (!signer) return malformed("wanted one signer");
+  if (!signer) return malformed("expected one signer");
   return read_signer(signer->content, content);
 }
 
@@ -91,12 +91,12 @@ Expected<void> SignedData::read_content(std::string_view text, Content content) 
   const auto type = Der::take(text, Der::object);
   if (content == Content::detached) {
     if (!type || type->content != oid_data || !text.empty())
-      return malformed("wanted a signature beside its content");
+      return malformed("expected a signature beside its content");
     return {};
   }
   const auto wrapped = Der::only(text, Der::context(0));
   const auto octets = wrapped ? Der::only(wrapped->content, Der::octets) : std::nullopt;
-  if (!type || type->content != oid_tst_info || !octets) return malformed("wanted a time stamp");
+  if (!type || type->content != oid_tst_info || !octets) return malformed("expected a time stamp");
   content_ = octets->content;
   return {};
 }
@@ -104,7 +104,7 @@ Expected<void> SignedData::read_content(std::string_view text, Content content) 
 Expected<void> SignedData::read_certificates(std::string_view text) {
   while (!text.empty()) {
     const auto one = Der::take(text, Der::sequence);
-    if (!one || certificates_.size() >= 20) return malformed("wanted plain certificates");
+    if (!one || certificates_.size() >= 20) return malformed("expected plain certificates");
     const unsigned char* at = data_of(one->whole);
     CertificatePtr certificate(d2i_X509(nullptr, &at, static_cast<long>(one->whole.size())));
     if (!certificate || der_of(certificate.get()) != one->whole) {
@@ -126,13 +126,13 @@ Expected<void> SignedData::read_signer(std::string_view text, Content content) {
   const auto signature_algorithm = Der::take(text, Der::sequence);
   const auto signature = Der::take(text, Der::octets);
   if (!version || version->content != "\x01"sv || !identifier)
-    return malformed("wanted a signer named by issuer and serial number");
+    return malformed("expected a signer named by issuer and serial number");
   if (!algorithm || digest_of_algorithm(algorithm->content) != digest_)
     return malformed("two digests that differ");
   if (!attributes || !signature_algorithm || !signature)
-    return malformed("wanted signed attributes and a signature");
+    return malformed("expected signed attributes and a signature");
   if (!is_signature_algorithm(signature_algorithm->content, digest_))
-    return malformed("wanted a signature by RSA or ECDSA with that digest");
+    return malformed("expected a signature by RSA or ECDSA with that digest");
   signature_ = signature->content;
   if (auto read = read_unsigned(text, content); !read) return read;
   return find_certificate(identifier->content);
@@ -147,7 +147,7 @@ Expected<void> SignedData::read_unsigned(std::string_view text, Content content)
   const auto values = Der::only(rest, Der::set);
   const auto token = values ? Der::only(values->content, Der::sequence) : std::nullopt;
   if (content != Content::detached || !type || type->content != oid_token || !token)
-    return malformed("wanted no unsigned attribute but one time stamp");
+    return malformed("expected no unsigned attribute but one time stamp");
   token_ = token->whole;
   return {};
 }

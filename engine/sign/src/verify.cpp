@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "certificate_use.h"
-#include "pdf_signature.h"
+#include "nonio/pdf/signature_field.h"
 #include "signed_data.h"
 #include "time_stamp.h"
 #include "verify_parts.h"
@@ -45,7 +45,7 @@ void Report::check_signer(X509* certificate, const Verifier& verifier) {
   });
   if (by_subject || wanted == fingerprint) return add("signer.expected", {}, "signed by " + shown);
   add("signer.expected",
-      fail("signed by " + shown + ", certificate " + fingerprint + "; wanted " + verifier.signer),
+      fail("signed by " + shown + ", certificate " + fingerprint + "; expected " + verifier.signer),
       {});
 }
 
@@ -108,11 +108,6 @@ std::vector<CertificatePtr> Report::check_chain(X509* certificate,
   return std::move(*chain);
 }
 
-std::string quoted(std::string_view text) {
-  constexpr std::size_t most = 200;
-  return "\"" + std::string(text.substr(0, most)) + (text.size() > most ? "..." : "") + "\"";
-}
-
 namespace {
 
 /// The signature first, by its place in the file; what is in the file only where it holds and is of
@@ -125,16 +120,17 @@ class PdfCheck {
   }
 
   Verified run() {
-    if (bytes_.size() > max_file || !bytes_.starts_with("%PDF-")) {
+    if (bytes_.size() > pdf::max_file || !bytes_.starts_with("%PDF-")) {
       report_.add(
           "file.structure",
-          fail(bytes_.size() > max_file ? too_large : "is neither a PDF nor an XML document"), {});
+          fail(bytes_.size() > pdf::max_file ? too_large : "is neither a PDF nor an XML document"),
+          {});
       return std::move(out_);
     }
-    ends_ = ends_of_parts(bytes_);
+    ends_ = pdf::ends_of_parts(bytes_);
     signed_ = bytes_.substr(0, ends_.front());
     out_.issued = signed_.size();
-    const auto place = signature_at_end(signed_);
+    const auto place = pdf::signature_at_end(signed_);
     report_.add("signature.range", to_void(place),
                 ends_.size() == 1 ? "covers the whole file but for itself"
                                   : "covers the file as it was signed but for itself");
@@ -151,21 +147,21 @@ class PdfCheck {
     return *file_;
   }
 
-  Verified read(const PdfSignature& found) {
+  Verified read(const pdf::PdfSignature& found) {
     report_.add("file.structure", to_void(file()),
                 "a PDF of one revision, every byte of it accounted for");
     if (!file()) return std::move(out_);
     report_.add("signature.one", check_only(*file(), found),
-                "one signature, " + std::string(sub_filter));
+                "one signature, " + std::string(pdf::sub_filter));
     read_attachments(*file());
     return std::move(out_);
   }
 
   /// The one that a reader of PDF finds is the one that was checked.
-  static Expected<void> check_only(const pdf::File& file, const PdfSignature& found) {
-    const auto dictionary = find_signature(file);
+  static Expected<void> check_only(const pdf::File& file, const pdf::PdfSignature& found) {
+    const auto dictionary = pdf::find_signature(file);
     if (!dictionary) return fail(dictionary.error());
-    const auto place = signature_of(file, **dictionary);
+    const auto place = pdf::signature_of(file, **dictionary);
     if (!place) return fail(place.error());
     if (place->gap != found.gap || place->contents.size() != found.contents.size() ||
         place->time != found.time)
@@ -173,7 +169,7 @@ class PdfCheck {
     return {};
   }
 
-  void check_cms(const PdfSignature& place) {
+  void check_cms(const pdf::PdfSignature& place) {
     const auto der = der_in(place.contents);
     report_.add("signature.padding", to_void(der), "nothing but zeros behind the signature");
     if (!der) return;
@@ -195,7 +191,7 @@ class PdfCheck {
     check_people(place, *data, *known);
   }
 
-  void check_people(const PdfSignature& place, const SignedData& data, Trusted& known) {
+  void check_people(const pdf::PdfSignature& place, const SignedData& data, Trusted& known) {
     std::vector<std::vector<CertificatePtr>> chains;
     std::optional<Added> added;
     if (ends_.size() > 1) {
@@ -226,7 +222,7 @@ class PdfCheck {
         !chain_of(signer, data.certificates(), known, std::min(verifier_.now, last)))
       return fail("are not read: nobody who is trusted signed what stands before");
     if (!file()) return fail(file().error());
-    auto updater = Updater::of(*file());
+    auto updater = pdf::Updater::of(*file());
     if (!updater) return fail(updater.error());
     auto added = read_updates(bytes_, ends_, *updater);
     if (!added) return fail(added.error());
@@ -252,7 +248,7 @@ class PdfCheck {
   }
 
   void read_attachments(const pdf::File& file) {
-    auto attachments = attachments_of(file);
+    auto attachments = pdf::attachments_of(file);
     if (attachments) out_.attachments = std::move(*attachments);
     const std::size_t n = out_.attachments.size();
     report_.add("attachments", to_void(attachments),
@@ -274,10 +270,10 @@ Verified verify_pdf(std::string_view bytes, const Verifier& verifier) {
   return PdfCheck(bytes, verifier).run();
 }
 
-Expected<std::vector<Attachment>> unverified_attachments(std::string_view pdf) {
+Expected<std::vector<pdf::Attachment>> unverified_attachments(std::string_view pdf) {
   const auto file = pdf::parse(pdf);
   if (!file) return fail(file.error());
-  return attachments_of(*file);
+  return pdf::attachments_of(*file);
 }
 
 }  // namespace nonio::sign

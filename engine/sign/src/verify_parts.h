@@ -2,15 +2,14 @@
 #pragma once
 
 #include "der.h"
+#include "nonio/pdf/text.h"
 #include "nonio/sign/verify.h"
 #include "openssl.h"
-#include "pdf_reader.h"
 #include "signed_data.h"
 
 namespace nonio::sign {
 
-/// Text out of a file that nobody vouches for: in quotes, at most 200 bytes of it.
-std::string quoted(std::string_view text);
+using pdf::quoted;
 
 template <class T>
 Expected<void> to_void(const Expected<T>& result) {
@@ -40,8 +39,5 @@ class Report {
  private:
   Verified& out_;
 };
-
-/// The embedded files of a PDF in the order of their names.
-Expected<std::vector<Attachment>> attachments_of(const pdf::File& file);
 
 }  // namespace nonio::sign

@@ -39,7 +39,7 @@ class FileDigest {
 };
 
 /// Its statements are covered by the stamp that comes next.
-Expected<void> take_store(const Store& store, Added& added) {
+Expected<void> take_store(const pdf::Store& store, Added& added) {
   const auto take = [&](Expected<Statement> statement) -> Expected<void> {
     if (!statement) return fail(statement.error());
     added.statements.push_back(std::move(*statement));
@@ -74,7 +74,7 @@ Expected<std::string> der_in(std::string_view digits) {
 }
 
 Expected<Added> read_updates(std::string_view bytes, const std::vector<std::size_t>& ends,
-                             Updater& updater) {
+                             pdf::Updater& updater) {
   Added added;
   FileDigest digest(bytes);
   for (std::size_t i = 1; i < ends.size(); ++i) {

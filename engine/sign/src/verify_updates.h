@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pdf_update.h"
+#include "nonio/pdf/update.h"
 #include "time_stamp.h"
 
 namespace nonio::sign {
@@ -18,10 +18,10 @@ struct Added {
   std::vector<std::string> certificates;  ///< DER
 };
 
-/// An error if there is anything else. `ends` of `ends_of_parts`; `updater` of the signed file,
-/// ready to write one more afterwards.
+/// An error if there is anything else. `ends` of `pdf::ends_of_parts`; `updater` of the signed
+/// file, ready to write one more afterwards.
 Expected<Added> read_updates(std::string_view bytes, const std::vector<std::size_t>& ends,
-                             Updater& updater);
+                             pdf::Updater& updater);
 
 /// The newest stamp as it is now, each older one as the next one saw it. `known` gets the
 /// statements, each with the time at which it is proved to have existed.

@@ -16,7 +16,7 @@
 #include <algorithm>
 
 #include "key.h"
-#include "pdf_signature.h"
+#include "nonio/pdf/signature_field.h"
 #include "time_stamp.h"
 #include "verify_parts.h"
 #include "xml_document.h"
@@ -46,14 +46,14 @@ bool started() {
 
 Expected<DocumentPtr> parse_xml(std::string_view bytes) {
   if (!started()) return fail("xmlsec does not start");
-  if (bytes.size() > max_file) return fail(too_large);
+  if (bytes.size() > pdf::max_file) return fail(too_large);
   DocumentPtr document(xmlReadMemory(bytes.data(), static_cast<int>(bytes.size()), "document.xml",
                                      nullptr,
                                      XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING));
   if (!document || xmlDocGetRootElement(document.get()) == nullptr)
     return fail("is not well-formed XML");
   if (document->intSubset != nullptr || document->extSubset != nullptr)
-    return fail("has a document type: wanted none");
+    return fail("has a document type: expected none");
   return document;
 }
 
@@ -63,9 +63,9 @@ namespace {
 /// instructions for programs, sections that are not parsed) has no place in a certificate.
 Expected<void> check_nodes(const xmlNode* node) {
   for (; node != nullptr; node = node->next) {
-    if (node->type == XML_COMMENT_NODE) return fail("has a comment: wanted none");
-    if (node->type == XML_PI_NODE) return fail("has an instruction for programs: wanted none");
-    if (node->type == XML_CDATA_SECTION_NODE) return fail("has a CDATA section: wanted none");
+    if (node->type == XML_COMMENT_NODE) return fail("has a comment: expected none");
+    if (node->type == XML_PI_NODE) return fail("has an instruction for programs: expected none");
+    if (node->type == XML_CDATA_SECTION_NODE) return fail("has a CDATA section: expected none");
     if (node->type != XML_ELEMENT_NODE && node->type != XML_TEXT_NODE)
       return fail("has something else than elements and text");
     if (node->type == XML_ELEMENT_NODE)
@@ -167,7 +167,7 @@ Expected<Signed> sign_xml(const Key::Impl& key, std::string_view bytes, Time now
     return fail(stamped.error());
   content->insert(content->rfind("</"), signature.text());
   out.bytes = std::string(xml_head) + *content + "\n";
-  if (out.bytes.size() > max_file) return fail(too_large);
+  if (out.bytes.size() > pdf::max_file) return fail(too_large);
   return out;
 }
 
@@ -180,10 +180,10 @@ struct Parts {
   XmlSignature signature;
 
   static Expected<Parts> of(std::string_view bytes) {
-    if (bytes.size() > max_file) return fail(too_large);
+    if (bytes.size() > pdf::max_file) return fail(too_large);
     if (!bytes.starts_with(xml_head) || !bytes.ends_with(">\n"))
       return fail(
-          "wanted it to begin with <?xml version=\"1.0\" encoding=\"UTF-8\"?> and to end "
+          "expected it to begin with <?xml version=\"1.0\" encoding=\"UTF-8\"?> and to end "
           "with its root and a new line");
     bytes.remove_prefix(xml_head.size());
     bytes.remove_suffix(1);

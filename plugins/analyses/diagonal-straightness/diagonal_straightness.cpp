@@ -203,7 +203,7 @@ class Report {
 };
 
 Expected<Evaluation> analyse(const AnalysisInput& in) {
-  if (in.all == nullptr) return fail("wanted the other measurements of the campaign, found none");
+  if (in.all == nullptr) return fail("expected the other measurements of the campaign, found none");
   const auto sets = sets_of(in.campaign);
   const Set* set = set_led_by(sets, in.campaign, in.measurement);
   if (set == nullptr) return fail("this diagonal belongs to another one's set");

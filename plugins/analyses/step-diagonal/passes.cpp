@@ -31,12 +31,12 @@ struct Line {
 
 Expected<void> place(Passes& p, const AnalysisInput& in) {
   const Observations& o = in.observations;
-  if (o.axes.size() != 3) return fail("wanted step diagonals over three axes");
+  if (o.axes.size() != 3) return fail("expected step diagonals over three axes");
   for (std::size_t k = 0; k < 3; ++k) {
     const std::string& axis = o.axes[k].axis;
     const auto from = in.measurement.from.find(axis), to = in.measurement.to.find(axis);
     if (from == in.measurement.from.end() || to == in.measurement.to.end())
-      return fail("wanted `from` and `to` of axis " + axis + ", found none");
+      return fail("expected `from` and `to` of axis " + axis + ", found none");
     p.axes.push_back(axis);
     p.readings.low[k] = std::min(from->second, to->second);
     p.readings.travel[k] = std::fabs(to->second - from->second);

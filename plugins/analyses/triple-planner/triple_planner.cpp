@@ -24,7 +24,7 @@ Expected<const Axis*> planned_axis(const CampaignInput& in, const char* option) 
     return fail(std::move(error));
   }
   if (axis->rotary || !axis->travel) {
-    Error error{"axis " + name + ": wanted a linear axis with its travel, found " +
+    Error error{"axis " + name + ": expected a linear axis with its travel, found " +
                 (axis->rotary ? "a rotary one" : "no travel")};
     error.key = "machine.axes." + name;
     return fail(std::move(error));
@@ -39,8 +39,8 @@ std::vector<double> pitches(const Axis& axis, const std::vector<double>& others_
   return all;
 }
 
-TripleWish wish_of(const Axis& x, const Axis& y, const Settings& o) {
-  TripleWish w;
+TripleRequest wish_of(const Axis& x, const Axis& y, const Settings& o) {
+  TripleRequest w;
   w.x = x.travel->second - x.travel->first;
   w.y = y.travel->second - y.travel->first;
   w.over_travel = o.number("over_travel_mm") * mm;

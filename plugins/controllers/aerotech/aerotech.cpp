@@ -159,7 +159,7 @@ struct Parser {
                     .plus = {},
                     .minus = {}};
       for (std::size_t i = out; i < v.size(); i += 2) t.plus.push_back(v[i] * 1e-6);
-      if (auto ok = math::sound(t); !ok) return ok;
+      if (auto ok = math::validate_table(t); !ok) return ok;
       tables.push_back(std::move(t));
     }
     return {};

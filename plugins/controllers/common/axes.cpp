@@ -42,7 +42,7 @@ Expected<void> take_entry(const std::string& entry, const std::set<std::string>&
       return wrong_axes("option axes, \"" + entry + "\": no setting " + key + "; there are " +
                         joined({keys.begin(), keys.end()}, ", "));
     if (!value)
-      return wrong_axes("option axes, \"" + entry + "\": wanted " + key + "=NUMBER, found " +
+      return wrong_axes("option axes, \"" + entry + "\": expected " + key + "=NUMBER, found " +
                         std::string(parts[i]));
     settings[key] = *value;
   }

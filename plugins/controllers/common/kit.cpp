@@ -428,7 +428,7 @@ Expected<LoadedTable> loaded(const ControlTable& t, const RawTable& raw) {
                 "found its zero at point " + std::to_string(raw.reference + 1));
   out.plus = correction(raw.plus, 0.0);
   out.minus = correction(raw.minus, t.entry == Entry::increment ? raw.minus_start : 0.0);
-  if (auto ok = math::sound(out); !ok) return tl::unexpected<Error>(ok.error());
+  if (auto ok = math::validate_table(out); !ok) return tl::unexpected<Error>(ok.error());
   return out;
 }
 

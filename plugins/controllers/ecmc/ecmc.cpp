@@ -29,7 +29,7 @@ ControlTable table_of(const Settings& o) {
 
 Expected<std::vector<Artifact>> files(const Sheet& s) {
   if (s.position.size() < 3)
-    return fail("axis " + s.job.axis + ": wanted at least 3 rows, found " +
+    return fail("axis " + s.job.axis + ": expected at least 3 rows, found " +
                 std::to_string(s.position.size()));
   const std::string stem = "ecmc-" + s.job.stem;
   std::string table = controllers::comments(s.words(), "# ");

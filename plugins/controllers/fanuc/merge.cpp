@@ -161,7 +161,7 @@ Expected<std::vector<Artifact>> merge(const MergeInput& in) {
   const auto table = std::find_if(in.table.begin(), in.table.end(), punched);
   if (table == in.table.end()) return fail("no new table of axis " + in.axis);
   if (std::count_if(in.backup.begin(), in.backup.end(), punched) != 1)
-    return fail("wanted one punched file, with the parameters and the pitch data of all axes");
+    return fail("expected one punched file, with the parameters and the pitch data of all axes");
   Backup backup(*std::find_if(in.backup.begin(), in.backup.end(), punched));
   const auto words = words_in(table->bytes);
   Values parameters;

@@ -148,7 +148,7 @@ Expected<LoadedTable> table(const Memory& m, const ParameterValues& p,
   }
   if (const auto lost = p.find(1851); lost != p.end())
     out.backlash = static_cast<double>(lost->second) * unit.detection;
-  if (auto ok = math::sound(out); !ok) return tl::unexpected<Error>(ok.error());
+  if (auto ok = math::validate_table(out); !ok) return tl::unexpected<Error>(ok.error());
   return out;
 }
 

@@ -45,7 +45,7 @@ Expected<Cell> cell_of(const std::string& cma, const std::string& axis) {
     if (lines[i].find('*') != std::string_view::npos) active.push_back(i);
   }
   if (active.size() != 1 && rows.size() != 1)
-    return fail("CONFIG.CMA: wanted one active line (*), found " + std::to_string(active.size()));
+    return fail("CONFIG.CMA: expected one active line (*), found " + std::to_string(active.size()));
   cell.line = active.size() == 1 ? active.front() : rows.front();
   const std::string_view line = lines[cell.line];
   if (cell.column < line.size())
@@ -73,7 +73,7 @@ Expected<std::vector<Artifact>> merge(const MergeInput& in) {
   if (fresh == in.table.end()) return fail("no new table of axis " + in.axis);
   const auto cma = std::find_if(in.backup.begin(), in.backup.end(), is_assignment);
   if (cma == in.backup.end())
-    return fail("wanted CONFIG.CMA among the files of the backup: it says which table is whose");
+    return fail("expected CONFIG.CMA among the files of the backup: it says which table is whose");
   const auto cell = cell_of(cma->bytes, controllers::plain(in.axis));
   if (!cell) return fail(cell.error());
   const std::string name = cell->text.empty() ? name_of(*fresh) : cell->text;

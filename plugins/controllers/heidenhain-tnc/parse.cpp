@@ -131,7 +131,8 @@ Expected<std::vector<LoadedTable>> com(std::string_view bytes, const std::vector
     const KnownAxis output = axis_named(axes, name);
     const bool own = output.name == input.name;
     tables.push_back(table(input, output, *x, *values, own ? *negative : std::vector<double>{}));
-    if (auto ok = math::sound(tables.back()); !ok) return tl::unexpected<Error>(ok.error());
+    if (auto ok = math::validate_table(tables.back()); !ok)
+      return tl::unexpected<Error>(ok.error());
   }
   return tables;
 }

@@ -125,7 +125,7 @@ Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Art
   while (last > 0 && controllers::trimmed(all[last - 1]).empty()) --last;
   if (taken < last && taken < 256)
     return fail(f.name + ", line " + std::to_string(taken + 1) +
-                ": wanted three numbers, found \"" + std::string(all[taken].substr(0, 60)) +
+                ": expected three numbers, found \"" + std::string(all[taken].substr(0, 60)) +
                 "\"; the control stops reading there without a message");
   if (f.bytes.back() != '\n') return fail(f.name + ": the last line has no end: the file was cut");
   const std::string key = f.name + " has ";

@@ -164,7 +164,7 @@ Expected<LoadedTable> loaded(const Table& t, const KnownAxis& input, const Known
   const std::vector<double> nothing(c.size(), 0.0);
   out.plus = t.direction < 0.0 ? nothing : c;
   if (t.direction != 0.0) out.minus = t.direction < 0.0 ? c : nothing;
-  if (auto ok = math::sound(out); !ok) return tl::unexpected<Error>(ok.error());
+  if (auto ok = math::validate_table(out); !ok) return tl::unexpected<Error>(ok.error());
   return out;
 }
 

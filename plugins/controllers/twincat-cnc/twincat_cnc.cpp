@@ -143,7 +143,7 @@ Expected<LoadedTable> cross(const List& list, const std::vector<controllers::Kno
     return fail("kw.crosscomp.last_index is not that of the last entry");
   for (double& x : t.position[0]) x *= 1e-7;
   for (double& v : t.plus) v *= sign * 1e-7;
-  if (auto ok = math::sound(t); !ok) return tl::unexpected<Error>(ok.error());
+  if (auto ok = math::validate_table(t); !ok) return tl::unexpected<Error>(ok.error());
   return t;
 }
 

@@ -143,7 +143,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
       }
     }
   for (const LoadedTable& one : tables)
-    if (auto ok = math::sound(one); !ok) return tl::unexpected<Error>(ok.error());
+    if (auto ok = math::validate_table(one); !ok) return tl::unexpected<Error>(ok.error());
   return tables.empty() ? Expected<std::vector<LoadedTable>>(fail("no block of errors")) : tables;
 }
 

@@ -34,7 +34,7 @@ std::vector<std::string> of(const Observations& o) {
 
 Expected<Effect::Columns> centre(const Observations& o, const Axis&, const std::vector<double>&) {
   const auto e = across(o);
-  if (e.empty()) return fail("centre: wanted centres of a ball");
+  if (e.empty()) return fail("centre: expected centres of a ball");
   Effect::Columns out(2, std::vector<double>(o.size()));
   for (std::size_t i = 0; i < o.size(); ++i)
     for (std::size_t k = 0; k < 2; ++k) out[k][i] = o.sense_of(i)[e[k]];
@@ -44,7 +44,7 @@ Expected<Effect::Columns> centre(const Observations& o, const Axis&, const std::
 Expected<Effect::Columns> direction(const Observations& o, const Axis&,
                                     const std::vector<double>&) {
   const auto e = across(o);
-  if (e.empty()) return fail("direction: wanted centres of a ball");
+  if (e.empty()) return fail("direction: expected centres of a ball");
   const SpaceReadings s = space_of(o);
   Effect::Columns out(2, std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i)

@@ -28,7 +28,8 @@ static WhyNot why_not(const Observations& o, const Axis& axis) {
 
 static Expected<Effect::Columns> growth(const Observations& o, const Axis& axis,
                                         const std::vector<double>& shape) {
-  if (shape.size() != 1 || !std::isfinite(shape[0])) return fail("day-wave: wanted a fixed point");
+  if (shape.size() != 1 || !std::isfinite(shape[0]))
+    return fail("day-wave: expected a fixed point");
   const double fixed = shape[0];
   return columns_of(
       o, axis,

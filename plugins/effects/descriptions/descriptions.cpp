@@ -70,7 +70,7 @@ static std::vector<double> knots(const Observations& o, const Axis& axis) {
 static Expected<Effect::Columns> of_time(const Observations& o, const Axis& axis,
                                          const std::vector<double>& shape) {
   if (shape.size() != 1 || !(shape[0] >= 2.0 && shape[0] <= 1000.0))
-    return fail("free-time: wanted a number of knots, 2 to 1000");
+    return fail("free-time: expected a number of knots, 2 to 1000");
   const auto r = readings_of(o, axis);
   if (!r) return fail(r.error());
   const auto knots = static_cast<std::size_t>(std::lround(shape[0]));

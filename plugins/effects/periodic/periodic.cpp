@@ -51,7 +51,7 @@ static bool applies(const Observations& o, const Axis& axis) {
 
 static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
                                          const std::vector<double>& shape) {
-  if (shape.size() != 1 || !(shape[0] > 0.0)) return fail("periodic: wanted a period above 0");
+  if (shape.size() != 1 || !(shape[0] > 0.0)) return fail("periodic: expected a period above 0");
   const double w = 2.0 * std::numbers::pi / shape[0];
   return columns_of(
       o, axis, [w](const AxisReadings& r, std::size_t i) { return std::sin(w * r.p[i]); },

@@ -28,7 +28,7 @@ static bool applies(const Observations& o, const Axis& axis) { return !grid(o, a
 static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
                                          const std::vector<double>& shape) {
   if (shape.size() != 1 || !(shape[0] >= 2.0 && shape[0] <= 1000.0))
-    return fail("pitch-curve: wanted a number of knots, 2 to 1000");
+    return fail("pitch-curve: expected a number of knots, 2 to 1000");
   const auto r = readings_of(o, axis);
   if (!r) return fail(r.error());
   auto columns = math::smooth_basis(r->p, targets_of(*r), static_cast<int>(std::lround(shape[0])));

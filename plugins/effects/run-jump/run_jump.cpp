@@ -52,7 +52,7 @@ static std::vector<double> grid(const Observations& o, const Axis& axis) {
 
 static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
                                          const std::vector<double>& shape) {
-  if (shape.size() != 1) return fail("run-jump: wanted an instant");
+  if (shape.size() != 1) return fail("run-jump: expected an instant");
   return columns_of(o, axis, [instant = shape[0]](const AxisReadings& r, std::size_t i) {
     return r.t[i] > instant ? 1.0 : 0.0;
   });

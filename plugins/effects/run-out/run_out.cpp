@@ -25,8 +25,8 @@ std::vector<double> grid(const Observations& o, const Axis&) {
 Expected<Effect::Columns> columns(const Observations& o, const std::vector<double>& shape,
                                   std::uint32_t line) {
   if (shape.size() != 1 || !(shape[0] >= 1.0 && shape[0] <= 100.0))
-    return fail("run-out: wanted a number of waves, 1 to 100");
-  if (!of_ball_centres(o)) return fail("run-out: wanted centres of a ball");
+    return fail("run-out: expected a number of waves, 1 to 100");
+  if (!of_ball_centres(o)) return fail("run-out: expected centres of a ball");
   const auto waves = static_cast<std::size_t>(std::lround(shape[0]));
   Effect::Columns out(2 * waves, std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.line.size(); ++i) {

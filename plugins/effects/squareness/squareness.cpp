@@ -36,7 +36,7 @@ Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
       out[0][i] = pair.sign * s.lever(pair.lever, i) * o.sense_of(i)[pair.error];
     return out;
   }
-  return fail("squareness: wanted XY, XZ or YZ, found " + axis.name);
+  return fail("squareness: expected XY, XZ or YZ, found " + axis.name);
 }
 
 }  // namespace

@@ -37,9 +37,9 @@ Expected<Effect::Columns> columns(const Observations& o, const Axis& place,
                                   const std::vector<double>& shape) {
   const Name name = read(place.name);
   if (name.axis > 2 || name.error > 2)
-    return fail("straightness: wanted EYX, EZX, EXY, EZY, EXZ or EYZ, found " + place.name);
+    return fail("straightness: expected EYX, EZX, EXY, EZY, EXZ or EYZ, found " + place.name);
   if (shape.size() != 1 || !(shape[0] >= 2.0 && shape[0] <= 1000.0))
-    return fail("straightness: wanted a number of knots, 2 to 1000");
+    return fail("straightness: expected a number of knots, 2 to 1000");
   const SpaceReadings s = space_of(o);
   auto out = math::smooth_basis(finite_or_zero(s.r[name.axis]), places_of(s, name.axis),
                                 static_cast<int>(std::lround(shape[0])));

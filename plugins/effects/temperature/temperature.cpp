@@ -34,7 +34,7 @@ static WhyNot why_not(const Observations& o, const Axis& axis) {
 static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
                                          const std::vector<double>& shape) {
   if (shape.size() != 1 || !std::isfinite(shape[0]))
-    return fail("temperature: wanted a fixed point");
+    return fail("temperature: expected a fixed point");
   return columns_of(o, axis, [fixed = shape[0]](const AxisReadings& r, std::size_t i) {
     return (r.p[i] - fixed) * r.K[i];
   });

@@ -28,7 +28,7 @@ static std::vector<double> grid(const Observations& o, const Axis& axis) {
 static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
                                          const std::vector<double>& shape) {
   if (shape.size() != 2 || !(shape[0] > 0.0) || !std::isfinite(shape[1]))
-    return fail("warm-up: wanted a time constant above 0 and a fixed point");
+    return fail("warm-up: expected a time constant above 0 and a fixed point");
   return columns_of(o, axis,
                     [tau = shape[0], fixed = shape[1]](const AxisReadings& r, std::size_t i) {
                       return -(r.p[i] - fixed) * std::expm1(-r.t[i] / tau);

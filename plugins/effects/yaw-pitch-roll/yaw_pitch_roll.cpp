@@ -171,10 +171,10 @@ Effect effect_of(const char* kind, const char* summary) {
                      const std::vector<double>& shape) -> Expected<Effect::Columns> {
     const Angle* a = angle_of(kind, place.name);
     if (a == nullptr)
-      return fail(std::string(kind) + ": wanted X or Y, whose angles have a lever; found " +
+      return fail(std::string(kind) + ": expected X or Y, whose angles have a lever; found " +
                   place.name);
     if (shape.size() != 1 || !(shape[0] >= 0.0 && shape[0] <= 1000.0))
-      return fail(std::string(kind) + ": wanted a number of knots, 0 to 1000");
+      return fail(std::string(kind) + ": expected a number of knots, 0 to 1000");
     return columns(o, *a, static_cast<int>(std::lround(shape[0])));
   };
   e.of = [kind](const Observations& o) {

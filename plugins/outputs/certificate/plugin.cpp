@@ -54,7 +54,7 @@ Expected<void> mark_customer_data(const OutputInput& in, Document& document) {
   mark(document.first_foot, keys);
   if (keys.empty()) return {};
   Error error{
-      "certificate.customer_data: wanted keys whose values are printed, such as "
+      "certificate.customer_data: expected keys whose values are printed, such as "
       "\"machine.serial\", found \"" +
       keys.front() + "\""};
   error.key = "certificate.customer_data";
@@ -93,7 +93,7 @@ Expected<OutputResult> write(const OutputInput& in) {
     return fail(sound.error());
   const auto document = document_of(in, *look, **fonts);
   if (!document) return fail(document.error());
-  auto bytes = pdf(*document, **fonts);
+  auto bytes = pdf_bytes(*document, **fonts);
   if (!bytes) return fail(bytes.error());
   OutputResult result;
   result.artifacts.push_back({"certificate.pdf", std::move(*bytes), true});

@@ -31,7 +31,7 @@ Expected<void> check_name(const std::string& axis, const Dialect& dialect) {
   const auto letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
   if (letter(axis.front()) && file_part(axis) == axis && (axis.size() == 1 || dialect.long_names))
     return {};
-  Error error{"axis " + axis + ": wanted " +
+  Error error{"axis " + axis + ": expected " +
               (dialect.long_names ? "letters and digits" : "a single letter") +
               " for a name in a program; option axes leaves it out"};
   error.key = "machine.axes." + axis;

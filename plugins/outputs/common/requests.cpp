@@ -12,7 +12,7 @@ namespace nonio::programs {
 namespace {
 
 using math::MeasuringPath;
-using math::MeasuringWish;
+using math::MeasuringRequest;
 
 constexpr double mm = 1e-3;
 constexpr double deg = 1.0 / deg_per_rad;
@@ -82,9 +82,9 @@ class Requests {
 
  private:
   static Expected<void> unknown(const std::string& what) {
-    return wrong(
-        "programs",
-        "programs: wanted axes, diagonals, half-diagonal, step-diagonals; found \"" + what + "\"");
+    return wrong("programs",
+                 "programs: expected axes, diagonals, half-diagonal, step-diagonals; found \"" +
+                     what + "\"");
   }
 
   double over_travel(bool rotary) const {
@@ -96,7 +96,7 @@ class Requests {
     const Axis* a = in_.campaign.machine.axis(name);
     if (a == nullptr || a->rotary || !a->travel)
       return wrong("machine.axes." + name,
-                   "axis " + name + ": wanted a linear axis with its travel");
+                   "axis " + name + ": expected a linear axis with its travel");
     return a;
   }
 
@@ -115,7 +115,7 @@ class Requests {
   Expected<void> bounded(const std::string& name, double stops) const {
     const double readings = stops * wish_.runs * (wish_.both_directions ? 2.0 : 1.0);
     if (readings <= most_readings) return {};
-    return wrong("runs", name + ": " + number(readings) + " readings, wanted at most " +
+    return wrong("runs", name + ": " + number(readings) + " readings, expected at most " +
                              number(most_readings) + ": fewer runs or larger intervals");
   }
 
@@ -132,7 +132,7 @@ class Requests {
       any = true;
       if (auto done = axis_program(a); !done) return done;
     }
-    if (!any) return wrong("machine.axes", "no axis has a travel: wanted travel = [from, to]");
+    if (!any) return wrong("machine.axes", "no axis has a travel: expected travel = [from, to]");
     return {};
   }
 
@@ -327,7 +327,7 @@ class Requests {
   const OutputInput& in_;
   const Settings& o_;
   std::optional<Plan> plan_;
-  MeasuringWish wish_;
+  MeasuringRequest wish_;
   std::vector<Program> programs_;
 };
 

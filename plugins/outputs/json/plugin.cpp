@@ -123,7 +123,8 @@ void readings(Object& to, const Observations& obs) {
   to.counts("source_line", obs.source_line);
 }
 
-void measurement(std::string& out, const Measurement& m, const Observations& obs) {
+void measurement(std::string& out, const Measurement& m, const Observations& obs,
+                 const Templates& templates) {
   Object object(out, "  ");
   object.text("id", m.id);
   object.text("kind", m.kind);
@@ -139,8 +140,9 @@ void measurement(std::string& out, const Measurement& m, const Observations& obs
   }
   append_count(object.member("missing"), obs.missing);
   if (!obs.notes.empty())
-    object.list("notes", obs.notes.size(),
-                [&](std::string& to, std::size_t i) { to += json_text(obs.notes[i].english); });
+    object.list("notes", obs.notes.size(), [&](std::string& to, std::size_t i) {
+      to += json_text(remark_text(templates, "en", obs.notes[i]));
+    });
   Object columns(object.member("readings"), "   ");
   readings(columns, obs);
   columns.close();
@@ -159,7 +161,7 @@ Expected<OutputResult> write(const OutputInput& input) {
   file.member("measurements") += '[';
   for (std::size_t i = 0; i < measurements.size(); ++i) {
     out += i == 0 ? "\n  " : ",\n  ";
-    measurement(out, measurements[i], input.observations[i]);
+    measurement(out, measurements[i], input.observations[i], input.templates);
   }
   out += "\n ]";
   file.close();

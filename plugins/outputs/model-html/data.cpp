@@ -8,6 +8,7 @@
 #include "escape.h"
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/splitmix64.h"
 #include "page.h"
 
 namespace nonio::model_html {
@@ -68,14 +69,8 @@ std::string column(const std::vector<T>& values, const std::vector<std::size_t>&
   });
 }
 
-/// A sample by this order falls in step with nothing that a test cycle repeats (the finaliser of
-/// SplitMix64: Steele, Lea, Flood, OOPSLA 2014).
-std::uint64_t scrambled(std::size_t row) {
-  std::uint64_t z = row + 0x9e3779b97f4a7c15U;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
-  return z ^ (z >> 31);
-}
+/// A sample by this order falls in step with nothing that a test cycle repeats.
+std::uint64_t scrambled(std::size_t row) { return SplitMix64::mixed(row); }
 
 std::string words_of(const Source& source) {
   Object out;

@@ -12,7 +12,4 @@ std::string html(std::string_view text);
 /// Text as a string of JSON that may stand in a <script>: nothing in it can end the element.
 std::string json(std::string_view text);
 
-/// "sha256-..." of a Content-Security-Policy, from a digest in hexadecimal.
-std::string csp_source(std::string_view sha256);
-
 }  // namespace nonio::model_html

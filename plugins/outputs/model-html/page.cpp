@@ -31,7 +31,7 @@ std::string title_of(const Source& source) {
 std::string head(const Source& source) {
   return "<head>\n<meta charset=\"utf-8\">\n"
          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src '" +
-         csp_source(script_sha256) + "'; style-src '" + csp_source(style_sha256) +
+         std::string(script_source) + "'; style-src '" + std::string(style_source) +
          "'; base-uri 'none'; form-action 'none'\">\n"
          "<meta name=\"color-scheme\" content=\"light dark\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" +

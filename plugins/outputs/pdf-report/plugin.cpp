@@ -30,7 +30,7 @@ Expected<OutputResult> write(const OutputInput& in) {
   const reports::Document document = compose({{in, *look, words, **fonts}, pictures});
   for (const Wording* asked : {&words, &pictures})
     if (const auto complete = asked->complete(); !complete) return fail(complete.error());
-  auto bytes = reports::pdf(document, **fonts);
+  auto bytes = reports::pdf_bytes(document, **fonts);
   if (!bytes) return fail(bytes.error());
   OutputResult result;
   result.artifacts.push_back({language == "en" ? "report.pdf" : "report-" + language + ".pdf",

@@ -112,7 +112,7 @@ Expected<Remark> feature_note(const Feature& feature, const Contents& contents) 
   const std::string name = plain(e.attribute("NAME")), type = e.attribute("DT");
   const auto unit = units().find(type);
   if (name.empty() || (unit == units().end() && !type.empty()))
-    return fail(at_line(e.line, "wanted a FEATURE with NAME and a known DT (unit), found NAME " +
+    return fail(at_line(e.line, "expected a FEATURE with NAME and a known DT (unit), found NAME " +
                                     shown(name) + " and DT " + shown(type)));
   if (!type.empty()) {
     Numbers numbers(true);
@@ -141,7 +141,7 @@ Expected<Observations> read_file(const ReadInput& input) {
       input.bytes,
       [&](const Element& e, const std::vector<Element>& within) { take(e, within, contents); });
   if (!scanned) return fail(scanned.error());
-  if (contents.features.empty()) return fail("wanted results (elements FEATURE), found none");
+  if (contents.features.empty()) return fail("expected results (elements FEATURE), found none");
   std::sort(contents.runs.begin(), contents.runs.end());
   Observations obs;
   obs.measurement = input.measurement.id;

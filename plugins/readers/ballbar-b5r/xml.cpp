@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "xml.h"
 
-#include <algorithm>
-#include <charconv>
+#include <libxml/parser.h>
+#include <libxml/parserInternals.h>
+#include <libxml/xmlerror.h>
 
-#include "nonio/sdk/fields.h"
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+
 #include "nonio/sdk/text.h"
 #include "runs.h"
 
@@ -13,208 +19,99 @@ using namespace reading;
 
 namespace {
 
-constexpr std::size_t deepest = 200;
-constexpr std::string_view white = " \t\r\n";
-
+/// Without white space at the ends.
 std::string_view stripped(std::string_view text) {
+  constexpr std::string_view white = " \t\r\n";
   const std::size_t first = text.find_first_not_of(white);
   if (first == text.npos) return {};
   return text.substr(first, text.find_last_not_of(white) - first + 1);
 }
 
-bool name_character(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-         c == '-' || c == '.' || c == ':' || byte >= 0x80;
+std::string_view view(const xmlChar* text) {
+  return text == nullptr ? std::string_view() : reinterpret_cast<const char*>(text);
 }
 
-class Scanner {
- public:
-  Scanner(std::string_view bytes, const TakeElement& take) : bytes_(bytes), take_(take) {
-    at_ = bytes_.size() - without_mark(bytes_).size();
-  }
+std::string qualified(const xmlChar* prefix, const xmlChar* name) {
+  return prefix == nullptr ? std::string(view(name))
+                           : std::string(view(prefix)) + ":" + std::string(view(name));
+}
 
-  Expected<void> scan() {
-    while (at_ < bytes_.size()) {
-      const std::size_t open = std::min(bytes_.find('<', at_), bytes_.size());
-      if (auto ok = text(bytes_.substr(at_, open - at_)); !ok) return ok;
-      at_ = open;
-      if (at_ == bytes_.size()) break;
-      if (auto ok = markup(); !ok) return ok;
-    }
-    if (!open_.empty()) return wrong("</" + open_.back().name + "> is missing; was the file cut?");
-    if (!root_) return wrong("wanted an XML document, found none");
-    return {};
-  }
+/// What libxml2 calls back for one document; its first complaint counts, what follows comes of it.
+struct Handler {
+  const TakeElement& take;
+  xmlParserCtxtPtr parser = nullptr;
+  std::vector<Element> open = {};
+  std::uint64_t elements = 0;
+  std::optional<Error> error = std::nullopt;
 
- private:
-  tl::unexpected<Error> wrong(const std::string& what) const {
-    const auto line =
-        1 + std::count(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
-    return fail(at_line(static_cast<std::uint64_t>(line), what));
+  void refuse(Error why) {
+    if (!error) error = std::move(why);
+    xmlStopParser(parser);
   }
-  bool next_is(std::string_view what) const { return bytes_.substr(at_).starts_with(what); }
-
-  /// Goes behind `end`; an error if it does not come.
-  Expected<std::string_view> until(std::string_view end) {
-    const std::size_t found = bytes_.find(end, at_);
-    if (found == bytes_.npos) return wrong("wanted " + shown(end) + ", found the end of the file");
-    const std::string_view between = bytes_.substr(at_, found - at_);
-    at_ = found + end.size();
-    return between;
-  }
-
-  Expected<void> markup() {
-    if (next_is("<!--")) return skip("-->");
-    if (next_is("<?")) return skip("?>");
-    if (next_is("<![CDATA[")) {
-      at_ += 9;
-      const auto inside = until("]]>");
-      if (!inside) return fail(inside.error());
-      if (open_.empty()) return wrong("wanted text only inside elements");
-      open_.back().text += *inside;
-      return {};
-    }
-    if (next_is("<!")) return wrong("wanted no document type in a measurement's file");
-    return next_is("</") ? close() : open();
-  }
-  Expected<void> skip(std::string_view end) {
-    const auto between = until(end);
-    return between ? Expected<void>{} : fail(between.error());
-  }
-
-  std::string name() {
-    const std::size_t from = at_;
-    while (at_ < bytes_.size() && name_character(bytes_[at_])) ++at_;
-    return std::string(bytes_.substr(from, at_ - from));
-  }
-  void blanks() {
-    while (at_ < bytes_.size() && white.find(bytes_[at_]) != white.npos) ++at_;
-  }
-
-  Expected<void> open() {
-    Element element;
-    element.number = ++elements_;
-    element.line = static_cast<std::uint64_t>(
-        1 +
-        std::count(bytes_.begin() + static_cast<std::ptrdiff_t>(counted_),
-                   bytes_.begin() + static_cast<std::ptrdiff_t>(at_), '\n') +
-        static_cast<std::ptrdiff_t>(lines_));
-    lines_ = element.line - 1;
-    counted_ = at_;
-    ++at_;
-    element.name = name();
-    if (element.name.empty()) return wrong("wanted the name of an element behind \"<\"");
-    if (open_.empty() && root_) return wrong("wanted one root element, found another");
-    root_ = true;
-    if (open_.size() == deepest) return wrong("elements are nested too deep");
-    for (;;) {
-      blanks();
-      if (next_is("/>") || next_is(">")) break;
-      if (auto ok = attribute(element); !ok) return ok;
-    }
-    const bool empty = next_is("/>");
-    at_ += empty ? 2 : 1;
-    open_.push_back(std::move(element));
-    if (empty) finish();
-    return {};
-  }
-
-  Expected<void> attribute(Element& element) {
-    const std::string key = name();
-    blanks();
-    if (key.empty() || !next_is("=")) return wrong("wanted NAME=\"VALUE\" in an element");
-    ++at_;
-    blanks();
-    if (!next_is("\"") && !next_is("'")) return wrong("wanted a value in quotes");
-    const std::string_view quote = bytes_.substr(at_++, 1);
-    const auto value = until(quote);
-    if (!value) return fail(value.error());
-    auto plain = resolved(*value);
-    if (!plain) return fail(plain.error());
-    if (!element.attribute(key).empty())
-      return wrong("attribute " + shown(key) + " is there twice");
-    element.attributes.emplace_back(key, std::move(*plain));
-    return {};
-  }
-
-  Expected<void> close() {
-    at_ += 2;
-    const std::string closed = name();
-    blanks();
-    if (!next_is(">")) return wrong("wanted > behind </" + closed);
-    if (open_.empty() || open_.back().name != closed)
-      return wrong("wanted " + (open_.empty() ? "no </...>" : "</" + open_.back().name + ">") +
-                   ", found " + shown("</" + closed + ">"));
-    ++at_;
-    finish();
-    return {};
-  }
-  void finish() {
-    Element element = std::move(open_.back());
-    open_.pop_back();
-    element.text = std::string(stripped(element.text));
-    take_(element, open_);
-  }
-
-  Expected<void> text(std::string_view raw) {
-    if (open_.empty()) {
-      if (stripped(raw).empty()) return {};
-      return wrong("wanted text only inside elements, found " + shown(stripped(raw)));
-    }
-    auto plain = resolved(raw);
-    if (!plain) return fail(plain.error());
-    open_.back().text += *plain;
-    return {};
-  }
-
-  Expected<std::string> resolved(std::string_view raw) const {
-    std::string out;
-    for (std::size_t i = 0; i < raw.size(); ++i) {
-      if (raw[i] != '&') {
-        out += raw[i];
-        continue;
-      }
-      const std::size_t end = raw.find(';', i);
-      const std::string_view entity = raw.substr(i + 1, std::min(end, raw.size()) - i - 1);
-      if (end == raw.npos || !append_entity(out, entity))
-        return wrong("wanted one of &lt; &gt; &amp; &quot; &apos; or a character's number, found " +
-                     shown("&" + std::string(entity.substr(0, 20))));
-      i = end;
-    }
-    return out;
-  }
-  static bool append_entity(std::string& out, std::string_view entity) {
-    static constexpr std::pair<std::string_view, char> known[] = {
-        {"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}};
-    for (const auto& [name, c] : known)
-      if (entity == name) {
-        out += c;
-        return true;
-      }
-    if (!entity.starts_with('#')) return false;
-    const bool hex = entity.substr(1).starts_with('x');
-    const std::string_view digits = entity.substr(hex ? 2 : 1);
-    std::uint32_t code = 0;
-    const auto [end, error] =
-        std::from_chars(digits.data(), digits.data() + digits.size(), code, hex ? 16 : 10);
-    if (error != std::errc{} || end != digits.data() + digits.size() || digits.empty())
-      return false;
-    if (code < 0x20 || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000))
-      return code == 9 || code == 10 || code == 13;
-    append_utf8(out, code);
-    return true;
-  }
-
-  std::string_view bytes_;
-  const TakeElement& take_;
-  std::size_t at_ = 0;
-  std::size_t counted_ = 0;  ///< up to here lines were counted
-  std::uint64_t lines_ = 0;  ///< ends of lines before that
-  bool root_ = false;
-  std::uint64_t elements_ = 0;
-  std::vector<Element> open_;
 };
+
+Handler& handler(void* data) { return *static_cast<Handler*>(data); }
+
+void on_start(void* data, const xmlChar* name, const xmlChar* prefix, const xmlChar*, int,
+              const xmlChar**, int count, int, const xmlChar** attributes) {
+  Handler& h = handler(data);
+  Element element;
+  element.name = qualified(prefix, name);
+  element.number = ++h.elements;
+  element.line = static_cast<std::uint64_t>(xmlSAX2GetLineNumber(h.parser));
+  for (int i = 0; i < count; ++i) {  // five pointers each: name, prefix, URI, value from and to
+    const xmlChar** const a = attributes + std::ptrdiff_t{5} * i;
+    element.attributes.emplace_back(
+        qualified(a[1], a[0]), std::string(view(a[3]), 0, static_cast<std::size_t>(a[4] - a[3])));
+  }
+  h.open.push_back(std::move(element));
+}
+
+void on_end(void* data, const xmlChar*, const xmlChar*, const xmlChar*) {
+  Handler& h = handler(data);
+  if (h.open.empty()) return;
+  Element element = std::move(h.open.back());
+  h.open.pop_back();
+  element.text = std::string(stripped(element.text));
+  h.take(element, h.open);
+}
+
+void on_text(void* data, const xmlChar* text, int size) {
+  Handler& h = handler(data);
+  if (!h.open.empty()) h.open.back().text.append(view(text).data(), static_cast<std::size_t>(size));
+}
+
+void on_document_type(void* data, const xmlChar*, const xmlChar*, const xmlChar*) {
+  Handler& h = handler(data);
+  h.refuse(at_line(static_cast<std::uint64_t>(xmlSAX2GetLineNumber(h.parser)),
+                   "expected no document type in a measurement's file"));
+}
+
+void on_error(void* data, xmlErrorPtr found) {
+  Handler& h = handler(data);
+  if (h.error || found->level < XML_ERR_ERROR || found->domain == XML_FROM_NAMESPACE) return;
+  const bool cut = found->code == XML_ERR_TAG_NOT_FINISHED || found->code == XML_ERR_DOCUMENT_END ||
+                   found->code == XML_ERR_DOCUMENT_EMPTY;
+  std::string what(stripped(found->message == nullptr ? "" : found->message));
+  std::replace_if(
+      what.begin(), what.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  h.error =
+      at_line(static_cast<std::uint64_t>(std::max(found->line, 1)),
+              "expected well-formed XML, found: " + what + (cut ? "; was the file cut?" : ""));
+}
+
+xmlSAXHandler callbacks() {
+  xmlSAXHandler sax{};
+  sax.initialized = XML_SAX2_MAGIC;
+  sax.startElementNs = on_start;
+  sax.endElementNs = on_end;
+  sax.characters = on_text;
+  sax.ignorableWhitespace = on_text;
+  sax.cdataBlock = on_text;
+  sax.internalSubset = on_document_type;
+  sax.serror = on_error;
+  return sax;
+}
 
 }  // namespace
 
@@ -225,9 +122,24 @@ std::string Element::attribute(std::string_view key) const {
 }
 
 Expected<void> for_each_element(std::string_view bytes, const TakeElement& take) {
-  if (bytes.find('\0') != bytes.npos || !is_utf8(bytes))
-    return fail("wanted XML in UTF-8, found other bytes; is the file UTF-16?");
-  return Scanner(bytes, take).scan();
+  if (bytes.find('\0') != bytes.npos || !is_utf8(bytes) ||
+      bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    return fail("expected XML in UTF-8, found other bytes; is the file UTF-16?");
+  if (bytes.empty()) return fail("expected an XML document, found an empty file");
+  const std::unique_ptr<xmlParserCtxt, decltype(&xmlFreeParserCtxt)> parser(
+      xmlCreateMemoryParserCtxt(bytes.data(), static_cast<int>(bytes.size())), xmlFreeParserCtxt);
+  if (!parser) return fail("there is no memory for a parser of XML");
+  Handler h{take, parser.get()};
+  xmlSAXHandler sax = callbacks();
+  *parser->sax = sax;
+  parser->userData = &h;
+  // No file and no address is opened, whatever the document says; without XML_PARSE_HUGE depth
+  // (256) and sizes have the library's limits.
+  xmlCtxtUseOptions(parser.get(), XML_PARSE_NONET | XML_PARSE_IGNORE_ENC);
+  xmlParseDocument(parser.get());
+  if (h.error) return fail(std::move(*h.error));
+  if (parser->wellFormed == 0) return fail("expected well-formed XML, found none");
+  return {};
 }
 
 }  // namespace nonio::ballbar

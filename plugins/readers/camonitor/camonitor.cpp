@@ -33,7 +33,7 @@ Expected<double> unit_of_option(const ReadInput& input, const char* option, bool
   const auto& units = rotary ? angular : linear;
   const auto found = units.find(input.options.text(option));
   if (found != units.end()) return found->second;
-  return fail(of_option(option, std::string("wanted ") +
+  return fail(of_option(option, std::string("expected ") +
                                     (rotary ? "deg, rad or mrad" : "mm, um or m") +
                                     " for this axis, found \"" + input.options.text(option) +
                                     "\"; a log does not say its units"));
@@ -52,10 +52,11 @@ Expected<Wiring> wiring_of(const ReadInput& input, bool rotary) {
       if (const auto entry = entry_of(line); entry && is_utf8(entry->pv)) known.emplace(entry->pv);
     std::string list;
     for (const std::string& pv : known) list += (list.empty() ? "" : ", ") + shown(pv);
-    return fail(of_option(option, "wanted the name of a PV, found none; in the log: " + list));
+    return fail(of_option(option, "expected the name of a PV, found none; in the log: " + list));
   }
   if (w.target == w.reference || w.target == w.test || w.reference == w.test)
-    return fail(of_option("target_pv", "wanted three different PVs as target, reference and test"));
+    return fail(
+        of_option("target_pv", "expected three different PVs as target, reference and test"));
   const auto target = unit_of_option(input, "target_unit", rotary),
              reference = unit_of_option(input, "reference_unit", rotary);
   if (!target) return fail(target.error());
@@ -64,7 +65,7 @@ Expected<Wiring> wiring_of(const ReadInput& input, bool rotary) {
   w.reference_unit = *reference;
   w.gain = input.options.number("reference_gain", 1.0);
   if (!(std::fabs(w.gain) > 0.0) || !std::isfinite(w.gain))
-    return fail(of_option("reference_gain", "wanted a number other than 0"));
+    return fail(of_option("reference_gain", "expected a number other than 0"));
   return w;
 }
 
@@ -115,17 +116,18 @@ class Sampler {
 
   Expected<void> change(const Entry& e, double value) {
     if (!(std::fabs(value) < 1e9) || value != std::floor(value))
-      return fail(at_line(e.line, "wanted a whole test number, found " + shown(e.value)));
+      return fail(at_line(e.line, "expected a whole test number, found " + shown(e.value)));
     const auto number = static_cast<std::int64_t>(value);
     if (number > 9999 || number <= -1000)
       return fail(at_line(e.line,
-                          "wanted a test number of direction, cycle (1 to 9) and position "
+                          "expected a test number of direction, cycle (1 to 9) and position "
                           "(01 to 99), found " +
                               shown(e.value)));
     const Step step = step_of(number);
     if (step.direction == 0) return {};
     if (reference_line_ == 0 || std::isnan(target_))
-      return fail(at_line(e.line, "wanted a target and a reference before the first test number"));
+      return fail(
+          at_line(e.line, "expected a target and a reference before the first test number"));
     samples_.push_back({step, target_, reference_, reference_line_, reference_time_});
     return {};
   }
@@ -145,7 +147,7 @@ Expected<std::map<std::uint32_t, double>> targets_of(const std::vector<Sample>& 
     const auto [known, fresh] = targets.try_emplace(s.step.position, s.target);
     if (!fresh && known->second != s.target)
       return fail(at_line(s.line, "position " + std::to_string(s.step.position) +
-                                      ": wanted the same target in every pass, found " +
+                                      ": expected the same target in every pass, found " +
                                       short_text(s.target, 9) + " after " +
                                       short_text(known->second, 9)));
   }
@@ -158,7 +160,7 @@ Expected<void> whole(const std::vector<Sample>& samples, std::size_t positions) 
   for (const Sample& s : samples) ++passes[{s.step.direction, s.step.cycle}];
   for (const auto& [pass, count] : passes)
     if (count != positions)
-      return fail("wanted " + std::to_string(positions) + " positions " +
+      return fail("expected " + std::to_string(positions) + " positions " +
                   (pass.first > 0 ? "forward" : "backward") + " in cycle " +
                   std::to_string(pass.second) + ", found " + std::to_string(count) +
                   "; was the log cut?");
@@ -182,7 +184,7 @@ Expected<void> check_line(const std::vector<Sample>& samples, const Wiring& w, O
                               "); if the sensor stood the other way round, state a negative one"));
   if (std::fabs(line.slope - 1.0) > 0.1)
     return fail(of_option("reference_gain",
-                          "wanted a reference that goes as far as the targets, "
+                          "expected a reference that goes as far as the targets, "
                           "found " +
                               short_text(line.slope, 6) +
                               " times as far; is reference_unit right?"));
@@ -201,14 +203,14 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   const auto samples = Sampler(*wiring).samples(*entries);
   if (!samples) return fail(samples.error());
   if (samples->empty())
-    return fail("wanted test numbers (1101 ...) of PV " + wiring->test + ", found none");
+    return fail("expected test numbers (1101 ...) of PV " + wiring->test + ", found none");
   const auto targets = targets_of(*samples);
   if (!targets) return fail(targets.error());
   if (auto ok = whole(*samples, targets->size()); !ok) return fail(ok.error());
   std::vector<double> listed;
   for (const auto& [position, target] : *targets) listed.push_back(target);
   const int sense = sense_of(listed);
-  if (sense == 0) return fail("wanted two targets or more that only rise or only fall");
+  if (sense == 0) return fail("expected two targets or more that only rise or only fall");
   Runs runs(input, axis, axis.rotary);
   if (auto ok = check_line(*samples, *wiring, runs.observations(), axis.rotary); !ok)
     return fail(ok.error());

@@ -71,7 +71,7 @@ Expected<std::vector<Entry>> entries_of(std::string_view bytes,
     auto entry = entry_of(line);
     if (!entry)
       return fail(at_line(lines.number(),
-                          "wanted PV, date, time and value, such as \"AXIS:Pos 2022-04-07 "
+                          "expected PV, date, time and value, such as \"AXIS:Pos 2022-04-07 "
                           "08:23:29.748369 33.46\"; found " +
                               shown(line)));
     entry->line = lines.number();

@@ -178,33 +178,48 @@ std::optional<std::string> other_axis(const std::vector<Word>& words, const Read
 
 }  // namespace
 
-void doubt_comments(const ReadInput& input, const Header& header, const Expectation& expectation,
-                    Observations& obs) {
-  const std::size_t foot =
-      input.bytes.size() > 2 * head_and_foot ? input.bytes.size() - head_and_foot : head_and_foot;
-  Lines lines(input.bytes);
-  std::string_view line;
+Ends ends_of(std::string_view bytes) {
+  if (bytes.size() <= 2 * head_and_foot) return {std::string(bytes), {}};
+  const std::size_t after_head = bytes.rfind('\n', head_and_foot - 1) + 1;  // npos + 1 is 0
+  const std::size_t foot = bytes.rfind('\n', bytes.size() - head_and_foot - 2) + 1;
+  return {std::string(bytes.substr(0, after_head)),
+          std::string(bytes.substr(std::max(after_head, foot)))};
+}
+
+void doubt_comments(const ReadInput& input, const Ends& ends, std::uint64_t last_line,
+                    const Header& header, const Expectation& expectation, Observations& obs) {
   bool unit = false, axis = false;
-  while (!(unit && axis) && lines.next(line)) {
-    if (lines.offset() > head_and_foot && lines.offset() < foot) continue;
-    if (content_of(line) != Content::comment) continue;
-    const auto words = words_of(line.substr(line.find('#') + 1));
-    const std::string where = input.measurement.file + ":" + std::to_string(lines.number());
-    const auto add = [&](const char* id, const std::string& found, const std::string& expected) {
-      obs.doubts.push_back({.id = id,
-                            .attention = true,
-                            .texts = {{"where", where}, {"found", found}, {"expected", expected}}});
-    };
-    if (const auto wrong = unit ? std::nullopt : wrong_unit_in(words, header, expectation)) {
-      add("plausibility.comment-unit", std::string(wrong->unit), wrong->column);
-      unit = true;
+  const auto look = [&](std::string_view text, std::uint64_t before) {
+    Lines lines(text);
+    std::string_view line;
+    while (!(unit && axis) && lines.next(line)) {
+      if (content_of(line) != Content::comment) continue;
+      const auto words = words_of(line.substr(line.find('#') + 1));
+      const std::string where =
+          input.measurement.file + ":" + std::to_string(before + lines.number());
+      const auto add = [&](const char* id, const std::string& found, const std::string& expected) {
+        obs.doubts.push_back(
+            {.id = id,
+             .attention = true,
+             .texts = {{"where", where}, {"found", found}, {"expected", expected}}});
+      };
+      if (const auto wrong = unit ? std::nullopt : wrong_unit_in(words, header, expectation)) {
+        add("plausibility.comment-unit", std::string(wrong->unit), wrong->column);
+        unit = true;
+      }
+      if (const auto other = axis ? std::nullopt : other_axis(words, input)) {
+        add("plausibility.name-of-another", *other,
+            control_axis(input.campaign.machine, input.measurement));
+        axis = true;
+      }
     }
-    if (const auto other = axis ? std::nullopt : other_axis(words, input)) {
-      add("plausibility.name-of-another", *other,
-          control_axis(input.campaign.machine, input.measurement));
-      axis = true;
-    }
+  };
+  look(ends.head, 0);
+  Lines counted(ends.foot);
+  std::string_view line;
+  while (counted.next(line)) {
   }
+  look(ends.foot, last_line - counted.number());
 }
 
 }  // namespace nonio::csv

@@ -318,6 +318,7 @@ Expected<Observations> read_runs(const ReadInput& input) {
   const auto expectation = expectation_of(input);
   if (!expectation) return fail(expectation.error());
   Lines lines(input.bytes);
+  const Ends ends = ends_of(input.bytes);
   const auto in_file = [&](Error error, std::uint64_t line) {
     error.file = input.measurement.file;
     if (error.line == 0) error.line = line;
@@ -330,7 +331,7 @@ Expected<Observations> read_runs(const ReadInput& input) {
   if (auto ok = read_rows(input, lines, *header, rows); !ok)
     return in_file(ok.error(), lines.number());
   if (auto ok = rows.finish(); !ok) return in_file(ok.error(), 0);
-  doubt_comments(input, *header, *expectation, obs);
+  doubt_comments(input, ends, lines.number(), *header, *expectation, obs);
   return obs;
 }
 

@@ -57,13 +57,13 @@ class Parser {
       const auto a = assignment_of(line);
       if (!a)
         return fail(
-            at_line(lines.number(), "wanted NAME=VALUE or a comment, found " + shown(line)));
+            at_line(lines.number(), "expected NAME=VALUE or a comment, found " + shown(line)));
       if (auto ok = take(*a, lines.number()); !ok) return fail(ok.error());
     }
     // The tools end every line; a number that was cut would still be a number.
     if (!bytes.ends_with('\n'))
       return fail(at_line(lines.number(),
-                          "wanted an end of the last line, found none; was the "
+                          "expected an end of the last line, found none; was the "
                           "file cut?"));
     return std::move(out_);
   }
@@ -79,19 +79,19 @@ class Parser {
       const std::uint32_t most = a.name == "CYCLES" ? most_cycles : most_positions;
       const std::uint32_t n = whole_number(a.value, most);
       if (n == 0)
-        return fail(at_line(line, std::string(a.name) + ": wanted a whole number from 1 to " +
+        return fail(at_line(line, std::string(a.name) + ": expected a whole number from 1 to " +
                                       std::to_string(most) + ", found " + shown(a.value)));
       (a.name == "CYCLES" ? out_.cycles : out_.positions) = n;
     } else if (a.name.find("DATA") != a.name.npos) {
       return fail(
-          at_line(line, "wanted TGT_DATA, REF_DATA_FWD or REF_DATA_BWD, found " + shown(a.name)));
+          at_line(line, "expected TGT_DATA, REF_DATA_FWD or REF_DATA_BWD, found " + shown(a.name)));
     }
     return {};
   }
 
   Expected<void> target(const Assignment& a, std::uint64_t line) {
     const std::uint32_t position = whole_number(a.index, most_positions);
-    if (position == 0) return fail(at_line(line, "wanted TGT_DATA[position], found " + index(a)));
+    if (position == 0) return fail(at_line(line, "expected TGT_DATA[position], found " + index(a)));
     const auto value = numbers_.number(a.value, line, "a target");
     if (!value) return fail(value.error());
     return once(out_.targets, position, *value, line);
@@ -104,7 +104,7 @@ class Parser {
         whole_number(trimmed(a.index.substr(std::min(comma + 1, a.index.size()))), most_cycles);
     if (position == 0 || cycle == 0)
       return fail(
-          at_line(line, "wanted " + std::string(a.name) + "[position,cycle], found " + index(a)));
+          at_line(line, "expected " + std::string(a.name) + "[position,cycle], found " + index(a)));
     const auto value = numbers_.reading(a.value, line, "a position");
     if (!value) return fail(value.error());
     return once(out_.readings, std::tuple(direction, cycle, position), *value, line);
@@ -128,25 +128,25 @@ class Parser {
 /// Every position has its target, and every pass that was begun has every position.
 Expected<void> whole(const Contents& c) {
   const auto n = static_cast<std::uint32_t>(c.targets.size());
-  if (n < 2) return fail("wanted two targets or more (TGT_DATA), found " + std::to_string(n));
+  if (n < 2) return fail("expected two targets or more (TGT_DATA), found " + std::to_string(n));
   if (c.targets.rbegin()->first != n)
-    return fail("wanted TGT_DATA[1] to TGT_DATA[" + std::to_string(c.targets.rbegin()->first) +
+    return fail("expected TGT_DATA[1] to TGT_DATA[" + std::to_string(c.targets.rbegin()->first) +
                 "], found " + std::to_string(n) + " of them");
   if (c.positions && *c.positions != n)
-    return fail("wanted " + std::to_string(*c.positions) + " targets (POSITIONS), found " +
+    return fail("expected " + std::to_string(*c.positions) + " targets (POSITIONS), found " +
                 std::to_string(n));
   std::map<std::pair<int, std::uint32_t>, std::uint32_t> passes;
   std::uint32_t cycles = 0;
   for (const auto& [key, value] : c.readings) {
     const auto [direction, cycle, position] = key;
     if (position > n)
-      return fail(at_line(value.line, "wanted a position from 1 to " + std::to_string(n) +
+      return fail(at_line(value.line, "expected a position from 1 to " + std::to_string(n) +
                                           ", found " + std::to_string(position)));
     ++passes[{direction, cycle}];
     cycles = std::max(cycles, cycle);
   }
   if (c.cycles && cycles != 0 && *c.cycles != cycles)
-    return fail("wanted " + std::to_string(*c.cycles) + " cycles (CYCLES), found " +
+    return fail("expected " + std::to_string(*c.cycles) + " cycles (CYCLES), found " +
                 std::to_string(cycles));
   for (const int direction : {1, -1})
     for (std::uint32_t cycle = 1; cycle <= cycles; ++cycle) {
@@ -155,7 +155,7 @@ Expected<void> whole(const Contents& c) {
                         std::get<0>(c.readings.lower_bound({direction, 0, 0})->first) != direction;
       const std::uint32_t have = found == passes.end() ? 0 : found->second;
       if (have != n && !none)
-        return fail(std::string("wanted ") + std::to_string(n) + " readings " +
+        return fail(std::string("expected ") + std::to_string(n) + " readings " +
                     (direction > 0 ? "forward" : "backward") + " in cycle " +
                     std::to_string(cycle) + ", found " + std::to_string(have));
     }
@@ -169,7 +169,7 @@ Expected<double> unit_of_file(const Contents& c, bool rotary) {
   const auto& units = rotary ? angular : linear;
   const auto found = units.find(c.unit);
   if (found != units.end()) return found->second;
-  return fail(std::string("wanted UNIT ") + (rotary ? "deg, rad or mrad" : "mm, um or m") +
+  return fail(std::string("expected UNIT ") + (rotary ? "deg, rad or mrad" : "mm, um or m") +
               " for this axis, found " + shown(c.unit));
 }
 
@@ -201,7 +201,7 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   std::vector<double> targets;
   for (const auto& [position, target] : contents->targets) targets.push_back(target.value);
   const int listed = sense_of(targets);
-  if (listed == 0) return fail("wanted targets that only rise or only fall (TGT_DATA)");
+  if (listed == 0) return fail("expected targets that only rise or only fall (TGT_DATA)");
   Runs runs(input, axis, axis.rotary);
   for (const auto& [key, value] : contents->readings) {
     const auto [direction, cycle, position] = key;

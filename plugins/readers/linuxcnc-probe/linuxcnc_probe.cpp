@@ -42,12 +42,12 @@ Expected<Wish> wish_of(const ReadInput& input, const Axis& axis) {
   const std::string unit = input.options.text("unit");
   if (unit != "mm" && unit != "inch")
     return fail(of_option("unit",
-                          "wanted mm or inch, the unit of the program that probed; found "
+                          "expected mm or inch, the unit of the program that probed; found "
                           "none. A log does not say it"));
   wish.unit = unit == "mm" ? 1e-3 : 0.0254;
   const std::size_t letter = std::string_view("ABC").find(axis.name.front());
   if (letter == std::string_view::npos)
-    return fail("wanted a rotary axis named A, B or C as in the log's columns, found \"" +
+    return fail("expected a rotary axis named A, B or C as in the log's columns, found \"" +
                 axis.name + "\"");
   wish.angle_column = 3 + letter;
   wish.touches = static_cast<std::size_t>(input.options.integer("touches"));
@@ -67,7 +67,7 @@ Expected<std::vector<Touch>> touches_of(std::string_view bytes, const Wish& wish
     const auto fields = by_blanks(line);
     if (fields.empty()) continue;
     if (fields.size() != columns)
-      return fail(at_line(lines.number(), "wanted nine numbers, X Y Z A B C U V W, found " +
+      return fail(at_line(lines.number(), "expected nine numbers, X Y Z A B C U V W, found " +
                                               std::to_string(fields.size()) +
                                               " fields: " + shown(line)));
     std::array<double, columns> values{};
@@ -80,7 +80,7 @@ Expected<std::vector<Touch>> touches_of(std::string_view bytes, const Wish& wish
                        values[wish.angle_column],
                        lines.number()});
   }
-  if (touches.empty()) return fail("wanted touches, found none");
+  if (touches.empty()) return fail("expected touches, found none");
   return touches;
 }
 
@@ -94,7 +94,7 @@ Expected<std::vector<Group>> groups_of(const std::vector<Touch>& touches, const 
         !groups.empty() && std::fabs(t.angle - groups.back().front().angle) <= wish.same_angle;
     const bool full = !groups.empty() && wish.touches > 0 && groups.back().size() == wish.touches;
     if (!groups.empty() && wish.touches > 0 && !full && !stands)
-      return fail(at_line(t.line, "wanted " + std::to_string(wish.touches) +
+      return fail(at_line(t.line, "expected " + std::to_string(wish.touches) +
                                       " touches at each angle (option touches), found " +
                                       std::to_string(groups.back().size()) + " at " +
                                       short_text(groups.back().front().angle, 7) + " deg"));
@@ -103,7 +103,7 @@ Expected<std::vector<Group>> groups_of(const std::vector<Touch>& touches, const 
   }
   if (wish.touches > 0 && groups.back().size() != wish.touches)
     return fail(at_line(groups.back().back().line,
-                        "wanted " + std::to_string(wish.touches) +
+                        "expected " + std::to_string(wish.touches) +
                             " touches for the last centre (option touches), found " +
                             std::to_string(groups.back().size())));
   return groups;
@@ -126,7 +126,7 @@ Expected<Centre> centre_of(const Group& group, const Wish& wish) {
   for (std::size_t i = 0; i < group.size(); ++i)
     if (!(std::fabs(fit->residual[i]) <= wish.limit))
       return fail(at_line(group[i].line, "a touch lies " + fixed_text(1e6 * fit->residual[i], 1) +
-                                             " um off its sphere; wanted at most " +
+                                             " um off its sphere; expected at most " +
                                              fixed_text(1e6 * wish.limit, 1) +
                                              " (option limit_um). Is one centre made of touches of "
                                              "two (option touches)?"));
@@ -213,7 +213,7 @@ Expected<Observations> read(const ReadInput& input) {
   const auto axis = axis_of(input);
   if (!axis) return fail(axis.error());
   if (!(*axis)->rotary)
-    return fail("wanted a rotary axis, found the linear axis \"" + (*axis)->name + "\"");
+    return fail("expected a rotary axis, found the linear axis \"" + (*axis)->name + "\"");
   auto obs = read_file(input, **axis);
   if (!obs && obs.error().key.empty()) obs.error().file = input.measurement.file;
   return obs;

@@ -38,17 +38,17 @@ Expected<std::vector<Role>> columns_of(const std::vector<std::string>& texts) {
         std::find_if(roles.begin(), roles.end(), [&](const auto& r) { return text == r.first; });
     if (role == roles.end())
       return fail(of_option("columns",
-                            "wanted target, value, cycle (the run), pos (number of the target), "
+                            "expected target, value, cycle (the run), pos (number of the target), "
                             "direction or ignore; found " +
                                 shown(text)));
     const bool twice = std::find(columns.begin(), columns.end(), role->second) != columns.end();
     if (role->second != Role::ignore && twice)
-      return fail(of_option("columns", "wanted \"" + text + "\" once, found it twice"));
+      return fail(of_option("columns", "expected \"" + text + "\" once, found it twice"));
     columns.push_back(role->second);
   }
   for (const auto& [name, role] : {roles[3], roles[5], roles[1]})
     if (std::find(columns.begin(), columns.end(), role) == columns.end())
-      return fail(of_option("columns", std::string("wanted one \"") + name +
+      return fail(of_option("columns", std::string("expected one \"") + name +
                                            "\", found none. A table does not say what its columns "
                                            "are, and it is not guessed"));
   return columns;
@@ -64,7 +64,7 @@ Expected<Map> map_of(const Settings& options, bool rotary) {
   map.columns = std::move(*columns);
   for (const RowRange& rows : map.tables)
     if ((rows.way == Way::none) != map.has(Role::direction))
-      return fail(of_option("tables", std::string("wanted how the axis went, from a column "
+      return fail(of_option("tables", std::string("expected how the axis went, from a column "
                                                   "\"direction\" or of each of the tables (\"12-36 "
                                                   "forward\"), found it ") +
                                           (rows.way == Way::none ? "nowhere" : "twice")));
@@ -103,7 +103,7 @@ class TableReader {
   Expected<void> row(std::string_view line, std::uint64_t number, Way way) {
     const auto fields = by_separator(line, map_.separator);
     if (!fields || fields->size() != map_.columns.size())
-      return fail(at_line(number, "wanted " + std::to_string(map_.columns.size()) +
+      return fail(at_line(number, "expected " + std::to_string(map_.columns.size()) +
                                       " fields as in option columns, found " +
                                       std::to_string(fields ? fields->size() : 0) + ": " +
                                       shown(line) +
@@ -124,7 +124,7 @@ class TableReader {
       return std::string(what) + " in column " + std::to_string(k + 1);
     };
     const auto wrong = [&](const char* what) {
-      return fail(at_line(row.line, "wanted " + in_column(what) + ", found " + shown(text)));
+      return fail(at_line(row.line, "expected " + in_column(what) + ", found " + shown(text)));
     };
     const Role role = map_.columns[k];
     if (role == Role::cycle && (row.cycle = parse_run(text)) == 0)
@@ -150,9 +150,9 @@ class TableReader {
     std::string wanted, found;
     append_shortest(wanted, known->second.target);
     append_shortest(found, row.target);
-    return fail(at_line(row.line, "wanted target " + wanted + " at pos " + std::to_string(row.pos) +
-                                      " as in line " + std::to_string(known->second.line) +
-                                      ", found " + found));
+    return fail(at_line(row.line, "expected target " + wanted + " at pos " +
+                                      std::to_string(row.pos) + " as in line " +
+                                      std::to_string(known->second.line) + ", found " + found));
   }
 
   const Map& map_;
@@ -181,7 +181,7 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   for (const Row& row : *rows) {
     if ((row.way == Way::forward || row.way == Way::reverse) && listed == 0)
       return fail(at_line(row.line,
-                          "wanted a first run \"forward\" whose targets only rise or only "
+                          "expected a first run \"forward\" whose targets only rise or only "
                           "fall, found none; say + and - in place of forward and reverse"));
     const double target = row.target * map->target_unit;
     if (auto ok = runs.add({row.cycle, direction_of(row.way, listed), target,

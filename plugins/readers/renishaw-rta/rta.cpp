@@ -21,15 +21,17 @@ const std::map<std::string, double, std::less<>>& value_units() {
 Expected<Units> confirmed(const Settings& options, bool rotary) {
   const auto unit = value_units().find(options.text("unit"));
   if (unit == value_units().end())
-    return fail(of_option("unit",
-                          "wanted the unit of the angles in this file, mrad, urad, arcsec or deg; "
-                          "found none. One program takes them as mrad; compare one value with what "
-                          "the instrument's program shows"));
+    return fail(
+        of_option("unit",
+                  "expected the unit of the angles in this file, mrad, urad, arcsec or deg; "
+                  "found none. One program takes them as mrad; compare one value with what "
+                  "the instrument's program shows"));
   const std::string sign = options.text("sign");
   if (sign != "+" && sign != "-")
-    return fail(of_option("sign",
-                          "wanted + (positive values are right-handed turns about the axis, or too "
-                          "far towards plus on a rotary axis) or -; found none"));
+    return fail(
+        of_option("sign",
+                  "expected + (positive values are right-handed turns about the axis, or too "
+                  "far towards plus on a rotary axis) or -; found none"));
   return Units{rotary ? 1.0 / deg_per_rad : 1e-3, sign == "+" ? unit->second : -unit->second};
 }
 
@@ -38,7 +40,7 @@ Expected<Observations> read(const ReadInput& input) {
   if (!axis) return fail(axis.error());
   if ((*axis)->rotary == (input.measurement.kind == "angle"))
     return fail(
-        "wanted a rotary axis for kind axis, or a linear one for kind angle, found axis \"" +
+        "expected a rotary axis for kind axis, or a linear one for kind angle, found axis \"" +
         (*axis)->name + "\" with kind " + input.measurement.kind);
   const auto in_file = [&](Error error) {
     error.file = input.measurement.file;

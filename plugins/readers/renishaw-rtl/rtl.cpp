@@ -86,7 +86,7 @@ Expected<Observations> read_rtl(const ReadInput& input) {
   const auto axis = axis_of(input);
   if (!axis) return fail(axis.error());
   if ((*axis)->rotary)
-    return fail("wanted a linear axis for linear measurements, found the rotary axis \"" +
+    return fail("expected a linear axis for linear measurements, found the rotary axis \"" +
                 (*axis)->name + "\"");
   const auto file = parse_run_file(input.bytes, "rtl", "Linear");
   if (!file) return in_file(fail(file.error()), input);

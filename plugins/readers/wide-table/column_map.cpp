@@ -23,7 +23,7 @@ Expected<Column> column_of(const std::string& text) {
   const auto words = by_blanks(text);
   const auto wrong = [&] {
     return fail(
-        of_option("columns", std::string("wanted ") + roles_help + "; found " + shown(text)));
+        of_option("columns", std::string("expected ") + roles_help + "; found " + shown(text)));
   };
   if (words.size() == 1 && words[0] == "target") return Column{Role::target};
   if (words.size() == 1 && words[0] == "ignore") return Column{Role::ignore};
@@ -47,7 +47,7 @@ Expected<Column> column_of(const std::string& text) {
 
 Expected<std::vector<Column>> columns_of(const std::vector<std::string>& texts) {
   if (texts.empty())
-    return fail(of_option("columns", std::string("wanted what each column is: ") + roles_help +
+    return fail(of_option("columns", std::string("expected what each column is: ") + roles_help +
                                          "; found none. A table does not say it, and it is not "
                                          "guessed"));
   std::vector<Column> columns;
@@ -58,17 +58,17 @@ Expected<std::vector<Column>> columns_of(const std::vector<std::string>& texts) 
     if (!column) return fail(column.error());
     if (column->role != Role::ignore &&
         !seen.insert({column->role, column->way, column->run}).second)
-      return fail(of_option("columns", "wanted \"" + text + "\" once, found it twice"));
+      return fail(of_option("columns", "expected \"" + text + "\" once, found it twice"));
     readings = readings || column->role == Role::reading;
     means = means || column->role == Role::mean;
     columns.push_back(*column);
   }
   if (!seen.contains({Role::target, Way::none, 0}))
-    return fail(of_option("columns", "wanted one \"target\", found none"));
+    return fail(of_option("columns", "expected one \"target\", found none"));
   if (readings == means)
-    return fail(
-        of_option("columns", readings ? "wanted runs or means, found both; which of them count?"
-                                      : "wanted at least one run (\"1 +\") or mean (\"mean +\")"));
+    return fail(of_option("columns",
+                          readings ? "expected runs or means, found both; which of them count?"
+                                   : "expected at least one run (\"1 +\") or mean (\"mean +\")"));
   return columns;
 }
 
@@ -78,13 +78,13 @@ Expected<void> check_ways(const Map& map) {
     for (const RowRange& table : map.tables)
       if (c.role == Role::reading && (c.way == Way::none) == (table.way == Way::none))
         return fail(of_option("columns",
-                              "wanted how the axis went, of each run (\"1 +\") or of "
+                              "expected how the axis went, of each run (\"1 +\") or of "
                               "each of the tables (\"12-36 forward\"), found it " +
                                   std::string(c.way == Way::none ? "nowhere" : "twice") +
                                   " for run " + std::to_string(c.run)));
   if (map.means() && map.tables.size() > 1)
-    return fail(of_option("tables",
-                          "wanted one table of means, found " + std::to_string(map.tables.size())));
+    return fail(of_option(
+        "tables", "expected one table of means, found " + std::to_string(map.tables.size())));
   return {};
 }
 
@@ -112,7 +112,7 @@ Expected<Map> map_of(const Settings& options, bool rotary) {
   static_cast<TableMap&>(map) = std::move(*table);
   map.columns = std::move(*columns);
   if (map.positions && map.means())
-    return fail(of_option("values", "wanted deviations in a table of means, found positions"));
+    return fail(of_option("values", "expected deviations in a table of means, found positions"));
   if (auto ok = check_ways(map); !ok) return fail(ok.error());
   return map;
 }

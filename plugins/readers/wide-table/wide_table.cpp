@@ -45,7 +45,7 @@ class TableReader {
       if (auto ok = row(line, lines.number()); !ok) return fail(ok.error());
     }
     if (table_.rows.size() < 2)
-      return fail("wanted two targets or more from line " + std::to_string(rows_.first) +
+      return fail("expected two targets or more from line " + std::to_string(rows_.first) +
                   " on, found " + std::to_string(table_.rows.size()));
     return std::move(table_);
   }
@@ -54,7 +54,7 @@ class TableReader {
   Expected<void> row(std::string_view line, std::uint64_t number) {
     const auto split = by_separator(line, map_.separator);
     if (!split || split->size() != map_.columns.size())
-      return fail(at_line(number, "wanted " + std::to_string(map_.columns.size()) +
+      return fail(at_line(number, "expected " + std::to_string(map_.columns.size()) +
                                       " fields as in option columns, found " +
                                       std::to_string(split ? split->size() : 0) + ": " +
                                       shown(line) +
@@ -141,15 +141,16 @@ Expected<void> check_print(const Map& map, const Table& table, int listed) {
     const double f = row[forward], r = row[reverse];
     if (both != std::string::npos && std::fabs(row[both] - 0.5 * (f + r)) > rounding)
       return fail(
-          at_line(table.lines[i], "wanted \"mean\" to be that of forward and reverse, found " +
+          at_line(table.lines[i], "expected \"mean\" to be that of forward and reverse, found " +
                                       short_text(row[both], 6) + " of " + short_text(f, 6) +
                                       " and " + short_text(r, 6) + "; is the column map right?"));
     if (dead != std::string::npos && std::fabs(row[dead] - (r - f)) > rounding)
-      return fail(at_line(table.lines[i],
-                          "wanted \"dead zone\" to be reverse - forward (the opposite sign of the "
-                          "reversal of ISO 230-2), found " +
-                              short_text(row[dead], 6) + " of " + short_text(r, 6) + " - " +
-                              short_text(f, 6) + "; are the two columns swapped?"));
+      return fail(
+          at_line(table.lines[i],
+                  "expected \"dead zone\" to be reverse - forward (the opposite sign of the "
+                  "reversal of ISO 230-2), found " +
+                      short_text(row[dead], 6) + " of " + short_text(r, 6) + " - " +
+                      short_text(f, 6) + "; are the two columns swapped?"));
   }
   return {};
 }
@@ -191,7 +192,7 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
     if (!table) return fail(table.error());
     const int sense = sense_of(table->targets);
     if (sense == 0)
-      return fail(at_line(table->lines.front(), "wanted targets that only rise or only fall"));
+      return fail(at_line(table->lines.front(), "expected targets that only rise or only fall"));
     if (listed == 0) listed = sense;
     if (auto ok = map.means() ? check_print(map, *table, listed) : no_average(map, *table, listed);
         !ok)

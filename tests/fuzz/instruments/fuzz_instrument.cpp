@@ -119,7 +119,7 @@ struct World {
                  "2s forward", "2s reverse",   "dead zone"};
     if (reader.info.name == "long-table") {
       columns = {"cycle", "pos", "target", "value"};
-      if (bytes.find("+") != bytes.npos) columns.push_back("direction");
+      if (bytes.find('+') != bytes.npos) columns.push_back("direction");
     }
     const bool tables = bytes.find("table") != bytes.npos;
     if (columns.back() == "value" || tables)

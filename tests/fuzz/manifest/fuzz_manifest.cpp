@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   (void)host::config::parse_site(text, "site.toml");
   (void)host::config::parse_settings(text, "x.toml");
-  const std::string id = host::config::salvage_id(text);
+  const std::string id = host::config::extract_id(text);
   if (!id.empty() && !host::config::is_campaign_id(id)) std::abort();
   return 0;
 }

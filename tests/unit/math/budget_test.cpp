@@ -111,7 +111,7 @@ TEST(Budget, CoordinatesHaveProbeAndBall) {
   for (const auto& input : m.inputs) EXPECT_NE(input.is.id, "misalignment");
 }
 
-TEST(Budget, NobodyStatedIt) {
+TEST(Budget, AContributionThatWasNotStatedIsNamed) {
   const struct {
     const char* key;
     void (*forget)(Campaign&);

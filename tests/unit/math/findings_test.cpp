@@ -157,7 +157,7 @@ TEST(Findings, TargetsOutsideTheTravelAreNamed) {
 }
 
 // ISO R+ 4.516 against R- 1.756 and the like: s of one direction more than twice the other's.
-TEST(Findings, OneWildReadingIsNoDirection) {
+TEST(Findings, OneOutlierMakesNoDirectionScatterMore) {
   made::Random random(3);
   made::Plan plan{{0.0, 0.11, 0.19, 0.31, 0.43, 0.5}, 5};
   auto o = made::observe(
@@ -229,7 +229,7 @@ TEST(Analysis, RefusesWhatIsNotAnAxisTest) {
   g.measurement.axis = "Y";
   const auto other = begin_axis_analysis(g.input());
   ASSERT_FALSE(other);
-  EXPECT_EQ(other.error().message, "wanted the readings of axis 'Y', found those of 'X'");
+  EXPECT_EQ(other.error().message, "expected the readings of axis 'Y', found those of 'X'");
   g = linear();
   g.observations.angular = true;
   EXPECT_FALSE(begin_axis_analysis(g.input()));

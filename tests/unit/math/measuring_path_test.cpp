@@ -26,7 +26,7 @@ void expect_near(const Places& found, const Places& wanted) {
       EXPECT_NEAR(found[i][a], wanted[i][a], 1e-12) << i << " " << a;
 }
 
-MeasuringWish wish(int runs, double over, bool both = true) {
+MeasuringRequest wish(int runs, double over, bool both = true) {
   return {runs, 2.0, over, both, 1e-6};
 }
 

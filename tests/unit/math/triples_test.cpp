@@ -15,15 +15,15 @@
 namespace nonio::math {
 namespace {
 
-TripleWish wish(double x_mm, double y_mm, double largest_step_mm = 0.0) {
-  TripleWish w;
+TripleRequest wish(double x_mm, double y_mm, double largest_step_mm = 0.0) {
+  TripleRequest w;
   w.x = x_mm / 1e3;
   w.y = y_mm / 1e3;
   w.largest_step = largest_step_mm / 1e3;
   return w;
 }
 
-TriplePlans planned(const TripleWish& w) {
+TriplePlans planned(const TripleRequest& w) {
   auto plans = plan_triples(w);
   EXPECT_TRUE(plans) << (plans ? "" : plans.error().message);
   return plans ? *plans : TriplePlans();
@@ -71,22 +71,22 @@ TEST(Triples, RatiosOfTheLegs) {
 
 struct Row {
   const char* name;
-  TripleWish wish;
+  TripleRequest wish;
   std::int64_t a, b, c, q, n;
   double cover_x, cover_y;
 };
 
 std::vector<Row> rows() {
-  TripleWish tenth = wish(4000, 4000, 250);
+  TripleRequest tenth = wish(4000, 4000, 250);
   tenth.resolution = 1e-4;
-  TripleWish over = wish(20000, 12000, 250);
+  TripleRequest over = wish(20000, 12000, 250);
   over.over_travel = 0.1;
   over.max_points = 100;
   over.pitch_x = over.pitch_y = {0.02};
   over.even = EvenSteps::require;
-  TripleWish table41 = wish(14500, 9000, 500);
+  TripleRequest table41 = wish(14500, 9000, 500);
   table41.max_points = 41;
-  TripleWish table31 = wish(12000, 9000, 500);
+  TripleRequest table31 = wish(12000, 9000, 500);
   table31.max_points = 31;
   return {{"4 x 4 m", wish(4000, 4000, 250), 119, 120, 169, 1, 33, .9818, .9900},
           {"4 x 4 m, 0.1 mm", tenth, 696, 697, 985, 3, 19, .9918, .9932},
@@ -97,7 +97,7 @@ std::vector<Row> rows() {
           {"12 x 9 m", table31, 4, 3, 5, 125, 24, 1, 1}};
 }
 
-TEST(Triples, TheTable) {
+TEST(Triples, PlansAreThoseOfTheTable) {
   for (const Row& row : rows()) {
     const auto plans = planned(row.wish).plans;
     ASSERT_FALSE(plans.empty()) << row.name;
@@ -131,7 +131,7 @@ bool has(const TriplePlans& plans, TripleReason reason, std::int64_t a, std::int
 }
 
 TEST(Triples, OthersWithTheirReasons) {
-  TripleWish w = wish(20000, 12000, 500);
+  TripleRequest w = wish(20000, 12000, 500);
   w.count = 10;
   const TriplePlans plans = planned(w);
   EXPECT_EQ(plans.plans.size(), 10u);
@@ -149,7 +149,7 @@ TEST(Triples, OthersWithTheirReasons) {
 
 TEST(Triples, TheSampleOfTwelveByNineMetres) {
   // 400 / 300 / 500 mm, n = 30 covers as much as n = 24 with 500 mm, which needs fewer stops.
-  TripleWish w = wish(12000, 9000, 400);
+  TripleRequest w = wish(12000, 9000, 400);
   const TriplePlan p = planned(w).plans.front();
   EXPECT_EQ(std::tuple(p.a, p.b, p.c, p.q, p.n), std::tuple(4, 3, 5, 100, 30));
 }
@@ -170,7 +170,7 @@ TEST(Triples, NoiseGains) {
 // ---- the planner against a search that tries everything
 
 struct Problem {
-  TripleWish wish;
+  TripleRequest wish;
   std::int64_t ux, uy, unit, step, most_n, pitch_x, pitch_y;  // mm
 };
 
@@ -185,7 +185,7 @@ Problem random_problem(std::mt19937_64& random) {
   p.step = from(0, 3) == 0 ? 0 : from(20, 600);
   p.most_n = from(4, 60);
   p.pitch_x = from(0, 1) * from(2, 12), p.pitch_y = from(0, 1) * from(2, 12);
-  TripleWish& w = p.wish;
+  TripleRequest& w = p.wish;
   w = wish(static_cast<double>(p.ux + 2 * over), static_cast<double>(p.uy + 2 * over),
            static_cast<double>(p.step));
   w.over_travel = static_cast<double>(over) / 1e3;
@@ -263,7 +263,7 @@ TEST(Triples, AsASearchThatTriesEverything) {
 }
 
 TEST(Triples, AnEvenPlanIsPreferredToALittleMore) {
-  TripleWish w = wish(12000, 9000, 480);
+  TripleRequest w = wish(12000, 9000, 480);
   EXPECT_EQ(planned(w).plans.front().n, 25);
   w.even = EvenSteps::prefer;
   EXPECT_EQ(planned(w).plans.front().n, 30);  // covers as much
@@ -272,8 +272,8 @@ TEST(Triples, AnEvenPlanIsPreferredToALittleMore) {
   EXPECT_EQ(planned(w).plans.front().n, 33);
 }
 
-TEST(Triples, WhyNothingFits) {
-  const auto blocked = [](const TripleWish& w) {
+TEST(Triples, WhatBlocksEveryPlanIsNamed) {
+  const auto blocked = [](const TripleRequest& w) {
     const TriplePlans plans = planned(w);
     EXPECT_TRUE(plans.plans.empty());
     return plans.blocked_by;
@@ -281,27 +281,27 @@ TEST(Triples, WhyNothingFits) {
   using Limits = std::vector<TripleLimit>;
   EXPECT_EQ(blocked(wish(11, 11)), Limits{TripleLimit::travel});
   EXPECT_EQ(blocked(wish(4000, 4000, 3.5)), Limits{TripleLimit::largest_step});
-  TripleWish every = wish(4000, 4000);
+  TripleRequest every = wish(4000, 4000);
   every.pitch_x = {1e-3};
   EXPECT_EQ(blocked(every), Limits{TripleLimit::pitch});
-  TripleWish points = wish(1900, 300);  // ten targets at least
+  TripleRequest points = wish(1900, 300);  // ten targets at least
   points.density = true;
   points.max_points = 6;
   EXPECT_EQ(blocked(points), (Limits{TripleLimit::max_points, TripleLimit::density}));
-  TripleWish even = wish(1200, 300);  // six targets, so five steps
+  TripleRequest even = wish(1200, 300);  // six targets, so five steps
   even.density = true;
   even.max_points = 6;
   even.even = EvenSteps::require;
   EXPECT_EQ(blocked(even),
             (Limits{TripleLimit::max_points, TripleLimit::density, TripleLimit::even}));
-  TripleWish small = wish(4000, 4000);
+  TripleRequest small = wish(4000, 4000);
   small.hypotenuse = 5;
   small.pitch_x = {3e-3, 4e-3};
   EXPECT_EQ(blocked(small), (Limits{TripleLimit::pitch, TripleLimit::hypotenuse}));
 }
 
 TEST(Triples, LimitsThatOnlyTogetherLeaveNothing) {
-  TripleWish w = wish(4000, 4000, 3.5);
+  TripleRequest w = wish(4000, 4000, 3.5);
   w.pitch_x = {1e-3};
   const TriplePlans plans = planned(w);
   EXPECT_TRUE(plans.plans.empty());
@@ -313,43 +313,43 @@ TEST(Triples, LimitsThatOnlyTogetherLeaveNothing) {
 }
 
 TEST(Triples, BadWishesAreRefused) {
-  const auto refused = [](const TripleWish& w) {
+  const auto refused = [](const TripleRequest& w) {
     const auto plans = plan_triples(w);
     return plans ? std::string("accepted") : plans.error().message;
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double x : {0.0, -1.0, nan, std::numeric_limits<double>::infinity(), 2e6})
-    EXPECT_EQ(refused(wish(x, 1000)).find("travel of X: wanted"), 0u) << x;
-  EXPECT_EQ(refused(wish(1000, -3)).find("travel of Y: wanted"), 0u);
-  TripleWish w = wish(1000, 500);
+    EXPECT_EQ(refused(wish(x, 1000)).find("travel of X: expected"), 0u) << x;
+  EXPECT_EQ(refused(wish(1000, -3)).find("travel of Y: expected"), 0u);
+  TripleRequest w = wish(1000, 500);
   w.over_travel = 0.25;
   EXPECT_EQ(refused(w), "over-travel: 250 mm at each end leave nothing of 500 mm of Y");
   w.over_travel = -0.1;
-  EXPECT_EQ(refused(w).find("over-travel: wanted"), 0u);
+  EXPECT_EQ(refused(w).find("over-travel: expected"), 0u);
   for (const double r : {0.0, -1e-3, 1e-10, nan}) {
     w = wish(1000, 500);
     w.resolution = r;
-    EXPECT_EQ(refused(w).find("resolution: wanted"), 0u) << r;
+    EXPECT_EQ(refused(w).find("resolution: expected"), 0u) << r;
   }
   w = wish(1000, 500);
   w.largest_step = nan;
-  EXPECT_EQ(refused(w).find("largest step: wanted"), 0u);
+  EXPECT_EQ(refused(w).find("largest step: expected"), 0u);
   w = wish(1000, 500);
   w.max_points = 4;
-  EXPECT_EQ(refused(w).find("points of the table: wanted 5"), 0u);
+  EXPECT_EQ(refused(w).find("points of the table: expected 5"), 0u);
   w = wish(1000, 500);
   w.pitch_y = {0.0};
-  EXPECT_EQ(refused(w).find("pitch of Y: wanted"), 0u);
+  EXPECT_EQ(refused(w).find("pitch of Y: expected"), 0u);
   w = wish(1000, 500);
   w.count = 0;
-  EXPECT_EQ(refused(w).find("number of plans: wanted"), 0u);
+  EXPECT_EQ(refused(w).find("number of plans: expected"), 0u);
   w = wish(1000, 500);
   w.hypotenuse = 4;
-  EXPECT_EQ(refused(w).find("largest hypotenuse: wanted"), 0u);
+  EXPECT_EQ(refused(w).find("largest hypotenuse: expected"), 0u);
 }
 
 TEST(Triples, AnEndlessSearchIsRefusedBeforeItBegins) {
-  TripleWish w = wish(20000, 12000);
+  TripleRequest w = wish(20000, 12000);
   w.resolution = 1e-9;
   w.max_points = 1'000'000;
   w.hypotenuse = 1'000'000;

@@ -25,7 +25,7 @@ std::map<std::string, std::string> sections(const fs::path& file) {
   for (std::string line; std::getline(in, line);) {
     if (line.rfind("[finding.\"", 0) == 0)
       id = line.substr(10, line.find("\"]") - 10);
-    else if (line.rfind("[", 0) == 0)
+    else if (line.starts_with('['))
       id.clear();
     else if (!id.empty())
       out[id] += line + "\n";
@@ -44,8 +44,8 @@ std::set<std::string> places(const std::string& text) {
 std::string all_sources() {
   const fs::path root = fs::path(NONIO_WORDS) / ".." / "..";
   std::ostringstream text;
-  for (const char* folder : {"engine/math/src", "plugins/analyses/vdi-dgq-3441"})
-    for (const auto& entry : fs::directory_iterator(root / folder))
+  for (const char* folder : {"engine/math", "plugins/analyses/vdi-dgq-3441"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder))
       if (entry.path().extension() == ".cpp") text << std::ifstream(entry.path()).rdbuf();
   return text.str();
 }

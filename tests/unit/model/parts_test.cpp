@@ -245,7 +245,7 @@ TEST(Parts, AStraightnessAloneIsNamedByItsLetters) {
   EXPECT_EQ(axes(parts[0]), (Ids{"X", "Y"}));
   EXPECT_EQ(parts[0].table.axes[1].position.front(), 0.5);
   EXPECT_EQ(parts[0].table.axes[1].position.back(), 1.5);
-  EXPECT_EQ(parts[0].table.axes[1].approach, std::vector<std::int8_t>(4 * stops, 0));
+  EXPECT_EQ(parts[0].table.axes[1].approach, std::vector<std::int8_t>(std::size_t{4} * stops, 0));
   EXPECT_EQ(parts[0].along[2], 0.5);
   EXPECT_EQ(parts[0].way[stops], -1);
   for (const Part& part : parts) expect_traceable(part, t);
@@ -266,9 +266,9 @@ TEST(Parts, DiagonalsAndTheirAxesAreOnePart) {
   EXPECT_EQ(part.measurements, (Ids{"X1", "D1", "D2", "Y", "S"}));
   EXPECT_EQ(axes(part), (Ids{"X", "Y"}));
   EXPECT_EQ(part.table.structure, "gantry");
-  EXPECT_EQ(part.table.axes[1].position[0], 0.5);                       // X1: at
-  EXPECT_TRUE(std::isnan(part.table.axes[0].position[3 * 2 * stops]));  // Y: nobody said
-  EXPECT_EQ(part.table.axes[0].approach[3 * 2 * stops], 0);
+  EXPECT_EQ(part.table.axes[1].position[0], 0.5);                                // X1: at
+  EXPECT_TRUE(std::isnan(part.table.axes[0].position[std::size_t{6} * stops]));  // Y: nobody said
+  EXPECT_EQ(part.table.axes[0].approach[std::size_t{6} * stops], 0);
   EXPECT_TRUE(stood_somewhere(part));
   expect_traceable(part, t);
 }
@@ -281,7 +281,8 @@ TEST(Parts, ThePlaceOnADiagonalIsTheWayFromItsStart) {
   EXPECT_FALSE(stood_somewhere(parts[0]));
   for (int line = 0; line < 2; ++line)
     for (int i = 0; i < 2 * stops; ++i) {
-      const auto row = static_cast<std::size_t>(line * 2 * stops + i);
+      const auto row =
+          std::size_t{2} * static_cast<std::size_t>(line) * stops + static_cast<std::size_t>(i);
       EXPECT_NEAR(parts[0].along[row], 1.25 * (i < stops ? i : 2 * stops - 1 - i), 1e-12);
       EXPECT_EQ(parts[0].way[row], i < stops ? 1 : -1);
       EXPECT_EQ(parts[0].measurement[row], static_cast<std::uint32_t>(line));
@@ -305,7 +306,7 @@ TEST(Parts, ThePlaceOnAStepDiagonalIsTheWayFromItsOwnStart) {
     for (std::size_t k = 0; k < 3; ++k) o.lines.back().sense[k] = signs[line][k] * way[k] / length;
     for (int moves = 1; moves <= 6; ++moves) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const double half = (moves - static_cast<int>(k) + 2) / 3;  // of two
+        const int half = (moves - static_cast<int>(k) + 2) / 3;  // of two
         const double start = signs[line][k] > 0.0 ? 0.1 * (1.0 + static_cast<double>(k))
                                                   : (k == 0   ? 0.9
                                                      : k == 1 ? 0.8

@@ -47,7 +47,8 @@ inline ModelFit made_model(const MadeModel& made = {}) {
   const double s = 0.6 * um;
   double time = 0, squares[4] = {0, 0, 0, 0};
   std::uint32_t line = 1;
-  const auto readings = static_cast<std::size_t>(made.targets * made.runs * (made.minus ? 2 : 1));
+  const auto readings = static_cast<std::size_t>(made.targets) *
+                        static_cast<std::size_t>(made.runs) * (made.minus ? 2U : 1U);
   for (int run = 1; run <= made.runs; ++run)
     for (const int d : {1, -1})
       for (int k = 0; k < made.targets && (d > 0 || made.minus); ++k) {

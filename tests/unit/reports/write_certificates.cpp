@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // write_certificates FOLDER: one in each language and one in two, and one of six axes with long
-// names, unsigned, for tests/real/pages.
+// names, unsigned, for tests/external/pages.
 #include <iostream>
 
 #include "certificate_case.h"

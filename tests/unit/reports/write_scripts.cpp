@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // write_scripts FOLDER: a page in each script, and the same pages with a part of a letter lost, for
-// tests/real/pages.
+// tests/external/pages.
 #include <iostream>
 #include <map>
 
@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
                                   file("DroidSansFallback"));
   if (!fonts) return std::cerr << fonts.error().message << '\n', 1;
   const auto write = [&](const std::string& name, const Document& document, const Fonts& with) {
-    const auto bytes = pdf(document, with);
+    const auto bytes = pdf_bytes(document, with);
     if (!bytes) return std::cerr << bytes.error().message << '\n', false;
     std::ofstream(folder / (name + ".pdf"), std::ios::binary) << *bytes;
     return true;

@@ -17,6 +17,9 @@
 namespace nonio::dcc {
 namespace {
 
+/// Of every U that Nonio states: that of k = 2 for a normal distribution, as certificates print it.
+constexpr const char* coverage_probability = "0.95";
+
 std::string number_text(double si, Quantity q) {
   std::array<char, 32> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), printed(si, q));
@@ -35,9 +38,9 @@ class Writer {
   Writer(const OutputInput& in, const About& about) : in_(in), about_(about) {}
 
   std::string write() {
-    xml_.open("dcc:digitalCalibrationCertificate",
-              "xmlns:dcc=\"https://ptb.de/dcc\" xmlns:si=\"https://ptb.de/si\" "
-              "schemaVersion=\"3.3.0\"");
+    xml_.open("dcc:digitalCalibrationCertificate", {{"xmlns:dcc", "https://ptb.de/dcc"},
+                                                    {"xmlns:si", "https://ptb.de/si"},
+                                                    {"schemaVersion", "3.3.0"}});
     xml_.open("dcc:administrativeData");
     software();
     core();
@@ -62,8 +65,7 @@ class Writer {
 
   void contents(const Text& text) {
     for (const auto& [language, content] : text)
-      if (!content.empty())
-        xml_.element("dcc:content", content, language.empty() ? "" : "lang=\"" + language + "\"");
+      if (!content.empty()) xml_.element("dcc:content", content, {{"lang", language}});
   }
   static bool empty(const Text& text) {
     return std::all_of(text.begin(), text.end(), [](const auto& t) { return t.second.empty(); });
@@ -161,7 +163,7 @@ class Writer {
   void serial_number(const std::string& serial) {
     if (serial.empty()) return;
     xml_.open("dcc:identifications");
-    xml_.open("dcc:identification", "refType=\"basic_serialNumber\"");
+    xml_.open("dcc:identification", {{"refType", "basic_serialNumber"}});
     xml_.element("dcc:issuer", "manufacturer");
     xml_.element("dcc:value", serial);
     xml_.close();
@@ -204,7 +206,7 @@ class Writer {
     if (about_.decided.empty() && about_.statements.empty()) return;
     xml_.open("dcc:statements");
     for (const Decided& d : about_.decided) {
-      xml_.open("dcc:statement", "refType=\"basic_conformity\"");
+      xml_.open("dcc:statement", {{"refType", "basic_conformity"}});
       text("dcc:name", d.name);
       text("dcc:description", about_.rule);
       if (!about_.norm.empty()) xml_.element("dcc:norm", about_.norm);
@@ -213,7 +215,7 @@ class Writer {
       xml_.close();
     }
     for (const Statement& s : about_.statements) {
-      xml_.open("dcc:statement", s.ref_type.empty() ? "" : "refType=\"" + s.ref_type + "\"");
+      xml_.open("dcc:statement", {{"refType", s.ref_type}});
       text("dcc:declaration", s.says);
       xml_.close();
     }
@@ -244,7 +246,7 @@ class Writer {
     equipment();
     influences(words);
     xml_.open("dcc:results");
-    xml_.open("dcc:result", "refType=\"basic_measurementResult\"");
+    xml_.open("dcc:result", {{"refType", "basic_measurementResult"}});
     text("dcc:name", title);
     xml_.open("dcc:data");
     for (const Value& v : a.evaluation.values)
@@ -270,7 +272,7 @@ class Writer {
     }
     xml_.close();
     if (!empty(about_.uncertainty)) {
-      xml_.open("dcc:usedMethod", "refType=\"basic_methodMeasurementUncertainty\"");
+      xml_.open("dcc:usedMethod", {{"refType", "basic_methodMeasurementUncertainty"}});
       text("dcc:name", about_.uncertainty);
       xml_.close();
     }
@@ -284,12 +286,12 @@ class Writer {
     if (!i.model.empty())
       one_equipment(
           {"", i.maker, i.model, i.serial, i.calibrated, i.valid_until, i.certificate, i.issuer},
-          "refType=\"basic_measurementStandard\"", about_.equipment);
+          "basic_measurementStandard", about_.equipment);
     for (const Sensor& s : in_.campaign.sensors) one_equipment(s, "", {});
     xml_.close();
   }
 
-  void one_equipment(const Sensor& s, const std::string& attributes, const Text& description) {
+  void one_equipment(const Sensor& s, const std::string& ref_type, const Text& description) {
     std::string name = s.model;
     const auto add = [&](const std::string& before, const std::string& text) {
       if (!text.empty()) name += (name.empty() ? "" : ", ") + before + text;
@@ -300,7 +302,7 @@ class Writer {
     add("issued by ", s.issuer);
     add("calibrated ", s.calibrated);
     add("valid until ", s.valid_until);
-    xml_.open("dcc:measuringEquipment", attributes);
+    xml_.open("dcc:measuringEquipment", {{"refType", ref_type}});
     text("dcc:name", name);
     if (!empty(description)) text("dcc:description", description);
     manufacturer(s.maker);
@@ -313,8 +315,7 @@ class Writer {
     if (words.conditions.empty()) return;
     xml_.open("dcc:influenceConditions");
     for (const Condition& c : words.conditions) {
-      xml_.open("dcc:influenceCondition",
-                c.ref_type.empty() ? "" : "refType=\"" + c.ref_type + "\"");
+      xml_.open("dcc:influenceCondition", {{"refType", c.ref_type}});
       text("dcc:name", c.name);
       if (!words.status.empty()) xml_.element("dcc:status", words.status);
       xml_.open("dcc:data");
@@ -341,7 +342,7 @@ class Writer {
 
   void value(const Value& v) {
     const RoundedResult said = result_text(v.value, v.U, v.quantity);
-    xml_.open("dcc:quantity", "refType=\"basic_measuredValue\"");
+    xml_.open("dcc:quantity", {{"refType", "basic_measuredValue"}});
     text("dcc:name", v.name);
     meaning(v.name);
     xml_.open("si:real");
@@ -352,7 +353,7 @@ class Writer {
       xml_.open("si:expandedMU");
       xml_.element("si:valueExpandedMU", said.U);
       xml_.element("si:coverageFactor", number_text(v.k, Quantity::number));
-      xml_.element("si:coverageProbability", "0.95");
+      xml_.element("si:coverageProbability", coverage_probability);
       xml_.close();
       xml_.close();
     }
@@ -380,9 +381,9 @@ class Writer {
       add(values, said.value);
       if (c.U.empty()) continue;
       add(Us, said.U.empty() ? "0" : said.U), add(ks, number_text(c.k, Quantity::number)),
-          add(ps, "0.95");
+          add(ps, coverage_probability);
     }
-    xml_.open("dcc:quantity", c.ref_type.empty() ? "" : "refType=\"" + c.ref_type + "\"");
+    xml_.open("dcc:quantity", {{"refType", c.ref_type}});
     text("dcc:name", c.name);
     meaning(c.name);
     xml_.open("si:realListXMLList");

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "nonio/sdk/text.h"
 
 namespace nonio::dcc {
 
@@ -13,12 +17,13 @@ class XmlWriter {
  public:
   XmlWriter() : out_("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n") {}
 
-  void open(std::string_view name, std::string_view attributes = {}) {
+  /// One without a value is left out.
+  using Attributes = std::initializer_list<std::pair<std::string_view, std::string_view>>;
+
+  void open(std::string_view name, Attributes attributes = {}) {
     indent();
-    out_ += '<';
-    out_ += name;
-    if (!attributes.empty()) (out_ += ' ') += attributes;
-    out_ += ">\n";
+    begin(name, attributes);
+    out_ += '\n';
     open_.emplace_back(name);
   }
   void close() {
@@ -27,14 +32,10 @@ class XmlWriter {
     indent();
     out_ += "</" + name + ">\n";
   }
-  void element(std::string_view name, std::string_view text, std::string_view attributes = {}) {
+  void element(std::string_view name, std::string_view text, Attributes attributes = {}) {
     indent();
-    out_ += '<';
-    out_ += name;
-    if (!attributes.empty()) (out_ += ' ') += attributes;
-    out_ += '>';
-    escape(text);
-    out_ += "</";
+    begin(name, attributes);
+    out_ += escaped_markup(text) + "</";
     out_ += name;
     out_ += ">\n";
   }
@@ -42,17 +43,12 @@ class XmlWriter {
 
  private:
   void indent() { out_.append(open_.size(), ' '); }
-  void escape(std::string_view text) {
-    for (const char c : text) {
-      if (c == '&')
-        out_ += "&amp;";
-      else if (c == '<')
-        out_ += "&lt;";
-      else if (c == '>')
-        out_ += "&gt;";
-      else if (static_cast<unsigned char>(c) >= 0x20 || c == '\t' || c == '\n')
-        out_ += c;
-    }
+  void begin(std::string_view name, Attributes attributes) {
+    (out_ += '<') += name;
+    for (const auto& [key, value] : attributes)
+      if (!value.empty())
+        ((out_ += ' ') += key) += "=\"" + escaped_markup(value, Markup::attribute) + '"';
+    out_ += '>';
   }
 
   std::string out_;

@@ -181,14 +181,11 @@ struct Code {
 };
 
 /// A frame in which the file's electronic signature is shown; there is one at most. Where it stands
-/// is noted in the page (`signature_key`), for the program that signs.
+/// is noted in the page (`pdf::signature_key`), for the program that signs.
 struct SignatureBox {
   std::string title;
   std::vector<std::string> lines;
 };
-/// Of the page's dictionary: the corners of the frame, [left low right high] in pt.
-inline constexpr const char* signature_key = "NonioSignature";
-
 struct Spacer {
   double height = 6;
 };
@@ -232,6 +229,6 @@ struct Document {
 double page_room(const Style&);
 
 /// The same document and fonts give the same bytes.
-Expected<std::string> pdf(const Document&, const Fonts&);
+Expected<std::string> pdf_bytes(const Document&, const Fonts&);
 
 }  // namespace nonio::reports

@@ -8,18 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "nonio/pdf/writer.h"
 #include "nonio/sdk/error.h"
 
 namespace nonio::reports {
-
-/// What a document embeds of a font; glyphs have the same numbers in every one of its subsets.
-struct Embedded {
-  std::string name;                 ///< of the PDF's BaseFont: "ABCDEF+LiberationSans-Bold"
-  std::size_t size = 0;             ///< of the file before it was compressed
-  std::string file_deflated;        ///< FontFile2
-  std::string widths;               ///< the PDF's W array
-  std::string to_unicode_deflated;  ///< ToUnicode
-};
 
 /// A TrueType font, already cut to the characters that are wanted, and everything of it that every
 /// document needs: parsed and compressed once, then only copied.
@@ -32,8 +24,9 @@ struct Font {
   int ascent = 0, descent = 0, cap_height = 0;
   int units = 1000;  ///< of its outlines, per font size
 
-  std::vector<char> common;        ///< by glyph: of a character that most documents have
-  Embedded with_common, with_all;  ///< empty in a font of which a document embeds what it uses
+  std::vector<char> common;  ///< by glyph: of a character that most documents have
+  pdf::EmbeddedFont with_common,
+      with_all;  ///< empty in a font of which a document embeds what it uses
 
   std::uint16_t glyph(char32_t c) const { return c < glyphs.size() ? glyphs[c] : 0; }
 };

@@ -141,24 +141,24 @@ inline Expected<std::vector<RowRange>> tables_of(const Settings& options) {
   const RowRange all{static_cast<std::uint64_t>(options.integer("first_line", 1)),
                      static_cast<std::uint64_t>(options.integer("last_line", 0)), Way::none};
   if (all.last != 0 && all.last < all.first)
-    return fail(of_option("last_line", "wanted a line behind first_line, or 0 for the end"));
+    return fail(of_option("last_line", "expected a line behind first_line, or 0 for the end"));
   for (const std::string& text : options.texts("tables")) {
     const auto range = row_range_of(text);
     if (!range)
       return fail(of_option("tables",
-                            "wanted the lines of a table and how the axis went, \"12-36 "
+                            "expected the lines of a table and how the axis went, \"12-36 "
                             "forward\" (or reverse, +, -); found \"" +
                                 text + "\""));
     if (!tables.empty() && (tables.back().last == 0 || tables.back().last >= range->first))
       return fail(of_option("tables",
-                            "wanted tables in the order of the file that do not overlap, "
+                            "expected tables in the order of the file that do not overlap, "
                             "found \"" +
                                 text + "\" behind a line of its own"));
     tables.push_back(*range);
   }
   if (tables.empty()) return std::vector<RowRange>{all};
   if (all.first != 1 || all.last != 0)
-    return fail(of_option("tables", "wanted tables, or first_line and last_line; found both"));
+    return fail(of_option("tables", "expected tables, or first_line and last_line; found both"));
   return tables;
 }
 
@@ -169,24 +169,25 @@ inline Expected<TableMap> table_map_of(const Settings& options, bool rotary) {
        {std::pair{"target_unit", &map.target_unit}, {"value_unit", &map.value_unit}}) {
     const auto known = unit_named(options.text(name), rotary);
     if (!known)
-      return fail(of_option(name, std::string("wanted one of ") + units_known(rotary) +
+      return fail(of_option(name, std::string("expected one of ") + units_known(rotary) +
                                       " for this axis, found \"" + options.text(name) + "\""));
     *unit = *known;
   }
   const auto separator = separator_named(options.text("separator"));
   if (!separator)
     return fail(
-        of_option("separator", "wanted one of \",\" \";\" \"tab\" \"blank\" \"|\", found \"" +
+        of_option("separator", "expected one of \",\" \";\" \"tab\" \"blank\" \"|\", found \"" +
                                    options.text("separator") + "\""));
   map.separator = *separator;
   const std::string values = options.text("values");
   map.positions = values == "positions";
   map.sign = values == "target - actual" ? -1.0 : 1.0;
   if (!map.positions && map.sign > 0.0 && values != "actual - target")
-    return fail(of_option("values",
-                          "wanted what the values are, \"actual - target\", \"target - actual\" or "
-                          "\"positions\"; found \"" +
-                              values + "\". A sign is not guessed"));
+    return fail(
+        of_option("values",
+                  "expected what the values are, \"actual - target\", \"target - actual\" or "
+                  "\"positions\"; found \"" +
+                      values + "\". A sign is not guessed"));
   auto tables = tables_of(options);
   if (!tables) return fail(tables.error());
   map.tables = std::move(*tables);

@@ -242,8 +242,7 @@ inline std::string shown(std::string_view text) {
   return out + (part.size() < text.size() ? "...\"" : "\"");
 }
 
-namespace detail {
-
+/// How many letters differ, are missing or are too many (Levenshtein), bytes as letters.
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -259,17 +258,15 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-}  // namespace detail
-
 /// The name of `names` nearest to `name` by edit distance; names must not be empty.
 inline std::string_view nearest(std::string_view name, const std::vector<std::string_view>& names) {
   name = name.substr(0, 24);  // longer than any name of a column
   std::string_view best = names.front();
-  std::size_t least = detail::edit_distance(name, best);
+  std::size_t least = edit_distance(name, best);
   for (const std::string_view candidate : names) {
     const std::size_t a = name.size(), b = candidate.size();
     if ((a > b ? a - b : b - a) >= least) continue;  // the distance is at least that
-    const std::size_t distance = detail::edit_distance(name, candidate);
+    const std::size_t distance = edit_distance(name, candidate);
     if (distance >= least) continue;
     least = distance;
     best = candidate;

@@ -61,6 +61,29 @@ inline void append_utf8(std::string& out, std::uint32_t c) {
   add(0x80U | (c & 0x3FU));
 }
 
+/// Where a text stands in XML or HTML: between tags, or between the quotes of an attribute.
+enum class Markup { element, attribute };
+
+/// Text as XML and HTML write it; control characters that XML does not know are left out.
+inline std::string escaped_markup(std::string_view text, Markup where = Markup::element) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"' && where == Markup::attribute)
+      out += "&quot;";
+    else if (c == '\'' && where == Markup::attribute)
+      out += "&#39;";
+    else if (static_cast<unsigned char>(c) >= 0x20 || c == '\t' || c == '\n')
+      out += c;
+  }
+  return out;
+}
+
 /// Text with the byte-order mark of UTF-16 (Excel's "Unicode text") as UTF-8; nothing if it has no
 /// such mark. An error, with its line, where the bytes are no UTF-16.
 inline Expected<std::optional<std::string>> utf8_of_utf16(std::string_view bytes) {

@@ -8,41 +8,27 @@
 #include <string_view>
 #include <vector>
 
+#include "nonio/pdf/signature_field.h"
 #include "nonio/sdk/error.h"
 
 /// Between the content of a certificate and its signature lies this and no more: a finished PDF and
 /// its attachments go in, a signed PDF comes out.
 ///
-///   reserve(pdf, attachments, time)  puts the attachments and an empty signature into the PDF, in
-///                                    its one revision. Needs no key: any process may do it.
-///   Key::sign(bytes, stamp)          fills the signature. Only the process that holds the key.
+///   pdf::reserve(pdf, attachments, time)  puts the attachments and an empty signature into the
+///   PDF,
+///                                         in its one revision. Needs no key: any process may.
+///   Key::sign(bytes, stamp)               fills the signature. Only the process that holds the
+///   key.
 ///
 /// Whoever writes the content need not know of the signature: a PDF of one revision with a plain
 /// cross-reference table (as reports::pdf makes it), without a form and attachments of its own. An
 /// XML document is signed as it is; its signature becomes the last child of the root.
 namespace nonio::sign {
 
-/// A file inside the PDF.
-struct Attachment {
-  std::string name;  ///< with folders, "data/x.csv"
-  std::string bytes;
-  std::string type;      ///< "text/csv"
-  std::string relation;  ///< PDF 2.0 /AFRelationship: Source, Data, Supplement, Alternative
-  std::string says;      ///< one line for people
-};
-
 /// Seconds since 1970-01-01 UTC. Signatures and their checks take it as a value; nothing here but a
 /// time-stamp server looks at a clock.
-using Time = std::int64_t;
+using pdf::Time;
 std::string text_of(Time time);  ///< "2026-11-21 15:00:07 UTC"
-
-/// Bytes for the CMS object if nothing else is said: enough for a time stamp with a long chain.
-inline constexpr std::size_t usual_room = 16384;
-
-/// `pdf` with attachments, a signature field without appearance on its first page, and `room` bytes
-/// of zeros for the signature. Same input, same bytes.
-Expected<std::string> reserve(std::string_view pdf, const std::vector<Attachment>& attachments,
-                              Time time, std::size_t room = usual_room);
 
 /// Where a key is. Either a PKCS#12 file, or a token.
 struct KeyPlace {
@@ -85,7 +71,7 @@ class Key {
   ~Key();
 
   const Identity& identity() const;
-  /// A PDF from `reserve`: PAdES B-B, or B-T with a time stamp. An XML document: put into its
+  /// A PDF from `pdf::reserve`: PAdES B-B, or B-T with a time stamp. An XML document: put into its
   /// canonical form, with an enveloped signature, XAdES B-B or B-T; `now` is what that signature
   /// says of its time. Anything else is an error.
   Expected<Signed> sign(std::string bytes, Time now, const TimeStamping& stamping = {}) const;

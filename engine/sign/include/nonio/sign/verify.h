@@ -12,7 +12,7 @@
 namespace nonio::sign {
 
 /// What is larger is refused unread; it is not signed either.
-inline constexpr std::size_t max_bytes = 100'000'000;
+inline constexpr std::size_t max_bytes = pdf::max_file;
 
 struct Check {
   enum class State { holds, fails, not_checked };
@@ -43,7 +43,7 @@ struct Verified {
   Time existed = 0;
   /// Bytes of a PDF as it was signed; behind them stands what was added for long-term validation.
   std::size_t issued = 0;
-  std::vector<Attachment> attachments;  ///< of a PDF, if it could be read
+  std::vector<pdf::Attachment> attachments;  ///< of a PDF, if it could be read
 
   bool holds() const;  ///< every check, and no essential one was left out
 };
@@ -52,9 +52,7 @@ struct Verified {
 /// of the expected signer is the rest read: what a stranger sends costs no more than its digest.
 Verified verify_pdf(std::string_view bytes, const Verifier& verifier);
 /// Of a PDF that is known to be our own, such as one from the register; nothing is checked.
-Expected<std::vector<Attachment>> unverified_attachments(std::string_view pdf);
-/// What is drawn on each page, uncompressed, as the writer of the PDF put it down.
-Expected<std::vector<std::string>> page_contents(std::string_view pdf);
+Expected<std::vector<pdf::Attachment>> unverified_attachments(std::string_view pdf);
 /// An XML document as `Key::sign` writes one: in its canonical form, with one enveloped signature
 /// over all of it. `certificate` (DER): only that signer will do, and its chain is not looked at
 /// again.
@@ -62,11 +60,5 @@ Verified verify_xml(std::string_view bytes, const Verifier& verifier,
                     std::string_view certificate = {});
 /// Whether a signed document, its signature taken out, has the canonical form of `written`.
 Expected<void> same_document(std::string_view signed_document, std::string_view written);
-/// Whether two PDFs of `reserve`, one of them signed, have the same objects, streams uncompressed;
-/// only the signature itself and the identifier that is made from the whole file may differ.
-Expected<void> same_pdf(std::string_view signed_pdf, std::string_view reserved);
-/// When a signed PDF says that it was signed (/M); an error if it says it in another way than
-/// `reserve` does.
-Expected<Time> stated_time(std::string_view pdf);
 
 }  // namespace nonio::sign

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// VDI/DGQ 3441: statistical testing of the operational and positional accuracy of machine tools.
+// At target j, with the means xm+, xm- and the standard deviations S+, S- of the two directions:
+//
+//   xs_j = (xm_j+ + xm_j-)/2;  S_j = (S_j+ + S_j-)/2                                   m or rad
+//   U_j  = |xm_j+ - xm_j-|     reversal; U_max, U_mean over the targets, without sign
+//   Ps_j = 6 S_j               scatter;  Ps_max, Ps_mean
+//   Pa   = max xs_j - min xs_j                                         (M of ISO 230-2)
+//   P    = max(xs_j + (U_j + Ps_j)/2) - min(xs_j - (U_j + Ps_j)/2)
+//   one direction: P+ = max(xm+ + 3 S+) - min(xm+ - 3 S+), Pa+ = max xm+ - min xm+
+//   S    = sqrt(sum (x - xm)^2/(n - 1)), or from the range: S = (max x - min x)/d_n
+//
+// Source: VDI/DGQ 3441:1977. The text was not available; see docs/formulas.md. Note that S is the
+// mean of both directions, not pooled: sqrt((S+^2 + S-^2)/2) is another number.
+#include "nonio/math/vdi3441.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "common/constants.h"
+#include "nonio/math/statistics.h"
+
+namespace nonio::math {
+namespace {
+
+// Mean range of n normal values in units of their standard deviation, the integral of
+// 1 - Phi^n - (1 - Phi)^n (L. H. C. Tippett 1925, Biometrika 17, p. 364); tests/unit/math computes
+// it again. Tables print three digits: 1.128, 1.693, 2.059, 2.326, ...
+constexpr std::array<double, 11> d_n = {
+    not_given,      not_given,      1.128379167096, 1.692568750643, 2.058750746008, 2.325928947281,
+    2.534412721223, 2.704356751214, 2.847200612091, 2.970026324418, 3.077505461670};
+
+double deviation_of_side(const std::vector<double>& x, StandardDeviation how) {
+  if (how == StandardDeviation::direct) return standard_deviation(x);
+  if (x.size() < 2 || x.size() >= d_n.size()) return not_given;
+  const auto [low, high] = std::minmax_element(x.begin(), x.end());
+  return (*high - *low) / d_n[x.size()];
+}
+
+double largest(const std::vector<double>& x) {
+  double out = x.empty() ? not_given : x.front();
+  for (const double v : x) out = std::isnan(v) || std::isnan(out) ? not_given : std::max(out, v);
+  return out;
+}
+
+// max(x + h) - min(x - h)
+double extent(const std::vector<double>& x, const std::vector<double>& h) {
+  std::vector<double> high, low;
+  for (std::size_t j = 0; j < x.size(); ++j) {
+    high.push_back(x[j] + h[j]);
+    low.push_back(h[j] - x[j]);
+  }
+  return largest(high) + largest(low);
+}
+
+struct Sided {  // one direction: of the targets that were reached in it
+  std::vector<double> mean, band, flat;
+  void put(double x, double S) {
+    mean.push_back(x);
+    band.push_back(3.0 * S);
+    flat.push_back(0.0);
+  }
+};
+
+}  // namespace
+
+VdiResult evaluate_vdi3441(const AxisTest& test, StandardDeviation how) {
+  VdiResult result{};
+  Sided one[2];
+  std::vector<double> xs, flat, half, U, Ps, PsU;
+  for (std::size_t j = 0; j < test.targets.size(); ++j) {
+    const auto plus = deviations(test.plus(j)), minus = deviations(test.minus(j));
+    const double xm_plus = mean(plus), xm_minus = mean(minus);
+    VdiPoint p{};
+    p.target = test.targets[j];
+    p.mean = (xm_plus + xm_minus) / 2.0;
+    p.S_plus = deviation_of_side(plus, how);
+    p.S_minus = deviation_of_side(minus, how);
+    p.S = (p.S_plus + p.S_minus) / 2.0;
+    p.U = std::fabs(xm_plus - xm_minus);
+    p.Ps = 6.0 * p.S;
+    if (!plus.empty()) one[0].put(xm_plus, p.S_plus);
+    if (!minus.empty()) one[1].put(xm_minus, p.S_minus);
+    xs.push_back(p.mean);
+    flat.push_back(0.0);
+    half.push_back((p.U + p.Ps) / 2.0);
+    U.push_back(p.U);
+    Ps.push_back(p.Ps);
+    PsU.push_back(p.U + p.Ps);
+    result.points.push_back(p);
+  }
+  result.P = extent(xs, half);
+  result.Pa = extent(xs, flat);
+  result.Ps_max = largest(Ps), result.Ps_mean = mean(Ps);
+  result.U_max = largest(U), result.U_mean = mean(U);
+  result.PsU_max = largest(PsU);
+  result.P_plus = extent(one[0].mean, one[0].band);
+  result.P_minus = extent(one[1].mean, one[1].band);
+  result.Pa_plus = extent(one[0].mean, one[0].flat);
+  result.Pa_minus = extent(one[1].mean, one[1].flat);
+  result.Ps_max_plus = 2.0 * largest(one[0].band);
+  result.Ps_max_minus = 2.0 * largest(one[1].band);
+  return result;
+}
+
+}  // namespace nonio::math

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/math/followed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/constants.h"
+#include "dense.h"
+#include "run_components.h"
+
+namespace nonio::math {
+namespace {
+
+constexpr double largest_gap = full_turn / 3.0;  // of targets that cover a turn
+/// Readings may tell a sinusoid at most so much worse than phases that are spread evenly.
+constexpr double most_inflated = 2.0;
+constexpr std::size_t fewest_for_curve = 5, fewest_for_sinusoid = 10;
+
+/// A function of the targets' mean deviations: weight of each reading.
+using ReadingWeights = std::vector<double>;
+
+/// What is being made for one test.
+struct Following {
+  const AxisTest& test;
+  RunComponents components;
+  FollowedAxis out{};
+  std::vector<ReadingWeights> weights{};  ///< of each quantity; empty of ln_s
+};
+
+/// Of a sum over targets of t_i m_i: each direction that reached the target counts alike.
+ReadingWeights of_means(const AxisTest& test, const Eigen::VectorXd& t) {
+  ReadingWeights out(test.readings().size(), 0.0);
+  for (std::size_t i = 0; i < test.targets.size(); ++i) {
+    const double directions =
+        (test.plus(i).empty() ? 0.0 : 1.0) + (test.minus(i).empty() ? 0.0 : 1.0);
+    for (const bool minus : {false, true}) {
+      const auto part = minus ? test.minus(i) : test.plus(i);
+      const std::size_t first = first_reading(test, i, minus);
+      for (std::size_t k = 0; k < part.size(); ++k)
+        out[first + k] = t(at(i)) / directions / static_cast<double>(part.size());
+    }
+  }
+  return out;
+}
+
+ReadingWeights of_reversal(const AxisTest& test) {
+  ReadingWeights out(test.readings().size(), 0.0);
+  double both = 0.0;
+  for (std::size_t i = 0; i < test.targets.size(); ++i)
+    if (!test.plus(i).empty() && !test.minus(i).empty()) both += 1.0;
+  for (std::size_t i = 0; i < test.targets.size(); ++i) {
+    const auto plus = test.plus(i), minus = test.minus(i);
+    if (plus.empty() || minus.empty()) continue;
+    for (std::size_t k = 0; k < plus.size(); ++k)
+      out[first_reading(test, i, false) + k] = 1.0 / both / static_cast<double>(plus.size());
+    for (std::size_t k = 0; k < minus.size(); ++k)
+      out[first_reading(test, i, true) + k] = -1.0 / both / static_cast<double>(minus.size());
+  }
+  return out;
+}
+
+void add_followed(Following& work, std::string name, Quantity quantity, ReadingWeights weights) {
+  Followed f{std::move(name), 0.0, quantity};
+  const auto readings = work.test.readings();
+  for (std::size_t k = 0; k < readings.size(); ++k) f.value += weights[k] * readings[k].deviation;
+  work.out.quantities.push_back(std::move(f));
+  work.weights.push_back(std::move(weights));
+}
+
+Quantity deviation_along(const AxisTest& test) {
+  return test.rotary ? Quantity::angular_deviation : Quantity::deviation;
+}
+
+/// Columns 1, z, P2(z), P3(z) at the targets.
+Eigen::MatrixXd legendre_columns(const AxisTest& test, int columns) {
+  Eigen::MatrixXd X(at(test.targets.size()), columns);
+  const double middle = (test.targets.front() + test.targets.back()) / 2.0;
+  for (Eigen::Index i = 0; i < X.rows(); ++i) {
+    const double z = 2.0 * (test.targets[static_cast<std::size_t>(i)] - middle) / test.length();
+    const double of_degree[] = {1.0, z, (3.0 * z * z - 1.0) / 2.0,
+                                (5.0 * z * z * z - 3.0 * z) / 2.0};
+    for (int c = 0; c < columns; ++c) X(i, c) = of_degree[c];
+  }
+  return X;
+}
+
+/// Rows: coefficient of each column in a least-squares fit to the targets, by target.
+Eigen::MatrixXd fit_rows(const Eigen::MatrixXd& X) {
+  return Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(X).solve(
+      Eigen::MatrixXd::Identity(X.rows(), X.rows()));
+}
+
+void add_scale(Following& work) {
+  const AxisTest& test = work.test;
+  const Eigen::VectorXd slope = fit_rows(legendre_columns(test, 2)).row(1) * (2.0 / test.length());
+  add_followed(work, "scale", Quantity::deviation_per_length, of_means(test, slope));
+}
+
+void add_curve(Following& work) {
+  const AxisTest& test = work.test;
+  if (test.targets.size() < fewest_for_curve) return;
+  const Eigen::MatrixXd curve = fit_rows(legendre_columns(test, 4));
+  add_followed(work, "curve_2", deviation_along(test), of_means(test, curve.row(2)));
+  add_followed(work, "curve_3", deviation_along(test), of_means(test, curve.row(3)));
+}
+
+/// beside: columns of what is fitted with the sinusoid.
+void add_sinusoid(Following& work, const std::string& name, double period,
+                  const Eigen::MatrixXd& beside) {
+  const AxisTest& test = work.test;
+  const auto targets = static_cast<double>(test.targets.size());
+  if (test.targets.size() < fewest_for_sinusoid || test.length() < period / 2.0) return;
+  Eigen::MatrixXd X(beside.rows(), beside.cols() + 2);
+  X.leftCols(beside.cols()) = beside;
+  for (Eigen::Index i = 0; i < X.rows(); ++i) {
+    const double phase = full_turn * test.targets[static_cast<std::size_t>(i)] / period;
+    X(i, beside.cols()) = std::cos(phase), X(i, beside.cols() + 1) = std::sin(phase);
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(X);
+  if (qr.rank() < X.cols()) return;
+  const Eigen::MatrixXd rows = fit_rows(X).bottomRows(2);
+  for (int c = 0; c < 2; ++c)
+    if (rows.row(c).squaredNorm() > most_inflated * 2.0 / targets) return;
+  add_followed(work, name + "_cos", deviation_along(test), of_means(test, rows.row(0)));
+  add_followed(work, name + "_sin", deviation_along(test), of_means(test, rows.row(1)));
+}
+
+bool covers_a_turn(const AxisTest& test) {
+  if (full_turn - test.length() > largest_gap) return false;
+  for (std::size_t i = 1; i < test.targets.size(); ++i)
+    if (test.targets[i] - test.targets[i - 1] > largest_gap) return false;
+  return true;
+}
+
+std::optional<double> drive_period(const Axis* axis, bool rotary) {
+  if (axis == nullptr) return {};
+  if (!rotary) return axis->screw_pitch;
+  return axis->teeth ? std::optional(full_turn / *axis->teeth) : std::nullopt;
+}
+
+void add_shapes(Following& work, const Axis* axis, Across across) {
+  const AxisTest& test = work.test;
+  const bool turn = test.rotary && covers_a_turn(test);
+  const Eigen::MatrixXd beside = turn ? legendre_columns(test, 1) : legendre_columns(test, 4);
+  if (turn) add_sinusoid(work, "turn", full_turn, beside);
+  if (!test.rotary && across == Across::no) add_scale(work);  // the slope across it is set-up
+  if (!test.rotary) add_curve(work);
+  const auto period = drive_period(axis, test.rotary);
+  if (period && *period > 0.0) add_sinusoid(work, "cyclic", *period, beside);
+}
+
+void put_uncertainties(Following& work) {
+  const std::size_t n = work.weights.size();
+  auto& C = work.out.covariance;
+  C.assign(n * n, 0.0);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i; j < n; ++j)
+      C[i * n + j] = C[j * n + i] =
+          covariance_of(work.test, work.components, work.weights[i], work.weights[j]);
+  for (std::size_t i = 0; i < n; ++i) work.out.quantities[i].u = std::sqrt(C[i * n + i]);
+}
+
+/// The scale also depends on what the manifest states.
+void of_the_scale(Following& work, const Campaign& c, const std::string& name,
+                  std::optional<double> material) {
+  auto& all = work.out.quantities;
+  const auto found =
+      std::find_if(all.begin(), all.end(), [](const Followed& f) { return f.name == "scale"; });
+  if (found == all.end()) return;
+  const auto stated = [&](const std::optional<double>& value, const std::string& key) {
+    if (value && std::isfinite(*value)) return *value;
+    work.out.not_stated.push_back(key);
+    return 0.0;
+  };
+  const Environment& e = c.environment;
+  const Axis* axis = c.machine.axis(name);
+  const double L = work.test.length(),
+               alpha = stated(axis != nullptr ? axis->expansion : std::nullopt,
+                              "machine.axes." + name + ".expansion_um_per_m_K");
+  const double beam = stated(e.misalignment, "environment.misalignment_mm"),
+               sensor = stated(e.temperature_range, "environment.temperature_range_K"),
+               range = stated(e.expansion_range, "environment.expansion_range_um_per_m_K");
+  found->of_instrument = stated(c.instrument.U_per_length, "instrument.U_per_m_um") / 2.0;
+  double square = std::pow(of_limit * beam * beam / (2.0 * L * L), 2) +
+                  std::pow(of_full_range * sensor * alpha, 2);
+  const double each_kelvin = of_full_range * range;
+  if (material)
+    found->of_expansion = each_kelvin * (*material - 20.0);
+  else
+    square += std::pow(
+        each_kelvin * stated(e.temperature_difference, "environment.temperature_difference_K"), 2);
+  const std::size_t n = all.size(), i = static_cast<std::size_t>(found - all.begin());
+  work.out.covariance[i * n + i] += square;
+  found->u = std::sqrt(work.out.covariance[i * n + i]);
+}
+
+void add_scatter(Following& work) {
+  const PooledScatter scatter = pooled_scatter(work.test, work.components);
+  if (!(scatter.s > rounding) || !(scatter.u_ln > 0.0)) return;
+  const std::size_t n = work.out.quantities.size();
+  std::vector<double> larger((n + 1) * (n + 1), 0.0);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) larger[i * (n + 1) + j] = work.out.covariance[i * n + j];
+  larger.back() = scatter.u_ln * scatter.u_ln;
+  work.out.covariance = std::move(larger);
+  work.out.quantities.push_back({"ln_s",
+                                 std::log(scatter.s * unit_of(deviation_along(work.test)).per_si),
+                                 Quantity::number, scatter.u_ln});
+}
+
+}  // namespace
+
+FollowedAxis followed_quantities(const AxisTest& test, const Campaign& campaign,
+                                 const std::string& axis, std::optional<double> material,
+                                 Across across) {
+  if (test.targets.size() < 3 || test.most_approaches() < 2) return {};
+  Following work{test, run_components(test)};
+  const bool scatters =
+      std::any_of(std::begin(work.components.reading), std::end(work.components.reading),
+                  [](double v) { return v > 0.0; });
+  if (work.components.runs < 2.0 || !scatters) return {};
+  add_shapes(work, campaign.machine.axis(axis), across);
+  if (test.bidirectional()) add_followed(work, "B_mean", deviation_along(test), of_reversal(test));
+  put_uncertainties(work);
+  if (across == Across::no) of_the_scale(work, campaign, axis, material);
+  add_scatter(work);
+  return std::move(work.out);
+}
+
+}  // namespace nonio::math

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "axis/pass_model.h"
+#include "nonio/math/axis_test.h"
+
+namespace nonio::math {
+
+/// What the scatter of a test is made of (followed.h).
+struct RunComponents {
+  /// Variance over the runs, and what of its estimate single readings make.
+  struct Part {
+    double variance = 0.0, noise = 0.0;
+  };
+  PassModel passes;
+  double runs = 0.0;               ///< complete ones: with a pass in each direction that occurs
+  double reading[2] = {};          ///< variance of a single reading, + and -
+  Part shared_offset, own_offset;  ///< m^2
+  Part shared_slope, own_slope;    ///< slopes about the middle of the targets
+};
+
+RunComponents run_components(const AxisTest&);
+
+/// Covariance of two linear functions of the readings with these weights.
+double covariance_of(const AxisTest&, const RunComponents&, std::span<const double> a,
+                     std::span<const double> b);
+
+/// Root mean square of the scatter at a target, and the standard uncertainty of its logarithm.
+struct PooledScatter {
+  double s = 0.0, u_ln = 0.0;
+};
+PooledScatter pooled_scatter(const AxisTest&, const RunComponents&);
+
+}  // namespace nonio::math

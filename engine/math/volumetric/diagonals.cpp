@@ -1,0 +1,503 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// One least-squares problem for all readings. Every reading is a source of noise; a row is a
+// reading less positioning, so rows share sources, and their covariance is N diag(sigma^2) N'.
+#include "nonio/math/diagonals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "dense.h"
+
+namespace nonio::math {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+using Row = Eigen::RowVectorXd;
+
+constexpr std::size_t most_stops = 1000;
+constexpr double rank_threshold = 1e-10;  ///< of the largest column; columns are lengths
+constexpr double closure_limit = 4.0;     ///< closure, in standard uncertainties
+
+Expected<void> check_curve(const MeanCurve& curve, std::size_t length, const std::string& what) {
+  if (curve.mean.size() != length)
+    return fail(what + ": expected " + std::to_string(length) + " means, found " +
+                std::to_string(curve.mean.size()));
+  for (const double v : curve.mean)
+    if (!std::isfinite(v)) return fail(what + ": expected numbers, found one that is not finite");
+  if (!(curve.u >= 0.0)) return fail(what + ": expected an uncertainty that is not negative");
+  return {};
+}
+
+Expected<void> check_line(const GridLine& line, std::size_t n, const std::string& what) {
+  if (auto ok = check_curve(line, line.ix.size(), what); !ok) return ok;
+  if (line.iy.size() != line.ix.size() || line.ix.size() < 2)
+    return fail(what + ": expected two stops or more, each with a place in x and in y");
+  for (const auto* places : {&line.ix, &line.iy})
+    for (const std::size_t i : *places)
+      if (i > n) return fail(what + ": a stop lies outside the grid");
+  return {};
+}
+
+/// The curves of one direction of approach, by their places.
+template <class T>
+std::vector<std::size_t> of_direction(const std::vector<T>& curves, int direction) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < curves.size(); ++k)
+    if (curves[k].direction == direction) out.push_back(k);
+  return out;
+}
+
+/// What belongs to a line: positioning, and yaw, in the directions in which it was read.
+Expected<void> check_positioning(const DiagonalReadings& r, const GridLine& line,
+                                 const std::string& what) {
+  const auto X = of_direction(r.X, line.x_direction);
+  if (X.empty() || X.size() > 2)
+    return fail(what + ": expected positioning of X on one line or two");
+  if (X.size() == 2 && !(std::fabs(r.X[X[1]].across - r.X[X[0]].across) > 0.0))
+    return fail(what + ": expected two different lines of X");
+  if (of_direction(r.Y, line.y_direction).size() != 1)
+    return fail(what + ": expected one positioning of Y");
+  if (!r.ECX.empty() && of_direction(r.ECX, line.x_direction).size() != 1)
+    return fail(what + ": expected one yaw of X");
+  return {};
+}
+
+Expected<void> check(const DiagonalReadings& r) {
+  if (!(r.Lx > 0.0 && r.Ly > 0.0)) return fail("expected lengths above 0");
+  if (r.n < 3 || r.n > most_stops)
+    return fail("expected 3 to " + std::to_string(most_stops) + " steps, found " +
+                std::to_string(r.n));
+  if (r.D1.mean.size() != r.n + 1 || r.D2.mean.size() != r.n + 1)
+    return fail("expected " + std::to_string(r.n + 1) + " stops on each diagonal");
+  std::vector<std::pair<const GridLine*, std::string>> lines{{&r.D1, "D1"}, {&r.D2, "D2"}};
+  for (const GridLine& line : r.third) lines.emplace_back(&line, "third line");
+  for (const auto& [line, what] : lines) {
+    if (auto ok = check_line(*line, r.n, what); !ok) return ok;
+    if (auto ok = check_positioning(r, *line, what); !ok) return ok;
+  }
+  std::vector<std::pair<const MeanCurve*, std::string>> curves;
+  for (const PitchLine& line : r.X) curves.emplace_back(&line, "X");
+  for (const PitchLine& line : r.Y) curves.emplace_back(&line, "Y");
+  for (const MeanCurve& yaw : r.ECX) curves.emplace_back(&yaw, "ECX");
+  if (r.EYX) curves.emplace_back(&*r.EYX, "EYX");
+  if (r.EXY) curves.emplace_back(&*r.EXY, "EXY");
+  for (const auto& [curve, what] : curves)
+    if (auto ok = check_curve(*curve, r.n + 1, what); !ok) return ok;
+  return {};
+}
+
+/// Rows A theta = y + N e, with theta = (f_1..f_{n-1}, g_1..g_{n-1}, k Ly, slopes of straightness
+/// measured directly).
+class System {
+ public:
+  explicit System(const DiagonalReadings& r) : r_(r), n_(r.n) {
+    unknowns_ = 2 * n_ - 1;
+    std::size_t rows = 2 * n_, columns = unknowns_;
+    for (const GridLine& line : r.third) rows += line.mean.size() - 1;
+    for (const auto* direct : {&r.EYX, &r.EXY}) {
+      if (!*direct) continue;
+      rows += (*direct)->whole ? n_ - 1 : (n_ + 1) / 2;
+      columns += (*direct)->whole ? 0 : 1;
+    }
+    noise_known_ = add_sources();
+    A_ = Matrix::Zero(at(rows), at(columns));
+    y_ = Vector::Zero(at(rows));
+    N_ = Matrix::Zero(at(rows), at(sigma_.size()));
+    add_line(r.D1, first_of_lines_);
+    std::size_t source = first_of_lines_ + r.D1.mean.size();
+    add_line(r.D2, source);
+    source += r.D2.mean.size();
+    for (const GridLine& line : r.third) add_line(line, source), source += line.mean.size();
+    std::size_t slope = unknowns_, first = 0;
+    for (const auto* direct : {&r.EYX, &r.EXY}) {
+      if (*direct && (*direct)->whole) add_whole(**direct, source, first);
+      if (*direct && !(*direct)->whole) add_odd(**direct, source, first, slope++);
+      if (*direct) source += n_ + 1;
+      first = n_ - 1;
+    }
+  }
+
+  const Matrix& A() const { return A_; }
+  /// Of the rows by the readings: y = N readings.
+  const Matrix& N() const { return N_; }
+  std::size_t first_of_X() const { return r_.Y.size() * (n_ + 1); }
+  std::size_t first_of_yaw() const { return first_of_X() + r_.X.size() * (n_ + 1); }
+  const Vector& y() const { return y_; }
+  bool noise_known() const { return noise_known_; }
+  std::size_t unknowns() const { return unknowns_; }
+  Matrix covariance() const { return scaled(sigma_) * scaled(sigma_).transpose(); }
+  /// Rows' noise if every reading of a line, or of a direct straightness, scatters by 1.
+  Matrix unit_noise() const { return scaled(unit_); }
+
+  Row f(std::size_t i) const { return place(i, 0); }
+  Row g(std::size_t i) const { return place(i, n_ - 1); }
+  Row k() const {
+    Row row = Row::Zero(A_.cols());
+    row[at(unknowns_ - 1)] = 1.0 / r_.Ly;
+    return row;
+  }
+
+ private:
+  Row place(std::size_t i, std::size_t first) const {
+    Row row = Row::Zero(A_.cols());
+    if (i > 0 && i < n_) row[at(first + i - 1)] = 1.0;
+    return row;
+  }
+  Matrix scaled(const std::vector<double>& sigma) const {
+    return N_ * Eigen::Map<const Vector>(sigma.data(), at(sigma.size())).asDiagonal();
+  }
+
+  /// Y, X, yaw, then lines and direct straightness. False if some noise is not known: all lengths
+  /// count alike.
+  bool add_sources() {
+    bool known = true;
+    const auto add = [&](const MeanCurve& c, double unit) {
+      known = known && c.u > 0.0;
+      for (std::size_t i = 0; i < c.mean.size(); ++i) {
+        const double on = i == 0 && c.zeroed ? 0.0 : 1.0;
+        sigma_.push_back(on * c.u);
+        unit_.push_back(on * unit);
+        equal_.push_back(on);
+      }
+    };
+    for (const PitchLine& line : r_.Y) add(line, 0.0);
+    for (const PitchLine& line : r_.X) add(line, 0.0);
+    for (const MeanCurve& yaw : r_.ECX) {
+      add(yaw, 0.0);
+      std::fill(equal_.end() - static_cast<std::ptrdiff_t>(n_ + 1), equal_.end(), 0.0);
+    }
+    first_of_lines_ = sigma_.size();
+    add(r_.D1, 1.0);
+    add(r_.D2, 1.0);
+    for (const GridLine& line : r_.third) add(line, 1.0);
+    for (const auto* direct : {&r_.EYX, &r_.EXY})
+      if (*direct) {
+        add(**direct, 1.0);
+        if ((*direct)->whole && (*direct)->zeroed)
+          sigma_.back() = unit_.back() = equal_.back() = 0.0;
+      }
+    if (!known) sigma_ = equal_;
+    return known;
+  }
+
+  /// Takes `factor` times a reading of a curve of positioning, from its first stop on, out of the
+  /// row. Each curve has a zero of its own: one between two lines of X would be squareness.
+  void subtract(Eigen::Index row, const MeanCurve& c, std::size_t source, std::size_t i,
+                double factor) {
+    y_[row] -= factor * (c.mean[i] - c.mean[0]);
+    N_(row, at(source + i)) -= factor;
+    N_(row, at(source)) += factor;
+  }
+
+  /// sign * what the stop reads, but for the reading itself.
+  void add_stop(Eigen::Index row, const GridLine& line, std::size_t j, double sign) {
+    const std::size_t a = line.ix[j], b = line.iy[j];
+    const double y = r_.Ly * static_cast<double>(b) / static_cast<double>(n_);
+    A_.row(row) += sign * (line.cx * (g(b) - y * k()) + line.cy * f(a));
+    const std::size_t curve = n_ + 1, first_x = r_.Y.size(), first_yaw = first_x + r_.X.size();
+    const std::size_t Y = of_direction(r_.Y, line.y_direction).front();
+    subtract(row, r_.Y[Y], Y * curve, b, sign * line.cy);
+    const auto X = of_direction(r_.X, line.x_direction);
+    const auto source = [&](std::size_t k) { return (first_x + X[k]) * curve; };
+    const double beside = y - r_.X[X[0]].across;
+    double second = 0.0;
+    if (X.size() == 2) {
+      second = beside / (r_.X[X[1]].across - r_.X[X[0]].across);
+      subtract(row, r_.X[X[1]], source(1), a, sign * line.cx * second);
+    } else if (!r_.ECX.empty()) {
+      const std::size_t yaw = of_direction(r_.ECX, line.x_direction).front();
+      subtract(row, r_.ECX[yaw], (first_yaw + yaw) * curve, a, -sign * line.cx * beside);
+    }
+    subtract(row, r_.X[X[0]], source(0), a, sign * line.cx * (1.0 - second));
+  }
+
+  void add_line(const GridLine& line, std::size_t source) {
+    for (std::size_t j = 1; j < line.mean.size(); ++j, ++next_) {
+      add_stop(next_, line, j, 1.0);
+      add_stop(next_, line, 0, -1.0);
+      y_[next_] += line.mean[j] - line.mean[0];
+      N_(next_, at(source + j)) += 1.0;
+      N_(next_, at(source)) -= 1.0;
+    }
+  }
+
+  double way(std::size_t i) const { return static_cast<double>(i) / static_cast<double>(n_); }
+
+  /// Its even part is left alone: the diagonals may know that better than a straightness whose
+  /// line and instrument are others.
+  void add_odd(const MeanCurve& c, std::size_t source, std::size_t first, std::size_t slope) {
+    for (std::size_t i = 0; 2 * i < n_; ++i, ++next_) {
+      A_.row(next_) = (place(i, first) - place(n_ - i, first)) / 2.0;
+      A_(next_, at(slope)) = way(i) - 0.5;
+      y_[next_] = (c.mean[i] - c.mean[n_ - i]) / 2.0;
+      N_(next_, at(source + i)) += 0.5;
+      N_(next_, at(source + n_ - i)) -= 0.5;
+    }
+  }
+
+  void add_whole(const MeanCurve& c, std::size_t source, std::size_t first) {
+    for (std::size_t i = 1; i < n_; ++i, ++next_) {
+      A_.row(next_) = place(i, first);
+      for (const auto& [j, factor] :
+           {std::pair{i, 1.0}, {std::size_t{0}, way(i) - 1.0}, {n_, -way(i)}}) {
+        y_[next_] += factor * c.mean[j];
+        N_(next_, at(source + j)) += factor;
+      }
+    }
+  }
+
+  const DiagonalReadings& r_;
+  std::size_t n_, unknowns_ = 0, first_of_lines_ = 0;
+  bool noise_known_ = false;
+  Matrix A_, N_;
+  Vector y_;
+  std::vector<double> sigma_, unit_, equal_;
+  Eigen::Index next_ = 0;
+};
+
+/// Generalised least squares with the rank found numerically. A functional that the rows do not
+/// determine has no value.
+class Solution {
+ public:
+  Solution(const System& system, const ReadingModel* model) : model_(model) {
+    const Matrix C = system.covariance();
+    const Eigen::LLT<Matrix> llt(C);
+    const Matrix A = llt.matrixL().solve(system.A());
+    const Vector y = llt.matrixL().solve(system.y());
+    Eigen::CompleteOrthogonalDecomposition<Matrix> cod;
+    cod.setThreshold(rank_threshold);
+    cod.compute(A);
+    rank_ = static_cast<std::size_t>(cod.rank());
+    const Matrix inverse = cod.pseudoInverse();
+    theta_ = inverse * y;
+    projector_ = inverse * A;
+    root_ = inverse;
+    gain_ = inverse * llt.matrixL().solve(system.unit_noise());
+    if (model_ != nullptr) jacobian_ = inverse * llt.matrixL().solve(system.N());
+    const auto rows = static_cast<std::size_t>(A.rows());
+    dof_ = rows > rank_ ? rows - rank_ : 0;
+    if (dof_ > 0) scale_ = (y - A * theta_).norm() / std::sqrt(static_cast<double>(dof_));
+    if (!system.noise_known()) factor_ = scale_;
+  }
+
+  std::size_t rank() const { return rank_; }
+  std::size_t dof() const { return dof_; }
+  double scale() const { return scale_; }
+  double factor() const { return factor_; }
+
+  bool determined(const Row& h) const { return (h * projector_ - h).norm() <= 1e-6 * h.norm(); }
+  double value(const Row& h) const { return h * theta_; }
+  double u(const Row& h) const { return factor_ * (h * root_).norm(); }
+  double gain(const Row& h) const { return (h * gain_).norm(); }
+  Shares shares(const Row& h) const {
+    return model_ == nullptr ? Shares{} : shares_of_readings(h * jacobian_);
+  }
+  /// Of what is made of the readings directly.
+  Shares shares_of_readings(const Row& J) const {
+    if (model_ == nullptr) return {};
+    return model_->shares({J.data(), static_cast<std::size_t>(J.size())});
+  }
+
+ private:
+  const ReadingModel* model_;
+  Vector theta_;
+  Matrix projector_, root_, gain_, jacobian_;
+  std::size_t rank_ = 0, dof_ = 0;
+  double scale_ = 0.0, factor_ = 1.0;
+};
+
+using Functional = std::vector<Row>;  ///< n + 1 points
+
+KnownCurve known(const Solution& s, const Functional& h) {
+  KnownCurve out;
+  double sum = 0.0;
+  for (const Row& row : h) {
+    out.value.push_back(s.value(row));
+    out.u.push_back(s.u(row));
+    out.shares.push_back(s.shares(row));
+    sum += s.gain(row) * s.gain(row);
+  }
+  out.gain = std::sqrt(sum / static_cast<double>(h.size() - 2));  // both ends are 0
+  return out;
+}
+
+Functional part(const Functional& h, double sign) {
+  Functional out;
+  for (std::size_t i = 0; i < h.size(); ++i)
+    out.push_back((h[i] + sign * h[h.size() - 1 - i]) / 2.0);
+  return out;
+}
+
+/// Slope of the least-squares line through n + 1 equidistant points over this length.
+Row slope(const Functional& h, double length) {
+  const double n = static_cast<double>(h.size() - 1);
+  Row sum = Row::Zero(h.front().size());
+  double squares = 0.0;
+  for (std::size_t i = 0; i < h.size(); ++i) {
+    const double p = length * (static_cast<double>(i) / n - 0.5);
+    sum += p * h[i];
+    squares += p * p;
+  }
+  return sum / squares;
+}
+
+/// Less the least-squares line.
+Functional less_line(const Functional& h) {
+  const double n = static_cast<double>(h.size() - 1);
+  const Row tilt = slope(h, 1.0);
+  Row mean = Row::Zero(h.front().size());
+  for (const Row& row : h) mean += row / (n + 1.0);
+  Functional out;
+  for (std::size_t i = 0; i < h.size(); ++i)
+    out.push_back(h[i] - mean - tilt * (static_cast<double>(i) / n - 0.5));
+  return out;
+}
+
+/// S = d1 + d2, of which only the even part can be an error of the machine.
+/// Its limits are those of the whole budget, as far as there is one.
+Closure closure_of(const System& system, std::size_t n, const Solution& solution) {
+  const Matrix C = system.covariance();
+  const auto S = [&](std::size_t i) {
+    Row h = Row::Zero(C.rows());
+    if (i > 0) h[at(i - 1)] = h[at(n + i - 1)] = 1.0;
+    return h;
+  };
+  const double factor = solution.factor();
+  const auto variance = [&](const Row& h) {
+    double sum = factor * factor * h.dot(h * C);
+    for (const double u : solution.shares_of_readings(h * system.N()).u) sum += u * u;
+    return sum;
+  };
+  Closure c;
+  c.S_n = S(n) * system.y();
+  c.S_n_limit = closure_limit * std::sqrt(variance(S(n)));
+  double sum = 0.0, expected = 0.0, points = 0.0;
+  for (std::size_t i = 1; i < n; ++i) {
+    if (2 * i == n) continue;  // an odd curve is 0 there
+    const Row odd = (S(i) - S(n - i)) / 2.0;
+    const double v = odd * system.y();
+    sum += v * v;
+    expected += variance(odd);
+    points += 1.0;
+  }
+  c.S_odd = std::sqrt(sum / points);
+  c.S_odd_limit = closure_limit * std::sqrt(expected / points);
+  return c;
+}
+
+void fill_yaw(const DiagonalReadings& r, const System& system, const Solution& s,
+              DiagonalResult& out) {
+  const auto X = of_direction(r.X, r.D1.x_direction);
+  if (X.size() == 1 && r.ECX.empty()) return;
+  const auto readings = system.N().cols();
+  // The scatter of lengths says nothing of an angle.
+  const bool known = system.noise_known() || X.size() == 2;
+  const auto put = [&](double value, double u, const Row& J) {
+    out.ECX.value.push_back(value);
+    if (!known) return;
+    out.ECX.u.push_back(s.factor() * u);
+    out.ECX.shares.push_back(s.shares_of_readings(J));
+  };
+  const std::size_t curve = r.n + 1;
+  const auto noise = [&](const MeanCurve& c, std::size_t i) {  // of a difference to the first
+    const double one = system.noise_known() ? c.u : 1.0;
+    return i == 0 ? 0.0 : one * (c.zeroed ? 1.0 : std::sqrt(2.0));
+  };
+  if (X.size() == 1) {
+    const std::size_t which = of_direction(r.ECX, r.D1.x_direction).front();
+    const std::size_t first = system.first_of_yaw() + which * curve;
+    const MeanCurve& yaw = r.ECX[which];
+    for (std::size_t i = 0; i <= r.n; ++i) {
+      Row J = Row::Zero(readings);
+      J[at(first + i)] += 1.0;
+      J[at(first)] -= 1.0;
+      put(yaw.mean[i] - yaw.mean[0], noise(yaw, i), J);
+    }
+    return;
+  }
+  const PitchLine &one = r.X[X[0]], &other = r.X[X[1]];
+  const double W = other.across - one.across;
+  for (std::size_t i = 0; i <= r.n; ++i) {
+    Row J = Row::Zero(readings);
+    for (const auto& [k, sign] : {std::pair{X[0], 1.0}, std::pair{X[1], -1.0}}) {
+      const std::size_t first = system.first_of_X() + k * curve;
+      J[at(first + i)] += sign / W;
+      J[at(first)] -= sign / W;
+    }
+    put(((one.mean[i] - one.mean[0]) - (other.mean[i] - other.mean[0])) / W,
+        std::hypot(noise(one, i), noise(other, i)) / std::fabs(W), J);
+  }
+  out.slave_shift = W * out.C0Y;
+}
+
+}  // namespace
+
+Expected<DiagonalResult> solve_diagonals(const DiagonalReadings& r, const ReadingModel* model) {
+  if (auto ok = check(r); !ok) return fail(ok.error());
+  const System system(r);
+  if (model != nullptr && at(model->readings()) != system.N().cols())
+    return fail("expected a model of " + std::to_string(system.N().cols()) + " readings, found " +
+                std::to_string(model->readings()));
+  const Solution s(system, model);
+  const double L = std::hypot(r.Lx, r.Ly);
+  Functional f, g, q;
+  for (std::size_t i = 0; i <= r.n; ++i) f.push_back(system.f(i)), g.push_back(system.g(i));
+  for (std::size_t i = 0; i <= r.n; ++i) q.push_back(r.Lx / L * g[i] + r.Ly / L * f[i]);
+
+  DiagonalResult out;
+  out.unknowns = system.unknowns();
+  const std::size_t slopes = static_cast<std::size_t>(system.A().cols()) - out.unknowns;
+  out.rank = s.rank() - slopes;  // which are always determined
+  out.noise_known = system.noise_known();
+  out.residual_u = s.scale();
+  out.dof = s.dof();
+  const Row square = system.k(), lsq = square - slope(f, r.Lx) - slope(g, r.Ly);
+  for (const Functional& h : {part(f, 1.0), part(g, 1.0), part(q, -1.0), Functional{square, lsq}})
+    for (const Row& row : h)
+      if (!s.determined(row)) return fail("the readings do not determine what two diagonals do");
+  out.C0Y = s.value(square);
+  out.u_C0Y = s.u(square);
+  out.gain_C0Y = s.gain(square);
+  out.shares_C0Y = s.shares(square);
+  out.EYX_even = known(s, part(f, 1.0));
+  out.EXY_even = known(s, part(g, 1.0));
+  out.q_odd = known(s, part(q, -1.0));
+  out.lsq.C0Y = s.value(lsq);
+  out.lsq.u_C0Y = s.u(lsq);
+  out.lsq.shares_C0Y = s.shares(lsq);
+  if (out.separable()) {
+    out.EYX = known(s, f);
+    out.EXY = known(s, g);
+    out.lsq.EYX = known(s, less_line(f));
+    out.lsq.EXY = known(s, less_line(g));
+  }
+  for (auto [d, from] : {std::pair{&out.d1, 0UL}, std::pair{&out.d2, r.n}}) {
+    d->push_back(0.0);
+    for (std::size_t i = 0; i < r.n; ++i) d->push_back(system.y()[at(from + i)]);
+  }
+  out.closure = closure_of(system, r.n, s);
+  fill_yaw(r, system, s, out);
+  return out;
+}
+
+Band straightness_band(const DiagonalResult& r, double Lx, double Ly, double G) {
+  const double L = std::hypot(Lx, Ly), c = Lx / L, s = Ly / L;
+  Band band;
+  const std::size_t n = r.q_odd.value.size() - 1;
+  for (std::size_t i = 0; i <= n; ++i) {
+    const double q = r.q_odd.value[i];
+    // Odd about mid-travel and 0 at the ends: at those points there is nothing to bound.
+    const double half = i == 0 || i == n || 2 * i == n ? 0.0 : c * G / s;
+    band.low.push_back(r.EYX_even.value[i] + q / s - half);
+    band.high.push_back(r.EYX_even.value[i] + q / s + half);
+  }
+  return band;
+}
+
+double diagonal_gain(double Lx, double Ly) { return std::hypot(Lx, Ly) / (2.0 * std::min(Lx, Ly)); }
+
+}  // namespace nonio::math

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "balls.h"
+#include "design.h"
+#include "lines.h"
+#include "nonio/model/explain.h"
+#include "nonio/sdk/axis_readings.h"
+
+namespace nonio::model {
+
+namespace {
+
+/// What follows the first space of an id: "final" of "D1 final". Measurements of one state of the
+/// machine have the same, those that hold for every state have none.
+std::string state_of(const std::string& id) {
+  const std::size_t space = id.find(' ');
+  return space == std::string::npos ? "" : id.substr(space + 1);
+}
+
+class Parts {
+ public:
+  Parts(const Campaign& campaign, const std::vector<Observations>& read)
+      : campaign_(campaign), read_(read) {}
+
+  std::vector<Part> made() {
+    const std::size_t n = std::min(campaign_.measurements.size(), read_.size());
+    for (std::size_t m = 0; m < n; ++m) sort(m);
+    for (const std::size_t m : order_) {
+      if (const auto& what = kind_.at(m); what == Kind::balls)
+        add_balls(m);
+      else if (what == Kind::across)
+        add_space(m);
+      else if (!in_space(m))
+        add_axis(m);
+    }
+    return std::move(parts_);
+  }
+
+ private:
+  enum class Kind { axis, across, balls };
+
+  const Measurement& measurement(std::size_t m) const { return campaign_.measurements[m]; }
+
+  void sort(std::size_t m) {
+    const Observations& o = read_[m];
+    if (o.size() == 0 || o.axes.empty()) return;
+    const std::string& kind = measurement(m).kind;
+    if (kind == "ball-centres") {
+      kind_[m] = Kind::balls;
+    } else if (sensed_along_one_axis(o)) {
+      if (campaign_.machine.axis(o.axes.front().axis) == nullptr) return;
+      kind_[m] = Kind::axis;
+    } else if (across(o)) {
+      kind_[m] = Kind::across;
+      states_.insert(state_of(measurement(m).id));
+      for (const std::size_t k : coordinates_of(o)) coordinates_.insert(k);
+      oblique_ = oblique_ || senses_several(o);
+    } else {
+      return;
+    }
+    order_.push_back(m);
+  }
+
+  /// An axis run that the diagonals of its state are explained together with.
+  bool in_space(std::size_t m) const {
+    const std::size_t k = coordinate_of(read_[m].axes.front().axis);
+    if (!oblique_ || read_[m].angular || !coordinates_.contains(k)) return false;
+    const std::string state = state_of(measurement(m).id);
+    return state.empty() || states_.contains(state);
+  }
+
+  void add_axis(std::size_t m) {
+    const Axis& axis = *campaign_.machine.axis(read_[m].axes.front().axis);
+    auto part = std::find_if(parts_.begin(), parts_.end(), [&](const Part& p) {
+      return p.kind == Part::Kind::axis && p.axes.front().name == axis.name;
+    });
+    if (part == parts_.end()) {
+      Part fresh;
+      fresh.name = axis.name;
+      fresh.axes = {axis};
+      part = parts_.insert(parts_.end(), std::move(fresh));
+    }
+    append_run(*part, read_[m], measurement(m));
+  }
+
+  void add_balls(std::size_t m) {
+    const Axis* axis = campaign_.machine.axis(measurement(m).axis);
+    if (axis == nullptr) return;
+    if (auto part = balls_of(read_[m], *axis, measurement(m).id))
+      parts_.push_back(std::move(*part));
+  }
+
+  /// All that is sensed in this state of the machine, once; without diagonals only what is sensed
+  /// in the same direction on the same axis.
+  void add_space(std::size_t m) {
+    if (done_.contains(m)) return;
+    const std::string state = state_of(measurement(m).id);
+    if (state.empty() && oblique_ && states_.size() > 1) return;  // goes with every state
+    Part part;
+    part.kind = Part::Kind::space;
+    std::vector<std::size_t> members;
+    for (const std::size_t other : order_)
+      if (kind_.at(other) != Kind::balls && belongs(other, m, state)) members.push_back(other);
+    append_space(part, campaign_, read_, members);
+    done_.insert(members.begin(), members.end());
+    part.name = oblique_ ? "" : "E" + measurement(m).lateral + measurement(m).axis;
+    if (oblique_ || part.name.size() < 3) {
+      part.name.clear();
+      for (const Axis& axis : part.axes) part.name += axis.name;
+    }
+    if (!state.empty()) part.name += " " + state;
+    parts_.push_back(std::move(part));
+  }
+
+  bool belongs(std::size_t other, std::size_t m, const std::string& state) const {
+    const std::string its = state_of(measurement(other).id);
+    if (oblique_)
+      return (its == state || its.empty()) && (kind_.at(other) == Kind::across || in_space(other));
+    return kind_.at(other) == Kind::across && its == state &&
+           measurement(other).axis == measurement(m).axis &&
+           measurement(other).lateral == measurement(m).lateral;
+  }
+
+  const Campaign& campaign_;
+  const std::vector<Observations>& read_;
+  std::map<std::size_t, Kind> kind_;
+  std::vector<std::size_t> order_;
+  std::set<std::string> states_;       // of what is sensed across
+  std::set<std::size_t> coordinates_;  // that it moves or senses
+  std::set<std::size_t> done_;
+  bool oblique_ = false;
+  std::vector<Part> parts_;
+};
+
+/// Whether an effect of one axis has anything to say in this part.
+bool concerns(const Part& part, const Axis& axis) {
+  if (part.kind == Part::Kind::axis) return true;
+  if (part.kind == Part::Kind::balls || axis.rotary) return false;
+  const std::size_t k = coordinate_of(axis.name);
+  const auto* column = part.table.axis(axis.name);
+  if (k > 2 || column == nullptr || column->approach.size() != part.table.size()) return false;
+  for (std::size_t i = 0; i < part.table.size(); ++i)
+    if (column->approach[i] != 0 && std::fabs(part.table.sense_of(i)[k]) > 1e-9) return true;
+  return false;
+}
+
+/// The term of an effect in this part; none if it is not of anything here.
+std::optional<Term> term_of(const Part& part, const Effect& effect, const std::string& of) {
+  if (effect.of) {
+    const auto places = effect.of(part.table);
+    if (std::find(places.begin(), places.end(), of) == places.end()) return std::nullopt;
+    Axis place;
+    place.name = of;
+    return Term{&effect, std::move(place), {}};
+  }
+  for (const Axis& axis : part.axes)
+    if (axis.name == of && concerns(part, axis)) return Term{&effect, axis, {}};
+  return std::nullopt;
+}
+
+std::vector<std::string> offered_by(const Part& part, const Effect& effect) {
+  if (effect.of) return effect.of(part.table);
+  std::vector<std::string> names;
+  for (const Axis& axis : part.axes)
+    if (concerns(part, axis)) names.push_back(axis.name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observations>& read) {
+  return Parts(campaign, read).made();
+}
+
+std::vector<std::string> names_of(const Part& part, const Effect& effect) {
+  std::vector<std::string> names;
+  for (const std::string& of : offered_by(part, effect))
+    if (const auto term = term_of(part, effect, of); term && effect.applies(part.table, term->axis))
+      names.push_back(term->name());
+  return names;
+}
+
+std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects) {
+  std::vector<Term> terms;
+  for (const Effect& effect : effects) {
+    if (effect.always) continue;
+    for (const std::string& of : offered_by(part, effect))
+      if (auto term = term_of(part, effect, of); term && effect.applies(part.table, term->axis))
+        terms.push_back(std::move(*term));
+  }
+  return terms;
+}
+
+std::vector<Candidate> not_applying(const Part& part, const std::vector<Effect>& effects) {
+  std::vector<Candidate> out;
+  for (const Effect& effect : effects) {
+    if (effect.always || effect.description || !effect.why_not) continue;
+    for (const std::string& of : offered_by(part, effect)) {
+      auto term = term_of(part, effect, of);
+      if (!term || effect.applies(part.table, term->axis)) continue;
+      WhyNot why = effect.why_not(part.table, term->axis);
+      if (why.id.empty()) continue;
+      Candidate c;
+      c.term = std::move(*term);
+      c.visible = false;
+      c.why = std::move(why.id);
+      c.rows = std::move(why.rows);
+      out.push_back(std::move(c));
+    }
+  }
+  return out;
+}
+
+std::vector<std::uint32_t> interpolated_temperatures(const Part& part) {
+  std::vector<std::uint32_t> rows;
+  for (const Axis& axis : part.axes)
+    if (const auto r = readings_of(part.table, axis); r && r->temperature)
+      rows.insert(rows.end(), r->interpolated.begin(), r->interpolated.end());
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  return rows;
+}
+
+Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
+                                     const std::vector<std::string>& names,
+                                     const std::vector<Effect>& effects) {
+  std::vector<Term> terms;
+  for (const std::string& name : names) {
+    const std::size_t colon = name.find(':');
+    const std::string kind = name.substr(0, colon);
+    const std::string of = colon == std::string::npos ? "" : name.substr(colon + 1);
+    const auto effect = std::find_if(effects.begin(), effects.end(),
+                                     [&](const Effect& e) { return e.info.name == kind; });
+    if (effect == effects.end()) return fail("there is no effect \"" + kind + "\"");
+    auto term = term_of(part, *effect, of);
+    if (!term) {
+      if (!effect->of && machine.axis(of) == nullptr)
+        return fail("effect \"" + name + "\": the machine has no axis \"" + of +
+                    "\"; expected kind:axis, such as backlash:X");
+      continue;
+    }
+    if (!effect->applies(part.table, term->axis))
+      return fail("effect \"" + name +
+                  "\" does not apply to these readings: " + effect->info.summary);
+    terms.push_back(std::move(*term));
+  }
+  for (const Effect& effect : effects) {
+    if (!effect.always) continue;
+    for (const std::string& of : offered_by(part, effect))
+      if (auto term = term_of(part, effect, of); term && effect.applies(part.table, term->axis))
+        terms.push_back(std::move(*term));
+  }
+  std::stable_partition(terms.begin(), terms.end(),
+                        [](const Term& term) { return !term.effect->description; });
+  return terms;
+}
+
+}  // namespace nonio::model

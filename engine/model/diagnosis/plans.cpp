@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plans.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "data/design.h"
+#include "fit/workbench.h"
+#include "nonio/sdk/axis_readings.h"
+
+namespace nonio::model {
+
+namespace {
+
+constexpr double enough = 4.0;  // standard deviations between two explanations
+
+struct Course {  // one further measurement
+  std::string id;
+  std::vector<double> targets;
+  std::size_t runs = 1;
+  double pause = 0.0;     // s before it
+  bool pendulum = true;   // + sweep, then - sweep; else each target from both sides at once
+  bool reversed = false;  // - sweep first
+};
+
+double last_known(const std::vector<double>& values) {
+  for (std::size_t i = values.size(); i-- > 0;)
+    if (std::isfinite(values[i])) return values[i];
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+void append(Observations& o, const Course& course, double interval) {
+  auto& axis = o.axes.front();
+  const std::uint32_t run = o.run.empty() ? 0 : *std::max_element(o.run.begin(), o.run.end());
+  double t = 0.0;
+  if (!o.time.empty())
+    for (const double x : o.time)
+      if (std::isfinite(x)) t = std::max(t, x);
+  t += course.pause;
+  const auto take = [&](double target, int from, std::size_t r) {
+    t += interval;
+    axis.position.push_back(target);
+    axis.approach.push_back(static_cast<std::int8_t>(from));
+    o.deviation.push_back(0.0);
+    o.run.push_back(run + static_cast<std::uint32_t>(r) + 1);
+    if (!o.line.empty()) o.line.push_back(o.line.back());
+    if (!o.time.empty()) o.time.push_back(t);
+    if (!o.material.empty()) o.material.push_back(last_known(o.material));
+    if (!o.u.empty()) o.u.push_back(o.u.back());
+  };
+  std::vector<double> up = course.targets, down(up.rbegin(), up.rend());
+  for (std::size_t r = 0; r < course.runs; ++r) {
+    if (!course.pendulum) {
+      for (const double x : up)
+        for (const int from : {1, -1}) take(x, from, r);
+      continue;
+    }
+    for (const int from : course.reversed ? std::vector<int>{-1, 1} : std::vector<int>{1, -1})
+      for (const double x : from > 0 ? up : down) take(x, from, r);
+  }
+}
+
+/// Distance, in standard deviations, between what one effect has `said` and the nearest that
+/// `other` with the model can say. Its shapes are searched.
+double distance(const Observations& o, const std::vector<Term>& model, const VectorXd& said,
+                const Term& other, double s) {
+  Observations imagined = o;
+  imagined.deviation.assign(said.data(), said.data() + said.size());
+  std::vector<Term> terms = model;
+  Term free = other;
+  free.shape.clear();
+  terms.push_back(free);
+  const auto fitted = fit(imagined, terms);
+  if (!fitted) return 0.0;
+  return std::sqrt(std::max(fitted->rms * fitted->rms * static_cast<double>(o.size()), 0.0)) / s;
+}
+
+std::vector<Course> courses_of(const Observations& o, const AxisReadings& r) {
+  std::vector<double> targets(r.theta);
+  std::sort(targets.begin(), targets.end());
+  targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
+  std::vector<double> between;
+  for (std::size_t i = 0; i + 1 < targets.size(); ++i)
+    between.push_back(targets[i] + 0.382 * (targets[i + 1] - targets[i]));  // no simple fraction
+  const double whole = std::max(r.duration, 1.0);
+  std::vector<Course> out;
+  out.push_back({"another-run", targets, 1});
+  out.push_back({"another-run-reversed", targets, 1, 0.0, true, true});
+  out.push_back({"both-sides-at-each-target", targets, 1, 0.0, false});
+  out.push_back({"other-targets", between, 1});
+  if (!o.time.empty()) out.push_back({"run-after-a-pause", targets, 1, whole});
+  if (!o.time.empty()) out.push_back({"run-after-a-long-pause", targets, 1, 5.0 * whole});
+  out.push_back({"three-more-runs", targets, 3});
+  if (!o.time.empty()) out.push_back({"three-runs-after-a-pause", targets, 3, whole});
+  return out;
+}
+
+std::vector<Further> further_runs(const Part& part, const Candidate& candidate) {
+  std::vector<Further> out;
+  const auto read = readings_of(part.table, candidate.term.axis);
+  if (!read) return out;
+  const double interval = std::max(read->duration, 1.0) / static_cast<double>(part.table.size());
+  for (const Course& course : courses_of(part.table, *read)) {
+    out.push_back({course.id, "", part.table});
+    append(out.back().table, course, interval);
+  }
+  return out;
+}
+
+/// Those that reach far enough first, at most three.
+std::vector<Plan> cheapest(std::vector<Plan> plans) {
+  std::stable_sort(plans.begin(), plans.end(), [](const Plan& a, const Plan& b) {
+    const bool a_enough = a.power >= enough, b_enough = b.power >= enough;
+    if (a_enough != b_enough) return a_enough;
+    return a_enough ? a.readings < b.readings : a.power > b.power;
+  });
+  if (plans.size() > 3) plans.resize(3);
+  return plans;
+}
+
+}  // namespace
+
+std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
+                            const Candidate& candidate, const std::vector<Term>& catalogue,
+                            double s) {
+  std::vector<Plan> plans;
+  if (candidate.aliases.empty() || !(s > 0.0)) return plans;
+  VectorXd value(static_cast<Index>(candidate.parameters.size()));
+  Index linear = 0;
+  for (const Parameter& p : candidate.parameters)
+    if (!p.shape) value(linear++) = p.value;
+  value.conservativeResize(linear);
+  const auto further =
+      part.kind == Part::Kind::axis ? further_runs(part, candidate) : further_in_space(part);
+  for (const Further& f : further) {
+    const Observations& o = f.table;
+    const auto columns = columns_of(o, candidate.term, candidate.term.shape);
+    if (!columns || columns->cols() != linear) continue;
+    Plan plan{f.id, o.size() - part.table.size(), INFINITY, candidate.term.name(), "", f.of};
+    for (const std::string& alias : candidate.aliases) {
+      const auto other = std::find_if(catalogue.begin(), catalogue.end(),
+                                      [&](const Term& t) { return t.name() == alias; });
+      if (other == catalogue.end()) continue;
+      const double d = distance(o, model, *columns * value, *other, s);
+      if (d < plan.power) plan.power = d, plan.other = alias;
+    }
+    if (std::isfinite(plan.power)) plans.push_back(std::move(plan));
+  }
+  return cheapest(std::move(plans));
+}
+
+std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& model,
+                                 const std::vector<Term>& pair, const std::vector<double>& value,
+                                 double s) {
+  std::vector<Plan> plans;
+  if (pair.size() != 2 || !(s > 0.0) || part.kind != Part::Kind::axis) return plans;
+  Candidate of_axis;
+  of_axis.term = pair[0];
+  for (const Further& f : further_runs(part, of_axis)) {
+    VectorXd said = VectorXd::Zero(static_cast<Index>(f.table.size()));
+    std::size_t at = 0;
+    for (const Term& term : pair) {
+      const auto columns = columns_of(f.table, term, term.shape);
+      if (!columns || at + static_cast<std::size_t>(columns->cols()) > value.size()) return plans;
+      for (Index k = 0; k < columns->cols(); ++k) said += value[at++] * columns->col(k);
+    }
+    const double power = std::min(distance(f.table, model, said, pair[0], s),
+                                  distance(f.table, model, said, pair[1], s));
+    plans.push_back(
+        {f.id, f.table.size() - part.table.size(), power, pair[0].name(), pair[1].name(), f.of});
+  }
+  return cheapest(std::move(plans));
+}
+
+}  // namespace nonio::model

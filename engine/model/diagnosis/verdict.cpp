@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "fit/compare.h"
+#include "fit/places.h"
+#include "nonio/sdk/axis_readings.h"
+#include "plans.h"
+#include "scatter.h"
+
+namespace nonio::model {
+
+namespace {
+
+constexpr double least_left = 0.25;  // of the noise: smaller structure is not worth a verdict
+constexpr double serious_p = 0.005;
+// What is left in the same place, of what the candidate says: beyond, the candidate is not it.
+constexpr double unexplained_share = 0.04;
+// The same of an effect that is certain, whatever else there is.
+constexpr double certain_share = 0.06;
+// Far more than chance asks for: what is left beside it is no independent noise.
+constexpr double certain_evidence = 50.0;
+constexpr double most_of_one_target = 0.3;
+// Two effects whose parts run against each other like this are one thing without a name.
+constexpr double cancels_beyond = 0.95;
+
+/// Whether two places share a factor.
+bool same_factor(const std::string& a, const std::string& b) {
+  const auto factors = [](const std::string& where) {
+    std::vector<std::string> out;
+    const std::size_t x = where.find(" x ");
+    out.push_back(where.substr(0, x));
+    if (x != std::string::npos) out.push_back(where.substr(x + 3));
+    for (std::string& f : out) {
+      if (f == "run") f = "time";
+      if (f == "screw-phase" || f == "angle") f = "position";
+    }
+    return out;
+  };
+  const auto of_a = factors(a), of_b = factors(b);
+  return std::any_of(of_a.begin(), of_a.end(), [&](const std::string& f) {
+    return std::find(of_b.begin(), of_b.end(), f) != of_b.end();
+  });
+}
+
+class Judge {
+ public:
+  Judge(const Finding& finding, Explanation& out) : f_(finding), out_(out) {}
+
+  void run() {
+    Verdict& v = out_.verdict;
+    count_false_alarms(v);
+    v.suspects_share =
+        static_cast<double>(f_.suspects.size()) / static_cast<double>(f_.part.table.size());
+    for (const Place& place : f_.of_model.places)
+      if (place.p < place_p) out_.fails.push_back(place);
+    std::vector<Place> serious = Judge::serious(f_.of_best.places, least_serious(f_.of_best.floor));
+    const bool walks = !out_.together.empty() && zero_walks();
+    if (contradictory()) {
+      v.kind = Verdict::Kind::unrepeatable;
+      return;
+    }
+    find_one_growth();
+    find_cancelling();
+    list_certain(serious, walks);
+    if (!out_.together.empty() && !walks && !cancels(out_.together.front()) &&
+        !beside_cancelling(out_.together.front()) &&
+        !in_doubt(out_.together.front(), serious, unexplained_share)) {
+      v.kind = Verdict::Kind::missing;
+      v.effect = out_.together.front();
+    }
+    if (v.kind == Verdict::Kind::missing) {
+      lift(v.effect);
+      out_.plans = plans_for(f_.part, f_.of_model.fit.terms, out_.candidates.front(), f_.terms,
+                             f_.of_best.fit.s);
+    } else if (walks || !serious.empty() || !out_.cancelling.empty()) {
+      v.kind = Verdict::Kind::unknown;
+      if (!out_.cancelling.empty()) plan_for_cancelling();
+      if (auto seats = seats_in(f_.part, f_.repeats, f_.of_model); !seats.empty())
+        out_.fails = std::move(seats);
+      else if (!serious.empty())
+        out_.fails = std::move(serious);
+    }
+  }
+
+ private:
+  /// Evidence of the model beside a zero that walks.
+  double criterion_beside_walk(const std::vector<Term>& terms) const {
+    const auto blocks = blocks_of(f_.part.table, terms, f_.bench->root_weight());
+    if (!blocks) return std::numeric_limits<double>::infinity();
+    MatrixXd model(static_cast<Index>(f_.part.table.size()), 0);
+    for (const MatrixXd& block : *blocks) {
+      model.conservativeResize(Eigen::NoChange, model.cols() + block.cols());
+      model.rightCols(block.cols()) = block;
+    }
+    return criterion_of_walk(f_.part.table, f_.bench->root_weight(), model);
+  }
+
+  /// Whether the model beside a zero that walks is better evidence than the best set of effects.
+  bool zero_walks() const {
+    const double price = f_.start.price + std::log(f_.bench->readings()) +
+                         2.0 * std::log(static_cast<double>(f_.terms.size()));
+    return criterion_beside_walk(f_.of_model.fit.terms) + price < f_.best.criterion;
+  }
+
+  /// Whether an effect of the best set is there also if the zero walks.
+  bool beside_walk(const std::string& name) const {
+    std::vector<Term> terms = f_.of_model.fit.terms;
+    const double without = criterion_beside_walk(terms);
+    double price = 0.0;
+    for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t)
+      if (f_.of_best.fit.terms[t].name() == name) {
+        const Workbench::Block& block = f_.bench->blocks()[f_.best.blocks[t]];
+        price = f_.bench->price(block);
+        terms.push_back(f_.of_best.fit.terms[t]);
+      }
+    return without - criterion_beside_walk(terms) - price > certain_evidence;
+  }
+
+  /// Whether something else is left in the places where this effect works: then it may be no more
+  /// than the nearest thing in the catalogue.
+  bool in_doubt(const std::string& name, const std::vector<Place>& serious, double share) const {
+    for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t) {
+      if (f_.of_best.fit.terms[t].name() != name) continue;
+      // What it alone can say: effects that cancel each other may both be large.
+      const double rms2 =
+          (f_.bench->without(f_.best, f_.index_of(name)).squares - f_.best.squares) /
+          f_.bench->readings();
+      const auto works_in = places_of(f_.of_best.fit.part[t]);
+      for (const Place& place : serious)
+        for (const std::string& where : works_in)
+          if (same_factor(place.where, where) && place.rms * place.rms > share * rms2) return true;
+    }
+    return false;
+  }
+
+  const std::vector<double>* part_of(const std::string& name) const {
+    const Fit& fit = f_.of_best.fit;
+    for (std::size_t t = 0; t < fit.terms.size(); ++t)
+      if (fit.terms[t].name() == name) return &fit.part[t];
+    return nullptr;
+  }
+
+  /// Correlation of what two effects say of the readings, without the zeros of lines.
+  double correlation(const std::string& one, const std::string& other) const {
+    const auto *a = part_of(one), *b = part_of(other);
+    if (a == nullptr || b == nullptr) return 0.0;
+    const VectorXd& root = f_.bench->root_weight();
+    MatrixXd both(root.size(), 2);
+    both.col(0) = root.cwiseProduct(Eigen::Map<const VectorXd>(a->data(), root.size()));
+    both.col(1) = root.cwiseProduct(Eigen::Map<const VectorXd>(b->data(), root.size()));
+    take_out_zeros(f_.part.table, root, both);
+    const double size = both.col(0).norm() * both.col(1).norm();
+    return size > 0.0 ? both.col(0).dot(both.col(1)) / size : 0.0;
+  }
+
+  /// Not the same at every reading of a target: what is constant in time is told by the first runs.
+  bool in_time(const std::string& name) const {
+    const std::size_t e = f_.index_of(name);
+    return std::none_of(f_.best.blocks.begin(), f_.best.blocks.end(), [&](std::size_t b) {
+      return f_.bench->effect_of(b) == e && f_.bench->blocks()[b].of_position;
+    });
+  }
+
+  void find_cancelling() {
+    const auto& names = out_.together;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      for (std::size_t k = i + 1; k < names.size(); ++k)
+        if (in_time(names[i]) && in_time(names[k]) &&
+            correlation(names[i], names[k]) < -cancels_beyond)
+          out_.cancelling.emplace_back(names[i], names[k]);
+  }
+
+  bool cancels(const std::string& name) const {
+    return std::any_of(out_.cancelling.begin(), out_.cancelling.end(),
+                       [&](const auto& pair) { return pair.first == name || pair.second == name; });
+  }
+
+  const Parameter* parameter_of(const std::string& name) const {
+    for (const Parameter& p : f_.of_best.fit.parameters)
+      if (p.effect == name) return &p;
+    return nullptr;
+  }
+
+  /// Growth about the middle and a drift of the zero are together one growth from another place.
+  /// Where a bearing may be there, the growth is named first: the drift would be its shadow.
+  void find_one_growth() {
+    constexpr double farthest = 0.8;  // of the stretch, from its middle
+    auto& names = out_.together;
+    if (f_.part.kind != Part::Kind::axis || f_.part.axes.front().rotary) return;
+    const std::string axis = ":" + f_.part.axes.front().name;
+    const auto growth = std::find(names.begin(), names.end(), "growth-drift" + axis);
+    const auto drift = std::find(names.begin(), names.end(), "zero-drift" + axis);
+    if (growth == names.end() || drift == names.end()) return;
+    const Parameter *g = parameter_of(*growth), *z = parameter_of(*drift);
+    const auto read = readings_of(f_.part.table, f_.part.axes.front());
+    if (g == nullptr || z == nullptr || !read || !(std::fabs(g->value) > 0.0)) return;
+    const double from = -z->value / g->value;
+    if (std::fabs(from) > farthest * read->length) return;
+    out_.one_growth = read->middle + from;
+    if (drift < growth) std::iter_swap(drift, growth);
+  }
+
+  /// Whether what a cancelling pair says together, which has no name, works where an effect does.
+  bool beside_cancelling(const std::string& name) const {
+    const auto* own = part_of(name);
+    if (own == nullptr) return false;
+    const auto works_in = places_of(*own);
+    const double rms2 = (f_.bench->without(f_.best, f_.index_of(name)).squares - f_.best.squares) /
+                        f_.bench->readings();
+    for (const auto& pair : out_.cancelling) {
+      std::vector<double> sum = *part_of(pair.first);
+      const std::vector<double>& other = *part_of(pair.second);
+      double mean = 0.0, squares = 0.0;
+      for (std::size_t i = 0; i < sum.size(); ++i) mean += sum[i] += other[i];
+      mean /= static_cast<double>(sum.size());
+      for (const double x : sum) squares += (x - mean) * (x - mean);
+      if (squares / static_cast<double>(sum.size()) < unexplained_share * rms2) continue;
+      for (const std::string& place : places_of(sum))
+        for (const std::string& where : works_in)
+          if (same_factor(place, where)) return true;
+    }
+    return false;
+  }
+
+  /// A further run that one of the two alone, in whatever form, could not follow.
+  void plan_for_cancelling() {
+    const auto& [one, other] = out_.cancelling.front();
+    std::vector<Term> pair;
+    std::vector<double> value;
+    for (const Term& term : f_.of_best.fit.terms)
+      if (term.name() == one || term.name() == other) pair.push_back(term);
+    for (const Parameter& p : f_.of_best.fit.parameters)
+      if (!p.shape && (p.effect == one || p.effect == other)) value.push_back(p.value);
+    out_.plans = plans_for_pair(f_.part, f_.of_model.fit.terms, pair, value, f_.of_best.fit.s);
+  }
+
+  /// Effects whose evidence stands whatever the rest is: overwhelming, and of what is left in their
+  /// places nothing as large as they are.
+  void list_certain(const std::vector<Place>& serious, bool walks) {
+    for (const std::string& name : out_.together) {
+      const auto c = std::find_if(out_.candidates.begin(), out_.candidates.end(),
+                                  [&](const Candidate& k) { return k.term.name() == name; });
+      if (c->score < certain_evidence || !c->aliases.empty() || cancels(name)) continue;
+      if (in_doubt(name, serious, certain_share)) continue;
+      if (of_one_target(name) || (walks && !beside_walk(name))) continue;
+      out_.certain.push_back(name);
+    }
+  }
+
+  /// Whether the readings of one target are most of its evidence: then it is that target.
+  bool of_one_target(const std::string& name) const {
+    const VectorXd without = f_.residual(f_.bench->without(f_.best, f_.index_of(name)));
+    const VectorXd explained = without - f_.residual(f_.best);
+    std::vector<double> share(f_.repeats.targets, 0.0);
+    for (Index i = 0; i < without.size(); ++i)
+      share[f_.repeats.target[static_cast<std::size_t>(i)]] += explained(i) * without(i);
+    return *std::max_element(share.begin(), share.end()) >
+           most_of_one_target * explained.dot(without);
+  }
+
+  /// Where something that says so much of each reading works.
+  std::vector<std::string> places_of(const std::vector<double>& says) const {
+    const VectorXd part = Eigen::Map<const VectorXd>(says.data(), static_cast<Index>(says.size()));
+    const VectorXd centred = part.array() - part.mean();
+    return factors_of(f_.part, f_.repeats, f_.bench->root_weight(),
+                      f_.bench->root_weight().cwiseProduct(centred));
+  }
+
+  /// Structure smaller than this is not worth a verdict.
+  double least_serious(const std::optional<NoiseFloor>& floor) const {
+    return least_left * (floor ? floor->s : f_.of_best.fit.s);
+  }
+
+  static std::vector<Place> serious(const std::vector<Place>& places, double least) {
+    std::vector<Place> out;
+    for (const Place& place : places)
+      if (place.p < serious_p && place.rms > least) out.push_back(place);
+    return out;
+  }
+
+  /// Floors that the repeats of so many campaigns with this noise would give: chi-square
+  /// distributed, by the cube of a normal variate (Wilson and Hilferty 1931).
+  std::vector<std::optional<NoiseFloor>> floors(std::size_t campaigns) const {
+    std::vector<std::optional<NoiseFloor>> out(campaigns, f_.of_best.floor);
+    if (!f_.of_best.floor) return out;
+    const double spread = 2.0 / (9.0 * f_.of_best.floor->dof);
+    std::mt19937_64 random(f_.seed + 1);
+    const auto uniform = [&] { return (static_cast<double>(random() >> 11) + 0.5) * 0x1p-53; };
+    for (auto& floor : out) {
+      const double size = std::sqrt(-2.0 * std::log(uniform()));
+      const double z = size * std::cos(2.0 * std::numbers::pi * uniform());  // Box and Muller
+      floor->s *= std::pow(std::max(1.0 - spread + z * std::sqrt(spread), 0.0), 1.5);
+    }
+    return out;
+  }
+
+  /// Noise alone, as large as that of a reading: what repeats leave, else what the best explanation
+  /// leaves (with root weights).
+  VectorXd noise() const {
+    const Saturated left = saturate(f_.repeats, f_.of_best.fit.residual, f_.weight);
+    if (!(left.dof >= 8.0)) return f_.residual(f_.best);
+    return f_.bench->root_weight().cwiseProduct(
+               Eigen::Map<const VectorXd>(left.e.data(), static_cast<Index>(left.e.size()))) *
+           std::sqrt(f_.bench->readings() / left.dof);
+  }
+
+  void count_false_alarms(Verdict& v) const {
+    const SignFlips shuffles =
+        shuffled(*f_.bench, f_.best, noise(), f_.part.table, f_.repeats.pass, f_.seed);
+    const std::vector<char> named = named_in(*f_.bench, f_.best, shuffles, f_.chance);
+    const PlaceTests tests(f_.part, f_.repeats, f_.bench->root_weight(), f_.bench->basis(f_.best),
+                           f_.dof(f_.best));
+    const auto floor = floors(named.size());
+    double alarms = 0.0;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      const VectorXd one = shuffles.noise.col(static_cast<Index>(i));
+      const double least = least_serious(floor[i]);
+      if (named[i] != 0 || !serious(tests(one, floor[i], least), least).empty()) ++alarms;
+    }
+    v.trials = named.size();
+    v.false_alarms = alarms / static_cast<double>(named.size());
+  }
+
+  bool contradictory() {
+    if (const auto run = wild_run(f_.part.table, f_.repeats, f_.of_best.fit.residual, f_.weight)) {
+      out_.fails.insert(out_.fails.begin(), *run);
+      return true;
+    }
+    return too_many(f_.suspects.size(), f_.part.table.size()) ||
+           two_valued(f_.repeats, f_.of_best.fit.residual, f_.weight);
+  }
+
+  /// The verdict's effect leads the list, also where one with more evidence is in doubt.
+  void lift(const std::string& name) {
+    auto& c = out_.candidates;
+    const auto at =
+        std::find_if(c.begin(), c.end(), [&](const Candidate& k) { return k.term.name() == name; });
+    std::rotate(c.begin(), at, at + 1);
+    c.front().score = std::max(c.front().score, c.size() > 1 ? c[1].score : c.front().score);
+  }
+
+  const Finding& f_;
+  Explanation& out_;
+};
+
+}  // namespace
+
+void judge(const Finding& finding, Explanation& out) { Judge(finding, out).run(); }
+
+}  // namespace nonio::model

@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/model/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "data/design.h"
+#include "data/thin.h"
+#include "nonio/math/golden_section.h"
+#include "nonio/sdk/axis_readings.h"
+#include "workbench.h"
+
+namespace nonio::model {
+
+namespace {
+
+// Filip (NIST StRD), the hardest polynomial of the yardsticks, passes; columns that agree to
+// twelve digits do not.
+constexpr double rank_threshold = 1e-12;
+
+struct Design {
+  MatrixXd a;                      // rows times root weights; zeros of lines first, then terms
+  std::vector<std::string> names;  // of all columns
+  std::vector<Index> first;        // first column of each term, and the end
+  std::vector<MatrixXd> blocks;    // of each term
+  std::vector<Index> lost;         // columns of a curve that the readings cannot tell from others
+};
+
+Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms,
+                           const VectorXd& root) {
+  const auto n = static_cast<Index>(o.size());
+  const auto lines = static_cast<Index>(lines_of(o));
+  Design d;
+  Index columns = lines;
+  for (Index k = 0; k < lines; ++k) d.names.push_back("the zero of line " + std::to_string(k + 1));
+  auto blocks = blocks_of(o, terms, root, &d.lost);
+  if (!blocks) return fail(blocks.error());
+  d.blocks = std::move(*blocks);
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    d.first.push_back(columns);
+    columns += d.blocks[t].cols();
+    for (Index k = 0; k < d.blocks[t].cols(); ++k) d.names.push_back(terms[t].name());
+  }
+  d.first.push_back(columns);
+  d.a.setZero(n, columns);
+  for (Index i = 0; i < n; ++i)
+    d.a(i, static_cast<Index>(line_of(o, static_cast<std::size_t>(i)))) = root(i);
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    d.a.middleCols(d.first[t], d.blocks[t].cols()) = root.asDiagonal() * d.blocks[t];
+  return d;
+}
+
+/// The names in the first null direction of a rank-deficient design.
+std::string inseparable(const MatrixXd& scaled, const std::vector<std::string>& names) {
+  const Eigen::JacobiSVD<MatrixXd> svd(scaled.transpose() * scaled, Eigen::ComputeThinV);
+  const VectorXd direction = svd.matrixV().col(scaled.cols() - 1).cwiseAbs();
+  std::string text;
+  for (Index k = 0; k < direction.size(); ++k) {
+    const std::string& name = names[static_cast<std::size_t>(k)];
+    if (direction(k) > 0.05 * direction.maxCoeff() && text.find(name) == std::string::npos)
+      text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
+}
+
+struct Solution {
+  VectorXd x;
+  MatrixXd cofactor;     // (A^T W A)^-1
+  double squares = 0.0;  // weighted
+};
+
+Expected<Solution> solve(const Design& d, const VectorXd& y, const VectorXd& root) {
+  const Index unknowns = d.a.cols();
+  VectorXd scale = d.a.colwise().norm().transpose();
+  for (Index k = 0; k < unknowns; ++k)
+    if (!(scale(k) > 0.0))
+      return fail("the readings cannot show " + d.names[static_cast<std::size_t>(k)]);
+  const MatrixXd a = d.a * scale.cwiseInverse().asDiagonal();
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(a);
+  qr.setThreshold(rank_threshold);
+  if (qr.rank() < unknowns)
+    return fail("the readings cannot tell these apart: " + inseparable(a, d.names));
+  Solution s;
+  const VectorXd weighted = root.cwiseProduct(y);
+  VectorXd scaled = qr.solve(weighted);
+  scaled += qr.solve(weighted - a * scaled);  // one step of refinement
+  s.x = scaled.cwiseQuotient(scale);
+  s.squares = (weighted - a * scaled).squaredNorm();
+  // (A^T A)^-1 = P R^-1 R^-T P^T
+  const MatrixXd r_inverse = qr.matrixR()
+                                 .topLeftCorner(unknowns, unknowns)
+                                 .triangularView<Eigen::Upper>()
+                                 .solve(MatrixXd::Identity(unknowns, unknowns));
+  const MatrixXd half = scale.cwiseInverse().asDiagonal() * (qr.colsPermutation() * r_inverse);
+  s.cofactor = half * half.transpose();
+  return s;
+}
+
+/// Weighted sum of squares with these shapes; infinite where there is none.
+double squares_with(const Observations& o, const std::vector<Term>& terms, const VectorXd& root,
+                    const VectorXd& y) {
+  auto d = design_of(o, terms, root);
+  if (!d) return std::numeric_limits<double>::infinity();
+  const Index columns = d->a.cols();
+  const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(d->a);  // in place
+  VectorXd rotated = root.cwiseProduct(y);
+  rotated.applyOnTheLeft(qr.householderQ().transpose());
+  return rotated.tail(rotated.size() - columns).squaredNorm();
+}
+
+/// Sum of squares as a function of one term's shape: all other columns are taken out once.
+class SquaresOf {
+ public:
+  SquaresOf(const Observations& o, const std::vector<Term>& terms, std::size_t t,
+            const VectorXd& root, const VectorXd& y)
+      : o_(o), root_(root), left_(root.cwiseProduct(y)) {
+    std::vector<Term> others = terms;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(t));
+    const auto d = design_of(o, others, root);
+    if (!d) return;
+    const MatrixXd scaled =
+        d->a * d->a.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal();
+    const Eigen::HouseholderQR<MatrixXd> qr(scaled);
+    others_ = qr.householderQ() * MatrixXd::Identity(scaled.rows(), scaled.cols());
+    left_ -= others_ * (others_.transpose() * left_);
+  }
+
+  /// Infinite where the term has no columns.
+  double operator()(const Term& term) const {
+    auto block = columns_of(o_, term, term.shape);
+    if (!block) return std::numeric_limits<double>::infinity();
+    *block = root_.asDiagonal() * *block;
+    if (others_.cols() > 0) *block -= others_ * (others_.transpose() * *block);
+    const Eigen::HouseholderQR<MatrixXd> qr(*block);
+    const VectorXd rotated = qr.householderQ().transpose() * left_;
+    return rotated.tail(rotated.size() - block->cols()).squaredNorm();
+  }
+
+ private:
+  const Observations& o_;
+  const VectorXd& root_;
+  VectorXd left_;
+  MatrixXd others_;
+};
+
+/// Between the neighbours of a grid's best value.
+void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std::size_t k,
+            const VectorXd& root, const VectorXd& y) {
+  const std::vector<double> grid = terms[t].effect->shapes[k].grid(o, terms[t].axis);
+  if (grid.empty() || is_usual(terms[t], terms[t].shape, k)) return;
+  double& value = terms[t].shape[k];
+  const double same = 1e-12 * std::max(std::fabs(value), grid.back() - grid.front());
+  const auto above = std::upper_bound(grid.begin(), grid.end(), value + same);
+  const auto below = std::lower_bound(grid.begin(), grid.end(), value - same);
+  double low = below == grid.begin() ? value : *std::prev(below);
+  double high = above == grid.end() ? value : *above;
+  if (!(low < high)) return;
+  const SquaresOf squares_of(o, terms, t, root, y);
+  const auto at = [&](double x) {
+    value = x;
+    return squares_of(terms[t]);
+  };
+  const double start = value, squares = at(start);
+  const double fine = 1e-7 * std::max(std::fabs(low), std::fabs(high));
+  const math::Bracket bracket = math::golden_section(at, low, high, 40, fine);
+  const double middle = (bracket.low + bracket.high) / 2.0;
+  value = at(middle) <= squares ? middle : start;
+}
+
+/// Shapes that were not given: the grid's best.
+Expected<void> start_shapes(const Observations& o, std::vector<Term>& terms,
+                            const std::vector<char>& searched, const std::vector<double>& weight) {
+  const Workbench bench(o, terms, weight);
+  auto best = bench.best_shapes();
+  if (!best) return fail(best.error());
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    if (searched[t]) terms[t].shape = (*best)[t];
+  return {};
+}
+
+void refine_shapes(const Observations& o, std::vector<Term>& terms,
+                   const std::vector<char>& searched, const VectorXd& root, const VectorXd& y) {
+  std::size_t continuous = 0;
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    for (const Effect::Shape& shape : terms[t].effect->shapes)
+      continuous += searched[t] && shape.continuous;
+  // One after the other; shapes of a large effect that go along with each other want more rounds.
+  constexpr std::size_t fewest = 2, most = 8;
+  constexpr double still_better = 1e-3;
+  double before = std::numeric_limits<double>::infinity();
+  for (std::size_t round = 0; round < (continuous > 1 ? most : 1U); ++round) {
+    for (std::size_t t = 0; t < terms.size(); ++t)
+      for (std::size_t k = 0; searched[t] && k < terms[t].shape.size(); ++k)
+        if (terms[t].effect->shapes[k].continuous) refine(o, terms, t, k, root, y);
+    if (continuous < 2 || round + 1 < fewest) continue;
+    const double now = squares_with(o, terms, root, y);
+    if (!(now < before * (1.0 - still_better))) break;
+    before = now;
+  }
+}
+
+/// Whether a shape is an unknown of the fit: not where it has its usual or its only value.
+bool estimated(const Observations& o, const Term& term, std::size_t k) {
+  const Effect::Shape& shape = term.effect->shapes[k];
+  if (!shape.continuous || is_usual(term, term.shape, k)) return false;
+  return !shape.usual || shape.grid(o, term.axis).size() > 1;
+}
+
+/// Derivative of a term's part by its shape k, by central differences.
+Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::size_t k,
+                                const VectorXd& linear) {
+  const Effect::Shape& shape = term.effect->shapes[k];
+  double size = std::max(std::fabs(term.shape[k]), 1e-12);
+  if (shape.usual) {  // may lie at 0
+    const std::vector<double> grid = shape.grid(o, term.axis);
+    if (grid.size() > 1) size = std::max(size, grid.back() - grid.front());
+  }
+  const double step = 1e-4 * size;
+  std::vector<double> up = term.shape, down = term.shape;
+  up[k] += step;
+  down[k] -= step;
+  const auto above = columns_of(o, term, up), below = columns_of(o, term, down);
+  if (!above) return fail(above.error());
+  if (!below) return fail(below.error());
+  if (above->cols() != linear.size() || below->cols() != linear.size())
+    return fail(term.name() + ": the number of columns changes with a continuous shape");
+  return VectorXd((*above - *below) * linear / (2.0 * step));
+}
+
+/// Shapes that were found on means of the readings: steps of Gauss and Newton on all of them.
+void step_shapes(const Observations& o, std::vector<Term>& terms, const std::vector<char>& searched,
+                 const VectorXd& root, const VectorXd& y) {
+  for (int round = 0; round < 2; ++round) {
+    auto d = design_of(o, terms, root);
+    if (!d) return;
+    const auto s = solve(*d, y, root);
+    if (!s) return;
+    std::vector<double*> moved;
+    std::vector<Term> next = terms;
+    for (std::size_t t = 0; t < terms.size(); ++t)
+      for (std::size_t k = 0; searched[t] && k < terms[t].shape.size(); ++k) {
+        if (!estimated(o, terms[t], k)) continue;
+        const Index columns = d->first[t + 1] - d->first[t];
+        const auto column = shape_column(o, terms[t], k, s->x.segment(d->first[t], columns));
+        if (!column) continue;
+        d->a.conservativeResize(Eigen::NoChange, d->a.cols() + 1);
+        d->a.rightCols(1) = root.cwiseProduct(*column);
+        d->names.push_back(terms[t].name());
+        moved.push_back(&next[t].shape[k]);
+      }
+    const auto joint = moved.empty() ? Expected<Solution>(fail("")) : solve(*d, y, root);
+    if (!joint) return;
+    for (std::size_t k = 0; k < moved.size(); ++k)
+      *moved[k] += joint->x(d->first.back() + static_cast<Index>(k));
+    if (!(squares_with(o, next, root, y) < s->squares)) return;
+    terms = std::move(next);
+  }
+}
+
+/// Times that nobody measured are counted in readings, and not called seconds.
+bool untimed(const Observations& o, const Axis& axis) {
+  const auto r = readings_of(o, axis);
+  return r && !r->timed;
+}
+
+void name_parameters(Fit& out, const Observations& o, const Design& design) {
+  for (std::size_t t = 0; t < out.terms.size(); ++t) {
+    const Term& term = out.terms[t];
+    const bool by_count = untimed(o, term.axis);
+    const auto quantity = [&](const Effect::Parameter& p) {
+      const Quantity q = quantity_of(p, term.axis);
+      return by_count ? by_readings(q) : q;
+    };
+    const auto k = static_cast<std::size_t>(design.blocks[t].cols());
+    for (std::size_t i = 0; i < k; ++i) {
+      const Effect::Parameter& p = term.effect->linear[term.effect->curve ? 0 : i];
+      out.parameters.push_back({term.name(),
+                                term.effect->curve ? p.name + std::to_string(i + 1) : p.name, 0.0,
+                                0.0, quantity(p), false});
+    }
+    for (std::size_t i = 0; i < term.shape.size(); ++i) {
+      const Effect::Parameter& p = term.effect->shapes[i].parameter;
+      out.parameters.push_back({term.name(), p.name, term.shape[i],
+                                std::numeric_limits<double>::quiet_NaN(), quantity(p), true});
+    }
+  }
+}
+
+/// Covariance of the linear parameters and of the shapes that were searched, linearised: columns
+/// of the design and the derivatives by the shapes together.
+void fill_covariance(Fit& out, const Observations& o, Design design, const Solution& s,
+                     const std::vector<char>& searched, const VectorXd& root) {
+  std::vector<Index> place(out.parameters.size(), -1);  // row of the cofactor matrix
+  Index row = design.first.front(), extra = 0;
+  std::size_t at = 0;
+  const Index plain = design.a.cols();
+  for (std::size_t t = 0; t < out.terms.size(); ++t) {
+    const Term& term = out.terms[t];
+    const Index k = design.first[t + 1] - design.first[t];
+    for (Index i = 0; i < k; ++i) place[at++] = row++;
+    for (std::size_t i = 0; i < term.shape.size(); ++i, ++at) {
+      if (!searched[t] || !estimated(o, term, i)) continue;
+      const auto column = shape_column(o, term, i, s.x.segment(design.first[t], k));
+      if (!column || !(column->norm() > 0.0)) continue;
+      design.a.conservativeResize(Eigen::NoChange, plain + extra + 1);
+      design.a.col(plain + extra) = root.cwiseProduct(*column);
+      design.names.push_back(term.name() + " " + out.parameters[at].name);
+      place[at] = plain + extra++;
+    }
+  }
+  MatrixXd cofactor = s.cofactor;
+  if (extra > 0) {
+    const VectorXd y = VectorXd::Zero(design.a.rows());
+    if (auto joint = solve(design, y, root))
+      cofactor = std::move(joint->cofactor);
+    else  // a shape without a maximum of its own: known no better than its grid
+      for (Index& p : place)
+        if (p >= plain) p = -1;
+    out.redundancy -= std::min(out.redundancy, static_cast<std::size_t>(extra));
+  }
+  const std::size_t p = out.parameters.size();
+  out.correlation.assign(p, std::vector<double>(p, 0.0));
+  for (std::size_t i = 0; i < p; ++i) {
+    out.correlation[i][i] = 1.0;
+    if (place[i] < 0) continue;
+    out.parameters[i].u = std::sqrt(cofactor(place[i], place[i]));
+    for (std::size_t k = 0; k < p; ++k)
+      if (place[k] >= 0)
+        out.correlation[i][k] =
+            cofactor(place[i], place[k]) /
+            std::sqrt(cofactor(place[i], place[i]) * cofactor(place[k], place[k]));
+  }
+}
+
+}  // namespace
+
+Expected<Fit> fit(const Observations& o, std::vector<Term> terms, std::vector<double> weight) {
+  std::vector<char> searched;
+  for (const Term& term : terms)
+    searched.push_back(term.shape.empty() && !term.effect->shapes.empty());
+  const bool any = std::find(searched.begin(), searched.end(), 1) != searched.end();
+  const Observations thin = any && o.size() > thin_beyond ? thinned(o, weight) : Observations{};
+  if (thin.size() > 0 && thin.size() < o.size()) {
+    auto near = fit(thin, terms);
+    if (!near) return fail(near.error());
+    terms = std::move(near->terms);
+  } else if (any) {
+    if (auto found = start_shapes(o, terms, searched, weight); !found) return fail(found.error());
+  }
+  return fit_near(o, std::move(terms), searched, std::move(weight));
+}
+
+Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
+                       const std::vector<char>& searched, std::vector<double> weight) {
+  const VectorXd root = root_weights(o, weight);
+  const VectorXd y =
+      Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.deviation.size()));
+  if (o.size() > thin_beyond)
+    step_shapes(o, terms, searched, root, y);
+  else
+    refine_shapes(o, terms, searched, root, y);
+  auto design = design_of(o, terms, root);
+  if (!design) return fail(design.error());
+  const auto used = static_cast<Index>((root.array() > 0.0).count());
+  if (used <= design->a.cols())
+    return fail(std::to_string(used) + " readings cannot determine " +
+                std::to_string(design->a.cols()) + " unknowns");
+  const auto s = solve(*design, y, root);
+  if (!s) return fail(s.error());
+
+  Fit out;
+  out.terms = std::move(terms);
+  out.weight = weight.empty() ? std::vector<double>(o.size(), 1.0) : std::move(weight);
+  out.redundancy = static_cast<std::size_t>(used - design->a.cols());
+  const Index lines = design->first.front();
+  out.zero.assign(s->x.data(), s->x.data() + lines);
+  // A reading of weight 0 has a residual too: what it is away from the model.
+  VectorXd residual = y;
+  for (Index i = 0; i < y.size(); ++i)
+    residual(i) -= s->x(static_cast<Index>(line_of(o, static_cast<std::size_t>(i))));
+  for (std::size_t t = 0; t < out.terms.size(); ++t) {
+    const MatrixXd& block = design->blocks[t];
+    const VectorXd part = block * s->x.segment(design->first[t], block.cols());
+    residual -= part;
+    out.part.emplace_back(part.data(), part.data() + part.size());
+  }
+  out.residual.assign(residual.data(), residual.data() + residual.size());
+  name_parameters(out, o, *design);
+  for (const Index lost : design->lost) out.lost.push_back(static_cast<std::size_t>(lost));
+  Index column = lines;
+  for (Parameter& p : out.parameters)
+    if (!p.shape) p.value = s->x(column++);
+  fill_covariance(out, o, std::move(*design), *s, searched, root);
+  double sum = 0.0;
+  for (const double w : out.weight) sum += w;
+  out.rms = std::sqrt(s->squares / sum);
+  out.s = out.redundancy > 0 ? std::sqrt(s->squares / static_cast<double>(out.redundancy)) : 0.0;
+  for (Parameter& p : out.parameters) p.u *= out.s;
+  return out;
+}
+
+double rms_with(const Observations& o, const std::vector<Term>& terms,
+                const std::vector<double>& weight) {
+  const VectorXd root = root_weights(o, weight);
+  const Eigen::Map<const VectorXd> y(o.deviation.data(), static_cast<Index>(o.size()));
+  const double sum = weight.empty() ? static_cast<double>(o.size())
+                                    : std::accumulate(weight.begin(), weight.end(), 0.0);
+  return std::sqrt(squares_with(o, terms, root, y) / sum);
+}
+
+}  // namespace nonio::model

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "data/design.h"
+
+namespace nonio::model {
+
+/// Every effect of a search with every value of its shapes, as columns of unit length from which
+/// the zeros of the lines are taken out. Scalar products are kept as they are needed: a set of
+/// effects is judged without touching the readings again. Of one thread.
+class Workbench {
+ public:
+  /// Columns first .. first + count of an effect with one value of its shapes.
+  struct Block {
+    std::size_t effect;
+    std::vector<double> shape;
+    Index first, count;
+    bool of_position;            ///< the same at every reading of a target
+    MatrixXd own{};              ///< scalar products of its columns
+    Index searched = 0;          ///< of its shapes so many were searched
+    double cost_of_shape = 0.0;  ///< 2 ln of the number of independent values they were chosen from
+  };
+  struct Instance {
+    Term term;
+    std::vector<std::size_t> blocks;  ///< none: the readings cannot show it
+    std::string error;
+    bool reducible = false;            ///< may_lose
+    std::size_t tried = 0, usual = 0;  ///< values of its shapes; of these with the usual ones
+    std::vector<char> free{};          ///< of each shape: it has more than one value
+  };
+  /// Blocks in the order in which they came in, with what they leave.
+  struct State {
+    std::vector<std::size_t> blocks;
+    double squares = 0.0;  ///< left, weighted
+    Index parameters = 0;  ///< linear ones and searched shapes, without zeros
+    double price = 0.0;    ///< of parameters, shapes and names
+    double criterion =
+        0.0;  ///< n ln(squares/n) + price of parameters, shapes and names; small is good
+  };
+
+  /// Columns of each term with each shape as its effect gave them: not made again for other
+  /// weights.
+  using Made = std::map<std::pair<std::size_t, std::vector<double>>, Expected<MatrixXd>>;
+
+  /// `target` of each reading: sets whose columns of position alone come near to one free value per
+  /// target are not looked at. Empty: all are. The first `stated` terms are the model's: that they
+  /// are there is known, and their curves may follow the targets more closely.
+  Workbench(const Observations& o, const std::vector<Term>& terms,
+            const std::vector<double>& weight, const std::vector<std::uint32_t>& target = {},
+            std::size_t stated = 0, Made* made = nullptr);
+
+  const std::vector<Instance>& instances() const { return instances_; }
+  const std::vector<Block>& blocks() const { return blocks_; }
+  const MatrixXd& columns() const { return x_; }
+  const VectorXd& y() const { return y_; }
+  const VectorXd& root_weight() const { return root_; }
+  double readings() const { return used_; }
+  Index zeros() const { return zeros_; }
+
+  /// One more value of an effect's shapes, beside those of its grid.
+  void add_shape(const Observations& o, std::size_t effect, const std::vector<double>& shape);
+
+  State state(std::vector<std::size_t> blocks) const;
+  /// For each block the fall of `squares` if it is added; NaN if it adds no independent column.
+  VectorXd gains(const State& state) const;
+  /// The same for the blocks of one effect only; NaN elsewhere.
+  VectorXd gains(const State& state, std::size_t effect) const;
+  /// The state with the best block of this effect added, or nothing that can be added (blocks as
+  /// before).
+  State with(const State& state, const VectorXd& gains, std::size_t effect) const;
+  /// The same, where it is better with curves of fewer knots: a curve that is there follows what
+  /// the new effect has to say, and takes the targets that it would need.
+  State joined(const State& state, const VectorXd& gains, std::size_t effect) const;
+  /// Each effect's shapes looked for again while the others stay, until nothing improves.
+  State settled(State state) const;
+  bool holds(const State& state, std::size_t effect) const;
+  std::size_t effect_of(std::size_t block) const { return blocks_[block].effect; }
+  /// The state without one effect.
+  State without(const State& state, std::size_t effect) const;
+
+  /// Shapes of all effects together, one after the other until nothing improves.
+  Expected<std::vector<std::vector<double>>> best_shapes() const;
+
+  /// n x q orthonormal basis of a state's columns (without the zeros).
+  MatrixXd basis(const State& state) const;
+
+  /// Columns of a state's blocks in `columns()`.
+  std::vector<Index> columns_of_state(const State& state) const;
+  /// Scalar products of the columns of blocks with each other, and of all columns with them.
+  MatrixXd gram(const std::vector<std::size_t>& blocks) const;
+  MatrixXd products(const std::vector<std::size_t>& blocks) const;
+
+  /// Price of an effect with these shapes; with so many linear columns of its own.
+  double price(const Block& block, Index columns) const;
+  double price(const Block& block) const { return price(block, block.count); }
+  /// Linear columns and searched shapes.
+  static Index unknowns_of(const Block& block) { return block.count + block.searched; }
+
+ private:
+  bool follows_targets(const Block& block, Index of_position) const;
+  void add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts, Made& made);
+  /// Columns of unit length without the zeros of lines; none if the readings cannot show them.
+  MatrixXd columns_for(const Observations& o, Instance& instance, const std::vector<double>& shape,
+                       bool& of_position, Made& made) const;
+  struct Projection {
+    MatrixXd products;  // of all columns with orthonormal directions of the state's
+    VectorXd z;         // of the readings with them
+  };
+  /// Directions of a state one of whose curves is not wholly independent of what came before it.
+  struct Directions {
+    MatrixXd of_columns;      // X_state * of_columns is orthonormal
+    std::vector<Index> rank;  // of each block
+    bool sound = true;  // every effect has a direction of its own, and all but curves all of theirs
+  };
+  Directions directions(const std::vector<std::size_t>& blocks, const MatrixXd& gram) const;
+  bool reducible(const Block& block) const;
+  double least_of(const Block& block) const;
+  State with_curve(const State& state, const VectorXd& gains, std::size_t effect) const;
+  Projection projection(const State& state) const;
+  void add_falls(const Projection& projection, std::size_t effect, VectorXd& fall) const;
+  double fall_of_block(const Projection& projection, const Block& block) const;
+  void push(Block block, const MatrixXd& columns);
+  void count_shapes(Instance& instance) const;
+  void fill_search(Block& block) const;
+  const MatrixXd& products_of(std::size_t block) const;
+  double criterion(double squares, double price, Index parameters) const;
+
+  std::vector<Instance> instances_;
+  std::vector<Block> blocks_;
+  MatrixXd x_;
+  mutable std::vector<MatrixXd> products_;  // of all columns with each block's, where asked for
+  VectorXd y_, root_, xy_;
+  double yy_ = 0.0, used_ = 0.0;
+  std::vector<std::uint32_t> target_;
+  std::size_t stated_ = 0;
+  // Columns and searched shapes of position: of a set, with stated terms, of a curve not stated.
+  Index most_of_position_ = 0, most_stated_ = 0, most_of_curve_ = 0;
+  Index zeros_ = 0;
+  bool several_axes_ = false, reducible_ = false;
+  bool few_ = false;  // readings without repeats
+};
+
+}  // namespace nonio::model

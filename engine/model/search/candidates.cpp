@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "candidates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "fit/compare.h"
+#include "nonio/math/distributions.h"
+
+namespace nonio::model {
+
+namespace {
+
+using State = Workbench::State;
+
+double normal_below(double x) { return 0.5 * std::erfc(-x * std::numbers::sqrt2 / 2.0); }
+
+/// How large an effect must be to be found. In units of the variance of a reading the fall of the
+/// sum of squares that it gives is about (sqrt(a^2 + k - 1) + z)^2: a^2 what the readings show of
+/// it, k its unknowns, z normal.
+class Sizes {
+ public:
+  Sizes(const Finding& f, std::size_t effect, bool member)
+      : f_(f), effect_(effect), s_(f.left()), dof_(std::max(f.dof(f.best), 1.0)) {
+    const MatrixXd basis = f.bench->basis(member ? f.bench->without(f.best, effect) : f.best);
+    for (const std::size_t b : f.bench->instances()[effect].blocks) {
+      const Workbench::Block& block = f.bench->blocks()[b];
+      if (!are_usual(f.terms[effect], block.shape)) continue;
+      const auto columns = f.bench->columns().middleCols(block.first, block.count);
+      const double hidden = (basis.transpose() * columns).squaredNorm() / columns.squaredNorm();
+      shown_.push_back({std::max(1.0 - hidden, 1e-12), wanted(block),
+                        static_cast<double>(Workbench::unknowns_of(block))});
+    }
+    // Shapes that these readings hardly show (a jump before the last reading) are not counted.
+    std::sort(shown_.begin(), shown_.end(),
+              [](const Shown& a, const Shown& b) { return a.visible > b.visible; });
+    shown_.resize(shown_.size() - shown_.size() / 10);
+  }
+
+  /// Root mean square of the one that is found nine times in ten, its shape being any of the grid.
+  double smallest() const {
+    if (shown_.empty()) return 0.0;
+    double low = 0.0, high = 1e4;  // in standard deviations of a reading, of all readings together
+    for (int step = 0; step < 50; ++step) {
+      const double a = (low + high) / 2.0;
+      double found = 0.0;
+      for (const Shown& one : shown_)
+        found += normal_below(std::sqrt(a * a * one.visible + one.unknowns - 1.0) - one.wanted);
+      (found < 0.9 * static_cast<double>(shown_.size()) ? low : high) = a;
+    }
+    return high * s_ / std::sqrt(f_.bench->readings());
+  }
+
+  /// Mean of what is found, by what is there, of an effect as large as this one is found to be.
+  double bias(const Workbench::Block& block) const {
+    const double fall = f_.bench->without(f_.best, effect_).squares - f_.best.squares;
+    const double a = std::sqrt(std::max(fall, 0.0)) / s_, over = a - wanted(block);
+    if (!(a > 0.0)) return 1.0;
+    const double density = std::exp(-over * over / 2.0) / std::sqrt(2.0 * std::numbers::pi);
+    return 1.0 + density / normal_below(over) / a;
+  }
+
+ private:
+  struct Shown {
+    double visible, wanted, unknowns;
+  };
+
+  /// Square root of the least fall that gives a name: by evidence, by chance, by size.
+  double wanted(const Workbench::Block& block) const {
+    const double n = f_.bench->readings();
+    const auto k = static_cast<double>(Workbench::unknowns_of(block));
+    const double price = f_.bench->price(block);
+    if (price == price_ && k == unknowns_) return wanted_;
+    price_ = price, unknowns_ = k;
+    const double by_evidence = dof_ * std::expm1(price / n);
+    const double one_test = -std::expm1(std::log1p(-named_below) / f_.chance.trials);
+    double low = 0.0, high = 1e4;
+    for (int step = 0; step < 40; ++step) {
+      const double F = (low + high) / 2.0;
+      (math::f_upper(F, k, dof_) > one_test ? low : high) = F;
+    }
+    wanted_ = std::sqrt(std::max({by_evidence, high * k, least_rms * least_rms * n}));
+    return wanted_;
+  }
+
+  const Finding& f_;
+  std::size_t effect_;
+  double s_, dof_;
+  std::vector<Shown> shown_;
+  mutable double price_ = -1.0, unknowns_ = 0.0, wanted_ = 0.0;  // of the last block asked for
+};
+
+class CandidateOf {
+ public:
+  explicit CandidateOf(const Finding& finding) : f_(finding) {}
+
+  Candidate operator()(std::size_t e) const {
+    Candidate c;
+    c.term = f_.terms[e];
+    c.score = -std::numeric_limits<double>::infinity();
+    const State alone = f_.bench->joined(f_.start, f_.bench->gains(f_.start, e), e);
+    if (alone.blocks.size() == f_.start.blocks.size()) {
+      c.visible = false;
+      c.why = f_.bench->instances()[e].blocks.empty() ? "not-shown" : "aliased";
+      return c;
+    }
+    const bool member = f_.bench->holds(f_.best, e);
+    std::size_t block = alone.blocks.back();
+    if (member) {
+      for (const std::size_t b : f_.best.blocks)
+        if (f_.bench->effect_of(b) == e) block = b;
+      c.score = f_.bench->settled(f_.bench->without(f_.best, e)).criterion - f_.best.criterion;
+      c.p = f_.chance.corrected(p_of(*f_.bench, f_.best, e));
+      c.aliases = aliases_of(e);
+    } else {
+      score_outsider(e, c);
+    }
+    c.term.shape = f_.bench->blocks()[block].shape;
+    const Sizes sizes(f_, e, member);
+    c.minimal_detectable = sizes.smallest();
+    fit_candidate(alone, c);
+    if (member) c.bias = sizes.bias(f_.bench->blocks()[block]);
+    return c;
+  }
+
+ private:
+  /// Effects that can stand for a member of the best explanation at hardly any loss.
+  std::vector<std::string> aliases_of(std::size_t member) const {
+    std::vector<std::string> names;
+    const State rest = f_.bench->without(f_.best, member);
+    const VectorXd gains = f_.bench->gains(rest);
+    for (std::size_t other = f_.in_model; other < f_.terms.size(); ++other) {
+      if (other == member || f_.bench->holds(f_.best, other)) continue;
+      const State changed = f_.bench->settled(f_.bench->joined(rest, gains, other));
+      if (changed.blocks.size() > rest.blocks.size() && as_good(changed))
+        names.push_back(f_.terms[other].name());
+    }
+    for (const std::string& name : f_.otherwise)
+      if (!f_.bench->holds(f_.best, f_.index_of(name)) &&
+          std::find(names.begin(), names.end(), name) == names.end())
+        names.push_back(name);
+    return names;
+  }
+
+  /// Hardly any evidence is lost, or hardly any likelihood beside what further columns cost: what
+  /// the search has cost says which is named, not which it is. In space, where one curve can hold
+  /// another effect wholly, also where the readings lose nothing and only the parameters cost more.
+  bool as_good(const State& changed) const {
+    if (changed.criterion < f_.best.criterion + alias_evidence) return true;
+    const double n = f_.bench->readings();
+    const double lost = n * std::log(changed.squares / f_.best.squares);
+    if (f_.part.table.axes.size() > 1) return lost < alias_evidence;
+    return lost + static_cast<double>(std::max<Index>(0, columns(changed) - columns(f_.best))) *
+                      std::log(n) <
+           alias_evidence;
+  }
+
+  Index columns(const State& state) const {
+    Index sum = 0;
+    for (const std::size_t b : state.blocks) sum += f_.bench->blocks()[b].count;
+    return sum;
+  }
+
+  /// Evidence of an effect outside the best explanation: added to it, or instead of a member.
+  void score_outsider(std::size_t e, Candidate& c) const {
+    const State more = f_.bench->joined(f_.best, f_.bench->gains(f_.best, e), e);
+    if (more.blocks.size() > f_.best.blocks.size()) {
+      c.score = f_.best.criterion - more.criterion;
+      c.p = f_.chance.corrected(p_of(*f_.bench, more, e));
+    }
+    for (const std::size_t b : f_.best.blocks) {
+      const std::size_t member = f_.bench->effect_of(b);
+      if (member < f_.in_model) continue;
+      const State rest = f_.bench->without(f_.best, member);
+      const State changed = f_.bench->joined(rest, f_.bench->gains(rest, e), e);
+      if (changed.blocks.size() == rest.blocks.size()) continue;
+      const double score = rest.criterion - changed.criterion;
+      if (score <= c.score) continue;
+      c.score = score;
+      c.p = f_.chance.corrected(p_of(*f_.bench, changed, e));
+      if (as_good(changed)) c.aliases = {f_.terms[member].name()};
+    }
+  }
+
+  /// In the model, whose curves may have fewer knots beside it.
+  void fit_candidate(const State& with, Candidate& c) const {
+    const std::size_t e = f_.bench->effect_of(with.blocks.back());
+    std::vector<Term> terms = f_.of_model.fit.terms;
+    for (std::size_t t = 0; t < terms.size(); ++t)
+      if (with.blocks[t] != f_.start.blocks[t])
+        terms[t].shape = f_.bench->blocks()[with.blocks[t]].shape;
+    terms.push_back(c.term);
+    const auto fitted =
+        fit_near(f_.part.table, terms, std::vector<char>(terms.size(), 0), f_.weight);
+    if (!fitted) return;
+    c.rms = fitted->rms;
+    c.cv_rms = rms_of(cross_validated(f_.part.table, terms, f_.weight), f_.weight);
+    const Fit& from = f_.bench->holds(f_.best, e) ? f_.of_best.fit : *fitted;
+    for (const Parameter& p : from.parameters)
+      if (p.effect == c.term.name()) c.parameters.push_back(p);
+    for (const Term& t : from.terms)
+      if (t.name() == c.term.name()) c.term.shape = t.shape;
+  }
+
+  const Finding& f_;
+};
+
+}  // namespace
+
+std::vector<Candidate> candidates_of(const Finding& finding) {
+  const CandidateOf candidate(finding);
+  std::vector<Candidate> out;
+  for (std::size_t e = finding.in_model; e < finding.terms.size(); ++e) out.push_back(candidate(e));
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  return out;
+}
+
+}  // namespace nonio::model

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "finding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "fit/compare.h"
+#include "nonio/math/distributions.h"
+#include "nonio/math/statistics.h"
+
+namespace nonio::model {
+
+namespace {
+
+using State = Workbench::State;
+
+class Finder {
+ public:
+  Finder(const Part& part, const std::vector<Term>& model, const std::vector<Term>& catalogue,
+         std::uint64_t seed)
+      : f_{part, Repeats(part.table), model, model.size(), seed}, model_(model) {
+    for (const Term& c : catalogue)
+      if (std::none_of(model.begin(), model.end(),
+                       [&](const Term& m) { return m.name() == c.name(); }))
+        (c.effect->description ? f_.descriptions : f_.terms).push_back(c);
+  }
+
+  Expected<Finding> run() {
+    f_.suspects = suspects_of(f_.part.table, f_.repeats, model_);
+    if (auto alone = suspect_without_repeats(); !alone.empty()) f_.suspects = std::move(alone);
+    for (int round = 0; round < 3; ++round) {
+      if (auto searched = search(); !searched) return fail(searched.error());
+      if (!suspect_again()) break;
+    }
+    f_.chance = measure_chance(*f_.bench, f_.best,
+                               shuffled(*f_.bench, f_.best, f_.residual(f_.best), f_.part.table,
+                                        f_.repeats.pass, f_.seed));
+    prune();
+    if (auto fitted = fit_both(); !fitted) return fail(fitted.error());
+    return std::move(f_);
+  }
+
+ private:
+  Expected<void> search() {
+    f_.weight = weights_without(f_.part.table.size(), f_.suspects);
+    f_.bench.emplace(f_.part.table, f_.terms, f_.weight, f_.repeats.target, f_.in_model, &made_);
+    auto start = best_start();
+    if (!start) return fail(start.error());
+    f_.start = std::move(*start);
+    f_.best = best_explanation(*f_.bench, f_.start);
+    // What lies between the values of a grid would be taken for an effect of its own.
+    constexpr double worth_another_round = 1.0;
+    for (int round = 0; round < 3; ++round) {
+      const bool finer = add_refined(f_.start), alone = round == 0 && add_refined_alone();
+      if (!add_refined(f_.best) && !finer && !alone) break;
+      const double before = f_.best.criterion;
+      f_.start = f_.bench->settled(std::move(f_.start));
+      f_.best = best_explanation(*f_.bench, f_.start);
+      if (!(f_.best.criterion < before - worth_another_round)) break;
+    }
+    return {};
+  }
+
+  /// Each effect of the best explanation alone beside the model: what a coarse grid leaves of a
+  /// large one is not to be fitted by others.
+  bool add_refined_alone() {
+    bool any = false;
+    const State best = f_.best;
+    for (const std::size_t b : best.blocks) {
+      const std::size_t e = f_.bench->effect_of(b);
+      if (e < f_.in_model || f_.bench->blocks()[b].searched == 0) continue;
+      const State alone = f_.bench->with(f_.start, f_.bench->gains(f_.start, e), e);
+      if (alone.blocks.size() == f_.start.blocks.size()) continue;
+      any = add_fitted(alone, terms_of_state(alone)) || any;
+      any = add_moved(alone) || any;
+    }
+    return any;
+  }
+
+  /// Instants and periods of a model hold each other fast: tried from two sides. A curve that comes
+  /// in last leaves to the others what they need.
+  Expected<State> best_start() const {
+    std::vector<std::size_t> written(f_.in_model);
+    std::iota(written.begin(), written.end(), std::size_t{0});
+    auto start = started(written, false);
+    const auto other = started(written, true);
+    if (other && (!start || other->squares < start->squares)) return other;
+    if (start) return start;
+    std::stable_partition(written.begin(), written.end(),
+                          [&](std::size_t e) { return !f_.terms[e].effect->curve; });
+    if (auto last = started(written, false)) return last;
+    return start;
+  }
+
+  /// The model with its shapes searched; its terms come in as they are `open`, or those first that
+  /// explain most.
+  Expected<State> started(std::vector<std::size_t> open, bool largest_first) const {
+    State start = f_.bench->state({});
+    while (!open.empty()) {
+      const VectorXd gains = f_.bench->gains(start);
+      State best;
+      std::size_t at = open.size();
+      for (std::size_t k = 0; k < (largest_first ? open.size() : 1); ++k) {
+        State next = f_.bench->with(start, gains, open[k]);
+        if (next.blocks.size() == start.blocks.size()) {
+          const std::string& why = f_.bench->instances()[open[k]].error;
+          return fail(!why.empty() ? why
+                                   : "the readings cannot tell " + f_.terms[open[k]].name() +
+                                         " from the rest of the model");
+        }
+        if (at == open.size() || next.squares < best.squares) best = std::move(next), at = k;
+      }
+      start = std::move(best);
+      open.erase(open.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    return in_order(f_.bench->settled(std::move(start)));
+  }
+
+  /// Blocks in the order of the model.
+  State in_order(State state) const {
+    std::sort(state.blocks.begin(), state.blocks.end(), [&](std::size_t a, std::size_t b) {
+      return f_.bench->effect_of(a) < f_.bench->effect_of(b);
+    });
+    return state;
+  }
+
+  /// Shapes of a state between the values of their grids, as values of the grids.
+  bool add_refined(const State& state) {
+    bool any = add_fitted(state, terms_of_state(state));
+    any = add_moved(state) || any;
+    // Another effect may stand for what such a value leaves.
+    for (const std::size_t b : state.blocks)
+      if (const std::size_t e = f_.bench->effect_of(b); e >= f_.in_model)
+        any = add_without(state, e) || any;
+    return any;
+  }
+
+  bool add_without(const State& state, std::size_t effect) {
+    const State rest = f_.bench->settled(f_.bench->without(state, effect));
+    const auto free = [&](std::size_t b) {
+      const auto& shapes = f_.terms[f_.bench->effect_of(b)].effect->shapes;
+      return std::any_of(shapes.begin(), shapes.end(),
+                         [](const Effect::Shape& shape) { return shape.usual.has_value(); });
+    };
+    if (std::none_of(rest.blocks.begin(), rest.blocks.end(), free)) return false;
+    const bool any = add_fitted(rest, terms_of_state(rest));
+    return add_moved(rest) || any;
+  }
+
+  /// A usual value stays where it is, unless it is moved a little: perhaps it is not the best.
+  bool add_moved(const State& state) {
+    std::vector<Term> moved = terms_of_state(state);
+    bool usual = false;
+    for (Term& term : moved)
+      for (std::size_t k = 0; k < term.shape.size(); ++k) {
+        const auto grid = term.effect->shapes[k].grid(f_.part.table, term.axis);
+        if (!is_usual(term, term.shape, k) || grid.size() < 2) continue;
+        term.shape[k] += 1e-6 * (grid.back() - grid.front());
+        usual = true;
+      }
+    return usual && add_fitted(state, moved);
+  }
+
+  bool add_fitted(const State& state, const std::vector<Term>& terms) {
+    const auto fitted = fit_near(f_.part.table, terms, flags(state, true), f_.weight);
+    if (!fitted) return false;
+    bool any = false;
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      const Workbench::Block& block = f_.bench->blocks()[state.blocks[t]];
+      if (fitted->terms[t].shape == block.shape) continue;
+      f_.bench->add_shape(f_.part.table, block.effect, fitted->terms[t].shape);
+      any = true;
+    }
+    return any;
+  }
+
+  /// Few readings without repeats: a misread value bends every effect. So each is left out in turn,
+  /// and the best explanation of the others predicts it.
+  std::vector<Suspect> suspect_without_repeats() {
+    constexpr std::size_t fewest = 8, most = 40;
+    const std::size_t n = f_.part.table.size();
+    const auto repeated = saturate(f_.repeats, f_.part.table.deviation, {});
+    if (n < fewest || n > most || repeated.dof >= 3.0 || f_.part.table.axes.size() > 1) return {};
+    f_.suspects.clear();
+    if (!search()) return {};
+    const double all = f_.best.criterion;
+    Suspect worst;
+    double least = all;
+    std::vector<std::pair<double, std::vector<Term>>> each{{all, terms_of_state(f_.best)}};
+    const double price = 3.0 * std::log(static_cast<double>(n));  // a value, and which of n
+    for (std::size_t i = 0; i < n; ++i) {
+      f_.suspects = {{i, 0.0, 0.0, 0.0}};
+      if (!search()) continue;
+      // As of all readings: a criterion of fewer has another unit.
+      const double used = f_.bench->readings();
+      const double criterion = f_.best.criterion + price +
+                               (static_cast<double>(n) - used) * std::log(f_.best.squares / used);
+      if (!(criterion < least + alias_evidence)) continue;
+      const auto s = predicted(i);
+      if (!s) continue;
+      each.emplace_back(criterion, terms_of_state(f_.best));
+      if (criterion < least) least = criterion, worst = *s;
+    }
+    f_.suspects.clear();
+    for (const auto& one : each)
+      for (const Term& term : one.second)
+        if (one.first < least + alias_evidence) f_.otherwise.push_back(term.name());
+    return least < all ? std::vector<Suspect>{worst} : std::vector<Suspect>{};
+  }
+
+  /// A reading of weight 0 against what the best explanation of the others says of it: none if it
+  /// is as far away as one of so many may be.
+  std::optional<Suspect> predicted(std::size_t row) const {
+    constexpr double rarely = 0.01;
+    const MatrixXd basis = f_.bench->basis(f_.best);
+    const double dof = f_.dof(f_.best), n = f_.bench->readings() + 1.0;
+    const auto fitted = fit_near(f_.part.table, terms_of_state(f_.best), flags(false), f_.weight);
+    if (!fitted || !(dof >= 3.0) || !(f_.best.squares > 0.0)) return {};
+    // Leverage of a row outside: no more than the largest within, at best a guess.
+    double leverage = 1.0 / n;
+    for (Index i = 0; i < basis.rows(); ++i)
+      leverage = std::max(leverage, 1.0 / n + basis.row(i).squaredNorm());
+    const double sigma = f_.left() * std::sqrt(1.0 + leverage);
+    const double e = fitted->residual[row];
+    if (math::t_two_sided(e / sigma, dof) * n > rarely) return {};
+    double least = 3.0;
+    while (math::t_two_sided(least, dof) * n > rarely) least += 0.05;
+    return Suspect{row, e, e / sigma, least * sigma};
+  }
+
+  /// Whether the best explanation suspects other readings than before.
+  bool suspect_again() {
+    const std::size_t n = f_.part.table.size();
+    const auto fitted = fit_near(f_.part.table, terms_of_state(f_.best), flags(false), f_.weight);
+    if (!fitted) return false;
+    const std::vector<double>& e = fitted->residual;
+    const double s = math::robust_deviation(e);
+    if (!(s > 0.0)) return false;
+    double least = 3.0;
+    while (math::t_two_sided(least, 50.0) * static_cast<double>(n) > 0.01) least += 0.05;
+    std::vector<std::uint32_t> high;
+    for (std::uint32_t i = 0; i < n; ++i)
+      if (std::fabs(e[i]) >= least * s) high.push_back(i);
+    const std::vector<double> apart = apart_from_others(f_.repeats, high, e);
+    std::vector<Suspect> now;
+    for (std::size_t k = 0; k < high.size(); ++k)
+      if (std::fabs(apart[k]) >= least * s)
+        now.push_back({high[k], e[high[k]], e[high[k]] / s, least * s});
+    if (now.size() > n / 8) return false;
+    const bool changed =
+        now.size() != f_.suspects.size() ||
+        !std::equal(now.begin(), now.end(), f_.suspects.begin(),
+                    [](const Suspect& a, const Suspect& b) { return a.row == b.row; });
+    f_.suspects = std::move(now);
+    return changed;
+  }
+
+  std::vector<Term> terms_of_state(const State& state) const {
+    std::vector<Term> terms;
+    for (const std::size_t b : state.blocks) {
+      terms.push_back(f_.bench->instances()[f_.bench->effect_of(b)].term);
+      terms.back().shape = f_.bench->blocks()[b].shape;
+    }
+    return terms;
+  }
+  std::vector<char> flags(bool searched) const { return flags(f_.best, searched); }
+  std::vector<char> flags(const State& state, bool searched) const {
+    std::vector<char> out;
+    for (const std::size_t b : state.blocks) {
+      const Term& term = f_.bench->instances()[f_.bench->effect_of(b)].term;
+      out.push_back(searched && term.shape.empty() && !term.effect->shapes.empty());
+    }
+    return out;
+  }
+
+  /// Effects that noise could have given, or too small to matter, leave the best explanation.
+  void prune() {
+    while (true) {
+      std::size_t weakest = f_.terms.size();
+      double largest_p = 0.0;
+      const double s = f_.left();
+      for (const std::size_t b : f_.best.blocks) {
+        const std::size_t e = f_.bench->effect_of(b);
+        if (e < f_.in_model) continue;
+        const double p = f_.chance.corrected(p_of(*f_.bench, f_.best, e));
+        const double fall = f_.bench->without(f_.best, e).squares - f_.best.squares;
+        const bool small = std::sqrt(fall / f_.bench->readings()) < least_rms * s;
+        if ((p >= named_below || small) && p >= largest_p) {
+          weakest = e;
+          largest_p = p;
+        }
+      }
+      if (weakest == f_.terms.size()) return;
+      f_.best = f_.bench->settled(f_.bench->without(f_.best, weakest));
+    }
+  }
+
+  Expected<void> fit_both() {
+    auto of_model =
+        fit_near(f_.part.table, terms_of_state(f_.start), flags(f_.start, true), f_.weight);
+    if (!of_model) return fail(of_model.error());
+    f_.of_model = comparison_of(f_.part, f_.repeats, std::move(*of_model), f_.suspects);
+    auto of_best = fit_near(f_.part.table, terms_of_state(f_.best), flags(true), f_.weight);
+    if (!of_best) return fail(of_best.error());
+    f_.of_best = comparison_of(f_.part, f_.repeats, std::move(*of_best), f_.suspects);
+    return {};
+  }
+
+  Finding f_;
+  const std::vector<Term>& model_;
+  Workbench::Made made_;
+};
+
+}  // namespace
+
+std::size_t Finding::index_of(const std::string& name) const {
+  return static_cast<std::size_t>(
+      std::find_if(terms.begin(), terms.end(), [&](const Term& t) { return t.name() == name; }) -
+      terms.begin());
+}
+
+double Finding::dof(const State& state) const {
+  return bench->readings() - static_cast<double>(bench->zeros() + state.parameters);
+}
+
+double Finding::left() const { return std::sqrt(best.squares / std::max(dof(best), 1.0)); }
+
+VectorXd Finding::residual(const State& state) const {
+  const MatrixXd basis = bench->basis(state);
+  return bench->y() - basis * (basis.transpose() * bench->y());
+}
+
+Expected<Finding> find_best(const Part& part, const std::vector<Term>& model,
+                            const std::vector<Term>& catalogue, std::uint64_t seed) {
+  return Finder(part, model, catalogue, seed).run();
+}
+
+}  // namespace nonio::model

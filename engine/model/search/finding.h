@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "data/repeats.h"
+#include "fit/workbench.h"
+#include "nonio/model/explain.h"
+#include "search.h"
+
+namespace nonio::model {
+
+inline constexpr double alias_evidence = 6.0;  ///< 2 ln 20: one twentieth is no difference
+inline constexpr double least_rms = 0.2;  ///< of the noise: smaller effects are not worth a name
+
+/// What the search over all sets of effects has found in one part: candidates and the verdict are
+/// read off it.
+struct Finding {
+  const Part& part;
+  Repeats repeats;
+  std::vector<Term> terms{};  ///< of the model, then the catalogue's others
+  std::size_t in_model = 0;   ///< so many terms are the model's
+  std::uint64_t seed = 0;
+  std::vector<Term> descriptions{};  ///< of the catalogue, that the model does not have
+  std::vector<Suspect> suspects{};
+  std::vector<double> weight{};  ///< of each reading: 0 for suspects
+  std::optional<Workbench> bench{};
+  /// Few readings without repeats: effects that with another reading suspected, or none, are nearly
+  /// as good an explanation.
+  std::vector<std::string> otherwise{};
+  Workbench::State start{}, best{};  ///< the model; with what the best explanation adds
+  Chance chance{};                   ///< what noise finds in this search
+  Comparison of_model{}, of_best{};  ///< fits of both
+
+  std::size_t index_of(const std::string& name) const;
+  double dof(const Workbench::State& state) const;
+  /// Standard deviation that the best explanation leaves.
+  double left() const;
+  /// What a state leaves, with root weights.
+  VectorXd residual(const Workbench::State& state) const;
+};
+
+Expected<Finding> find_best(const Part& part, const std::vector<Term>& model,
+                            const std::vector<Term>& catalogue, std::uint64_t seed);
+
+}  // namespace nonio::model

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+
+#include "nonio/math/distributions.h"
+
+namespace nonio::model {
+
+namespace {
+
+using State = Workbench::State;
+
+constexpr std::size_t side_by_side = 4;
+constexpr int most_effects_added = 7;
+
+std::set<std::size_t> effects_of(const Workbench& bench, const State& s) {
+  std::set<std::size_t> out;
+  for (const std::size_t b : s.blocks) out.insert(bench.effect_of(b));
+  return out;
+}
+
+/// All states with one more effect, best first, one for each set of effects.
+std::vector<State> grown(const Workbench& bench, const std::vector<State>& level) {
+  std::vector<State> next;
+  std::set<std::set<std::size_t>> seen;
+  for (const State& s : level) {
+    const VectorXd gains = bench.gains(s);
+    for (std::size_t e = 0; e < bench.instances().size(); ++e) {
+      if (bench.holds(s, e)) continue;
+      std::set<std::size_t> effects = effects_of(bench, s);
+      effects.insert(e);
+      if (seen.contains(effects)) continue;
+      State more = bench.joined(s, gains, e);
+      if (more.blocks.size() == s.blocks.size()) continue;
+      seen.insert(std::move(effects));
+      next.push_back(std::move(more));
+    }
+  }
+  std::stable_sort(next.begin(), next.end(),
+                   [](const State& a, const State& b) { return a.criterion < b.criterion; });
+  if (next.size() > side_by_side) next.resize(side_by_side);
+  for (State& s : next) s = bench.settled(std::move(s));
+  return next;
+}
+
+/// One effect dropped, or exchanged for another, if that is better.
+bool improve(const Workbench& bench, const State& start, State& best) {
+  const auto fixed = effects_of(bench, start);
+  for (const std::size_t e : effects_of(bench, best)) {
+    if (fixed.contains(e)) continue;
+    const State rest = bench.settled(bench.without(best, e));
+    if (rest.criterion < best.criterion - 1e-9) {
+      best = rest;
+      return true;
+    }
+    const VectorXd gains = bench.gains(rest);
+    for (std::size_t other = 0; other < bench.instances().size(); ++other) {
+      if (other == e || bench.holds(rest, other)) continue;
+      State changed = bench.joined(rest, gains, other);
+      if (changed.criterion < best.criterion + 3.0) changed = bench.settled(std::move(changed));
+      if (changed.criterion < best.criterion - 1e-9) {
+        best = std::move(changed);
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+State best_explanation(const Workbench& bench, const State& start) {
+  State best = start;
+  std::vector<State> level{start};
+  int without_gain = 0;
+  for (int depth = 0; depth < most_effects_added && without_gain < 2; ++depth) {
+    level = grown(bench, level);
+    if (level.empty()) break;
+    std::stable_sort(level.begin(), level.end(),
+                     [](const State& a, const State& b) { return a.criterion < b.criterion; });
+    if (level.front().criterion < best.criterion - 1e-9) {
+      best = level.front();
+      without_gain = 0;
+    } else {
+      ++without_gain;
+    }
+  }
+  for (int step = 0; step < 20 && improve(bench, start, best); ++step) {
+  }
+  return best;
+}
+
+double p_of(const Workbench& bench, const State& state, std::size_t effect) {
+  const State rest = bench.without(state, effect);
+  const auto k = static_cast<double>(state.parameters - rest.parameters);
+  const double dof =
+      bench.readings() - static_cast<double>(bench.zeros()) - static_cast<double>(state.parameters);
+  if (!(state.squares > 0.0)) return 0.0;
+  return math::f_upper((rest.squares - state.squares) / k / (state.squares / dof), k, dof);
+}
+
+double Chance::corrected(double p) const {
+  return -std::expm1(trials * std::log1p(-std::min(p, 1.0)));
+}
+
+SignFlips shuffled(const Workbench& bench, const State& complete, const VectorXd& residual,
+                   const Observations& o, const std::vector<std::uint32_t>& pass,
+                   std::uint64_t seed) {
+  constexpr std::size_t stretch = 5;  // readings whose sign is flipped together
+  constexpr Index shuffles = 200;
+  std::vector<Index> block(pass.size());
+  std::vector<std::size_t> in_pass;
+  std::vector<Index> current;
+  Index blocks = 0;
+  for (std::size_t i = 0; i < pass.size(); ++i) {
+    if (pass[i] >= in_pass.size()) in_pass.resize(pass[i] + 1, 0), current.resize(pass[i] + 1, 0);
+    if (in_pass[pass[i]]++ % stretch == 0) current[pass[i]] = blocks++;
+    block[i] = current[pass[i]];
+  }
+  std::mt19937_64 random(seed);
+  MatrixXd sign(blocks, shuffles);
+  for (double& x : sign.reshaped()) x = (random() >> 63) != 0 ? 1.0 : -1.0;
+  SignFlips out;
+  out.noise.resize(residual.size(), shuffles);
+  for (Index s = 0; s < shuffles; ++s)
+    for (Index i = 0; i < residual.size(); ++i)
+      out.noise(i, s) = sign(block[static_cast<std::size_t>(i)], s) * residual(i);
+  take_out_zeros(o, bench.root_weight(), out.noise);
+  const MatrixXd basis = bench.basis(complete);
+  const MatrixXd said = basis.transpose() * out.noise;
+  out.noise.noalias() -= basis * said;
+  out.squares = out.noise.colwise().squaredNorm().transpose();
+  // Products with the columns (which hold no zeros) by stretches: a fifth of the work.
+  const MatrixXd& x = bench.columns();
+  MatrixXd of_stretch = MatrixXd::Zero(blocks + basis.cols(), x.cols());
+  for (Index k = 0; k < x.cols(); ++k)
+    for (Index i = 0; i < residual.size(); ++i)
+      of_stretch(block[static_cast<std::size_t>(i)], k) += x(i, k) * residual(i);
+  out.in_complete.noalias() = basis.transpose() * x;
+  of_stretch.bottomRows(basis.cols()) = -out.in_complete;
+  MatrixXd factors(blocks + basis.cols(), shuffles);
+  factors << sign, said;
+  out.products.noalias() = factors.transpose() * of_stretch;
+  return out;
+}
+
+namespace {
+
+/// One effect added to a complete model in every shuffle, with the shape that the search chooses.
+struct Added {
+  VectorXd fall, parameters;
+  std::vector<char> better;  ///< the criterion falls
+};
+
+class ChanceOf {
+ public:
+  ChanceOf(const Workbench& bench, const State& complete, const SignFlips& shuffles)
+      : bench_(bench),
+        shuffles_(shuffles),
+        dof_(bench.readings() - static_cast<double>(bench.zeros() + complete.parameters)) {}
+
+  Added add(std::size_t effect) const {
+    const Workbench::Instance& instance = bench_.instances()[effect];
+    const Index shuffles = shuffles_.squares.size();
+    Added out{VectorXd::Zero(shuffles), VectorXd::Ones(shuffles),
+              std::vector<char>(static_cast<std::size_t>(shuffles), 0)};
+    VectorXd paid = VectorXd::Zero(shuffles);
+    for (const std::size_t b : instance.blocks) {
+      const Workbench::Block& block = bench_.blocks()[b];
+      const auto w = shuffles_.in_complete.middleCols(block.first, block.count);
+      const Eigen::LLT<MatrixXd> llt(block.own - w.transpose() * w);
+      if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > 1e-4)) continue;
+      MatrixXd t = shuffles_.products.middleCols(block.first, block.count);
+      llt.matrixU().solveInPlace<Eigen::OnTheRight>(t);
+      const VectorXd falls = t.rowwise().squaredNorm();
+      const double price = bench_.price(block);
+      const auto k = static_cast<double>(Workbench::unknowns_of(block));
+      for (Index i = 0; i < shuffles; ++i) {
+        if (out.fall(i) > 0.0 &&
+            (price == paid(i) ? falls(i) <= out.fall(i)
+                              : fall_of_criterion(i, falls(i)) - price <=
+                                    fall_of_criterion(i, out.fall(i)) - paid(i)))
+          continue;
+        out.fall(i) = falls(i);
+        out.parameters(i) = k;
+        paid(i) = price;
+      }
+    }
+    for (Index i = 0; i < shuffles; ++i)
+      out.better[static_cast<std::size_t>(i)] =
+          out.fall(i) > 0.0 && fall_of_criterion(i, out.fall(i)) > paid(i);
+    return out;
+  }
+
+  /// Of a fall with so many parameters.
+  double p(Index shuffle, double fall, double parameters) const {
+    const double dof = dof_ - parameters;
+    return math::f_upper(
+        math::test_ratio(fall / parameters, (shuffles_.squares(shuffle) - fall) / dof), parameters,
+        dof);
+  }
+
+ private:
+  double fall_of_criterion(Index shuffle, double fall) const {
+    return -bench_.readings() *
+           std::log1p(-std::min(fall / shuffles_.squares(shuffle), 1.0 - 1e-12));
+  }
+
+  const Workbench& bench_;
+  const SignFlips& shuffles_;
+  double dof_;
+};
+
+}  // namespace
+
+Chance measure_chance(const Workbench& bench, const State& complete, const SignFlips& shuffles) {
+  const ChanceOf of(bench, complete, shuffles);
+  // Largest fall for each number of parameters: an F-test costs more than all else.
+  std::vector<std::map<double, double>> largest(static_cast<std::size_t>(shuffles.squares.size()));
+  for (std::size_t e = 0; e < bench.instances().size(); ++e) {
+    if (bench.holds(complete, e)) continue;
+    const Added added = of.add(e);
+    for (Index i = 0; i < added.fall.size(); ++i) {
+      double& fall = largest[static_cast<std::size_t>(i)][added.parameters(i)];
+      fall = std::max(fall, added.fall(i));
+    }
+  }
+  // The smallest of m independent p: -ln(1 - p) is exponential with rate m.
+  double sum = 0.0;
+  for (std::size_t i = 0; i < largest.size(); ++i) {
+    double least = 1.0;
+    for (const auto& [parameters, fall] : largest[i])
+      least = std::min(least, of.p(static_cast<Index>(i), fall, parameters));
+    sum -= std::log1p(-std::min(least, 1.0 - 1e-12));
+  }
+  return {std::max(static_cast<double>(largest.size()) / std::max(sum, 1e-12), 1.0)};
+}
+
+std::vector<char> named_in(const Workbench& bench, const State& complete, const SignFlips& shuffles,
+                           const Chance& chance) {
+  const ChanceOf of(bench, complete, shuffles);
+  std::vector<char> named(static_cast<std::size_t>(shuffles.squares.size()), 0);
+  for (std::size_t e = 0; e < bench.instances().size(); ++e) {
+    if (bench.holds(complete, e)) continue;
+    const Added added = of.add(e);
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      const auto at = static_cast<Index>(i);
+      if (added.better[i] != 0 &&
+          chance.corrected(of.p(at, added.fall(at), added.parameters(at))) < named_below)
+        named[i] = 1;
+    }
+  }
+  return named;
+}
+
+}  // namespace nonio::model

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "nonio/pdf/reader.h"
+
+namespace nonio::pdf {
+
+/// Reads tokens and values from front to back. Comments are refused: nothing that signs or is
+/// signed here writes any behind the head of a file.
+class Lexer {
+ public:
+  Lexer(std::string_view bytes, std::size_t at) : bytes_(bytes), at_(at) {}
+  /// `budget`: values that may still be read, here and by others who share it.
+  Lexer(std::string_view bytes, std::size_t at, std::size_t& budget)
+      : bytes_(bytes), at_(at), budget_(&budget) {}
+
+  std::size_t at() const { return at_; }
+  void skip(std::size_t n) { at_ += n; }
+  void skip_space();
+  bool take(std::string_view word);
+  /// Up to `most` digits, at least one, without superfluous zeros in front.
+  bool take_number(std::size_t& number, std::size_t most);
+  /// Exactly `count` digits.
+  bool take_digits(std::size_t& number, std::size_t count);
+  Expected<Value> value();
+
+ private:
+  tl::unexpected<Error> refuse(const std::string& what) const;
+  Expected<Value> value_in(int depth);
+  Expected<void> read_container(Value& value, int depth);
+  Expected<void> check_keys(const Value& value) const;
+  Expected<void> read_number(Value& value);
+  Expected<void> read_name(Value& value);
+  Expected<void> read_text(Value& value);
+  Expected<void> read_escape(Value& value);
+  Expected<void> read_hexadecimal(Value& value);
+  char peek() const { return at_ < bytes_.size() ? bytes_[at_] : '\0'; }
+
+  std::string_view bytes_;
+  std::size_t at_;
+  std::size_t own_budget_ = 10000;
+  std::size_t* budget_ = &own_budget_;
+};
+
+}  // namespace nonio::pdf

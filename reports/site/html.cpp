@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "html.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "embedded.h"
+#include "nonio/reports/number.h"
+#include "nonio/sdk/fields.h"
+#include "nonio/sdk/format.h"
+#include "nonio/sdk/text.h"
+
+namespace nonio::reports::site {
+
+namespace {
+
+std::optional<unsigned> number_of(std::string_view digits) {
+  unsigned value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc{} || end != digits.data() + digits.size()) return std::nullopt;
+  return value;
+}
+
+std::string navigation(const Page& page) {
+  std::string out;
+  for (const auto& [file, key] : {std::pair("index.html", "morning"),
+                                  {"due.html", "due"},
+                                  {"compare.html", "compare"},
+                                  {"instruments.html", "instruments"}})
+    out += link(page.to_root + file, html(page.words.get("site." + std::string(key)))) + "\n";
+  return element("nav", out, "aria-label=\"" + html(page.words.get("site.pages")) + "\"");
+}
+
+}  // namespace
+
+std::string html(std::string_view text) { return escaped_markup(text, Markup::attribute); }
+
+std::string element(std::string_view name, std::string_view inner, std::string_view more) {
+  std::string out = "<" + std::string(name);
+  if (!more.empty()) out += " " + std::string(more);
+  return out + ">" + std::string(inner) + "</" + std::string(name) + ">\n";
+}
+
+std::string link(std::string_view to, std::string_view text_as_html) {
+  if (to.empty()) return std::string(text_as_html);
+  return "<a href=\"" + html(to) + "\">" + std::string(text_as_html) + "</a>";
+}
+
+std::string whole_page(const Page& page, const std::string& title, const std::string& main) {
+  const std::string night = page.words.get(
+      "site.night", {{"night", std::to_string(page.site.night)}, {"date", page.site.date}});
+  return "<!DOCTYPE html>\n<html lang=\"" + html(page.words.language()) +
+         "\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src '" +
+         std::string(script_source) + "'; style-src '" + std::string(style_source) +
+         "'; base-uri 'none'; form-action 'none'\">\n"
+         "<meta name=\"color-scheme\" content=\"light dark\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" +
+         element("title", html(title) + " · Nonio") + element("style", page_style) +
+         "</head>\n<body>\n<header>\n" + navigation(page) +
+         element("p", html(night), "class=\"muted\"") + "</header>\n<main>\n" +
+         element("h1", html(title)) + main + "</main>\n" + element("script", page_script) +
+         "</body>\n</html>\n";
+}
+
+std::string value_text(const Page& page, double value, std::optional<double> u, Quantity q) {
+  const Printed shown =
+      printed_result(value, u ? std::optional(2.0 * *u) : std::nullopt, q, page.words.language());
+  std::string out = shown.value;
+  if (!shown.U.empty()) out += " ± " + shown.U;
+  const std::string unit = unit_text(q);
+  return unit.empty() ? out : out + " " + unit;
+}
+
+std::string short_number(const Page& page, double value, Quantity q) {
+  return localised(short_text(value * unit_of(q).per_si), page.words.language());
+}
+
+std::string quantity_text(const Page& page, const std::string& quantity) {
+  const auto colon = quantity.find(':');
+  const std::string kind = quantity.substr(0, colon);
+  const std::string name = page.words.get_or("site.quantity." + kind, quantity);
+  if (name == quantity || colon == std::string::npos) return name;
+  return name + " " + quantity.substr(colon + 1);
+}
+
+std::optional<Day> day_of(std::string_view date) {
+  if (date.size() != 10 || date[4] != '-' || date[7] != '-') return std::nullopt;
+  const auto y = number_of(date.substr(0, 4)), m = number_of(date.substr(5, 2)),
+             d = number_of(date.substr(8, 2));
+  if (!y || !m || !d) return std::nullopt;
+  const std::chrono::year_month_day day{std::chrono::year(static_cast<int>(*y)),
+                                        std::chrono::month(*m), std::chrono::day(*d)};
+  if (!day.ok()) return std::nullopt;
+  return Day(day);
+}
+
+std::string month_text(const Page& page, std::string_view month) {
+  if (month.size() < 7) return std::string(month);
+  return page.words.get("site.month." + std::string(month.substr(5, 2))) + " " +
+         std::string(month.substr(0, 4));
+}
+
+const char* name_of(MorningLine::Kind kind) {
+  constexpr const char* names[] = {"lost", "failed",  "out",       "changed",
+                                   "soon", "overdue", "undecided", "information"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+}  // namespace nonio::reports::site

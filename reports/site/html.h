@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "nonio/reports/site.h"
+#include "nonio/reports/wording.h"
+
+namespace nonio::reports::site {
+
+/// What every page needs.
+struct Page {
+  const SiteHistory& site;
+  const Templates& templates;
+  const Wording& words;
+  std::string to_root;  ///< "" or "../"
+};
+
+std::string html(std::string_view text);
+std::string element(std::string_view name, std::string_view inner, std::string_view more = "");
+std::string link(std::string_view to, std::string_view text_as_html);
+
+/// A whole page; `main` is HTML.
+std::string whole_page(const Page&, const std::string& title, const std::string& main);
+
+/// "−4.2 ± 0.4 µm", U = 2 u; without u the number and its unit.
+std::string value_text(const Page&, double value, std::optional<double> u, Quantity);
+/// Name of a quantity in words, with its symbol where it has none.
+std::string quantity_text(const Page&, const std::string& quantity);
+/// A number with three significant digits, in its printed unit, without the unit.
+std::string short_number(const Page&, double value, Quantity);
+
+using Day = std::chrono::sys_days;
+/// None if it is not "YYYY-MM-DD".
+std::optional<Day> day_of(std::string_view date);
+/// A month as its name and year: "Mar 2026".
+std::string month_text(const Page&, std::string_view month);
+
+const char* name_of(MorningLine::Kind);
+
+}  // namespace nonio::reports::site

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// machines/<asset>.html: one machine over its campaigns.
+#include <set>
+
+#include "chart.h"
+#include "html.h"
+#include "nonio/reports/number.h"
+#include "nonio/sdk/format.h"
+#include "pages.h"
+
+namespace nonio::reports::site {
+
+namespace {
+
+std::string entry(const Page& page, const char* key, const std::string& value) {
+  if (value.empty()) return {};
+  return element("dt", html(page.words.get("site." + std::string(key)))) +
+         element("dd", html(value));
+}
+
+std::string identity(const Page& page, const MachineHistory& m) {
+  std::string made = m.maker;
+  if (!m.model.empty()) made += (made.empty() ? "" : " ") + m.model;
+  const std::string due =
+      m.due.empty() ? "" : m.due + (m.why_due.empty() ? "" : " (" + m.why_due + ")");
+  return element("dl", entry(page, "machine", made) + entry(page, "serial", m.serial) +
+                           entry(page, "customer", m.customer) + entry(page, "place", m.place) +
+                           entry(page, "control", m.control) + entry(page, "next_due", due) +
+                           entry(page, "proposal", m.proposal));
+}
+
+std::string open_lines(const Page& page, const MachineHistory& m) {
+  std::string items;
+  for (const MorningLine& l : page.site.lines) {
+    if (l.machine != m.id) continue;
+    std::string text = html(page.words.get("site.kind." + std::string(name_of(l.kind)))) + ": ";
+    if (!l.axis.empty()) text += html(l.axis) + " ";
+    if (!l.quantity.empty()) text += html(quantity_text(page, l.quantity)) + " ";
+    if (l.value) text += html(value_text(page, *l.value, l.u, l.unit)) + ". ";
+    for (const char* part : {"says", "advice"})
+      text +=
+          html(typeset(finding_text(page.templates, page.words.language(), l.finding, part))) + " ";
+    items += element("li", text);
+  }
+  return items.empty() ? items : element("ul", items);
+}
+
+std::string events(const Page& page, const MachineHistory& m) {
+  if (m.events.empty()) return {};
+  std::string items;
+  for (const MachineEvent& e : m.events)
+    items += element("li", html(e.date + " " + e.axis + (e.axis.empty() ? "" : " ") +
+                                page.words.get_or("site.event." + e.kind, e.kind) + ": " + e.text));
+  return element("h2", html(page.words.get("site.events"))) + element("ol", items);
+}
+
+std::string changes(const Page& page, const HistorySeries& s) {
+  std::string out;
+  for (const HistoryChange& c : s.changes)
+    out += element("p",
+                   html(page.words.get("site.change." + c.cause,
+                                       {{"size", value_text(page, c.size, c.u, s.unit)},
+                                        {"after", c.after},
+                                        {"before", c.before},
+                                        {"event", c.event},
+                                        {"p", evidence_text({"p", c.p, Quantity::probability})}})));
+  if (s.changes.empty() && s.smallest_change)
+    out +=
+        element("p",
+                html(page.words.get("site.no_change",
+                                    {{"smallest", short_number(page, *s.smallest_change, s.unit)},
+                                     {"unit", unit_text(s.unit)}})),
+                "class=\"muted\"");
+  return out;
+}
+
+std::string forecast(const Page& page, const HistorySeries& s) {
+  if (!s.forecast) return {};
+  const HistoryForecast& f = *s.forecast;
+  std::string text = page.words.get("site.forecast." + f.answer,
+                                    {{"date", f.date},
+                                     {"value", value_text(page, f.value, f.u, s.unit)},
+                                     {"p", short_number(page, 100 * f.p_out, Quantity::number)}});
+  if (!f.leaves.empty()) text += " " + page.words.get("site.leaves", {{"date", f.leaves}});
+  return element("p", html(text));
+}
+
+/// The numbers of the chart; where it is drawn from.
+std::string numbers(const Page& page, const HistorySeries& s) {
+  std::string head;
+  for (const char* key : {"date", "state", "value", "campaign"})
+    head += element("th", html(page.words.get("site.column." + std::string(key))), "scope=\"col\"");
+  std::string rows;
+  constexpr const char* states[] = {"as_found", "as_left", "check"};
+  for (const HistoryPoint& p : s.points) {
+    std::string state =
+        page.words.get("site.state." + std::string(states[static_cast<int>(p.state)]));
+    if (!p.joined) state += " (" + p.why_not + ")";
+    rows += element(
+        "tr",
+        element("td", html(p.date)) + element("td", html(state)) +
+            element("td", html(value_text(page, p.value, p.u, s.unit)), "class=\"number\"") +
+            element("td", link(p.link.empty() ? "" : page.to_root + p.link, html(p.campaign))));
+  }
+  return element("details", element("summary", html(page.words.get("site.numbers"))) +
+                                element("div",
+                                        element("table", element("thead", element("tr", head)) +
+                                                             element("tbody", rows)),
+                                        "class=\"scroll\""));
+}
+
+std::string one_series(const Page& page, const MachineHistory& m, const HistorySeries& s) {
+  return element("section", element("h3", html(s.axis + " · " + quantity_text(page, s.quantity))) +
+                                history_chart(page, m, s) + changes(page, s) + forecast(page, s) +
+                                numbers(page, s));
+}
+
+std::string curves(const Page& page, const MachineHistory& m) {
+  std::set<std::string> axes;
+  for (const ErrorCurve& c : m.curves) axes.insert(c.axis);
+  std::string out;
+  for (const std::string& axis : axes) {
+    const std::string all = curves_chart(page, m, axis), last = difference_chart(page, m, axis);
+    if (all.empty()) continue;
+    out += element("section",
+                   element("h3", html(page.words.get("site.curves", {{"axis", axis}}))) + all);
+    if (!last.empty())
+      out +=
+          element("section",
+                  element("h3", html(page.words.get("site.difference", {{"axis", axis}}))) + last);
+  }
+  if (out.empty()) return out;
+  return element("h2", html(page.words.get("site.all_curves"))) +
+         element("div", out, "class=\"charts\"");
+}
+
+}  // namespace
+
+std::string machine_page(const Page& page, const MachineHistory& m) {
+  std::string charts;
+  for (const HistorySeries& s : m.series)
+    if (!s.points.empty()) charts += one_series(page, m, s);
+  return whole_page(page, m.id,
+                    identity(page, m) + open_lines(page, m) + events(page, m) +
+                        element("h2", html(page.words.get("site.trends"))) +
+                        element("p", html(page.words.get("site.legend")), "class=\"muted\"") +
+                        element("div", charts, "class=\"charts\"") + curves(page, m));
+}
+
+}  // namespace nonio::reports::site

@@ -1,0 +1,546 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The machine as an object of the site: how its control counts its axes, and what was on while they were measured."""
+import json
+import re
+import shutil
+import unittest
+
+from bench import BenchTest, axis_csv, wave
+
+TARGETS = [50.0 * i for i in range(9)]
+
+
+def half(x):
+    return 0.5 * wave(x)
+
+
+class MachineTest(BenchTest):
+    def measured(self, control, axis="Z", axes=(("Z", "linear"),), machine="", options="", plus=wave, minus=wave,
+                 of_axis="", of_measurement="", date="2026-06-01"):
+        """A campaign of one measured axis, written without the help of the bench: nothing is said that is not here."""
+        text = 'format = 1\n[campaign]\nid = "c"\ndate = %s\n[machine]\n%s' % (date, machine)
+        if control:
+            text += 'control = "%s"\n' % control
+        for name, kind in axes:
+            text += '[machine.axes.%s]\nkind = "%s"\n%s' % (name, kind, of_axis if name == axis else "")
+        text += '[[measurement]]\nid = "%s"\nkind = "axis"\naxis = "%s"\nfile = "a.csv"\n%s' % (axis, axis, of_measurement)
+        (self.folder / "campaign.toml").write_text(text + options)
+        (self.folder / "a.csv").write_text(axis_csv(TARGETS, plus, minus))
+
+    def tables(self, control, expect=None):
+        results = self.run_site(expect=expect)
+        found = [t for t in results.get("tables", []) if t["plugin"] == control]
+        return found[0] if found else {"findings": [], "notes": [], "predictions": []}, results
+
+    def written(self):
+        return {p.name for p in (self.out / "c").iterdir()}
+
+    def findings(self, control):
+        return [f["id"] for f in self.tables(control)[0]["findings"]]
+
+
+class Number(MachineTest):
+    COUNTED = (("fanuc", "", "fanuc-Z.prm", "N3620A3P"), ("siemens-840d", "", "siemens-840d-Z-EEC.ini", "[0,0,AX3]"),
+               ("aerotech", "", "aerotech-Z.cal", ":START 3 "), ("twincat-cnc", "", "twincat-cnc-Z.lis", "kopf.achs_nr"),
+               ("pmac", " counts_per_mm=2000", "pmac-Z.pmc", "#3 DEFINE"))
+
+    def test_only_Z_measured_gets_no_table_under_a_guessed_number(self):
+        for control, more, file, sign in self.COUNTED:
+            options = '[options.%s]\naxes = ["Z%s"]\n' % (control, more or " step_mm=50")
+            self.measured(control, options=options)
+            table, _ = self.tables(control)
+            self.assertEqual([f["id"] for f in table["findings"]], ["table.axis-number"], control)
+            advice = table["findings"][0]["advice"]
+            self.assertIn("number = ... under [axes.Z] of machines/<asset>.toml", advice)
+            self.assertIn('axes = ["Z number=...\\"]'.replace("\\", ""), advice)
+            self.assertFalse([n for n in self.written() if n.startswith(control)], control)
+            self.measured(control, options='[options.%s]\naxes = ["Z number=3%s"]\n' % (control, more))
+            self.assertNotIn("table.axis-number", self.findings(control))
+            self.assertIn(sign, self.file(file))
+
+    def test_a_place_among_the_axes_is_no_number(self):
+        for axes in ((("X", "linear"), ("Z", "linear")), (("Z", "linear"), ("X", "linear"))):
+            self.measured("fanuc", axes=axes)
+            self.assertEqual(self.findings("fanuc"), ["table.axis-number"])
+
+    def test_the_record_of_the_machine_says_it(self):
+        for control, more, file, sign in self.COUNTED:
+            self.record(["X", "Y", "Z"])
+            self.measured(control, machine='asset = "S-1"\n',
+                          options='[options.%s]\naxes = ["Z%s"]\n' % (control, more or " step_mm=50"))
+            self.tables(control)
+            self.assertIn(sign, self.file(file), control)
+        # By maker and serial too.
+        self.record(["Y", "Z"], 'maker = "Rossi"\nserial = "7"\n', asset="other")
+        self.measured("fanuc", machine='maker = "Rossi"\nserial = "7"\n')
+        self.tables("fanuc")
+        self.assertIn("N3620A2P", self.file("fanuc-Z.prm"))
+
+    def test_linuxcnc_names_no_joint_that_nobody_said(self):
+        self.measured("linuxcnc")
+        self.tables("linuxcnc")
+        ini = self.file("linuxcnc-Z.ini")
+        self.assertNotIn("[JOINT_", ini)
+        self.assertIn("the joint of Z is not stated", ini)
+        self.assertIn("COMP_FILE = linuxcnc-Z.comp", ini)
+        self.record(["X", "Y", "Z"], from_zero=True)
+        self.measured("linuxcnc", machine='asset = "S-1"\n')
+        self.tables("linuxcnc")
+        self.assertIn("[JOINT_2]\n", self.file("linuxcnc-Z.ini"))
+
+    def test_a_changed_record_does_its_campaigns_again(self):
+        self.record(["X", "Z"])
+        self.measured("fanuc", machine='asset = "S-1"\n')
+        self.tables("fanuc")
+        self.assertIn("N3620A2P", self.file("fanuc-Z.prm"))
+        self.assertIn("1 unchanged", self.nonio("run", self.site, "--out", self.out).stderr +
+                      (self.out / "summary.txt").read_text())
+        self.record(["X", "Y", "Z"])
+        self.tables("fanuc")
+        self.assertIn("N3620A3P", self.file("fanuc-Z.prm"))
+        (self.site / "machines" / "S-1.toml").unlink()
+        self.assertEqual(self.findings("fanuc"), ["table.axis-number"])
+        self.record(["Z"])
+        self.tables("fanuc")
+        self.assertIn("N3620A1P", self.file("fanuc-Z.prm"))
+
+    def test_campaign_against_record(self):
+        self.record(["X", "Y", "Z"], 'serial = "7"\ncontrol = "fanuc"\n')
+        self.measured("fanuc", machine='asset = "S-1"\nserial = "7"\n', options='[options.fanuc]\naxes = ["Z number=1"]\n')
+        _, results = self.tables("fanuc")
+        (error,) = results["errors"]
+        self.assertEqual(error["file"], "campaign.toml")
+        line = (self.folder / "campaign.toml").read_text().splitlines()[error["line"] - 1]
+        self.assertIn("number=1", line)
+        self.assertIn("machines/S-1.toml:13", error["message"])
+        # Two machines with one asset: one of them has another serial.
+        self.measured("fanuc", machine='asset = "S-1"\nserial = "8"\n')
+        self.assertIn('machine.serial: "8" contradicts machines/S-1.toml:3', self.tables("fanuc")[1]["errors"][0]["message"])
+        self.measured("pmac", machine='asset = "S-1"\n')
+        self.assertIn('machine.control: "pmac" contradicts machines/S-1.toml:4', self.tables("pmac")[1]["errors"][0]["message"])
+
+    def test_a_record_is_of_its_control(self):
+        self.record(["X", "Y", "Z"], 'control = "fanuc"\n')
+        self.measured("", machine='asset = "S-1"\n')
+        results = self.tables("fanuc")[1]
+        self.assertEqual([t["plugin"] for t in results["tables"]], ["fanuc"], "tables of no other control")
+        self.measured("", machine='asset = "S-1"\n', options='[run]\noutputs = ["siemens-840d"]\n')
+        (error,) = self.tables("siemens-840d")[1]["errors"]
+        self.assertIn("run.outputs", error["message"])
+        self.assertIn("machines/S-1.toml", error["message"])
+        (self.site / "site.toml").write_text('[run]\noutputs = ["fanuc", "siemens-840d"]\n')
+        self.measured("", machine='asset = "S-1"\n')
+        results = self.tables("fanuc")[1]
+        self.assertEqual([t["plugin"] for t in results["tables"]], ["fanuc"])
+
+    def test_options_for_a_fleet_pass_over_axes_that_a_campaign_has_not(self):
+        (self.site / "site.toml").write_text('[options.fanuc]\naxes = ["X number=1", "Z number=3", "B number=9"]\n')
+        self.measured("fanuc")
+        self.run_site(expect=0)
+        self.assertIn("N3620A3P", self.file("fanuc-Z.prm"))
+        self.measured("fanuc", options='[options.fanuc]\naxes = ["Q number=4"]\n')
+        self.assertIn("no axis Q", self.tables("fanuc")[1]["errors"][0]["message"], "the campaign's own slip")
+
+    def test_the_number_of_another_axis_is_refused(self):
+        self.record(["X", "Y"])
+        for control, key, axis in (("fanuc", "number", 2), ("linuxcnc", "joint", 1)):
+            self.measured(control, machine='asset = "S-1"\n', options='[options.%s]\naxes = ["Z %s=%d"]\n' % (control, key, axis))
+            _, results = self.tables(control, expect=1)
+            said = " ".join(e["message"] for e in results["errors"])
+            self.assertIn("axis Z, %s=%d is the number of axis %s, machines/S-1.toml" % (key, axis, "XY"[axis - 1]), said)
+            self.measured(control, machine='asset = "S-1"\n', options='[options.%s]\naxes = ["Z %s=7"]\n' % (control, key))
+            self.assertEqual(self.tables(control)[1]["errors"], [])
+
+    def test_one_axis_has_one_number(self):
+        for entries in ('"Z number=3 number=4"', '"Z number=3", "Z number=4"'):
+            self.measured("siemens-840d", options="[options.siemens-840d]\naxes = [%s]\n" % entries)
+            _, results = self.tables("siemens-840d", expect=1)
+            self.assertIn("axis Z has number=3 and number=4: which of them?", results["errors"][0]["message"])
+
+    def test_an_asset_is_a_name_and_no_path(self):
+        for asset in ("../S-1", "a/b", ".hidden", "a\\\\b"):
+            self.measured("fanuc", machine='asset = "%s"\n' % asset)
+            self.assertIn("machine.asset: expected up to 100 characters", self.tables("fanuc")[1]["errors"][0]["message"])
+
+    def test_a_broken_record_fails_its_own_campaigns(self):
+        self.record(["Z"])
+        (self.site / "machines" / "S-2.toml").write_text('format = 1\nasset = "S-2"\n[axes.Z]\nnumbre = 1\n')
+        self.measured("fanuc", machine='asset = "S-1"\n')
+        shutil.copytree(self.folder, self.site / "d")
+        text = (self.folder / "campaign.toml").read_text()
+        (self.site / "d" / "a.csv").write_text(axis_csv(TARGETS, half, wave))  # other readings
+        (self.site / "d" / "campaign.toml").write_text(text.replace('"c"', '"d"').replace("S-1", "S-2"))
+        self.run_site(expect=1)
+        self.assertIn("N3620A1P", self.file("fanuc-Z.prm"))
+        (error,) = json.loads((self.out / "d" / "results.json").read_text())["errors"]
+        self.assertEqual((error["file"], error["line"]), ("machines/S-2.toml", 4))
+
+
+class WhatWasOn(MachineTest):
+    SAID = 'control = "linuxcnc"\n'
+
+    def comp(self, path, correction):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("".join("%g %.6f %.6f\n" % (x, correction(x) * 1e-3, correction(x) * 1e-3) for x in TARGETS))
+
+    def eec(self, name, backlash=None):
+        """A table of nothing in AX3, and its backlash in mm where it is said."""
+        files = [self.folder / name]
+        files[0].parent.mkdir(exist_ok=True)
+        files[0].write_text("%_N_AX3_EEC_INI\nCHANDATA(1)\n$AA_ENC_COMP[0,0,AX3]=0\n$AA_ENC_COMP[0,1,AX3]=0\n"
+                            "$AA_ENC_COMP_STEP[0,AX3]=400\n$AA_ENC_COMP_MIN[0,AX3]=0\n$AA_ENC_COMP_MAX[0,AX3]=400\n"
+                            "$AA_ENC_COMP_IS_MODULO[0,AX3]=0\nM17\n")
+        if backlash is not None:
+            files.append(files[0].with_suffix(".md.ini"))
+            files[1].write_text("%%_N_AX3_TEA_INI\nCHANDATA(1)\n$MA_BACKLASH[0,AX3]=%g\nM17\n" % backlash)
+        return ",".join(map(str, files))
+
+    def test_the_night_takes_off_what_was_on(self):
+        self.comp(self.folder / "backup/z.comp", lambda x: -half(x))
+        self.measured("linuxcnc", plus=half, minus=half, options="[options.linuxcnc]\ntype = 1\n",
+                      of_axis='table_on = "backup/z.comp"\nbacklash_on_mm = "none"\n')
+        table, results = self.tables("linuxcnc")
+        rows = [list(map(float, l.split())) for l in self.file("linuxcnc-Z.comp").splitlines()]
+        zero = wave(0.0)
+        for x, up, down in rows:  # the whole of it, not the rest; a constant is the zero of the table
+            self.assertAlmostEqual(up * 1e3 - rows[0][1] * 1e3, -(wave(x) - zero), places=3)
+        predicted = {p["name"]: p for p in table["predictions"]}
+        E = max(map(half, TARGETS)) - min(map(half, TARGETS))
+        self.assertAlmostEqual(predicted["E"]["before"], E, places=4)
+        self.assertLess(predicted["E"]["predicted"], 0.02)
+        self.assertIn("the table of backup/z.comp was on", self.file("linuxcnc-Z.txt"))
+        self.assertFalse([n for n in table.get("notes", []) if "nobody says" in n])
+        # It is an input of the night.
+        self.comp(self.folder / "backup/z.comp", lambda x: 0.0)
+        self.tables("linuxcnc")
+        rows = [list(map(float, l.split())) for l in self.file("linuxcnc-Z.comp").splitlines()]
+        self.assertAlmostEqual((rows[3][1] - rows[0][1]) * 1e3, -(half(TARGETS[3]) - half(0.0)), places=3)
+
+    def test_where_nobody_says_it_results_and_files_carry_the_sentence(self):
+        self.record(["X", "Y", "Z"])
+        for said, note, sentences in (
+                ("", "that no table and no backlash value was", 2),
+                ('table_on = "none"\n', "that it was 0", 1),
+                ('backlash_on_mm = 0.01\n', "that none was", 1),
+                ('table_on = "none"\nbacklash_on_mm = "none"\n', None, 0)):
+            self.measured("siemens-840d", machine='asset = "S-1"\n', of_axis=said)
+            table, _ = self.tables("siemens-840d")
+            said_so = [n for n in table.get("notes", []) if "nobody says" in n]
+            self.assertEqual(len(said_so), 1 if note else 0, said)
+            self.assertTrue(note is None or note in said_so[0], said_so)
+            self.assertEqual(self.file("siemens-840d-Z-EEC.ini").count("ASSUMED, nobody says it"), sentences, said)
+
+    def test_compensation_on_wants_the_table_that_was(self):
+        self.record(["Z"])
+        self.measured("fanuc", machine='asset = "S-1"\n', of_measurement='compensation = "on"\n')
+        self.assertEqual(self.findings("fanuc"), ["table.which-was-on"])
+        self.assertFalse([n for n in self.written() if n.startswith("fanuc")])
+        self.measured("fanuc", machine='asset = "S-1"\n', of_measurement='compensation = "off"\n')
+        table, _ = self.tables("fanuc")
+        self.assertFalse([n for n in table.get("notes", []) if "nobody says" in n])
+
+    def test_backlash_that_was_on_is_the_beginning_of_the_new_value(self):
+        self.record(["X", "Y", "Z"])
+        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0,
+                      of_axis='table_on = "none"\nbacklash_on_mm = 0.010\n')
+        self.tables("siemens-840d")
+        self.assertIn("]=0.013\n", self.file("siemens-840d-Z-backlash.ini"))
+
+    def test_the_record_says_it_for_later_days(self):
+        state = 'table = "kept/z.ini,kept/z.md.ini"\nsince = %s\n'
+        self.eec("../kept/z.ini", 0.010)
+        for day, value in (("2026-05-31", "]=0.013\n"), ("2026-06-01", "]=0.003\n"), ("2026-06-02", "]=0.003\n")):
+            self.record(["X", "Y", "Z"])
+            with open(self.site / "machines" / "S-1.toml", "a") as file:
+                file.write(state % day)
+            self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0)
+            self.tables("siemens-840d")
+            self.assertIn(value, self.file("siemens-840d-Z-backlash.ini"), day)
+
+    def test_what_was_on_is_wrong(self):
+        self.record(["X", "Y", "Z"])
+        for said, complaint in (('table_on = "missing.ini"\n', "missing.ini"), ('table_on = "../../x.ini"\n', "leads outside"),
+                                ('table_on = "a.csv"\n', "what was on while axis Z was measured"),
+                                ('backlash_on_mm = "no"\n', 'or "none"'), ('backlash_on_mm = 12\n', "-10 to 10")):
+            self.measured("siemens-840d", machine='asset = "S-1"\n', of_axis=said)
+            error = self.tables("siemens-840d", expect=1)[1]["errors"][0]
+            self.assertIn(complaint, error["message"])
+            self.assertEqual(error["file"], "campaign.toml", error)
+            self.assertGreater(error.get("line", 0), 0, error)
+
+    def test_apply_asks_for_the_backlash_that_stands_in_another_file(self):
+        """10 um in the parameter, 3 um still lost: 13 um. Taken as 0 it would be 3."""
+        self.record(["X", "Y", "Z"])
+        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0)
+        table = self.eec("z.ini")
+        new = self.site / "new"
+        done = self.nonio("apply", table, self.folder, "--was-on", "--out", new, expect=2)
+        for word in ("MD32450", "--backlash-was", "backlash_on_mm", "[machine.axes.Z]"):
+            self.assertIn(word, done.stderr)
+        self.assertFalse(new.exists())
+        for said, value in (("0.010", "]=0.013\n"), ("none", "]=0.003\n"), ("Z=0.010", "]=0.013\n")):
+            self.nonio("apply", table, self.folder, "--was-on", "--backlash-was", said, "--out", new)
+            self.assertIn(value, (new / "siemens-840d-Z-backlash.ini").read_text())
+        for wrong in ("much", "11", "X=0.01", "Z="):
+            self.nonio("apply", table, self.folder, "--was-on", "--backlash-was", wrong, expect=2)
+        self.nonio("apply", table, self.folder, "--backlash-was", "0", expect=2)
+        # The file beside it, the campaign, or the record of the machine say it too; not two things at once.
+        both = self.eec("z.ini", 0.010)
+        self.nonio("apply", both, self.folder, "--was-on", "--out", new)
+        self.assertIn("]=0.013\n", (new / "siemens-840d-Z-backlash.ini").read_text())
+        self.nonio("apply", both, self.folder, "--was-on", "--backlash-was", "0.02", expect=2)
+        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="backlash_on_mm = 0.010\n")
+        self.nonio("apply", table, self.folder, "--was-on", "--out", new)
+        self.assertIn("]=0.013\n", (new / "siemens-840d-Z-backlash.ini").read_text())
+        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0)
+        with open(self.site / "machines" / "S-1.toml", "a") as file:
+            file.write("backlash_mm = 0.010\nsince = 2026-01-01\n")
+        self.nonio("apply", table, self.folder, "--was-on", "--out", new)
+        self.assertIn("]=0.013\n", (new / "siemens-840d-Z-backlash.ini").read_text())
+
+
+def punched(text):
+    """{(N, A): P} of a punched text, A 0 where there is none."""
+    found = {}
+    for line in text.splitlines():
+        number = re.match(r"N(\d+)", line)
+        for axis, value in re.findall(r"(?:A(\d+))?P(-?\d+)", line) if number else ():
+            found[int(number[1]), int(axis or 0)] = int(value)
+    return found
+
+
+class Merge(MachineTest):
+    """A table of Z let into the backup of a machine with three axes."""
+
+    PITCH = {**{10000 + n: (n * 7) % 5 - 2 for n in range(0, 9)}, **{10020 + n: (n * 3) % 4 - 1 for n in range(0, 5)}}
+
+    def punched_backup(self, z=(0, 0, 0, 0), end="\n"):
+        """Axes X (1) with numbers 0..8 and Y (2) with 20..24; `z`: 3620, 3621, 3622, 3624 of axis 3."""
+        of = {3620: (4, 22, z[0]), 3621: (0, 20, z[1]), 3622: (8, 24, z[2]), 3623: (1, 1, 1), 3624: (50000, 100000, z[3]),
+              3605: (0, 0, 0), 1851: (3, -2, 5), 1420: (9000, 9000, 6000)}
+        lines = ["%", "N0020P4"]
+        lines += ["N%d%s" % (n, "".join("A%dP%d" % (a, v) for a, v in enumerate(values, 1))) for n, values in sorted(of.items())]
+        lines += ["N%dP%d" % one for one in sorted({**{10000 + n: 0 for n in range(z[1], z[2] + 1) if z[3]}, **self.PITCH}.items())] + ["%"]
+        path = self.site / "CNCPARAM.TXT"
+        path.write_bytes((end.join(lines) + end).encode())
+        return path
+
+    def fanuc(self, more=""):
+        self.record(["X", "Y", "Z"], more)
+        self.measured("fanuc", machine='asset = "S-1"\n', axes=(("X", "linear"), ("Y", "linear"), ("Z", "linear")))
+
+    def test_fanuc_numbers_of_other_axes_stay(self):
+        self.fanuc()
+        out = self.site / "load"
+        for z, first in (((0, 0, 0, 0), 9), ((34, 30, 50, 50000), 30), ((15, 13, 17, 50000), 9), ((9, 9, 17, 50000), 9)):
+            for end in ("\n", "\r\n"):
+                backup = self.punched_backup(z, end)
+                before = backup.read_bytes()
+                done = self.json_of("merge", backup, "--with", self.folder, "--axis", "Z", "--out", out)
+                after = (out / "CNCPARAM.TXT").read_bytes()
+                was, now = punched(before.decode()), punched(after.decode())
+                changed = {k for k in now if was.get(k) != now[k]}
+                self.assertTrue(all(a == 3 or (a == 0 and n >= 10000) for n, a in changed), changed)
+                low, high = now[3621, 3], now[3622, 3]
+                self.assertEqual(low, first, z)
+                points = {n - 10000 for n, a in changed if a == 0}
+                self.assertTrue(points <= set(range(low, high + 1)), points)
+                self.assertFalse(points & ({*range(0, 9)} | {*range(20, 25)}), "numbers of X and Y")
+                self.assertEqual((now[3624, 3], now[3620, 3] - low), (50000, now[3620, 3] - low))
+                # The lines in which nothing of Z stands are the same bytes, in the same order.
+                kept = [l for l in before.split(b"\n") if b"A3P" not in l and not l.startswith(b"N100")]
+                self.assertEqual(kept, [l for l in after.split(b"\n") if b"A3P" not in l and not l.startswith(b"N100")])
+                self.assertEqual(before.count(b"\r"), before.count(b"\n") if end == "\r\n" else 0)
+                self.assertEqual(after.count(b"\r"), after.count(b"\n") if end == "\r\n" else 0)
+                self.assertEqual([t["output"] for t in done["tables"] if t["largest_um"] > 0], ["Z"])
+        # What the table does is what the campaign's own file would do: of increments, from the reference on.
+        self.tables("fanuc")
+        own = punched(self.file("fanuc-Z.prm"))
+        shift = now[3621, 3] - own[3621, 3]
+        for (n, a), v in own.items():
+            if n >= 10000:
+                self.assertEqual(now[n + shift, 0], v)
+
+    def test_fanuc_numbers_that_are_taken_and_refusals(self):
+        self.fanuc('taken = ["9-99"]\n')
+        self.json_of("merge", self.punched_backup(), "--with", self.folder, "--out", self.site / "load")
+        self.assertEqual(punched((self.site / "load" / "CNCPARAM.TXT").read_text())[3621, 3], 100)
+        self.tables("fanuc")
+        self.assertIn("N3621A3P0\n", self.file("fanuc-Z.prm"), "0..8 are free as far as the record knows")
+        self.assertIn("CHOSEN, not read from a backup: numbers 0 to 8", self.file("fanuc-Z.txt"))
+        self.fanuc('taken = ["0-1023"]\n')
+        self.assertIn("0..1023", self.nonio("merge", self.punched_backup(), "--with", self.folder, expect=1).stderr)
+        self.fanuc()
+        path = self.punched_backup()
+        path.write_text(path.read_text().replace("N3605A1P0A2P0A3P0", "N3605A1P0A2P0A3P00000001"))
+        self.assertIn("3605#0", self.nonio("merge", path, "--with", self.folder, expect=1).stderr)
+        path.write_text("\n".join(l.split("A3P")[0] for l in self.punched_backup().read_text().splitlines()) + "\n")
+        self.assertIn("no parameters of controlled axis 3", self.nonio("merge", path, "--with", self.folder, expect=1).stderr)
+        self.assertIn("expected", self.nonio("merge", self.folder / "a.csv", "--with", self.folder, "--control", "fanuc", expect=2).stderr +
+                      self.nonio("merge", path, "--with", self.folder, "--axis", "Q", expect=1).stderr.replace("no measurement", "expected"))
+
+    def archive(self, axes, directions=False):
+        text = "%_N_NC_EEC_INI\nCHANDATA(1)\n; saved by hand\n"
+        for n, size in axes:
+            text += "".join("$AA_ENC_COMP[0,%d,AX%d]=%.4f\n" % (i, n, size * i) for i in range(5))
+            text += ("$AA_ENC_COMP_STEP[0,AX%d]=100.0\n$AA_ENC_COMP_MIN[0,AX%d]=0.0\n$AA_ENC_COMP_MAX[0,AX%d]=400.0\n"
+                     "$AA_ENC_COMP_IS_MODULO[0,AX%d]=0\n" % (n, n, n, n))
+            text += "$MA_BACKLASH[0,AX%d]=0.00%d\n" % (n, n)
+        return text + "M17\n"
+
+    def test_siemens_archive_of_all_axes(self):
+        self.record(["X", "Y", "Z"])
+        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 4.0, of_axis="backlash_on_mm = 0.003\n")
+        for axes, end in (((1, 0.001), (2, 0.002), (3, 0.003)), "\n"), (((3, 0.003), (1, 0.001)), "\n"), (((1, 0.001), (2, 0.002)), "\r\n"):
+            path = self.site / "EEC.INI"
+            before = self.archive(axes).replace("\n", end)
+            path.write_bytes(before.encode())
+            self.json_of("merge", path, "--with", self.folder, "--out", self.site / "load")
+            after = (self.site / "load" / "EEC.INI").read_bytes().decode()
+            other = lambda text: [l for l in text.split("\n") if "AX3" not in l]
+            self.assertEqual(other(after), other(before))
+            self.assertIn("$MA_BACKLASH[0,AX3]=0.007", after)
+            self.tables("siemens-840d")
+            for line in self.file("siemens-840d-Z-EEC.ini").splitlines():
+                if line.startswith("$"):
+                    self.assertEqual(after.count(line + end), 1, line)
+
+    def test_siemens_direction_tables_beside_a_sag_table(self):
+        def cec(t, i, o, direction, size):
+            return ("".join("$AN_CEC[%d,%d]=%.4f\n" % (t, k, size * k) for k in range(3)) +
+                    "$AN_CEC_INPUT_AXIS[%d]=(AX%d)\n$AN_CEC_OUTPUT_AXIS[%d]=(AX%d)\n$AN_CEC_STEP[%d]=200.0\n$AN_CEC_MIN[%d]=0.0\n"
+                    "$AN_CEC_MAX[%d]=400.0\n$AN_CEC_DIRECTION[%d]=%d\n$AN_CEC_MULT_BY_TABLE[%d]=0\n$AN_CEC_IS_MODULO[%d]=0\n"
+                    % (t, i, t, o, t, t, t, t, direction, t, t))
+        head, sag = "%_N_NC_CEC_INI\nCHANDATA(1)\n", cec(4, 2, 3, 0, 0.01)  # where AX3's tables would come without a backup
+        self.record(["X", "Y", "Z"])
+        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 4.0,
+                      options="[options.siemens-840d]\ndirections = true\n")
+        path = self.site / "CEC.INI"
+        for own, numbers in (("", {0, 1}), (cec(7, 3, 3, -1, 0.02) + cec(9, 3, 3, 1, 0.03), {7, 9})):
+            path.write_text(head + sag + own + "M17\n")
+            found = self.json_of("merge", path, "--with", self.folder, "--out", self.site / "load")
+            after = (self.site / "load" / "CEC.INI").read_text()
+            self.assertIn(sag, after)
+            self.assertEqual({int(n) for n in re.findall(r"AN_CEC_DIRECTION\[(\d+)\]=-?1\n", after)}, numbers)
+            self.assertEqual({(t["output"], tuple(t["by"])): t["largest_um"] > 0 for t in found["tables"]},
+                             {("Z", ("AX2",)): False, ("Z", ("Z",)): True})
+        # Without a backup the record keeps the sag table's number free, or the words say that nobody looked.
+        self.record(["X", "Y", "Z"], 'taken = ["4"]\n')
+        error = self.tables("siemens-840d")[1]["errors"][0]["message"]
+        self.assertIn("CEC tables 4 to 5 would meet those in use (4 to 4)", error)
+        self.record(["X", "Y", "Z"])
+        self.tables("siemens-840d")
+        self.assertIn("CHOSEN, not read from a backup: CEC tables 4 to 5", self.file("siemens-840d-Z-CEC.ini"))
+
+    def test_heidenhain_assignment_keeps_the_other_axes(self):
+        def com(name, axis, size):
+            rows = "".join("%-5d%-14s%-14s%+.4f\n" % (i, "%+.4f" % (100.0 * i), "", size * i) for i in range(5))
+            return "BEGIN %s MM\n%-5s%-14s%-14s%s\n" % (name, "NR", "AXISPOS", "BACKLASH", axis) + rows + "[END]\n"
+        columns = "BEGIN CONFIG.CMA MM\nNR   ACTIVE   X               Y               Z\n"
+        axes = (("X", "linear"), ("Y", "linear"), ("Z", "linear"))
+        self.measured("heidenhain-tnc", axes=axes)
+        (self.site / "X.COM").write_text(com("AXIS_X.COM", "X", 0.001))
+        (self.site / "OLDZ.COM").write_text(com("OLDZ.COM", "Z", 0.002))
+        cma = self.site / "CONFIG.CMA"
+        for cell, name, changed in (("OLDZ.COM", "OLDZ.COM", {"OLDZ.COM"}), ("", "AXIS_Z.COM", {"AXIS_Z.COM", "CONFIG.CMA"})):
+            before = columns + "0             AXIS_OLD.COM\n1    *        AXIS_X.COM                      %s\n[END]\n" % cell
+            cma.write_text(before)
+            files = "%s,%s,%s" % (self.site / "X.COM", self.site / "OLDZ.COM", cma)
+            out = self.site / ("load" + cell)
+            done = self.json_of("merge", files, "--with", self.folder, "--out", out)
+            self.assertEqual({p.name for p in out.iterdir() if not p.name.endswith(".txt")}, changed)
+            self.assertTrue((out / name).read_text().startswith("BEGIN %s MM\n" % name))
+            if "CONFIG.CMA" in changed:
+                self.assertEqual((out / "CONFIG.CMA").read_text(), before.replace(
+                    "1    *        AXIS_X.COM                      ", "1    *        AXIS_X.COM                      AXIS_Z.COM"))
+            self.assertEqual([t["output"] for t in done["tables"] if t["largest_um"] > 0], ["Z"])
+        self.assertIn("CONFIG.CMA", self.nonio("merge", self.site / "X.COM", "--with", self.folder, expect=1).stderr)
+
+    def test_siemens_axes_by_names_of_their_own_are_refused(self):
+        self.record(["X", "Y", "Z"])
+        self.measured("siemens-840d", machine='asset = "S-1"\n')
+        path = self.site / "EEC.INI"
+        path.write_text(self.archive(((1, 0.001), (3, 0.0))).replace("AX3", "Z1"))
+        said = self.nonio("merge", path, "--with", self.folder, "--out", self.site / "load", expect=1).stderr
+        self.assertIn("calls an axis Z1: expected AX1", said)
+        self.assertFalse((self.site / "load").exists())
+
+    def test_aerotech_keeps_planes_and_the_other_axes(self):
+        block = lambda n, size: (":START %d SAMPLEDIST=100.0 POSUNIT=PRIMARY CORUNIT=PRIMARY\n:START HOMEOFFSET=0\n" % n +
+                                 "".join("%.4f\n" % (size * k) for k in range(5)) + ":END\n")
+        plane = (":START2D 2 1 1 2 100.0 100.0 2\n:START2D POSUNIT=METRIC CORUNIT=METRIC/1000 OFFSETROW=0 OFFSETCOL=0\n"
+                 "0 0  1 0\n0 2  1 2\n:END\n")
+        self.record(["X", "Y", "Z"])
+        self.measured("aerotech", machine='asset = "S-1"\n')
+        path = self.site / "MACHINE.CAL"
+        for end in ("\n", "\r\n"):
+            for own in (block(3, 0.002), ""):
+                before = "; the builder's words\n" + block(1, 0.001) + own + plane
+                path.write_bytes(before.replace("\n", end).encode())
+                found = self.json_of("merge", path, "--with", self.folder, "--out", self.site / "load")
+                after = (self.site / "load" / "MACHINE.CAL").read_bytes().decode()
+                self.assertEqual(after.count("\n"), after.count(end))
+                after = after.replace(end, "\n")
+                for kept in ("; the builder's words\n" + block(1, 0.001), plane):
+                    self.assertIn(kept, after)
+                self.tables("aerotech")
+                new = self.file("aerotech-Z.cal")
+                self.assertEqual(after.count(":START 3 "), 1)
+                self.assertIn(new[new.index(":START"):], after)
+                self.assertEqual({t["output"] for t in found["tables"] if t["largest_um"] > 0}, {"Z"})
+        # What the words of a table say otherwise is another table: a turned sign, other units.
+        for word in ("NEGCOR", "CORUNIT=METRIC/1000", "HOMEOFFSET=5", "OUTAXIS3"):
+            path.write_text(block(1, 0.001).replace("HOMEOFFSET=0", "HOMEOFFSET=0 " + word))
+            self.assertIn(word, self.nonio("merge", path, "--with", self.folder, expect=None).stderr, word)
+
+    def test_a_list_of_twincat_keeps_its_cross_table(self):
+        def lis(n, size, more=""):
+            return ("# the builder's words\nkopf.achs_nr %d\nkw.ssfk.unit 1\nkw.ssfk.interval 1000000\nkw.ssfk.kw_startpos 0\n"
+                    "kw.ssfk.kw_nr_max 5\nkw.ssfk.bilateral 0\nkw.ssfk.modulo 0\n" % n +
+                    "".join("kw.ssfk.table[%d].pos %d\n" % (k, size * k) for k in range(5)) + more)
+        cross = ("kw.crosscomp.unit 1\nkw.crosscomp.last_index 1\nkw.crosscomp.master_ax_nr 1\nkw.crosscomp.n_cycles 0\n" +
+                 "".join("kw.crosscomp.table[%d].setpoint %d\nkw.crosscomp.table[%d].correction %d\n" % (k, 10**6 * k, k, 7 * k)
+                         for k in range(2)))
+        self.record(["X", "Y", "Z"])
+        self.measured("twincat-cnc", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 4.0,
+                      options='[options.twincat-cnc]\ncross_sign = "error"\n')
+        files = {"X.lis": lis(1, 30), "Z.lis": lis(3, 50, cross + "getriebe[0].lose 11\n")}
+        for name, text in files.items():
+            (self.site / name).write_text(text)
+        both = "%s,%s" % (self.site / "X.lis", self.site / "Z.lis")
+        found = self.json_of("merge", both, "--with", self.folder, "--out", self.site / "load")
+        self.assertEqual([p.name for p in (self.site / "load").iterdir()], ["Z.lis"])
+        after = (self.site / "load" / "Z.lis").read_text()
+        self.assertIn("# the builder's words\nkopf.achs_nr 3\n", after)
+        self.assertIn(cross + "getriebe[0].lose  40\n", after)
+        self.tables("twincat-cnc")
+        new = [l for l in self.file("twincat-cnc-Z.lis").splitlines() if l.startswith("kw.ssfk")]
+        self.assertEqual([l for l in after.splitlines() if l.startswith("kw.ssfk")], new)
+        self.assertEqual({(t["output"], tuple(t["by"])): t["largest_um"] > 0 for t in found["tables"]},
+                         {("1", ("1",)): False, ("Z", ("Z",)): True, ("Z", ("1",)): False})
+        alone = self.nonio("merge", self.site / "X.lis", "--with", self.folder, expect=1).stderr
+        self.assertIn("no list of axis 3 (kopf.achs_nr)", alone)
+
+    def test_a_control_whose_files_hold_one_axis_is_refused_by_name(self):
+        self.record(["X", "Y", "Z"], from_zero=True)
+        self.measured("linuxcnc", machine='asset = "S-1"\n')
+        path = self.site / "linuxcnc-Z.comp"
+        path.write_text("0 0 0\n100 100 100\n")
+        self.assertIn("linuxcnc does not merge", self.nonio("merge", path, "--with", self.folder, expect=1).stderr)
+
+    def test_diff_of_the_control_and_a_campaign(self):
+        self.record(["X", "Y", "Z"])
+        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 4.0)
+        path = self.site / "EEC.INI"
+        path.write_text(self.archive(((1, 0.001), (3, 0.0))))
+        for order in ((path, self.folder), (self.folder, path)):
+            (table,) = self.json_of("diff", *order)["tables"]
+            self.assertEqual((table["output"], table["present"]["backlash_um"]), ("Z", 3.0))
+            self.assertAlmostEqual(table["new"]["backlash_um"], 4.0, places=3)
+            self.assertAlmostEqual(table["largest_um"], max(abs(wave(x) - wave(0.0)) for x in TARGETS), places=2)
+        self.assertIn("axis Z: they differ by up to", self.nonio("diff", path, self.folder).stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,326 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""controllers, diff, apply and plan sign-probe, on tables written by hand or by the night."""
+import json
+import math
+import unittest
+
+from bench import BenchTest, axis_csv, wave
+
+TARGETS = [50.0 * i for i in range(9)]
+
+
+class Controllers(BenchTest):
+    def test_lists_what_each_can_take(self):
+        of = {c["name"]: c for c in self.json_of("controllers")["controllers"]}
+        self.assertGreaterEqual(set(of), {
+            "aerotech", "ecmc", "fagor-8055", "fanuc", "haas-classic", "heidenhain-tnc", "klipper", "linuxcnc",
+            "marlin", "mitsubishi", "pmac", "siemens-840d", "twincat-cnc", "twincat-nc-ptp", "twincat-volumetric"})
+        self.assertEqual(of["siemens-840d"]["sign"], "error")
+        self.assertTrue(of["siemens-840d"]["takes"]["bidirectional"])
+        self.assertEqual(of["fanuc"]["increment"], [-7, 7])
+        self.assertEqual(of["linuxcnc"]["points"], 256)
+        self.assertTrue(of["twincat-volumetric"]["takes"]["volumetric"])
+        for name in ("fagor-8055", "haas-classic", "twincat-volumetric"):
+            self.assertNotIn("sign", of[name], "nobody knows it")
+        for c in of.values():
+            self.assertTrue(c["facts"], c["name"])
+        text = self.nonio("controllers", "pmac").stdout
+        self.assertIn("documented", text)
+        self.nonio("controllers", "pmax", expect=2)
+
+
+class Tables(BenchTest):
+    def comp(self, name, correction):
+        """A LinuxCNC table of type 1: what is added, um over mm, the same in both directions."""
+        path = self.site / name
+        path.write_text("".join("%g %.6f %.6f\n" % (x, correction(x) * 1e-3, correction(x) * 1e-3) for x in TARGETS))
+        return path
+
+    def test_difference_by_hand(self):
+        old = self.comp("old.comp", lambda x: 0.0)
+        new = self.comp("new.comp", lambda x: {100.0: 2.0, 150.0: -3.0}.get(x, 0.0))
+        d = self.json_of("diff", old, new, "--control", "linuxcnc", "--set", "type=1", "--axis", "X")["tables"][0]
+        self.assertEqual((d["output"], d["by"]), ("X", ["X"]))
+        self.assertAlmostEqual(d["largest_um"], 3.0, places=5)  # the control keeps floats
+        self.assertEqual(d["at_mm"], 150.0)
+        self.assertAlmostEqual(d["range_um"], 5.0, places=5)
+        self.assertAlmostEqual(d["new"]["largest_step_um"], 5.0, places=5)
+        self.assertEqual(d["new"]["largest_step_from_mm"], 100.0)
+        self.assertAlmostEqual(d["new"]["largest_slope_um_per_m"], 100.0, places=4)
+        self.assertEqual(d["present"]["largest_um"], 0.0)
+
+    def test_the_control_is_known_by_its_files_or_asked_for(self):
+        old = self.comp("linuxcnc-X.comp", lambda x: 1.0)
+        self.assertEqual(self.json_of("diff", old, old, "--axis", "X", "--set", "type=1")["control"], "linuxcnc")
+        ini = self.site / "backup.ini"
+        ini.write_text("%_N_AX1_EEC_INI\nCHANDATA(1)\n" + "".join(
+            "$AA_ENC_COMP[0,%d,AX1]=%g\n" % (i, 0.001 * i) for i in range(3)) +
+            "$AA_ENC_COMP_STEP[0,AX1]=50.0\n$AA_ENC_COMP_MIN[0,AX1]=0.0\n$AA_ENC_COMP_MAX[0,AX1]=100.0\n"
+            "$AA_ENC_COMP_IS_MODULO[0,AX1]=0\nM17\n")
+        found = self.json_of("diff", ini, ini)
+        self.assertEqual((found["control"], found["tables"][0]["output"]), ("siemens-840d", "AX1"))
+        self.assertEqual(self.json_of("diff", ini, ini, "--axis", "X")["tables"][0]["output"], "X")
+        nothing = self.site / "nothing.txt"
+        nothing.write_text("hello\n")
+        self.assertIn("--control", self.nonio("diff", nothing, nothing, expect=2).stderr)
+        self.nonio("diff", ini, self.site / "missing", expect=2)
+        self.nonio("diff", ini, ini, "--control", "no-such", expect=2)
+
+    def test_apply_predicts(self):
+        self.one_axis(TARGETS, wave, wave, control="linuxcnc", extra="[options.linuxcnc]\ntype = 1\n")
+        for factor, after in ((-1.0, 0.0), (1.0, 2.0), (0.0, 1.0)):
+            table = self.comp("linuxcnc-X.comp", lambda x: factor * wave(x))
+            p = self.json_of("apply", table, self.folder, expect=1 if after > 1.0 else 0)["predictions"][0]
+            E = max(map(wave, TARGETS)) - min(map(wave, TARGETS))
+            self.assertAlmostEqual(p["before"]["E_um"], E, places=6)
+            self.assertAlmostEqual(p["after"]["E_um"], after * E, delta=0.01)
+
+    def test_a_table_that_was_on_is_renewed(self):
+        # the axis is wrong by `wave`; a table that takes half of it away was on
+        present = self.comp("linuxcnc-X.comp", lambda x: -0.5 * wave(x))
+        self.one_axis(TARGETS, lambda x: 0.5 * wave(x), lambda x: 0.5 * wave(x), control="linuxcnc",
+                      extra="[options.linuxcnc]\ntype = 1\n")
+        new = self.site / "new"
+        found = self.json_of("apply", present, self.folder, "--was-on", "--out", new)
+        self.assertLess(found["predictions"][0]["after"]["E_um"], 0.01)
+        rows = [list(map(float, line.split())) for line in (new / "linuxcnc-X.comp").read_text().splitlines()]
+        whole = lambda x: wave(0.0) - wave(x)  # zero at the reference point
+        for x, up, down in rows:  # all of it, not the rest
+            self.assertAlmostEqual(up * 1e3, whole(x), places=3)
+            self.assertAlmostEqual(down * 1e3, whole(x), places=3)
+        self.assertAlmostEqual(found["tables"][0]["largest_um"], max(abs(whole(x) + 0.5 * wave(x)) for x in TARGETS),
+                               delta=0.01)
+        self.nonio("apply", present, self.folder, "--out", new, expect=2)
+
+    def test_backlash_of_the_present_files_is_counted(self):
+        # 10 um in the parameter, 3 um still lost: 13 um
+        self.one_axis(TARGETS, wave, lambda x: wave(x) + 3.0, control="siemens-840d")
+        eec, md = self.site / "eec.ini", self.site / "md.ini"
+        eec.write_text("%_N_AX1_EEC_INI\nCHANDATA(1)\n$AA_ENC_COMP[0,0,AX1]=0\n$AA_ENC_COMP[0,1,AX1]=0\n"
+                       "$AA_ENC_COMP_STEP[0,AX1]=400\n$AA_ENC_COMP_MIN[0,AX1]=0\n$AA_ENC_COMP_MAX[0,AX1]=400\n"
+                       "$AA_ENC_COMP_IS_MODULO[0,AX1]=0\nM17\n")
+        md.write_text("%_N_AX1_TEA_INI\nCHANDATA(1)\n$MA_BACKLASH[0,AX1]=0.010\nM17\n")
+        found = self.json_of("apply", "%s,%s" % (eec, md), self.folder, "--was-on", "--out", self.site / "n")
+        self.assertEqual(found["tables"][0]["present"]["backlash_um"], 10.0)
+        self.assertAlmostEqual(found["tables"][0]["new"]["backlash_um"], 13.0, places=3)
+        self.assertIn("]=0.013\n", (self.site / "n" / "siemens-840d-X-backlash.ini").read_text())
+        self.assertLess(found["predictions"][0]["after"]["B_um"], 0.01)
+
+    def test_every_format_is_read_back(self):
+        """What the night writes, apply predicts the same of."""
+        below = [-x for x in TARGETS[::-1]]
+        for control, options, file in (
+                ("siemens-840d", "", "siemens-840d-X-EEC.ini,siemens-840d-X-backlash.ini"),
+                ("siemens-840d", "directions = true", "siemens-840d-X-CEC.ini"),
+                ("heidenhain-tnc", "", "heidenhain-tnc-X.COM,heidenhain-tnc-X.txt"),
+                ("heidenhain-tnc", 'layout = "itnc530"', "heidenhain-tnc-X.COM,heidenhain-tnc-X.txt"),
+                ("fanuc", "", "fanuc-X.prm"),
+                ("fanuc", "directions = true", "fanuc-X.prm"),
+                ("linuxcnc", "", "linuxcnc-X.comp"),
+                ("twincat-cnc", "", "twincat-cnc-X.lis"),
+                ("twincat-cnc", "directions = true", "twincat-cnc-X.lis"),
+                ("twincat-nc-ptp", "", "twincat-nc-ptp-X.st"),
+                ("twincat-volumetric", 'sign = "error"', "twincat-volumetric-X.csv"),
+                ("fagor-8055", 'sign = "correction"', "fagor-8055-X.txt"),
+                ("haas-classic", 'sign = "error"', "haas-classic-X.txt"),
+                ("mitsubishi", "", "mitsubishi-X.txt"),
+                ("pmac", 'axes = ["X counts_per_mm=2000"]', "pmac-X.pmc,pmac-X.txt"),
+                ("aerotech", "", "aerotech-X.cal"),
+                ("ecmc", "release = 9", "ecmc-X.corr")):
+            targets = below if control == "haas-classic" else TARGETS
+            self.one_axis(targets, wave, lambda x: wave(x) + 3.0, "[options.%s]\n%s\n" % (control, options), control)
+            results = self.run_site()
+            written = {p["name"]: p["predicted"] for t in results["tables"] for p in t["predictions"]}
+            files = ",".join(str(self.out / "c" / name) for name in file.split(","))
+            found = self.json_of("apply", files, self.folder)
+            self.assertEqual(found["control"], control)
+            E = found["predictions"][0]
+            self.assertLess(E["after"]["M_um"], 0.35 * E["before"]["M_um"], control + options)
+            self.assertAlmostEqual(E["after"]["E_um"], written["E"], places=6, msg=control + options)
+
+
+class Probe(BenchTest):
+    def test_two_stops_and_three_answers(self):
+        self.one_axis(TARGETS, wave, wave)
+        p = self.json_of("plan", "sign-probe", self.folder, "--out", self.site / "p")["probes"][0]
+        pairs = [(abs(wave(b) - wave(a)), a, b) for a in TARGETS[1:] for b in TARGETS if b > a]
+        self.assertEqual((p["from_mm"], p["to_mm"]), max(pairs)[1:])
+        self.assertAlmostEqual(p["without_table_um"], wave(p["to_mm"]) - wave(p["from_mm"]), places=6)
+        self.assertAlmostEqual(p["wrong_sign_um"], 2.0 * p["without_table_um"], places=9)
+        text = (self.site / "p" / "sign-probe-X.nc").read_text()
+        self.assertEqual(text.count("M0\n"), 2)
+        self.assertTrue(text.endswith("M30\n"))
+        # It moves a machine: dry run first, unit and plane said, every offset and cycle switched off, a rest before it is read.
+        comments, code = text.split("G21 ", 1)
+        self.assertIn("(DRY RUN FIRST", comments)
+        self.assertIn("(positions are those of the machine: no offset may be active)", comments)
+        self.assertEqual(code.splitlines()[:4], ["G17 G90 G94 G40 G49 G80", "G61", "G54", "F1000"])
+        stops = ["G1 X%s\nG4 P5\nM0\n" % float(p[k]) for k in ("from_mm", "to_mm")]
+        self.assertTrue(code.endswith("F1000\nG1 X0.0\n" + "".join(stops) + "M30\n"), code)
+
+    def test_what_the_writer_of_programs_refuses_is_refused_here(self):
+        """X1 and a number behind it would be another position of X."""
+        self.one_axis(TARGETS, wave, wave, axis="X1")
+        done = self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", expect=2)
+        self.assertIn("axis X1: expected a single letter", done.stderr)
+        self.assertFalse((self.site / "p").exists())
+
+    def test_dwell_and_writer_can_be_said(self):
+        self.one_axis(TARGETS, wave, wave, control="siemens-840d")
+        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", "--set", "dwell_s=3")
+        text = (self.site / "p" / "sign-probe-X.mpf").read_text()
+        self.assertIn("G710 G90 G94 G40 G500 D0\n", text)
+        self.assertIn("DRY RUN FIRST", text)
+        self.assertEqual(text.count("G4 F3\nM0\n"), 2)
+        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", "--control", "gcode")
+        self.assertIn("G21 ", (self.site / "p" / "sign-probe-X.nc").read_text())
+
+    def test_the_probe_tells_a_wrong_sign(self):
+        """The readings that it promises, from an axis with the table that it is about."""
+        self.one_axis(TARGETS, wave, wave)
+        p = self.json_of("plan", "sign-probe", self.folder)["probes"][0]
+        for sign, key in ((-1.0, "right_sign_um"), (1.0, "wrong_sign_um"), (0.0, "without_table_um")):
+            def actual(x):
+                return x + sign * wave(x) * 1e-3 + wave(x + sign * wave(x) * 1e-3) * 1e-3
+            reading = (actual(p["to_mm"]) - actual(p["from_mm"]) - (p["to_mm"] - p["from_mm"])) * 1e3
+            self.assertAlmostEqual(reading, p[key], delta=0.02)
+
+    def test_in_the_language_of_the_control(self):
+        self.one_axis(TARGETS, wave, wave, control="heidenhain-tnc")
+        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
+        lines = (self.site / "p" / "sign-probe-X.H").read_text().splitlines()
+        self.assertEqual(lines[0], "0 BEGIN PGM NONIO_sign_probe_X MM")
+        words = [l.split(" ", 1)[1] for l in lines]
+        self.assertIn("; DRY RUN FIRST, without instrument, at low override", words)
+        self.assertIn("TOOL CALL 0 Z", words)
+        moves = [w for w in words if w.startswith("L ")]
+        self.assertEqual(len(moves), 3)
+        self.assertTrue(all(w.endswith(" R0 F1000 M91") for w in moves), moves)
+        stops = [i for i, w in enumerate(words) if w == "STOP"]
+        self.assertEqual([words[i - 1] for i in stops], ["CYCL DEF 9.1 DWELL 5"] * 2)
+
+    def test_the_probe_moves_in_machine_coordinates_whatever_the_control(self):
+        for control, of_axis in (("linuxcnc", ""), ("fanuc", ""), ("twincat-cnc", ""), ("aerotech", ""),
+                                 ("mitsubishi", "")):
+            self.one_axis(TARGETS, wave, wave, of_axis, control=control)
+            self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
+            text = (self.site / "p" / "sign-probe-X.nc").read_text()
+            moves = [l for l in text.splitlines() if "G1 X" in l]
+            self.assertEqual(len(moves), 3)
+            self.assertTrue(all(m.startswith("G53 G1 X") for m in moves), text)
+            self.assertNotIn("G54", text)
+            for word in ("(machine: not named in the manifest)", "moves X, the other axes stay", "G21 G17 G90 G94 G40 G49 G80"):
+                self.assertIn(word, text)
+        self.one_axis(TARGETS, wave, wave, control="siemens-840d")
+        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
+        moves = [l for l in (self.site / "p" / "sign-probe-X.mpf").read_text().splitlines() if l.startswith("G1")]
+        self.assertEqual([m.split(" X")[0] for m in moves], ["G1 SUPA"] * 3)
+
+    def test_no_program_for_a_control_without_gcode(self):
+        for control in ("ecmc", "pmac", "twincat-nc-ptp"):
+            self.one_axis(TARGETS, wave, wave, control=control)
+            self.nonio("plan", "sign-probe", self.folder)  # the moves are told
+            done = self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", expect=2)
+            self.assertIn("runs no part programs in G-code", done.stderr)
+            self.assertFalse((self.site / "p").exists())
+
+    def test_the_probe_stays_within_the_travel(self):
+        said = '[options.linuxcnc]\naxes = ["X from_mm=0 to_mm=%d"]\n'
+        self.one_axis(TARGETS, wave, wave, said % 60, control="linuxcnc")
+        done = self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", expect=1)
+        self.assertRegex(done.stderr, r"the travel is 0(\.0+)? mm to 60(\.0+)? mm")
+        self.assertFalse((self.site / "p").exists())
+        self.one_axis(TARGETS, wave, wave, said % 400, control="linuxcnc")
+        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
+
+    def test_an_axis_that_is_too_good_shows_nothing(self):
+        noise = iter([0.3, -0.4, 0.1, 0.5, -0.2] * 100)
+        self.one_axis(TARGETS, lambda x: next(noise), lambda x: next(noise))
+        p = self.json_of("plan", "sign-probe", self.folder, expect=1)["probes"][0]
+        self.assertFalse(p["shows"])
+        self.one_axis([0.0, 10.0], wave, wave)
+        self.assertIn("3 targets", self.nonio("plan", "sign-probe", self.folder, expect=1).stderr)
+
+
+class Gantry(BenchTest):
+    """X has a scale on each side: master and slave are two axes of the control, and have a table each."""
+
+    def gantry(self, axis="", sides=("", ""), extra="", control="siemens-840d", structure="gantry"):
+        self.record(["X", "Y"])
+        text = ('format = 1\n[campaign]\nid = "c"\n[machine]\nasset = "S-1"\nstructure = "%s"\ncontrol = "%s"\n[machine.axes.X]\n'
+                'kind = "linear"\n%s\n[machine.axes.Y]\nkind = "linear"\n' % (structure, control, axis))
+        for name, side, at, size in (("X1", sides[0], 300, 1.0), ("X2", sides[1], 8700, -2.0)):
+            error = lambda x, size=size: size * wave(x)
+            (self.folder / (name + ".csv")).write_text(axis_csv(TARGETS, error, error))
+            text += ('[[measurement]]\nid = "%s"\nkind = "axis"\naxis = "X"\nfile = "%s.csv"\nat = { Y = %d }\n%s\n'
+                     % (name, name, at, 'side = "%s"' % side if side else ""))
+        (self.folder / "campaign.toml").write_text(text + '[run]\nanalyses = ["iso230-2"]\noutputs = ["%s"]\n' % control + extra)
+
+    def tables(self, control="siemens-840d"):
+        results = self.run_site(expect=None)
+        table = next(t for t in results["tables"] if t["plugin"] == control) if "tables" in results else {"findings": []}
+        return ({p.name: p.read_text() for p in (self.out / "c").glob(control + "-*")},
+                [f["id"] for f in table["findings"]], results)
+
+    def test_nothing_is_written_before_the_sides_are_said(self):
+        self.gantry()
+        files, findings, _ = self.tables()
+        self.assertEqual(files, {})
+        self.assertEqual(findings, ["table.gantry-sides"])
+        # One of them said is not enough.
+        self.gantry('slave = "X2"', ("", "slave"))
+        self.assertEqual(self.tables()[:2], ({}, ["table.gantry-sides"]))
+
+    def test_master_and_slave_have_a_table_each(self):
+        said = '[options.siemens-840d]\naxes = ["X2 number=4"]\n'
+        self.gantry('slave = "X2"', ("master", "slave"), said)
+        files, findings, results = self.tables()
+        self.assertNotIn("table.two-measurements", findings)
+        self.assertNotIn("table.gantry-sides", findings)
+        master, slave = files["siemens-840d-X-EEC.ini"], files["siemens-840d-X2-EEC.ini"]
+        self.assertIn("%_N_AX1_EEC_INI", master)
+        self.assertNotIn("AX4", master)
+        self.assertIn("%_N_AX4_EEC_INI", slave)
+        self.assertNotIn("AX1", slave)
+        entries = [[float(l.split("=")[1]) for l in text.splitlines() if l.startswith("$AA_ENC_COMP[")]
+                   for text in (master, slave)]
+        for a, b in zip(*entries):  # each from its own readings: the second side errs by -2 times the first
+            self.assertAlmostEqual(b, -2.0 * a, delta=1.1e-6)
+        # Each is predicted for the readings of its own side.
+        after = {p["measurement"]: p["predicted"] for t in results["tables"] for p in t["predictions"] if p["name"] == "E"}
+        self.assertEqual(set(after), {"X1", "X2"})
+        self.assertTrue(all(abs(v) < 0.01 for v in after.values()), after)
+
+    def test_a_slave_without_a_number_gets_no_table_under_a_guessed_one(self):
+        self.gantry('slave = "X2"', ("master", "slave"))
+        files, findings, _ = self.tables()
+        self.assertIn("table.axis-number", findings)
+        self.assertIn("siemens-840d-X-EEC.ini", files)
+        self.assertFalse([n for n in files if "X2" in n])
+        # The record of the machine says it too; its place among the machine's axes does not.
+        self.gantry('slave = "X2"\n[machine.axes.Z]\nkind = "linear"\n[machine.axes.X2]\nkind = "linear"', ("master", "slave"))
+        self.assertIn("table.axis-number", self.tables()[1])
+        self.record(["X", "Y", "X2"])
+        self.assertIn("%_N_AX3_EEC_INI", self.tables()[0]["siemens-840d-X2-EEC.ini"])
+
+    def test_a_control_that_counts_no_axes_needs_the_name_only(self):
+        self.gantry('slave = "X2"', ("master", "slave"), control="heidenhain-tnc")
+        files, findings, _ = self.tables("heidenhain-tnc")
+        self.assertNotIn("table.axis-number", findings)
+        self.assertIn("heidenhain-tnc-X2.COM", files)
+
+    def test_a_side_wants_the_name_of_the_second_axis(self):
+        self.gantry("", ("master", "slave"))
+        done = self.nonio("run", self.site, "--out", self.out, expect=1)
+        self.assertIn("expected [machine.axes.X] slave", done.stderr + (self.out / "c" / "results.json").read_text())
+
+    def test_two_lines_of_another_machine_are_a_choice_as_before(self):
+        self.gantry(structure="bridge")
+        files, findings, _ = self.tables()
+        self.assertIn("table.two-measurements", findings)
+        self.assertEqual(len([n for n in files if n.endswith("EEC.ini")]), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""nonio compare: figures, places, suspects and their exclusion."""
+import unittest
+
+from verbs import VerbTest, manifest, readings
+
+
+class Compare(VerbTest):
+    def part(self, *args, **kwargs):
+        return self.json_of("compare", self.folder, *args, **kwargs)["parts"][0]
+
+    def test_the_figures_of_a_good_model(self):
+        self.campaign(manifest(["scale:X", "backlash:X"]), x=readings(scale=20, backlash=-6))
+        whole = self.json_of("compare", self.folder)
+        self.assertEqual(whole["schema"], "nonio-compare/1")
+        self.assertEqual(whole["model"]["effects"], ["scale:X", "backlash:X"])
+        part = whole["parts"][0]
+        self.assertEqual(part["axis"], "X")
+        self.assertEqual(part["observations"], 66)
+        self.assertEqual(part["redundancy"], 63)
+        self.assertTrue(0.3 < part["rms_um"] < 0.7, part)
+        self.assertTrue(part["rms_um"] < part["cv_rms_um"] < 0.9, part)
+        self.assertTrue(0.3 < part["noise_floor_um"] < 0.7, part)
+        self.assertGreater(part["noise_floor_u_um"], 0)
+        self.assertGreater(part["lack_of_fit"]["p"], 1e-4)
+        values = {(p["effect"], p["name"]): p for p in part["model"]["parameters"]}
+        for name, truth in ((("backlash:X", "b"), -6), (("scale:X", "a"), 20)):
+            p = values[name]
+            self.assertLess(abs(p["value"] - truth), 4 * p["u"], p)
+        self.assertEqual(values["backlash:X", "b"]["unit"], "um")
+        self.assertEqual(part["fails"], [])
+        self.assertEqual(part["warnings"], [])
+
+    def test_what_is_left_is_told_once_each_beside_those_before_it(self):
+        self.campaign(manifest([]), x=readings(runs=4, drift=6, wave=3, backlash=-4))
+        part = self.part()
+        self.assertGreater(sum(place["share"] for place in part["fails"]), 1)  # run and time are nearly one
+        self.assertLessEqual(sum(place["rms_um"] ** 2 for place in part["left"]), part["rms_um"] ** 2)
+        self.assertGreater(len(part["left"]), 1)
+        shown = self.nonio("compare", self.folder).stdout
+        self.assertNotIn("%", shown)
+        self.assertRegex(shown, r"lack of fit +What is left is far more than noise: [\d.]+ um beyond it\.")
+        for place in part["left"]:
+            self.assertGreaterEqual(place["share"], 0.02)
+            self.assertIn(place["says"], shown)
+
+    def test_largest_residual_is_found_again_in_the_file(self):
+        data = readings(scale=20).splitlines()
+        fields = data[30].split(",")
+        fields[3] = f"{float(fields[3]) + 1.9:.4f}"
+        data[30] = ",".join(fields)
+        self.campaign(manifest(["scale:X"]), x="\n".join(data) + "\n")
+        largest = self.part()["largest"]
+        self.assertEqual((largest["file"], largest["line"]), ("x.csv", 31))
+        self.assertEqual((largest["run"], largest["direction"]), (int(fields[0]), fields[1]))
+        self.assertEqual(largest["target_mm"], float(fields[2]))
+
+    def test_what_is_left_changes_sign_with_the_direction(self):
+        self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
+        fails = self.part()["fails"]
+        self.assertEqual(fails[0]["where"], "direction")
+        self.assertGreater(fails[0]["share"], 0.9)
+        self.assertIn("changes sign with the direction of approach", fails[0]["says"])
+        self.assertLess(fails[0]["p"], 0.01)
+        shown = self.nonio("compare", self.folder).stdout
+        self.assertIn("changes sign with the direction of approach", shown)
+
+    def test_a_value_below_its_uncertainty_is_warned_of(self):
+        self.campaign(manifest(["scale:X", "backlash:X"]), x=readings(seed=4, scale=20, backlash=0.0))
+        part = self.part()
+        b = next(p for p in part["model"]["parameters"] if p["effect"] == "backlash:X")
+        self.assertEqual(abs(b["value"]) < 2 * b["u"], bool(part["warnings"]))
+        self.assertTrue(part["warnings"][0].startswith("backlash:X"), part["warnings"])
+
+    def test_a_suspect_is_kept_until_it_is_excluded(self):
+        data = readings(scale=20).splitlines()
+        fields = data[40].split(",")
+        fields[3] = "88.0"
+        data[40] = ",".join(fields)
+        self.campaign(manifest(["scale:X"]), x="\n".join(data) + "\n")
+        part = self.part()
+        self.assertEqual([s["line"] for s in part["suspects"]], [41])
+        self.assertGreater(part["suspects"][0]["minimal_detectable_um"], 0)
+        self.assertIn("exclude = [41]", part["suspects"][0]["says"])
+        self.assertEqual(part["observations"], 66)
+        text = manifest(["scale:X"]).replace('file = "x.csv"\n', 'file = "x.csv"\nexclude = [41]\n')
+        self.campaign(text)
+        part = self.part()
+        self.assertEqual((part["observations"], part["suspects"]), (65, []))
+        self.assertIn("x.csv line 41 (88.0 um) is excluded", self.nonio("compare", self.folder).stderr)
+
+    def test_excluding_a_line_without_a_reading_is_an_error(self):
+        for line, found in (("[1]", "line 1 of x.csv holds no reading"), ("[999]", "line 999"),
+                            ("[0]", "expected line numbers"), ("[2.5]", "expected line numbers")):
+            text = manifest([]).replace('file = "x.csv"\n', f'file = "x.csv"\nexclude = {line}\n')
+            self.campaign(text, x=readings())
+            done = self.nonio("compare", self.folder, expect=None)
+            self.assertIn(done.returncode, (1, 2))
+            number = text.splitlines().index(f"exclude = {line}") + 1
+            self.assertIn(f"campaign.toml:{number}: ", done.stderr)
+            self.assertIn(found, done.stderr)
+
+    def test_inseparable_effects_are_an_error_that_names_them(self):
+        self.campaign(manifest(["scale:X", "pitch-curve:X", "zero-drift:X", "run-jump:X"]),
+                      x=readings(runs=1, targets=[0.0, 50.0]))
+        done = self.nonio("compare", self.folder, expect=1)
+        self.assertIn(":X", done.stderr)
+
+    def test_every_axis_has_its_part(self):
+        self.campaign(manifest(["scale:X", "backlash:Y"], axes="XY"), x=readings(1, scale=9), y=readings(2, backlash=3))
+        parts = self.json_of("compare", self.folder)["parts"]
+        self.assertEqual([(p["axis"], p["model"]["effects"]) for p in parts],
+                         [("X", ["scale:X"]), ("Y", ["backlash:Y"])])
+
+
+if __name__ == "__main__":
+    unittest.main()

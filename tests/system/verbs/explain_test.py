@@ -1,0 +1,360 @@
+# SPDX-License-Identifier: Apache-2.0
+"""nonio explain: the JSON of the contract, verdicts, --auto."""
+import json
+import math
+import pathlib
+import random
+import shutil
+import unittest
+
+from verbs import VerbTest, manifest, readings
+
+
+class Explain(VerbTest):
+    def check(self, e):
+        """The fields that other programs rely on."""
+        self.assertEqual(e["schema"], "nonio-explain/1")
+        self.assertEqual(e["campaign"], "c")
+        self.assertIsInstance(e["observations"], int)
+        self.assertIsInstance(e["model"]["effects"], list)
+        self.assertIsInstance(e["model"]["rms_um"], float)
+        for failed in e["fails"]:
+            self.assertTrue(failed["where"] and failed["says"], failed)
+            self.assertTrue(0 <= failed["share"] <= 1, failed)
+        scores = []
+        for c in e["candidates"]:
+            self.assertTrue(c["effect"].endswith(":" + e["axis"]) and c["says"], c)
+            self.assertNotIn(c["effect"], e["model"]["effects"])
+            self.assertIsInstance(c["aliases"], list)
+            self.assertTrue(0 <= c["p"] <= 1 and c["rms_um"] >= 0, c)
+            for p in c["parameters"]:
+                self.assertTrue(p["name"], p)
+                self.assertIsInstance(p["value"], (int, float))
+                self.assertIn("unit", p)
+            scores.append(c["score"])
+        self.assertEqual(scores, sorted(scores, reverse=True))
+        self.assertIn(e["verdict"]["kind"], ("missing", "nothing", "unknown", "unrepeatable"))
+        self.assertEqual("effect" in e["verdict"], e["verdict"]["kind"] == "missing")
+        return e
+
+    def explain(self, *args, **kwargs):
+        return self.check(self.json_of("explain", self.folder, *args, **kwargs))
+
+    def test_names_the_missing_effect(self):
+        self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
+        e = self.explain()
+        self.assertEqual(e["verdict"]["kind"], "missing")
+        self.assertEqual(e["verdict"]["effect"], "backlash:X")
+        best = e["candidates"][0]
+        self.assertEqual(best["effect"], "backlash:X")
+        b = best["parameters"][0]
+        self.assertEqual((b["name"], b["unit"]), ("b", "um"))
+        self.assertLess(abs(b["value"] + 6), 4 * b["u"])
+        self.assertLess(best["rms_um"], e["model"]["rms_um"] / 3)
+        self.assertIn("cv_rms_um", best)
+        self.assertIn("cv_rms_um", e["model"])
+        self.assertGreater(e["noise_floor_um"], 0)
+        self.assertGreater(e["lack_of_fit"]["F"], 10)
+        self.assertIn("direction", [f["where"] for f in e["fails"]])
+        self.assertTrue(0 <= e["false_alarm_rate"] <= 0.1)
+        self.assertGreaterEqual(e["false_alarm_trials"], 1)
+        self.assertIn("backlash:X", e["together"])
+        shown = self.nonio("explain", self.folder).stdout
+        self.assertIn("verdict: missing backlash:X", shown)
+        self.assertIn("#####", shown)
+
+    def test_what_there_is_no_sign_of_stands_on_one_line_with_the_size_that_would_be_seen(self):
+        self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
+        shown = self.nonio("explain", self.folder).stdout
+        line = next(l for l in shown.splitlines() if l.startswith("  No sign of: "))
+        self.assertRegex(line, r"No sign of: \S+:X \(would be seen from [\d.]+ um\), \S+:X \([\d.]+ um\)")
+        e = self.explain()
+        self.assertEqual(line.strip(), e["no_sign"])
+        for c in e["candidates"]:
+            self.assertEqual(c["score"] <= 0, f" {c['effect']} (" in line, c)
+        self.assertRegex(shown, r"If nothing were missing, this test would still name something (about|less than) 1 time in \d+\.")
+        self.assertNotIn(" of 200 shuffles", shown)
+
+    def test_nothing_says_how_far_it_goes(self):
+        self.campaign(manifest(["scale:X", "backlash:X"]), x=readings(scale=20, backlash=-6))
+        self.assertIn("nothing more, as far as these readings go", self.explain()["verdict"]["says"])
+
+    def real_like(self, drift, runs=5):
+        """Five targets, each with an error and a reversal of its own, far above the scatter."""
+        targets = [15.0, 25.2, 35.4, 45.6, 55.8]
+        place, reversal = [-4, 22, -29, 6, 4], [0, 9, -7, -1, -8]
+        rng, rows, step = random.Random(5), ["run,direction,target_mm,deviation_um"], 0
+        for run in range(1, runs + 1):
+            for way, order in (("+", range(5)), ("-", reversed(range(5)))):
+                for k in order:
+                    value = place[k] + reversal[k] * (0.5 if way == "+" else -0.5) + drift * step / 50 + rng.gauss(0, 0.7)
+                    rows.append(f"{run},{way},{targets[k]:g},{value:.3f}")
+                    step += 1
+        return "\n".join(rows) + "\n"
+
+    def test_a_drift_is_certain_beside_what_no_effect_of_place_explains(self):
+        self.campaign(manifest([]), x=self.real_like(drift=-8))
+        e = self.explain()
+        self.assertEqual(e["verdict"]["kind"], "unknown")
+        self.assertEqual(e["certain"], ["zero-drift:X"])
+        drift = next(c for c in e["candidates"] if c["effect"] == "zero-drift:X")
+        self.assertGreater(drift["score"], 50)
+        self.assertIn("free-position:X", drift["beside"])
+        self.assertIn("zero-drift:X", e["verdict"]["says"])
+        self.campaign(manifest([]), x=self.real_like(drift=0))
+        self.assertEqual(self.explain()["certain"], [])
+
+    def test_descriptions_have_their_size_and_the_sentence_says_what_to_measure(self):
+        self.campaign(manifest([]), x=self.real_like(drift=0))
+        e = self.explain()
+        sizes = {d["effect"]: (d["low_um"], d["high_um"], d["mean_um"]) for d in e["descriptions"]}
+        for got, true in zip(sizes["free-position:X"], (-29 - -0.2, 22 - -0.2)):
+            self.assertLess(abs(got - true), 1.5)
+        for got, true in zip(sizes["free-reversal:X"], (-8, 9, -1.4)):
+            self.assertLess(abs(got - true), 1.5)
+        self.assertTrue(any("9 targets or more" in text and "5 are too few" in text for text in e["next"]), e["next"])
+        self.assertIn("9 targets or more", self.nonio("explain", self.folder).stdout)
+
+    def test_a_complete_model_misses_nothing(self):
+        self.campaign(manifest(["scale:X", "backlash:X"]), x=readings(scale=20, backlash=-6))
+        e = self.explain()
+        self.assertEqual(e["verdict"]["kind"], "nothing")
+
+    def test_the_same_seed_gives_the_same_bytes(self):
+        self.campaign(manifest([]), x=readings(backlash=-3))
+        first = self.nonio("explain", self.folder, "--json", "--seed", "7").stdout
+        self.assertEqual(first, self.nonio("explain", self.folder, "--json", "--seed", "7").stdout)
+        self.assertEqual(json.loads(first)["seed"], 7)
+
+    def test_several_axes_lead_with_the_most_severe(self):
+        self.campaign(manifest([], axes="XY"), x=readings(1), y=readings(2, backlash=-6))
+        e = self.explain()
+        self.assertEqual((e["axis"], e["verdict"].get("effect")), ("Y", "backlash:Y"))
+        self.assertEqual([p["axis"] for p in e["parts"]], ["X", "Y"])
+        self.assertEqual(e["parts"][1]["verdict"], e["verdict"])
+        self.assertEqual(e["parts"][0]["verdict"]["kind"], "nothing")
+
+    def test_auto_adds_until_nothing_is_missing(self):
+        text = "# mine\n" + manifest(None)
+        self.campaign(text, x=readings(scale=30, backlash=-6))
+        e = self.explain("--auto")
+        self.assertEqual(sorted(e["model"]["effects"]), ["backlash:X", "scale:X"])
+        self.assertEqual(e["verdict"]["kind"], "nothing")
+        self.assertEqual(len(e["steps"]), 2)
+        for step in e["steps"]:
+            self.assertLess(step["rms_after_um"], step["rms_before_um"])
+        self.assertTrue(self.text().startswith(text))
+        history = (self.folder / "model-history.jsonl").read_text().splitlines()
+        self.assertEqual([json.loads(line) for line in history], e["steps"])
+
+    def test_auto_shows_each_step(self):
+        self.campaign(manifest([]), x=readings(backlash=-6))
+        shown = self.nonio("explain", self.folder, "--auto").stdout
+        self.assertIn("step 1: backlash:X added", shown)
+        self.assertIn("verdict: nothing", shown)
+
+    def grouped(self, **effects):
+        """As spreadsheets list them: all runs towards +, then all towards -, ascending, without times."""
+        rows = readings(times=False, runs=5, **effects).splitlines()
+        head, rows = rows[0], [row.split(",") for row in rows[1:]]
+        rows.sort(key=lambda r: (r[1], int(r[0]), float(r[2])))  # "+" sorts before "-"
+        return "\n".join([head] + [",".join(r) for r in rows]) + "\n"
+
+    def test_rows_that_no_machine_runs_through_are_no_times(self):
+        self.campaign(manifest([]), x=self.grouped(backlash=-6))
+        e = self.explain()
+        self.assertEqual(e["verdict"].get("effect"), "backlash:X")
+        self.assertEqual(e["together"], ["backlash:X"])  # not a drift, nor a jump in the middle of the file
+        self.assertIn("there and back", " ".join(e["warnings"]))
+        self.campaign(manifest([]), x=self.grouped(drift=8))
+        self.assertEqual(self.explain()["verdict"].get("effect"), "zero-drift:X")
+
+    def test_the_order_is_said_in_the_manifest(self):
+        text = manifest([])
+        said = text.replace('file = "x.csv"', 'file = "x.csv"\norder = "{}"')
+        self.campaign(said.format("pendulum"), x=self.grouped(drift=8))
+        e = self.explain()
+        self.assertEqual((e["verdict"].get("effect"), e["warnings"]), ("zero-drift:X", []))
+        self.campaign(said.format("as-listed"), x=self.grouped(drift=8))
+        self.assertNotEqual(self.explain()["together"], ["zero-drift:X"])
+        self.campaign(said.format("unknown"), x=self.grouped(drift=8))
+        e = self.explain()
+        names = [c["effect"] for c in e["candidates"]]
+        for timely in ("zero-drift:X", "growth-drift:X", "warm-up:X", "run-jump:X"):
+            self.assertNotIn(timely, names)
+        self.assertIn("nothing is concluded from time", " ".join(e["warnings"]))
+        self.campaign(said.format("sideways"), x=self.grouped())
+        self.assertIn('"sideways"', self.nonio("explain", self.folder, expect=2).stderr)
+
+    def test_rows_in_another_order_say_the_same_where_they_have_times(self):
+        text = readings(scale=20, backlash=-6, drift=4)
+        self.campaign(manifest([]), x=text)
+        first = self.explain()
+        rows = text.splitlines()
+        self.campaign(manifest([]), x="\n".join(rows[:1] + sorted(rows[1:])) + "\n")
+        self.assertEqual(self.explain(), first)
+
+    def uneven_reversal(self):
+        """Five targets, each with a reversal of its own: no effect of the catalogue."""
+        rng = random.Random(5)
+        rows = ["run,direction,target_mm,deviation_um"]
+        reversal = {0: 0, 100: 9, 200: -7, 300: 8, 400: -6}
+        for run in range(1, 6):
+            for way in (1, -1):
+                for target in list(reversal)[::way]:
+                    value = reversal[target] * way / 2 + rng.gauss(0, 0.4)
+                    rows.append(f"{run},{'+' if way > 0 else '-'},{target},{value:.4f}")
+        return "\n".join(rows) + "\n"
+
+    def test_what_no_effect_explains_is_described(self):
+        self.campaign(manifest([]), x=self.uneven_reversal())
+        e = self.explain()
+        self.assertEqual(e["verdict"]["kind"], "unknown")
+        described = e["descriptions"]
+        self.assertEqual(described[0]["effect"], "free-reversal:X")
+        self.assertLess(described[-1]["rms_um"], 1.1 * e["noise_floor_um"])
+        self.assertNotIn("free-reversal:X", [c["effect"] for c in e["candidates"]])
+        self.assertIn("a description, not a cause", self.nonio("explain", self.folder).stdout)
+        for d in described:
+            self.nonio("model", "add", self.folder, d["effect"])
+        e = self.explain()
+        self.assertEqual((e["verdict"]["kind"], e["descriptions"]), ("nothing", []))
+        # Beside a description an effect says what it says alone, wherever it stands in the list.
+        self.nonio("model", "add", self.folder, "backlash:X")
+        self.assertIn("backlash:X", self.explain()["model"]["effects"])
+
+    def test_what_is_certain_is_named_beside_what_is_not(self):
+        rows = self.uneven_reversal().splitlines()
+        drift = [rows[0]]
+        for k, row in enumerate(rows[1:]):
+            *cells, value = row.split(",")
+            drift.append(",".join(cells + [f"{float(value) + 0.8 * k:.4f}"]))
+        self.campaign(manifest([]), x="\n".join(drift) + "\n")
+        e = self.explain()
+        self.assertIn("zero-drift:X", e["certain"] + [e["verdict"].get("effect")])
+        e = self.explain("--auto")
+        self.assertIn("zero-drift:X", e["model"]["effects"])
+        self.assertEqual(e["verdict"]["kind"], "unknown")
+        self.assertEqual(e["descriptions"][0]["effect"], "free-reversal:X")
+
+    def with_columns(self, times=None, growth=None, material=None, runs=4, **effects):
+        """The readings with times, with p um/m times growth(t), and a column material_c."""
+        rows = readings(runs=runs, times=False, noise=0.3, **effects).splitlines()
+        out = [rows[0] + ",time_s" + (",material_c" if material else "")]
+        for k, row in enumerate(rows[1:]):
+            run, direction, target, value = row.split(",")
+            t = times(k) if times else 10.0 * k
+            value = float(value) + (growth(t) * (float(target) - 185) / 1000 if growth else 0.0)
+            out.append(f"{run},{direction},{target},{value:.4f},{t:.1f}" + (f",{material(k, t)}" if material else ""))
+        return "\n".join(out) + "\n"
+
+    def test_temperatures_that_are_missing_are_interpolated_and_said(self):
+        def kelvin(t):
+            return math.sin(t / 120)
+        table = self.with_columns(growth=lambda t: 20 * kelvin(t),
+                                  material=lambda k, t: "" if k % 3 else f"{20 + kelvin(t):.3f}")
+        self.campaign(manifest([]), x=table)
+        e = self.explain()
+        self.assertEqual(e["verdict"].get("effect"), "temperature:X")
+        k = e["candidates"][0]["parameters"][0]
+        self.assertLess(abs(k["value"] - 20), 4 * k["u"] + 0.5)
+        said = [w for w in e["warnings"] if "interpolated" in w]
+        self.assertEqual(len(said), 1, e["warnings"])
+        self.assertIn("x.csv, lines 3, 4, 6, 7", said[0])
+
+    def test_what_is_no_candidate_says_why_and_where(self):
+        table = self.with_columns(material=lambda k, t: "" if 20 <= k < 60 else f"{20 + t / 1000:.3f}")
+        self.campaign(manifest([]), x=table)
+        unseen = {u["effect"]: u for u in self.explain()["unseen"]}
+        self.assertEqual(unseen["temperature:X"]["why_not"], "temperature-gaps")
+        self.assertEqual(unseen["temperature:X"]["lines"], list(range(22, 62)))
+        self.assertIn("would help", unseen["temperature:X"]["says"])
+        self.assertIn("temperature:X: 40 readings (x.csv, lines 22, 23", self.nonio("explain", self.folder).stdout)
+        self.campaign(manifest([]), x=readings(directions="+", times=False))
+        unseen = {u["effect"]: u["why_not"] for u in self.explain()["unseen"]}
+        self.assertEqual(unseen["backlash:X"], "one-direction")
+        self.assertEqual(unseen["temperature:X"], "no-temperature")
+        self.assertEqual(unseen["day-wave:X"], "no-times")
+
+    def test_growth_from_the_fixed_bearing(self):
+        def levelling(t):
+            return 25 * (1 - math.exp(-t / 300))
+        table = self.with_columns(growth=levelling).splitlines()
+        moved = [table[0]]
+        for row in table[1:]:  # all readings move with the middle, 300 mm from the bearing
+            *cells, value, t = row.split(",")
+            moved.append(",".join(cells + [f"{float(value) + 0.3 * levelling(float(t)):.4f}", t]))
+        moved = "\n".join(moved) + "\n"
+        self.campaign(manifest([]), x=moved)
+        e = self.explain()
+        self.assertEqual(e["verdict"].get("effect"), "warm-up:X")
+        fixed = {p["name"]: p for p in e["candidates"][0]["parameters"]}["fixed"]
+        self.assertLess(abs(fixed["value"] + 300), 60)
+        known = manifest([]).replace('kind = "linear"', 'kind = "linear"\nfixed_point_mm = -115', 1)
+        self.campaign(known, x=moved)
+        e = self.explain()
+        self.assertEqual(e["verdict"].get("effect"), "warm-up:X")
+        fixed = {p["name"]: p for p in e["candidates"][0]["parameters"]}["fixed"]
+        self.assertEqual((fixed["value"], "u" in fixed), (-300, False))
+
+    def test_growth_and_drift_together_are_one_growth(self):
+        table = self.with_columns(growth=lambda t: t / 20).splitlines()
+        moved = [table[0]] + [",".join(row.split(",")[:3] + [f"{float(row.split(',')[3]) + 0.2 * float(row.split(',')[4]) / 20:.4f}",
+                                                             row.split(",")[4]]) for row in table[1:]]
+        self.campaign(manifest([]), x="\n".join(moved) + "\n")
+        e = self.explain()
+        self.assertEqual(e["verdict"].get("effect"), "growth-drift:X")
+        self.assertRegex(e["verdict"]["says"], r"one growth away from -(2[0-5]|1?[0-9])(\.\d+)? mm")
+
+    def test_a_day_s_wave_has_a_name_and_another_wave_is_no_pair_of_names(self):
+        hours = 14
+        def of_day(t):
+            return 30 * math.sin(2 * math.pi * t / 86400 + 1)
+        self.campaign(manifest([]), x=self.with_columns(
+            runs=6, times=lambda k: (k // 22) * hours * 3600 / 5 + 10 * (k % 22), growth=lambda t: of_day(t) - of_day(0)))
+        e = self.explain()
+        self.assertEqual(e["verdict"].get("effect"), "day-wave:X")
+        self.campaign(manifest([]), x=self.with_columns(
+            runs=6, times=lambda k: (k // 22) * 700 + 10 * (k % 22), growth=lambda t: 30 * math.sin(2 * math.pi * t / 4400)))
+        e = self.explain()
+        self.assertNotIn(e["verdict"].get("effect"), ("warm-up:X", "growth-drift:X"), e["verdict"])
+        self.assertIn("free-growth:X", [d["effect"] for d in e["descriptions"]])
+
+    def test_one_misread_value_of_15_is_no_contradiction(self):
+        rows = readings(runs=3, targets=[0, 100, 200, 300, 400], directions="+").splitlines()
+        rows[8] = ",".join(rows[8].split(",")[:3] + ["60", rows[8].split(",")[4]])
+        self.campaign(manifest([]), x="\n".join(rows) + "\n")
+        e = self.explain()
+        self.assertEqual([s["line"] for s in e["suspects"]], [9])
+        self.assertEqual(e["verdict"]["kind"], "nothing")
+
+    def test_without_repeats_it_does_not_speak_of_noise(self):
+        sample = pathlib.Path(__file__).parents[3] / "samples" / "site" / "06-long-axis"
+        shutil.copytree(sample, self.folder, dirs_exist_ok=True)
+        shown = self.nonio("explain", self.folder, "--auto").stdout
+        self.assertIn("verdict: unknown", shown)  # a wave of 2.6 m that no effect of the catalogue says
+        self.assertIn("Nothing was repeated", shown)
+        self.assertNotIn("in every run", shown)
+
+    def test_a_mistake_in_the_model_names_line_and_nearest(self):
+        text = manifest(["backlsh:X"])
+        self.campaign(text, x=readings())
+        done = self.nonio("explain", self.folder, expect=2)
+        line = next(i for i, t in enumerate(text.splitlines(), 1) if t.startswith("effects"))
+        self.assertIn(f"campaign.toml:{line}: ", done.stderr)
+        self.assertIn('nearest: "backlash:X"', done.stderr)
+        for wrong in ("backlash", "backlash:Q", ":X", "backlash:"):
+            self.campaign(manifest([wrong]))
+            self.nonio("explain", self.folder, expect=2)
+
+    def test_help_teaches(self):
+        for verb in ("compare", "explain"):
+            shown = self.nonio(verb, "--help").stdout
+            self.assertIn("Example", shown)
+        self.nonio("explain", expect=2)
+        self.nonio("explain", self.site / "nowhere", expect=2)
+        self.nonio("explain", self.site, expect=2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: Apache-2.0
+"""nonio plan: the planner, the programs, and both in a campaign."""
+import json
+import re
+import unittest
+
+from verbs import VerbTest, readings
+
+NAMES = ["a", "b", "c", "q", "n", "step_x", "step_y", "step_d", "length_x", "length_y", "length_d", "cover_x", "cover_y"]
+CAMPAIGN = """format = 1
+[campaign]
+id = "c"
+[machine.axes.X]
+kind = "linear"
+travel = [0, 12000]
+[machine.axes.Y]
+kind = "linear"
+travel = [-9000, 0]
+"""
+
+
+class Triples(VerbTest):
+    def rows(self, *args, expect=0):
+        whole = self.json_of("plan", "triples", *args, expect=expect)
+        self.assertEqual(whole["schema"], "nonio-triples/1")
+        return whole["rows"]
+
+    def first(self, *args):
+        r = self.rows(*args)[0]
+        return (r["a"], r["b"], r["c"], r["q"], r["n"])
+
+    def test_known_plans(self):
+        for args, plan in (
+                (["--x", 4000, "--y", 4000, "--max-step", 250], (119, 120, 169, 1, 33)),
+                (["--x", 4000, "--y", 4000, "--max-step", 250, "--resolution", 0.1], (696, 697, 985, 3, 19)),
+                (["--x", 19760, "--y", 7680, "--max-step", 500], (247, 96, 265, 2, 40)),
+                (["--x", 20000, "--y", 12000, "--max-step", 500], (299, 180, 349, 1, 66)),
+                (["--x", 20000, "--y", 12000, "--max-step", 250], (56, 33, 65, 3, 119)),
+                (["--x", 20000, "--y", 12000, "--max-step", 250, "--over-travel", 100, "--max-points", 100,
+                  "--pitch-x", 20, "--pitch-y", 20, "--even"], (56, 33, 65, 4, 88)),
+                (["--x", 14500, "--y", 9000, "--max-step", 500, "--max-points", 41], (45, 28, 53, 10, 32)),
+                (["--x", 12000, "--y", 9000, "--max-step", 500, "--max-points", 31], (4, 3, 5, 125, 24))):
+            self.assertEqual(self.first(*args), plan, args)
+
+    def test_names_units_and_reasons(self):
+        whole = self.json_of("plan", "triples", "--x", 12000, "--y", 9000, "--max-step", 500, "--max-points", 31)
+        row = whole["rows"][0]
+        for name in NAMES:
+            self.assertIn(name, row)
+        self.assertEqual(whole["row_units"]["step_x"], "mm")
+        self.assertEqual((row["step_x"], row["step_y"], row["step_d"]), (500, 375, 625))
+        self.assertEqual((row["length_x"], row["length_y"], row["length_d"]), (12000, 9000, 15000))
+        self.assertEqual((row["cover_x"], row["cover_y"]), (1, 1))
+        self.assertIn("best", row["reasons"])
+        self.assertEqual(len(whole["rows"]), 5)
+        for r in whole["rows"]:
+            self.assertTrue(r["why"] and r["gives_up"], r)
+
+    def test_count_and_even(self):
+        self.assertEqual(len(self.rows("--x", 4000, "--y", 3000, "--count", 3)), 3)
+        for words in (["--even"], ["--even=require"]):
+            for r in self.rows("--x", 4000, "--y", 4000, "--max-step", 250, *words):
+                self.assertEqual(r["n"] % 2, 0)
+
+    def test_the_table_for_people(self):
+        shown = self.nonio("plan", "triples", "--x", 20000, "--y", 2000).stdout
+        for words in ("gain EYX", "why: covers the worse axis furthest", "gives up: ", "warning: "):
+            self.assertIn(words, shown)
+
+    def test_nothing_fits(self):
+        done = self.nonio("plan", "triples", "--x", 4000, "--y", 4000, "--max-step", 2, expect=1)
+        self.assertIn("--max-step", done.stderr)
+        whole = self.json_of("plan", "triples", "--x", 4000, "--y", 4000, "--max-step", 2, expect=1)
+        self.assertEqual(whole["rows"], [])
+        self.assertIn("--max-step", whole["nothing_fits"])
+
+    def test_bad_input(self):
+        for args, words in (
+                (["--x", "0", "--y", "4000"], "travel of X: expected"),
+                (["--x=-5", "--y", "4000"], "travel of X: expected"),
+                (["--x", "nan", "--y", "4000"], "travel of X: expected"),
+                (["--x", "inf", "--y", "4000"], "travel of X: expected"),
+                (["--x", "4000,5", "--y", "4000"], "with a point for decimals; found \"4000,5\""),
+                (["--x", "", "--y", "4000"], "--x: expected a number"),
+                (["--x", "four", "--y", "4000"], "--x: expected a number"),
+                (["--x", "400", "--y", "400", "--resolution", "0"], "resolution: expected"),
+                (["--x", "400", "--y", "400", "--resolution", "1e-9"], "resolution: expected"),
+                (["--x", "400", "--y", "400", "--over-travel", "200"], "leave nothing of"),
+                (["--x", "400", "--y", "400", "--over-travel", "900"], "leave nothing of"),
+                (["--x", "400", "--y", "400", "--over-travel=-1"], "over-travel: expected"),
+                (["--x", "400", "--y", "400", "--pitch-x", "0"], "pitch of X: expected"),
+                (["--x", "400", "--y", "400", "--max-points", "3"], "points of the table: expected"),
+                (["--x", "400", "--y", "400", "--count", "0"], "--count: expected"),
+                (["--x", "400", "--y", "400", "--count", "q"], "--count"),
+                (["--x", "400", "--y", "400", "--even=odd"], "even"),
+                (["--x", "400", "--y", "400", "--hypotenuse", "1"], "hypotenuse: expected"),
+                (["--x", "20000", "--y", "20000", "--resolution", "0.000001", "--max-points", "100000",
+                  "--hypotenuse", "1000000"], "coarser resolution"),
+                (["--x", "400"], "--y"),
+                (["--x", "400", "--y", "400", "--program", "p"], "want a control"),
+                (["--x", "400", "--y", "300", "--program", "p", "--control", "gcode", "--choose", "99"], "--choose")):
+            done = self.nonio("plan", "triples", *args, expect=2)
+            self.assertIn(words, done.stderr, args)
+
+
+class Programs(VerbTest):
+    def program(self, *args, expect=0):
+        out = self.site / "programs"
+        done = self.nonio("plan", *args, expect=expect)
+        return done, {p.name: p.read_text() for p in out.iterdir()} if out.exists() else {}
+
+    def test_of_a_plan(self):
+        for control, ending in (("gcode", "ngc"), ("siemens", "mpf"), ("program-heidenhain", "h")):
+            _, files = self.program("triples", "--x", 4000, "--y", 3000, "--over-travel", 2, "--program",
+                                    self.site / "programs", "--control", control)
+            name = control.removeprefix("program-")
+            for line in ("X", "Y", "D1", "D2"):
+                self.assertIn(f"program-{name}-{line}.{ending}", files)
+        for text in files.values():
+            self.assertIn("DRY RUN FIRST", text)
+
+    def test_the_dialects(self):
+        for control in ("gcode", "siemens", "heidenhain"):
+            self.program("program", "--axis", "X=0:100", "--axis", "Y=0:75", "--n", 4, "--step-x", 20, "--step-y", 15,
+                         "--control", control, "--out", self.site / "programs", "--machine", "FP (12); \u00fc",
+                         "--set", "runs=1", "--set", "dwell_s=2.5", "--set", "programs=diagonals",
+                         "--set", "feed_mm_per_min=1500")
+        folder = self.site / "programs"
+        lines = {c: (folder / f).read_text(encoding="ascii").splitlines() for c, f in
+                 (("gcode", "program-gcode-D2.ngc"), ("siemens", "program-siemens-D2.mpf"),
+                  ("heidenhain", "program-heidenhain-D2.h"))}
+        self.assertIn("(machine: FP  12   ??)", lines["gcode"])
+        at = lines["gcode"].index("G1 X1.0 Y61.0")
+        self.assertEqual(lines["gcode"][at - 2:at + 3], ["F1500", "G1 X0.0 Y61.75", "G1 X1.0 Y61.0", "G4 P2.5", "G1 X21.0 Y46.0"])
+        self.assertEqual(lines["gcode"][-1], "M30")
+        at = lines["siemens"].index("G1 X1.0 Y61.0 F1500")
+        self.assertEqual(lines["siemens"][at + 1:at + 3], ["G4 F2.5", "G1 X21.0 Y46.0 F1500"])
+        h = lines["heidenhain"]
+        self.assertEqual(h[0], "0 BEGIN PGM NONIO_D2 MM")
+        self.assertEqual(h[-1].split(" ", 1)[1], "END PGM NONIO_D2 MM")
+        self.assertEqual([int(line.split()[0]) for line in h], list(range(len(h))))
+        bare = [line.split(" ", 1)[1] for line in h]
+        at = bare.index("L X+1.0 Y+61.0 R0 F1500 M91")
+        self.assertEqual(bare[at + 1:at + 4], ["CYCL DEF 9.0 DWELL TIME", "CYCL DEF 9.1 DWELL 2.5", "L X+21.0 Y+46.0 R0 F1500 M91"])
+
+    def test_the_files_as_json(self):
+        whole = self.json_of("plan", "program", "--axis", "X=0:100", "--axis", "C=0:360", "--control", "gcode", "--out",
+                             self.site / "programs")
+        self.assertEqual(whole["schema"], "nonio-programs/1")
+        self.assertEqual([p.rsplit("/", 1)[1] for p in whole["files"]], ["program-gcode-X.ngc", "program-gcode-C.ngc"])
+
+    def test_a_long_name_of_an_axis(self):
+        _, files = self.program("program", "--axis", "X1=0:100", "--axis", "X2=0:100", "--control", "siemens", "--out",
+                                self.site / "programs", "--set", "axes=X2", "--set", "targets=even")
+        self.assertEqual(list(files), ["program-siemens-X2.mpf"])
+        self.assertIn("\nG1 X2=1.0 F2000\n", files["program-siemens-X2.mpf"])
+
+    def test_a_rotary_axis_is_measured_as_the_nights_findings_ask(self):
+        """The plan of every travel, measured as written, gets no plan.* finding."""
+        for travel in ((0, 360), (-5, 365), (0, 90), (-100, 100), (-30, 120), (10, 370)):
+            for setting in ("seed=1", "seed=2", "interval_deg=120"):
+                _, files = self.program("program", "--axis", "C=%d:%d" % travel, "--control", "gcode", "--out",
+                                        self.site / "programs", "--set", setting)
+                moves = re.findall(r"G1 C(\S+)\n(G4)?", files["program-gcode-C.ngc"])
+                stops = [(float(now) > float(before), float(now))
+                         for (before, _), (now, rest) in zip(moves, moves[1:]) if rest]
+                targets = sorted({p for _, p in stops})
+                lines = ["run,direction,target_deg,deviation_arcsec"]
+                lines += ["%d,%s,%.6f,%.3f" % (1 + i // (2 * len(targets)), "+" if up else "-", p, (i * 7919 % 13) / 10)
+                          for i, (up, p) in enumerate(stops)]
+                self.campaign('format = 1\n[campaign]\nid = "c"\n[machine.axes.C]\nkind = "rotary"\ntravel = [%d, %d]\n'
+                              '[[measurement]]\nid = "C"\nkind = "axis"\naxis = "C"\nfile = "c.csv"\n[run]\n'
+                              'analyses = ["iso230-2"]\noutputs = []\n' % travel, c="\n".join(lines) + "\n")
+                out = self.site.parent / "out"
+                self.nonio("run", self.site, "--out", out)
+                analysis = json.loads((out / "c" / "results.json").read_text())["analyses"][0]
+                found = [f["id"] for f in analysis["findings"]]
+                self.assertEqual([f for f in found if f.startswith(("plan.", "targets.", "direction."))], [],
+                                 (travel, setting, targets))
+                beyond = min(targets) - 1 < travel[0] or max(targets) + 1 > travel[1]
+                self.assertEqual("whole turn" in files["program-gcode-C.ngc"], beyond)
+                self.assertTrue(not beyond or travel[1] - travel[0] >= 360)
+
+    def test_the_unit_of_the_rest(self):
+        for word, wanted in (("P-s", "G4 P2.5"), ("P-ms", "G4 P2500"), ("X", "G4 X2.5")):
+            _, files = self.program("program", "--axis", "X=0:100", "--control", "gcode", "--out", self.site / "programs",
+                                    "--set", "dwell_s=2.5", "--set", f"dwell_word={word}")
+            self.assertIn(f"\n{wanted}\n", files["program-gcode-X.ngc"])
+
+    def test_the_seed_gives_the_targets(self):
+        texts = []
+        for seed in (7, 7, 8):
+            _, files = self.program("program", "--axis", "X=0:1000", "--control", "gcode", "--out",
+                                    self.site / "programs", "--set", f"seed={seed}")
+            texts.append(files["program-gcode-X.ngc"])
+            self.assertIn(f"random offsets, seed {seed}", texts[-1])
+        self.assertEqual(texts[0], texts[1])
+        self.assertNotEqual(texts[0], texts[2].replace("seed 8", "seed 7"))
+
+    def test_bad_input(self):
+        out = ["--out", self.site / "programs"]
+        base = ["program", "--axis", "X=0:100", "--control", "gcode", *out]
+        for args, words in (
+                (["program", "--axis", "X=100:0", "--control", "gcode", *out], "FROM below TO"),
+                (["program", "--axis", "X=0:nan", "--control", "gcode", *out], "FROM below TO"),
+                (["program", "--axis", "X=0:1,5", "--control", "gcode", *out], "FROM below TO"),
+                (["program", "--axis", "X", "--control", "gcode", *out], "FROM below TO"),
+                (base + ["--axis", "X=0:5"], "is there twice"),
+                (["program", "--axis", "X=0:100", "--control", "gcodes", *out], "control \"gcodes\" (nearest: \"gcode\")"),
+                (["program", "--axis", "X=0:100", *out], "want a control"),
+                (base + ["--set", "dwell_s"], "NAME=VALUE"),
+                (base + ["--set", "dwel_s=1"], "nearest: \"dwell_s\""),
+                (base + ["--set", "dwell_s=0"], "expected at least"),
+                (base + ["--set", "dwell_s=1,5"], "expected a number"),
+                (base + ["--set", "runs=0"], "expected at least 1"),
+                (base + ["--set", "programs=axis"], "expected axes, diagonals"),
+                (base + ["--set", "programs=diagonals"], "there is none"),
+                (base + ["--set", "programs=step-diagonals"], "axis Y: expected a linear axis"),
+                (["program", "--axis", "X1=0:100", "--control", "gcode", *out], "a single letter"),
+                (["program", "--axis", "X1=0:100", "--control", "heidenhain", *out], "a single letter"),
+                (base + ["--set", "axes=Y"], "has no axis \"Y\""),
+                (base + ["--set", "interval_mm=0.003"], "expected at most 100000"),
+                (base + ["--set", "over_travel_mm=50"], "closer than"),
+                (base + ["--set", "over_travel_mm=80"], "closer than"),
+                (base + ["--n", "0", "--step-x", "1", "--step-y", "1"], "--n: expected"),
+                (base + ["--n", "4", "--step-x", "0", "--step-y", "1"], "--step-x: expected more than 0"),
+                (base + ["--n", "4", "--step-x", "1"], "--step-y: expected a number"),
+                (base + ["--axis", "Y=0:100", "--n", "4", "--step-x", "25", "--step-y", "20"], "the travel is 100 mm"),
+                (base + ["--axis", "Y=0:100", "--n", "3", "--step-x", "25", "--step-y", "20",
+                         "--set", "programs=half-diagonal"], "wants an even number of steps")):
+            done, files = self.program(*args, expect=2)
+            self.assertIn(words, done.stderr, args)
+            self.assertEqual(files, {}, args)
+
+
+class Campaigns(VerbTest):
+    def results(self, text, expect=0, **files):
+        self.campaign(text, **files)
+        out = self.site.parent / "out"
+        done = self.nonio("run", self.site, "--out", out, expect=expect)
+        return json.loads((out / "c" / "results.json").read_text()), out / "c", done
+
+    def test_rows_in_the_results(self):
+        results, folder, _ = self.results(CAMPAIGN + """
+[run]
+analyses = ["triple-planner"]
+outputs = ["csv", "program-gcode", "pdf-report"]
+[options.triple-planner]
+max_step_mm = 500
+max_points = 31
+over_travel_mm = 10
+[options.program-gcode]
+over_travel_mm = 10
+""")
+        self.assertEqual(results["status"], "ok", results["errors"])
+        analysis = results["analyses"][0]
+        self.assertEqual(analysis["plugin"], "triple-planner")
+        self.assertNotIn("measurement", analysis)
+        for name in NAMES:
+            self.assertIn(name, analysis["rows"][0])
+        self.assertEqual(analysis["row_units"]["length_d"], "mm")
+        self.assertLessEqual(analysis["rows"][0]["length_x"], 11980)
+        self.assertTrue((folder / "rows-triple-planner.csv").exists())
+        x = (folder / "program-gcode-X.ngc").read_text().splitlines()
+        row = analysis["rows"][0]
+        self.assertIn(f"G1 X{10 + row['step_x']:g}".split(".")[0], " ".join(x))
+        self.assertEqual(len({line for line in x if line.startswith("G1")}), row["n"] + 3)
+        self.assertIn("G1 X10.0 Y-8990.0", (folder / "program-gcode-D1.ngc").read_text())
+
+    def test_only_on_request(self):
+        text = CAMPAIGN + '[[measurement]]\nid = "X"\nkind = "axis"\naxis = "X"\nfile = "x.csv"\n'
+        results, folder, _ = self.results(text, x=readings())
+        self.assertNotIn("triple-planner", [a["plugin"] for a in results["analyses"]])
+        self.assertEqual(list(folder.glob("program-*")), [])
+        results, folder, _ = self.results(text + "[options.triple-planner]\n", x=readings())
+        self.assertIn("triple-planner", [a["plugin"] for a in results["analyses"]])
+
+    def test_nothing_fits_is_a_finding(self):
+        results, _, _ = self.results(CAMPAIGN + """
+[run]
+analyses = ["triple-planner"]
+outputs = []
+[options.triple-planner]
+max_step_mm = 2
+""")
+        self.assertEqual(results["status"], "attention")
+        finding = results["analyses"][0]["findings"][0]
+        self.assertEqual(finding["id"], "triples.nothing-fits")
+        self.assertIn("max_step_mm", finding["advice"])
+
+    def test_errors_have_their_place(self):
+        for options, words in (("x = \"U\"", "no axis \"U\""), ("over_travel_mm = 5000", "leave nothing of"),
+                               ("resolution_mm = nan", "expected at least"), ("max_step_m = 3", "max_step_mm")):
+            results, _, _ = self.results(
+                CAMPAIGN + '[run]\nanalyses = ["triple-planner"]\noutputs = []\n[options.triple-planner]\n' + options,
+                expect=1)
+            self.assertEqual(results["status"], "failed", options)
+            self.assertIn(words, results["errors"][0]["message"])
+            self.assertEqual(results["errors"][0]["file"], "campaign.toml")
+
+    def test_a_campaign_without_measurements_must_say_what_it_is_for(self):
+        results, _, _ = self.results(CAMPAIGN, expect=1)
+        self.assertIn("[[measurement]]", results["errors"][0]["message"])
+
+
+if __name__ == "__main__":
+    unittest.main()

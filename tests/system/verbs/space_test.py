@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""compare, explain, model on machines with several axes: the samples' stories, what is refused."""
+import json
+import pathlib
+import re
+import shutil
+import unittest
+
+from verbs import VerbTest
+
+SAMPLES = pathlib.Path(__file__).resolve().parents[3] / "samples" / "site"
+
+
+class Space(VerbTest):
+    def sample(self, name):
+        shutil.rmtree(self.folder, ignore_errors=True)
+        shutil.copytree(SAMPLES / name, self.folder)
+
+    def edit(self, old, new):
+        path = self.folder / "campaign.toml"
+        text = path.read_text()
+        self.assertIn(old, text)
+        path.write_text(text.replace(old, new))
+
+    def part(self, verb, *args, **keys):
+        done = self.json_of(verb, self.folder, *args, **keys)
+        return done["parts"][0] if "parts" in done else done
+
+    def test_the_diagonals_show_more_than_squareness(self):
+        self.sample("17-straight-or-square")
+        compared = self.part("compare")
+        self.assertEqual(compared["axis"], "XY")
+        self.assertEqual(compared["measurements"], ["X1", "X2", "Y", "D1", "D2"])
+        self.assertGreater(compared["rms_um"], 3 * compared["noise_floor_um"])
+        failing = {place["line"]: place for place in compared["fails"] if place["where"] == "position"}
+        self.assertTrue({"D1", "D2"} <= set(failing))
+
+    def test_straightness_of_both_axes_is_found_and_the_error_falls_to_the_floor(self):
+        self.sample("17-straight-or-square")
+        said = self.json_of("explain", self.folder, "--auto")
+        self.assertEqual({step["effect"] for step in said["steps"]}, {"straightness:EYX", "straightness:EXY"})
+        self.assertEqual(said["verdict"]["kind"], "nothing")
+        self.assertLess(abs(said["model"]["rms_um"] / said["noise_floor_um"] - 1), 0.1)
+        square = next(p for p in said["model"]["parameters"] if p["effect"] == "squareness:XY")
+        self.assertEqual(square["unit"], "urad")
+        self.assertLess(abs(square["value"] - 12.0), 0.5)  # slopes of both curves belong to it
+        # Odd parts of both on two diagonals: what is not in the data is not claimed.
+        self.assertTrue(any("cannot be told" in w and "straightness" in w for w in said["warnings"]))
+
+    def test_the_pitch_of_the_axis_that_moves_is_not_called_unstated(self):
+        """A straightness has the phase of the one screw that turns; diagonals have none, and are not told to state one."""
+        def pages(sample, effects):
+            self.sample(sample)
+            path = self.folder / "campaign.toml"
+            text = re.sub(r"\n\[(model|run)\]\n[^\[]*", "\n", path.read_text())
+            path.write_text(text + f'\n[model]\neffects = {json.dumps(effects)}\n[run]\nanalyses = ["model-fit"]\n'
+                            'outputs = ["model-html"]\n')
+            out = self.site.parent / "out"
+            self.nonio("run", self.site, "--out", out, "--force", expect=None)
+            return {p.name: p.read_text("utf-8") for p in (out / sample).glob("*.html")}
+
+        straight = next(t for n, t in pages("12-straightness", ["straightness:EYX"]).items() if "EYX" in n)
+        self.assertEqual(float(re.search(r'"period":\s*([\d.]+)', straight)[1]), 10.0)
+        for text in pages("17-straight-or-square", ["squareness:XY"]).values():
+            self.assertNotIn("Screw pitch not stated", text)
+            self.assertIn("Several axes move: no phase of one screw.", text)
+
+    def test_on_one_column_it_is_yaw(self):
+        self.sample("18-one-column")
+        said = self.json_of("explain", self.folder)
+        self.assertEqual((said["verdict"]["kind"], said["verdict"]["effect"]), ("missing", "yaw:X"))
+        said = self.json_of("explain", self.folder, "--auto")
+        self.assertEqual([step["effect"] for step in said["steps"]], ["yaw:X"])
+        self.assertEqual(said["verdict"]["kind"], "nothing")
+
+    def test_with_x_in_the_middle_only_yaw_and_straightness_are_one_alias_group(self):
+        self.sample("18-one-column")
+        one, two = ((self.folder / f"x{k}.csv").read_text().splitlines() for k in (1, 2))
+        middle = []
+        for a, b in zip(one, two):
+            head, x = a.rpartition(",")[::2]
+            mean = (float(x) + float(b.rpartition(",")[2])) / 2 if head[:1].isdigit() else None
+            middle.append(a if mean is None else f"{head},{mean:.4f}")
+        (self.folder / "x1.csv").write_text("\n".join(middle) + "\n")
+        self.edit("at = { Y = 0 }", "at = { Y = 1500 }")
+        text = (self.folder / "campaign.toml").read_text()
+        begin = text.index('[[measurement]]\nid = "X2"')
+        (self.folder / "campaign.toml").write_text(text[:begin] + text[text.index("[[measurement]]", begin + 1):])
+        said = self.json_of("explain", self.folder)
+        self.assertEqual(said["verdict"]["kind"], "missing")
+        first = said["candidates"][0]
+        self.assertTrue({"yaw:X", "straightness:EYX"} <= {first["effect"], *first["aliases"]}, first)
+        self.assertTrue(said["plans"])
+        best = said["plans"][0]
+        self.assertGreaterEqual(best["power"], 4.0)
+        self.assertIn(best["plan"], {"straightness-line", "other-line"})
+        self.assertTrue(best["says"])
+
+    def test_states_of_the_machine_are_not_mixed(self):
+        self.sample("13-gantry-diagonals")
+        parts = self.json_of("compare", self.folder)["parts"]
+        self.assertEqual([part["axis"] for part in parts], ["XY 00", "XY final"])
+        for part in parts:
+            self.assertEqual(part["measurements"][:3], ["X1", "X2", "Y"])
+        self.assertNotIn("D1 final", parts[0]["measurements"])
+
+    def test_model_add_and_drop_in_space(self):
+        self.sample("17-straight-or-square")
+        before = (self.folder / "campaign.toml").read_bytes()
+        change = self.json_of("model", "add", self.folder, "straightness:EYX")
+        self.assertLess(change["after"]["rms_um"], change["before"]["rms_um"])
+        self.nonio("model", "drop", self.folder, "straightness:EYX")
+        self.assertEqual((self.folder / "campaign.toml").read_bytes(), before)
+        for effect, words in (("straightness:QYX", "expected what the effect can be of"),
+                              ("straightnes:EYX", 'nearest: "straightness:EYX"'),
+                              ("line-slope:D1", "in every model"),
+                              ("straightness:EZX", "no measurement of this campaign can show")):
+            done = self.nonio("model", "add", self.folder, effect, expect=None)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn(words, done.stderr + done.stdout)
+            self.assertEqual((self.folder / "campaign.toml").read_bytes(), before)
+
+    def test_what_is_left_in_space_has_its_place(self):
+        self.sample("15-step-diagonal")  # nothing in the model: more is left than three effects say
+        for part in self.json_of("explain", self.folder)["parts"]:
+            self.assertIn(part["verdict"]["kind"], ("missing", "unknown", "unrepeatable"))
+            self.assertTrue(part["fails"])
+            self.assertTrue(all(place["says"] for place in part["fails"]))
+
+    def test_ball_centres(self):
+        self.sample("14-rotary-table")
+        parts = {part["axis"]: part for part in self.json_of("compare", self.folder)["parts"]}
+        self.assertEqual(set(parts), {"C", "B"})
+        names = {(p["effect"], p["name"]) for p in parts["C"]["model"]["parameters"]}
+        self.assertEqual(names, {("centre:C", "c1"), ("centre:C", "c2"), ("direction:C", "d1"), ("direction:C", "d2")})
+        self.assertEqual(parts["C"]["model"]["effects"], [])
+
+    def test_the_night_evaluates_the_model_in_space(self):
+        self.sample("17-straight-or-square")
+        out = self.folder.parent / "out"
+        shutil.rmtree(out, ignore_errors=True)
+        self.nonio("run", self.folder.parent, "--out", out, expect=0)
+        results = json.loads((out / "17-straight-or-square" / "results.json").read_text())
+        fit = next(a for a in results["analyses"] if a["plugin"] == "model-fit")
+        self.assertIn("model.missing", [f["id"] for f in fit["findings"]])
+        self.assertTrue((out / "17-straight-or-square").glob("*.pdf"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pages of a laboratory: complete in each language, the numbers that they were given, nothing that
+// runs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "fixtures.h"
+#include "nonio/sdk/text.h"
+#include "site_fixture.h"
+
+namespace nonio::fixtures {
+namespace {
+
+const Templates& templates() {
+  static const Templates all = read_templates(NONIO_TEMPLATES);
+  return all;
+}
+
+std::map<std::string, std::string> pages_of(const SiteHistory& site,
+                                            const std::string& language = "en") {
+  std::map<std::string, std::string> out;
+  const auto pages = site_pages(site, templates(), language);
+  if (!pages) ADD_FAILURE() << pages.error().message;
+  if (pages)
+    for (const Artifact& a : *pages) out[a.name] = a.bytes;
+  return out;
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(SitePages, AreCompleteInEachLanguage) {
+  for (const char* language : {"en", "it", "de"}) {
+    const auto pages = pages_of(made_site(), language);
+    EXPECT_EQ(pages.size(), 8U) << language;
+    for (const auto& [name, bytes] : pages) {
+      EXPECT_FALSE(has(bytes, "finding.")) << name;
+      EXPECT_TRUE(is_utf8(bytes)) << name;
+    }
+  }
+}
+
+TEST(SitePages, TheSameValuesAreTheSameBytes) {
+  EXPECT_EQ(pages_of(made_site()), pages_of(made_site()));
+}
+
+TEST(SitePages, NumbersAreThoseOfTheValues) {
+  const auto pages = pages_of(made_site());
+  const std::string& index = pages.at("index.html");
+  EXPECT_TRUE(has(index, "11.20 ± 0.40 µm"));
+  EXPECT_TRUE(has(index, "limit 8.00"));
+  EXPECT_TRUE(has(index, "Known to B. Sample until 2026-06-01: repair ordered"));
+  const std::string& machine = pages.at("machines/S-0042.html");
+  EXPECT_TRUE(has(machine, "Changed by −4.20 ± 0.40 µm between 2024-07-14 and 2025-01-14"));
+  EXPECT_TRUE(has(machine, "−9.60 ± 0.80 µm expected, 98.0 % beyond the limit"));
+  EXPECT_TRUE(has(machine, "From 1.30 µm on a change would have been seen"));
+}
+
+TEST(SitePages, ADecimalCommaWhereTheLanguageHasOne) {
+  EXPECT_TRUE(has(pages_of(made_site(), "de").at("index.html"), "11,20 ± 0,40 µm"));
+}
+
+TEST(SitePages, NamesRunNoScriptAndLeaveNoFolder) {
+  SiteHistory site = made_site();
+  const std::string evil = "\"><script>alert(1)</script>";
+  site.machines.back().customer = evil;
+  site.lines.back().why = evil;
+  site.lines.back().customer = evil;
+  site.instruments.front().name = evil;
+  site.machines.back().events.front().text = evil;
+  site.comparisons.front().machines.front().machine = evil;
+  for (const auto& [name, bytes] : pages_of(site))
+    EXPECT_TRUE(name == "due.ics" || !has(bytes, "<script>alert")) << name;
+}
+
+TEST(SitePages, NothingIsFetchedFromAnywhere) {
+  for (const auto& [name, bytes] : pages_of(made_site())) {
+    EXPECT_FALSE(has(bytes, "http://") || has(bytes, "https://") || has(bytes, " src=")) << name;
+    EXPECT_EQ(has(bytes, "default-src 'none'"), name != "due.ics") << name;
+  }
+}
+
+TEST(SitePages, AQuietNightIsOneSentence) {
+  SiteHistory site = made_site();
+  site.lines.clear();
+  EXPECT_TRUE(has(pages_of(site).at("index.html"), "Nothing needs a decision."));
+  site.judged = false;
+  EXPECT_TRUE(
+      has(pages_of(site).at("index.html"), "Nothing was judged: no campaign states a limit."));
+}
+
+TEST(SitePages, AnEmptySiteHasItsPages) {
+  const SiteHistory none{};
+  EXPECT_EQ(pages_of(none).size(), 5U);
+}
+
+TEST(SitePages, TheCalendarHasADayForEachMachine) {
+  const std::string calendar = pages_of(made_site()).at("due.ics");
+  EXPECT_TRUE(calendar.starts_with("BEGIN:VCALENDAR\r\n"));
+  EXPECT_TRUE(has(calendar, "DTSTART;VALUE=DATE:20260114\r\n"));
+  EXPECT_TRUE(has(calendar, "LOCATION:Rossi & Figli <S.p.A.>\\, Padova\r\n"));
+  for (std::size_t at = 0; at < calendar.size();) {
+    const std::size_t end = calendar.find("\r\n", at);
+    ASSERT_NE(end, std::string::npos);
+    EXPECT_LE(end - at, 75U);
+    at = end + 2;
+  }
+}
+
+TEST(SitePages, AValueThatIsNoNumberDrawsNothingWrong) {
+  SiteHistory site = made_site();
+  site.machines.back().series.front().points.front().value = NAN;
+  site.machines.back().series.front().points.front().date = "soon";
+  for (const auto& [name, bytes] : pages_of(site)) {
+    EXPECT_FALSE(has(bytes, "\"nan")) << name;
+    EXPECT_FALSE(has(bytes, "\"inf")) << name;
+  }
+}
+
+}  // namespace
+}  // namespace nonio::fixtures
