@@ -8,6 +8,7 @@
 
 #include "data/design.h"
 #include "data/thin.h"
+#include "interpolation.h"
 #include "nonio/math/golden_section.h"
 #include "nonio/sdk/axis_readings.h"
 #include "workbench.h"
@@ -288,6 +289,25 @@ void name_parameters(Fit& out, const Observations& o, const Design& design) {
   }
 }
 
+/// Adds what interpolated temperatures may do to the parameters, in units of s^2 of the fit; where
+/// nobody knows how wrong they are, nothing has an uncertainty.
+void add_interpolation(MatrixXd& cofactor, const Observations& o, const std::vector<Term>& terms,
+                       const Design& design, const Solution& s, const VectorXd& root,
+                       double redundancy) {
+  std::vector<VectorXd> linear;
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    linear.emplace_back(s.x.segment(design.first[t], design.first[t + 1] - design.first[t]));
+  const auto wrong = wrong_by_interpolation(o, terms, linear);
+  if (!wrong) {
+    cofactor.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  if (wrong->cols() == 0 || !(s.squares > 0.0) || !(redundancy > 0.0)) return;
+  const auto a = design.a.leftCols(cofactor.rows());
+  const MatrixXd of_parameters = cofactor * (a.transpose() * (root.asDiagonal() * *wrong));
+  cofactor += of_parameters * of_parameters.transpose() * (redundancy / s.squares);
+}
+
 /// Covariance of the linear parameters and of the shapes that were searched, linearised: columns
 /// of the design and the derivatives by the shapes together.
 void fill_covariance(Fit& out, const Observations& o, Design design, const Solution& s,
@@ -320,6 +340,7 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
         if (p >= plain) p = -1;
     out.redundancy -= std::min(out.redundancy, static_cast<std::size_t>(extra));
   }
+  add_interpolation(cofactor, o, out.terms, design, s, root, static_cast<double>(out.redundancy));
   const std::size_t p = out.parameters.size();
   out.correlation.assign(p, std::vector<double>(p, 0.0));
   for (std::size_t i = 0; i < p; ++i) {
