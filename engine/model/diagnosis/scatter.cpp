@@ -72,6 +72,45 @@ std::vector<char> on_repeated_lines(const Observations& o) {
 
 }  // namespace
 
+std::optional<Place> beside_a_misread_target(const Observations& o, const Repeats& repeats,
+                                             const std::vector<double>& residual,
+                                             const std::vector<double>& weight) {
+  constexpr std::size_t fewest = 5;
+  const std::size_t n = residual.size(), m = repeats.targets;
+  if (o.axes.size() > 1 || m < fewest || n != 2 * m || repeats.cells != n || repeats.sides != 2)
+    return std::nullopt;
+  std::vector<double> middle(m, 0.0), difference(m, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(weight[i] > 0.0)) return std::nullopt;
+    const double way = repeats.side[repeats.pass[i]] == 0 ? 1.0 : -1.0;
+    middle[repeats.target[i]] += residual[i] / 2.0;
+    difference[repeats.target[i]] += way * residual[i];
+  }
+  // About their mean, without one target.
+  const auto squares_without = [m](const std::vector<double>& x, std::size_t out) {
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t t = 0; t < m; ++t) sum += t == out ? 0.0 : x[t];
+    const double mean = sum / static_cast<double>(m - 1);
+    for (std::size_t t = 0; t < m; ++t) squares += t == out ? 0.0 : (x[t] - mean) * (x[t] - mean);
+    return squares;
+  };
+  std::optional<Place> best;
+  const auto dof = static_cast<double>(m - 2);
+  for (std::size_t t = 0; t < m; ++t) {
+    // Variances of a reading: of a middle of two it is half, of a difference twice as much.
+    const double between = 2.0 * squares_without(middle, t) / dof;
+    const double within = squares_without(difference, t) / 2.0 / dof;
+    const double p = std::min(
+        math::f_upper(math::test_ratio(between, within), dof, dof) * static_cast<double>(m), 1.0);
+    if (!best || p < best->p)
+      best = Place{{Factor::position},
+                   between / (between + within),
+                   p,
+                   std::sqrt(std::max(between - within, 0.0) / 2.0)};
+  }
+  return best;
+}
+
 std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
                               const std::vector<double>& residual,
                               const std::vector<double>& weight, const Noise& noise) {

@@ -13,6 +13,13 @@ namespace nonio::model {
 bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
                 const std::vector<double>& weight, double digit);
 
+/// Each target read once from each of two sides, and one reading may be misread: whether targets
+/// differ by more than their two sides do, with the best of them left out. Place "position", p
+/// corrected for which is left out.
+std::optional<Place> beside_a_misread_target(const Observations& o, const Repeats& repeats,
+                                             const std::vector<double>& residual,
+                                             const std::vector<double>& weight);
+
 /// One run with a scatter of its own.
 std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
                               const std::vector<double>& residual,

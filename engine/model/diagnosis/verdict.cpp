@@ -67,6 +67,7 @@ class Judge {
     find_one_growth();
     find_cancelling();
     list_certain(serious, walks);
+    if (auto place = of_targets(); place && serious.empty()) serious.push_back(std::move(*place));
     if (!out_.together.empty() && !walks && !cancels(out_.together.front()) &&
         !beside_cancelling(out_.together.front()) &&
         !in_doubt(out_.together.front(), serious, unexplained_share)) {
@@ -89,6 +90,15 @@ class Judge {
   }
 
  private:
+  /// Where nothing is found, that of targets which a misread reading may hide.
+  std::optional<Place> of_targets() const {
+    if (!out_.together.empty()) return std::nullopt;
+    auto place =
+        beside_a_misread_target(f_.part.table, f_.repeats, f_.of_best.fit.residual, f_.weight);
+    if (!place || !(place->p < serious_p)) return std::nullopt;
+    return place;
+  }
+
   /// The zero that is not steady, if the model beside it, or it in the place of the first effect,
   /// is a better explanation than the best set of effects.
   Noise::Zero unsteady_zero() const {

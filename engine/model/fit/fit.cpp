@@ -9,6 +9,7 @@
 #include "data/design.h"
 #include "data/thin.h"
 #include "data/whitening.h"
+#include "interpolation.h"
 #include "nonio/math/golden_section.h"
 #include "nonio/sdk/axis_readings.h"
 #include "workbench.h"
@@ -306,15 +307,38 @@ MatrixXd spread(const MatrixXd& design, const MatrixXd& cofactor, const Whitenin
   return map.transpose() * both * map;
 }
 
-/// s of a fit whose noise has more than its weights.
-double s_of(const Fit& fit, const Observations& o) {
+/// s of a fit, as its uncertainties have it: where the noise has more than its weights, of what
+/// that noise leaves.
+double s_for_uncertainty(const Fit& fit, const Observations& o, const Solution& solution) {
+  if (fit.redundancy == 0) return 0.0;
+  const auto redundancy = static_cast<double>(fit.redundancy);
+  if (!more_than_weights(fit.noise)) return std::sqrt(solution.squares / redundancy);
   Noise likely = fit.noise;
   if (likely.zero_found > 0.0) likely.zero_size = likely.zero_found;
   const Whitening white(o, fit.weight, likely);
   MatrixXd left = white(
       Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(fit.residual.size())));
   white.take_out_zeros(left);
-  return left.norm() / std::sqrt(static_cast<double>(fit.redundancy));
+  return left.norm() / std::sqrt(redundancy);
+}
+
+/// Adds what interpolated temperatures may do to the parameters, in units of s^2 of the fit; where
+/// nobody knows how wrong they are, nothing has an uncertainty. `plain`: cofactors of the solution.
+void add_interpolation(MatrixXd& cofactor, const MatrixXd& plain, const Observations& o,
+                       const std::vector<Term>& terms, const Design& design, const Solution& s,
+                       const Whitening& white, double s_of_fit) {
+  std::vector<VectorXd> linear;
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    linear.emplace_back(s.x.segment(design.first[t], design.first[t + 1] - design.first[t]));
+  const auto wrong = wrong_by_interpolation(o, terms, linear);
+  if (!wrong) {
+    cofactor.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  if (wrong->cols() == 0 || !(s_of_fit > 0.0)) return;
+  const auto a = design.a.leftCols(cofactor.rows());
+  const MatrixXd of_parameters = plain * (a.transpose() * white(*wrong));
+  cofactor += of_parameters * of_parameters.transpose() / (s_of_fit * s_of_fit);
 }
 
 /// Covariance of the linear parameters and of the shapes that were searched, linearised: columns
@@ -350,9 +374,9 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
     out.redundancy -= std::min(out.redundancy, static_cast<std::size_t>(extra));
   }
   const auto columns = cofactor.cols();
+  const MatrixXd plain_cofactor = cofactor;
   std::vector<char> open(static_cast<std::size_t>(columns), 0);
   if (more_than_weights(out.noise)) {
-    const MatrixXd plain_cofactor = cofactor;
     const auto with = [&](const Noise& noise) {
       return spread(design.a.leftCols(columns), plain_cofactor, white,
                     covariance_of(o, white.root(), noise));
@@ -366,6 +390,8 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
         open[static_cast<std::size_t>(k)] = known(k, k) < 0.5 * cofactor(k, k);
     }
   }
+  const double s_of_u = s_for_uncertainty(out, o, s);
+  add_interpolation(cofactor, plain_cofactor, o, out.terms, design, s, white, s_of_u);
   const std::size_t p = out.parameters.size();
   out.correlation.assign(p, std::vector<double>(p, 0.0));
   for (std::size_t i = 0; i < p; ++i) {
@@ -374,7 +400,7 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
     // What a zero of unknown size makes of it nobody can say.
     out.parameters[i].u = open[static_cast<std::size_t>(place[i])] != 0
                               ? std::numeric_limits<double>::quiet_NaN()
-                              : std::sqrt(cofactor(place[i], place[i]));
+                              : s_of_u * std::sqrt(cofactor(place[i], place[i]));
     for (std::size_t k = 0; k < p; ++k)
       if (place[k] >= 0)
         out.correlation[i][k] =
@@ -463,8 +489,6 @@ Expected<Fit> fit_at(const Observations& o, std::vector<Term> terms,
                              : root_weights(o, out.weight).cwiseProduct(residual).squaredNorm();
   out.rms = std::sqrt(squares / sum);
   out.s = out.redundancy > 0 ? std::sqrt(s->squares / static_cast<double>(out.redundancy)) : 0.0;
-  const double s_of_u = more_than_weights(noise) && out.redundancy > 0 ? s_of(out, o) : out.s;
-  for (Parameter& p : out.parameters) p.u *= s_of_u;
   return out;
 }
 

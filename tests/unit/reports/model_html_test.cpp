@@ -93,6 +93,14 @@ TEST_F(ModelHtml, NeedsNothingFromOutside) {
   EXPECT_EQ(occurrences(text, "http:"), 1U) << "the name of SVG";
 }
 
+TEST_F(ModelHtml, CommandsInASentenceAreCode) {
+  for (const char* language : {"en", "it"}) {
+    const std::string text = page(made_model(), language);
+    EXPECT_TRUE(has(text, "<code>nonio model drop</code>")) << language;
+    EXPECT_FALSE(has(text, "`nonio")) << language;
+  }
+}
+
 TEST_F(ModelHtml, CandidatesCardsSizesAndWhatToMeasureStandOnIt) {
   const std::string text = page(with_candidates(made_model()));
   for (const char* what :

@@ -81,6 +81,7 @@ enum class Kind {
   day_wave,            ///< a day's wave over 8 to 30 hours
   smallest,            ///< one, to be made as large as `explain` says that it would be found
   short_misread,       ///< one that a single run of 10 to 12 readings shows, one of them misread
+  short_complete,      ///< such a run, and nothing that the model does not hold
 };
 
 struct Piece {
