@@ -291,13 +291,14 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
       // True words on what the runs show.
       const bool unsteady = h.scenario.unrest.run_zero > 0.0 || h.scenario.unrest.walk > 0.0;
       if (unsteady && first.verdict.kind == Verdict::Kind::unknown && !first.fails.empty() &&
-          (first.fails.front().where == "run" || first.fails.front().where == "time"))
+          (first.fails.front().where == model::Where{model::Factor::run} ||
+           first.fails.front().where == model::Where{model::Factor::time}))
         right = true;
       if (!right)
         ++score.other_words[std::string(to_text(first.verdict.kind)) + " " +
                             (named                 ? first.verdict.effect
-                             : first.fails.empty() ? ""
-                                                   : first.fails.front().where)];
+                             : first.fails.empty() ? std::string()
+                                                   : to_text(first.fails.front().where))];
       for (const std::string& name : h.truth.model)
         score.of_effect[name.substr(0, name.find(':'))].add(right);
     } else {

@@ -32,7 +32,9 @@ IndexedSince since_of(const Record& record, const Entry& entry) {
   return {{record.night, record.date}, input(record.inputs, "version"), digest_of(entry)};
 }
 
-bool may_pass(const Record& record) { return record.status == "failed" && record.retry; }
+bool may_pass(const Record& record) {
+  return record.status == evaluation::Status::failed && record.retry;
+}
 
 /// The record of the results that count, and the folder in which they are.
 struct Kept {
@@ -237,7 +239,7 @@ Expected<Carried> carry_over(const fs::path& folder, const Record& fresh, std::s
   if (!kept) return fail(kept.error());
   if (may_pass(fresh)) {
     // The store keeps good results in last-good; a failure that stays would be lost.
-    if (*kept && (*kept)->record.status == "failed")
+    if (*kept && (*kept)->record.status == evaluation::Status::failed)
       if (auto put = put_aside(**kept, folder, id, {}, carried); !put) return fail(put.error());
     return carried;
   }

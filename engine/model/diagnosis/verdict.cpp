@@ -349,7 +349,7 @@ class Judge {
 
   /// Zeros of runs sit in the runs, also where waves in time describe them with fewer columns.
   void tell_runs() {
-    const auto is_run = [](const Place& place) { return place.where == "run"; };
+    const auto is_run = [](const Place& place) { return place.where == Where{Factor::run}; };
     auto& told = out_.fails;
     auto at = std::find_if(told.begin(), told.end(), is_run);
     if (at == told.end()) {

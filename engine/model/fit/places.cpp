@@ -378,7 +378,7 @@ PlaceTests::PlaceTests(const Part& part, const Repeats& repeats, const Whitening
   Factors factors(part, repeats);
   auto bases = bases_of(factors, repeats, white, basis);
   std::vector<MatrixXd> levels;
-  for (const Factor& f : factors.all()) levels.push_back(levels_of(f, white));
+  for (const FactorColumns& f : factors.all()) levels.push_back(levels_of(f, white));
   tests_ = std::make_shared<const Tests>(
       Tests{std::move(factors), std::move(bases), std::move(levels), dof});
 }
