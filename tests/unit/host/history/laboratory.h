@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host/evaluation/status.h"
 #include "host/history/earlier.h"
 #include "host/history/schema.h"
 #include "host/history/store.h"
@@ -91,7 +92,7 @@ class Output {
     record.folder = made.id;
     record.night = night;
     record.date = "2026-03-0" + std::to_string(night % 10);
-    record.status = made.status;
+    record.status = evaluation::status_named(made.status).value();
     record.retry = retry;
     record.certificate = made.certificate;
     record.inputs = {{"site.toml", "s"},
@@ -106,7 +107,7 @@ class Output {
     }
     record.indexed = carried->indexed;
     const auto last = evaluation::read_record(folder);
-    if (retry && last && last->status != "failed") {
+    if (retry && last && last->status != evaluation::Status::failed) {
       fs::remove_all(folder / "last-good");
       fs::create_directories(folder / "last-good");
       for (const char* name : {"results.json", "run.json", "earlier.json"})
