@@ -54,8 +54,8 @@ struct Bench {
     campaign.campaign.certificate.languages = {language};
     for (const Output& output : plugins.outputs)
       if (output.info.name == "certificate") {
-        const auto result = output.write({campaign.campaign, campaign.observations,
-                                          campaign.results, none, with, nullptr, &issue});
+        const auto result = output.write(
+            {campaign.campaign, campaign.observations, campaign.results, none, with, &issue});
         if (result) return result->artifacts.front().bytes;
         std::fprintf(stderr, "%s\n", result.error().message.c_str());
       }
@@ -65,7 +65,7 @@ struct Bench {
     for (const Output& output : plugins.outputs)
       if (output.info.name == "dcc")
         if (const auto result = output.write({campaign.campaign, campaign.observations,
-                                              campaign.results, none, templates, nullptr, &issue}))
+                                              campaign.results, none, templates, &issue}))
           return result->artifacts.front().bytes.size();
     return 0;
   }

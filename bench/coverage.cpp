@@ -61,6 +61,7 @@ Analysis load(const char* path) {
     void add(Effect) override {}
     void add(Analysis a) override { analysis = std::move(a); }
     void add(Output) override {}
+    void add(Controller) override {}
   } taker;
   void* library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw std::runtime_error(dlerror());
@@ -70,7 +71,7 @@ Analysis load(const char* path) {
 
 Settings defaults(const Analysis& a) {
   Settings s;
-  for (const Option& o : a.info.options) s.values[o.name] = o.otherwise;
+  for (const Option& o : a.info.options) s.values[o.name] = o.default_value;
   return s;
 }
 

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well `explain` finds what the second generator (tests/support/hidden) has hidden:
 //   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped|beside|
-//                fixed-end|blank-temperatures|day-wave|short-misread|smallest COUNT SEED
+//                fixed-end|blank-temperatures|day-wave|short-misread|short-complete|smallest
+//                COUNT SEED
 //                [--size PERCENT]
 //                [--verbose] [--plugins FOLDER]
 //                [--write FOLDER] [--right PERCENT] [--wrong PERCENT]
+//                [--ar RHO] [--run-zero SIZE] [--walk SIZE] [--rough TIMES] [--digit SIZE]
+// Sizes in units of the noise: what makes the noise other than independent (hidden::Unrest).
 // Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio explain --auto` does. Fails
 // if fewer are right, or more named wrongly, than --right and --wrong say.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <map>
@@ -41,9 +45,21 @@ struct Arguments {
   std::uint64_t count = 0, seed = 0;
   bool verbose = false;
   std::uint64_t size = 100;  ///< smallest: % of the printed smallest size
-  fs::path plugins, write;
+  fs::path plugins{}, write{};
   std::uint64_t least_right = 0, most_wrong = 100;  // %
+  hidden::Unrest unrest{};
 };
+
+/// The number of the noise that an option names.
+double* unrest_of(Arguments& a, const std::string& option) {
+  const std::map<std::string, double*> all = {{"--ar", &a.unrest.correlation},
+                                              {"--run-zero", &a.unrest.run_zero},
+                                              {"--walk", &a.unrest.walk},
+                                              {"--rough", &a.unrest.rough},
+                                              {"--digit", &a.unrest.digit}};
+  const auto at = all.find(option);
+  return at == all.end() ? nullptr : at->second;
+}
 
 struct Step {
   model::Explanation said;
@@ -54,6 +70,7 @@ struct Step {
 struct Followed {
   std::vector<Step> steps;         ///< never empty if `error` is
   std::vector<std::string> added;  ///< in order
+  bool offered = true;             ///< the catalogue has all that is hidden, for these readings
   std::string error;
 };
 
@@ -84,7 +101,11 @@ Expected<Step> step(const model::Part& part, const Machine& machine,
 Followed follow(const Hidden& h, const std::vector<Effect>& effects) {
   Followed f;
   const auto parts = model::parts_of(h.campaign, {h.table});
-  if (parts.size() != 1) return {{}, {}, "not one part"};
+  if (parts.size() != 1) return {{}, {}, true, "not one part"};
+  const auto offered = model::catalogue(parts[0], effects);
+  for (const std::string& name : h.truth.hidden)
+    f.offered = f.offered && std::any_of(offered.begin(), offered.end(),
+                                         [&](const auto& term) { return term.name() == name; });
   std::vector<std::string> names = h.truth.model;
   while (f.added.size() <= most_steps) {
     auto next = step(parts[0], h.campaign.machine, names, effects);
@@ -154,7 +175,7 @@ double drawn_noise(const Hidden& h) {
 /// The place named first; of what is unrepeatable only the verdict counts.
 bool place_is_right(const Hidden& h, const model::Explanation& said) {
   if (h.truth.verdict == "unrepeatable") return true;
-  if (said.fails.empty() || !holds(h.truth.places, said.fails.front().where)) return false;
+  if (said.fails.empty() || !holds(h.truth.places, to_text(said.fails.front().where))) return false;
   if (!h.truth.at || !said.fails.front().at) return true;
   const double reach = 0.5 * h.scenario.length / static_cast<double>(h.scenario.targets);
   return std::fabs(*said.fails.front().at - *h.truth.at) < reach;
@@ -163,10 +184,13 @@ bool place_is_right(const Hidden& h, const model::Explanation& said) {
 struct Score {
   Tally certain,
       described;  ///< names said to be certain that are hidden; descriptions to the floor
-  Tally answered, right, kind, floor, wrong_name, place, alias, ends, noise, above_floor, values;
+  Tally answered, right, asked, kind, floor, wrong_name, place, alias, ends, noise, above_floor,
+      values;
+  Tally without_u;  ///< values whose u is not printed
   std::map<std::string, Tally> of_effect, of_value;
   std::map<std::string, Tally> named_of;                ///< outside: `missing`, by cause
   std::map<std::string, std::uint64_t> certain_beside;  ///< certain, and not hidden
+  std::map<std::string, std::uint64_t> other_words;     ///< complete: verdicts but `nothing`
   double false_alarms = 0.0;
   double above_floor_expected = 0.0;  ///< sum of chances, of those in `above_floor`
   std::vector<double> cpu;            ///< of each explanation, s
@@ -179,6 +203,8 @@ void score_values(Score& score, const Hidden& h, const model::Fit& fit) {
   for (const hidden::TrueValue& truth : h.truth.values)
     for (const model::Parameter& p : fit.parameters) {
       if (p.effect != truth.effect || p.name != truth.name) continue;
+      score.without_u.add(!std::isfinite(p.u));
+      if (!std::isfinite(p.u)) continue;
       const bool in = std::fabs(p.value - truth.value) <= 2.0 * p.u;
       score.values.add(in);
       score.of_value[truth.effect.substr(0, truth.effect.find(':')) + " " + p.name].add(in);
@@ -215,6 +241,8 @@ bool of_one(Kind kind) {
          kind == Kind::short_misread || kind == Kind::smallest;
 }
 
+bool is_complete(Kind kind) { return kind == Kind::complete || kind == Kind::short_complete; }
+
 /// Whether the campaign was explained as it had to be.
 bool judge(Score& score, const Hidden& h, const Followed& f) {
   score.answered.add(f.error.empty());
@@ -229,7 +257,7 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
   }
   if (!first.descriptions.empty() && first.comparison.floor)
     score.described.add(first.descriptions.back().rms <= 1.1 * first.comparison.floor->s);
-  if (h.scenario.kind != Kind::complete && h.scenario.kind != Kind::outside) {
+  if (!is_complete(h.scenario.kind) && h.scenario.kind != Kind::outside) {
     const bool by_name = named && holds(h.truth.hidden, first.verdict.effect);
     const bool by_alias = named && std::any_of(h.truth.hidden.begin(), h.truth.hidden.end(),
                                                [&](const std::string& name) {
@@ -237,6 +265,12 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
                                                });
     const bool all = all_and_nothing_else(h, f);
     right = of_one(h.scenario.kind) ? by_name || by_alias : all;
+    // What the catalogue cannot offer for so few targets is asked for.
+    const bool asked = !f.offered && first.verdict.kind == Verdict::Kind::unknown;
+    if (h.scenario.kind == Kind::short_misread) {
+      if (!f.offered) score.asked.add(asked);
+      right = right || asked;
+    }
     if (h.scenario.kind == Kind::beside)
       right = by_name || by_alias || holds(first.certain, h.truth.hidden.front());
     wrong = named && !by_name && !by_alias;
@@ -252,15 +286,26 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
     if (exact == wanted) score_fit(score, h, last.comparison);
   } else {
     right = to_text(first.verdict.kind) == h.truth.verdict;
-    if (h.scenario.kind == Kind::complete) {
+    if (is_complete(h.scenario.kind)) {
       score_fit(score, h, first.comparison);
+      // True words on what the runs show.
+      const bool unsteady = h.scenario.unrest.run_zero > 0.0 || h.scenario.unrest.walk > 0.0;
+      if (unsteady && first.verdict.kind == Verdict::Kind::unknown && !first.fails.empty() &&
+          (first.fails.front().where == model::Where{model::Factor::run} ||
+           first.fails.front().where == model::Where{model::Factor::time}))
+        right = true;
+      if (!right)
+        ++score.other_words[std::string(to_text(first.verdict.kind)) + " " +
+                            (named                 ? first.verdict.effect
+                             : first.fails.empty() ? std::string()
+                                                   : to_text(first.fails.front().where))];
       for (const std::string& name : h.truth.model)
         score.of_effect[name.substr(0, name.find(':'))].add(right);
     } else {
       const std::string cause = hidden::to_text(h.scenario.hidden.front().source);
       const bool listed = std::any_of(
           first.fails.begin(), first.fails.end(),
-          [&](const model::Place& place) { return holds(h.truth.places, place.where); });
+          [&](const model::Place& place) { return holds(h.truth.places, to_text(place.where)); });
       score.kind.add(right);
       if (h.truth.verdict == "unknown") score.place.add(right && listed);
       score.named_of[cause].add(named);
@@ -303,7 +348,7 @@ void tell(const Hidden& h, const Followed& f, std::uint64_t seed) {
                   e.candidates[k].rms / s.noise, joined(e.candidates[k].aliases).c_str());
     std::printf("    certain: %s\n", joined(e.certain).c_str());
     for (std::size_t k = 0; k < std::min<std::size_t>(3, e.fails.size()); ++k)
-      std::printf("    left in %-24s share %.2f p %.2g\n", e.fails[k].where.c_str(),
+      std::printf("    left in %-24s share %.2f p %.2g\n", to_text(e.fails[k].where).c_str(),
                   e.fails[k].share, e.fails[k].p);
   }
   if (!f.error.empty()) std::printf("  error: %s\n", f.error.c_str());
@@ -312,14 +357,20 @@ void tell(const Hidden& h, const Followed& f, std::uint64_t seed) {
 void print_score(const Score& s, Kind kind) {
   print("answered without an error", s.answered);
   if (of_one(kind)) print("named first, or its alias group", s.right);
-  if (kind != Kind::complete && kind != Kind::outside) {
+  print("  no effect for so few targets: asked", s.asked);
+  if (!is_complete(kind) && kind != Kind::outside) {
     print("  of these by an alias group", s.alias);
     print("all found and nothing else", s.place);
     print("first verdict: missing, with a wrong name", s.wrong_name);
     print("ends with: nothing", s.ends);
   }
   if (kind == Kind::beside) print("named, by verdict or as certain", s.right);
-  if (kind == Kind::complete) print("verdict: nothing", s.right);
+  if (is_complete(kind)) {
+    print("verdict: nothing; a zero that moves: or that it does", s.right);
+    print("first verdict: missing, which is wrong", s.wrong_name);
+  }
+  for (const auto& [words, count] : s.other_words)
+    std::printf("    %-40s %llu\n", words.c_str(), static_cast<unsigned long long>(count));
   if (kind == Kind::outside) {
     print("right verdict", s.kind);
     print("right verdict, and the right place named first", s.right);
@@ -337,6 +388,7 @@ void print_score(const Score& s, Kind kind) {
     std::printf("    of right models that is expected (F distribution) %12.2f %%\n",
                 100.0 * s.above_floor_expected / static_cast<double>(s.above_floor.of));
   print("floor of the repeats within 2 u of the true noise", s.floor);
+  if (s.without_u.yes > 0) print("values whose u not printed", s.without_u);
   print("true value within 2 u", s.values);
   for (const auto& [name, tally] : s.of_value) print("    " + name, tally);
   std::printf(" by effect or cause\n");
@@ -399,6 +451,7 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
                                              {"blank-temperatures", Kind::blank_temperatures},
                                              {"day-wave", Kind::day_wave},
                                              {"short-misread", Kind::short_misread},
+                                             {"short-complete", Kind::short_complete},
                                              {"smallest", Kind::smallest}};
   if (words.size() < 3 || kinds.count(words[0]) == 0) return {};
   const auto count = whole(words[1]), seed = whole(words[2]);
@@ -421,6 +474,8 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
       if (!percent) return {};
       (words[i] == "--right" ? a.least_right : a.most_wrong) = *percent;
       ++i;
+    } else if (double* size = unrest_of(a, words[i]); size != nullptr && i + 1 < words.size()) {
+      *size = std::strtod(words[++i].c_str(), nullptr);
     } else
       return {};
   }
@@ -432,13 +487,14 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
   const auto a = arguments({argv + 1, argv + argc});
   if (!a) {
-    std::fprintf(
-        stderr,
-        "bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|\n    "
-        "         grouped|beside|fixed-end|blank-temperatures|day-wave|short-misread|smallest\n"
-        "             COUNT SEED\n"
-        "             [--verbose] [--plugins FOLDER] [--write FOLDER] [--right PERCENT] "
-        "[--wrong PERCENT]\n");
+    std::fprintf(stderr,
+                 "bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|\n    "
+                 "         grouped|beside|fixed-end|blank-temperatures|day-wave|short-misread|\n"
+                 "             short-complete|smallest COUNT SEED\n"
+                 "             [--verbose] [--plugins FOLDER] [--write FOLDER] [--right PERCENT] "
+                 "[--wrong PERCENT]\n"
+                 "             [--ar RHO] [--run-zero SIZE] [--walk SIZE] [--rough TIMES] "
+                 "[--digit SIZE]\n");
     return 2;
   }
   host::loader::Plugins plugins;
@@ -450,6 +506,7 @@ int main(int argc, char** argv) {
   Score score;
   for (std::uint64_t seed = a->seed; seed < a->seed + a->count; ++seed) {
     hidden::Scenario scenario = hidden::random_scenario(a->kind, seed);
+    scenario.unrest = a->unrest;
     if (a->kind == Kind::smallest)
       scenario = as_small_as_printed(std::move(scenario), plugins.effects(), a->size);
     if (a->kind == Kind::smallest && scenario.hidden.empty()) continue;

@@ -78,7 +78,7 @@ void tell(const SpaceHidden& h, std::uint64_t seed, const model::Explanation& e)
     std::printf("\n");
   }
   for (std::size_t k = 0; k < std::min<std::size_t>(3, e.fails.size()); ++k)
-    std::printf("    left in %s %s share %.2f p %.2g\n", e.fails[k].where.c_str(),
+    std::printf("    left in %s %s share %.2f p %.2g\n", to_text(e.fails[k].where).c_str(),
                 e.fails[k].line.c_str(), e.fails[k].share, e.fails[k].p);
 }
 

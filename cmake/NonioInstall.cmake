@@ -3,10 +3,11 @@
 include(CMakePackageConfigHelpers)
 
 # In a folder of their own: no program but nonio and its plugins is to link with them, and they keep no ABI between versions.
-install(TARGETS nonio_sdk nonio_math EXPORT nonio LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_COMPONENT dev)
-install(TARGETS nonio_model nonio_pdf nonio_sign nonio_host nonio_reports LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_SKIP)
+install(TARGETS nonio_sdk EXPORT nonio ARCHIVE DESTINATION ${NONIO_LIBRARY_SUBDIR} COMPONENT dev)
+install(TARGETS nonio_math EXPORT nonio LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_COMPONENT dev)
+install(TARGETS nonio_history nonio_model nonio_pdf nonio_sign nonio_host nonio_reports LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_SKIP)
 set(public sdk)
-foreach(room statistics axis uncertainty planning findings volumetric rotary compensation)
+foreach(room statistics axis uncertainty planning findings followed volumetric rotary compensation)
   list(APPEND public math/${room})
 endforeach()
 foreach(folder IN LISTS public)
@@ -59,7 +60,7 @@ foreach(readme IN LISTS readmes)
 endforeach()
 # Named one by one: a key or a register that somebody made here to try things out stays here.
 set(samples ${PROJECT_SOURCE_DIR}/samples)
-install(DIRECTORY ${samples}/site ${samples}/simulate ${samples}/tutorial DESTINATION ${papers}/examples)
+install(DIRECTORY ${samples}/site ${samples}/laboratory ${samples}/simulate ${samples}/tutorial DESTINATION ${papers}/examples)
 install(DIRECTORY ${samples}/certificates/adjusted DESTINATION ${papers}/examples/certificates)
 install(FILES ${samples}/certificates/site.toml DESTINATION ${papers}/examples/certificates)
 install(PROGRAMS ${samples}/certificates/make-key.sh DESTINATION ${papers}/examples/certificates)

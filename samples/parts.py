@@ -137,11 +137,13 @@ def toml(value):
 
 
 def manifest(story, ident, customer, place, date, machine, axes, measurements, instrument=None,
-             environment=None, analyses=None, model=None):
+             environment=None, analyses=None, model=None, operator="A. Sample", campaign=None, options=None):
+    """`campaign`: more keys of [campaign]; `options`: {plugin: {key: value}}."""
     out = ["# Constructed: nobody measured this machine, and customer and machine are invented."]
     out += ["# " + line for line in story]
     out += ["format = 1", "", "[campaign]", 'id = "%s"' % ident, 'customer = "%s"' % customer,
-            'site = "%s"' % place, 'operator = "A. Sample"', "date = %s" % date, "", "[machine]"]
+            'site = "%s"' % place, 'operator = "%s"' % operator, "date = %s" % date]
+    out += ['%s = "%s"' % item for item in (campaign or {}).items()] + ["", "[machine]"]
     out += ['%s = "%s"' % item for item in machine.items()]
     for name, keys in axes.items():
         out += ["", "[machine.axes.%s]" % name] + ["%s = %s" % item for item in keys.items()]
@@ -155,9 +157,11 @@ def manifest(story, ident, customer, place, date, machine, axes, measurements, i
     counted = {"siemens-840d": 1, "fanuc": 1, "linuxcnc": 0}.get(machine.get("control"))
     if counted is not None:
         number = {"X": 0, "Y": 1, "Z": 2}
-        out += ["", "[options.%s]" % machine["control"],
-                "axes = [%s]" % ", ".join('"%s %s=%d"' % (name, "number" if counted else "joint",
-                                                        number.get(name, 3) + counted) for name in axes)]
+        for name in axes:
+            out += ["", "[options.%s.axes.%s]" % (machine["control"], name),
+                    "%s = %d" % ("number" if counted else "joint", number.get(name, 3) + counted)]
+    for plugin, keys in (options or {}).items():
+        out += ["", "[options.%s]" % plugin] + ["%s = %s" % item for item in keys.items()]
     if analyses:
         out += ["", "[run]", "analyses = [%s]" % ", ".join(toml(name) for name in analyses)]
     return "\n".join(out) + "\n"

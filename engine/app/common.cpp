@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common.h"
 
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <iostream>
 #include <sstream>
 
@@ -72,6 +75,26 @@ Expected<std::map<std::string, std::string>> settings_of(const std::vector<std::
     out[one.substr(0, equals)] = one.substr(equals + 1);
   }
   return out;
+}
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char text[11];
+  std::strftime(text, sizeof text, "%Y-%m-%d", &local);
+  return text;
+}
+
+bool is_day(const std::string& text) {
+  int year = 0, month = 0, day = 0, end = 0;
+  if (std::sscanf(text.c_str(), "%4d-%2d-%2d%n", &year, &month, &day, &end) != 3 || end != 10 ||
+      text.size() != 10)
+    return false;
+  return std::chrono::year_month_day{std::chrono::year(year),
+                                     std::chrono::month(static_cast<unsigned>(month)),
+                                     std::chrono::day(static_cast<unsigned>(day))}
+      .ok();
 }
 
 std::string text_of(const Error& e) {

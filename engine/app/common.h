@@ -31,6 +31,11 @@ Argument settings_argument(std::vector<std::string>& settings, std::string help)
 /// {"NAME", "VALUE"} of each --set.
 Expected<std::map<std::string, std::string>> settings_of(const std::vector<std::string>& given);
 
+/// YYYY-MM-DD, of the local clock.
+std::string today();
+/// YYYY-MM-DD, a day that is in the calendar.
+bool is_day(const std::string& text);
+
 /// "campaign.toml:12 (target_mm): ..."
 std::string text_of(const Error& error);
 /// "nonio compare: ..." on stderr; returns the exit status.

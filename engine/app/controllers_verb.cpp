@@ -46,13 +46,13 @@ bool sign_unknown(const ControlTable& t) {
   return f != nullptr && f->confidence == ControlTable::Confidence::unsure;
 }
 
-Json control_json(const Output& o) {
-  const ControlTable& t = *o.control;
+Json control_json(const Controller& o) {
+  const ControlTable& t = o.table;
   Json json = {{"name", o.info.name},
                {"version", o.info.version},
                {"summary", o.info.summary},
                {"table", t.name},
-               {"on_request", o.info.on_request},
+               {"on_request", o.info.opt_in},
                {"takes",
                 {{"rotary", t.rotary},
                  {"bidirectional", t.bidirectional},
@@ -72,7 +72,7 @@ Json control_json(const Output& o) {
   json["facts"] = Json::array();
   for (const ControlTable::Fact& f : t.facts)
     json["facts"].push_back(
-        {{"id", f.id}, {"confidence", to_text(f.confidence)}, {"says", f.says}});
+        {{"id", f.id}, {"confidence", to_text(f.confidence)}, {"says", f.description}});
   return json;
 }
 
@@ -95,8 +95,8 @@ void print_head() {
   std::cout << "backlash\n";
 }
 
-void print_control(const Output& o, bool facts) {
-  const ControlTable& t = *o.control;
+void print_control(const Controller& o, bool facts) {
+  const ControlTable& t = o.table;
   const auto yes = [](bool is, std::size_t width) { return cell(is ? "yes" : "-", width); };
   std::cout << cell(o.info.name, 20) << cell(t.points > 0 ? std::to_string(t.points) : "any", 6)
             << yes(t.bidirectional, 9) << yes(t.straightness, 8) << yes(t.squareness, 6)
@@ -107,34 +107,33 @@ void print_control(const Output& o, bool facts) {
   std::cout << "    " << o.info.summary << "\n    table: " << t.name
             << "; zero: " << to_text(t.zero) << "\n";
   for (const ControlTable::Fact& f : t.facts)
-    std::cout << "    " << cell(to_text(f.confidence), 11) << f.says << "\n";
+    std::cout << "    " << cell(to_text(f.confidence), 11) << f.description << "\n";
 }
 
 int list_controls(const std::vector<std::string>& names, const Common& common) {
   host::loader::Plugins plugins;
   plugins.load(common.plugin_folders());
-  std::vector<const Output*> all;
-  for (const Output& o : plugins.outputs())
-    if (o.control) all.push_back(&o);
+  std::vector<const Controller*> all;
+  for (const Controller& o : plugins.controllers()) all.push_back(&o);
   std::sort(all.begin(), all.end(),
-            [](const Output* a, const Output* b) { return a->info.name < b->info.name; });
+            [](const Controller* a, const Controller* b) { return a->info.name < b->info.name; });
   for (const std::string& name : names)
     if (std::none_of(all.begin(), all.end(),
-                     [&](const Output* o) { return o->info.name == name; })) {
-      return complain("nonio controllers", plugins.absence("output", name));
+                     [&](const Controller* o) { return o->info.name == name; })) {
+      return complain("nonio controllers", plugins.absence("controller", name));
     }
   if (!names.empty())
-    std::erase_if(all, [&](const Output* o) {
+    std::erase_if(all, [&](const Controller* o) {
       return std::find(names.begin(), names.end(), o->info.name) == names.end();
     });
   if (common.json) {
     Json json = {{"schema", "nonio-controllers/1"}, {"controllers", Json::array()}};
-    for (const Output* o : all) json["controllers"].push_back(control_json(*o));
+    for (const Controller* o : all) json["controllers"].push_back(control_json(*o));
     std::cout << json.dump(1) << "\n";
     return exit_done;
   }
   print_head();
-  for (const Output* o : all) print_control(*o, !names.empty());
+  for (const Controller* o : all) print_control(*o, !names.empty());
   return exit_done;
 }
 

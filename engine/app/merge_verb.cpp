@@ -73,9 +73,8 @@ int merge(const MergeWish& w, const Common& common) {
   const auto present =
       load(open.place->plugins, w.backup, control, open.campaign(), *settings, options);
   if (!present) return complain(merge_name, text_of(present.error()));
-  const auto merged =
-      host::tables::merge_tables(open.read, *present->control, *options(present->control->info),
-                                 open.place->context.templates, present->files, *axis);
+  const auto merged = host::tables::merge_tables(
+      open.read, *present->control, *options(present->control->info), present->files, *axis);
   if (!merged) return complain(merge_name, text_of(merged.error()), exit_failed);
   tell_findings(merge_name, open, merged->findings);
   if (merged->files.empty()) return complain(merge_name, "nothing was written", exit_failed);

@@ -67,15 +67,6 @@ class Questions {
   bool asks_, ended_ = false;
 };
 
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  char text[11];
-  std::strftime(text, sizeof text, "%Y-%m-%d", &local);
-  return text;
-}
-
 /// The nearest folder at or above this one that holds a site.toml, or a campaign beside the new
 /// one.
 std::optional<fs::path> site_above(const fs::path& folder) {

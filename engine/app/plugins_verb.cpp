@@ -13,7 +13,7 @@ namespace {
 
 Json option_json(const Option& o) {
   Json json = {{"name", o.name}};
-  std::visit([&](const auto& v) { json["default"] = v; }, o.otherwise);
+  std::visit([&](const auto& v) { json["default"] = v; }, o.default_value);
   if (!o.unit.empty()) json["unit"] = o.unit;
   if (!o.choices.empty()) json["choices"] = o.choices;
   json["help"] = o.help;
@@ -31,6 +31,7 @@ std::vector<Listed> all_of(const host::loader::Plugins& plugins) {
   for (const auto& p : plugins.effects()) all.push_back({"effect", &p.info});
   for (const auto& p : plugins.analyses()) all.push_back({"analysis", &p.info});
   for (const auto& p : plugins.outputs()) all.push_back({"output", &p.info});
+  for (const auto& p : plugins.controllers()) all.push_back({"controller", &p.info});
   return all;
 }
 
@@ -48,7 +49,7 @@ void print_plugins_json(const host::loader::Plugins& plugins) {
                    {"name", p.info->name},
                    {"version", p.info->version},
                    {"summary", p.info->summary},
-                   {"on_request", p.info->on_request},
+                   {"on_request", p.info->opt_in},
                    {"options", std::move(options)}});
   }
   std::cout << Json{{"abi", NONIO_ABI_TAG},
@@ -61,7 +62,7 @@ void print_plugins_json(const host::loader::Plugins& plugins) {
 void print_plugins(const host::loader::Plugins& plugins, bool with_options) {
   for (const Listed& p : all_of(plugins)) {
     std::cout << p.kind << " " << p.info->name << " " << p.info->version
-              << (p.info->on_request ? " (on request)" : "") << "\n    " << p.info->summary << "\n";
+              << (p.info->opt_in ? " (on request)" : "") << "\n    " << p.info->summary << "\n";
     if (with_options)
       for (const Option& o : p.info->options)
         std::cout << "    [options." << p.info->name << "] " << o.name << " = "

@@ -46,7 +46,7 @@ bool runs_no_gcode(const std::string& control) {
 
 /// What options and the record of the machine say of its axes.
 Settings said_of_axes(const OpenCampaign& open) {
-  for (const Output& o : open.place->plugins.outputs())
+  for (const Controller& o : open.place->plugins.controllers())
     if (o.info.name == open.campaign().machine.control)
       if (auto settled = host::config::settle_table_options(
               o.info, open.place->context.site.options, *open.read.manifest,
@@ -65,22 +65,12 @@ Expected<void> within_travel(const host::tables::SignProbe& p, const Axis* axis,
     low = std::min(axis->travel->first, axis->travel->second);
     high = std::max(axis->travel->first, axis->travel->second);
   }
-  for (const std::string& entry : said.texts("axes")) {
-    std::istringstream words(entry);
-    std::string name, word;
-    if (!(words >> name) || name != p.axis) continue;
-    while (words >> word) {
-      const std::size_t equals = word.find('=');
-      const std::string key = word.substr(0, equals);
-      double value = 0.0;
-      if (equals == std::string::npos ||
-          std::from_chars(word.data() + equals + 1, word.data() + word.size(), value).ec !=
-              std::errc())
-        continue;
+  for (const auto& [name, table] : said.tables("axes"))
+    for (const auto& [key, value] : table) {
+      if (name != p.axis) continue;
       if (key == std::string("from") + suffix) low = std::max(low, value / unit);
       if (key == std::string("to") + suffix) high = std::min(high, value / unit);
     }
-  }
   constexpr double slack = 1e-9;
   const Quantity q = position_of(p.rotary);
   for (const double x : {p.start, p.from, p.to})

@@ -71,17 +71,17 @@ void Progress::planned(std::size_t campaigns, std::size_t to_do) {
 
 void Progress::finished(const host::batch::CampaignState& c) {
   ++done_;
-  const bool failed = c.status == "failed";
+  const bool failed = c.status == host::evaluation::Status::failed;
   if (failed) ++failed_;
   if (json_) {
-    Json event = {{"event", "campaign"}, {"id", c.id},    {"status", c.status},
+    Json event = {{"event", "campaign"}, {"id", c.id},    {"status", to_text(c.status)},
                   {"reason", c.reason},  {"done", done_}, {"to_do", to_do_}};
     if (failed) event["message"] = message_of(c);
     return print_event(event);
   }
   if (bar_ ? failed : failed || !quiet_) {
     clear();
-    std::cerr << status_word(c.status, STDERR_FILENO) << " " << c.id
+    std::cerr << status_word(to_text(c.status), STDERR_FILENO) << " " << c.id
               << (failed ? ": " + message_of(c) : "") << "\n";
   }
   if (bar_) draw();
@@ -115,8 +115,9 @@ void Progress::clear() {
 
 void Progress::still_failed(const host::batch::Night& night) {
   for (const host::batch::CampaignState& c : night.campaigns)
-    if (c.status == "failed" && c.action == host::batch::CampaignState::Action::unchanged)
-      std::cerr << status_word(c.status, STDERR_FILENO) << " " << c.id
+    if (c.status == host::evaluation::Status::failed &&
+        c.action == host::batch::CampaignState::Action::unchanged)
+      std::cerr << status_word(to_text(c.status), STDERR_FILENO) << " " << c.id
                 << " (unchanged): " << message_of(c) << "\n";
 }
 

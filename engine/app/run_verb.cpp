@@ -34,8 +34,8 @@ const char* to_text(host::batch::CampaignState::Action action) {
 
 void print_night_plan(const host::batch::Night& night, bool json) {
   for (const host::batch::CampaignState& c : night.campaigns) {
-    const bool collides =
-        c.action == host::batch::CampaignState::Action::todo && c.status == "failed";
+    const bool collides = c.action == host::batch::CampaignState::Action::todo &&
+                          c.status == host::evaluation::Status::failed;
     const std::string reason = collides ? c.errors.front().message : c.reason;
     if (json)
       std::cout << Json{{"id", c.id},
@@ -53,13 +53,13 @@ void print_night_plan(const host::batch::Night& night, bool json) {
 void print_summary(const host::batch::Night& night, const fs::path& out, bool json) {
   std::size_t done = 0, unchanged = 0, attention = 0, failed = 0;
   for (const host::batch::CampaignState& c : night.campaigns) {
-    if (c.status == "failed")
+    if (c.status == host::evaluation::Status::failed)
       ++failed;
     else if (c.action == host::batch::CampaignState::Action::done)
       ++done;
     else
       ++unchanged;
-    if (c.status == "attention") ++attention;
+    if (c.status == host::evaluation::Status::attention) ++attention;
   }
   if (json)
     std::cout << Json{{"event", "end"},
@@ -101,23 +101,11 @@ void catch_signals() {
   sigaction(SIGXFSZ, &ignore, nullptr);
 }
 
-/// YYYY-MM-DD, a day that is in the calendar.
-bool is_date(const std::string& text) {
-  int year = 0, month = 0, day = 0, end = 0;
-  if (std::sscanf(text.c_str(), "%4d-%2d-%2d%n", &year, &month, &day, &end) != 3 || end != 10 ||
-      text.size() != 10)
-    return false;
-  return std::chrono::year_month_day{std::chrono::year(year),
-                                     std::chrono::month(static_cast<unsigned>(month)),
-                                     std::chrono::day(static_cast<unsigned>(day))}
-      .ok();
-}
-
 int run_night(RunWish& wish, const Common& common) {
   const char* const verb = "nonio run";
   if (wish.out.empty()) return complain(verb, "--out is empty; expected a folder");
   host::batch::RunOptions& options = wish.options;
-  if (!options.date.empty() && !is_date(options.date))
+  if (!options.date.empty() && !is_day(options.date))
     return complain(verb, "--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
   options.site = wish.site;
   options.out = fs::absolute(wish.out);

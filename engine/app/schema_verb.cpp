@@ -58,7 +58,10 @@ Verb schema_verb(Common& common) {
           .summary = "Writes JSON schemas, so that editors complete and check the files of a site",
           .verbs = {schema_of("campaign", host::tools::campaign_schema, common),
                     schema_of("site", host::tools::site_schema, common),
-                    schema_of("machine", host::tools::machine_schema, common)}};
+                    schema_of("machine", host::tools::machine_schema, common),
+                    schema_of("events", host::tools::events_schema, common),
+                    schema_of("acknowledged", host::tools::acknowledged_schema, common),
+                    schema_of("forgotten", host::tools::forgotten_schema, common)}};
 }
 
 }  // namespace nonio::app

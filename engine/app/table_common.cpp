@@ -88,10 +88,11 @@ host::config::Checked<Settings> campaign_options(const OpenCampaign& open, const
   const auto told = host::config::options_from(info, settings);
   if (!told) return told;
   for (const auto& [name, text] : settings) {
-    auto axes = settled->texts("axes");  // of each axis the last word counts
+    NumberTables axes = settled->tables("axes");
     settled->values[name] = told->values.at(name);
     if (name != "axes") continue;
-    for (std::string& entry : told->texts("axes")) axes.push_back(std::move(entry));
+    for (const auto& [axis, table] : told->tables("axes"))  // the last word counts
+      for (const auto& [key, value] : table) axes[axis][key] = value;
     settled->values[name] = std::move(axes);
   }
   return settled;

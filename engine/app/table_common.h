@@ -23,7 +23,7 @@ void print_difference(const host::tables::TableDifference& d);
 
 /// Files, the control that they are of, and what it makes of them.
 struct Loaded {
-  const Output* control = nullptr;
+  const Controller* control = nullptr;
   std::vector<LoadedTable> tables;
   std::vector<Artifact> files;
 };

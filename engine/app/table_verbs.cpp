@@ -61,10 +61,9 @@ Campaign machine_of(const std::vector<std::string>& axes) {
 /// Their places are their numbers: `--axis` says so.
 void number_axes(const std::vector<std::string>& names, Settings& options) {
   if (!options.has("axes")) return;
-  auto axes = options.texts("axes");
+  NumberTables axes = options.tables("axes");
   for (std::size_t i = 0; i < names.size(); ++i)
-    axes.insert(axes.begin() + static_cast<std::ptrdiff_t>(i),
-                names[i] + " number=" + std::to_string(i + 1));
+    axes[names[i]].emplace("number", static_cast<double>(i + 1));
   options.values["axes"] = std::move(axes);
 }
 
@@ -93,8 +92,7 @@ int diff_with_campaign(const std::string& backup, const std::string& folder, con
       load(open.place->plugins, backup, control, open.campaign(), settings, options);
   if (!present) return complain(verb, text_of(present.error()));
   auto next = host::tables::tables_of_campaign(open.read, *present->control,
-                                               *options(present->control->info),
-                                               open.place->context.templates);
+                                               *options(present->control->info));
   if (!next) return complain(verb, text_of(next.error()), exit_failed);
   tell_findings(verb, open, next->findings);
   if (next->tables.empty()) return complain(verb, "the campaign has no table", exit_failed);
@@ -207,9 +205,9 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
                     ", its files or the campaign say " + short_text(*known * per, 6));
       if (!known) host::tables::state_backlash(options, t.output, t.rotary, b.value / per);
     }
-    const bool has_parameter = !present.control->control->backlash.empty();
+    const bool has_parameter = !present.control->table.backlash.empty();
     if (has_parameter && !t.backlash && !host::tables::stated_backlash(options, t.output, t.rotary))
-      return fail(w.table + " does not say what was in " + present.control->control->backlash +
+      return fail(w.table + " does not say what was in " + present.control->table.backlash +
                   " of axis " + t.output +
                   " while it was measured: give its file too, or --backlash-was VALUE|none, or "
                   "backlash_on_" +
@@ -250,8 +248,7 @@ int apply(const TableWish& w, const Common& common) {
   }
   if (auto stated = settle_backlash(w, *table, settled); !stated)
     return complain(verb, stated.error().message);
-  auto renewed = host::tables::renew(open.read, *table->control, settled,
-                                     open.place->context.templates, table->tables);
+  auto renewed = host::tables::renew(open.read, *table->control, settled, table->tables);
   if (!renewed) return complain(verb, text_of(renewed.error()), exit_failed);
   a = {host::tables::differences(table->tables, renewed->tables),
        std::move(renewed->forecast),

@@ -106,7 +106,7 @@ void print_places(std::ostream& out, const model::Comparison& c,
   if (!c.fails()) return line(out, say("fails"), say("fails.nowhere"));
   out << "  " << say("fails") << "\n";
   for (const model::Place& place : c.seats)
-    out << "    " << padded(place.where + host::modelling::on_line(place), 24) << " "
+    out << "    " << padded(to_text(place.where) + host::modelling::on_line(place), 24) << " "
         << words.place(place, deviation) << "\n";
 }
 

@@ -6,12 +6,15 @@
 /// The verbs of the program. `common` is filled before one of them is run.
 namespace nonio::app {
 
+Verb ack_verb(Common& common);
 Verb apply_verb(Common& common);
 Verb certificates_verb(Common& common);
 Verb compare_verb(Common& common);
 Verb controllers_verb(Common& common);
 Verb diff_verb(Common& common);
+Verb event_verb(Common& common);
 Verb explain_verb(Common& common);
+Verb forget_verb(Common& common);
 Verb import_verb(Common& common);
 Verb merge_verb(Common& common);
 Verb model_verb(Common& common);
@@ -20,6 +23,7 @@ Verb open_verb(Common& common);
 Verb plan_verb(Common& common);
 Verb plugin_verb(Common& common);
 Verb plugins_verb(Common& common);
+Verb query_verb(Common& common);
 Verb release_verb(Common& common);
 Verb restamp_verb(Common& common);
 Verb run_verb(Common& common);

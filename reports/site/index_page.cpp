@@ -79,8 +79,9 @@ std::string where(const Page& page, const MorningLine& l) {
   return machine_link(page, l.machine) + (l.axis.empty() ? "" : " " + html(l.axis));
 }
 
+/// HTML.
 std::string says(const Page& page, const MorningLine& l, const char* part) {
-  return typeset(finding_text(page.templates, page.words.language(), l.finding, part));
+  return typeset_html(finding_text(page.templates, page.words.language(), l.finding, part));
 }
 
 std::string row_of(const Page& page, const MorningLine& l) {
@@ -92,9 +93,9 @@ std::string row_of(const Page& page, const MorningLine& l) {
              link(l.link.empty() ? "" : page.to_root + l.link,
                   html(value_text(page, *l.value, l.u, l.unit))) +
              html(limit_text(page, l));
-  std::string text = html(says(page, l, "says"));
+  std::string text = says(page, l, "says");
   if (!l.since.empty()) text += " " + html(page.words.get("site.since", {{"date", l.since}}));
-  std::string advice = html(says(page, l, "advice"));
+  std::string advice = says(page, l, "advice");
   if (l.state == MorningLine::State::known)
     advice = html(
         page.words.get("site.acknowledged", {{"by", l.by}, {"until", l.until}, {"why", l.why}}));

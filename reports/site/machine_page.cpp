@@ -39,7 +39,7 @@ std::string open_lines(const Page& page, const MachineHistory& m) {
     if (l.value) text += html(value_text(page, *l.value, l.u, l.unit)) + ". ";
     for (const char* part : {"says", "advice"})
       text +=
-          html(typeset(finding_text(page.templates, page.words.language(), l.finding, part))) + " ";
+          typeset_html(finding_text(page.templates, page.words.language(), l.finding, part)) + " ";
     items += element("li", text);
   }
   return items.empty() ? items : element("ul", items);

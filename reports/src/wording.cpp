@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "nonio/sdk/text.h"
+
 namespace nonio::reports {
 
 Wording::Wording(const Templates& templates, std::string language, std::vector<std::string> files)
@@ -75,7 +77,23 @@ bool digit(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
 
-std::string typeset(std::string_view s) {
+namespace {
+
+/// Calls `prose` and `code` with the pieces of a sentence in turn; a backquote alone is prose.
+template <typename Prose, typename Code>
+void split_at_code(std::string_view s, const Prose& prose, const Code& code) {
+  while (true) {
+    const std::size_t from = s.find('`');
+    const std::size_t to = from == s.npos ? s.npos : s.find('`', from + 1);
+    if (to == s.npos) break;
+    prose(s.substr(0, from));
+    code(s.substr(from + 1, to - from - 1));
+    s.remove_prefix(to + 1);
+  }
+  prose(s);
+}
+
+std::string typeset_prose(std::string_view s) {
   struct Unit {
     std::string_view plain, printed;
   };
@@ -103,6 +121,27 @@ std::string typeset(std::string_view s) {
       out += s[i];
     ++i;
   }
+  return out;
+}
+
+}  // namespace
+
+std::string typeset(std::string_view sentence) {
+  std::string out;
+  split_at_code(
+      sentence, [&](std::string_view prose) { out += typeset_prose(prose); },
+      [&](std::string_view code) { out += '"' + std::string(code) + '"'; });
+  return out;
+}
+
+std::string typeset_html(std::string_view sentence) {
+  const auto escaped = [](std::string_view text) {
+    return escaped_markup(text, Markup::attribute);
+  };
+  std::string out;
+  split_at_code(
+      sentence, [&](std::string_view prose) { out += escaped(typeset_prose(prose)); },
+      [&](std::string_view code) { out += "<code>" + escaped(code) + "</code>"; });
   return out;
 }
 

@@ -32,9 +32,13 @@ axis = "X"
 file = "x.csv"
 [run]
 analyses = ["largest-deviation", "iso230-2"]
-outputs = ["json"]
+outputs = ["json", "elsewhere"]
+[options.elsewhere.axes.X]
+number = 1
 TOML
 printf 'run,direction,target_mm,deviation_um\n1,+,0,1.5\n1,+,100,-7.25\n' > "$work/site/a/x.csv"
 "$work/prefix/bin/nonio" plugins --quiet --plugin-path "$work/plugin"
 "$work/prefix/bin/nonio" run "$work/site" --out "$work/out" --plugin-path "$work/plugin"
 grep -q '"value": 7.25' "$work/out/a/results.json"
+grep -q '7.3 um' "$work/out/a/results.json"
+grep -q '^2 100.*0\.00875' "$work/out/a/elsewhere-X.txt" || { cat "$work/out/a/elsewhere-X.txt"; exit 1; }

@@ -9,6 +9,7 @@ ROOT = pathlib.Path(sys.argv[1])
 MAY = {
     "engine/sdk": {"sdk"},
     "engine/math": {"sdk", "math"},
+    "engine/history": {"sdk", "history"},
     "engine/model": {"sdk", "math", "model"},
     "engine/pdf": {"sdk", "pdf"},
     "engine/sign": {"sdk", "pdf", "sign"},
@@ -33,6 +34,7 @@ ROOMS = {
     "evaluation": {"storage", "process", "config", "loader", "reading", "modelling", "tables"},
     "certificates": {"storage", "process", "config", "loader", "reading", "modelling", "tables", "evaluation"},
 }
+ROOMS["history"] = {"storage", "process", "config", "loader", "reading", "evaluation"}
 # Three users of the engine, which do not know each other.
 ROOMS |= {room: set(ROOMS) for room in ("batch", "plugin_check", "tools")}
 # What a room takes of the other parts, beside sdk and math.

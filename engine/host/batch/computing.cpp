@@ -50,8 +50,11 @@ std::optional<evaluation::AssignedNumber> ask_for_number(
 /// What no honest process says: these values decide which files are written.
 std::string unsound_answer(const evaluation::Evaluated& e, const std::string& id) {
   if (e.campaign.id != id) return "another campaign's results";
-  if (e.status != "ok" && e.status != "attention" && e.status != "failed") return "no status";
-  if ((e.status == "failed") == e.results.errors.empty()) return "a status against its errors";
+  if (e.status != evaluation::Status::ok && e.status != evaluation::Status::attention &&
+      e.status != evaluation::Status::failed)
+    return "no status";
+  if ((e.status == evaluation::Status::failed) == e.results.errors.empty())
+    return "a status against its errors";
   std::set<std::string> names;
   for (const Results::Written& w : e.results.outputs)
     for (const Artifact& a : w.result.artifacts)

@@ -2,7 +2,6 @@
 #include "host/batch/earlier_results.h"
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <string_view>
 
@@ -13,21 +12,6 @@
 namespace nonio::host::batch {
 namespace fs = std::filesystem;
 
-namespace {
-
-/// `take` each folder in a folder, which may be missing.
-void each_folder_in(const fs::path& folder, std::error_code& error,
-                    const std::function<void(const fs::path&)>& take) {
-  std::error_code here;
-  fs::directory_iterator it(folder, here);
-  if (here == std::errc::no_such_file_or_directory) return;
-  for (; !here && it != fs::directory_iterator(); it.increment(here))
-    if (it->is_directory(here)) take(it->path());
-  if (here) error = here;
-}
-
-}  // namespace
-
 Expected<std::vector<EarlierResult>> unclaimed_results(
     const fs::path& out, const std::vector<CampaignState>& campaigns) {
   std::vector<std::string_view> claimed;
@@ -35,22 +19,16 @@ Expected<std::vector<EarlierResult>> unclaimed_results(
     if (!c.named_by_folder) claimed.push_back(c.id);
   std::sort(claimed.begin(), claimed.end());
   std::vector<EarlierResult> found;
-  std::error_code error;
   const auto take = [&](const fs::path& folder) {
     std::string id = folder.filename().string();
     if (!config::is_campaign_id(id) || std::binary_search(claimed.begin(), claimed.end(), id))
       return;
     if (const auto record = evaluation::read_record(folder))
-      found.push_back({std::move(id), record->folder, record->night, record->status == "failed"});
+      found.push_back({std::move(id), record->folder, record->night,
+                       record->status == evaluation::Status::failed});
   };
-  const bool hashed = storage::results_folder(out, "a") != out / "a";
-  each_folder_in(out, error, [&](const fs::path& folder) {
-    if (!hashed)
-      take(folder);
-    else if (folder.filename().string().size() == 2)
-      each_folder_in(folder, error, take);
-  });
-  if (error) return fail("cannot list the output folder " + out.string() + ": " + error.message());
+  if (const auto listed = storage::each_results_folder(out, take); !listed)
+    return fail(listed.error());
   std::sort(found.begin(), found.end(),
             [](const EarlierResult& a, const EarlierResult& b) { return a.id < b.id; });
   return found;
@@ -66,8 +44,8 @@ std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
   for (const CampaignState& c : campaigns) id_of.emplace(storage::path_text(c.folder), c.id);
   for (const EarlierResult& e : earlier) {
     const auto now = id_of.find(e.folder);
-    const std::string meant = "if that is meant, remove " +
-                              storage::results_folder(out, e.id).string() + ", else bring it back";
+    const std::string meant = "if that is meant, say so (nonio forget SITE " + e.id +
+                              " --by NAME --why TEXT), else bring it back";
     const auto above = std::find_if(unlisted.begin(), unlisted.end(), [&](const auto& u) {
       const std::string folder = storage::path_text(u.folder);
       return e.folder == folder || e.folder.starts_with(folder + "/");

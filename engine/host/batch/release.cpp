@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "host/batch/history_update.h"
 #include "host/batch/runner.h"
 #include "host/batch/set_up.h"
 #include "host/batch/twins.h"
@@ -202,8 +203,13 @@ class Releaser {
     campaign.folder = out_.draft->folder;
     campaign.reason = "released by " + request_.by;
     std::vector<CampaignState> campaigns{campaign};
+    HistoryUpdate history(options_, (*place)->context);
+    if (const auto begun = history.begin(); !begun) return fail_with(begun.error().message);
     if (!do_campaigns(options_, events_, (*place)->context, night_, desk, campaigns))
       return fail_with("interrupted");
+    // What does not come in now does with the next night.
+    [[maybe_unused]] const auto entered =
+        history.end({id_}, read_told(options_, (*place)->context));
     auto opened = certificates::Register::open(options_.site, numbering_);
     if (!opened) return fail_with(opened.error().message);
     auto last = opened->last_number(id_);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <new>
 
+#include "host/batch/history_update.h"
 #include "host/batch/night_state.h"
 #include "host/batch/read_apart.h"
 #include "host/batch/runner.h"
@@ -45,16 +46,16 @@ void store_refused(const RunOptions& options, const reading::Context& context,
   const storage::Disk disk(options.out);
   const CampaignState* before = nullptr;
   for (CampaignState& c : campaigns) {
-    if (c.action != Action::todo || c.status != "failed") continue;
+    if (c.action != Action::todo || c.status != evaluation::Status::failed) continue;
     const auto record = evaluation::read_record(storage::results_folder(options.out, c.id));
-    const bool stays = c.is_campaign && record && record->status != "failed";
+    const bool stays = c.is_campaign && record && record->status != evaluation::Status::failed;
     if (stays)
       c.errors.front().message +=
           "; the results of night " + std::to_string(record->night) + " stay as they are";
     if (c.is_campaign && !stays && (before == nullptr || before->id != c.id)) {
       evaluation::Evaluated evaluated;
       evaluated.campaign.id = c.id;
-      evaluated.status = "failed";
+      evaluated.status = evaluation::Status::failed;
       evaluated.results.errors = c.errors;
       if (const auto stored =
               store(options.out, evaluated, context, {c.folder, night.of(), c.reason, true}, disk);
@@ -153,7 +154,7 @@ Expected<void> note_certificates(Night& night, const RunOptions& options,
   for (certificates::WaitingDraft& draft : (*known)->drafts) {
     const auto here = std::find_if(night.campaigns.begin(), night.campaigns.end(),
                                    [&](const CampaignState& c) { return c.id == draft.campaign; });
-    if (here != night.campaigns.end() && here->status != "failed")
+    if (here != night.campaigns.end() && here->status != evaluation::Status::failed)
       night.waiting.push_back(std::move(draft));
   }
   return {};
@@ -190,6 +191,35 @@ Expected<void> tidy_all(const Night& night, const fs::path& out, bool resumed) {
       if (auto tidied = tidy(storage::results_folder(out, c.id)); !tidied) return tidied;
   }
   return {};
+}
+
+/// Campaigns that somebody has said to be gone are none that vanished.
+void leave_out_forgotten(Night& night, const Expected<history::Told>& told) {
+  if (!told) return;
+  std::erase_if(night.vanished, [&](const Vanished& v) {
+    return std::any_of(told->logs.forgotten.begin(), told->logs.forgotten.end(),
+                       [&](const config::Forgotten& f) { return f.campaign == v.id; });
+  });
+}
+
+/// An index that cannot be written is no reason to lose a night: it is made again from the results.
+void write_history(Night& night, const HistoryUpdate& history, const NightState& state,
+                   const Expected<history::Told>& told, const RunEvents& events) {
+  std::vector<std::string> done;
+  for (const CampaignState& c : night.campaigns)
+    if (c.action == Action::done && c.is_campaign) done.push_back(c.id);
+  auto notes = history.end(state.last ? state.last->night.number : 0, state.number, done, told);
+  if (!notes) {
+    night.history_error = notes.error().message;
+    notes = {"this night is not in the history (history.sqlite): " + night.history_error +
+             "; the results are all there, and the next night enters them"};
+  } else if (!notes->empty()) {
+    night.history_error = notes->front();
+  }
+  for (std::string& note : *notes) {
+    events.note(note);
+    night.notes.push_back(std::move(note));
+  }
 }
 
 /// First what cannot be left lying; then what the register says; the summary last.
@@ -254,6 +284,9 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
   if (!surveyed) return refuse(surveyed.error().message);
   night.campaigns = std::move(surveyed->campaigns);
   night.vanished = std::move(surveyed->vanished);
+  const auto told = read_told(options, context);
+  leave_out_forgotten(night, told);
+  night.may_vanish = context.site.limits.vanished;
   for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);
   tell_vanished(night, events);
   const auto is_todo = [](const CampaignState& c) { return c.action == Action::todo; };
@@ -262,6 +295,8 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
                      std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));
   if (options.dry_run) return;
 
+  HistoryUpdate history(options, context);
+  if (const auto begun = history.begin(); !begun) return refuse(begun.error().message);
   store_refused(options, context, *state, events, night.campaigns);
   ReleaseDesk desk;
   auto& signer = place.signer;
@@ -277,6 +312,7 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
     tidy_root(options.out);
     return;
   }
+  if (!process::is_stop_requested()) write_history(night, history, *state, told, events);
   // The campaigns are safe; if this fails the night stays open, and the next run ends it.
   const auto closed = close_night(night, options, context, *state);
   if (closed) return;

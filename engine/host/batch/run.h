@@ -12,6 +12,7 @@
 #include "host/certificates/register.h"
 #include "host/evaluation/evaluate.h"
 #include "host/evaluation/record.h"
+#include "host/evaluation/status.h"
 #include "host/process/stop.h"
 
 namespace nonio::host::batch {
@@ -38,8 +39,8 @@ struct CampaignState {
   bool named_by_folder = false;  ///< its manifest gives no id
   bool is_campaign = true;       ///< false: a folder of which nobody knows what lies in it
   enum class Action { todo, done, unchanged } action = Action::todo;
-  std::string reason;  ///< why it is to do, or why not
-  std::string status;  ///< ok, attention, failed; empty while it is to do
+  std::string reason;                                    ///< why it is to do, or why not
+  evaluation::Status status = evaluation::Status::none;  ///< none while it is to do
   std::vector<Error> errors;
   std::vector<std::uint64_t> readings{};  ///< of its files' SHA-256 the begin, until compared
   /// Of those that another campaign has too, and where that one stands in the list of campaigns.
@@ -48,8 +49,8 @@ struct CampaignState {
   std::vector<std::pair<std::uint64_t, std::string>> twins_before{};
 };
 
-/// A campaign that has results and is not in the site any more. Its results stay until a person
-/// removes them, which says that this was meant.
+/// A campaign that has results and is not in the site any more. Its results stay; a
+/// person says that this was meant (forgotten.toml).
 struct Vanished {
   std::string id, folder;   ///< folder: where it was, as text
   std::uint64_t night = 0;  ///< in which it was done last
@@ -76,8 +77,12 @@ struct Night {
   std::vector<certificates::WaitingDraft> waiting;  ///< for their release
   std::vector<Vanished> vanished;                   ///< ordered by id
   std::size_t failed() const;  ///< campaigns, and folders that could not be listed
-  /// Whether anything failed or vanished.
-  bool any_failed() const { return failed() > 0 || !vanished.empty(); }
+  /// Whether anything failed or vanished, or is not in the history.
+  bool any_failed() const {
+    return failed() > 0 || vanished.size() > may_vanish || !history_error.empty();
+  }
+  std::size_t may_vanish = 0;   ///< so many may, by site.toml
+  std::string history_error{};  ///< why OUT/history.sqlite does not know this night
 };
 
 /// The nightly run over a site. Returns when every campaign is done, or after a call of

@@ -226,7 +226,7 @@ class Runner {
       evaluation = evaluated_apart(c, folder, files, true, locked, evaluator);
     if (!evaluation) return evaluation;
     evaluation::Evaluated& evaluated = *evaluation;
-    if (evaluated.status != "failed") numbers_.hold_unreleased(evaluated);
+    if (evaluated.status != evaluation::Status::failed) numbers_.hold_unreleased(evaluated);
     stage.set("signing");
     auto done =
         certificates::sign_artifacts(evaluated, files, context_, signer_, std::time(nullptr));
@@ -264,9 +264,10 @@ class Runner {
     }
     const evaluation::Evaluated& evaluated = *evaluation;
     if (locked && !last_trial_) return Answer::waits;
-    if (evaluated.status == "failed" && !first) return Answer::again;
+    if (evaluated.status == evaluation::Status::failed && !first) return Answer::again;
     const bool may_pass = evaluated.retry || is_out_of_memory(evaluated);
-    if (evaluated.status == "failed" && !locked && !evaluated.results.errors.empty())
+    if (evaluated.status == evaluation::Status::failed && !locked &&
+        !evaluated.results.errors.empty())
       numbers_.note_failure(c.id, evaluated.results.errors.front().message);
     if (releasing_ && !(evaluated.certificate && evaluated.certificate->issued)) {
       stage.set(evaluated.results.errors.empty() ? "data are missing: run the night again"
@@ -280,9 +281,9 @@ class Runner {
       stage.set(staged.error().message);
       return Answer::not_stored;
     }
-    return evaluated.status == "failed"      ? Answer::failed
-           : evaluated.status == "attention" ? Answer::attention
-                                             : Answer::ok;
+    return evaluated.status == evaluation::Status::failed      ? Answer::failed
+           : evaluated.status == evaluation::Status::attention ? Answer::attention
+                                                               : Answer::ok;
   }
 
   /// Memory that was refused says nothing about the readings.
@@ -295,7 +296,7 @@ class Runner {
   static void fail_certificate(evaluation::Evaluated& evaluated, const Error& why) {
     certificates::remove_unsigned(evaluated);
     evaluated.results.errors.push_back(why);
-    evaluated.status = "failed";
+    evaluated.status = evaluation::Status::failed;
     evaluated.retry = true;
   }
 
@@ -330,7 +331,7 @@ class Runner {
       case Answer::ok:
       case Answer::attention:
       case Answer::failed:
-        campaigns_[worker.campaign()].status = to_text(answer);
+        campaigns_[worker.campaign()].status = status_of(answer);
         store_staged(worker.campaign());
         return answer != Answer::failed && worker.given() < campaigns_per_worker_ &&
                !worker.grown() && again_.empty();
@@ -381,7 +382,7 @@ class Runner {
   void settle(std::size_t campaign, const std::string& error) {
     if (!error.empty())
       lost(campaign, error);
-    else if (campaigns_[campaign].status == "failed")
+    else if (campaigns_[campaign].status == evaluation::Status::failed)
       take_failed(campaign);
     else
       finish(campaign, campaigns_[campaign].status, {});
@@ -401,8 +402,11 @@ class Runner {
     finish(index, record->status, record->errors);
   }
 
-  static const char* to_text(Answer answer) {
-    return answer == Answer::ok ? "ok" : answer == Answer::attention ? "attention" : "failed";
+  static evaluation::Status status_of(Answer answer) {
+    using evaluation::Status;
+    return answer == Answer::ok          ? Status::ok
+           : answer == Answer::attention ? Status::attention
+                                         : Status::failed;
   }
 
   static std::string short_number(double x) {
@@ -416,17 +420,18 @@ class Runner {
   void lost(std::size_t index, const std::string& why) {
     CampaignState& c = campaigns_[index];
     note_failure(c.id, why);
-    if (releasing_) return finish(index, "failed", {Error{why}});  // the draft stays
+    if (releasing_)
+      return finish(index, evaluation::Status::failed, {Error{why}});  // the draft stays
     evaluation::Evaluated evaluated;
     evaluated.campaign.id = c.id;
-    evaluated.status = "failed";
+    evaluated.status = evaluation::Status::failed;
     evaluated.results.errors = {Error{why}};
     const auto stored =
         store(options_.out, evaluated, context_, {c.folder, night_.of(), c.reason, true}, disk_);
     if (!stored)
       evaluated.results.errors.push_back(
           Error{"and this could not be stored: " + stored.error().message});
-    finish(index, "failed", std::move(evaluated.results.errors));
+    finish(index, evaluation::Status::failed, std::move(evaluated.results.errors));
   }
 
   /// In the register. A share that hangs costs its limit once.
@@ -441,10 +446,10 @@ class Runner {
     register_hangs_ = !noted;
   }
 
-  void finish(std::size_t index, std::string status, std::vector<Error> errors) {
+  void finish(std::size_t index, evaluation::Status status, std::vector<Error> errors) {
     CampaignState& c = campaigns_[index];
     c.action = Action::done;
-    c.status = std::move(status);
+    c.status = status;
     c.errors = std::move(errors);
     events_.finished(c);
   }

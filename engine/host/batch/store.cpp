@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "host/evaluation/results_json.h"
+#include "host/history/earlier.h"
 #include "host/storage/digest.h"
 #include "host/storage/files.h"
 #include "nonio/sdk/format.h"
@@ -41,12 +42,12 @@ Expected<void> write_record(const fs::path& folder, const evaluation::Record& re
 Expected<void> look_back(const fs::path& folder, evaluation::Record& record) {
   const auto last = evaluation::last_record(folder);
   if (!last) return fail(last.error());
-  if (record.status == "failed")
+  if (record.status == evaluation::Status::failed)
     record.failed_since = evaluation::NightOf{record.night, record.date};
   if (!*last) return {};
   const evaluation::Record& old = (*last)->record;
   record.previous = old.night < record.night ? old.findings : old.previous;
-  if (record.status == "failed" && old.status == "failed")
+  if (record.status == evaluation::Status::failed && old.status == evaluation::Status::failed)
     record.failed_since = old.failed_since.value_or(evaluation::NightOf{old.night, old.date});
   return {};
 }
@@ -82,8 +83,16 @@ Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
     if (a.sign) return fail(a.name + " is not signed; nothing was written");
     record.files.push_back(recorded(a));
   }
+  std::string results = evaluation::results_json(e, context, record.files);
+  auto carried = history::carry_over(folder, record, results, e.campaign.id);
+  if (!carried) return fail(carried.error());
+  record.indexed = carried->indexed;
+  if (!carried->earlier.empty()) {
+    files.push_back({history::earlier_name, std::move(carried->earlier)});
+    record.files.push_back(recorded(files.back()));
+  }
   // Last, so that it never speaks of a file that is not there.
-  files.push_back({evaluation::results_name, evaluation::results_json(e, context, record.files)});
+  files.push_back({evaluation::results_name, std::move(results)});
   record.files.push_back(recorded(files.back()));
 
   if (auto looked = look_back(folder, record); !looked) return looked;
@@ -141,8 +150,8 @@ class Move {
       rename(folder_ / evaluation::record_name, folder_ / evaluation::record_before_name);
     const auto old = evaluation::last_record(folder_);
     if (!old) return give_up(old.error().message);
-    const bool may_pass = record_.status == "failed" && record_.retry;
-    const bool was_good = *old && (*old)->record.status != "failed";
+    const bool may_pass = record_.status == evaluation::Status::failed && record_.retry;
+    const bool was_good = *old && (*old)->record.status != evaluation::Status::failed;
     if (may_pass && was_good) keep((*old)->record);
     if (!may_pass) remove_all(folder_ / evaluation::last_good_name);
     if (!*old) return;
@@ -190,7 +199,8 @@ class Move {
 
  private:
   static bool is_result(const std::string& name) {
-    return storage::is_artifact_name(name) || name == evaluation::results_name;
+    return storage::is_artifact_name(name) || name == evaluation::results_name ||
+           name == history::earlier_name;
   }
   void remove(const fs::path& path) {
     if (std::error_code error; done_ && !fs::remove(path, error) && error)

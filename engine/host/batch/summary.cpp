@@ -70,7 +70,7 @@ struct List {
 storage::Json entry_json(const CampaignState& c, const std::string& reason) {
   storage::Json json = {{"id", c.id},
                         {"folder", storage::path_text(c.folder)},
-                        {"status", c.status},
+                        {"status", to_text(c.status)},
                         {"reason", reason}};
   if (!c.errors.empty()) {
     storage::Json errors = storage::Json::array();
@@ -124,17 +124,17 @@ struct Lists {
 
   /// An error if what the campaign's record says cannot be read.
   Expected<void> add(const CampaignState& c, const fs::path& out) {
-    if (c.status == "failed") {
+    if (c.status == evaluation::Status::failed) {
       add_failed(c, out);
       return {};
     }
     const bool is_done = c.action == Action::done;
     (is_done ? done : unchanged)
         .add(is_done ? c.id + ": " + reason_in(c.reason, words) : c.id, entry_json(c, c.reason));
-    if (!is_done && c.status == "ok") return {};
+    if (!is_done && c.status == evaluation::Status::ok) return {};
     const auto record = evaluation::read_record(storage::results_folder(out, c.id));
     if (!record) return fail(record.error());
-    if (c.status == "attention") {
+    if (c.status == evaluation::Status::attention) {
       std::string said, english;
       for (const evaluation::KnownFinding& f : record->findings) {
         if (!f.attention) continue;
@@ -174,7 +174,7 @@ struct Lists {
     if (const auto good = evaluation::read_record(out / folder)) {
       const evaluation::NightOf night{good->night, good->date};
       entry["last_good"] = night_json(night);
-      entry["last_good"]["status"] = good->status;
+      entry["last_good"]["status"] = to_text(good->status);
       entry["last_good"]["folder"] = folder;
       line += "; " + words("last-good", {{"night", night_words(night, words)}, {"folder", folder}});
     }
@@ -292,7 +292,7 @@ void write_json(storage::Spool& out, const Night& night, Lists& lists, const std
 std::size_t Night::failed() const {
   return static_cast<std::size_t>(
       std::count_if(campaigns.begin(), campaigns.end(),
-                    [](const CampaignState& c) { return c.status == "failed"; }));
+                    [](const CampaignState& c) { return c.status == evaluation::Status::failed; }));
 }
 
 Expected<void> write_summary(const Night& night, const fs::path& out, const std::string& version,

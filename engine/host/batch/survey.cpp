@@ -75,7 +75,7 @@ void fail_collisions(std::vector<CampaignState>& states) {
       if (named < end) folders += " and " + std::to_string(end - named) + " more folders";
       for (std::size_t k = i; k < end; ++k) {
         states[k].action = CampaignState::Action::todo;
-        states[k].status = "failed";
+        states[k].status = evaluation::Status::failed;
         states[k].reason = "no result: its id is not unique";
         states[k].errors = {Error{"campaign.id \"" + states[k].id + "\" is used by " + folders +
                                       "; expected one id for one campaign",
@@ -91,7 +91,7 @@ CampaignState failed_folder(const SiteWalk::Unlisted& unlisted) {
   state.folder = unlisted.folder;
   state.named_by_folder = true;
   state.is_campaign = false;
-  state.status = "failed";
+  state.status = evaluation::Status::failed;
   state.reason = "the folder cannot be listed";
   state.errors = {Error{"the folder " + storage::path_text(unlisted.folder) +
                         " cannot be listed, and what lies in it is not known: " + unlisted.why}};
@@ -105,7 +105,7 @@ void compare_twins(CampaignState& state, const std::vector<CampaignState>& all) 
   const reading::Twins now = twins_of(state, all);
   if (now == before) return;
   state.action = CampaignState::Action::todo;
-  state.status.clear();
+  state.status = evaluation::Status::none;
   state.errors.clear();
   state.reason = now.empty() ? "no other campaign has its readings any more"
                              : "campaign " + now.front().second + " has the same readings";
@@ -147,7 +147,8 @@ Expected<Surveyed> survey(const SurveyInput& input) {
   name_by_folder(states, *earlier);
   which.clear();
   for (std::size_t i = 0; i < states.size(); ++i)
-    if (states[i].named_by_folder && states[i].status.empty()) which.push_back(i);
+    if (states[i].named_by_folder && states[i].status == evaluation::Status::none)
+      which.push_back(i);
   if (auto looked = look_at_all(input, which, states); !looked) return fail(looked.error());
   all.vanished = vanished_of(*earlier, states, walk->unlisted, input.out, input.notes);
   std::stable_sort(states.begin(), states.end(),

@@ -22,7 +22,8 @@ constexpr std::size_t most_patience = 8;
 process::Parcel packed(const CampaignState& state, const std::string& unknown) {
   process::Parcel parcel;
   parcel.add(state.id).add(std::uint64_t{state.named_by_folder});
-  parcel.add(static_cast<std::uint64_t>(state.action)).add(state.reason).add(state.status);
+  parcel.add(static_cast<std::uint64_t>(state.action)).add(state.reason);
+  parcel.add(static_cast<std::uint64_t>(state.status));
   parcel.add(unknown).add(state.errors.size());
   for (const Error& e : state.errors) parcel.add(e.message).add(e.file).add(e.line).add(e.column);
   parcel.add(state.readings.size());
@@ -38,7 +39,7 @@ std::string unpack(process::Parcel& parcel, CampaignState& state) {
   state.named_by_folder = parcel.number() != 0;
   state.action = static_cast<CampaignState::Action>(parcel.number());
   state.reason = parcel.text();
-  state.status = parcel.text();
+  state.status = static_cast<evaluation::Status>(parcel.number());
   std::string unknown = parcel.text();
   for (std::uint64_t n = parcel.number(); n-- > 0;) {
     Error error{parcel.text()};
@@ -151,7 +152,7 @@ class Pool {
   void fail_at(std::size_t campaign, Error why) {
     CampaignState& state = states_[campaign];
     state.named_by_folder = true;
-    state.status = "failed";
+    state.status = evaluation::Status::failed;
     state.reason = "not evaluated";
     state.errors = {std::move(why)};
   }

@@ -16,7 +16,9 @@
 
 #include "host/certificates/register.h"
 #include "host/config/site_files.h"
+#include "host/config/site_logs.h"
 #include "host/evaluation/evaluate.h"
+#include "host/history/store.h"
 #include "nonio/sdk/plugin.h"
 
 /// Values as bytes, between two processes of one program: numbers bit by bit. What comes from a
@@ -233,7 +235,7 @@ NONIO_ON_THE_WIRE(Environment, a, b, c, d, e, f, g, h, i)
 NONIO_ON_THE_WIRE(Cmc, a, b, c)
 NONIO_ON_THE_WIRE(Laboratory, a, b, c, d, e, f, g)
 NONIO_ON_THE_WIRE(CertificateTexts, a, b, c, d, e, f, g, h, i, j, k, l)
-NONIO_ON_THE_WIRE(Measurement, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t)
+NONIO_ON_THE_WIRE(Measurement, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u)
 NONIO_ON_THE_WIRE(Formula::Parameter, a, b, c, d)
 NONIO_ON_THE_WIRE(Formula, a, b, c, d, e)
 NONIO_ON_THE_WIRE(Campaign, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
@@ -244,10 +246,15 @@ NONIO_ON_THE_WIRE(evaluation::AssignedNumber, a, b, c)
 NONIO_ON_THE_WIRE(evaluation::FollowedQuantity::Common, a, b)
 NONIO_ON_THE_WIRE(evaluation::FollowedQuantity, a, b, c, d, e, f, g, h, i, j, k)
 NONIO_ON_THE_WIRE(evaluation::FollowedGroup, a, b)
-NONIO_ON_THE_WIRE(evaluation::Evaluated, a, b, c, d, e, f, g)
+NONIO_ON_THE_WIRE(evaluation::Evaluated, a, b, c, d, e, f, g, h)
 
 NONIO_ON_THE_WIRE(config::TemplateFiles, a, b)
 NONIO_ON_THE_WIRE(config::SiteFiles, a, b)
+NONIO_ON_THE_WIRE(config::Event, a, b, c, d, e, f, g)
+NONIO_ON_THE_WIRE(config::Acknowledgement, a, b, c, d, e, f, g, h, i, j, k)
+NONIO_ON_THE_WIRE(config::Forgotten, a, b, c, d, e)
+NONIO_ON_THE_WIRE(config::SiteLogs, a, b, c)
+NONIO_ON_THE_WIRE(history::Updated, a, b, c)
 NONIO_ON_THE_WIRE(evaluation::KnownFinding, a, b, c, d, e)
 NONIO_ON_THE_WIRE(certificates::Approval, a, b, c, d)
 NONIO_ON_THE_WIRE(certificates::RegisterEntry, a, b, c, d, e, f, g, h, i, j, k, l)
@@ -256,8 +263,7 @@ NONIO_ON_THE_WIRE(certificates::WaitingDraft, a, b, c, d, e, f, g, h, i)
 NONIO_ON_THE_WIRE(Option, a, b, c, d, e, f, g)
 NONIO_ON_THE_WIRE(Info, a, b, c, d, e)
 NONIO_ON_THE_WIRE(loader::PluginFile, a, b, c)
-NONIO_ON_THE_WIRE(loader::Catalogue::Described, a, b)
-NONIO_ON_THE_WIRE(loader::Catalogue, a, b, c, d, e, f, g)
+NONIO_ON_THE_WIRE(loader::Catalogue, a, b, c, d, e, f, g, h)
 #undef NONIO_ON_THE_WIRE
 
 template <class... T>

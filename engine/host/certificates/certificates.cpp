@@ -237,7 +237,7 @@ std::string draft_name(const std::string& pdf) {
 }
 
 void note_finding(evaluation::Evaluated& evaluated, const std::string& output, Finding finding) {
-  if (finding.attention) evaluated.status = "attention";
+  if (finding.attention) evaluated.status = evaluation::Status::attention;
   for (Results::Written& w : evaluated.results.outputs)
     if (w.plugin == output) return w.result.findings.push_back(std::move(finding));
 }
@@ -260,7 +260,8 @@ Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, CampaignFiles& f
   const auto& certificate = evaluated.certificate;
   const bool is_wanted =
       certificate ? !certificate->issued && !certificate->draft : is_asked(evaluated.results);
-  if (is_wanted && signer == nullptr && evaluated.status != "failed") return fail(no_key);
+  if (is_wanted && signer == nullptr && evaluated.status != evaluation::Status::failed)
+    return fail(no_key);
   return sign_artifacts(evaluated, files, context, SignWith{sign}, now);
 }
 
@@ -268,7 +269,7 @@ Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, CampaignFiles& f
                               const reading::Context& context, const SignWith& how,
                               sign::Time now) {
   if (!evaluated.certificate && !is_asked(evaluated.results)) return {};
-  if (evaluated.status == "failed") {
+  if (evaluated.status == evaluation::Status::failed) {
     remove_unsigned(evaluated);
     return {};
   }

@@ -259,7 +259,7 @@ class Again {
   /// The night's own way up to the signature, which holds what is to be signed against what is
   /// there.
   Expected<std::string> same_file(evaluation::Evaluated& again) {
-    if (again.status == "failed")
+    if (again.status == evaluation::Status::failed)
       return fail("the attached readings cannot be evaluated: " +
                   again.results.errors.front().message);
     const auto time = pdf::stated_time(pdf_);

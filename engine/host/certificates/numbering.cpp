@@ -367,7 +367,7 @@ Expected<void> Numbers::issue_new(evaluation::Evaluated& evaluated) const {
 }
 
 Expected<void> Numbers::issue(evaluation::Evaluated& evaluated, const std::string& folder) const {
-  if (!evaluated.certificate || evaluated.status == "failed") return {};
+  if (!evaluated.certificate || evaluated.status == evaluation::Status::failed) return {};
   if (evaluated.certificate->draft) return enter_draft(evaluated, folder);
   if (evaluated.certificate->issued) {
     take_issued(evaluated);

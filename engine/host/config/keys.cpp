@@ -164,6 +164,8 @@ constexpr Key machine_keys[] = {
      .named_so = "rotary"},
 };
 
+constexpr Choice purposes[] = {{"periodic"}, {"acceptance"}, {"after-repair"}, {"check"}};
+
 constexpr Key campaign_keys[] = {
     {.name = "id",
      .holds = text,
@@ -186,6 +188,12 @@ constexpr Key campaign_keys[] = {
      .holds = date,
      .help = "Day on which the item was received, for the "
              "certificate."},
+    {.name = "purpose",
+     .holds = text,
+     .help = "Why the machine was measured. A check is a series of its own in the machine's "
+             "history; the others are told apart in it.",
+     .otherwise = "periodic",
+     .choices = purposes},
 };
 
 constexpr Key instrument_keys[] = {
@@ -361,8 +369,8 @@ constexpr Words an_end = "the axis positions of that end, { X = 0, Y = 0 }";
 constexpr Key measurement_keys[] = {
     {.name = "id",
      .holds = text,
-     .help = "Name of the measurement, unique in the campaign; the text after its first space "
-             "is the state of the machine.",
+     .help = "Name of the measurement, unique in the campaign. Without `state`, what follows its "
+             "first space is the state of the machine.",
      .required = true,
      .wanted = "expected up to 60 characters without / and \\, not starting with a point",
      .text = {.not_letters = "/\\\n\t", .not_first = ". ", .longest = 60}},
@@ -407,6 +415,13 @@ constexpr Key measurement_keys[] = {
              "has its own table.",
      .only = {"kind", axis_runs},
      .choices = sides},
+    {.name = "state",
+     .holds = text,
+     .help =
+         "State of the machine in which it was measured. Diagonals, straightness lines and runs "
+         "of one state are evaluated together; \"\": it holds for every state.",
+     .wanted = "expected up to 60 characters without / and \\, not starting with a point",
+     .text = {.not_letters = "/\\\n\t", .not_first = ". ", .longest = 60}},
     {.name = "about",
      .holds = text,
      .help = "The axis of the rotation (yaw of X: Z), right-handed positive.",
@@ -867,6 +882,24 @@ constexpr Key limits_keys[] = {
      .least = 0.0,
      .most = 1e6,
      .above = true},
+    {.name = "vanished",
+     .holds = whole,
+     .help = "So many campaigns may be gone that the night before has seen; with more of them the "
+             "night's exit status is 1. What is meant to be gone is said with `nonio forget`.",
+     .otherwise = "0"},
+};
+
+constexpr Key alias_keys[] = {
+    {.name = "name",
+     .holds = text,
+     .help = "How a machine is called in campaigns: an asset, or maker and serial with a space "
+             "between them.",
+     .required = true},
+    {.name = "asset",
+     .holds = text,
+     .help = "The machine that it is, as `nonio query` calls it.",
+     .required = true},
+    {.name = "why", .holds = text, .help = "How this is known.", .required = true},
 };
 
 constexpr Choice result_folders[] = {{"flat", "OUT/<id>"}, {"hashed", "OUT/ab/<id>"}};
@@ -950,6 +983,10 @@ constexpr Key site_file_keys[] = {
      .keys = results_keys},
     run_key,
     options_key,
+    {.name = "alias",
+     .holds = tables,
+     .help = "Two names of one machine, [[alias]]: its campaigns are one history.",
+     .keys = alias_keys},
     {.name = "signing",
      .holds = table,
      .help = "Key and time stamps for signed certificates.",
@@ -1241,6 +1278,104 @@ constexpr Key machine_file_keys[] = {
      .named_so = "rotary"},
 };
 
+constexpr Words an_asset_or_serial =
+    "The machine as `nonio query` calls it: its asset, or maker and serial with a space between "
+    "them.";
+constexpr Key written_by = {.name = "by", .holds = text, .help = "Who says so.", .required = true};
+
+constexpr Choice event_kinds[] = {{"crash"},      {"repair"},   {"compensation"}, {"moved"},
+                                  {"instrument"}, {"software"}, {"other"}};
+
+constexpr Key event_keys[] = {
+    {.name = "date", .holds = date, .help = "Day on which it happened.", .required = true},
+    {.name = "machine", .holds = text, .help = an_asset_or_serial, .required = true},
+    {.name = "axis",
+     .holds = text,
+     .help = "The axis that it concerns, as the control calls it; without it the whole machine."},
+    {.name = "kind",
+     .holds = text,
+     .help = "What happened: crash, repair, compensation (a table came into the control), moved "
+             "(set up anew), instrument (another one from now on), software, other.",
+     .required = true,
+     .choices = event_kinds},
+    {.name = "text", .holds = text, .help = "In the words of who was there.", .required = true},
+    {.name = "by", .holds = text, .help = "Who says so."},
+};
+
+constexpr Key acknowledged_keys[] = {
+    {.name = "date", .holds = date, .help = "Day on which it was said.", .required = true},
+    {.name = "finding",
+     .holds = text,
+     .help = "Id of the finding, or kind of the line of the morning.",
+     .required = true},
+    {.name = "machine", .holds = text, .help = an_asset_or_serial, .required = true},
+    {.name = "axis", .holds = text, .help = "The axis; without it all of them."},
+    {.name = "quantity", .holds = text, .help = "The quantity, such as B_mean; without it all."},
+    {.name = "until",
+     .holds = date,
+     .help = "Last day on which it is known; then it is new again.",
+     .required = true},
+    {.name = "value",
+     .holds = number,
+     .help = "Value of the quantity on that day, in its unit: it is new again where it moves by "
+             "more than U."},
+    {.name = "U",
+     .holds = number,
+     .help = "Expanded uncertainty (k = 2) of that value.",
+     .wanted = not_negative,
+     .least = 0.0},
+    written_by,
+    {.name = "why", .holds = text, .help = "Why it may stand until then.", .required = true},
+};
+
+constexpr Key forgotten_keys[] = {
+    {.name = "date", .holds = date, .help = "Day on which it was said.", .required = true},
+    {.name = "campaign",
+     .holds = text,
+     .help = "Id of a campaign that is meant to be gone.",
+     .required = true,
+     .wanted = "expected a-z 0-9 . _ - and no more than 100, not starting with a point; found "
+               "\"{}\"",
+     .text = campaign_id_rule},
+    written_by,
+    {.name = "why", .holds = text, .help = "Why it is gone.", .required = true},
+};
+
+constexpr Key events_file_keys[] = {
+    required_format(),
+    {.name = "event",
+     .holds = tables,
+     .help = "What happened to a machine, [[event]].",
+     .keys = event_keys},
+};
+constexpr Key acknowledged_file_keys[] = {
+    required_format(),
+    {.name = "acknowledged",
+     .holds = tables,
+     .help = "What somebody knows and lets stand, [[acknowledged]].",
+     .keys = acknowledged_keys},
+};
+constexpr Key forgotten_file_keys[] = {
+    required_format(),
+    {.name = "forgotten",
+     .holds = tables,
+     .help = "Campaigns that are meant to be gone, [[forgotten]].",
+     .keys = forgotten_keys},
+};
+
+constexpr Key events_toml = {.name = "events.toml",
+                             .holds = table,
+                             .help = "What happened to the machines of a site.",
+                             .keys = events_file_keys};
+constexpr Key acknowledged_toml = {.name = "acknowledged.toml",
+                                   .holds = table,
+                                   .help = "What is known of the machines of a site, until when.",
+                                   .keys = acknowledged_file_keys};
+constexpr Key forgotten_toml = {.name = "forgotten.toml",
+                                .holds = table,
+                                .help = "Campaigns of a site that are meant to be gone.",
+                                .keys = forgotten_file_keys};
+
 constexpr Key machine_toml = {.name = "machine.toml",
                               .holds = table,
                               .help = "Record of a machine, machines/<asset>.toml of a site.",
@@ -1277,6 +1412,9 @@ bool has_letter(std::string_view letters, char c) {
 const Key& campaign_file() { return declared::campaign_toml; }
 const Key& site_file() { return declared::site_toml; }
 const Key& machine_file() { return declared::machine_toml; }
+const Key& events_file() { return declared::events_toml; }
+const Key& acknowledged_file() { return declared::acknowledged_toml; }
+const Key& forgotten_file() { return declared::forgotten_toml; }
 const Key& specification_file() { return declared::specification_toml; }
 
 bool obeys(std::string_view text, const TextRule& rule) {

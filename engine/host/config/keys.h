@@ -88,6 +88,10 @@ const Key& campaign_file();
 const Key& site_file();
 /// SITE/machines/<asset>.toml.
 const Key& machine_file();
+/// SITE/events.toml, acknowledged.toml and forgotten.toml: what people say of machines.
+const Key& events_file();
+const Key& acknowledged_file();
+const Key& forgotten_file();
 /// What a specification of `nonio simulate` has besides campaign.toml.
 const Key& specification_file();
 /// What tells the kind of axis that a cycle moves; settled by the code that reads cycles.

@@ -30,6 +30,25 @@ RunChoice read_run(TableReader& top) {
   return run;
 }
 
+/// What of an option is no setting: of a table, the first key in it that is no number.
+Error wrong_option(const std::string& place, const toml::node& value, const std::string& file) {
+  if (const toml::table* tables = value.as_table())
+    for (const auto& [name, node] : *tables) {
+      const std::string at = place + "." + std::string(name.str());
+      const toml::table* entries = node.as_table();
+      if (entries == nullptr)
+        return {at + ": wanted a table of numbers, found " + type_name(node), file,
+                node.source().begin.line};
+      for (const auto& [key, item] : *entries)
+        if (const auto number = item.is_number() ? item.value<double>() : std::nullopt;
+            !number || !std::isfinite(*number))
+          return {at + "." + std::string(key.str()) + ": expected a finite number, found " +
+                      type_name(item),
+                  file, item.source().begin.line};
+    }
+  return {place + ": wanted a value, found " + type_name(value), file, value.source().begin.line};
+}
+
 /// Of plugins that only the run knows: what is wrong with them is said there.
 RawOptions read_options(TableReader& top, std::vector<Error>& errors) {
   RawOptions options;
@@ -50,9 +69,8 @@ RawOptions read_options(TableReader& top, std::vector<Error>& errors) {
       if (auto setting = to_setting(value))
         of_plugin[std::string(key.str())] = RawOption{std::move(*setting), file, line};
       else
-        errors.push_back(Error{"options." + name + "." + std::string(key.str()) +
-                                   ": expected a value, found " + type_name(value),
-                               file, line});
+        errors.push_back(
+            wrong_option("options." + name + "." + std::string(key.str()), value, file));
     }
   }
   return options;
@@ -245,6 +263,8 @@ Measurement read_measurement(TableReader& reader) {
   m.adjustment = reader.text("adjustment");
   m.order = reader.text("order");
   if (m.kind == "axis") m.side = reader.text("side");
+  if (std::string state = reader.text("state"); reader.raw().contains("state"))
+    m.state = std::move(state);
   if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
     reader.error("lateral", "expected another axis than " + m.axis +
                                 ", which moves: along it the deviation is one of positioning");
@@ -305,9 +325,10 @@ void read_tables(TableReader& top, Manifest& manifest) {
   reader->finish();
 }
 
-void read_campaign(TableReader& top, Campaign& campaign) {
+void read_campaign(TableReader& top, Manifest& manifest) {
   auto reader = top.table("campaign");
   if (!reader) return;
+  Campaign& campaign = manifest.campaign;
   campaign.id = reader->text("id");
   campaign.customer = reader->text("customer");
   campaign.site = reader->text("site");
@@ -316,6 +337,7 @@ void read_campaign(TableReader& top, Campaign& campaign) {
   campaign.date = reader->date("date");
   campaign.end_date = reader->date("end_date");
   campaign.received = reader->date("received");
+  manifest.purpose = reader->text("purpose");
   if (!campaign.end_date.empty() && campaign.end_date < campaign.date)
     reader->error("end_date", "expected a day that is not before date, " + campaign.date);
   reader->finish();
@@ -347,7 +369,7 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
   Campaign& campaign = manifest.campaign;
   TableReader top(*root, campaign_file(), file, errors);
   top.integer("format");
-  read_campaign(top, campaign);
+  read_campaign(top, manifest);
   campaign.machine = read_machine(top);
   restore_axis_order(*root, campaign.machine);
   campaign.instrument = read_instrument(top);
@@ -387,6 +409,27 @@ Cmc read_cmc(TableReader& laboratory) {
   return cmc;
 }
 
+/// A name that leads to a name would be followed or not, whoever reads it.
+std::vector<Alias> read_aliases(TableReader& top) {
+  std::vector<Alias> aliases;
+  std::set<std::string> names;
+  auto tables = top.tables("alias");
+  for (TableReader& reader : tables) {
+    Alias alias{reader.text("name"), reader.text("asset"), reader.text("why")};
+    if (!alias.name.empty() && !names.insert(alias.name).second)
+      reader.error("name", "\"" + alias.name + "\" is there twice");
+    if (!alias.why.empty() && !says_something(alias.why))
+      reader.error("why", "expected how this is known, found \"" + alias.why + "\"");
+    reader.finish();
+    aliases.push_back(std::move(alias));
+  }
+  for (std::size_t i = 0; i < aliases.size(); ++i)
+    if (names.contains(aliases[i].asset))
+      tables[i].error("asset", "\"" + aliases[i].asset +
+                                   "\" is itself the name of an alias; expected the machine");
+  return aliases;
+}
+
 std::string settings_of(const toml::table& root, std::initializer_list<const char*> keys) {
   toml::table out;
   for (const char* key : keys)
@@ -419,6 +462,8 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
     site.limits.seconds = reader->number("seconds").value_or(site.limits.seconds);
     site.limits.memory_MB = reader->number("memory_MB").value_or(site.limits.memory_MB);
     site.limits.disk_seconds = reader->number("disk_seconds").value_or(site.limits.disk_seconds);
+    if (const auto most = reader->integer("vanished"))
+      site.limits.vanished = static_cast<std::size_t>(*most);
     reader->finish();
   }
   if (auto reader = top.table("results")) {
@@ -427,6 +472,7 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   }
   site.run = read_run(top);
   site.options = read_options(top, errors);
+  site.aliases = read_aliases(top);
   site.evaluation = settings_of(*root, {"run", "options"});
   toml::table printed = *root;
   // How it comes to a release is the laboratory's own business, and nothing that is printed.

@@ -26,6 +26,9 @@ struct RawOption {
   std::string file;
   std::uint64_t line = 0;
 };
+/// Tables as they were written before there were any: "X number=1 step_mm=50".
+Expected<NumberTables> number_tables_of(const std::vector<std::string>& entries);
+
 using RawOptions = std::map<std::string, std::map<std::string, RawOption>>;
 
 /// Line of each key of a file: "campaign.customer", "measurement.X.file" for the measurement with
@@ -45,6 +48,7 @@ struct StandingFinding {
 
 struct Manifest {
   Campaign campaign;
+  std::string purpose{};  ///< periodic, acceptance, after-repair, check; empty: not said
   std::vector<std::string> undeclared_axes{};  ///< measured, and not among [machine.axes]
   std::vector<StandingFinding> tables_may_stand{};
   RunChoice run;
@@ -56,6 +60,12 @@ struct Limits {
   double seconds = 600.0;
   double memory_MB = 4096.0;
   double disk_seconds = 60.0;  ///< without a sign of life, in the survey
+  std::size_t vanished = 0;    ///< so many campaigns may be gone
+};
+
+/// `[[alias]]` of site.toml: two names of one machine.
+struct Alias {
+  std::string name, asset, why;
 };
 
 /// `[signing]` of site.toml: where the key is, where its password comes from, time stamps, and whom
@@ -93,6 +103,7 @@ struct SiteFile {
   RunChoice run;
   RawOptions options;
   Limits limits;
+  std::vector<Alias> aliases{};  ///< each name once; no asset is a name
   KeyLines lines;
   std::string language = "en";     ///< of the terminal and of summary.txt
   bool hashed_folders = false;     ///< results in OUT/ab/<id>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
 
 #include "host/config/manifest.h"
 #include "host/config/toml_reader.h"
@@ -22,22 +25,66 @@ const char* kind_of(const Setting& setting) {
       return "a text";
     case 4:
       return "a list of numbers";
-    default:
+    case 5:
       return "a list of texts";
+    default:
+      return "tables of numbers";
   }
 }
 
-/// The setting as the declared kind; a whole number will do where a number is wanted, and an empty
-/// list for any.
-std::optional<Setting> as_declared(const Setting& found, const Setting& declared) {
+/// "X reference_mm=0 step_mm=50", as manifests said it before there were tables.
+Expected<void> take_entry(const std::string& entry, NumberTables& out) {
+  std::istringstream words(entry);
+  std::string name, word;
+  if (!(words >> name)) return fail("an empty entry");
+  NumberTable& table = out[name];
+  while (words >> word) {
+    const std::size_t equals = std::min(word.find('='), word.size());
+    const std::string key = word.substr(0, equals);
+    const char* const end = word.data() + word.size();
+    const char* from = word.data() + std::min(equals + 1, word.size());
+    if (from != end && *from == '+') ++from;
+    double value = 0.0;
+    const auto read = std::from_chars(from, end, value);
+    if (from == end || read.ec != std::errc() || read.ptr != end || !std::isfinite(value))
+      return fail("\"" + entry + "\": expected " + key + "=NUMBER, found " + word);
+    const auto [first, fresh] = table.emplace(key, value);
+    if (!fresh && first->second != value) {
+      std::string said;
+      append_shortest(said, first->second);
+      return fail("axis " + name + " has " + key + "=" + said + " and " + word +
+                  ": which of them?");
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Expected<NumberTables> number_tables_of(const std::vector<std::string>& entries) {
+  NumberTables tables;
+  for (const std::string& entry : entries)
+    if (auto taken = take_entry(entry, tables); !taken) return fail(taken.error());
+  return tables;
+}
+
+namespace {
+
+/// The setting as the declared kind; a whole number will do where a number is wanted, an empty
+/// list for any, and "X number=1" for a table X. Else why not.
+Expected<Setting> as_declared(const Setting& found, const Setting& declared) {
   if (found.index() == declared.index()) return found;
   if (const auto* i = std::get_if<std::int64_t>(&found);
       i != nullptr && std::holds_alternative<double>(declared))
     return Setting(static_cast<double>(*i));
-  if (const auto* list = std::get_if<std::vector<std::string>>(&found);
-      list != nullptr && list->empty() && std::holds_alternative<std::vector<double>>(declared))
+  const auto* list = std::get_if<std::vector<std::string>>(&found);
+  if (list != nullptr && list->empty() && std::holds_alternative<std::vector<double>>(declared))
     return Setting(std::vector<double>{});
-  return std::nullopt;
+  if (list != nullptr && std::holds_alternative<NumberTables>(declared)) {
+    auto tables = number_tables_of(*list);
+    return tables ? Expected<Setting>(Setting(std::move(*tables))) : fail(tables.error());
+  }
+  return fail(std::string("expected ") + kind_of(declared) + ", found " + kind_of(found));
 }
 
 std::string range_complaint(const Option& option, const Setting& setting) {
@@ -48,13 +95,12 @@ std::string range_complaint(const Option& option, const Setting& setting) {
     value = static_cast<double>(*i);
   else
     return {};
-  if ((!option.least || value >= *option.least) && (!option.most || value <= *option.most))
-    return {};
-  std::string wanted = "expected";
-  if (option.least) wanted += " at least " + short_text(*option.least, 6);
-  if (option.most)
-    wanted += std::string(option.least ? " and" : "") + " at most " + short_text(*option.most, 6);
-  return wanted + ", found " + short_text(value, 6);
+  if ((!option.min || value >= *option.min) && (!option.max || value <= *option.max)) return {};
+  std::string expected = "expected";
+  if (option.min) expected += " at least " + short_text(*option.min, 6);
+  if (option.max)
+    expected += std::string(option.min ? " and" : "") + " at most " + short_text(*option.max, 6);
+  return expected + ", found " + short_text(value, 6);
 }
 
 std::string choice_complaint(const Option& option, const Setting& setting) {
@@ -83,7 +129,7 @@ Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
   std::vector<Error> errors;
   std::vector<std::string> known;
   for (const Option& option : plugin.options) {
-    settings.values[option.name] = option.otherwise;
+    settings.values[option.name] = option.default_value;
     known.push_back(option.name);
   }
   for (const RawOptions* source : {&site, &campaign}) {
@@ -98,10 +144,8 @@ Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
                                raw.file, raw.line});
         continue;
       }
-      const auto value = as_declared(raw.value, option->otherwise);
-      std::string complaint = value ? range_complaint(*option, *value)
-                                    : std::string("expected ") + kind_of(option->otherwise) +
-                                          ", found " + kind_of(raw.value);
+      const auto value = as_declared(raw.value, option->default_value);
+      std::string complaint = value ? range_complaint(*option, *value) : value.error().message;
       if (complaint.empty()) complaint = choice_complaint(*option, *value);
       if (complaint.empty())
         settings.values[name] = *value;
@@ -145,10 +189,11 @@ namespace {
 
 /// What was written on a command line, as the kind that the option has.
 Setting setting_of(std::string_view text, const Option* declared) {
-  if (declared != nullptr && std::holds_alternative<std::string>(declared->otherwise))
+  if (declared != nullptr && std::holds_alternative<std::string>(declared->default_value))
     return std::string(text);
   if (declared != nullptr &&
-      std::holds_alternative<std::vector<std::string>>(declared->otherwise)) {
+      (std::holds_alternative<std::vector<std::string>>(declared->default_value) ||
+       std::holds_alternative<NumberTables>(declared->default_value))) {
     std::vector<std::string> list;
     for (std::size_t from = 0; from <= text.size();) {
       const std::size_t comma = std::min(text.find(',', from), text.size());

@@ -205,11 +205,32 @@ std::string type_name(const toml::node& node) {
   }
 }
 
+namespace {
+
+/// Tables that hold finite numbers and nothing else.
+std::optional<Setting> number_tables(const toml::table& table) {
+  NumberTables tables;
+  for (const auto& [name, node] : table) {
+    const toml::table* entries = node.as_table();
+    if (entries == nullptr) return std::nullopt;
+    NumberTable& out = tables[std::string(name.str())];
+    for (const auto& [key, item] : *entries) {
+      const auto number = item.is_number() ? item.value<double>() : std::nullopt;
+      if (!number || !std::isfinite(*number)) return std::nullopt;
+      out[std::string(key.str())] = *number;
+    }
+  }
+  return Setting(std::move(tables));
+}
+
+}  // namespace
+
 std::optional<Setting> to_setting(const toml::node& node) {
   if (const auto v = node.value_exact<bool>()) return Setting(*v);
   if (const auto v = node.value_exact<std::int64_t>()) return Setting(*v);
   if (const auto v = node.value_exact<double>()) return Setting(*v);
   if (const auto v = node.value_exact<std::string>()) return Setting(*v);
+  if (const toml::table* table = node.as_table()) return number_tables(*table);
   const toml::array* list = node.as_array();
   if (list == nullptr) return std::nullopt;
   std::vector<std::string> words;

@@ -112,7 +112,7 @@ void note_lines(const toml::table& table, const std::string& prefix, KeyLines& l
 
 std::string type_name(const toml::node& node);
 
-/// A leaf as a setting; nothing for tables, dates and mixed arrays.
+/// A value, or tables of numbers, as a setting; nothing for other tables, dates and mixed arrays.
 std::optional<Setting> to_setting(const toml::node& node);
 
 }  // namespace nonio::host::config

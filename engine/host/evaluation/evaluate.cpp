@@ -45,41 +45,17 @@ bool Work::asks_to_apply(const std::string& who, const std::string& where,
 }
 
 bool Work::is_chosen_by_itself(const Info& info) const {
-  return !info.on_request || read.manifest->options.contains(info.name) ||
+  return !info.opt_in || read.manifest->options.contains(info.name) ||
          campaign().machine.control == info.name;
 }
 
-template <class Plugin>
-std::vector<const Plugin*> chosen_plugins(
-    const Work& work, const std::vector<Plugin>& all, const char* kind, const char* key,
-    const std::optional<std::vector<std::string>>& of_campaign,
-    const std::optional<std::vector<std::string>>& of_site) {
-  std::vector<const Plugin*> out;
-  const auto& names = of_campaign ? of_campaign : of_site;
-  if (!names) {
-    for (const Plugin& p : all)
-      if (work.is_chosen_by_itself(p.info)) out.push_back(&p);
-    return out;
-  }
-  for (const std::string& name : *names) {
-    if (name == reading::model_fit_name) continue;
-    const auto found =
-        std::find_if(all.begin(), all.end(), [&](const Plugin& p) { return p.info.name == name; });
-    if (found == all.end())
+void report_absent(const Work& work, const char* kind, const char* key, const PluginNames& names,
+                   const std::function<bool(const std::string&)>& is_there) {
+  if (!names) return;
+  for (const std::string& name : *names)
+    if (name != reading::model_fit_name && !is_there(name))
       work.report(work.error_at(key, work.context.plugins->absence(kind, name)));
-    else if (std::find(out.begin(), out.end(), &*found) == out.end())
-      out.push_back(&*found);
-  }
-  return out;
 }
-
-template std::vector<const Analysis*> chosen_plugins(
-    const Work&, const std::vector<Analysis>&, const char*, const char*,
-    const std::optional<std::vector<std::string>>&, const std::optional<std::vector<std::string>>&);
-template std::vector<const Output*> chosen_plugins(const Work&, const std::vector<Output>&,
-                                                   const char*, const char*,
-                                                   const std::optional<std::vector<std::string>>&,
-                                                   const std::optional<std::vector<std::string>>&);
 
 namespace {
 
@@ -97,6 +73,7 @@ bool begin_results(reading::ReadCampaign& read, const std::string& id, const rea
   out.results.notes = std::move(read.notes);
   if (!read.manifest) return false;
   out.campaign = read.manifest->campaign;
+  out.purpose = read.manifest->purpose;
   if (out.campaign.id == id) return true;
   Error error{"the id changed while the campaign was read", config::manifest_name};
   reading::give_line(error, read.manifest->lines, {"campaign"});
@@ -128,14 +105,10 @@ AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
   if (failed()) return out;
   out.evaluated.followed = followed_of(out.read, results);
   results.conformity = held_against_tolerances(work.campaign(), results.analyses);
-  out.documents = wanted_outputs(work);
-  write_tables(work, out.documents, doubts, results);
-  const auto is_document = [](const WantedOutput& w) {
-    return w.output->stage == Output::Stage::document;
-  };
-  if (std::any_of(out.documents.begin(), out.documents.end(), is_document))
-    out.number = number_request(work, out.documents, results);
-  std::erase_if(out.documents, [&](const WantedOutput& w) { return !is_document(w); });
+  WantedPlugins wanted = wanted_plugins(work, results.notes);
+  write_tables(work, wanted.controllers, doubts, results);
+  out.documents = std::move(wanted.outputs);
+  if (!out.documents.empty()) out.number = number_request(work, out.documents, results);
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "host/evaluation/followed.h"
+#include "host/evaluation/status.h"
 #include "host/reading/context.h"
 #include "nonio/sdk/results.h"
 
@@ -37,10 +38,11 @@ struct Evaluated {
   Campaign campaign;
   Results results;
   reading::Inputs inputs;  ///< of the campaign's own files, manifest first
-  std::string status;      ///< ok, attention, failed
+  Status status = Status::none;
   std::optional<Certificate> certificate{};
   bool retry = false;  ///< it failed for a reason that does not lie in its files
   std::vector<FollowedGroup> followed{};
+  std::string purpose{};  ///< as the manifest says it
 };
 
 /// What has become of a campaign's wish to be issued under a number.

@@ -9,6 +9,7 @@
 #include "host/process/guarded.h"
 #include "host/reading/names.h"
 #include "host/reading/plausibility.h"
+#include "nonio/sdk/check.h"
 #include "nonio/sdk/statement.h"
 
 namespace nonio::host::evaluation {
@@ -51,7 +52,7 @@ std::optional<Results::Analysed> analysed_with(
   work.stage(measurement == nullptr ? who : who + " (measurement " + id + ")");
   auto evaluation = process::guarded(who, [&] { return call(*options); });
   if (evaluation)
-    if (auto sound = check_evaluation(*evaluation); !sound)
+    if (auto sound = check(*evaluation); !sound)
       evaluation = fail(who + " gave " + sound.error().message);
   if (!evaluation) {
     Error& error = evaluation.error();
@@ -77,9 +78,12 @@ std::optional<Results::Analysed> analysed_with(
 
 std::vector<Results::Analysed> run_analyses(const Work& work) {
   const reading::ReadCampaign& read = work.read;
-  const auto analyses =
-      chosen_plugins(work, work.context.plugins->analyses(), "analysis", "run.analyses",
-                     read.manifest->run.analyses, work.context.site.run.analyses);
+  const PluginNames& names =
+      read.manifest->run.analyses ? read.manifest->run.analyses : work.context.site.run.analyses;
+  const auto& all = work.context.plugins->analyses();
+  report_absent(work, "analysis", "run.analyses", names,
+                [&](const std::string& name) { return has_plugin(all, name); });
+  const auto analyses = chosen_plugins(work, all, names);
   for (Error& e : reading::ownerless_options(read.manifest->options, *work.context.plugins))
     work.report(std::move(e));
   std::vector<Results::Analysed> out;
@@ -123,30 +127,6 @@ std::vector<Results::Analysed> fit_models(const Work& work, std::vector<ModelFit
   for (Results::Analysed& one : fitted->analyses)
     for (Finding& f : one.evaluation.findings) f.measurement = one.measurement;
   return std::move(fitted->analyses);
-}
-
-Expected<void> check_evaluation(const Evaluation& e) {
-  for (const Value& v : e.values)
-    if (!std::isfinite(v.value) || (v.U && !std::isfinite(*v.U)) || !std::isfinite(v.k) ||
-        (v.repeatability && !std::isfinite(*v.repeatability)))
-      return fail("a value " + v.name + " that is not a number");
-  for (const Finding& f : e.findings)
-    for (const Number& n : f.evidence)
-      if (!std::isfinite(n.value))
-        return fail("evidence " + n.name + " of finding " + f.id + " that is not a number");
-  for (const PointTable* table : {&e.points, &e.rows})
-    for (const PointTable::Column& c : table->columns)
-      if (c.values.size() != table->columns.front().values.size())
-        return fail("a table with columns of different lengths");
-  for (const Series& s : e.series)
-    if (s.value.size() != s.position.size() || (!s.U.empty() && s.U.size() != s.value.size()) ||
-        (!s.repeatability.empty() && s.repeatability.size() != s.value.size()))
-      return fail("a series " + s.name + " with columns of different lengths");
-  if (e.budget)
-    for (const auto& r : e.budget->results)
-      if (r.u.size() != e.budget->contributions.size())
-        return fail("a budget of " + r.name + " with other contributions than it lists");
-  return {};
 }
 
 std::vector<std::string> open_doubts(const Work& work, std::vector<Results::Analysed>& analyses) {

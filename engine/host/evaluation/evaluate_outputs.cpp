@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "host/evaluation/evaluation.h"
@@ -11,6 +10,7 @@
 #include "host/storage/files.h"
 #include "host/storage/nearest.h"
 #include "host/tables/table_check.h"
+#include "nonio/sdk/check.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::host::evaluation {
@@ -23,68 +23,87 @@ std::string comma_list(const std::vector<std::string>& names) {
   return text;
 }
 
-bool is_table(const Output& output) { return output.stage == Output::Stage::table; }
-
-/// Whether outputs write tables for the machine's control, if it has one.
-bool check_control(const Work& work) {
+/// Whether a controller writes tables for the machine's control, if it has one.
+void check_control(const Work& work) {
   const std::string& control = work.campaign().machine.control;
   std::vector<std::string> tables;
-  for (const Output& o : work.context.plugins->outputs())
-    if (is_table(o)) tables.push_back(o.info.name);
-  if (control.empty() || std::find(tables.begin(), tables.end(), control) != tables.end())
-    return true;
-  work.report(work.error_at("machine.control", "no output writes tables for \"" + control + "\"" +
-                                                   storage::suggestion(control, tables) +
+  for (const Controller& c : work.context.plugins->controllers()) tables.push_back(c.info.name);
+  if (control.empty() || std::find(tables.begin(), tables.end(), control) != tables.end()) return;
+  work.report(work.error_at("machine.control", "no controller writes tables for \"" + control +
+                                                   "\"" + storage::suggestion(control, tables) +
                                                    "; there are " + comma_list(tables)));
-  return false;
 }
 
 /// A table of another control than the machine's: the manifest that asks for it is wrong, and of
 /// what site.toml asks for all machines it is left out.
-bool is_control_of_record(const Work& work, const std::string& output) {
+bool is_control_of_record(const Work& work, const std::string& controller) {
   const auto& machine = work.read.machine;
-  if (!machine || machine->control.empty() || machine->control == output) return true;
+  if (!machine || machine->control.empty() || machine->control == controller) return true;
   if (work.read.manifest->run.outputs)
-    work.report(work.error_at("run.outputs", "asks for tables of " + output + ", and " +
+    work.report(work.error_at("run.outputs", "asks for tables of " + controller + ", and " +
                                                  machine->file + " says that the control is " +
                                                  machine->control));
   return false;
 }
 
-std::optional<Settings> settle_output(const Work& work, const Output& output) {
-  if (!is_table(output)) return work.settle(output.info);
+/// How axes are written now, for a manifest that has them as texts.
+void note_axes_as_texts(const Work& work, const Info& controller, const Settings& settled,
+                        std::vector<Remark>& notes) {
+  const auto& options = work.read.manifest->options;
+  const auto plugin = options.find(controller.name);
+  if (plugin == options.end()) return;
+  const auto axes = plugin->second.find("axes");
+  const NumberTables tables = settled.tables("axes");
+  if (axes == plugin->second.end() || tables.empty() ||
+      !std::holds_alternative<std::vector<std::string>>(axes->second.value))
+    return;
+  notes.push_back(
+      {"options.axes-as-texts",
+       {},
+       {{"line", std::to_string(axes->second.line)},
+        {"table", "[options." + controller.name + ".axes." + tables.begin()->first + "]"}}});
+}
+
+std::optional<Settings> settle_controller(const Work& work, const Info& controller,
+                                          std::vector<Remark>& notes) {
   auto options =
-      config::settle_table_options(output.info, work.context.site.options, *work.read.manifest,
+      config::settle_table_options(controller, work.context.site.options, *work.read.manifest,
                                    work.read.machine ? &*work.read.machine : nullptr);
-  if (options) return std::move(*options);
+  if (options) {
+    note_axes_as_texts(work, controller, *options, notes);
+    return std::move(*options);
+  }
   for (Error& e : options.error()) work.report(std::move(e));
   return std::nullopt;
 }
 
 }  // namespace
 
-std::vector<WantedOutput> wanted_outputs(const Work& work) {
-  const auto &of_campaign = work.read.manifest->run.outputs,
-             &of_site = work.context.site.run.outputs;
-  auto outputs = chosen_plugins(work, work.context.plugins->outputs(), "output", "run.outputs",
-                                of_campaign, of_site);
-  const bool all = !of_campaign && !of_site;
+WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes) {
+  const auto& own = work.read.manifest->run.outputs;
+  const PluginNames& names = own ? own : work.context.site.run.outputs;
+  const loader::Plugins& plugins = *work.context.plugins;
+  report_absent(work, "output", "run.outputs", names, [&](const std::string& name) {
+    return has_plugin(plugins.outputs(), name) || has_plugin(plugins.controllers(), name);
+  });
   check_control(work);
-  if (!work.errors.empty()) return {};
-  std::stable_partition(outputs.begin(), outputs.end(),
-                        [](const Output* o) { return is_table(*o); });
-  std::vector<WantedOutput> wanted;
+  WantedPlugins wanted;
+  if (!work.errors.empty()) return wanted;
+  const auto applies = [&](const char* kind, const auto& plugin) {
+    return work.asks_to_apply(kind + plugin.info.name, "",
+                              [&] { return plugin.applies(work.campaign()); });
+  };
   const std::string& control = work.campaign().machine.control;
-  for (const Output* output : outputs) {
-    const std::string& name = output->info.name;
-    if (all && is_table(*output) && !control.empty() && control != name) continue;
-    if (is_table(*output) && !is_control_of_record(work, name)) continue;
-    if (!work.asks_to_apply("output " + name, "", [&] { return output->applies(work.campaign()); }))
-      continue;
-    const bool asked = !all || !is_table(*output) || control == name;
-    if (auto options = settle_output(work, *output))
-      wanted.push_back({output, std::move(*options), asked});
+  for (const Controller* c : chosen_plugins(work, plugins.controllers(), names)) {
+    if (!names && !control.empty() && control != c->info.name) continue;
+    if (!is_control_of_record(work, c->info.name) || !applies("controller ", *c)) continue;
+    if (auto options = settle_controller(work, c->info, notes))
+      wanted.controllers.push_back(
+          {c, std::move(*options), names.has_value() || control == c->info.name});
   }
+  for (const Output* o : chosen_plugins(work, plugins.outputs(), names))
+    if (applies("output ", *o))
+      if (auto options = work.settle(o->info)) wanted.outputs.push_back({o, std::move(*options)});
   return wanted;
 }
 
@@ -113,23 +132,23 @@ void keep_result(const Info& output, OutputResult result, Results& results) {
   results.outputs.push_back({output.name, output.version, std::move(result)});
 }
 
-/// What the output gives, if that is sound; else an error of the campaign.
-void take_result(const Work& work, const Output& output, Expected<OutputResult> result,
-                 Results& results) {
+/// What the plugin gives, if that is sound; else an error of the campaign.
+void take_result(const Work& work, const Info& plugin, const std::string& who,
+                 Expected<OutputResult> result, Results& results) {
   if (result)
     if (auto sound = check_output(*result, results.outputs); !sound)
-      result = fail("output " + output.info.name + " gave " + sound.error().message);
-  if (result) return keep_result(output.info, std::move(*result), results);
-  place_at_output(work, output.info.name, result.error());
+      result = fail(who + " gave " + sound.error().message);
+  if (result) return keep_result(plugin, std::move(*result), results);
+  place_at_output(work, plugin.name, result.error());
   work.report(std::move(result.error()));
 }
 
 /// A finding in place of a table.
-OutputResult no_table(const char* id, const Output& output, const char* why,
+OutputResult no_table(const char* id, const Info& controller, const char* why,
                       const std::string& text) {
   OutputResult nothing;
   nothing.findings.push_back(
-      {.id = id, .attention = true, .texts = {{"output", output.info.name}, {why, text}}});
+      {.id = id, .attention = true, .texts = {{"output", controller.name}, {why, text}}});
   return nothing;
 }
 
@@ -138,36 +157,37 @@ OutputResult no_table(const char* id, const Output& output, const char* why,
 using ModelReadings = std::optional<Expected<std::vector<Observations>>>;
 
 /// On top of what was on while the campaign was measured: the new table takes its place.
-Expected<OutputResult> write_over_present(const Work& work, const WantedOutput& w,
+Expected<OutputResult> write_over_present(const Work& work, const WantedController& w,
                                           const ModelReadings& of_model, const Results& results) {
   const reading::ReadCampaign& read = work.read;
+  const Controller& controller = *w.controller;
   const std::vector<Observations>& taken = of_model ? **of_model : read.observations;
-  auto on = tables::what_was_on(read, *w.output, w.options);
+  auto on = tables::what_was_on(read, controller, w.options);
   if (!on) {
     if (w.asked) on.error().key = "machine.axes." + read.tables_on.begin()->first + ".table_on";
     return fail(on.error());
   }
   if (!*on)
-    return w.output->write({work.campaign(), taken, results, w.options, work.context.templates,
-                            of_model ? &read.observations : nullptr, nullptr});
+    return controller.write(
+        {work.campaign(), taken, results, w.options, of_model ? &read.observations : nullptr});
   const std::vector<Observations> of_curves =
       of_model ? tables::without_tables(work.campaign(), taken, (*on)->tables) : (*on)->readings;
-  auto written =
-      w.output->write({work.campaign(), of_curves, results, (*on)->options, work.context.templates,
-                       of_model ? &(*on)->readings : nullptr, nullptr});
+  auto written = controller.write(
+      {work.campaign(), of_curves, results, (*on)->options, of_model ? &(*on)->readings : nullptr});
   if (written) tables::compare_with_measured(read, *written);
   return written;
 }
 
-Expected<OutputResult> table_of(const Work& work, const WantedOutput& w,
+Expected<OutputResult> table_of(const Work& work, const WantedController& w,
                                 const ModelReadings& of_model,
                                 const std::vector<std::string>& doubts, const Results& results) {
-  if (!doubts.empty()) return no_table("table.withheld", *w.output, "findings", comma_list(doubts));
+  const Info& info = w.controller->info;
+  if (!doubts.empty()) return no_table("table.withheld", info, "findings", comma_list(doubts));
   if (of_model && !*of_model)
-    return no_table("table.no-model", *w.output, "why", of_model->error().message);
+    return no_table("table.no-model", info, "why", of_model->error().message);
   auto written = write_over_present(work, w, of_model, results);
   if (!written && !w.asked && written.error().key.empty())
-    written = no_table("table.not-written", *w.output, "why", written.error().message);
+    written = no_table("table.not-written", info, "why", written.error().message);
   if (written && !w.asked)  // a control that the machine may not even have
     for (Finding& f : written->findings)
       if (f.id == "table.axis-number") f.attention = false;
@@ -176,16 +196,15 @@ Expected<OutputResult> table_of(const Work& work, const WantedOutput& w,
 
 }  // namespace
 
-void write_tables(const Work& work, const std::vector<WantedOutput>& wanted,
+void write_tables(const Work& work, const std::vector<WantedController>& wanted,
                   const std::vector<std::string>& doubts, Results& results) {
   ModelReadings of_model;
   if (work.campaign().compensate_model)
     of_model = modelling::compensable_readings(work.read, results.notes);
-  for (const WantedOutput& w : wanted) {
-    if (!is_table(*w.output) || w.output->lacks != nullptr) continue;
-    const std::string who = "output " + w.output->info.name;
+  for (const WantedController& w : wanted) {
+    const std::string who = "controller " + w.controller->info.name;
     work.stage(who);
-    take_result(work, *w.output,
+    take_result(work, w.controller->info, who,
                 process::guarded(who, [&] { return table_of(work, w, of_model, doubts, results); }),
                 results);
   }
@@ -197,7 +216,7 @@ namespace {
 const WantedOutput* numbered_output(const Work& work, const std::vector<WantedOutput>& wanted) {
   const WantedOutput* numbered = nullptr;
   for (const WantedOutput& w : wanted) {
-    if (w.output->lacks == nullptr) continue;
+    if (!w.output->certificate) continue;
     if (numbered != nullptr)
       work.report(work.error_at("run.outputs", "both " + numbered->output->info.name + " and " +
                                                    w.output->info.name +
@@ -210,13 +229,8 @@ const WantedOutput* numbered_output(const Work& work, const std::vector<WantedOu
 
 OutputInput document_input(const Work& work, const WantedOutput& w, const Results& results,
                            const std::optional<Certificate>& certificate) {
-  return {work.campaign(),
-          work.read.observations,
-          results,
-          w.options,
-          work.context.templates,
-          nullptr,
-          certificate ? &certificate->issue : nullptr};
+  return {work.campaign(), work.read.observations, results,
+          w.options,       work.context.templates, certificate ? &certificate->issue : nullptr};
 }
 
 }  // namespace
@@ -230,7 +244,8 @@ std::optional<NumberRequest> number_request(const Work& work,
   const std::string who = "output " + request.output;
   work.stage(who);
   auto missing = process::guarded(who, [&]() -> Expected<std::vector<std::string>> {
-    return numbered->output->lacks(document_input(work, *numbered, results, {}));
+    return numbered->output->certificate->missing_requirements(
+        document_input(work, *numbered, results, {}));
   });
   if (!missing) {
     work.report(missing.error());
@@ -278,13 +293,13 @@ OutputResult as_issued(const Certificate& certificate, const std::string& output
 
 void write_document(const Work& work, const WantedOutput& w, Evaluated& out) {
   const Output& output = *w.output;
-  if (output.lacks != nullptr && !out.certificate) return;
-  if (output.lacks != nullptr && out.certificate->issued)
+  if (output.certificate && !out.certificate) return;
+  if (output.certificate && out.certificate->issued)
     return keep_result(output.info, as_issued(*out.certificate, output.info.name), out.results);
   const std::string who = "output " + output.info.name;
   work.stage(who);
   take_result(
-      work, output,
+      work, output.info, who,
       process::guarded(
           who, [&] { return output.write(document_input(work, w, out.results, out.certificate)); }),
       out.results);
@@ -313,7 +328,9 @@ Evaluated write_documents(AnalysedCampaign analysed, const AssignedNumber* assig
     take_number(work, std::move(*analysed.number), assigned, analysed.documents, out);
   for (const WantedOutput& w : analysed.documents) write_document(work, w, out);
   const bool attention = !analysed.read.unread.empty() || needs_attention(out.results);
-  out.status = !out.results.errors.empty() ? "failed" : attention ? "attention" : "ok";
+  out.status = !out.results.errors.empty() ? Status::failed
+               : attention                 ? Status::attention
+                                           : Status::ok;
   return out;
 }
 
@@ -329,14 +346,7 @@ Expected<void> check_output(const OutputResult& result,
     if (!names.insert(a.name).second)
       return fail("the file name \"" + a.name + "\", which is already taken");
   }
-  for (const Prediction& p : result.predictions)
-    if (!std::isfinite(p.before) || !std::isfinite(p.after))
-      return fail("a prediction of " + p.name + " that is not a number");
-  for (const Finding& f : result.findings)
-    for (const Number& n : f.evidence)
-      if (!std::isfinite(n.value))
-        return fail("evidence " + n.name + " of finding " + f.id + " that is not a number");
-  return {};
+  return check(result);
 }
 
 }  // namespace nonio::host::evaluation

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,12 +22,19 @@
 /// the register (computing.h).
 namespace nonio::host::evaluation {
 
-/// An output that is to be written. Without `asked` a table that the control cannot have is worth a
-/// finding, not the campaign: it was tried only because nobody said which control the machine has.
+/// A controller whose tables are to be written. Without `asked` a table that the control cannot
+/// have is worth a finding, not the campaign: it was tried only because nobody said which control
+/// the machine has.
+struct WantedController {
+  const Controller* controller = nullptr;
+  Settings options;
+  bool asked = false;
+};
+
+/// An output that is to be written.
 struct WantedOutput {
   const Output* output = nullptr;
   Settings options;
-  bool asked = false;
 };
 
 /// The output that is issued under a number, and what it lacks for one.
@@ -75,12 +84,33 @@ struct Work {
   bool is_chosen_by_itself(const Info& info) const;
 };
 
-/// The plugins that are asked for, or all; a name that is not there is an error.
+/// Names of a list under `[run]`; none: all that apply.
+using PluginNames = std::optional<std::vector<std::string>>;
+
+/// The plugins that are asked for, in that order; without names all.
 template <class Plugin>
-std::vector<const Plugin*> chosen_plugins(
-    const Work& work, const std::vector<Plugin>& all, const char* kind, const char* key,
-    const std::optional<std::vector<std::string>>& of_campaign,
-    const std::optional<std::vector<std::string>>& of_site);
+std::vector<const Plugin*> chosen_plugins(const Work& work, const std::vector<Plugin>& all,
+                                          const PluginNames& names) {
+  std::vector<const Plugin*> out;
+  if (!names)
+    for (const Plugin& p : all)
+      if (work.is_chosen_by_itself(p.info)) out.push_back(&p);
+  if (names)
+    for (const std::string& name : *names)
+      for (const Plugin& p : all)
+        if (p.info.name == name && std::find(out.begin(), out.end(), &p) == out.end())
+          out.push_back(&p);
+  return out;
+}
+
+template <class Plugin>
+bool has_plugin(const std::vector<Plugin>& all, const std::string& name) {
+  return std::any_of(all.begin(), all.end(), [&](const Plugin& p) { return p.info.name == name; });
+}
+
+/// A name that no plugin of the kind has is an error.
+void report_absent(const Work& work, const char* kind, const char* key, const PluginNames& names,
+                   const std::function<bool(const std::string&)>& is_there);
 
 /// Of the analyses that are asked for; then of the model, if one is.
 std::vector<Results::Analysed> run_analyses(const Work& work);
@@ -97,19 +127,22 @@ std::vector<Remark> unevaluated(const reading::ReadCampaign& read, const Results
 std::vector<Conformity> held_against_tolerances(const Campaign& campaign,
                                                 const std::vector<Results::Analysed>& analyses);
 
-/// The outputs that are asked for and apply, tables first.
-std::vector<WantedOutput> wanted_outputs(const Work& work);
+/// The controllers and outputs that are asked for and apply; notes how their options are written
+/// now. Nothing after an error.
+struct WantedPlugins {
+  std::vector<WantedController> controllers;
+  std::vector<WantedOutput> outputs;
+};
+WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes);
 /// `doubts`: as `open_doubts` gives them.
-void write_tables(const Work& work, const std::vector<WantedOutput>& wanted,
+void write_tables(const Work& work, const std::vector<WantedController>& wanted,
                   const std::vector<std::string>& doubts, Results& results);
 /// None where nothing is issued under a number, or after an error.
 std::optional<NumberRequest> number_request(const Work& work,
                                             const std::vector<WantedOutput>& documents,
                                             const Results& results);
 
-/// What `check` finds wrong with a plugin's answer.
-Expected<void> check_evaluation(const Evaluation& evaluation);
-/// `taken`: outputs whose files have their names already.
+/// What is wrong with a plugin's answer. `taken`: outputs whose files have their names already.
 Expected<void> check_output(const OutputResult& result, const std::vector<Results::Written>& taken);
 
 }  // namespace nonio::host::evaluation

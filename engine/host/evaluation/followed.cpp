@@ -21,7 +21,7 @@ std::string instrument_source(const Instrument& i) {
   return out;
 }
 
-std::string state_of(const Measurement& m) {
+std::string found_or_left(const Measurement& m) {
   return m.adjustment == "after" ? "as-left" : "as-found";
 }
 
@@ -90,7 +90,7 @@ std::optional<FollowedGroup> of_axis(const reading::ReadCampaign& read, std::siz
     put_common(q, variance, instrument_source(campaign.instrument), f.of_instrument);
     put_common(q, variance, "expansion of axis " + m.axis, f.of_expansion);
     q.u = std::sqrt(variance);
-    q.state = state_of(m);
+    q.state = found_or_left(m);
     put_conditions(q, test, campaign, m);
     const Axis* axis = campaign.machine.axis(m.axis);
     if (f.name.starts_with("cyclic") && axis != nullptr && axis->screw_pitch)
@@ -120,6 +120,17 @@ std::optional<Named> named(const Results::Analysed& a, const std::string& value,
   return std::nullopt;
 }
 
+/// Along the axis of rotation a centre is where the ball stood.
+bool is_set_up(const Results::Analysed& a, const std::string& name) {
+  static const std::map<std::string, std::string> along{
+      {"centre_x", "direction_i"}, {"centre_y", "direction_j"}, {"centre_z", "direction_k"}};
+  const auto direction = along.find(name);
+  if (direction == along.end()) return false;
+  for (const Value& v : a.evaluation.values)
+    if (v.name == direction->second) return std::fabs(v.value) > 0.7;
+  return true;
+}
+
 /// Values with a budget: what the instrument has in common is in its contributions.
 std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaign& campaign) {
   if (!a.evaluation.budget || a.plugin == "iso230-2" || a.plugin == "vdi-dgq-3441")
@@ -131,7 +142,7 @@ std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaig
     const auto name = named(a, v.name, campaign);
     const auto result = std::find_if(budget.results.begin(), budget.results.end(),
                                      [&](const auto& r) { return r.name == v.name; });
-    if (!name || result == budget.results.end()) continue;
+    if (!name || result == budget.results.end() || is_set_up(a, v.name)) continue;
     FollowedQuantity q{.measurement = a.measurement,
                        .axis = name->axis,
                        .name = name->name,
@@ -144,7 +155,7 @@ std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaig
     put_common(q, variance, instrument_source(campaign.instrument), std::sqrt(shared));
     q.u = std::sqrt(variance);
     for (const Measurement& m : campaign.measurements)
-      if (m.id == a.measurement) q.state = state_of(m);
+      if (m.id == a.measurement) q.state = found_or_left(m);
     if (q.state.empty()) q.state = "as-found";
     variances.push_back(variance);
     if (q.u > 0.0)
@@ -165,13 +176,22 @@ std::string effects_of(const ModelFit& fit) {
   return out;
 }
 
+/// Not followed by their names: parameters of curves, whose knots differ between campaigns, and
+/// scales, which `scale` follows with what the instrument and temperatures have in them.
+bool is_followed(const ModelFit& fit, const ModelFit::Parameter& p) {
+  const auto effect = std::find_if(fit.effects.begin(), fit.effects.end(),
+                                   [&](const ModelFit::Effect& e) { return e.name == p.effect; });
+  return !p.searched && p.quantity != Quantity::deviation_per_length &&
+         (effect == fit.effects.end() || !effect->curve);
+}
+
 /// Linear parameters of a model, with their covariance.
 std::optional<FollowedGroup> of_model(const ModelFit& fit, const Campaign& campaign) {
   FollowedGroup out;
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     const ModelFit::Parameter& p = fit.parameters[i];
-    if (p.searched || !p.u || !(*p.u > 0.0) || !std::isfinite(p.value) ||
+    if (!is_followed(fit, p) || !p.u || !(*p.u > 0.0) || !std::isfinite(p.value) ||
         fit.correlation.size() <= i)
       continue;
     kept.push_back(i);
@@ -185,7 +205,7 @@ std::optional<FollowedGroup> of_model(const ModelFit& fit, const Campaign& campa
          .texts = {{"model", effects_of(fit)}}});
     FollowedQuantity& q = out.quantities.back();
     for (const Measurement& m : campaign.measurements)
-      if (m.id == q.measurement) q.state = state_of(m);
+      if (m.id == q.measurement) q.state = found_or_left(m);
   }
   if (kept.empty()) return std::nullopt;
   for (const std::size_t i : kept)

@@ -74,10 +74,15 @@ Record record_of(dom::object json) {
   r.night = json["night"];
   if (dom::element e; json["date"].get(e) == simdjson::SUCCESS) r.date = text(e);
   r.reason = text(json["reason"]);
-  r.status = text(json["status"]);
+  const auto status = status_named(std::string_view(json["status"]));
+  if (!status) throw simdjson::simdjson_error(simdjson::INCORRECT_TYPE);
+  r.status = *status;
   r.retry = json["retry"];
   if (dom::object since; json["failed_since"].get(since) == simdjson::SUCCESS)
     r.failed_since = NightOf{since["night"], text(since["date"])};
+  if (dom::object since; json["indexed"].get(since) == simdjson::SUCCESS)
+    r.indexed = IndexedSince{
+        {since["night"], text(since["date"])}, text(since["version"]), text(since["sha256"])};
   for (const auto [name, digest] : dom::object(json["inputs"]))
     r.inputs.emplace_back(name, text(digest));
   if (dom::element e; json["certificate"].get(e) == simdjson::SUCCESS) r.certificate = text(e);
@@ -101,13 +106,22 @@ std::string to_json(const Record& r) {
   json.member("night", r.night);
   if (!r.date.empty()) json.member("date", r.date);
   json.member("reason", r.reason);
-  json.member("status", r.status);
+  json.member("status", to_text(r.status));
   json.member("retry", r.retry);
   if (r.failed_since) {
     json.key("failed_since");
     json.begin_object();
     json.member("night", r.failed_since->number);
     json.member("date", r.failed_since->date);
+    json.end_object();
+  }
+  if (r.indexed) {
+    json.key("indexed");
+    json.begin_object();
+    json.member("night", r.indexed->night.number);
+    json.member("date", r.indexed->night.date);
+    json.member("version", r.indexed->version);
+    json.member("sha256", r.indexed->sha256);
     json.end_object();
   }
   json.key("inputs");

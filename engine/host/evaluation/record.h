@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/evaluation/evaluate.h"
+#include "host/evaluation/status.h"
 #include "nonio/sdk/error.h"
 
 namespace nonio::host::evaluation {
@@ -36,6 +37,13 @@ struct NightOf {
   std::string date;  ///< YYYY-MM-DD; empty: of a version that did not note it
 };
 
+/// Since when what the history keeps of a campaign (host/history/entry.h) is as it is.
+struct IndexedSince {
+  NightOf night{};
+  std::string version;  ///< that evaluated it so first
+  std::string sha256;   ///< of what is kept
+};
+
 /// `run.json` beside a campaign's results: from what they were made, when (which night) and why.
 /// It holds no time, so that equal runs leave equal bytes.
 struct Record {
@@ -43,12 +51,13 @@ struct Record {
   std::uint64_t night = 0;
   std::string date;  ///< of that night
   std::string reason;
-  std::string status;
+  Status status = Status::none;
   bool retry = false;  ///< it failed for a reason that does not lie in its content
   std::optional<NightOf> failed_since{};  ///< the first of the nights in which it failed
   reading::Inputs inputs;
-  std::string certificate;  ///< its number; empty: none
-  bool draft = false;       ///< of a certificate that waits for its release
+  std::optional<IndexedSince> indexed{};  ///< none: it failed for a reason that may pass
+  std::string certificate;                ///< its number; empty: none
+  bool draft = false;                     ///< of a certificate that waits for its release
   std::vector<RecordedFile> files;
   std::vector<Error> errors;
   std::string language{};                        ///< of the site, for `nonio show`; empty: English

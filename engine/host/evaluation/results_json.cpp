@@ -42,7 +42,7 @@ void put_notes(storage::JsonWriter& json, const std::vector<Remark>& notes,
   json.end_array();
 }
 
-void put_campaign(storage::JsonWriter& json, const Campaign& c) {
+void put_campaign(storage::JsonWriter& json, const Campaign& c, const std::string& purpose) {
   json.key("campaign");
   json.begin_object();
   json.member("id", c.id);
@@ -50,6 +50,7 @@ void put_campaign(storage::JsonWriter& json, const Campaign& c) {
   put_text(json, "site", c.site);
   put_text(json, "operator", c.operator_name);
   put_text(json, "date", c.date);
+  put_text(json, "purpose", purpose);
   put_texts(json, "machine",
             {{"maker", c.machine.maker},
              {"model", c.machine.model},
@@ -334,8 +335,8 @@ std::string results_json(const Evaluated& e, const reading::Context& context,
   json.begin_object();
   json.member("schema", "nonio-results/1");
   json.member("nonio", context.version);
-  put_campaign(json, e.campaign);
-  json.member("status", e.status);
+  put_campaign(json, e.campaign, e.purpose);
+  json.member("status", to_text(e.status));
   json.key("errors");
   json.begin_array();
   for (const Error& error : e.results.errors) storage::put_error(json, error);

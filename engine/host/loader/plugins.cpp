@@ -59,6 +59,7 @@ std::string try_registering(const fs::path& path) {
     void add(Effect) override {}
     void add(Analysis) override {}
     void add(Output) override {}
+    void add(Controller) override {}
   } nobody;
   try {
     const auto entry = open_entry(path);
@@ -130,23 +131,16 @@ std::vector<std::string> probe(std::span<const fs::path> paths) {
 namespace {
 
 template <class Plugin>
-std::vector<Catalogue::Described> described(const std::vector<Plugin>& all) {
-  std::vector<Catalogue::Described> out;
-  for (const Plugin& plugin : all) {
-    out.push_back({plugin.info});
-    if constexpr (std::is_same_v<Plugin, Output>) out.back().stage = plugin.stage;
-  }
+std::vector<Info> described(const std::vector<Plugin>& all) {
+  std::vector<Info> out;
+  for (const Plugin& plugin : all) out.push_back(plugin.info);
   return out;
 }
 
 template <class Plugin>
-std::vector<Plugin> named(std::vector<Catalogue::Described> all) {
+std::vector<Plugin> named(std::vector<Info> all) {
   std::vector<Plugin> out;
-  for (Catalogue::Described& one : all) {
-    Plugin& plugin = out.emplace_back();
-    plugin.info = std::move(one.info);
-    if constexpr (std::is_same_v<Plugin, Output>) plugin.stage = one.stage;
-  }
+  for (Info& info : all) out.emplace_back().info = std::move(info);
   return out;
 }
 
@@ -161,6 +155,7 @@ class Offered final : public Registry {
   void add(Effect effect) override { take("effect", std::move(effect)); }
   void add(Analysis analysis) override { take("analysis", std::move(analysis)); }
   void add(Output output) override { take("output", std::move(output)); }
+  void add(Controller c) override { take("controller", std::move(c)); }
 
   /// The first of them without a function that it cannot do without; empty: none.
   const std::string& incomplete() const { return incomplete_; }
@@ -180,7 +175,11 @@ class Offered final : public Registry {
     return !a.applies ? "applies" : !a.analyse ? "analyse" : "";
   }
   static const char* missing(const Output& o) {
+    if (o.certificate && !o.certificate->missing_requirements) return "missing_requirements";
     return !o.applies ? "applies" : !o.write ? "write" : "";
+  }
+  static const char* missing(const Controller& c) {
+    return !c.applies ? "applies" : !c.write ? "write" : !c.parse ? "parse" : "";
   }
 
   template <class Plugin>
@@ -192,7 +191,7 @@ class Offered final : public Registry {
     all_.emplace_back(std::move(plugin));
   }
 
-  std::vector<std::variant<Reader, Effect, Analysis, Output>> all_;
+  std::vector<std::variant<Reader, Effect, Analysis, Output, Controller>> all_;
   std::string incomplete_;
 };
 
@@ -205,7 +204,8 @@ Plugins::Plugins(Catalogue c)
       readers_(named<Reader>(std::move(c.readers))),
       effects_(named<Effect>(std::move(c.effects))),
       analyses_(named<Analysis>(std::move(c.analyses))),
-      outputs_(named<Output>(std::move(c.outputs))) {}
+      outputs_(named<Output>(std::move(c.outputs))),
+      controllers_(named<Controller>(std::move(c.controllers))) {}
 
 Catalogue Plugins::catalogue() const {
   return {files_,
@@ -214,7 +214,8 @@ Catalogue Plugins::catalogue() const {
           described(readers_),
           described(effects_),
           described(analyses_),
-          described(outputs_)};
+          described(outputs_),
+          described(controllers_)};
 }
 
 std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
@@ -296,11 +297,22 @@ Expected<std::string> Plugins::digest() const {
   return host::storage::sha256(all);
 }
 
+namespace {
+
+/// The kind whose plugins a site names in the same list, `[run] outputs`: so no name is twice
+/// there.
+std::string_view named_with(std::string_view kind) {
+  return kind == "output" ? "controller" : kind == "controller" ? "output" : kind;
+}
+
+}  // namespace
+
 bool Plugins::accept(std::string_view kind, const Info& info) {
   const std::string name = std::string(kind) + " " + info.name;
   const fs::path path = files_.empty() ? fs::path() : files_.back().path;  // none: added by hand
+  const std::string other = std::string(named_with(kind)) + " " + info.name;
   for (const auto& [known, where] : names_)
-    if (known == name) {
+    if (known == name || known == other) {
       conflicts_.push_back("two plugins are the " + name + ": " + where.string() + " and " +
                            path.string());
       return false;
@@ -322,12 +334,16 @@ void Plugins::add(Analysis analysis) {
 void Plugins::add(Output output) {
   if (accept("output", output.info)) outputs_.push_back(std::move(output));
 }
+void Plugins::add(Controller controller) {
+  if (accept("controller", controller.info)) controllers_.push_back(std::move(controller));
+}
 
 std::string Plugins::absence(std::string_view kind, std::string_view name) const {
   std::vector<std::string> candidates;
   const std::string prefix = std::string(kind) + " ";
-  for (const auto& [known, where] : names_)
-    if (known.starts_with(prefix)) candidates.push_back(known.substr(prefix.size()));
+  for (const std::string& of : {prefix, std::string(named_with(kind)) + " "})
+    for (const auto& [known, where] : names_)
+      if (known.starts_with(of)) candidates.push_back(known.substr(of.size()));
   std::string words = "there is no " + prefix + "\"" + std::string(name) + "\"" +
                       storage::suggestion(name, candidates);
   for (const PluginFile& file : files_)

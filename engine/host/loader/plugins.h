@@ -19,14 +19,10 @@ struct PluginFile {
 
 /// What plugins say of themselves, as data: how a process knows them that has none of their code.
 struct Catalogue {
-  struct Described {
-    Info info;
-    Output::Stage stage = Output::Stage::document;  ///< of an output
-  };
   std::vector<PluginFile> files;
   std::vector<std::string> conflicts;
   std::vector<std::pair<std::string, std::filesystem::path>> names;
-  std::vector<Described> readers, effects, analyses, outputs;
+  std::vector<Info> readers, effects, analyses, outputs, controllers;
 };
 
 /// All plugins of this process. Loaded once, never unloaded.
@@ -50,7 +46,8 @@ class Plugins final : public Registry {
   void load(const std::vector<std::filesystem::path>& folders);
 
   const std::vector<PluginFile>& files() const { return files_; }
-  /// Two plugins of one kind with the same name, each with both paths.
+  /// Two plugins of one kind with the same name, each with both paths; outputs and controllers are
+  /// one kind in this.
   const std::vector<std::string>& conflicts() const { return conflicts_; }
   /// Whether every plugin that was loaded lies in this folder.
   bool all_from(const std::filesystem::path& folder) const;
@@ -61,8 +58,10 @@ class Plugins final : public Registry {
   const std::vector<Effect>& effects() const { return effects_; }
   const std::vector<Analysis>& analyses() const { return analyses_; }
   const std::vector<Output>& outputs() const { return outputs_; }
+  const std::vector<Controller>& controllers() const { return controllers_; }
 
-  /// Why a plugin of that name is not there, with the nearest name.
+  /// Why a plugin of that name is not there, with the nearest name; of an output also among the
+  /// controllers, which `[run] outputs` names with them.
   std::string absence(std::string_view kind, std::string_view name) const;
   /// Every file that was refused, with the reason; empty if none was.
   std::string refusals() const;
@@ -73,6 +72,7 @@ class Plugins final : public Registry {
   void add(Effect) override;
   void add(Analysis) override;
   void add(Output) override;
+  void add(Controller) override;
 
  private:
   bool accept(std::string_view kind, const Info& info);
@@ -84,6 +84,7 @@ class Plugins final : public Registry {
   std::vector<Effect> effects_;
   std::vector<Analysis> analyses_;
   std::vector<Output> outputs_;
+  std::vector<Controller> controllers_;
 };
 
 }  // namespace nonio::host::loader

@@ -22,10 +22,11 @@ std::vector<std::string> known_names(const reading::ReadCampaign& read) {
   std::vector<std::string> names;
   for (const Effect& effect : read.effects)
     for (const Axis& axis : campaign.machine.axes)
-      if (!effect.of && !effect.always) names.push_back(effect.info.name + ":" + axis.name);
+      if (!effect.instances && !effect.is_nuisance)
+        names.push_back(effect.info.name + ":" + axis.name);
   for (const model::Part& part : model::parts_of(campaign, read.observations))
     for (const Effect& effect : read.effects)
-      if (effect.of && !effect.always)
+      if (effect.instances && !effect.is_nuisance)
         for (std::string& name : model::names_of(part, effect)) names.push_back(std::move(name));
   return names;
 }
@@ -43,9 +44,9 @@ std::string mistake_of(const std::string& effect, const reading::ReadCampaign& r
   if (kind.empty() || axis.empty())
     return "expected kind:axis, such as backlash:X; found \"" + effect + "\"" + nearest;
   if (known == read.effects.end()) return "there is no effect \"" + kind + "\"" + nearest;
-  if (known->always)
+  if (known->is_nuisance)
     return "\"" + effect + "\" belongs to the set-up: it is in every model, and not written";
-  if (known->of)
+  if (known->instances)
     return can_be_in_space(axis)
                ? ""
                : "\"" + effect +
@@ -61,7 +62,7 @@ std::string mistake_of(const std::string& effect, const reading::ReadCampaign& r
 std::vector<std::string> PartModel::names() const {
   std::vector<std::string> out;
   for (const model::Term& t : terms)
-    if (!t.effect->always) out.push_back(t.name());
+    if (!t.effect->is_nuisance) out.push_back(t.name());
   return out;
 }
 
@@ -164,12 +165,12 @@ std::vector<std::string> unmeasured(const std::vector<std::string>& effects,
 std::vector<std::string> below_uncertainty(const model::Fit& fit) {
   std::vector<std::string> out;
   for (const model::Term& term : fit.terms) {
-    if (term.effect->always) continue;
+    if (term.effect->is_nuisance) continue;
     bool any = false, small = true;
     for (const model::Parameter& p : fit.parameters) {
       if (p.effect != term.name() || p.shape) continue;
       any = true;
-      small = small && !(std::fabs(p.value) >= 2.0 * p.u);
+      small = small && std::fabs(p.value) < 2.0 * p.u;
     }
     if (any && small) out.push_back(term.name());
   }

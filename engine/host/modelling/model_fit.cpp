@@ -70,7 +70,8 @@ class Findings {
     const auto worst = std::find_if(c.places.begin(), c.places.end(),
                                     [](const auto& place) { return place.p < model::place_p; });
     if (worst == c.places.end()) return;
-    Finding f{"model.fails", true, {}, {{"where", worst->where}, {"line", on_line(*worst)}}};
+    Finding f{
+        "model.fails", true, {}, {{"where", to_text(worst->where)}, {"line", on_line(*worst)}}};
     f.evidence = {{"share", worst->share, Quantity::ratio},
                   {"percent", std::round(100.0 * worst->share), Quantity::count},
                   {"p", worst->p, Quantity::probability},
@@ -187,7 +188,7 @@ void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& wh
 void put_without(ModelFit& out, const PartModel& part) {
   if (part.part.table.size() > most_refitted) return;
   for (std::size_t t = 0; t < part.terms.size(); ++t) {
-    if (part.terms[t].effect->always) continue;
+    if (part.terms[t].effect->is_nuisance) continue;
     PartModel rest = part;
     rest.terms.erase(rest.terms.begin() + static_cast<std::ptrdiff_t>(t));
     if (auto c = compare_part(rest))
@@ -243,14 +244,14 @@ ModelFit value_of(const PartModel& part, const model::Explanation& e) {
   put_steps(out, part, e.comparison);
   put_without(out, part);
   put_candidates(out, part, e);
-  out.says = {verdict_finding(e, part)};
+  out.diagnosis = {verdict_finding(e, part)};
   if (e.comparison.lack_of_fit && std::isfinite(e.comparison.lack_of_fit->F))
-    out.says.push_back(left_finding(e.comparison, part.deviation()));
+    out.diagnosis.push_back(left_finding(e.comparison, part.deviation()));
   for (const model::Place& place : e.verdict.kind == Kind::unknown ? e.fails : e.comparison.seats)
-    out.says.push_back(place_finding(place, part.deviation()));
+    out.diagnosis.push_back(place_finding(place, part.deviation()));
   for (const model::Description& d : e.descriptions)
-    out.says.push_back(description_finding(d, part));
-  if (e.verdict.trials > 0) out.says.push_back(false_alarms_finding(e.verdict));
+    out.diagnosis.push_back(description_finding(d, part));
+  if (e.verdict.trials > 0) out.diagnosis.push_back(false_alarms_finding(e.verdict));
   return out;
 }
 
@@ -347,8 +348,8 @@ Expected<std::vector<Observations>> compensable_readings(const reading::ReadCamp
         if (campaign.measurements[m].kind == "ball-centres") continue;
         for (std::size_t i = 0; i < said.size(); ++i)
           if (part.part.measurement[i] == k) out[m].deviation[part.part.row[i]] = said[i];
-        reading::keep_rows(
-            out[m], names.empty() ? std::vector<char>(out[m].size(), 0) : first_of_each(out[m]));
+        keep_rows(out[m],
+                  names.empty() ? std::vector<char>(out[m].size(), 0) : first_of_each(out[m]));
         out[m].run.assign(out[m].size(), 1);
       }
   }

@@ -34,7 +34,7 @@ storage::Json places_json(const std::vector<model::Place>& places, const ModelWo
                           Quantity deviation) {
   storage::Json list = storage::Json::array();
   for (const model::Place& place : places) {
-    storage::Json one = {{"where", place.where}};
+    storage::Json one = {{"where", to_text(place.where)}};
     if (!place.line.empty()) one["line"] = place.line;
     storage::put(one, "share", place.share, Quantity::ratio);
     one["says"] = words.place(place, deviation);
@@ -87,6 +87,41 @@ void put_floor(storage::Json& json, const model::Comparison& c, Quantity q) {
   storage::put(json, "noise_floor_u", c.floor->u, q);
 }
 
+const char* zero_text(model::Noise::Zero zero) {
+  switch (zero) {
+    case model::Noise::Zero::walks:
+      return "walks";
+    case model::Noise::Zero::of_run:
+      return "of-run";
+    case model::Noise::Zero::of_pass:
+      return "of-pass";
+    case model::Noise::Zero::steady:
+      break;
+  }
+  return "steady";
+}
+
+/// How the noise hangs together, and what the weights and u have of it.
+void put_noise(storage::Json& json, const model::Fit& fit, Quantity q) {
+  const model::Noise& noise = fit.noise;
+  storage::Json one = {{"zero", zero_text(noise.zero)}};
+  storage::put(one, "neighbours", noise.measured, Quantity::number);
+  if (std::isfinite(noise.measured))
+    storage::put(one, "neighbours_p", noise.p, Quantity::probability);
+  storage::put(one, "neighbours_used", noise.neighbours, Quantity::number);
+  if (noise.zero != model::Noise::Zero::steady)
+    storage::put(one, "zero_s", noise.zero_found * fit.s, q);
+  if (noise.digit > 0.0) storage::put(one, "last_digit", noise.digit, q);
+  if (noise.stretch) {
+    const Quantity at = q == Quantity::deviation ? Quantity::length : Quantity::angle;
+    storage::put(one, "stretch_from", noise.stretch->from, at);
+    storage::put(one, "stretch_to", noise.stretch->to, at);
+    storage::put(one, "stretch_s", noise.stretch->inside * fit.s, q);
+    storage::put(one, "elsewhere_s", noise.stretch->outside * fit.s, q);
+  }
+  json["noise"] = std::move(one);
+}
+
 void put_lack_of_fit(storage::Json& json, const model::Comparison& c) {
   if (!c.lack_of_fit) return;
   storage::Json one = storage::Json::object();
@@ -120,6 +155,7 @@ storage::Json compared_json(const Compared& c, const Campaign& campaign, const M
   storage::put(json, "rms", comparison.fit.rms, q);
   storage::put(json, "cv_rms", comparison.cv_rms, q);
   put_floor(json, comparison, q);
+  put_noise(json, comparison.fit, q);
   storage::put(json, "s", comparison.fit.s, q);
   json["redundancy"] = comparison.fit.redundancy;
   put_lack_of_fit(json, comparison);
@@ -201,6 +237,7 @@ void put_explained(storage::Json& json, const Explained& e, const Campaign& camp
   json["observations"] = e.part.part.table.size();
   json["model"] = model_json(e.part, x.comparison);
   put_floor(json, x.comparison, q);
+  put_noise(json, x.comparison.fit, q);
   put_lack_of_fit(json, x.comparison);
   json["fails"] = places_json(x.fails, words, q);
   storage::Json candidates = storage::Json::array(), unseen = storage::Json::array();
@@ -303,6 +340,7 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
     out.push_back(words.order_assumed(measurement));
   if (!part.part.table.order_known) out.push_back(words.order_unknown());
   if (part.interpolated.count > 0) out.push_back(words.temperature_interpolated(part.interpolated));
+  for (std::string& said : words.noise(fit, part)) out.push_back(std::move(said));
   return out;
 }
 

@@ -13,6 +13,7 @@ namespace nonio::host::modelling {
 namespace {
 
 using Kind = model::Verdict::Kind;
+using model::Factor;
 
 Number percent(const char* name, double share) {
   return {name, std::round(100.0 * share), Quantity::count};
@@ -56,12 +57,12 @@ std::string on_line(const model::Place& place) {
 }
 
 Finding place_finding(const model::Place& place, Quantity deviation) {
-  const std::string of = place.together ? "together" : place.where;
+  const std::string of = place.together ? "together" : to_text(place.where);
   return {.id = (place.line.empty() ? "place." : "place.line.") + of,
           .evidence = {percent("share", place.share),
                        {"rms", place.rms, deviation},
                        {"p", place.p, Quantity::probability}},
-          .texts = {{"where", place.where}, {"line", place.line}}};
+          .texts = {{"where", to_text(place.where)}, {"line", place.line}}};
 }
 
 Finding plan_finding(const model::Plan& plan) {
@@ -123,10 +124,6 @@ class Next {
   }
 
  private:
-  static bool has(const std::string& where, const char* factor) {
-    return where.find(factor) != std::string::npos;
-  }
-
   void add(const char* id, std::vector<Number> numbers = {},
            std::vector<std::pair<std::string, std::string>> texts = {}) {
     const std::string name = std::string("next.") + id;
@@ -149,13 +146,12 @@ class Next {
   }
 
   void at(const model::Place& place) {
-    const bool of_time = has(place.where, "time") || has(place.where, "run");
-    if (of_time) {
+    if (place.where.has(Factor::time) || place.where.has(Factor::run)) {
       time(place);
-    } else if (has(place.where, "temperature")) {
+    } else if (place.where.has(Factor::temperature)) {
       add("settle");
-    } else if (has(place.where, "position") || has(place.where, "phase") ||
-               has(place.where, "angle")) {
+    } else if (place.where.has(Factor::position) || place.where.has(Factor::screw_phase) ||
+               place.where.has(Factor::angle)) {
       position(place);
     } else {
       add("both-sides");
@@ -168,7 +164,7 @@ class Next {
       return column.size() == o.size() &&
              std::any_of(column.begin(), column.end(), [](double v) { return std::isfinite(v); });
     };
-    if (has(place.where, "run") && place.at && std::isfinite(*place.at))
+    if (place.where.has(Factor::run) && place.at && std::isfinite(*place.at))
       add("run", {{"at", *place.at, Quantity::count}});
     if (!known(o.time))
       add("times");
@@ -242,7 +238,7 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
     const auto count = [](std::size_t n) { return static_cast<double>(n); };
     f.evidence.push_back({"count", count(e.comparison.suspects.size()), Quantity::count});
     f.evidence.push_back({"readings", count(part.part.table.size()), Quantity::count});
-    if (!e.fails.empty() && e.fails.front().where == "run")
+    if (!e.fails.empty() && e.fails.front().where == model::Where{Factor::run})
       f.id += "-run";
     else if (e.comparison.suspects.size() <= 2)
       f.id += "-two";
@@ -274,7 +270,7 @@ std::string ModelWords::place(const model::Place& place, Quantity deviation) con
   }
   const std::string at = where_largest(place, language_);
   if (at.empty()) return text;
-  const std::string largest = says("place.largest." + place.where, {}, {{"at", at}});
+  const std::string largest = says("place.largest." + to_text(place.where), {}, {{"at", at}});
   return largest.empty() ? text : text + " " + largest;
 }
 
@@ -403,6 +399,41 @@ std::string ModelWords::not_told(const std::string& effect, std::size_t paramete
 }
 
 std::string ModelWords::stood_somewhere() const { return says("stood-somewhere", {}, {}); }
+
+std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartModel& part) const {
+  using Zero = model::Noise::Zero;
+  constexpr double told_below = 0.01;
+  const model::Noise& noise = fit.noise;
+  const Quantity q = part.deviation();
+  std::vector<std::string> out;
+  if (noise.neighbours > 0.0 && noise.p < told_below)
+    out.push_back(says("noise.neighbours",
+                       {{"r", std::round(100.0 * noise.measured) / 100.0, Quantity::number},
+                        {"p", noise.p, Quantity::probability}},
+                       {}));
+  if (noise.zero != Zero::steady)
+    out.push_back(says(noise.zero == Zero::walks    ? "noise.walks"
+                       : noise.zero == Zero::of_run ? "noise.of-run"
+                                                    : "noise.of-pass",
+                       {{"s", noise.zero_found * fit.s, q}}, {}));
+  std::string open;
+  for (const model::Parameter& p : fit.parameters)
+    if (noise.zero_open && !p.shape && !std::isfinite(p.u))
+      open += (open.empty() ? "" : ", ") + p.effect + " " + p.name;
+  if (!open.empty()) out.push_back(says("noise.open", {}, {{"parameters", open}}));
+  if (const auto& stretch = noise.stretch) {
+    const Quantity at = part.position();
+    out.push_back(says("noise.stretch",
+                       {{"from", stretch->from, at},
+                        {"to", stretch->to, at},
+                        {"inside", stretch->inside * fit.s, q},
+                        {"outside", stretch->outside * fit.s, q}},
+                       {}));
+  }
+  if (noise.digit / std::sqrt(12.0) > fit.s)
+    out.push_back(says("noise.digit", {{"q", noise.digit, q}}, {}));
+  return out;
+}
 
 std::string ModelWords::order_assumed(const std::string& measurement) const {
   return says("order-assumed", {}, {{"measurement", measurement}});

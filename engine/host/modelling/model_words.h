@@ -47,6 +47,8 @@ class ModelWords {
   /// Measurements that do not say where the other axes stood.
   std::string description(const model::Description&, const PartModel&) const;
   std::string order_assumed(const std::string& measurement) const;
+  /// How the noise of a fit is other than independent readings of one scatter; mostly nothing.
+  std::vector<std::string> noise(const model::Fit& fit, const PartModel& part) const;
   std::string order_unknown() const;
   std::string stood_somewhere() const;
   std::string unmeasured(const std::string& effect) const;

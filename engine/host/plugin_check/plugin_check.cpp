@@ -54,10 +54,12 @@ struct Brought final : Registry {
   std::vector<Effect> effects;
   std::vector<Analysis> analyses;
   std::vector<Output> outputs;
+  std::vector<Controller> controllers;
   void add(Reader r) override { readers.push_back(std::move(r)); }
   void add(Effect e) override { effects.push_back(std::move(e)); }
   void add(Analysis a) override { analyses.push_back(std::move(a)); }
   void add(Output o) override { outputs.push_back(std::move(o)); }
+  void add(Controller c) override { controllers.push_back(std::move(c)); }
 };
 
 double processor_seconds(int who = RUSAGE_SELF) {
@@ -173,7 +175,7 @@ class Checker {
     if (!loads) return;
     run("", "symbols", [&](Bench&) { return symbols(); });
     if (!cases_.empty()) run("", "cases", [&](Bench&) { return open_cases(); });
-    std::size_t at[4] = {};
+    std::size_t at[5] = {};
     for (std::size_t i = 0; i < list.size();) {
       const std::size_t end = std::min(list.find('\n', i), list.size());
       check_plugin(list.substr(i, end - i), at);
@@ -188,7 +190,7 @@ class Checker {
   }
 
   /// A line of `load`: "reader csv". Of each kind the plugins are counted.
-  void check_plugin(const std::string& plugin, std::size_t (&at)[4]) {
+  void check_plugin(const std::string& plugin, std::size_t (&at)[5]) {
     hung_ = 0;
     const std::string kind = plugin.substr(0, plugin.find(' '));
     if (kind == "reader") {
@@ -197,10 +199,10 @@ class Checker {
       run_all(plugin, kit::effect_checks(), &Brought::effects, at[1]++);
     } else if (kind == "analysis") {
       run_all(plugin, kit::analysis_checks(), &Brought::analyses, at[2]++);
+    } else if (kind == "output") {
+      run_all(plugin, kit::output_checks(), &Brought::outputs, at[3]++);
     } else {
-      run_all(plugin, kit::output_checks(), &Brought::outputs, at[3]);
-      if (kind == "controller") run_of(plugin, kit::controller_checks(), &Brought::outputs, at[3]);
-      ++at[3];
+      run_all(plugin, kit::controller_checks(), &Brought::controllers, at[4]++);
     }
   }
 
@@ -375,8 +377,8 @@ class Checker {
     for (const auto& p : brought_.readers) list += "reader " + p.info.name + "\n";
     for (const auto& p : brought_.effects) list += "effect " + p.info.name + "\n";
     for (const auto& p : brought_.analyses) list += "analysis " + p.info.name + "\n";
-    for (const auto& p : brought_.outputs)
-      list += (p.control ? "controller " : "output ") + p.info.name + "\n";
+    for (const auto& p : brought_.outputs) list += "output " + p.info.name + "\n";
+    for (const auto& p : brought_.controllers) list += "controller " + p.info.name + "\n";
     return list.empty() ? kit::failed("it registers nothing")
                         : Verdict{Verdict::State::passed, list};
   }

@@ -23,8 +23,9 @@ struct Said {
     Quantity quantity = Quantity::number;
   };
   std::vector<One> values, evidence;
-  std::string texts;  ///< ids and texts of findings and notes, errors
-  std::string error;  ///< the first one
+  std::string texts;    ///< ids and texts of findings and notes, errors
+  std::string error;    ///< the first one
+  std::string unsound;  ///< what the host would refuse of an evaluation
   std::size_t evaluations = 0;
   bool failed() const { return !error.empty(); }
 };
@@ -38,6 +39,7 @@ void add_table(const PointTable& table, const std::string& name, Said& said) {
 
 void add(const Evaluation& e, const std::string& id, Said& said) {
   ++said.evaluations;
+  if (said.unsound.empty()) said.unsound = unsound(e);
   for (const Value& v : e.values) {
     said.values.push_back({id + v.name, v.value, v.quantity});
     if (v.U) said.values.push_back({id + "U of " + v.name, *v.U, v.quantity});
@@ -205,6 +207,7 @@ Verdict analysis_again(const Analysis& a, const Bench& bench) {
 Verdict analysis_finite(const Analysis& a, const Bench& bench) {
   return each_sample(a, bench, any, [&](const Sample& s) -> std::string {
     const Said said = said_of(a, s);
+    if (!said.unsound.empty()) return said.unsound;
     for (const auto& v : said.values)
       if (std::isinf(v.value) || (std::isnan(v.value) && v.name.find('[') == v.name.npos))
         return v.name + " is not a number";
@@ -368,8 +371,8 @@ std::vector<std::pair<std::string, Sample>> odd_samples(const Sample& s) {
     if (o.size() > 0) o = rearranged(o, {0});
   });
   with("one direction", [](Observations& o) {
-    std::vector<std::size_t> plus;
-    for (std::size_t i = 0; i < o.size(); ++i)
+    std::vector<std::uint32_t> plus;
+    for (std::uint32_t i = 0; i < o.size(); ++i)
       if (o.axes.front().approach.empty() || o.axes.front().approach[i] > 0) plus.push_back(i);
     o = rearranged(o, plus);
   });
@@ -386,10 +389,10 @@ std::vector<std::pair<std::string, Sample>> odd_samples(const Sample& s) {
   });
   with("many readings", [](Observations& o) {
     if (o.size() == 0 || o.run.empty()) return;
-    std::vector<std::size_t> order(20 * o.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i % o.size();
-    const auto runs = *std::max_element(o.run.begin(), o.run.end());
     const auto n = static_cast<std::uint32_t>(o.size());
+    std::vector<std::uint32_t> order(20 * o.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i % n;
+    const auto runs = *std::max_element(o.run.begin(), o.run.end());
     o = rearranged(o, order);
     for (std::uint32_t i = 0; i < o.size(); ++i) o.run[i] += runs * (i / n);
   });
@@ -403,6 +406,8 @@ Verdict analysis_hostile(const Analysis& a, const Bench& bench) {
       if (!applies(a, odd)) continue;
       bench.stage("sample " + s.name + ", " + name);
       const Said said = said_of(a, odd);
+      if (!said.unsound.empty())
+        return failed("sample " + s.name + ", " + name + ": " + said.unsound);
       for (const auto& v : said.values)
         if (std::isinf(v.value) || (std::isnan(v.value) && v.name.find('[') == v.name.npos))
           return failed("sample " + s.name + ", " + name + ": " + v.name +
@@ -431,7 +436,7 @@ Verdict analysis_says(const Analysis& a, const Bench& bench) {
   }
   if (!tried) return skipped(no_sample);
   const std::string nothing = "of no sample that it applies to it says anything" + error;
-  return a.info.on_request
+  return a.info.opt_in
              ? skipped(nothing +
                        "; put a campaign with its options into cases/<name>/campaign.toml")
              : failed(nothing);

@@ -6,7 +6,7 @@
 #include "host/config/manifest.h"
 #include "host/modelling/model_fit.h"
 #include "host/plugin_check/plugin_checks.h"
-#include "host/process/guarded.h"
+#include "host/reading/checked_read.h"
 
 namespace nonio::host::plugin_check::kit {
 
@@ -21,18 +21,10 @@ const Artifact* file_named(const Source& source, const std::string& name) {
 const Reader* reader_of(const Measurement& m, std::string_view bytes,
                         const std::vector<Reader>& readers) {
   for (const Reader& r : readers)
-    if (m.reader.empty() ? r.reads(m.kind) && r.recognises(bytes.substr(0, 4096))
+    if (m.reader.empty() ? r.reads(m.kind) && r.recognises(reading::head_of(bytes))
                          : r.info.name == m.reader)
       return &r;
   return nullptr;
-}
-
-template <class Column>
-void rearrange(Column& column, const std::vector<std::size_t>& order) {
-  if (column.empty()) return;
-  Column out;
-  for (const std::size_t i : order) out.push_back(column[i]);
-  column = std::move(out);
 }
 
 }  // namespace
@@ -49,52 +41,33 @@ Expected<Sample> open_source(const Source& source, const std::vector<Reader>& re
     const Reader* reader = reader_of(m, file->bytes, readers);
     if (reader == nullptr) return fail(place + ": no reader knows it");
     const Settings options = settings_for(reader->info, s);
-    auto read = process::guarded("reader " + reader->info.name, [&] {
-      return reader->read({file->bytes, s.campaign, m, options});
-    });
+    auto read = reading::checked_read(*reader, {file->bytes, s.campaign, m, options});
     if (!read) return fail(place + ": " + read.error().message);
-    if (const std::string why = reading::unsound(*read); !why.empty())
-      return fail(place + ": " + why);
     s.observations.push_back(std::move(*read));
   }
   return s;
 }
 
-std::vector<std::size_t> shuffled(std::size_t n, storage::Random& random) {
-  std::vector<std::size_t> order(n);
-  std::iota(order.begin(), order.end(), std::size_t{0});
+std::vector<std::uint32_t> shuffled(std::size_t n, storage::Random& random) {
+  std::vector<std::uint32_t> order(n);
+  std::iota(order.begin(), order.end(), 0U);
   for (std::size_t i = n; i > 1; --i)
     std::swap(order[i - 1],
               order[static_cast<std::size_t>(random.uniform() * static_cast<double>(i))]);
   return order;
 }
 
-Observations rearranged(const Observations& o, const std::vector<std::size_t>& order) {
-  Observations out = o;
-  for (auto& axis : out.axes) {
-    rearrange(axis.position, order);
-    rearrange(axis.approach, order);
-  }
-  for (auto* column :
-       {&out.deviation, &out.u, &out.time, &out.material, &out.air, &out.pressure, &out.humidity})
-    rearrange(*column, order);
-  for (auto* column : {&out.run, &out.line, &out.source_line}) rearrange(*column, order);
-  rearrange(out.sense, order);
-  return out;
-}
-
 std::vector<std::pair<std::string, Observations>> odd_tables(const Observations& o) {
   std::vector<std::pair<std::string, Observations>> all;
   all.emplace_back("no readings", rearranged(o, {}));
   all.emplace_back("one reading", rearranged(o, {0}));
-  std::vector<std::size_t> same(9, o.size() / 2), plus;
+  std::vector<std::uint32_t> same(9, static_cast<std::uint32_t>(o.size() / 2)), plus;
   all.emplace_back("one target", rearranged(o, same));
-  for (std::size_t i = 0; i < o.size(); ++i)
+  for (std::uint32_t i = 0; i < o.size(); ++i)
     if (o.axes.front().approach.empty() || o.axes.front().approach[i] > 0) plus.push_back(i);
   all.emplace_back("one direction", rearranged(o, plus));
   Observations bare = o;
-  for (auto* column : {&bare.time, &bare.material, &bare.air, &bare.u}) column->clear();
-  for (auto* column : {&bare.run, &bare.source_line}) column->clear();
+  for_each_measured_column([](auto& column) { column.clear(); }, bare);
   all.emplace_back("positions only", bare);
   Observations huge = o;
   for (auto& axis : huge.axes)
@@ -125,25 +98,18 @@ void add_encoders(Settings& settings, const Info& info, const Machine& machine) 
     if (o.name != "axes" || o.help.find("counts_per_mm") == o.help.npos) continue;
     auto entries = settings.values.find(o.name);
     if (entries == settings.values.end()) continue;
-    auto* list = std::get_if<std::vector<std::string>>(&entries->second);
-    for (const Axis& axis : machine.axes) {
-      const std::string counts = axis.rotary ? " counts_per_deg=3600" : " counts_per_mm=62500";
-      if (list == nullptr) continue;
-      const auto own = std::find_if(list->begin(), list->end(), [&](const std::string& entry) {
-        return entry.starts_with(axis.name + " ");
-      });
-      if (own == list->end())
-        list->push_back(axis.name + counts);
-      else if (own->find(" counts_per") == own->npos)
-        *own += counts;
-    }
+    auto* tables = std::get_if<NumberTables>(&entries->second);
+    if (tables == nullptr) continue;
+    for (const Axis& axis : machine.axes)
+      (*tables)[axis.name].emplace(axis.rotary ? "counts_per_deg" : "counts_per_mm",
+                                   axis.rotary ? 3600.0 : 62500.0);
   }
 }
 
 Settings or_defaults(config::Checked<Settings> settled, const Info& info) {
   if (settled) return std::move(*settled);
   Settings defaults;
-  for (const Option& o : info.options) defaults.values[o.name] = o.otherwise;
+  for (const Option& o : info.options) defaults.values[o.name] = o.default_value;
   return defaults;
 }
 
@@ -154,14 +120,17 @@ Settings settings_for(const Info& info, const Sample& sample) {
 }
 
 Settings settings_for(const Output& output, const Sample& sample) {
-  if (output.stage != Output::Stage::table) return settings_for(output.info, sample);
+  return settings_for(output.info, sample);
+}
+
+Settings settings_for(const Controller& controller, const Sample& sample) {
   config::Manifest manifest;
   manifest.campaign = sample.campaign;
   manifest.options = sample.options;
   const config::MachineRecord record = record_for(sample);
-  Settings settings =
-      or_defaults(config::settle_table_options(output.info, {}, manifest, &record), output.info);
-  add_encoders(settings, output.info, sample.campaign.machine);
+  Settings settings = or_defaults(
+      config::settle_table_options(controller.info, {}, manifest, &record), controller.info);
+  add_encoders(settings, controller.info, sample.campaign.machine);
   return settings;
 }
 

@@ -87,10 +87,9 @@ struct Written {
   bool unable = false;  ///< the plugin failed, instead of saying what it lacks
 };
 
-Written written_table(const Output& o, const Sample& s, const Settings& options,
-                      const Bench& bench) {
+Written written_table(const Controller& o, const Sample& s, const Settings& options, const Bench&) {
   if (o.applies && !o.applies(s.campaign)) return {{}, {}, "it does not apply to runs of one axis"};
-  const auto r = o.write({s.campaign, s.observations, {}, options, bench.templates});
+  const auto r = o.write({s.campaign, s.observations, {}, options});
   if (!r) return {{}, {}, r.error().message, true};
   if (r->artifacts.empty())
     return {{},
@@ -106,7 +105,7 @@ Written written_table(const Output& o, const Sample& s, const Settings& options,
 
 /// Ways to set the plugin up: the user states the sign of a control if it is undocumented; a
 /// table for each direction.
-std::vector<Settings> set_ups(const Output& o, const Sample& s) {
+std::vector<Settings> set_ups(const Controller& o, const Sample& s) {
   const Settings defaults = settings_for(o, s);
   std::vector<Settings> all{defaults};
   for (const Option& option : o.info.options)
@@ -115,7 +114,7 @@ std::vector<Settings> set_ups(const Output& o, const Sample& s) {
         all.push_back(defaults);
         all.back().values["sign"] = choice;
       }
-  if (o.control->bidirectional)
+  if (o.table.bidirectional)
     for (std::size_t i = 0, n = all.size(); i < n; ++i) {
       all.push_back(all[i]);
       all.back().values["directions"] = true;
@@ -129,7 +128,7 @@ struct SetUp {
   double first = 0.0;
 };
 
-std::vector<SetUp> settings_that_write(const Output& o, const Bench& bench, Written& why) {
+std::vector<SetUp> settings_that_write(const Controller& o, const Bench& bench, Written& why) {
   std::vector<SetUp> all;
   for (const double first : {0.0, -0.8}) {
     storage::Random random = bench.random(10);
@@ -181,10 +180,10 @@ double steepest(const KnownError& k) {
 
 std::string in_um(double si) { return short_text(si * 1e6, 4) + " um or urad"; }
 
-double step_of(const Output& o, bool rotary) { return o.control->value_step.of(rotary); }
+double step_of(const Controller& o, bool rotary) { return o.table.value_step.of(rotary); }
 
 /// What is wrong with a table of this error; `refused` gets why there is none, which may be right.
-std::string wrong_table(const Output& o, const KnownError& k, const Settings& options,
+std::string wrong_table(const Controller& o, const KnownError& k, const Settings& options,
                         const Bench& bench, std::string& refused) {
   const Written w = written_table(o, sample_of(k), options, bench);
   refused = w.refused;
@@ -205,9 +204,9 @@ std::string wrong_table(const Output& o, const KnownError& k, const Settings& op
          " once its table is loaded: expected " + in_um(allowed) + " at most";
 }
 
-Verdict each_setting(const Output& o, const Bench& bench,
+Verdict each_setting(const Controller& o, const Bench& bench,
                      const std::function<std::string(const SetUp&)>& law) {
-  if (!o.parse) return failed("it declares a table and cannot read it back (Output::parse)");
+  if (!o.parse) return failed("it cannot read its table back (Controller::parse)");
   Written why;
   const auto settings = settings_that_write(o, bench, why);
   if (settings.empty()) {
@@ -219,11 +218,10 @@ Verdict each_setting(const Output& o, const Bench& bench,
   return passed();
 }
 
-Verdict table_declared(const Output& o, const Bench&) {
-  const ControlTable& t = *o.control;
+Verdict table_declared(const Controller& o, const Bench&) {
+  const ControlTable& t = o.table;
   if (t.name.empty()) return failed("the table has no name: expected the maker's");
-  if (!o.parse) return failed("it declares a table and cannot read it back (Output::parse)");
-  if (o.stage != Output::Stage::table) return failed("a controller is of stage `table`");
+  if (!o.parse) return failed("it cannot read its table back (Controller::parse)");
   for (const auto* scale : {&t.position_unit, &t.position_step, &t.value_unit, &t.value_step})
     for (const double x : {scale->linear, scale->rotary})
       if (!(x > 0.0) || !std::isfinite(x)) return failed("a unit or step that is not above 0");
@@ -232,13 +230,13 @@ Verdict table_declared(const Output& o, const Bench&) {
   if (t.facts.empty()) return failed("it does not say how well anything is known (facts)");
   std::set<std::string> ids;
   for (const auto& fact : t.facts) {
-    if (fact.id.empty() || fact.says.empty()) return failed("a fact without id or words");
+    if (fact.id.empty() || fact.description.empty()) return failed("a fact without id or words");
     if (!ids.insert(fact.id).second) return failed("two facts are called " + fact.id);
   }
   return passed();
 }
 
-Verdict table_cancels(const Output& o, const Bench& bench) {
+Verdict table_cancels(const Controller& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
     storage::Random random = bench.random(11);
     for (int round = 0; round < 10; ++round) {
@@ -254,7 +252,7 @@ Verdict table_cancels(const Output& o, const Bench& bench) {
 }
 
 /// A ramp, and the same ramp downwards.
-Verdict table_sign(const Output& o, const Bench& bench) {
+Verdict table_sign(const Controller& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
     for (const double slope : {40e-6, -40e-6}) {
       KnownError k{};
@@ -290,7 +288,7 @@ double left_at_points(const KnownError& k, const std::vector<LoadedTable>& table
 }
 
 /// At every point of the table, so that no sum of increments drifts away.
-Verdict table_rounding(const Output& o, const Bench& bench) {
+Verdict table_rounding(const Controller& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
     storage::Random random = bench.random(12);
     for (int round = 0; round < 20; ++round) {
@@ -309,7 +307,7 @@ Verdict table_rounding(const Output& o, const Bench& bench) {
 }
 
 /// Errors that grow until no table holds them: refused then, and right as long as they are not.
-Verdict table_limits(const Output& o, const Bench& bench) {
+Verdict table_limits(const Controller& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
     storage::Random random = bench.random(13);
     for (const double size : {3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2}) {
@@ -322,8 +320,8 @@ Verdict table_limits(const Output& o, const Bench& bench) {
   });
 }
 
-Verdict table_rotary(const Output& o, const Bench& bench) {
-  if (!o.parse) return failed("it declares a table and cannot read it back (Output::parse)");
+Verdict table_rotary(const Controller& o, const Bench& bench) {
+  if (!o.parse) return failed("it cannot read its table back (Controller::parse)");
   storage::Random random = bench.random(14);
   std::size_t tables = 0;
   std::string refused;
@@ -344,12 +342,12 @@ Verdict table_rotary(const Output& o, const Bench& bench) {
       }
     }
   }
-  if (!o.control->rotary)
+  if (!o.table.rotary)
     return tables == 0 ? passed() : failed("it declares no rotary axes, and writes a table of one");
   return tables > 0 ? passed() : skipped("no table of a turn with its defaults: " + refused);
 }
 
-Verdict table_inch(const Output& o, const Bench& bench) {
+Verdict table_inch(const Controller& o, const Bench& bench) {
   const auto has = [](const Option& option, const char* choice) {
     return std::find(option.choices.begin(), option.choices.end(), choice) != option.choices.end();
   };
@@ -380,12 +378,12 @@ Verdict table_inch(const Output& o, const Bench& bench) {
 
 }  // namespace
 
-const std::vector<Check<Output>>& controller_checks() {
-  static const std::vector<Check<Output>> checks = {
+const std::vector<Check<Controller>>& controller_checks() {
+  static const std::vector<Check<Controller>> of_tables = {
       {"declared", "Name, units, steps and the confidence of each fact are declared.",
        table_declared},
       {"truth", "Files of the maker do what table.csv says.",
-       [](const Output& x, const Bench& bench) { return truth(x, bench); }},
+       [](const Controller& x, const Bench& bench) { return truth(x, bench); }},
       {"cancels", "Its table, read back, removes a planted error.", table_cancels},
       {"sign", "Where the error rises, the control adds a correction that falls equally.",
        table_sign},
@@ -393,6 +391,11 @@ const std::vector<Check<Output>>& controller_checks() {
       {"limits", "An error beyond its range is rejected and never wraps around.", table_limits},
       {"rotary", "A table over a full turn ends with the value that it begins with.", table_rotary},
       {"inch", "Inches give the same readings as millimetres.", table_inch}};
+  static const std::vector<Check<Controller>> checks = [] {
+    auto all = controller_checks_of_files();
+    all.insert(all.end(), of_tables.begin(), of_tables.end());
+    return all;
+  }();
   return checks;
 }
 

@@ -34,7 +34,7 @@ std::vector<Shown> shown(const Effect& effect, const Bench& bench) {
   for (const Sample& s : bench.samples)
     for (const model::Part& part : model::parts_of(s.campaign, s.observations)) {
       auto terms = model::catalogue(part, one);
-      if (effect.always)
+      if (effect.is_nuisance)
         if (auto always = model::terms_of(part, s.campaign.machine, {}, one)) terms = *always;
       for (model::Term& term : terms) {
         term.effect = &effect;
@@ -63,7 +63,7 @@ Expected<Columns> sensed_columns(const Effect& e, const Shown& s,
                                  const std::vector<double>& shape) {
   auto columns = e.columns(s.table(), s.term.axis, shape);
   const std::size_t k = coordinate_of(s.term.axis.name);
-  if (!columns || e.of || s.part.kind != model::Part::Kind::space || k > 2) return columns;
+  if (!columns || e.instances || s.part.kind != model::Part::Kind::space || k > 2) return columns;
   for (auto& c : *columns)
     for (std::size_t i = 0; i < c.size(); ++i) c[i] *= s.table().sense_of(i)[k];
   return columns;
@@ -161,11 +161,11 @@ Verdict effect_again(const Effect& e, const Bench& bench) {
 
 /// A row in which the axis stood, far away, is added to the readings.
 Verdict effect_still(const Effect& e, const Bench& bench) {
-  if (e.of) return skipped("an effect in space: an axis that stands still counts");
+  if (e.instances) return skipped("an effect in space: an axis that stands still counts");
   return everywhere(e, bench, [&](const Shown& s, const std::vector<double>& shape) -> std::string {
-    std::vector<std::size_t> order(s.table().size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    order.push_back(order.size() / 2);
+    std::vector<std::uint32_t> order(s.table().size());
+    std::iota(order.begin(), order.end(), 0U);
+    order.push_back(static_cast<std::uint32_t>(order.size() / 2));
     Observations o = rearranged(s.table(), order);
     for (auto& axis : o.axes) {
       if (axis.approach.empty() || axis.axis != s.term.axis.name) continue;
@@ -186,7 +186,7 @@ Verdict effect_rows(const Effect& e, const Bench& bench) {
   std::size_t seen = 0;
   const Verdict v =
       everywhere(e, bench, [&](const Shown& s, const std::vector<double>& shape) -> std::string {
-        if (s.table().time.empty() && !e.of) return {};
+        if (s.table().time.empty() && !e.instances) return {};
         ++seen;
         const auto order = shuffled(s.table().size(), random);
         const auto one = e.columns(s.table(), s.term.axis, shape);
@@ -381,7 +381,7 @@ bool describes(const model::Explanation& x, const std::string& name) {
 
 /// In the first sample of an axis, or of space, that determines it.
 Verdict effect_explained(const Effect& e, const Bench& bench) {
-  if (e.always) return skipped("it is in every model and never a candidate");
+  if (e.is_nuisance) return skipped("it is in every model and never a candidate");
   const auto all = shown(e, bench);
   if (all.empty()) return skipped(unseen);
   storage::Random random = bench.random(4);
@@ -408,10 +408,10 @@ Verdict effect_explained(const Effect& e, const Bench& bench) {
 /// Of an axis, or of the first thing that an effect in space would be of.
 std::string survives(const Effect& e, const Observations& o, const Axis& axis) {
   std::vector<std::string> names{axis.name};
-  if (e.of) names = e.of(o);
+  if (e.instances) names = e.instances(o);
   for (const std::string& name : names) {
     Axis one = axis;
-    if (e.of) one = Axis{.name = name};
+    if (e.instances) one = Axis{.name = name};
     const bool applies = e.applies(o, one);
     std::vector<double> shape;
     for (const auto& s : e.shapes)

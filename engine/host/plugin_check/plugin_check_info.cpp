@@ -60,16 +60,16 @@ std::string unit_in_name(std::string_view name) {
 /// What is wrong with an option; empty if nothing.
 std::string wrong_option(const Option& o) {
   if (o.help.empty()) return "has no help: expected one sentence";
-  const bool number = std::holds_alternative<double>(o.otherwise) ||
-                      std::holds_alternative<std::vector<double>>(o.otherwise);
+  const bool number = std::holds_alternative<double>(o.default_value) ||
+                      std::holds_alternative<std::vector<double>>(o.default_value);
   if (const std::string unit = unit_in_name(o.name); number && !unit.empty() && o.unit != unit)
     return "ends in _" + unit + ", its unit is " + quoted(o.unit) + ": expected " + quoted(unit);
-  const Settings own{{{o.name, o.otherwise}}};
+  const Settings own{{{o.name, o.default_value}}};
   const double value = own.number(o.name, 0.0);
   if (!std::isfinite(value)) return "has a default that is not a number";
-  if (o.least && o.most && !(*o.least <= *o.most)) return "has its least value above its most";
+  if (o.min && o.max && !(*o.min <= *o.max)) return "has its least value above its most";
   const Info one{"x", "1", "x", {o}};
-  const config::RawOptions raw{{"x", {{o.name, {o.otherwise, "", 0}}}}};
+  const config::RawOptions raw{{"x", {{o.name, {o.default_value, "", 0}}}}};
   if (const auto settled = config::settle_options(one, raw, {}); !settled)
     return "has a default that it does not allow: " + settled.error().front().message;
   std::set<std::string> choices(o.choices.begin(), o.choices.end());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of outputs of every kind; tables have more of them (plugin_check_controllers.cpp).
+// Laws of all that writes files, outputs and controllers; tables have more of them
+// (plugin_check_controllers.cpp).
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -18,13 +19,23 @@ const Issue issue{"2026-0001", "2026-11-21", "", "", {}, std::string(64, '0')};
 
 Expected<OutputResult> written(const Output& o, const Sample& s, const Results& results,
                                const Settings& options, const Bench& bench) {
-  if (o.lacks) {
-    o.lacks({s.campaign, s.observations, results, options, bench.templates});
-    return o.write(
-        {s.campaign, s.observations, results, options, bench.templates, nullptr, &issue});
-  }
-  return o.write({s.campaign, s.observations, results, options, bench.templates});
+  if (!o.certificate)
+    return o.write({s.campaign, s.observations, results, options, bench.templates});
+  if (o.certificate->missing_requirements)
+    o.certificate->missing_requirements(
+        {s.campaign, s.observations, results, options, bench.templates});
+  return o.write({s.campaign, s.observations, results, options, bench.templates, &issue});
 }
+
+Expected<OutputResult> written(const Controller& c, const Sample& s, const Results& results,
+                               const Settings& options, const Bench&) {
+  return c.write({s.campaign, s.observations, results, options});
+}
+
+void prepare(const Output& o, const Bench& bench) {
+  if (o.prepare) o.prepare(bench.templates);
+}
+void prepare(const Controller&, const Bench&) {}
 
 /// What the host would refuse; empty if nothing.
 std::string unsound_output(const OutputResult& r) {
@@ -36,28 +47,23 @@ std::string unsound_output(const OutputResult& r) {
     if (a.name.ends_with(".json") && !nlohmann::json::accept(a.bytes))
       return a.name + " is not JSON";
   }
-  for (const Prediction& p : r.predictions)
-    if (!std::isfinite(p.before) || !std::isfinite(p.after))
-      return "a prediction of " + p.name + " that is not a number";
-  for (const Finding& f : r.findings)
-    for (const Number& n : f.evidence)
-      if (!std::isfinite(n.value))
-        return "evidence " + n.name + " of " + f.id + " that is not a number";
-  return {};
+  return unsound(r);
 }
 
 /// Writes and looks at it; an error is an answer too.
-std::string complaint(const Output& o, const Sample& s, const Results& results,
+template <class Plugin>
+std::string complaint(const Plugin& o, const Sample& s, const Results& results,
                       const Settings& options, const Bench& bench) {
   const auto r = written(o, s, results, options, bench);
   return r ? unsound_output(*r) : std::string();
 }
 
-Verdict each_output(const Output& o, const Bench& bench,
+template <class Plugin>
+Verdict each_output(const Plugin& o, const Bench& bench,
                     const std::function<std::string(const Sample&, const Results&)>& law) {
   if (!o.applies || !o.write) return failed("applies or write is missing");
   std::size_t tried = 0;
-  if (o.prepare) o.prepare(bench.templates);
+  prepare(o, bench);
   for (const Sample& s : bench.samples) {
     if (!o.applies(s.campaign)) continue;
     bench.stage("sample " + s.name);
@@ -89,7 +95,8 @@ bool same(const OutputResult& a, const OutputResult& b) {
                     findings);
 }
 
-Verdict output_again(const Output& o, const Bench& bench) {
+template <class Plugin>
+Verdict output_again(const Plugin& o, const Bench& bench) {
   return each_output(o, bench, [&](const Sample& s, const Results& results) -> std::string {
     const Settings options = settings_for(o, s);
     const auto one = written(o, s, results, options, bench);
@@ -100,7 +107,8 @@ Verdict output_again(const Output& o, const Bench& bench) {
 }
 
 /// Something comes out of at least one sample.
-Verdict output_writes(const Output& o, const Bench& bench) {
+template <class Plugin>
+Verdict output_writes(const Plugin& o, const Bench& bench) {
   std::size_t files = 0;
   std::string first;
   Verdict v = each_output(o, bench, [&](const Sample& s, const Results& results) -> std::string {
@@ -112,12 +120,13 @@ Verdict output_writes(const Output& o, const Bench& bench) {
     files += r->artifacts.size();
     return unsound_output(*r);
   });
-  if (v.state == Verdict::State::passed && files == 0 && !o.info.on_request)
+  if (v.state == Verdict::State::passed && files == 0 && !o.info.opt_in)
     return failed("it wrote no file of any sample" + first);
   return v;
 }
 
-Verdict output_empty(const Output& o, const Bench& bench) {
+template <class Plugin>
+Verdict output_empty(const Plugin& o, const Bench& bench) {
   return each_output(o, bench, [&](const Sample& given, const Results& results) -> std::string {
     const Settings options = settings_for(o, given);
     if (std::string why = complaint(o, given, {}, options, bench); !why.empty())
@@ -170,7 +179,8 @@ std::vector<std::pair<std::string, std::string>> hostile_texts() {
           {"bytes that are no UTF-8", std::string("\xff\xfe\x00\x80 x", 6)}};
 }
 
-Verdict output_hostile(const Output& o, const Bench& bench) {
+template <class Plugin>
+Verdict output_hostile(const Plugin& o, const Bench& bench) {
   std::size_t at = 0;
   return each_output(o, bench, [&](const Sample& s, const Results&) -> std::string {
     // each sample takes some of them in turn, so that all together see all
@@ -191,8 +201,8 @@ Verdict output_hostile(const Output& o, const Bench& bench) {
 /// Every value of an option that is worth trying.
 std::vector<Setting> ends_of(const Option& option) {
   std::vector<Setting> ends;
-  if (std::holds_alternative<bool>(option.otherwise)) return {Setting(true), Setting(false)};
-  const bool whole = std::holds_alternative<std::int64_t>(option.otherwise);
+  if (std::holds_alternative<bool>(option.default_value)) return {Setting(true), Setting(false)};
+  const bool whole = std::holds_alternative<std::int64_t>(option.default_value);
   for (const std::string& choice : option.choices) {
     std::int64_t value = 0;
     if (!whole)
@@ -203,23 +213,28 @@ std::vector<Setting> ends_of(const Option& option) {
   const auto number = [&](double x) {
     whole ? ends.emplace_back(static_cast<std::int64_t>(x)) : ends.emplace_back(x);
   };
-  const bool is_number = whole || std::holds_alternative<double>(option.otherwise);
+  const bool is_number = whole || std::holds_alternative<double>(option.default_value);
   if (is_number && option.choices.empty()) {
-    number(option.least.value_or(-1e9));
-    number(option.most.value_or(1e9));
-    if (!option.least || *option.least <= 0.0) number(0.0);
+    number(option.min.value_or(-1e9));
+    number(option.max.value_or(1e9));
+    if (!option.min || *option.min <= 0.0) number(0.0);
   }
-  if (std::holds_alternative<std::string>(option.otherwise) && option.choices.empty())
+  if (std::holds_alternative<std::string>(option.default_value) && option.choices.empty())
     ends.emplace_back(std::string("../\xf0\x9f\x8f\xad"));
-  if (std::holds_alternative<std::vector<std::string>>(option.otherwise))
+  if (std::holds_alternative<std::vector<std::string>>(option.default_value))
     ends.emplace_back(std::vector<std::string>{"", "X", "../x y=z =", std::string(300, 'q')});
-  if (std::holds_alternative<std::vector<double>>(option.otherwise))
+  if (std::holds_alternative<NumberTables>(option.default_value))
+    ends.emplace_back(NumberTables{{"", {}},
+                                   {"X", {{"", 0.0}, {"step_mm", -1e300}}},
+                                   {"../x", {{std::string(300, 'q'), 1e300}}}});
+  if (std::holds_alternative<std::vector<double>>(option.default_value))
     ends.emplace_back(std::vector<double>{0.0, -1.0, 1e300});
   return ends;
 }
 
 /// On the sample in which it writes the most, one option after the other.
-Verdict output_options(const Output& o, const Bench& bench) {
+template <class Plugin>
+Verdict output_options(const Plugin& o, const Bench& bench) {
   if (o.info.options.empty()) return skipped("it has no options");
   const Sample* largest = nullptr;
   Results results;
@@ -252,14 +267,13 @@ Verdict output_templates(const Output& o, const Bench& bench) {
   return passed();
 }
 
-}  // namespace
-
-Verdict fingerprint(const Output& o, const Bench& bench) {
+template <class Plugin>
+Verdict fingerprint_of(const Plugin& o, const Bench& bench) {
   if (!o.applies || !o.write) return skipped("applies or write is missing");
   std::vector<Results> results;
   for (const Sample& s : bench.samples) results.push_back(results_of(s, bench));
   if (bench.only_plugin) bench.only_plugin();
-  if (o.prepare) o.prepare(bench.templates);
+  prepare(o, bench);
   std::string all;
   for (std::size_t i = 0; i < bench.samples.size(); ++i) {
     const Sample& s = bench.samples[i];
@@ -280,16 +294,32 @@ Verdict fingerprint(const Output& o, const Bench& bench) {
                      : Verdict{Verdict::State::passed, storage::sha256(all)};
 }
 
+template <class Plugin>
+std::vector<Check<Plugin>> checks_of_files() {
+  return {{"writes", "It writes files with plain names and valid numbers.", output_writes<Plugin>},
+          {"again", "The same input gives the same bytes.", output_again<Plugin>},
+          {"empty", "No results or no readings: an error, or less.", output_empty<Plugin>},
+          {"hostile", "Texts of any kind do not crash it, and lead to no other folder.",
+           output_hostile<Plugin>},
+          {"choices", "Every choice and both ends of each option work.", output_options<Plugin>}};
+}
+
+}  // namespace
+
+Verdict fingerprint(const Output& o, const Bench& bench) { return fingerprint_of(o, bench); }
+Verdict fingerprint(const Controller& c, const Bench& bench) { return fingerprint_of(c, bench); }
+
 const std::vector<Check<Output>>& output_checks() {
-  static const std::vector<Check<Output>> checks = {
-      {"writes", "It writes files with plain names and valid numbers.", output_writes},
-      {"again", "The same input gives the same bytes.", output_again},
-      {"empty", "No results or no readings: an error, or less.", output_empty},
-      {"hostile", "Texts of any kind do not crash it, and lead to no other folder.",
-       output_hostile},
-      {"choices", "Every choice and both ends of each option work.", output_options},
-      {"templates", "Its own templates have no errors.", output_templates}};
+  static const std::vector<Check<Output>> checks = [] {
+    auto all = checks_of_files<Output>();
+    all.push_back({"templates", "Its own templates have no errors.", output_templates});
+    return all;
+  }();
   return checks;
+}
+
+std::vector<Check<Controller>> controller_checks_of_files() {
+  return checks_of_files<Controller>();
 }
 
 }  // namespace nonio::host::plugin_check::kit

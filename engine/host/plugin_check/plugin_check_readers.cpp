@@ -112,7 +112,7 @@ std::string strangers(const std::map<Row, int>& base, std::size_t n, const Obser
 
 Verdict reader_reads(const Reader& r, const Bench& bench) {
   return each_file(r, bench, [](const ReadFile&, const Observations& o) -> std::string {
-    if (const std::string why = reading::unsound(o); !why.empty()) return why;
+    if (const std::string why = unsound(o); !why.empty()) return why;
     return o.size() == 0 ? "it finds no reading" : "";
   });
 }
@@ -148,10 +148,10 @@ Verdict reader_truncated(const Reader& r, const Bench& bench) {
       auto o = read(r, f, std::string_view(f.bytes).substr(0, length));
       if (!o) continue;
       const std::string cut = "cut off after " + std::to_string(length) + " bytes: ";
-      if (const std::string why = reading::unsound(*o); !why.empty()) return cut + why;
+      if (const std::string why = unsound(*o); !why.empty()) return cut + why;
       const std::uint32_t last = o->source_line.empty() ? 0 : o->source_line.back();
-      std::vector<std::size_t> kept;
-      for (std::size_t i = 0; i < o->size(); ++i)
+      std::vector<std::uint32_t> kept;
+      for (std::uint32_t i = 0; i < o->size(); ++i)
         if (o->source_line.empty() ? i + 1 < o->size() : o->source_line[i] != last)
           kept.push_back(i);
       std::size_t lost = 0;
@@ -174,7 +174,7 @@ Verdict reader_damaged(const Reader& r, const Bench& bench) {
         bytes[at] = static_cast<char>(random.uniform() * 256.0);
       }
       if (const auto o = read(r, f, bytes))
-        if (const std::string why = reading::unsound(*o); !why.empty())
+        if (const std::string why = unsound(*o); !why.empty())
           return "with " + std::to_string(k % 4 + 1) + " bytes changed: " + why;
     }
     return {};
@@ -246,7 +246,7 @@ Verdict reader_sentinels(const Reader& r, const Bench& bench) {
         const std::string what = std::string(sentinel) + " in place of " +
                                  f.bytes.substr(t.at, t.length) + " in " +
                                  line_words(f.bytes, t.at) + ": ";
-        if (const std::string why = reading::unsound(*o); !why.empty()) return what + why;
+        if (const std::string why = unsound(*o); !why.empty()) return what + why;
         for (const double d : o->deviation)
           if (std::fabs(d) > no_reading) return what + "it became a reading";
         std::size_t lost = 0;
@@ -338,8 +338,7 @@ Verdict reader_foreign(const Reader& r, const Bench& bench) {
     for (const Sample& s : bench.samples) {
       const auto o =
           r.read({bytes, s.campaign, s.campaign.measurements[0], settings_for(r.info, s)});
-      if (o && !reading::unsound(*o).empty())
-        return failed(std::string(name) + ": " + reading::unsound(*o));
+      if (o && !unsound(*o).empty()) return failed(std::string(name) + ": " + unsound(*o));
     }
   }
   return passed();

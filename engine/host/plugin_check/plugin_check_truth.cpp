@@ -322,9 +322,9 @@ std::string other_point(const TableRow& row, const std::vector<LoadedTable>& tab
 
 }  // namespace
 
-Verdict truth(const Output& o, const Bench& bench) {
+Verdict truth(const Controller& o, const Bench& bench) {
   std::size_t compared = 0;
-  if (!o.parse) return failed("it declares a table and cannot read it back (Output::parse)");
+  if (!o.parse) return failed("it cannot read its table back (Controller::parse)");
   for (const Sample& s : bench.samples)
     for (const Source& source : bench.sources) {
       const auto rows =

@@ -17,6 +17,6 @@ std::string differs_from_truth(const Observations& o, const Measurement& m, cons
 
 Verdict truth(const Analysis& analysis, const Bench& bench);
 Verdict truth(const Effect& effect, const Bench& bench);
-Verdict truth(const Output& controller, const Bench& bench);
+Verdict truth(const Controller& controller, const Bench& bench);
 
 }  // namespace nonio::host::plugin_check::kit

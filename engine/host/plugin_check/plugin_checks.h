@@ -10,8 +10,8 @@
 
 #include "host/evaluation/evaluate.h"
 #include "host/loader/plugins.h"
-#include "host/reading/unsound.h"
 #include "host/storage/random.h"
+#include "nonio/sdk/check.h"
 #include "nonio/sdk/plugin.h"
 
 /// What the checks of all kinds of plugins share. They run in a child process, so that a plugin may
@@ -80,7 +80,9 @@ const std::vector<Check<Reader>>& reader_checks();
 const std::vector<Check<Effect>>& effect_checks();
 const std::vector<Check<Analysis>>& analysis_checks();
 const std::vector<Check<Output>>& output_checks();
-const std::vector<Check<Output>>& controller_checks();
+const std::vector<Check<Controller>>& controller_checks();
+/// The laws that controllers share with outputs.
+std::vector<Check<Controller>> controller_checks_of_files();
 
 /// What a plugin makes of all samples, digested; a failure says why there is nothing. Calls
 /// `Bench::only_plugin` before the plugin.
@@ -88,17 +90,23 @@ Verdict fingerprint(const Reader& reader, const Bench& bench);
 Verdict fingerprint(const Effect& effect, const Bench& bench);
 Verdict fingerprint(const Analysis& analysis, const Bench& bench);
 Verdict fingerprint(const Output& output, const Bench& bench);
+Verdict fingerprint(const Controller& controller, const Bench& bench);
 
+/// What `check` says of readings, results or files; empty if nothing.
+template <class What>
+std::string unsound(const What& what) {
+  const auto sound = check(what);
+  return sound ? std::string() : sound.error().message;
+}
 /// A rearrangement of n rows.
-std::vector<std::size_t> shuffled(std::size_t n, storage::Random& random);
-/// The rows in this order; of lines and their names nothing changes.
-Observations rearranged(const Observations& o, const std::vector<std::size_t>& order);
+std::vector<std::uint32_t> shuffled(std::size_t n, storage::Random& random);
 /// Readings that nobody should have sent.
 std::vector<std::pair<std::string, Observations>> odd_tables(const Observations& o);
 /// The plugin's defaults, and what the sample says.
 Settings settings_for(const Info& info, const Sample& sample);
-/// Of a table: beside these, the numbers of the axes by their places.
 Settings settings_for(const Output& output, const Sample& sample);
+/// Beside these, the numbers of the axes by their places.
+Settings settings_for(const Controller& controller, const Sample& sample);
 /// All that the program's own analyses and its model say of a sample.
 Results results_of(const Sample& sample, const Bench& bench);
 

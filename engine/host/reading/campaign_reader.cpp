@@ -167,27 +167,7 @@ void add_own_effects(ReadCampaign& out) {
   }
 }
 
-template <class Column>
-void keep(Column& column, const std::vector<char>& kept) {
-  if (column.empty()) return;
-  std::size_t to = 0;
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    if (kept[i] != 0) column[to++] = column[i];
-  column.resize(to);
-}
-
 }  // namespace
-
-void keep_rows(Observations& o, const std::vector<char>& kept) {
-  for (auto& axis : o.axes) {
-    keep(axis.position, kept);
-    keep(axis.approach, kept);
-  }
-  for (auto* column : {&o.deviation, &o.u, &o.time, &o.material, &o.air, &o.pressure, &o.humidity})
-    keep(*column, kept);
-  for (auto* column : {&o.run, &o.line, &o.source_line}) keep(*column, kept);
-  keep(o.sense, kept);
-}
 
 ReadCampaign read_campaign(const fs::path& folder, const Context& context, const Stage& stage) {
   const CampaignSource from{folder, context, stage};

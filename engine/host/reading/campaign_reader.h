@@ -31,9 +31,6 @@ struct ReadCampaign {
 ReadCampaign read_campaign(const std::filesystem::path& folder, const Context& context,
                            const Stage& stage);
 
-/// Takes away the rows whose flag is 0.
-void keep_rows(Observations& observations, const std::vector<char>& kept);
-
 /// What a verb about one campaign works with.
 struct Workplace {
   loader::Plugins plugins;

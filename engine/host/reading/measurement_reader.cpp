@@ -5,10 +5,10 @@
 #include <set>
 
 #include "host/process/guarded.h"
+#include "host/reading/checked_read.h"
 #include "host/reading/plausibility.h"
 #include "host/reading/targets.h"
 #include "host/reading/unknown_format.h"
-#include "host/reading/unsound.h"
 #include "host/storage/digest.h"
 #include "host/storage/files.h"
 #include "nonio/sdk/text.h"
@@ -39,7 +39,7 @@ Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurem
     if (!reads) return fail(reads.error());
     any = any || *reads;
     const auto recognised =
-        process::guarded_answer(who, [&] { return *reads && r.recognises(bytes.substr(0, 4096)); });
+        process::guarded_answer(who, [&] { return *reads && r.recognises(head_of(bytes)); });
     if (!recognised) return fail(recognised.error());
     if (*recognised) return &r;
   }
@@ -133,18 +133,15 @@ Expected<void> read_one_measurement(const CampaignSource& from, const Measuremen
   if (!options) return {};
   const std::string who = "reader " + info.name;
   from.stage(who + " (measurement " + m.id + ")");
-  auto observations = process::guarded(who, [&] {
-    return (*reader)->read({bytes, out.manifest->campaign, m, *options, [&](std::size_t offset) {
-                              if (!*converted) file->release(offset);
-                            }});
-  });
+  auto observations =
+      checked_read(**reader, {bytes, out.manifest->campaign, m, *options, [&](std::size_t offset) {
+                                if (!*converted) file->release(offset);
+                              }});
   if (!observations) {
     Error error = observations.error();
     if (error.message.starts_with(who + ": ")) error.message.erase(0, who.size() + 2);
     return fail(std::move(error));
   }
-  if (const std::string why = unsound(*observations); !why.empty())
-    return fail(who + " gave " + why);
   if (auto possible = possible_air(*observations, m.file); !possible) return possible;
   if (auto excluded = exclude(from, out, m, *observations); !excluded) return excluded;
   note_oddities(m, bytes, *observations, out);

@@ -7,9 +7,15 @@ namespace nonio::host::reading {
 
 namespace {
 
+const std::string& name_of(const Info& info) { return info.name; }
+template <class Plugin>
+const std::string& name_of(const Plugin& plugin) {
+  return plugin.info.name;
+}
+
 template <class Plugin>
 bool has(const std::vector<Plugin>& all, const std::string& name) {
-  return std::any_of(all.begin(), all.end(), [&](const Plugin& p) { return p.info.name == name; });
+  return std::any_of(all.begin(), all.end(), [&](const Plugin& p) { return name_of(p) == name; });
 }
 
 template <class Plugin>
@@ -33,7 +39,7 @@ std::vector<Error> ownerless_options(const config::RawOptions& options,
   std::vector<Error> errors;
   for (const auto& [name, values] : options) {
     if (values.empty() || has(plugins.readers(), name) || has(plugins.analyses(), name) ||
-        has(plugins.outputs(), name))
+        has(plugins.outputs(), name) || has(plugins.controllers(), name))
       continue;
     const config::RawOption& first = values.begin()->second;
     errors.push_back(
@@ -46,10 +52,14 @@ void locate(Error& error, const config::KeyLines& manifest, const config::KeyLin
             const std::string& plugin) {
   if (error.key.empty() || !error.file.empty()) return;
   error.file = config::manifest_name;
-  const std::string option = "options." + plugin + "." + error.key;
-  for (const auto& [lines, file] :
-       {std::pair(&manifest, config::manifest_name), {&site, config::site_name}})
-    for (const std::string& key : {option, error.key})
+  const std::string of_plugin = "options." + plugin + ".";
+  std::vector<std::string> keys{of_plugin + error.key};  // then the tables that it stands in
+  while (keys.back().rfind('.') >= of_plugin.size())
+    keys.push_back(keys.back().substr(0, keys.back().rfind('.')));
+  keys.push_back(error.key);
+  for (const std::string& key : keys)
+    for (const auto& [lines, file] :
+         {std::pair(&manifest, config::manifest_name), {&site, config::site_name}})
       if (const auto found = lines->find(key); found != lines->end()) {
         error.file = file;
         error.line = found->second;
@@ -82,8 +92,10 @@ std::vector<Error> site_mistakes(const Context& context) {
   std::vector<Error> errors;
   check_names(plugins.analyses(), "analysis", "run.analyses", context.site.run.analyses, context,
               errors);
-  check_names(plugins.outputs(), "output", "run.outputs", context.site.run.outputs, context,
-              errors);
+  std::vector<Info> outputs;
+  for (const Output& o : plugins.outputs()) outputs.push_back(o.info);
+  for (const Controller& c : plugins.controllers()) outputs.push_back(c.info);
+  check_names(outputs, "output", "run.outputs", context.site.run.outputs, context, errors);
   for (Error& e : ownerless_options(context.site.options, plugins)) errors.push_back(std::move(e));
   const auto check_options = [&](const auto& all) {
     for (const auto& plugin : all)
@@ -93,6 +105,7 @@ std::vector<Error> site_mistakes(const Context& context) {
   check_options(plugins.readers());
   check_options(plugins.analyses());
   check_options(plugins.outputs());
+  check_options(plugins.controllers());
   return errors;
 }
 

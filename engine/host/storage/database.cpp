@@ -3,11 +3,16 @@
 
 #include <sqlite3.h>
 
+#include <array>
+#include <charconv>
 #include <utility>
 
 namespace nonio::host::storage {
 
 void Database::Close::operator()(sqlite3* file) const { ::sqlite3_close_v2(file); }
+void Database::Finalize::operator()(sqlite3_stmt* statement) const {
+  ::sqlite3_finalize(statement);
+}
 
 namespace {
 constexpr const char* locked_words = "another process keeps it locked";
@@ -55,36 +60,58 @@ void bind(sqlite3_stmt* statement, int place, const Database::Value& value) {
   else if (const auto* text = std::get_if<std::string_view>(&value))
     ::sqlite3_bind_text64(statement, place, text->empty() ? "" : text->data(), text->size(),
                           SQLITE_STATIC, SQLITE_UTF8);
+  else if (const auto* real = std::get_if<double>(&value))
+    ::sqlite3_bind_double(statement, place, *real);
+  else if (std::holds_alternative<Database::Null>(value))
+    ::sqlite3_bind_null(statement, place);
   else if (const std::string_view bytes = std::get<Database::Blob>(value).bytes; bytes.empty())
     ::sqlite3_bind_zeroblob(statement, place, 0);
   else
     ::sqlite3_bind_blob64(statement, place, bytes.data(), bytes.size(), SQLITE_STATIC);
 }
 
+std::string cell(sqlite3_stmt* statement, int column) {
+  if (::sqlite3_column_type(statement, column) == SQLITE_FLOAT) {
+    std::array<char, 32> text{};
+    const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(),
+                                            ::sqlite3_column_double(statement, column));
+    return {text.data(), end};
+  }
+  const auto* bytes = static_cast<const char*>(::sqlite3_column_blob(statement, column));
+  return {bytes == nullptr ? "" : bytes,
+          static_cast<std::size_t>(::sqlite3_column_bytes(statement, column))};
+}
+
 }  // namespace
+
+sqlite3_stmt* Database::prepared(const char* sql) {
+  const auto [at, is_new] = statements_.try_emplace(sql);
+  if (!is_new) return at->second.get();
+  sqlite3_stmt* made = nullptr;
+  const bool well = ::sqlite3_prepare_v2(file_.get(), sql, -1, &made, nullptr) == SQLITE_OK;
+  at->second.reset(made);
+  if (well) return made;
+  note_error();
+  statements_.erase(at);
+  return nullptr;
+}
 
 std::vector<Database::Row> Database::rows(const char* sql, std::initializer_list<Value> values) {
   std::vector<Row> rows;
   if (failed()) return rows;
-  sqlite3_stmt* made = nullptr;
-  const int prepared = ::sqlite3_prepare_v2(file_.get(), sql, -1, &made, nullptr);
-  const std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> statement(made, &::sqlite3_finalize);
-  if (prepared != SQLITE_OK) {
-    note_error();
-    return rows;
-  }
+  sqlite3_stmt* statement = prepared(sql);
+  if (statement == nullptr) return rows;
   int place = 0;
-  for (const Value& value : values) bind(made, ++place, value);
+  for (const Value& value : values) bind(statement, ++place, value);
   int step = SQLITE_ROW;
-  while ((step = ::sqlite3_step(made)) == SQLITE_ROW) {
+  while ((step = ::sqlite3_step(statement)) == SQLITE_ROW) {
     Row& row = rows.emplace_back();
-    for (int i = 0; i < ::sqlite3_column_count(made); ++i) {
-      const auto* bytes = static_cast<const char*>(::sqlite3_column_blob(made, i));
-      row.emplace_back(bytes == nullptr ? "" : bytes,
-                       static_cast<std::size_t>(::sqlite3_column_bytes(made, i)));
-    }
+    for (int i = 0; i < ::sqlite3_column_count(statement); ++i) row.push_back(cell(statement, i));
   }
   if (step != SQLITE_DONE) note_error();
+  // What is bound is not ours for longer than this call; a statement at rest holds no lock.
+  ::sqlite3_reset(statement);
+  ::sqlite3_clear_bindings(statement);
   return rows;
 }
 

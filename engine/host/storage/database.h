@@ -7,12 +7,14 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
 #include "nonio/sdk/error.h"
 
 struct sqlite3;
+struct sqlite3_stmt;
 
 namespace nonio::host::storage {
 
@@ -23,7 +25,8 @@ class Database {
   struct Blob {
     std::string_view bytes;
   };
-  using Value = std::variant<std::int64_t, std::string_view, Blob>;
+  struct Null {};
+  using Value = std::variant<std::int64_t, std::string_view, Blob, double, Null>;
   using Row = std::vector<std::string>;
 
   enum class Use { write, create };
@@ -33,7 +36,8 @@ class Database {
   static Expected<Database> open(const std::filesystem::path& path, Use use,
                                  double patience = usual_patience);
 
-  /// The rows of one statement whose `?` are these values. NULL comes as "".
+  /// The rows of one statement whose `?` are these values. NULL comes as "", a double in the fewest
+  /// digits that give it back. A statement is prepared once and kept.
   std::vector<Row> rows(const char* sql, std::initializer_list<Value> values = {});
   /// The first column of the first row; "" if there is none.
   std::string first(const char* sql, std::initializer_list<Value> values = {});
@@ -64,8 +68,13 @@ class Database {
   };
   Database(sqlite3* file, std::filesystem::path path) : file_(file), path_(std::move(path)) {}
   void note_error();
+  sqlite3_stmt* prepared(const char* sql);
 
+  struct Finalize {
+    void operator()(sqlite3_stmt*) const;
+  };
   std::unique_ptr<sqlite3, Close> file_;
+  std::unordered_map<std::string, std::unique_ptr<sqlite3_stmt, Finalize>> statements_;
   std::filesystem::path path_;
   std::string error_;
 };

@@ -194,6 +194,35 @@ fs::path results_folder(const fs::path& out, const std::string& id) {
   return out / sha256(id).substr(0, 2) / id;
 }
 
+namespace {
+
+/// `take` each folder in a folder, which may be missing.
+void each_folder_in(const fs::path& folder, std::error_code& error,
+                    const std::function<void(const fs::path&)>& take) {
+  std::error_code here;
+  fs::directory_iterator it(folder, here);
+  if (here == std::errc::no_such_file_or_directory) return;
+  for (; !here && it != fs::directory_iterator(); it.increment(here))
+    if (it->is_directory(here)) take(it->path());
+  if (here) error = here;
+}
+
+}  // namespace
+
+Expected<void> each_results_folder(const fs::path& out,
+                                   const std::function<void(const fs::path&)>& take) {
+  const bool hashed = results_folder(out, "a") != out / "a";
+  std::error_code error;
+  each_folder_in(out, error, [&](const fs::path& folder) {
+    if (!hashed)
+      take(folder);
+    else if (folder.filename().string().size() == 2)
+      each_folder_in(folder, error, take);
+  });
+  if (error) return fail("cannot list the output folder " + out.string() + ": " + error.message());
+  return {};
+}
+
 Expected<bool> is_there(const fs::path& path) {
   struct stat info {};
   if (::lstat(path.c_str(), &info) == 0) return true;
@@ -268,7 +297,7 @@ Expected<fs::path> path_inside(const fs::path& base, const std::string& relative
 
 bool is_artifact_name(std::string_view name) {
   if (name.empty() || name.size() > 200 || name.front() == '.') return false;
-  if (name == "results.json" || name == "run.json") return false;
+  if (name == "results.json" || name == "run.json" || name == "earlier.json") return false;
   for (const char c : name)
     if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return false;
   return true;

@@ -68,6 +68,10 @@ Expected<std::string> read_small_file(const std::filesystem::path& path);
 /// Where the results of a campaign are: OUT/<id>, or OUT/ab/<id> in an output folder whose
 /// campaigns lie by the first two digits of the SHA-256 of their ids.
 std::filesystem::path results_folder(const std::filesystem::path& out, const std::string& id);
+/// Every folder in which results of a campaign may lie, in no order; an output folder that is not
+/// there has none.
+Expected<void> each_results_folder(const std::filesystem::path& out,
+                                   const std::function<void(const std::filesystem::path&)>& take);
 /// Beside the night's own files; there in such an output folder.
 inline constexpr const char* hashed_mark = ".nonio/hashed";
 

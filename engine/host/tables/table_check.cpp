@@ -154,18 +154,19 @@ void say_what_was_on(Campaign& campaign, const Settings& options, const Tables& 
 
 }  // namespace
 
-Expected<Tables> tables_in(const Output& o, const std::vector<Artifact>& files, const Campaign& c,
-                           const Settings& options) {
-  return process::guarded("output " + o.info.name, [&] { return o.parse({files, c, options}); });
+Expected<Tables> tables_in(const Controller& o, const std::vector<Artifact>& files,
+                           const Campaign& c, const Settings& options) {
+  return process::guarded("controller " + o.info.name, [&] {
+    return o.parse({files, c, options});
+  });
 }
 
-Expected<const Output*> control_of(const loader::Plugins& plugins, const std::string& name,
-                                   const std::vector<Artifact>& files, const Campaign& campaign,
-                                   const std::map<std::string, std::string>& options) {
-  std::vector<const Output*> all, named, able;
+Expected<const Controller*> control_of(const loader::Plugins& plugins, const std::string& name,
+                                       const std::vector<Artifact>& files, const Campaign& campaign,
+                                       const std::map<std::string, std::string>& options) {
+  std::vector<const Controller*> all, named, able;
   std::vector<std::string> names;
-  for (const Output& o : plugins.outputs()) {
-    if (o.parse == nullptr) continue;
+  for (const Controller& o : plugins.controllers()) {
     all.push_back(&o);
     names.push_back(o.info.name);
     if (o.info.name == name) return &o;
@@ -175,7 +176,7 @@ Expected<const Output*> control_of(const loader::Plugins& plugins, const std::st
     return fail("no control \"" + name + "\"" + storage::suggestion(name, names) + "; there are " +
                 storage::listed(names));
   if (named.size() == 1) return named.front();
-  for (const Output* o : all) {
+  for (const Controller* o : all) {
     const auto settled = config::options_from(o->info, options);
     if (settled && tables_in(*o, files, campaign, *settled)) able.push_back(o);
   }
@@ -205,25 +206,23 @@ std::vector<TableDifference> differences(const Tables& present, const Tables& ne
   return out;
 }
 
+namespace {
+const char* backlash_key(bool rotary) { return rotary ? "backlash_deg" : "backlash_mm"; }
+}  // namespace
+
 std::optional<double> stated_backlash(const Settings& options, const std::string& axis,
                                       bool rotary) {
-  std::optional<double> value;
-  const std::string key = rotary ? " backlash_deg=" : " backlash_mm=";
-  for (const std::string& entry : options.texts("axes")) {
-    const std::size_t at = entry.find(key);
-    double number = 0.0;
-    if (entry.rfind(axis + " ", 0) != 0 || at == std::string::npos) continue;
-    const char* const from = entry.data() + at + key.size();
-    if (std::from_chars(from, entry.data() + entry.size(), number).ec == std::errc())
-      value = number / (rotary ? deg_per_rad : 1e3);
-  }
-  return value;
+  const NumberTables axes = options.tables("axes");
+  const auto table = axes.find(axis);
+  if (table == axes.end()) return std::nullopt;
+  const auto number = table->second.find(backlash_key(rotary));
+  if (number == table->second.end()) return std::nullopt;
+  return number->second / (rotary ? deg_per_rad : 1e3);
 }
 
 void state_backlash(Settings& options, const std::string& axis, bool rotary, double value) {
-  auto axes = options.texts("axes");
-  axes.push_back(axis + (rotary ? " backlash_deg=" : " backlash_mm=") +
-                 fixed_text(value * (rotary ? deg_per_rad : 1e3), 9));
+  NumberTables axes = options.tables("axes");
+  axes[axis][backlash_key(rotary)] = rounded_to_places(value * (rotary ? deg_per_rad : 1e3), 9);
   options.values["axes"] = std::move(axes);
 }
 
@@ -238,13 +237,14 @@ std::vector<Observations> without_tables(const Campaign& campaign,
 }
 
 Expected<std::optional<Underlay>> what_was_on(const reading::ReadCampaign& read,
-                                              const Output& output, const Settings& options) {
-  if (read.tables_on.empty() || output.parse == nullptr) return std::optional<Underlay>();
+                                              const Controller& controller,
+                                              const Settings& options) {
+  if (read.tables_on.empty()) return std::optional<Underlay>();
   const Campaign& campaign = read.manifest->campaign;
   Underlay on{{}, options, {}};
   for (const auto& [axis, files] : read.tables_on) {
     const std::string who = "what was on while axis " + axis + " was measured: ";
-    auto tables = tables_in(output, files, campaign, options);
+    auto tables = tables_in(controller, files, campaign, options);
     if (!tables) return fail(who + tables.error().message);
     if (!corrects(*tables, axis))
       return fail(who + "its files hold no table of " + axis +
@@ -304,16 +304,16 @@ std::vector<TableForecast> forecast(const reading::ReadCampaign& read, const Tab
   return out;
 }
 
-Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Output& output,
-                              Settings options, const Templates& templates, const Tables& present) {
+Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controller& controller,
+                              Settings options, const Tables& present) {
   Campaign campaign = read.manifest->campaign;
   state_backlash_of(options, present);
   say_what_was_on(campaign, options, present);
   const std::vector<Observations> raw = without_tables(campaign, read.observations, present);
   const Results none;
   const auto write = [&](const Campaign& c, const std::vector<Observations>& o) {
-    return process::guarded("output " + output.info.name, [&] {
-      return output.write({c, o, none, options, templates});
+    return process::guarded("controller " + controller.info.name, [&] {
+      return controller.write({c, o, none, options});
     });
   };
   auto whole = write(campaign, raw);
@@ -327,7 +327,7 @@ Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Output& o
     const auto files = write(one, {raw[i]});
     if (!files) return tl::unexpected<Error>(files.error());
     if (files->artifacts.empty()) continue;  // refused; the finding says why
-    const auto tables = tables_in(output, files->artifacts, one, options);
+    const auto tables = tables_in(controller, files->artifacts, one, options);
     if (!tables) return tl::unexpected<Error>(tables.error());
     const auto test = math::AxisTest::arrange(read.observations[i]);
     const std::string axis = control_axis(campaign.machine, m);

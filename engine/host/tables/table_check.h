@@ -14,12 +14,12 @@ namespace nonio::host::tables {
 
 /// The controller plugin of this name; without one that after which the files are called, or the
 /// only one that can read them.
-Expected<const Output*> control_of(const loader::Plugins&, const std::string& name,
-                                   const std::vector<Artifact>& files, const Campaign&,
-                                   const std::map<std::string, std::string>& options);
+Expected<const Controller*> control_of(const loader::Plugins&, const std::string& name,
+                                       const std::vector<Artifact>& files, const Campaign&,
+                                       const std::map<std::string, std::string>& options);
 
 /// What the control makes of these files.
-Expected<std::vector<LoadedTable>> tables_in(const Output&, const std::vector<Artifact>&,
+Expected<std::vector<LoadedTable>> tables_in(const Controller&, const std::vector<Artifact>&,
                                              const Campaign&, const Settings& options);
 
 /// Steps and slopes of what one table adds. m or rad.
@@ -60,7 +60,7 @@ struct Underlay {
 };
 /// The tables that were on, as manifest and record say; none: there was no table. An error where
 /// the control does not read them as tables of these axes.
-Expected<std::optional<Underlay>> what_was_on(const reading::ReadCampaign&, const Output&,
+Expected<std::optional<Underlay>> what_was_on(const reading::ReadCampaign&, const Controller&,
                                               const Settings& options);
 /// The same readings, or what a model says of them, without these tables; the backlash stays.
 std::vector<Observations> without_tables(const Campaign&, const std::vector<Observations>&,
@@ -88,8 +88,8 @@ struct RenewedTables {
   std::vector<TableForecast> forecast;
   std::vector<Finding> findings;
 };
-Expected<RenewedTables> renew(const reading::ReadCampaign&, const Output&, Settings options,
-                              const Templates&, const std::vector<LoadedTable>& present);
+Expected<RenewedTables> renew(const reading::ReadCampaign&, const Controller&, Settings options,
+                              const std::vector<LoadedTable>& present);
 
 /// The tables that a control gets of the campaign; none where all were refused.
 struct CampaignTables {
@@ -97,8 +97,8 @@ struct CampaignTables {
   std::vector<LoadedTable> tables;
   std::vector<Finding> findings;
 };
-Expected<CampaignTables> tables_of_campaign(const reading::ReadCampaign&, const Output&,
-                                            const Settings& options, const Templates&);
+Expected<CampaignTables> tables_of_campaign(const reading::ReadCampaign&, const Controller&,
+                                            const Settings& options);
 
 /// A control's backup with the table of one axis renewed.
 struct MergedTables {
@@ -109,9 +109,9 @@ struct MergedTables {
 };
 /// An error where the plugin cannot merge, or where what the control reads of another axis would
 /// change.
-Expected<MergedTables> merge_tables(const reading::ReadCampaign&, const Output&,
-                                    const Settings& options, const Templates&,
-                                    const std::vector<Artifact>& backup, const std::string& axis);
+Expected<MergedTables> merge_tables(const reading::ReadCampaign&, const Controller&,
+                                    const Settings& options, const std::vector<Artifact>& backup,
+                                    const std::string& axis);
 
 /// Two positions of an axis, reached from below, between which its error differs most. With the
 /// table the instrument shows `left` of that, or twice the difference if the sign is wrong.

@@ -72,41 +72,40 @@ Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh
 
 }  // namespace
 
-Expected<CampaignTables> tables_of_campaign(const reading::ReadCampaign& read, const Output& output,
-                                            const Settings& given, const Templates& templates) {
-  const auto on = what_was_on(read, output, given);
+Expected<CampaignTables> tables_of_campaign(const reading::ReadCampaign& read,
+                                            const Controller& controller, const Settings& given) {
+  const auto on = what_was_on(read, controller, given);
   if (!on) return fail(on.error());
   const Settings& options = *on ? (*on)->options : given;
   const Campaign& campaign = read.manifest->campaign;
   const Results none;
-  auto written = process::guarded("output " + output.info.name, [&] {
-    return output.write(
-        {campaign, *on ? (*on)->readings : read.observations, none, options, templates});
+  auto written = process::guarded("controller " + controller.info.name, [&] {
+    return controller.write({campaign, *on ? (*on)->readings : read.observations, none, options});
   });
   if (!written) return fail(written.error());
   CampaignTables out{std::move(written->artifacts), {}, std::move(written->findings)};
   if (out.files.empty()) return out;
-  auto tables = tables_in(output, out.files, campaign, options);
+  auto tables = tables_in(controller, out.files, campaign, options);
   if (!tables) return fail(tables.error());
   out.tables = std::move(*tables);
   return out;
 }
 
-Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Output& output,
-                                    const Settings& given, const Templates& templates,
-                                    const std::vector<Artifact>& backup, const std::string& axis) {
-  const std::string who = "output " + output.info.name;
-  if (output.merge == nullptr)
-    return fail(output.info.name +
+Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Controller& controller,
+                                    const Settings& given, const std::vector<Artifact>& backup,
+                                    const std::string& axis) {
+  const std::string who = "controller " + controller.info.name;
+  if (controller.merge == nullptr)
+    return fail(controller.info.name +
                 " does not merge: load the new file of the axis as it is, in place of the old one");
-  const auto on = what_was_on(read, output, given);
+  const auto on = what_was_on(read, controller, given);
   if (!on) return fail(on.error());
   const Settings& options = *on ? (*on)->options : given;
   const auto one = one_axis(read, axis, *on);
   if (!one) return fail(one.error());
   const Results none;
   auto written = process::guarded(who, [&] {
-    return output.write({one->campaign, one->readings, none, options, templates});
+    return controller.write({one->campaign, one->readings, none, options});
   });
   if (!written) return fail(written.error());
   MergedTables out{
@@ -114,7 +113,7 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Out
   if (written->artifacts.empty()) return out;  // refused; the findings say why
   const Campaign& campaign = read.manifest->campaign;
   auto changed = process::guarded(who, [&] {
-    return output.merge({backup, written->artifacts, axis, campaign, options});
+    return controller.merge({backup, written->artifacts, axis, campaign, options});
   });
   if (!changed) return fail(changed.error());
   std::vector<Artifact> whole = backup;
@@ -126,9 +125,9 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Out
     else
       whole.push_back(f);
   }
-  const auto present = tables_in(output, backup, campaign, options),
-             next = tables_in(output, whole, campaign, options),
-             fresh = tables_in(output, written->artifacts, campaign, options);
+  const auto present = tables_in(controller, backup, campaign, options),
+             next = tables_in(controller, whole, campaign, options),
+             fresh = tables_in(controller, written->artifacts, campaign, options);
   for (const auto* tables : {&present, &next, &fresh})
     if (!*tables) return fail(tables->error());
   if (auto only = only_this_axis(*present, *fresh, *next, axis); !only) return fail(only.error());

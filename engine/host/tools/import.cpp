@@ -8,7 +8,7 @@
 
 #include "host/config/toml_reader.h"
 #include "host/evaluation/evaluate.h"
-#include "host/process/guarded.h"
+#include "host/reading/checked_read.h"
 #include "host/reading/unknown_format.h"
 #include "host/storage/digest.h"
 #include "host/storage/files.h"
@@ -360,7 +360,7 @@ class Importer {
     const Reader* reader = nullptr;
     for (const Reader& r : plugins_.readers()) {
       if (!name.empty() ? r.info.name == name
-                        : r.reads(m.kind) && r.recognises(std::string_view(bytes).substr(0, 4096)))
+                        : r.reads(m.kind) && r.recognises(reading::head_of(bytes)))
         reader = reader == nullptr ? &r : reader;
     }
     if (reader == nullptr)
@@ -370,9 +370,7 @@ class Importer {
     name = reader->info.name;
     const auto options = config::settle_options(reader->info, site_options(), manifest.options);
     if (!options) return fail(options.error().front());
-    return process::guarded("reader " + name, [&] {
-      return reader->read({bytes, manifest.campaign, m, *options, {}});
-    });
+    return reading::checked_read(*reader, {bytes, manifest.campaign, m, *options, {}});
   }
 
   /// Of site.toml, if the site is there already.

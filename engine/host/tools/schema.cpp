@@ -57,9 +57,10 @@ class Loaded {
   explicit Loaded(const loader::Plugins& plugins) {
     for (const Reader& r : plugins.readers()) add(config::Named::reader, r.info);
     for (const Analysis& a : plugins.analyses()) add(config::Named::analysis, a.info);
-    for (const Output& o : plugins.outputs()) {
-      add(config::Named::output, o.info);
-      if (o.stage == Output::Stage::table) names_[config::Named::control].push_back(o.info.name);
+    for (const Output& o : plugins.outputs()) add(config::Named::output, o.info);
+    for (const Controller& c : plugins.controllers()) {
+      add(config::Named::output, c.info);
+      names_[config::Named::control].push_back(c.info.name);
     }
     if (!names_[config::Named::analysis].empty())
       names_[config::Named::analysis].emplace_back(reading::model_fit_name);
@@ -86,8 +87,8 @@ class Loaded {
   void note_effects(const std::vector<Effect>& effects) {
     std::string of_axes, in_space;
     for (const Effect& e : effects) {
-      std::string& list = e.of ? in_space : of_axes;
-      if (!e.always) list += (list.empty() ? "" : "|") + quoted_pattern(e.info.name);
+      std::string& list = e.instances ? in_space : of_axes;
+      if (!e.is_nuisance) list += (list.empty() ? "" : "|") + quoted_pattern(e.info.name);
     }
     if (!of_axes.empty()) effects_ = "(" + of_axes + "):.+";
     if (!in_space.empty())
@@ -475,29 +476,54 @@ class SchemaWriter {
     json_.begin_object();
     json_.member("description",
                  option.help + (option.unit.empty() ? "" : " In " + option.unit + "."));
-    json_.member("type", types[option.otherwise.index()]);
-    if (option.otherwise.index() >= 4) {
+    const std::size_t kind = option.default_value.index();
+    if (std::holds_alternative<NumberTables>(option.default_value))
+      put_number_tables();
+    else
+      json_.member("type", types[kind]);
+    if (kind == 4 || kind == 5) {
       json_.key("items");
       json_.begin_object();
-      json_.member("type", option.otherwise.index() == 4 ? "number" : "string");
+      json_.member("type", kind == 4 ? "number" : "string");
       json_.end_object();
-    } else {
+    } else if (kind < 4) {
       put_limits(option);
     }
     json_.key("default");
-    std::visit([this](const auto& value) { put_setting(value); }, option.otherwise);
+    std::visit([this](const auto& value) { put_setting(value); }, option.default_value);
+    json_.end_object();
+  }
+
+  /// Or texts, as such tables were written before.
+  void put_number_tables() {
+    json_.key("type");
+    json_.begin_array();
+    json_.value(std::string_view("object"));
+    json_.value(std::string_view("array"));
+    json_.end_array();
+    json_.key("additionalProperties");
+    json_.begin_object();
+    json_.member("type", "object");
+    json_.key("additionalProperties");
+    json_.begin_object();
+    json_.member("type", "number");
+    json_.end_object();
+    json_.end_object();
+    json_.key("items");
+    json_.begin_object();
+    json_.member("type", "string");
     json_.end_object();
   }
 
   void put_limits(const Option& option) {
-    const bool number = option.otherwise.index() == 1 || option.otherwise.index() == 2;
-    if (number && option.least) json_.member("minimum", *option.least);
-    if (number && option.most) json_.member("maximum", *option.most);
+    const bool number = option.default_value.index() == 1 || option.default_value.index() == 2;
+    if (number && option.min) json_.member("minimum", *option.min);
+    if (number && option.max) json_.member("maximum", *option.max);
     if (option.choices.empty()) return;
     json_.key("enum");
     json_.begin_array();
     for (const std::string& choice : option.choices)
-      if (option.otherwise.index() == 1)
+      if (option.default_value.index() == 1)
         json_.value(std::int64_t{std::strtoll(choice.c_str(), nullptr, 10)});
       else
         json_.value(std::string_view(choice));
@@ -514,6 +540,17 @@ class SchemaWriter {
     json_.begin_array();
     for (const T& value : values) put_setting(value);
     json_.end_array();
+  }
+
+  void put_setting(const NumberTables& tables) {
+    json_.begin_object();
+    for (const auto& [name, table] : tables) {
+      json_.key(name);
+      json_.begin_object();
+      for (const auto& [key, value] : table) json_.member(key, value);
+      json_.end_object();
+    }
+    json_.end_object();
   }
 
   Loaded loaded_;
@@ -533,6 +570,18 @@ std::string site_schema(const loader::Plugins& plugins) {
 
 std::string machine_schema(const loader::Plugins& plugins) {
   return SchemaWriter(plugins).write(config::machine_file());
+}
+
+std::string events_schema(const loader::Plugins& plugins) {
+  return SchemaWriter(plugins).write(config::events_file());
+}
+
+std::string acknowledged_schema(const loader::Plugins& plugins) {
+  return SchemaWriter(plugins).write(config::acknowledged_file());
+}
+
+std::string forgotten_schema(const loader::Plugins& plugins) {
+  return SchemaWriter(plugins).write(config::forgotten_file());
 }
 
 namespace {

@@ -10,7 +10,8 @@ class Plugins;
 
 namespace nonio::host::tools {
 
-/// JSON schema (draft-07) of campaign.toml, of site.toml and of a machine's record, for editors:
+/// JSON schema (draft-07) of campaign.toml, site.toml, a machine's record, events.toml,
+/// acknowledged.toml and forgotten.toml, for editors:
 /// from the same declarations that the files are checked with, and what the loaded plugins are
 /// called and take as options. It cannot say everything: what stands in several keys at once (a
 /// measurement's axis among those of the machine), that a date has no quotes, and that 3.0 is no
@@ -18,6 +19,9 @@ namespace nonio::host::tools {
 std::string campaign_schema(const loader::Plugins& plugins);
 std::string site_schema(const loader::Plugins& plugins);
 std::string machine_schema(const loader::Plugins& plugins);
+std::string events_schema(const loader::Plugins& plugins);
+std::string acknowledged_schema(const loader::Plugins& plugins);
+std::string forgotten_schema(const loader::Plugins& plugins);
 
 /// What a key of one of these files means, with its unit: "measurement.dwell_s",
 /// "environment.warm_up". Of a key that does not exist: empty.

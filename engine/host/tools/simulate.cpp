@@ -2,6 +2,7 @@
 #include "host/tools/simulate.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>

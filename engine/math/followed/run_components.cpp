@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
+#include "dense.h"
 #include "nonio/math/statistics.h"
 
 namespace nonio::math {
 namespace {
 
+using Eigen::Index, Eigen::MatrixXd;
 using RunPart = RunComponents::Part;
 
 /// Of one pass: readings, and sum of squared distances from their own middle.
@@ -67,6 +71,60 @@ RunValues run_values(const RunComponents& c, const std::vector<PassExtent>& exte
   return out;
 }
 
+/// What neighbours that are alike make of a pass of m readings, from which a line is taken out.
+struct Alike {
+  double lag1 = 0.0;                 ///< expected of the residuals
+  double residual = 1.0;             ///< their variance by degree of freedom, of 1 of a reading
+  double offset = 1.0, slope = 1.0;  ///< variances of mean and slope, of those of independent ones
+};
+
+Alike alike(Index m, double r) {
+  MatrixXd R(m, m), X(m, 2);
+  for (Index i = 0; i < m; ++i) {
+    for (Index j = 0; j < m; ++j) R(i, j) = std::pow(r, std::fabs(static_cast<double>(i - j)));
+    X(i, 0) = 1.0 / std::sqrt(static_cast<double>(m));
+    X(i, 1) = static_cast<double>(i) - static_cast<double>(m - 1) / 2.0;
+  }
+  X.col(1).normalize();
+  const MatrixXd M = MatrixXd::Identity(m, m) - X * X.transpose(), e = M * R * M;
+  const double n = static_cast<double>(m);
+  return {e.diagonal(1).sum() / (n - 1.0) / (e.trace() / n), e.trace() / (n - 2.0),
+          X.col(0).dot(R * X.col(0)), X.col(1).dot(R * X.col(1))};
+}
+
+/// Lag-1 correlation of the residuals, if it is beyond chance (one-sided 5 %).
+std::optional<double> lag_of_residuals(const PassModel& m, const Alike& white) {
+  std::vector<double> before(m.passes.size(), std::numeric_limits<double>::quiet_NaN());
+  double products = 0.0, squares = 0.0, pairs = 0.0, readings = 0.0;
+  for (std::size_t k = 0; k < m.e.size(); ++k) {  // by targets, so in the order of each pass
+    if (std::isnan(m.e[k])) continue;
+    double& last = before[m.pass[k]];
+    if (!std::isnan(last)) products += last * m.e[k], pairs += 1.0;
+    squares += m.e[k] * m.e[k], readings += 1.0;
+    last = m.e[k];
+  }
+  constexpr double one_sided = 1.645;
+  if (!(pairs > 0.0) || !(squares > 0.0)) return std::nullopt;
+  const double lag = products / pairs / (squares / readings);
+  if (!(lag - white.lag1 > one_sided / std::sqrt(pairs))) return std::nullopt;
+  return lag;
+}
+
+/// The correlation of neighbours that makes such residuals; what it makes else.
+Alike find_neighbours(RunComponents& c, std::size_t targets) {
+  constexpr double most = 0.95;
+  constexpr std::size_t longest = 80;  // of more targets the ends do not matter
+  const auto m = static_cast<Index>(std::min(targets, longest));
+  if (m < 4) return {};
+  const auto lag = lag_of_residuals(c.passes, alike(m, 0.0));
+  if (!lag) return {};
+  double low = 0.0, high = most;
+  for (int step = 0; step < 12; ++step)
+    (alike(m, (low + high) / 2.0).lag1 > *lag ? high : low) = (low + high) / 2.0;
+  c.neighbours = (low + high) / 2.0;
+  return alike(m, c.neighbours);
+}
+
 /// Sums of weights over each pass: as they are, and times the distance from the middle.
 struct PassSums {
   std::vector<double> offset, slope;
@@ -89,8 +147,11 @@ RunComponents run_components(const AxisTest& test) {
   out.passes = fit_passes(test, true);
   for (const std::size_t d : {0U, 1U})
     if (out.passes.side[d].dof > 0.0) out.reading[d] = out.passes.side[d].variance();
+  const Alike of_pass = find_neighbours(out, test.targets.size());
+  for (double& v : out.reading) v /= of_pass.residual;
   const bool both = test.bidirectional();
-  const RunValues c = run_values(out, pass_extents(test, out.passes), both);
+  RunValues c = run_values(out, pass_extents(test, out.passes), both);
+  c.offset_noise *= of_pass.offset, c.slope_noise *= of_pass.slope;
   out.runs = static_cast<double>(c.shared_offset.size());
   if (out.runs < 2.0) return out;
   out.shared_offset = run_part(c.shared_offset, c.offset_noise);
@@ -105,8 +166,13 @@ double covariance_of(const AxisTest& test, const RunComponents& c, std::span<con
                      std::span<const double> b) {
   const PassModel& m = c.passes;
   double sum = 0.0;
-  for (std::size_t k = 0; k < a.size(); ++k)
-    sum += c.reading[m.passes[m.pass[k]].minus ? 1 : 0] * a[k] * b[k];
+  std::vector<double> tail_a(m.passes.size(), 0.0), tail_b = tail_a;  // of a pass so far
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    double &ta = tail_a[m.pass[k]], &tb = tail_b[m.pass[k]];
+    sum += c.reading[m.passes[m.pass[k]].minus ? 1 : 0] *
+           (a[k] * b[k] + c.neighbours * (a[k] * tb + b[k] * ta));
+    ta = a[k] + c.neighbours * ta, tb = b[k] + c.neighbours * tb;
+  }
   const PassSums of_a = pass_sums(test, m, a), of_b = pass_sums(test, m, b);
   const auto runs = [&](const std::vector<double>& x, const std::vector<double>& y,
                         const RunPart& shared, const RunPart& own) {

@@ -97,6 +97,9 @@ std::optional<Part> balls_of(const Observations& read, const Axis& axis, const s
       }
       keep(o.time, read.time, ball.row);
       keep(o.material, read.material, ball.row);
+      keep(o.air, read.air, ball.row);
+      keep(o.pressure, read.pressure, ball.row);
+      keep(o.humidity, read.humidity, ball.row);
       part.measurement.push_back(0);
       part.row.push_back(static_cast<std::uint32_t>(ball.row));
     }

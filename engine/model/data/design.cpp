@@ -36,7 +36,7 @@ Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
         Eigen::Map<const VectorXd>(column.data(), static_cast<Index>(column.size()));
   }
   if (!out.allFinite()) return fail("effect " + term.name() + " gave a value that is not a number");
-  if (!term.effect->of && o.axes.size() > 1) project(o, term.axis, out);
+  if (!term.effect->instances && o.axes.size() > 1) project(o, term.axis, out);
   return out;
 }
 

@@ -65,7 +65,13 @@ inline Quantity quantity_of(const Effect::Parameter& p, const Axis& axis) {
 /// `fit` with shapes that are near their best already: `searched` says whose are looked for
 /// between the neighbours on their grids.
 Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
-                       const std::vector<char>& searched, std::vector<double> weight);
+                       const std::vector<char>& searched, std::vector<double> weight,
+                       const Noise& noise = {});
+
+/// `fit_near` whose shapes are their best: `searched` are unknowns of the uncertainty only.
+Expected<Fit> fit_at(const Observations& o, std::vector<Term> terms,
+                     const std::vector<char>& searched, std::vector<double> weight,
+                     const Noise& noise);
 
 /// `rms` of a fit with shapes that are given, without the rest of it; infinite where there is none.
 double rms_with(const Observations& o, const std::vector<Term>& terms,

@@ -28,22 +28,6 @@ bool moves(const Observations::AxisColumn& axis) {
   return *low < *high;
 }
 
-/// Appends a column that one of the tables may not have: then it is `absent` there.
-template <class T>
-void append(std::vector<T>& to, const std::vector<T>& more, std::size_t before, std::size_t added,
-            T absent) {
-  if (to.empty() && more.empty()) return;
-  to.resize(before, absent);
-  if (more.empty())
-    to.resize(before + added, absent);
-  else
-    to.insert(to.end(), more.begin(), more.end());
-}
-void append(std::vector<double>& to, const std::vector<double>& more, std::size_t before,
-            std::size_t added) {
-  append(to, more, before, added, not_known);
-}
-
 /// Everything but positions and lines.
 void append_readings(Part& part, const Observations& more, const std::string& id) {
   Observations& to = part.table;
@@ -53,13 +37,7 @@ void append_readings(Part& part, const Observations& more, const std::string& id
   part.measurements.push_back(id);
   part.row.resize(before + added);
   std::iota(part.row.begin() + static_cast<std::ptrdiff_t>(before), part.row.end(), 0U);
-  to.deviation.insert(to.deviation.end(), more.deviation.begin(), more.deviation.end());
-  append(to.run, more.run, before, added, 1U);
-  append(to.source_line, more.source_line, before, added, 0U);
-  append(to.u, more.u, before, added);
-  append(to.time, more.time, before, added);
-  append(to.material, more.material, before, added);
-  append(to.air, more.air, before, added);
+  append_measured(to, more);
   to.missing += more.missing;
 }
 
@@ -177,7 +155,7 @@ std::vector<std::size_t> coordinates_of(const Observations& o) {
 
 void append_run(Part& part, const Observations& listed, const Measurement& m) {
   const Order order = order_of(listed, m.order);
-  const Observations more = in_order(listed, order.rows);
+  const Observations more = rearranged(listed, order.rows);
   if (order.assumed) part.order_assumed.push_back(m.id);
   Observations& to = part.table;
   to.order_known = to.order_known && order.known;

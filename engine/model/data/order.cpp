@@ -91,26 +91,4 @@ Order order_of(const Observations& o, const std::string& said) {
   return out;
 }
 
-namespace {
-
-template <class T>
-void arrange(std::vector<T>& column, const Rows& rows) {
-  if (column.size() != rows.size()) return;
-  const std::vector<T> listed = column;
-  for (std::size_t i = 0; i < rows.size(); ++i) column[i] = listed[rows[i]];
-}
-
-}  // namespace
-
-Observations in_order(const Observations& o, const std::vector<std::uint32_t>& rows) {
-  Observations out = o;
-  for (auto& axis : out.axes) arrange(axis.position, rows), arrange(axis.approach, rows);
-  for (auto* column :
-       {&out.deviation, &out.u, &out.time, &out.material, &out.air, &out.pressure, &out.humidity})
-    arrange(*column, rows);
-  for (auto* column : {&out.run, &out.line, &out.source_line}) arrange(*column, rows);
-  arrange(out.sense, rows);
-  return out;
-}
-
 }  // namespace nonio::model

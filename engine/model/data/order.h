@@ -22,7 +22,4 @@ struct Order {
 /// against its own direction. Then the cycle of ISO 230-2 (there and back, run by run).
 Order order_of(const Observations& o, const std::string& said);
 
-/// The table with its rows in this order.
-Observations in_order(const Observations& o, const std::vector<std::uint32_t>& rows);
-
 }  // namespace nonio::model

@@ -9,17 +9,11 @@
 #include "lines.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/axis_readings.h"
+#include "nonio/sdk/check.h"
 
 namespace nonio::model {
 
 namespace {
-
-/// What follows the first space of an id: "final" of "D1 final". Measurements of one state of the
-/// machine have the same, those that hold for every state have none.
-std::string state_of(const std::string& id) {
-  const std::size_t space = id.find(' ');
-  return space == std::string::npos ? "" : id.substr(space + 1);
-}
 
 class Parts {
  public:
@@ -47,7 +41,7 @@ class Parts {
 
   void sort(std::size_t m) {
     const Observations& o = read_[m];
-    if (o.size() == 0 || o.axes.empty()) return;
+    if (o.size() == 0 || o.axes.empty() || !check(o)) return;
     const std::string& kind = measurement(m).kind;
     if (kind == "ball-centres") {
       kind_[m] = Kind::balls;
@@ -56,7 +50,7 @@ class Parts {
       kind_[m] = Kind::axis;
     } else if (across(o)) {
       kind_[m] = Kind::across;
-      states_.insert(state_of(measurement(m).id));
+      states_.insert(state_of(measurement(m)));
       for (const std::size_t k : coordinates_of(o)) coordinates_.insert(k);
       oblique_ = oblique_ || senses_several(o);
     } else {
@@ -69,7 +63,7 @@ class Parts {
   bool in_space(std::size_t m) const {
     const std::size_t k = coordinate_of(read_[m].axes.front().axis);
     if (!oblique_ || read_[m].angular || !coordinates_.contains(k)) return false;
-    const std::string state = state_of(measurement(m).id);
+    const std::string state = state_of(measurement(m));
     return state.empty() || states_.contains(state);
   }
 
@@ -98,7 +92,7 @@ class Parts {
   /// in the same direction on the same axis.
   void add_space(std::size_t m) {
     if (done_.contains(m)) return;
-    const std::string state = state_of(measurement(m).id);
+    const std::string state = state_of(measurement(m));
     if (state.empty() && oblique_ && states_.size() > 1) return;  // goes with every state
     Part part;
     part.kind = Part::Kind::space;
@@ -117,7 +111,7 @@ class Parts {
   }
 
   bool belongs(std::size_t other, std::size_t m, const std::string& state) const {
-    const std::string its = state_of(measurement(other).id);
+    const std::string its = state_of(measurement(other));
     if (oblique_)
       return (its == state || its.empty()) && (kind_.at(other) == Kind::across || in_space(other));
     return kind_.at(other) == Kind::across && its == state &&
@@ -150,8 +144,8 @@ bool concerns(const Part& part, const Axis& axis) {
 
 /// The term of an effect in this part; none if it is not of anything here.
 std::optional<Term> term_of(const Part& part, const Effect& effect, const std::string& of) {
-  if (effect.of) {
-    const auto places = effect.of(part.table);
+  if (effect.instances) {
+    const auto places = effect.instances(part.table);
     if (std::find(places.begin(), places.end(), of) == places.end()) return std::nullopt;
     Axis place;
     place.name = of;
@@ -163,7 +157,7 @@ std::optional<Term> term_of(const Part& part, const Effect& effect, const std::s
 }
 
 std::vector<std::string> offered_by(const Part& part, const Effect& effect) {
-  if (effect.of) return effect.of(part.table);
+  if (effect.instances) return effect.instances(part.table);
   std::vector<std::string> names;
   for (const Axis& axis : part.axes)
     if (concerns(part, axis)) names.push_back(axis.name);
@@ -187,7 +181,7 @@ std::vector<std::string> names_of(const Part& part, const Effect& effect) {
 std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects) {
   std::vector<Term> terms;
   for (const Effect& effect : effects) {
-    if (effect.always) continue;
+    if (effect.is_nuisance) continue;
     for (const std::string& of : offered_by(part, effect))
       if (auto term = term_of(part, effect, of); term && effect.applies(part.table, term->axis))
         terms.push_back(std::move(*term));
@@ -198,7 +192,7 @@ std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects
 std::vector<Candidate> not_applying(const Part& part, const std::vector<Effect>& effects) {
   std::vector<Candidate> out;
   for (const Effect& effect : effects) {
-    if (effect.always || effect.description || !effect.why_not) continue;
+    if (effect.is_nuisance || effect.description || !effect.why_not) continue;
     for (const std::string& of : offered_by(part, effect)) {
       auto term = term_of(part, effect, of);
       if (!term || effect.applies(part.table, term->axis)) continue;
@@ -238,7 +232,7 @@ Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
     if (effect == effects.end()) return fail("there is no effect \"" + kind + "\"");
     auto term = term_of(part, *effect, of);
     if (!term) {
-      if (!effect->of && machine.axis(of) == nullptr)
+      if (!effect->instances && machine.axis(of) == nullptr)
         return fail("effect \"" + name + "\": the machine has no axis \"" + of +
                     "\"; expected kind:axis, such as backlash:X");
       continue;
@@ -249,7 +243,7 @@ Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
     terms.push_back(std::move(*term));
   }
   for (const Effect& effect : effects) {
-    if (!effect.always) continue;
+    if (!effect.is_nuisance) continue;
     for (const std::string& of : offered_by(part, effect))
       if (auto term = term_of(part, effect, of); term && effect.applies(part.table, term->axis))
         terms.push_back(std::move(*term));

@@ -5,10 +5,12 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <unordered_map>
 
 #include "design.h"
+#include "noise.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/statistics.h"
 
@@ -116,7 +118,7 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
   for (std::size_t p = 0; p < r.passes; ++p) {
     const auto rows = passes[p];
     const auto used = std::count_if(rows.begin(), rows.end(), [&](auto i) { return w(i) > 0.0; });
-    const Index k = used >= 10 ? 3 : used >= 6 ? 2 : used >= 1 ? 1 : 0;
+    const Index k = shared_columns(used);
     MatrixXd b(static_cast<Index>(rows.size()), k);
     for (std::size_t i = 0; i < rows.size(); ++i)
       for (Index c = 0; c < k; ++c)
@@ -178,12 +180,6 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
   }
   for (const Index k : common) out.dof += static_cast<double>(k);
   return out;
-}
-
-std::optional<NoiseFloor> noise_floor(const Saturated& s) {
-  if (!(s.dof >= 3.0)) return std::nullopt;
-  const double floor = std::sqrt(s.squares / s.dof);
-  return NoiseFloor{floor, floor / std::sqrt(2.0 * s.dof), s.dof};
 }
 
 namespace {
@@ -266,7 +262,7 @@ namespace {
 std::vector<double> without_set_up(const Observations& o, const std::vector<Term>& model) {
   std::vector<Term> set_up;
   for (const Term& term : model)
-    if (term.effect->always) set_up.push_back(term);
+    if (term.effect->is_nuisance) set_up.push_back(term);
   if (set_up.empty()) return o.deviation;
   std::vector<double> weight(o.size(), 1.0);
   std::vector<double> e = o.deviation;
@@ -280,6 +276,40 @@ std::vector<double> without_set_up(const Observations& o, const std::vector<Term
   return e;
 }
 
+/// How much more than all readings those about each one scatter: of the targets next to it, by the
+/// median; 1 where it is not twice as much. A rough stretch is no row of misreadings.
+std::vector<double> rougher_than(double s, const Observations& o, const std::vector<double>& e) {
+  constexpr std::size_t fewest = 16;
+  constexpr double much = 2.0;
+  std::vector<double> out(e.size(), 1.0);
+  if (o.axes.size() != 1 || e.size() < 4 * fewest || e.size() > 20000) return out;
+  const std::vector<double>& at = o.axes.front().position;
+  std::vector<std::size_t> row(e.size());
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  std::stable_sort(row.begin(), row.end(), [&](auto a, auto b) { return at[a] < at[b]; });
+  // Whole targets: three, and more until there are enough readings.
+  std::vector<std::size_t> first;
+  for (std::size_t k = 0; k < row.size(); ++k)
+    if (k == 0 || at[row[k]] != at[row[k - 1]]) first.push_back(k);
+  first.push_back(row.size());
+  const std::size_t targets = first.size() - 1;
+  std::vector<double> some;
+  for (std::size_t t = 0; t < targets; ++t) {
+    std::size_t low = t > 0 ? t - 1 : 0, high = std::min(t + 2, targets);
+    while (first[high] - first[low] < fewest && (low > 0 || high < targets)) {
+      low -= low > 0 ? 1 : 0;
+      high += high < targets ? 1 : 0;
+    }
+    if (3 * (high - low) > 2 * targets) continue;
+    some.clear();
+    for (std::size_t k = first[low]; k < first[high]; ++k) some.push_back(std::fabs(e[row[k]]));
+    const double ratio = 1.2 * 1.4826 * median_of(some) / s;
+    if (ratio > much)
+      for (std::size_t k = first[t]; k < first[t + 1]; ++k) out[row[k]] = ratio;
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
@@ -289,25 +319,26 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
   if (n < 10) return {};
   const std::vector<double> e = polished(r, y);
   // Taking out medians takes out noise too: measured, 1.1 to 1.25 with 4 to 10 readings a target.
-  const double s_rough = 1.2 * math::robust_deviation(e);
+  const double display = digit_of(o) / std::sqrt(12.0);
+  const double s_rough = std::max(1.2 * math::robust_deviation(e), display);
   if (!(s_rough > 0.0)) return {};
   std::vector<double> weight(n, 1.0);
   std::vector<std::uint32_t> high, flagged;
+  const std::vector<double> rougher = rougher_than(s_rough, o, e);
   for (std::uint32_t i = 0; i < n; ++i)
     // docs/constants.md, M11.
-    if (std::fabs(e[i]) > 3.5 * s_rough) high.push_back(i);
+    if (std::fabs(e[i]) > 3.5 * s_rough * rougher[i]) high.push_back(i);
   const std::vector<double> apart = apart_from_others(r, high, e);
   for (std::size_t k = 0; k < high.size(); ++k) {
-    if (!(std::fabs(apart[k]) > 3.5 * s_rough)) continue;
+    if (!(std::fabs(apart[k]) > 3.5 * s_rough * rougher[high[k]])) continue;
     flagged.push_back(high[k]);
     weight[high[k]] = 0.0;
   }
   if (flagged.empty() || flagged.size() > n / 4) return {};
   const Saturated left = saturate(r, y, weight);
-  const auto floor = noise_floor(left);
-  const bool known = floor && floor->dof >= 8.0;
-  const double s = known ? floor->s : s_rough;
-  const double dof = known ? floor->dof : static_cast<double>(n) / 4.0;
+  const bool known = left.dof >= 8.0;
+  const double s = std::max(known ? std::sqrt(left.squares / left.dof) : s_rough, display);
+  const double dof = known ? left.dof : static_cast<double>(n) / 4.0;
   std::vector<double> in_cell(r.cells, 0.0);
   for (std::size_t i = 0; i < n; ++i) in_cell[r.cell[i]] += weight[i];
   double least = 3.0;  // smallest t that would be named
@@ -319,7 +350,7 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
     const bool repeated = known && others > 0.0;
     const double residual = repeated ? left.e[i] : e[i];
     // A pass adds about 3 of its readings' worth of uncertainty, a cell 1 of its own.
-    const double sigma = s * std::sqrt(1.0 + (repeated ? 1.0 / others + 0.2 : 0.3));
+    const double sigma = s * rougher[i] * std::sqrt(1.0 + (repeated ? 1.0 / others + 0.2 : 0.3));
     const double t = residual / sigma;
     if (math::t_two_sided(t, dof) * static_cast<double>(n) > 0.01) continue;
     out.push_back({i, residual, t, least * sigma});

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "design.h"
 #include "nonio/model/explain.h"
 
 namespace nonio::model {
@@ -27,7 +28,11 @@ struct Saturated {
 };
 Saturated saturate(const Repeats&, const std::vector<double>& y, const std::vector<double>& weight);
 
-std::optional<NoiseFloor> noise_floor(const Saturated&);
+/// Columns that the passes of so many readings share: offset, slope, curvature. Few readings too: a
+/// growth that is missing leaves a slope of each pass.
+inline Index shared_columns(Index readings) {
+  return readings >= 8 ? 3 : readings >= 4 ? 2 : readings >= 1 ? 1 : 0;
+}
 
 /// Of each of `rows` its value less the median of the other readings of its target.
 std::vector<double> apart_from_others(const Repeats&, const std::vector<std::uint32_t>& rows,

@@ -91,6 +91,9 @@ Observations thinned(const Observations& o, const std::vector<double>& weight) {
     mean_into(out.deviation, o.deviation, i, row);
     mean_into(out.time, o.time, i, row);
     mean_into(out.material, o.material, i, row);
+    mean_into(out.air, o.air, i, row);
+    mean_into(out.pressure, o.pressure, i, row);
+    mean_into(out.humidity, o.humidity, i, row);
     mean_into(mean_squared_u, squared_u, i, row);
   }
   // Rows whose target is in one bin get one position, or they would not repeat each other.

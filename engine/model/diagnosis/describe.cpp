@@ -66,7 +66,7 @@ std::vector<Description> described(const Finding& finding, const std::vector<Ter
   terms.insert(terms.end(), certain.begin(), certain.end());
   const std::size_t explained = terms.size();
   terms.insert(terms.end(), finding.descriptions.begin(), finding.descriptions.end());
-  const Workbench bench(finding.part.table, terms, finding.weight);
+  const Workbench bench(finding.part.table, terms, finding.weight, {}, 0, nullptr, finding.noise);
   Workbench::State state = bench.state({});
   for (std::size_t e = 0; e < explained; ++e) state = bench.with(state, bench.gains(state, e), e);
   std::vector<Description> out;

@@ -4,12 +4,29 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "data/design.h"
 #include "fit/workbench.h"
 #include "nonio/sdk/axis_readings.h"
 
 namespace nonio::model {
+
+void fill_measured(Observations& o) {
+  for_each_measured_column(
+      [&](auto& column) {
+        using T = typename std::remove_reference_t<decltype(column)>::value_type;
+        if (column.empty() || column.size() >= o.size()) return;
+        T value{};
+        if constexpr (std::is_floating_point_v<T>) {
+          const auto known = std::find_if(column.rbegin(), column.rend(),
+                                          [](double x) { return std::isfinite(x); });
+          value = known == column.rend() ? std::numeric_limits<T>::quiet_NaN() : *known;
+        }
+        column.resize(o.size(), value);
+      },
+      o);
+}
 
 namespace {
 
@@ -24,12 +41,6 @@ struct Course {  // one further measurement
   bool pendulum = true;   // + sweep, then - sweep; else each target from both sides at once
   bool reversed = false;  // - sweep first
 };
-
-double last_known(const std::vector<double>& values) {
-  for (std::size_t i = values.size(); i-- > 0;)
-    if (std::isfinite(values[i])) return values[i];
-  return std::numeric_limits<double>::quiet_NaN();
-}
 
 void append(Observations& o, const Course& course, double interval) {
   auto& axis = o.axes.front();
@@ -47,8 +58,6 @@ void append(Observations& o, const Course& course, double interval) {
     o.run.push_back(run + static_cast<std::uint32_t>(r) + 1);
     if (!o.line.empty()) o.line.push_back(o.line.back());
     if (!o.time.empty()) o.time.push_back(t);
-    if (!o.material.empty()) o.material.push_back(last_known(o.material));
-    if (!o.u.empty()) o.u.push_back(o.u.back());
   };
   std::vector<double> up = course.targets, down(up.rbegin(), up.rend());
   for (std::size_t r = 0; r < course.runs; ++r) {
@@ -60,6 +69,7 @@ void append(Observations& o, const Course& course, double interval) {
     for (const int from : course.reversed ? std::vector<int>{-1, 1} : std::vector<int>{1, -1})
       for (const double x : from > 0 ? up : down) take(x, from, r);
   }
+  fill_measured(o);
 }
 
 /// Distance, in standard deviations, between what one effect has `said` and the nearest that

@@ -11,6 +11,10 @@ struct Further {
   Observations table;
 };
 
+/// What is measured beside deviations, of planned readings at the end that nobody took: as it was
+/// last known. Weights and columns need an entry for each reading.
+void fill_measured(Observations& o);
+
 /// What could be measured besides on a machine with several axes, or on a ball.
 std::vector<Further> further_in_space(const Part& part);
 

@@ -31,8 +31,8 @@ void append_line(Observations& o, const std::string& name, const std::vector<Vec
       o.line.push_back(static_cast<std::uint32_t>(o.lines.size()));
       o.run.push_back(1);
       if (!o.time.empty()) o.time.push_back(static_cast<double>(o.time.size()));
-      if (!o.material.empty()) o.material.push_back(o.material.back());
     }
+  fill_measured(o);
   o.lines.push_back({name, sense});
 }
 
@@ -144,8 +144,8 @@ void add_smaller_circle(const Part& part, std::vector<Further>& out) {
     f.table.line.push_back(lines + o.line[i]);
     f.table.run.push_back(1);
     if (!o.time.empty()) f.table.time.push_back(o.time[i]);
-    if (!o.material.empty()) f.table.material.push_back(o.material[i]);
   }
+  fill_measured(f.table);
   for (const auto& line : o.lines)
     f.table.lines.push_back({line.name + " half radius", line.sense});
   out.push_back(std::move(f));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "data/whitening.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/statistics.h"
 
@@ -24,7 +25,7 @@ std::vector<double> within_passes(const Repeats& repeats, const std::vector<doub
 }  // namespace
 
 bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
-                const std::vector<double>& weight) {
+                const std::vector<double>& weight, double digit) {
   std::vector<std::pair<double, std::uint32_t>> e;  // residual and cell
   for (std::size_t i = 0; i < weight.size(); ++i)
     if (weight[i] > 0.0) e.emplace_back(residual[i], repeats.cell[i]);
@@ -33,7 +34,7 @@ bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
   const auto n = static_cast<double>(e.size());
   double sum = 0.0, squares = 0.0;
   for (const auto& [x, cell] : e) sum += x, squares += x * x;
-  double left = 0.0, best = 0.0;
+  double left = 0.0, best = 0.0, best_apart = 0.0;
   std::size_t split = 0;
   for (std::size_t i = 0; i + 1 < e.size(); ++i) {
     left += e[i].first;
@@ -43,9 +44,11 @@ bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
     const double between = apart * apart * k * (n - k) / n;
     const double within = (squares - sum * sum / n - between) / n;
     // Of normal noise 7, of evenly spread noise 12.
-    if (apart * apart / within > best) best = apart * apart / within, split = i + 1;
+    if (apart * apart / within > best)
+      best = apart * apart / within, best_apart = -apart, split = i + 1;
   }
-  if (best < 18.0) return false;
+  constexpr double one_digit = 1.6;  // two neighbouring digits of a coarse display
+  if (best < 18.0 || best_apart < one_digit * digit) return false;
   std::vector<int> side(repeats.cells, 0);
   for (std::size_t i = 0; i < e.size(); ++i) side[e[i].second] |= i < split ? 1 : 2;
   const auto mixed = std::count(side.begin(), side.end(), 3);
@@ -69,16 +72,57 @@ std::vector<char> on_repeated_lines(const Observations& o) {
 
 }  // namespace
 
+std::optional<Place> beside_a_misread_target(const Observations& o, const Repeats& repeats,
+                                             const std::vector<double>& residual,
+                                             const std::vector<double>& weight) {
+  constexpr std::size_t fewest = 5;
+  const std::size_t n = residual.size(), m = repeats.targets;
+  if (o.axes.size() > 1 || m < fewest || n != 2 * m || repeats.cells != n || repeats.sides != 2)
+    return std::nullopt;
+  std::vector<double> middle(m, 0.0), difference(m, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(weight[i] > 0.0)) return std::nullopt;
+    const double way = repeats.side[repeats.pass[i]] == 0 ? 1.0 : -1.0;
+    middle[repeats.target[i]] += residual[i] / 2.0;
+    difference[repeats.target[i]] += way * residual[i];
+  }
+  // About their mean, without one target.
+  const auto squares_without = [m](const std::vector<double>& x, std::size_t out) {
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t t = 0; t < m; ++t) sum += t == out ? 0.0 : x[t];
+    const double mean = sum / static_cast<double>(m - 1);
+    for (std::size_t t = 0; t < m; ++t) squares += t == out ? 0.0 : (x[t] - mean) * (x[t] - mean);
+    return squares;
+  };
+  std::optional<Place> best;
+  const auto dof = static_cast<double>(m - 2);
+  for (std::size_t t = 0; t < m; ++t) {
+    // Variances of a reading: of a middle of two it is half, of a difference twice as much.
+    const double between = 2.0 * squares_without(middle, t) / dof;
+    const double within = squares_without(difference, t) / 2.0 / dof;
+    const double p = std::min(
+        math::f_upper(math::test_ratio(between, within), dof, dof) * static_cast<double>(m), 1.0);
+    if (!best || p < best->p)
+      best = Place{{Factor::position},
+                   between / (between + within),
+                   p,
+                   std::sqrt(std::max(between - within, 0.0) / 2.0)};
+  }
+  return best;
+}
+
 std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
                               const std::vector<double>& residual,
-                              const std::vector<double>& weight) {
+                              const std::vector<double>& weight, const Noise& noise) {
+  const double display = noise.digit * noise.digit / 12.0;
   std::vector<std::vector<double>> of_run;
   const std::vector<double> e_of = within_passes(repeats, residual, weight);
   const std::vector<char> repeated = on_repeated_lines(o);
   for (std::size_t i = 0; i < o.size(); ++i) {
     const std::size_t run = o.run.empty() ? 0 : o.run[i];
     if (run >= of_run.size()) of_run.resize(run + 1);
-    if (repeated[i] != 0) of_run[run].push_back(e_of[i]);
+    if (repeated[i] != 0)
+      of_run[run].push_back(noise.rough.empty() ? e_of[i] : e_of[i] / noise.rough[i]);
   }
   double all = 0.0, n = 0.0, runs = 0.0;
   for (const auto& e : of_run) {
@@ -99,78 +143,13 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
       if (r != run)
         for (const double x : of_run[r]) others.push_back(std::fabs(x));
     const double s_others = 1.4826 * math::median(others);
-    const double F = math::test_ratio(s * s, s_others * s_others);
+    const double F = math::test_ratio(s * s, std::max(s_others * s_others, display));
     // A median knows a scatter as well as 0.37 times as many squares do.
     const double p = math::f_upper(F, 0.37 * k, 0.37 * (n - k)) * runs;
     if (F < 4.0 || p > 1e-4 || (worst && p >= worst->p)) continue;
-    worst = Place{"run", squares / all, p, s, static_cast<double>(run), Quantity::count};
+    worst = Place{{Factor::run}, squares / all, p, s, static_cast<double>(run), Quantity::count};
   }
   return worst;
-}
-
-namespace {
-
-/// Rows of `columns` (of unit variance and a level that walks by `step2` from one to the next)
-/// without what the rows before predict, of unit variance: the filter of a local level with an
-/// unknown start on each line. Durbin and Koopman, Time Series Analysis by State Space
-/// Methods, 2.2. `row` holds the rows in the order in which they were read, `log_det` the logarithm
-/// of the determinant of their covariance.
-MatrixXd whitened(const Observations& o, const VectorXd& root, const std::vector<Index>& row,
-                  const MatrixXd& columns, double step2, double& log_det) {
-  MatrixXd out = MatrixXd::Zero(static_cast<Index>(row.size()), columns.cols());
-  std::vector<Eigen::RowVectorXd> level(lines_of(o));
-  std::vector<double> variance(lines_of(o), 0.0);
-  log_det = 0.0;
-  for (std::size_t k = 0; k < row.size(); ++k) {
-    const double of_row = 1.0 / (root(row[k]) * root(row[k]));
-    const std::size_t line = line_of(o, static_cast<std::size_t>(row[k]));
-    if (level[line].size() == 0) {
-      level[line] = columns.row(row[k]);
-      variance[line] = of_row;
-      continue;
-    }
-    const double before = variance[line] + step2, all = before + of_row;
-    const Eigen::RowVectorXd v = columns.row(row[k]) - level[line];
-    out.row(static_cast<Index>(k)) = v / std::sqrt(all);
-    log_det += std::log(all);
-    level[line] += before / all * v;
-    variance[line] = before * of_row / all;
-  }
-  return out;
-}
-
-}  // namespace
-
-double criterion_of_walk(const Observations& o, const VectorXd& root, const MatrixXd& model) {
-  constexpr int steps = 13;
-  std::vector<Index> row;
-  for (Index i = 0; i < root.size(); ++i)
-    if (root(i) > 0.0) row.push_back(i);
-  if (std::all_of(row.begin(), row.end(), [&](Index i) {
-        return !o.time.empty() && std::isfinite(o.time[static_cast<std::size_t>(i)]);
-      }))
-    std::stable_sort(row.begin(), row.end(), [&](Index a, Index b) {
-      return o.time[static_cast<std::size_t>(a)] < o.time[static_cast<std::size_t>(b)];
-    });
-  MatrixXd columns(root.size(), model.cols() + 1);
-  columns << model, Eigen::Map<const VectorXd>(o.deviation.data(), root.size());
-  const auto n = static_cast<double>(row.size());
-  double none = 0.0, least = std::numeric_limits<double>::infinity();
-  whitened(o, root, row, columns, 0.0, none);
-  for (int k = 0; k < steps; ++k) {
-    double log_det = 0.0;
-    const MatrixXd white = whitened(o, root, row, columns, std::pow(10.0, 0.25 * k - 2.0), log_det);
-    const VectorXd y = white.rightCols(1);
-    const MatrixXd x = white.leftCols(model.cols());
-    double squares = y.squaredNorm();
-    if (x.cols() > 0) {
-      VectorXd rotated = y;
-      rotated.applyOnTheLeft(Eigen::HouseholderQR<MatrixXd>(x).householderQ().transpose());
-      squares = rotated.tail(rotated.size() - x.cols()).squaredNorm();
-    }
-    least = std::min(least, n * std::log(squares / n) + log_det - none);
-  }
-  return least;
 }
 
 }  // namespace nonio::model

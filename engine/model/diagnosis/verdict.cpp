@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
 
+#include "data/noise.h"
 #include "fit/compare.h"
 #include "fit/places.h"
 #include "nonio/sdk/axis_readings.h"
@@ -32,27 +34,23 @@ constexpr double certain_share = 0.06;
 constexpr double certain_evidence = 50.0;
 // docs/constants.md, M9.
 constexpr double most_of_one_target = 0.3;
+// Evidence of effects below it is not asked whether a zero that is not steady gives as much: sizes
+// that are printed as the smallest would be lost.
+constexpr double least_against_zero = 30.0;
 // Two effects whose parts run against each other like this are one thing without a name.
 // docs/constants.md, M10.
 constexpr double cancels_beyond = 0.95;
 
 /// Whether two places share a factor.
-bool same_factor(const std::string& a, const std::string& b) {
-  const auto factors = [](const std::string& where) {
-    std::vector<std::string> out;
-    const std::size_t x = where.find(" x ");
-    out.push_back(where.substr(0, x));
-    if (x != std::string::npos) out.push_back(where.substr(x + 3));
-    for (std::string& f : out) {
-      if (f == "run") f = "time";
-      if (f == "screw-phase" || f == "angle") f = "position";
-    }
-    return out;
+bool same_factor(const Where& a, const Where& b) {
+  const auto kin = [](Factor f) {
+    if (f == Factor::run) return Factor::time;
+    return f == Factor::screw_phase || f == Factor::angle ? Factor::position : f;
   };
-  const auto of_a = factors(a), of_b = factors(b);
-  return std::any_of(of_a.begin(), of_a.end(), [&](const std::string& f) {
-    return std::find(of_b.begin(), of_b.end(), f) != of_b.end();
-  });
+  const auto in_b = [&](Factor f) {
+    return kin(f) == kin(b.first) || (b.second && kin(f) == kin(*b.second));
+  };
+  return in_b(a.first) || (a.second && in_b(*a.second));
 }
 
 class Judge {
@@ -67,14 +65,16 @@ class Judge {
     for (const Place& place : f_.of_model.places)
       if (place.p < place_p) out_.fails.push_back(place);
     std::vector<Place> serious = Judge::serious(f_.of_best.places, least_serious(f_.of_best.floor));
-    const bool walks = !out_.together.empty() && zero_walks();
-    if (contradictory()) {
+    const Noise::Zero zero = unsteady_zero();
+    const bool walks = zero != Noise::Zero::steady;
+    if (contradictory(zero)) {
       v.kind = Verdict::Kind::unrepeatable;
       return;
     }
     find_one_growth();
     find_cancelling();
     list_certain(serious, walks);
+    if (auto place = of_targets(); place && serious.empty()) serious.push_back(std::move(*place));
     if (!out_.together.empty() && !walks && !cancels(out_.together.front()) &&
         !beside_cancelling(out_.together.front()) &&
         !in_doubt(out_.together.front(), serious, unexplained_share)) {
@@ -92,33 +92,53 @@ class Judge {
         out_.fails = std::move(seats);
       else if (!serious.empty())
         out_.fails = std::move(serious);
+      if (zero == Noise::Zero::of_run) tell_runs();
     }
   }
 
  private:
-  /// Evidence of the model beside a zero that walks.
-  double criterion_beside_walk(const std::vector<Term>& terms) const {
-    const auto blocks = blocks_of(f_.part.table, terms, f_.bench->root_weight());
-    if (!blocks) return std::numeric_limits<double>::infinity();
-    MatrixXd model(static_cast<Index>(f_.part.table.size()), 0);
-    for (const MatrixXd& block : *blocks) {
-      model.conservativeResize(Eigen::NoChange, model.cols() + block.cols());
-      model.rightCols(block.cols()) = block;
-    }
-    return criterion_of_walk(f_.part.table, f_.bench->root_weight(), model);
+  /// Where nothing is found, that of targets which a misread reading may hide.
+  std::optional<Place> of_targets() const {
+    if (!out_.together.empty()) return std::nullopt;
+    auto place =
+        beside_a_misread_target(f_.part.table, f_.repeats, f_.of_best.fit.residual, f_.weight);
+    if (!place || !(place->p < serious_p)) return std::nullopt;
+    return place;
   }
 
-  /// Whether the model beside a zero that walks is better evidence than the best set of effects.
-  bool zero_walks() const {
-    const double price = f_.start.price + std::log(f_.bench->readings()) +
-                         2.0 * std::log(static_cast<double>(f_.terms.size()));
-    return criterion_beside_walk(f_.of_model.fit.terms) + price < f_.best.criterion;
+  /// The zero that is not steady, if the model beside it, or it in the place of the first effect,
+  /// is a better explanation than the best set of effects.
+  Noise::Zero unsteady_zero() const {
+    if (out_.together.empty()) return Noise::Zero::steady;
+    const Noise::Zero instead = better_zero(f_.of_model.fit.terms, f_.start);
+    if (instead != Noise::Zero::steady) return instead;
+    const std::string& name = out_.together.front();
+    std::vector<Term> terms = f_.of_best.fit.terms;
+    std::erase_if(terms, [&](const Term& t) { return t.name() == name; });
+    return better_zero(terms, f_.bench->without(f_.best, f_.index_of(name)));
+  }
+
+  Noise::Zero better_zero(const std::vector<Term>& terms, const Workbench::State& state) const {
+    const Unsteady beside = f_.beside_walk(terms);
+    const double own = f_.best.criterion - state.price - f_.price_of_zero();
+    const double evidence = state.criterion - f_.best.criterion;
+    if (evidence < least_against_zero) return Noise::Zero::steady;
+    if (beside.of_run < std::min(beside.walks, own + as_good_as(evidence)))
+      return Noise::Zero::of_run;
+    return beside.walks < own ? Noise::Zero::walks : Noise::Zero::steady;
+  }
+
+  /// How much less evidence is as good for zeros of runs, of so much: a small effect is not lost
+  /// for zeros that might be there; a large one would leave far more of itself beside them.
+  static double as_good_as(double evidence) {
+    constexpr double share = 0.1;
+    return std::clamp(share * evidence, 0.0, alias_evidence);
   }
 
   /// Whether an effect of the best set is there also if the zero walks.
   bool beside_walk(const std::string& name) const {
     std::vector<Term> terms = f_.of_model.fit.terms;
-    const double without = criterion_beside_walk(terms);
+    const double without = f_.beside_walk(terms).least();
     double price = 0.0;
     for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t)
       if (f_.of_best.fit.terms[t].name() == name) {
@@ -126,7 +146,7 @@ class Judge {
         price = f_.bench->price(block);
         terms.push_back(f_.of_best.fit.terms[t]);
       }
-    return without - criterion_beside_walk(terms) - price > certain_evidence;
+    return without - f_.beside_walk(terms).least() - price > certain_evidence;
   }
 
   /// Whether something else is left in the places where this effect works: then it may be no more
@@ -140,7 +160,7 @@ class Judge {
           f_.bench->readings();
       const auto works_in = places_of(f_.of_best.fit.part[t]);
       for (const Place& place : serious)
-        for (const std::string& where : works_in)
+        for (const Where& where : works_in)
           if (same_factor(place.where, where) && place.rms * place.rms > share * rms2) return true;
     }
     return false;
@@ -229,8 +249,8 @@ class Judge {
       mean /= static_cast<double>(sum.size());
       for (const double x : sum) squares += (x - mean) * (x - mean);
       if (squares / static_cast<double>(sum.size()) < unexplained_share * rms2) continue;
-      for (const std::string& place : places_of(sum))
-        for (const std::string& where : works_in)
+      for (const Where& place : places_of(sum))
+        for (const Where& where : works_in)
           if (same_factor(place, where)) return true;
     }
     return false;
@@ -273,11 +293,11 @@ class Judge {
   }
 
   /// Where something that says so much of each reading works.
-  std::vector<std::string> places_of(const std::vector<double>& says) const {
+  std::vector<Where> places_of(const std::vector<double>& says) const {
     const VectorXd part = Eigen::Map<const VectorXd>(says.data(), static_cast<Index>(says.size()));
     const VectorXd centred = part.array() - part.mean();
-    return factors_of(f_.part, f_.repeats, f_.bench->root_weight(),
-                      f_.bench->root_weight().cwiseProduct(centred));
+    if (!factors_) factors_.emplace(f_.part, f_.repeats, f_.bench->white());
+    return (*factors_)(f_.bench->white()(centred));
   }
 
   /// Structure smaller than this is not worth a verdict.
@@ -311,18 +331,18 @@ class Judge {
   /// Noise alone, as large as that of a reading: what repeats leave, else what the best explanation
   /// leaves (with root weights).
   VectorXd noise() const {
-    const Saturated left = saturate(f_.repeats, f_.of_best.fit.residual, f_.weight);
-    if (!(left.dof >= 8.0)) return f_.residual(f_.best);
-    return f_.bench->root_weight().cwiseProduct(
-               Eigen::Map<const VectorXd>(left.e.data(), static_cast<Index>(left.e.size()))) *
-           std::sqrt(f_.bench->readings() / left.dof);
+    const Saturated left =
+        saturate(f_.repeats, f_.of_best.fit.residual, with_scatter(f_.weight, f_.noise));
+    if (!(left.dof >= 8.0) || !(left.squares > 0.0)) return f_.residual(f_.best);
+    const VectorXd e = f_.bench->white()(
+        Eigen::Map<const VectorXd>(left.e.data(), static_cast<Index>(left.e.size())));
+    return e * (f_.of_best.floor->s * std::sqrt(f_.bench->readings() / e.squaredNorm()));
   }
 
   void count_false_alarms(Verdict& v) const {
-    const SignFlips shuffles =
-        shuffled(*f_.bench, f_.best, noise(), f_.part.table, f_.repeats.pass, f_.seed);
+    const SignFlips shuffles = shuffled(*f_.bench, f_.best, noise(), f_.repeats.pass, f_.seed);
     const std::vector<char> named = named_in(*f_.bench, f_.best, shuffles, f_.chance);
-    const PlaceTests tests(f_.part, f_.repeats, f_.bench->root_weight(), f_.bench->basis(f_.best),
+    const PlaceTests tests(f_.part, f_.repeats, f_.bench->white(), f_.bench->basis(f_.best),
                            f_.dof(f_.best));
     const auto floor = floors(named.size());
     double alarms = 0.0;
@@ -335,13 +355,41 @@ class Judge {
     v.false_alarms = alarms / static_cast<double>(named.size());
   }
 
-  bool contradictory() {
-    if (const auto run = wild_run(f_.part.table, f_.repeats, f_.of_best.fit.residual, f_.weight)) {
+  /// Zeros of runs sit in the runs, also where waves in time describe them with fewer columns.
+  void tell_runs() {
+    const auto is_run = [](const Place& place) { return place.where == Where{Factor::run}; };
+    auto& told = out_.fails;
+    auto at = std::find_if(told.begin(), told.end(), is_run);
+    if (at == told.end()) {
+      const auto& all = f_.of_model.places;
+      const auto seen = std::find_if(all.begin(), all.end(), is_run);
+      if (seen == all.end()) return;
+      at = told.insert(told.end(), *seen);
+    }
+    std::rotate(told.begin(), at, at + 1);
+  }
+
+  /// What the best explanation leaves, without zeros of runs if there are such.
+  std::vector<double> without_runs(Noise::Zero zero) const {
+    std::vector<double> e = f_.of_best.fit.residual;
+    const std::vector<std::uint32_t>& run = f_.part.table.run;
+    if (zero != Noise::Zero::of_run) return e;
+    std::map<std::uint32_t, std::pair<double, double>> sum;
+    for (std::size_t i = 0; i < e.size(); ++i)
+      sum[run[i]].first += f_.weight[i] * e[i], sum[run[i]].second += f_.weight[i];
+    for (std::size_t i = 0; i < e.size(); ++i)
+      if (const auto& [of_run, n] = sum[run[i]]; n > 0.0) e[i] -= of_run / n;
+    return e;
+  }
+
+  bool contradictory(Noise::Zero zero) {
+    if (const auto run =
+            wild_run(f_.part.table, f_.repeats, f_.of_best.fit.residual, f_.weight, f_.noise)) {
       out_.fails.insert(out_.fails.begin(), *run);
       return true;
     }
     return too_many(f_.suspects.size(), f_.part.table.size()) ||
-           two_valued(f_.repeats, f_.of_best.fit.residual, f_.weight);
+           two_valued(f_.repeats, without_runs(zero), f_.weight, f_.noise.digit);
   }
 
   /// The verdict's effect leads the list, also where one with more evidence is in doubt.
@@ -355,6 +403,7 @@ class Judge {
 
   const Finding& f_;
   Explanation& out_;
+  mutable std::optional<FactorsOf> factors_{};
 };
 
 }  // namespace

@@ -6,7 +6,9 @@
 #include <limits>
 #include <map>
 
+#include "data/noise.h"
 #include "data/thin.h"
+#include "data/whitening.h"
 #include "nonio/math/distributions.h"
 #include "places.h"
 
@@ -94,31 +96,68 @@ std::optional<double> rms_of(const std::vector<double>& residual,
 
 namespace {
 
-std::optional<LackOfFit> lack_of_fit(const Fit& fit, const Saturated& repeats, double squares) {
-  if (!(repeats.dof >= 3.0)) return std::nullopt;
+/// `squares` of the whitened residuals.
+std::optional<LackOfFit> lack_of_fit(const Fit& fit, const std::optional<NoiseFloor>& floor,
+                                     double repeats, double squares) {
+  if (!floor) return std::nullopt;
   LackOfFit out;
-  out.dof1 = static_cast<double>(fit.redundancy) - repeats.dof;
-  out.dof2 = repeats.dof;
+  out.dof1 = static_cast<double>(fit.redundancy) - repeats;
+  out.dof2 = floor->dof;
   if (!(out.dof1 >= 1.0)) return std::nullopt;
-  out.F = math::test_ratio((squares - repeats.squares) / out.dof1, repeats.squares / repeats.dof);
+  const double s2 = floor->s * floor->s;
+  out.F = math::test_ratio(std::max(squares - s2 * repeats, 0.0) / out.dof1, s2);
   out.p = math::f_upper(out.F, out.dof1, out.dof2);
   return out;
 }
 
-/// Orthonormal columns of a fit, with root weights and without the zeros of lines.
-MatrixXd basis_of(const Observations& o, const std::vector<Term>& terms, const VectorXd& root) {
+/// Orthonormal columns of a fit, whitened and without the zeros of lines.
+MatrixXd basis_of(const Observations& o, const std::vector<Term>& terms, const Whitening& white) {
   MatrixXd a(static_cast<Index>(o.size()), 0);
-  const auto blocks = blocks_of(o, terms, root);
+  const auto blocks = blocks_of(o, terms, white.root());
   if (!blocks) return a;
   for (const MatrixXd& block : *blocks) {
     a.conservativeResize(Eigen::NoChange, a.cols() + block.cols());
-    a.rightCols(block.cols()) = root.asDiagonal() * block;
+    a.rightCols(block.cols()) = white(block);
   }
   if (a.cols() == 0) return a;
-  take_out_zeros(o, root, a);
+  white.take_out_zeros(a);
   a = a * a.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal();
   const Eigen::HouseholderQR<MatrixXd> qr(a);
   return qr.householderQ() * MatrixXd::Identity(a.rows(), a.cols());
+}
+
+/// Whitened residuals of a fit.
+VectorXd white_residual(const Fit& fit, const Whitening& white) {
+  return white(
+      Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(fit.residual.size())));
+}
+
+/// The places of what a fit leaves. Where neighbours are alike, a place counts as far as it does
+/// with every correlation that the repeats leave open, none at all too: few readings know it badly.
+std::vector<Place> places_left(const Part& part, const Repeats& repeats, const Fit& fit,
+                               const Saturated& saturated, const std::vector<double>& weight) {
+  const auto tested = [&](const Noise& noise) {
+    const Whitening white(part.table, fit.weight, noise);
+    const MatrixXd basis = basis_of(part.table, fit.terms, white);
+    const PlaceTests tests(part, repeats, white, basis, static_cast<double>(fit.redundancy));
+    return tests(white_residual(fit, white), noise_floor(repeats, saturated, weight, noise));
+  };
+  Noise noise = Whitening::of_repeats(fit.noise);
+  std::vector<Place> places = tested(noise);
+  if (noise.independent() || std::none_of(places.begin(), places.end(),
+                                          [](const Place& place) { return place.p < place_p; }))
+    return places;
+  constexpr double largest = 0.95;
+  const double high = std::min(noise.in_repeats + 2.0 * noise.u_neighbours, largest);
+  for (const double rho : {0.0, high}) {
+    noise.neighbours = noise.in_repeats = rho;
+    const std::vector<Place> others = tested(noise);
+    for (Place& place : places)
+      for (const Place& other : others)
+        if (other.where == place.where && other.line == place.line)
+          place.p = std::max(place.p, other.p);
+  }
+  return places;
 }
 
 }  // namespace
@@ -128,27 +167,22 @@ Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
   const Observations& o = part.table;
   Comparison out;
   out.suspects = std::move(suspects);
-  double squares = 0.0;
   for (std::size_t i = 0; i < o.size(); ++i) {
-    squares += fit.weight[i] * fit.residual[i] * fit.residual[i];
     if (fit.weight[i] > 0.0 && std::fabs(fit.residual[i]) > std::fabs(out.largest)) {
       out.largest = fit.residual[i];
       out.largest_row = i;
     }
   }
-  const Saturated saturated = saturate(repeats, fit.residual, fit.weight);
-  out.floor = noise_floor(saturated);
-  out.lack_of_fit = lack_of_fit(fit, saturated, squares);
+  const std::vector<double> weight = with_scatter(fit.weight, fit.noise);
+  const Saturated saturated = saturate(repeats, fit.residual, weight);
+  out.floor = noise_floor(repeats, saturated, weight, fit.noise);
   out.cv_residual = cross_validated(o, fit.terms, fit.weight);
   out.cv_rms = rms_of(out.cv_residual, fit.weight);
-  const VectorXd root = root_weights(o, fit.weight);
-  const VectorXd residual = root.cwiseProduct(
-      Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(o.size())));
-  if (o.size() <= thin_beyond || !can_be_thinned(o)) {
-    const MatrixXd basis = basis_of(o, fit.terms, root);
-    out.places = PlaceTests(part, repeats, root, basis, static_cast<double>(fit.redundancy))(
-        residual, out.floor);
-  }
+  const bool placed = o.size() <= thin_beyond || !can_be_thinned(o);
+  const Whitening white(o, fit.weight, Whitening::of_repeats(fit.noise));
+  out.lack_of_fit =
+      lack_of_fit(fit, out.floor, saturated.dof, white_residual(fit, white).squaredNorm());
+  if (placed) out.places = places_left(part, repeats, fit, saturated, weight);
   out.fit = std::move(fit);
   return out;
 }
@@ -158,21 +192,37 @@ std::vector<Place> seats_in(const Part& part, const Repeats& repeats,
   // docs/constants.md, M20.
   constexpr double least_share = 0.02;
   const Fit& fit = comparison.fit;
-  const VectorXd root = root_weights(part.table, fit.weight);
-  const VectorXd residual = root.cwiseProduct(
-      Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(fit.residual.size())));
-  const MatrixXd basis = basis_of(part.table, fit.terms, root);
-  auto seats = seats_of({part, repeats, root, residual, basis, static_cast<double>(fit.redundancy),
+  const Whitening white(part.table, fit.weight, Whitening::of_repeats(fit.noise));
+  const MatrixXd basis = basis_of(part.table, fit.terms, white);
+  const VectorXd residual = white_residual(fit, white);
+  auto seats = seats_of({part, repeats, white, residual, basis, static_cast<double>(fit.redundancy),
                          comparison.floor});
-  for (Place& seat : seats) seat.together = seat.where.find(" x ") != std::string::npos;
+  for (Place& seat : seats) seat.together = seat.where.second.has_value();
   std::erase_if(seats, [](const Place& place) { return !(place.share >= least_share); });
   return seats;
+}
+
+std::vector<char> searched_in(const std::vector<Term>& terms) {
+  std::vector<char> out;
+  for (const Term& term : terms) out.push_back(term.shape.empty() && !term.effect->shapes.empty());
+  return out;
+}
+
+Expected<Fit> with_its_zero(const Observations& o, Fit fitted, const std::vector<char>& searched) {
+  const Noise noise = with_zero(o, fitted.terms, fitted.weight, fitted.noise);
+  if (noise.zero == fitted.noise.zero && noise.neighbours == fitted.noise.neighbours) return fitted;
+  auto again = fit_at(o, fitted.terms, searched, fitted.weight, noise);
+  if (!again) return fitted;
+  return again;
 }
 
 Expected<Comparison> compare_without(const Part& part, const std::vector<Term>& model,
                                      const Repeats& repeats, std::vector<Suspect> suspects) {
   auto weight = weights_without(part.table.size(), suspects);
-  auto fitted = fit(part.table, model, std::move(weight));
+  const Noise noise = noise_of(part, repeats, weight);
+  auto fitted = fit(part.table, model, weight, noise);
+  if (!fitted) return fail(fitted.error());
+  fitted = with_its_zero(part.table, std::move(*fitted), searched_in(model));
   if (!fitted) return fail(fitted.error());
   return comparison_of(part, repeats, std::move(*fitted), std::move(suspects));
 }

@@ -13,6 +13,12 @@ std::vector<double> weights_without(std::size_t readings, const std::vector<Susp
 Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
                          std::vector<Suspect> suspects);
 
+/// Of each term whether its shapes are searched.
+std::vector<char> searched_in(const std::vector<Term>& terms);
+
+/// The fit anew, where its zero walks or is another one in each run.
+Expected<Fit> with_its_zero(const Observations& o, Fit fitted, const std::vector<char>& searched);
+
 /// The comparison with these readings suspected; no places of a long table.
 Expected<Comparison> compare_without(const Part& part, const std::vector<Term>& model,
                                      const Repeats& repeats, std::vector<Suspect> suspects);

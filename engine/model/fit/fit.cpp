@@ -8,6 +8,8 @@
 
 #include "data/design.h"
 #include "data/thin.h"
+#include "data/whitening.h"
+#include "interpolation.h"
 #include "nonio/math/golden_section.h"
 #include "nonio/sdk/axis_readings.h"
 #include "workbench.h"
@@ -21,7 +23,7 @@ namespace {
 constexpr double rank_threshold = 1e-12;
 
 struct Design {
-  MatrixXd a;                      // rows times root weights; zeros of lines first, then terms
+  MatrixXd a;                      // whitened rows; zeros of lines first, then terms
   std::vector<std::string> names;  // of all columns
   std::vector<Index> first;        // first column of each term, and the end
   std::vector<MatrixXd> blocks;    // of each term
@@ -29,13 +31,13 @@ struct Design {
 };
 
 Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms,
-                           const VectorXd& root) {
+                           const Whitening& white) {
   const auto n = static_cast<Index>(o.size());
   const auto lines = static_cast<Index>(lines_of(o));
   Design d;
   Index columns = lines;
   for (Index k = 0; k < lines; ++k) d.names.push_back("the zero of line " + std::to_string(k + 1));
-  auto blocks = blocks_of(o, terms, root, &d.lost);
+  auto blocks = blocks_of(o, terms, white.root(), &d.lost);
   if (!blocks) return fail(blocks.error());
   d.blocks = std::move(*blocks);
   for (std::size_t t = 0; t < terms.size(); ++t) {
@@ -46,9 +48,10 @@ Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms
   d.first.push_back(columns);
   d.a.setZero(n, columns);
   for (Index i = 0; i < n; ++i)
-    d.a(i, static_cast<Index>(line_of(o, static_cast<std::size_t>(i)))) = root(i);
+    d.a(i, static_cast<Index>(line_of(o, static_cast<std::size_t>(i)))) = 1.0;
+  d.a.leftCols(lines) = white(d.a.leftCols(lines));
   for (std::size_t t = 0; t < terms.size(); ++t)
-    d.a.middleCols(d.first[t], d.blocks[t].cols()) = root.asDiagonal() * d.blocks[t];
+    d.a.middleCols(d.first[t], d.blocks[t].cols()) = white(d.blocks[t]);
   return d;
 }
 
@@ -71,7 +74,8 @@ struct Solution {
   double squares = 0.0;  // weighted
 };
 
-Expected<Solution> solve(const Design& d, const VectorXd& y, const VectorXd& root) {
+/// `y` whitened like the design.
+Expected<Solution> solve(const Design& d, const VectorXd& weighted) {
   const Index unknowns = d.a.cols();
   VectorXd scale = d.a.colwise().norm().transpose();
   for (Index k = 0; k < unknowns; ++k)
@@ -83,7 +87,6 @@ Expected<Solution> solve(const Design& d, const VectorXd& y, const VectorXd& roo
   if (qr.rank() < unknowns)
     return fail("the readings cannot tell these apart: " + inseparable(a, d.names));
   Solution s;
-  const VectorXd weighted = root.cwiseProduct(y);
   VectorXd scaled = qr.solve(weighted);
   scaled += qr.solve(weighted - a * scaled);  // one step of refinement
   s.x = scaled.cwiseQuotient(scale);
@@ -99,13 +102,13 @@ Expected<Solution> solve(const Design& d, const VectorXd& y, const VectorXd& roo
 }
 
 /// Weighted sum of squares with these shapes; infinite where there is none.
-double squares_with(const Observations& o, const std::vector<Term>& terms, const VectorXd& root,
+double squares_with(const Observations& o, const std::vector<Term>& terms, const Whitening& white,
                     const VectorXd& y) {
-  auto d = design_of(o, terms, root);
+  auto d = design_of(o, terms, white);
   if (!d) return std::numeric_limits<double>::infinity();
   const Index columns = d->a.cols();
   const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(d->a);  // in place
-  VectorXd rotated = root.cwiseProduct(y);
+  VectorXd rotated = white(y);
   rotated.applyOnTheLeft(qr.householderQ().transpose());
   return rotated.tail(rotated.size() - columns).squaredNorm();
 }
@@ -114,11 +117,11 @@ double squares_with(const Observations& o, const std::vector<Term>& terms, const
 class SquaresOf {
  public:
   SquaresOf(const Observations& o, const std::vector<Term>& terms, std::size_t t,
-            const VectorXd& root, const VectorXd& y)
-      : o_(o), root_(root), left_(root.cwiseProduct(y)) {
+            const Whitening& white, const VectorXd& y)
+      : o_(o), white_(white), left_(white(y)) {
     std::vector<Term> others = terms;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(t));
-    const auto d = design_of(o, others, root);
+    const auto d = design_of(o, others, white);
     if (!d) return;
     const MatrixXd scaled =
         d->a * d->a.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal();
@@ -131,7 +134,7 @@ class SquaresOf {
   double operator()(const Term& term) const {
     auto block = columns_of(o_, term, term.shape);
     if (!block) return std::numeric_limits<double>::infinity();
-    *block = root_.asDiagonal() * *block;
+    *block = white_(*block);
     if (others_.cols() > 0) *block -= others_ * (others_.transpose() * *block);
     const Eigen::HouseholderQR<MatrixXd> qr(*block);
     const VectorXd rotated = qr.householderQ().transpose() * left_;
@@ -140,14 +143,14 @@ class SquaresOf {
 
  private:
   const Observations& o_;
-  const VectorXd& root_;
+  const Whitening& white_;
   VectorXd left_;
   MatrixXd others_;
 };
 
 /// Between the neighbours of a grid's best value.
 void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std::size_t k,
-            const VectorXd& root, const VectorXd& y) {
+            const Whitening& white, const VectorXd& y) {
   const std::vector<double> grid = terms[t].effect->shapes[k].grid(o, terms[t].axis);
   if (grid.empty() || is_usual(terms[t], terms[t].shape, k)) return;
   double& value = terms[t].shape[k];
@@ -157,7 +160,7 @@ void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std:
   double low = below == grid.begin() ? value : *std::prev(below);
   double high = above == grid.end() ? value : *above;
   if (!(low < high)) return;
-  const SquaresOf squares_of(o, terms, t, root, y);
+  const SquaresOf squares_of(o, terms, t, white, y);
   const auto at = [&](double x) {
     value = x;
     return squares_of(terms[t]);
@@ -171,8 +174,9 @@ void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std:
 
 /// Shapes that were not given: the grid's best.
 Expected<void> start_shapes(const Observations& o, std::vector<Term>& terms,
-                            const std::vector<char>& searched, const std::vector<double>& weight) {
-  const Workbench bench(o, terms, weight);
+                            const std::vector<char>& searched, const std::vector<double>& weight,
+                            const Noise& noise) {
+  const Workbench bench(o, terms, weight, {}, 0, nullptr, noise);
   auto best = bench.best_shapes();
   if (!best) return fail(best.error());
   for (std::size_t t = 0; t < terms.size(); ++t)
@@ -181,7 +185,7 @@ Expected<void> start_shapes(const Observations& o, std::vector<Term>& terms,
 }
 
 void refine_shapes(const Observations& o, std::vector<Term>& terms,
-                   const std::vector<char>& searched, const VectorXd& root, const VectorXd& y) {
+                   const std::vector<char>& searched, const Whitening& white, const VectorXd& y) {
   std::size_t continuous = 0;
   for (std::size_t t = 0; t < terms.size(); ++t)
     for (const Effect::Shape& shape : terms[t].effect->shapes)
@@ -193,9 +197,9 @@ void refine_shapes(const Observations& o, std::vector<Term>& terms,
   for (std::size_t round = 0; round < (continuous > 1 ? most : 1U); ++round) {
     for (std::size_t t = 0; t < terms.size(); ++t)
       for (std::size_t k = 0; searched[t] && k < terms[t].shape.size(); ++k)
-        if (terms[t].effect->shapes[k].continuous) refine(o, terms, t, k, root, y);
+        if (terms[t].effect->shapes[k].continuous) refine(o, terms, t, k, white, y);
     if (continuous < 2 || round + 1 < fewest) continue;
-    const double now = squares_with(o, terms, root, y);
+    const double now = squares_with(o, terms, white, y);
     if (!(now < before * (1.0 - still_better))) break;
     before = now;
   }
@@ -231,11 +235,12 @@ Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::si
 
 /// Shapes that were found on means of the readings: steps of Gauss and Newton on all of them.
 void step_shapes(const Observations& o, std::vector<Term>& terms, const std::vector<char>& searched,
-                 const VectorXd& root, const VectorXd& y) {
+                 const Whitening& white, const VectorXd& y) {
+  const VectorXd weighted = white(y);
   for (int round = 0; round < 2; ++round) {
-    auto d = design_of(o, terms, root);
+    auto d = design_of(o, terms, white);
     if (!d) return;
-    const auto s = solve(*d, y, root);
+    const auto s = solve(*d, weighted);
     if (!s) return;
     std::vector<double*> moved;
     std::vector<Term> next = terms;
@@ -246,15 +251,15 @@ void step_shapes(const Observations& o, std::vector<Term>& terms, const std::vec
         const auto column = shape_column(o, terms[t], k, s->x.segment(d->first[t], columns));
         if (!column) continue;
         d->a.conservativeResize(Eigen::NoChange, d->a.cols() + 1);
-        d->a.rightCols(1) = root.cwiseProduct(*column);
+        d->a.rightCols(1) = white(*column);
         d->names.push_back(terms[t].name());
         moved.push_back(&next[t].shape[k]);
       }
-    const auto joint = moved.empty() ? Expected<Solution>(fail("")) : solve(*d, y, root);
+    const auto joint = moved.empty() ? Expected<Solution>(fail("")) : solve(*d, weighted);
     if (!joint) return;
     for (std::size_t k = 0; k < moved.size(); ++k)
       *moved[k] += joint->x(d->first.back() + static_cast<Index>(k));
-    if (!(squares_with(o, next, root, y) < s->squares)) return;
+    if (!(squares_with(o, next, white, y) < s->squares)) return;
     terms = std::move(next);
   }
 }
@@ -288,10 +293,58 @@ void name_parameters(Fit& out, const Observations& o, const Design& design) {
   }
 }
 
+/// Whether the noise has more than the weights of a fit.
+bool more_than_weights(const Noise& noise) {
+  return noise.zero != Noise::Zero::steady || noise.neighbours != noise.in_repeats;
+}
+
+/// Cofactors of a solution whose weights are not the inverse of the covariance of the noise:
+/// A V A^T with the linear map A from the readings to the unknowns.
+MatrixXd spread(const MatrixXd& design, const MatrixXd& cofactor, const Whitening& white,
+                const MatrixXd& covariance) {
+  const MatrixXd both = white(white(covariance).transpose());
+  const MatrixXd map = design * cofactor;
+  return map.transpose() * both * map;
+}
+
+/// s of a fit, as its uncertainties have it: where the noise has more than its weights, of what
+/// that noise leaves.
+double s_for_uncertainty(const Fit& fit, const Observations& o, const Solution& solution) {
+  if (fit.redundancy == 0) return 0.0;
+  const auto redundancy = static_cast<double>(fit.redundancy);
+  if (!more_than_weights(fit.noise)) return std::sqrt(solution.squares / redundancy);
+  Noise likely = fit.noise;
+  if (likely.zero_found > 0.0) likely.zero_size = likely.zero_found;
+  const Whitening white(o, fit.weight, likely);
+  MatrixXd left = white(
+      Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(fit.residual.size())));
+  white.take_out_zeros(left);
+  return left.norm() / std::sqrt(redundancy);
+}
+
+/// Adds what interpolated temperatures may do to the parameters, in units of s^2 of the fit; where
+/// nobody knows how wrong they are, nothing has an uncertainty. `plain`: cofactors of the solution.
+void add_interpolation(MatrixXd& cofactor, const MatrixXd& plain, const Observations& o,
+                       const std::vector<Term>& terms, const Design& design, const Solution& s,
+                       const Whitening& white, double s_of_fit) {
+  std::vector<VectorXd> linear;
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    linear.emplace_back(s.x.segment(design.first[t], design.first[t + 1] - design.first[t]));
+  const auto wrong = wrong_by_interpolation(o, terms, linear);
+  if (!wrong) {
+    cofactor.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  if (wrong->cols() == 0 || !(s_of_fit > 0.0)) return;
+  const auto a = design.a.leftCols(cofactor.rows());
+  const MatrixXd of_parameters = plain * (a.transpose() * white(*wrong));
+  cofactor += of_parameters * of_parameters.transpose() / (s_of_fit * s_of_fit);
+}
+
 /// Covariance of the linear parameters and of the shapes that were searched, linearised: columns
 /// of the design and the derivatives by the shapes together.
 void fill_covariance(Fit& out, const Observations& o, Design design, const Solution& s,
-                     const std::vector<char>& searched, const VectorXd& root) {
+                     const std::vector<char>& searched, const Whitening& white) {
   std::vector<Index> place(out.parameters.size(), -1);  // row of the cofactor matrix
   Index row = design.first.front(), extra = 0;
   std::size_t at = 0;
@@ -305,27 +358,49 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
       const auto column = shape_column(o, term, i, s.x.segment(design.first[t], k));
       if (!column || !(column->norm() > 0.0)) continue;
       design.a.conservativeResize(Eigen::NoChange, plain + extra + 1);
-      design.a.col(plain + extra) = root.cwiseProduct(*column);
+      design.a.col(plain + extra) = white(*column);
       design.names.push_back(term.name() + " " + out.parameters[at].name);
       place[at] = plain + extra++;
     }
   }
   MatrixXd cofactor = s.cofactor;
   if (extra > 0) {
-    const VectorXd y = VectorXd::Zero(design.a.rows());
-    if (auto joint = solve(design, y, root))
+    const VectorXd none = VectorXd::Zero(design.a.rows());
+    if (auto joint = solve(design, none))
       cofactor = std::move(joint->cofactor);
     else  // a shape without a maximum of its own: known no better than its grid
       for (Index& p : place)
         if (p >= plain) p = -1;
     out.redundancy -= std::min(out.redundancy, static_cast<std::size_t>(extra));
   }
+  const auto columns = cofactor.cols();
+  const MatrixXd plain_cofactor = cofactor;
+  std::vector<char> open(static_cast<std::size_t>(columns), 0);
+  if (more_than_weights(out.noise)) {
+    const auto with = [&](const Noise& noise) {
+      return spread(design.a.leftCols(columns), plain_cofactor, white,
+                    covariance_of(o, white.root(), noise));
+    };
+    cofactor = with(out.noise);
+    if (out.noise.zero_open) {
+      Noise steady = out.noise;
+      steady.zero = Noise::Zero::steady;
+      const MatrixXd known = with(steady);
+      for (Index k = 0; k < columns; ++k)
+        open[static_cast<std::size_t>(k)] = known(k, k) < 0.5 * cofactor(k, k);
+    }
+  }
+  const double s_of_u = s_for_uncertainty(out, o, s);
+  add_interpolation(cofactor, plain_cofactor, o, out.terms, design, s, white, s_of_u);
   const std::size_t p = out.parameters.size();
   out.correlation.assign(p, std::vector<double>(p, 0.0));
   for (std::size_t i = 0; i < p; ++i) {
     out.correlation[i][i] = 1.0;
     if (place[i] < 0) continue;
-    out.parameters[i].u = std::sqrt(cofactor(place[i], place[i]));
+    // What a zero of unknown size makes of it nobody can say.
+    out.parameters[i].u = open[static_cast<std::size_t>(place[i])] != 0
+                              ? std::numeric_limits<double>::quiet_NaN()
+                              : s_of_u * std::sqrt(cofactor(place[i], place[i]));
     for (std::size_t k = 0; k < p; ++k)
       if (place[k] >= 0)
         out.correlation[i][k] =
@@ -336,7 +411,8 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
 
 }  // namespace
 
-Expected<Fit> fit(const Observations& o, std::vector<Term> terms, std::vector<double> weight) {
+Expected<Fit> fit(const Observations& o, std::vector<Term> terms, std::vector<double> weight,
+                  const Noise& noise) {
   std::vector<char> searched;
   for (const Term& term : terms)
     searched.push_back(term.shape.empty() && !term.effect->shapes.empty());
@@ -347,27 +423,38 @@ Expected<Fit> fit(const Observations& o, std::vector<Term> terms, std::vector<do
     if (!near) return fail(near.error());
     terms = std::move(near->terms);
   } else if (any) {
-    if (auto found = start_shapes(o, terms, searched, weight); !found) return fail(found.error());
+    if (auto found = start_shapes(o, terms, searched, weight, noise); !found)
+      return fail(found.error());
   }
-  return fit_near(o, std::move(terms), searched, std::move(weight));
+  return fit_near(o, std::move(terms), searched, std::move(weight), noise);
 }
 
 Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
-                       const std::vector<char>& searched, std::vector<double> weight) {
-  const VectorXd root = root_weights(o, weight);
+                       const std::vector<char>& searched, std::vector<double> weight,
+                       const Noise& noise) {
+  const Whitening white(o, weight, Whitening::of_repeats(noise));
   const VectorXd y =
       Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.deviation.size()));
   if (o.size() > thin_beyond)
-    step_shapes(o, terms, searched, root, y);
+    step_shapes(o, terms, searched, white, y);
   else
-    refine_shapes(o, terms, searched, root, y);
-  auto design = design_of(o, terms, root);
+    refine_shapes(o, terms, searched, white, y);
+  return fit_at(o, std::move(terms), searched, std::move(weight), noise);
+}
+
+Expected<Fit> fit_at(const Observations& o, std::vector<Term> terms,
+                     const std::vector<char>& searched, std::vector<double> weight,
+                     const Noise& noise) {
+  const Whitening white(o, weight, Whitening::of_repeats(noise));
+  const VectorXd y =
+      Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.deviation.size()));
+  auto design = design_of(o, terms, white);
   if (!design) return fail(design.error());
-  const auto used = static_cast<Index>((root.array() > 0.0).count());
+  const auto used = static_cast<Index>((white.root().array() > 0.0).count());
   if (used <= design->a.cols())
     return fail(std::to_string(used) + " readings cannot determine " +
                 std::to_string(design->a.cols()) + " unknowns");
-  const auto s = solve(*design, y, root);
+  const auto s = solve(*design, white(y));
   if (!s) return fail(s.error());
 
   Fit out;
@@ -387,27 +474,31 @@ Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
     out.part.emplace_back(part.data(), part.data() + part.size());
   }
   out.residual.assign(residual.data(), residual.data() + residual.size());
+  out.noise = noise;
   name_parameters(out, o, *design);
   for (const Index lost : design->lost) out.lost.push_back(static_cast<std::size_t>(lost));
   Index column = lines;
   for (Parameter& p : out.parameters)
     if (!p.shape) p.value = s->x(column++);
-  fill_covariance(out, o, std::move(*design), *s, searched, root);
+  fill_covariance(out, o, std::move(*design), *s, searched, white);
   double sum = 0.0;
   for (const double w : out.weight) sum += w;
-  out.rms = std::sqrt(s->squares / sum);
+  // What is left of the readings as they are, not of the whitened ones.
+  const double squares = white.independent() && noise.rough.empty()
+                             ? s->squares
+                             : root_weights(o, out.weight).cwiseProduct(residual).squaredNorm();
+  out.rms = std::sqrt(squares / sum);
   out.s = out.redundancy > 0 ? std::sqrt(s->squares / static_cast<double>(out.redundancy)) : 0.0;
-  for (Parameter& p : out.parameters) p.u *= out.s;
   return out;
 }
 
 double rms_with(const Observations& o, const std::vector<Term>& terms,
                 const std::vector<double>& weight) {
-  const VectorXd root = root_weights(o, weight);
+  const Whitening white(o, weight, {});
   const Eigen::Map<const VectorXd> y(o.deviation.data(), static_cast<Index>(o.size()));
   const double sum = weight.empty() ? static_cast<double>(o.size())
                                     : std::accumulate(weight.begin(), weight.end(), 0.0);
-  return std::sqrt(squares_with(o, terms, root, y) / sum);
+  return std::sqrt(squares_with(o, terms, white, y) / sum);
 }
 
 }  // namespace nonio::model

@@ -15,14 +15,43 @@ namespace nonio::model {
 
 /// Columns that vary with one factor only; `repeated`: told by differences between repeats of one
 /// cell (time, run, temperature), else by the cells themselves (position, direction, phase).
-struct Factor {
-  std::string name;
+struct FactorColumns {
+  Where of;
   MatrixXd columns;
   bool repeated = false;
   std::vector<double> levels{};  // of dummies: target, run
   Quantity quantity = Quantity::number;
   std::string line{};  // in space: the line whose places these are
 };
+
+namespace {
+
+const char* name_of(Factor factor) {
+  switch (factor) {
+    case Factor::direction:
+      return "direction";
+    case Factor::position:
+      return "position";
+    case Factor::screw_phase:
+      return "screw-phase";
+    case Factor::angle:
+      return "angle";
+    case Factor::run:
+      return "run";
+    case Factor::time:
+      return "time";
+    case Factor::temperature:
+      break;
+  }
+  return "temperature";
+}
+
+}  // namespace
+
+std::string to_text(const Where& where) {
+  return std::string(name_of(where.first)) +
+         (where.second ? std::string(" x ") + name_of(*where.second) : "");
+}
 
 namespace {
 
@@ -37,12 +66,12 @@ MatrixXd dummies(const std::vector<std::size_t>& level, std::size_t levels) {
 }
 
 /// Distinct values, at most `most_bins` of them: beyond, neighbours share a bin.
-Factor binned(std::string name, const std::vector<double>& value, Quantity quantity) {
+FactorColumns binned(Factor of, const std::vector<double>& value, Quantity quantity) {
   const std::set<double> distinct(value.begin(), value.end());
   const std::size_t in_bin =
       (distinct.size() + most_bins - 1) / static_cast<std::size_t>(most_bins);
   std::map<double, std::size_t> bin;
-  Factor f{std::move(name), {}, false, {}, quantity};
+  FactorColumns f{{of}, {}, false, {}, quantity};
   for (const double v : distinct) {
     const std::size_t b = bin.size() / in_bin;
     bin[v] = b;
@@ -82,7 +111,7 @@ class Factors {
     const VectorXd d = map(r.d);
     position_ = part.kind == Part::Kind::axis ? VectorXd(map(r.p) / std::max(r.length / 2.0, 1e-12))
                                               : from_the_middle(part);
-    add({"direction", d, false});
+    add({{Factor::direction}, d, false});
     if (part.kind == Part::Kind::axis)
       add_axis(part.axes.front(), r, d);
     else
@@ -91,15 +120,14 @@ class Factors {
     add_repeated(part.table, r, d, repeats);
   }
 
-  const std::vector<Factor>& all() const { return all_; }
+  const std::vector<FactorColumns>& all() const { return all_; }
   /// A pair with its first factor; of direction and position, the cells, all of both.
-  MatrixXd whole(const Factor& f) const {
+  MatrixXd whole(const FactorColumns& f) const {
     if (!is_pair(f)) return f.columns;
-    const std::size_t x = f.name.find(" x ");
     // In space places belong to lines: there is no factor of all positions.
-    MatrixXd main = f.name.starts_with("direction") ? column("direction") : position_;
+    MatrixXd main = f.of.first == Factor::direction ? column(Factor::direction) : position_;
     if (!f.repeated) {
-      const MatrixXd& second = column(f.name.substr(x + 3), f.line);
+      const MatrixXd& second = column(*f.of.second, f.line);
       main.conservativeResize(Eigen::NoChange, main.cols() + second.cols());
       main.rightCols(second.cols()) = second;
     }
@@ -107,12 +135,12 @@ class Factors {
     out << main, f.columns;
     return out;
   }
-  const MatrixXd& column(const std::string& name, const std::string& line = {}) const {
+  const MatrixXd& column(Factor of, const std::string& line = {}) const {
     return std::find_if(all_.begin(), all_.end(),
-                        [&](const Factor& f) { return f.name == name && f.line == line; })
+                        [&](const FactorColumns& f) { return f.of == Where{of} && f.line == line; })
         ->columns;
   }
-  static bool is_pair(const Factor& f) { return f.name.find(" x ") != std::string::npos; }
+  static bool is_pair(const FactorColumns& f) { return f.of.second.has_value(); }
 
  private:
   static Expected<AxisReadings> readings(const Part& part) {
@@ -145,13 +173,15 @@ class Factors {
   }
 
   void add_axis(const Axis& axis, const AxisReadings& r, const VectorXd& d) {
-    add(binned("position", r.theta, position_of(axis.rotary)));
+    add(binned(Factor::position, r.theta, position_of(axis.rotary)));
     if (axis.screw_pitch)
-      add({"screw-phase", waves(map(r.theta) * (2.0 * std::numbers::pi / *axis.screw_pitch), 2)});
-    if (axis.rotary) add({"angle", waves(map(r.theta), 3)});
-    pair("direction", "position", times(column("position"), d), false);
-    if (axis.screw_pitch) pair("direction", "screw-phase", times(column("screw-phase"), d), false);
-    if (axis.rotary) pair("direction", "angle", times(column("angle"), d), false);
+      add({{Factor::screw_phase},
+           waves(map(r.theta) * (2.0 * std::numbers::pi / *axis.screw_pitch), 2)});
+    if (axis.rotary) add({{Factor::angle}, waves(map(r.theta), 3)});
+    pair(Factor::direction, Factor::position, times(column(Factor::position), d), false);
+    if (axis.screw_pitch)
+      pair(Factor::direction, Factor::screw_phase, times(column(Factor::screw_phase), d), false);
+    if (axis.rotary) pair(Factor::direction, Factor::angle, times(column(Factor::angle), d), false);
   }
 
   /// Each line's own places: what sits at one place of one diagonal sits elsewhere on the other.
@@ -161,22 +191,23 @@ class Factors {
       VectorXd here = VectorXd::Zero(d.size());
       for (std::size_t i = 0; i < part.table.size(); ++i)
         if (line_of(part.table, i) == line) here(static_cast<Index>(i)) = 1.0;
-      Factor f = binned_where(part.along, here, quantity);
+      FactorColumns f = binned_where(part.along, here, quantity);
       f.line = part.table.lines[line].name;
       const MatrixXd reversal = times(f.columns, d);
       all_.push_back(f);
       if ((d.array() * here.array()).maxCoeff() > 0.0 &&
           (d.array() * here.array()).minCoeff() < 0.0)
-        all_.push_back({"direction x position", reversal, false, {}, Quantity::number, f.line});
+        all_.push_back(
+            {{Factor::direction, Factor::position}, reversal, false, {}, Quantity::number, f.line});
     }
   }
 
-  static Factor binned_where(const std::vector<double>& value, const VectorXd& here,
-                             Quantity quantity) {
+  static FactorColumns binned_where(const std::vector<double>& value, const VectorXd& here,
+                                    Quantity quantity) {
     std::vector<double> some;
     for (std::size_t i = 0; i < value.size(); ++i)
       if (here(static_cast<Index>(i)) > 0.0) some.push_back(value[i]);
-    Factor f = binned("position", some, quantity);
+    FactorColumns f = binned(Factor::position, some, quantity);
     MatrixXd wide = MatrixXd::Zero(here.size(), f.columns.cols());
     Index row = 0;
     for (Index i = 0; i < here.size(); ++i)
@@ -189,53 +220,38 @@ class Factors {
                     const Repeats& repeats) {
     const VectorXd& p = position_;
     std::vector<double> run(o.run.begin(), o.run.end());
-    Factor runs = binned("run", run, Quantity::count);
+    FactorColumns runs = binned(Factor::run, run, Quantity::count);
     runs.repeated = true;
     add(std::move(runs));
     const auto orders = static_cast<int>(std::min<std::size_t>(2 * repeats.passes, 16));
     MatrixXd slow(d.size(), orders);
     const VectorXd phase = map(r.t) * (std::numbers::pi / std::max(r.duration, 1e-12));
     for (int k = 0; k < orders; ++k) slow.col(k) = (phase * (k + 1)).array().cos();
-    add({"time", slow, true});
+    add({{Factor::time}, slow, true});
     const MatrixXd slowest = slow.leftCols(std::min(orders, 4));
-    pair("direction", "time", times(slowest, d), true);
-    pair("position", "time", times(slowest, p), true);
-    pair("direction", "run", times(column("run"), d), true);
-    pair("position", "run", times(column("run"), p), true);
+    pair(Factor::direction, Factor::time, times(slowest, d), true);
+    pair(Factor::position, Factor::time, times(slowest, p), true);
+    pair(Factor::direction, Factor::run, times(column(Factor::run), d), true);
+    pair(Factor::position, Factor::run, times(column(Factor::run), p), true);
     if (!r.temperature) return;
     const VectorXd K = map(r.K);
     MatrixXd warmth(d.size(), 2);
     warmth.col(0) = K;
     warmth.col(1) = K.cwiseAbs2();
-    add({"temperature", warmth, true});
-    pair("position", "temperature", times(K, p), true);
-    pair("direction", "temperature", times(K, d), true);
+    add({{Factor::temperature}, warmth, true});
+    pair(Factor::position, Factor::temperature, times(K, p), true);
+    pair(Factor::direction, Factor::temperature, times(K, d), true);
   }
 
-  void add(Factor f) { all_.push_back(std::move(f)); }
-  void pair(const std::string& a, const std::string& b, MatrixXd columns, bool repeated) {
-    all_.push_back({a + " x " + b, std::move(columns), repeated});
+  void add(FactorColumns f) { all_.push_back(std::move(f)); }
+  void pair(Factor a, Factor b, MatrixXd columns, bool repeated) {
+    all_.push_back({{a, b}, std::move(columns), repeated});
   }
-  std::vector<Factor> all_;
+  std::vector<FactorColumns> all_;
   MatrixXd position_;  // from -1 to 1
 };
 
 namespace {
-
-/// Mean of each cell taken out of each column (rows times root weights).
-void take_out_cells(const Repeats& r, const VectorXd& root, MatrixXd& columns) {
-  MatrixXd sum = MatrixXd::Zero(static_cast<Index>(r.cells), columns.cols());
-  VectorXd weight = VectorXd::Zero(static_cast<Index>(r.cells));
-  for (Index i = 0; i < columns.rows(); ++i) {
-    const auto c = static_cast<Index>(r.cell[static_cast<std::size_t>(i)]);
-    sum.row(c) += root(i) * columns.row(i);
-    weight(c) += root(i) * root(i);
-  }
-  for (Index c = 0; c < sum.rows(); ++c)
-    if (weight(c) > 0.0) sum.row(c) /= weight(c);
-  for (Index i = 0; i < columns.rows(); ++i)
-    columns.row(i) -= root(i) * sum.row(static_cast<Index>(r.cell[static_cast<std::size_t>(i)]));
-}
 
 MatrixXd orthonormal(MatrixXd columns) {
   const VectorXd norm = columns.colwise().norm().transpose();
@@ -245,58 +261,98 @@ MatrixXd orthonormal(MatrixXd columns) {
   return qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
 }
 
+/// Takes out of whitened columns what is the same in all repeats of a cell.
+class Cells {
+ public:
+  Cells(const Repeats& r, const Whitening& white) : r_(r), root_(white.root()) {
+    constexpr std::size_t most = 400;  // beyond, their means do
+    if (white.independent() || r.cells > most) return;
+    columns_ = white(dummies({r.cell.begin(), r.cell.end()}, r.cells));
+    MatrixXd products = columns_.transpose() * columns_;
+    for (double& x : products.diagonal())
+      if (!(x > 0.0)) x = 1.0;  // all its readings are suspected
+    products_.compute(products);
+  }
+  void take_out(MatrixXd& columns) const {
+    if (columns_.cols() > 0)
+      columns -= columns_ * products_.solve(columns_.transpose() * columns);
+    else
+      take_out_means(columns);
+  }
+
+ private:
+  void take_out_means(MatrixXd& columns) const {
+    MatrixXd sum = MatrixXd::Zero(static_cast<Index>(r_.cells), columns.cols());
+    VectorXd weight = VectorXd::Zero(static_cast<Index>(r_.cells));
+    for (Index i = 0; i < columns.rows(); ++i) {
+      const auto c = static_cast<Index>(r_.cell[static_cast<std::size_t>(i)]);
+      sum.row(c) += root_(i) * columns.row(i);
+      weight(c) += root_(i) * root_(i);
+    }
+    for (Index c = 0; c < sum.rows(); ++c)
+      if (weight(c) > 0.0) sum.row(c) /= weight(c);
+    for (Index i = 0; i < columns.rows(); ++i)
+      columns.row(i) -=
+          root_(i) * sum.row(static_cast<Index>(r_.cell[static_cast<std::size_t>(i)]));
+  }
+
+  const Repeats& r_;
+  const VectorXd& root_;
+  MatrixXd columns_{};  // of the cells, where whitened ones are not each other's strangers
+  Eigen::LLT<MatrixXd> products_{};
+};
+
 /// Whether what a factor says differs between repeats of a cell: what comes back in every run sits
 /// in the cells, even where a wave of time describes it with fewer columns.
-bool tells_repeats_apart(const Repeats& r, const VectorXd& root, const MatrixXd& basis,
-                         const VectorXd& residual) {
+bool tells_repeats_apart(const Cells& cells, const MatrixXd& basis, const VectorXd& residual) {
   // docs/constants.md, M19.
   constexpr double least = 0.1;  // of its squares; of a line in time over two runs, a fifth
   MatrixXd said = basis * (basis.transpose() * residual);
   const double all = said.squaredNorm();
-  take_out_cells(r, root, said);
+  cells.take_out(said);
   return said.squaredNorm() > least * all;
 }
 
 /// Orthonormal columns of every factor: without zeros of lines, without what the model can say,
 /// pairs without their factors.
-std::vector<MatrixXd> bases_of(const Factors& factors, const Part& part, const Repeats& repeats,
-                               const VectorXd& root, const MatrixXd& model) {
+std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
+                               const Whitening& white, const MatrixXd& model) {
+  const Cells cells(repeats, white);
   std::vector<MatrixXd> out;
-  std::map<std::string, MatrixXd> single;
-  for (const Factor& f : factors.all()) {
-    MatrixXd columns = root.asDiagonal() * f.columns;
-    take_out_zeros(part.table, root, columns);
-    if (f.repeated) take_out_cells(repeats, root, columns);
+  std::map<std::pair<Factor, std::string>, MatrixXd> single;  // with its line
+  for (const FactorColumns& f : factors.all()) {
+    MatrixXd columns = white(f.columns);
+    white.take_out_zeros(columns);
+    if (f.repeated) cells.take_out(columns);
     const VectorXd before = columns.colwise().norm().transpose();
     if (model.cols() > 0) columns -= model * (model.transpose() * columns);
-    if (Factors::is_pair(f))
-      for (const std::string& name :
-           {f.name.substr(0, f.name.find(" x ")),
-            f.name.substr(f.name.find(" x ") + 3) + (f.line.empty() ? "" : ":" + f.line)})
-        if (single[name].cols() > 0) columns -= single[name] * (single[name].transpose() * columns);
+    if (f.of.second)
+      for (const auto& of : {std::pair{f.of.first, std::string()}, std::pair{*f.of.second, f.line}})
+        if (const MatrixXd& one = single[of]; one.cols() > 0)
+          columns -= one * (one.transpose() * columns);
     // A column that the model says already leaves rounding, not a direction.
     for (Index k = 0; k < columns.cols(); ++k)
       if (!(columns.col(k).norm() > 1e-3 * before(k))) columns.col(k).setZero();
     MatrixXd basis = orthonormal(std::move(columns));
-    if (!Factors::is_pair(f)) single[f.name + (f.line.empty() ? "" : ":" + f.line)] = basis;
+    if (!f.of.second) single[{f.of.first, f.line}] = basis;
     out.push_back(std::move(basis));
   }
   return out;
 }
 
+/// Whitened columns of a factor whose levels can be told apart; of another none.
+MatrixXd levels_of(const FactorColumns& f, const Whitening& white) {
+  return f.levels.size() < 3 ? MatrixXd(f.columns.rows(), 0) : white(f.columns);
+}
+
 /// The level of a factor of dummies that holds most of its sum of squares, if one does; `s2` known
 /// from `dof`.
-void find_level(const Factor& f, const VectorXd& root, const VectorXd& residual, double s2,
-                double dof, Place& place) {
-  if (f.levels.size() < 3) return;
+void find_level(const FactorColumns& f, const MatrixXd& columns, const VectorXd& residual,
+                double s2, double dof, Place& place) {
+  if (columns.cols() == 0) return;
   double most = 0.0, total = 0.0, t_most = 0.0;
-  for (Index k = 0; k < f.columns.cols(); ++k) {
-    double norm2 = 0.0, sum = 0.0;
-    for (Index i = 0; i < root.size(); ++i) {
-      const double x = root(i) * f.columns(i, k);
-      norm2 += x * x;
-      sum += x * residual(i);
-    }
+  for (Index k = 0; k < columns.cols(); ++k) {
+    const double norm2 = columns.col(k).squaredNorm(), sum = columns.col(k).dot(residual);
     if (!(norm2 > 0.0)) continue;
     total += sum * sum / norm2;
     if (sum * sum / norm2 <= most) continue;
@@ -315,16 +371,18 @@ void find_level(const Factor& f, const VectorXd& root, const VectorXd& residual,
 struct PlaceTests::Tests {
   Factors factors;
   std::vector<MatrixXd> bases;
-  VectorXd root;
+  std::vector<MatrixXd> levels;
   double dof;
 };
 
-PlaceTests::PlaceTests(const Part& part, const Repeats& repeats, const VectorXd& root_weight,
+PlaceTests::PlaceTests(const Part& part, const Repeats& repeats, const Whitening& white,
                        const MatrixXd& basis, double dof) {
   Factors factors(part, repeats);
-  auto bases = bases_of(factors, part, repeats, root_weight, basis);
-  tests_ =
-      std::make_shared<const Tests>(Tests{std::move(factors), std::move(bases), root_weight, dof});
+  auto bases = bases_of(factors, repeats, white, basis);
+  std::vector<MatrixXd> levels;
+  for (const FactorColumns& f : factors.all()) levels.push_back(levels_of(f, white));
+  tests_ = std::make_shared<const Tests>(
+      Tests{std::move(factors), std::move(bases), std::move(levels), dof});
 }
 
 std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
@@ -346,11 +404,11 @@ std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
     Place place;
     place.rms = std::sqrt(excess / static_cast<double>(residual.size()));
     if (!(place.rms > least)) continue;
-    place.where = tests_->factors.all()[f].name;
+    place.where = tests_->factors.all()[f].of;
     place.line = tests_->factors.all()[f].line;
     place.p = math::f_upper(math::test_ratio(here / k, s2), k, dof);
     place.share = squares > 0.0 ? excess / squares : 0.0;
-    find_level(tests_->factors.all()[f], tests_->root, residual, s2,
+    find_level(tests_->factors.all()[f], tests_->levels[f], residual, s2,
                floor ? floor->dof : tests_->dof, place);
     places.push_back(std::move(place));
   }
@@ -362,12 +420,13 @@ std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
 
 std::vector<Place> seats_of(const Residuals& left) {
   const Factors factors(left.part, left.repeats);
+  const Cells cells(left.repeats, left.white);
   const double n = static_cast<double>(left.residual.size());
   const double squares = left.residual.squaredNorm();
   std::vector<MatrixXd> bases;
-  for (const Factor& f : factors.all()) {
-    MatrixXd columns = left.root_weight.asDiagonal() * factors.whole(f);
-    take_out_zeros(left.part.table, left.root_weight, columns);
+  for (const FactorColumns& f : factors.all()) {
+    MatrixXd columns = left.white(factors.whole(f));
+    left.white.take_out_zeros(columns);
     if (left.basis.cols() > 0) columns -= left.basis * (left.basis.transpose() * columns);
     bases.push_back(orthonormal(std::move(columns)));
   }
@@ -382,13 +441,13 @@ std::vector<Place> seats_of(const Residuals& left) {
       const double here = (bases[f].transpose() * rest).squaredNorm();
       const double value = -n * std::log1p(-std::min(here / rest.squaredNorm(), 1.0 - 1e-12)) -
                            k * std::log(n) - 10.0;  // 10: one place in a hundred by chance
-      if (value > gain && (!factors.all()[f].repeated ||
-                           tells_repeats_apart(left.repeats, left.root_weight, bases[f], rest)))
+      if (value > gain &&
+          (!factors.all()[f].repeated || tells_repeats_apart(cells, bases[f], rest)))
         best = f, gain = value, fall = here;
     }
     if (best == bases.size()) break;
     Place seat;
-    seat.where = factors.all()[best].name;
+    seat.where = factors.all()[best].of;
     seat.line = factors.all()[best].line;
     seat.share = fall / squares;
     seat.rms = std::sqrt(fall / n);
@@ -396,8 +455,8 @@ std::vector<Place> seats_of(const Residuals& left) {
     const double dof = left.dof - k;
     seat.p = math::f_upper(math::test_ratio(fall / k, (rest.squaredNorm() - fall) / dof), k, dof) *
              static_cast<double>(bases.size());
-    find_level(factors.all()[best], left.root_weight, rest, (rest.squaredNorm() - fall) / dof,
-               left.floor ? left.floor->dof : left.dof, seat);
+    find_level(factors.all()[best], levels_of(factors.all()[best], left.white), rest,
+               (rest.squaredNorm() - fall) / dof, left.floor ? left.floor->dof : left.dof, seat);
     seats.push_back(std::move(seat));
     const MatrixXd chosen = bases[best];
     rest -= chosen * (chosen.transpose() * rest);
@@ -410,14 +469,17 @@ std::vector<Place> seats_of(const Residuals& left) {
   return seats;
 }
 
-std::vector<std::string> factors_of(const Part& part, const Repeats& repeats,
-                                    const VectorXd& root_weight, const VectorXd& signal) {
+FactorsOf::FactorsOf(const Part& part, const Repeats& repeats, const Whitening& white) {
   const Factors factors(part, repeats);
-  const auto bases = bases_of(factors, part, repeats, root_weight, MatrixXd(signal.size(), 0));
-  std::vector<std::string> out;
-  for (std::size_t f = 0; f < bases.size(); ++f)
-    if ((bases[f].transpose() * signal).squaredNorm() > 0.05 * signal.squaredNorm())
-      out.push_back(factors.all()[f].name);
+  bases_ = bases_of(factors, repeats, white, MatrixXd(white.root().size(), 0));
+  for (const FactorColumns& f : factors.all()) of_.push_back(f.of);
+}
+
+std::vector<Where> FactorsOf::operator()(const VectorXd& signal) const {
+  std::vector<Where> out;
+  for (std::size_t f = 0; f < bases_.size(); ++f)
+    if ((bases_[f].transpose() * signal).squaredNorm() > 0.05 * signal.squaredNorm())
+      out.push_back(of_[f]);
   return out;
 }
 

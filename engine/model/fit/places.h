@@ -6,6 +6,7 @@
 
 #include "data/design.h"
 #include "data/repeats.h"
+#include "data/whitening.h"
 #include "nonio/model/explain.h"
 
 namespace nonio::model {
@@ -13,8 +14,8 @@ namespace nonio::model {
 struct Residuals {
   const Part& part;
   const Repeats& repeats;
-  const VectorXd& root_weight;
-  const VectorXd& residual;  ///< times root weights
+  const Whitening& white;
+  const VectorXd& residual;  ///< whitened
   const MatrixXd& basis;     ///< orthonormal columns of the model, without zeros of lines
   double dof;                ///< of the residual
   const std::optional<NoiseFloor>& floor;
@@ -24,7 +25,7 @@ struct Residuals {
 class PlaceTests {
  public:
   /// `basis` of the model as in Leftover.
-  PlaceTests(const Part&, const Repeats&, const VectorXd& root_weight, const MatrixXd& basis,
+  PlaceTests(const Part&, const Repeats&, const Whitening& white, const MatrixXd& basis,
              double dof);
   /// With the share of what is left, largest first; only those whose rms is above `least`.
   std::vector<Place> operator()(const VectorXd& residual, const std::optional<NoiseFloor>& floor,
@@ -40,10 +41,18 @@ class PlaceTests {
 /// for their columns. For structure that no effect explains.
 std::vector<Place> seats_of(const Residuals&);
 
-/// The factors that a term's part varies with ("direction", "position", "time", ...), by the share
+/// What a term's part varies with (direction, position, direction x time, ...), by the share
 /// of its sum of squares: those whose own share is at least a twentieth, or whose product with
 /// another is.
-std::vector<std::string> factors_of(const Part& part, const Repeats& repeats,
-                                    const VectorXd& root_weight, const VectorXd& signal);
+class FactorsOf {
+ public:
+  FactorsOf(const Part& part, const Repeats& repeats, const Whitening& white);
+  /// Of a whitened part.
+  std::vector<Where> operator()(const VectorXd& signal) const;
+
+ private:
+  std::vector<Where> of_;
+  std::vector<MatrixXd> bases_;
+};
 
 }  // namespace nonio::model

@@ -68,8 +68,8 @@ bool Workbench::follows_targets(const Block& block, Index of_position) const {
 
 Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
                      const std::vector<double>& weight, const std::vector<std::uint32_t>& target,
-                     std::size_t stated, Made* made)
-    : target_(target), stated_(stated), several_axes_(o.axes.size() > 1) {
+                     std::size_t stated, Made* made, const Noise& noise)
+    : white_(o, weight, noise), target_(target), stated_(stated), several_axes_(o.axes.size() > 1) {
   most_of_position_ = most_stated_ = most_of_curve_ = std::numeric_limits<Index>::max();
   if (!target_.empty()) {
     const std::uint32_t targets = *std::max_element(target_.begin(), target_.end()) + 1;
@@ -78,12 +78,10 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
     most_of_curve_ = static_cast<Index>(targets) / 2 - 1;
     few_ = o.size() <= 40 && static_cast<double>(o.size()) < 2.5 * static_cast<double>(targets);
   }
-  root_ = root_weights(o, weight);
-  used_ = static_cast<double>((root_.array() > 0.0).count());
+  used_ = static_cast<double>((root_weight().array() > 0.0).count());
   zeros_ = static_cast<Index>(lines_of(o));
-  MatrixXd y = root_.cwiseProduct(
-      Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.size())));
-  take_out_zeros(o, root_, y);
+  MatrixXd y = white_(Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.size())));
+  white_.take_out_zeros(y);
   y_ = y.col(0);
   Made own;
   std::vector<MatrixXd> parts;
@@ -117,9 +115,9 @@ MatrixXd Workbench::columns_for(const Observations& o, Instance& instance,
     instance.error = columns.error().message;
     return {};
   }
-  MatrixXd part = root_.asDiagonal() * *columns;
+  MatrixXd part = white_(*columns);
   const VectorXd before = part.colwise().norm().transpose();
-  take_out_zeros(o, root_, part);
+  white_.take_out_zeros(part);
   const VectorXd after = part.colwise().norm().transpose();
   if (part.cols() == 0 || !(after.array() > 1e-9 * before.array()).all()) return {};
   of_position = varies_with_target_only(*columns, target_);
@@ -172,9 +170,9 @@ double Workbench::price(const Block& block, Index columns) const {
 }
 
 double Workbench::criterion(double squares, double price, Index parameters) const {
-  // Of few readings a large share is fitted by whatever comes (as in the corrected criteria of
-  // Hurvich and Tsai 1989).
-  const double free = used_ - static_cast<double>(zeros_ + parameters) - 2.0;
+  // Of few readings a large share is fitted by whatever comes (Hurvich and Tsai 1989, who take two
+  // more off: measured, effects of 5 times the noise are lost then in ten readings).
+  const double free = used_ - static_cast<double>(zeros_ + parameters);
   if (few_) price *= used_ / std::max(free, 0.5);
   return used_ * std::log(std::max(squares, 1e-300) / used_) + price;
 }

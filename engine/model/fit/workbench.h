@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "data/design.h"
+#include "data/whitening.h"
 
 namespace nonio::model {
 
@@ -51,13 +52,14 @@ class Workbench {
   /// are there is known, and their curves may follow the targets more closely.
   Workbench(const Observations& o, const std::vector<Term>& terms,
             const std::vector<double>& weight, const std::vector<std::uint32_t>& target = {},
-            std::size_t stated = 0, Made* made = nullptr);
+            std::size_t stated = 0, Made* made = nullptr, const Noise& noise = {});
 
   const std::vector<Instance>& instances() const { return instances_; }
   const std::vector<Block>& blocks() const { return blocks_; }
   const MatrixXd& columns() const { return x_; }
   const VectorXd& y() const { return y_; }
-  const VectorXd& root_weight() const { return root_; }
+  const VectorXd& root_weight() const { return white_.root(); }
+  const Whitening& white() const { return white_; }
   double readings() const { return used_; }
   Index zeros() const { return zeros_; }
 
@@ -133,7 +135,8 @@ class Workbench {
   std::vector<Block> blocks_;
   MatrixXd x_;
   mutable std::vector<MatrixXd> products_;  // of all columns with each block's, where asked for
-  VectorXd y_, root_, xy_;
+  Whitening white_;
+  VectorXd y_, xy_;
   double yy_ = 0.0, used_ = 0.0;
   std::vector<std::uint32_t> target_;
   std::size_t stated_ = 0;

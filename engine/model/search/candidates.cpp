@@ -193,7 +193,7 @@ class CandidateOf {
         terms[t].shape = f_.bench->blocks()[with.blocks[t]].shape;
     terms.push_back(c.term);
     const auto fitted =
-        fit_near(f_.part.table, terms, std::vector<char>(terms.size(), 0), f_.weight);
+        fit_near(f_.part.table, terms, std::vector<char>(terms.size(), 0), f_.weight, f_.noise);
     if (!fitted) return;
     c.rms = fitted->rms;
     c.cv_rms = rms_of(cross_validated(f_.part.table, terms, f_.weight), f_.weight);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "data/noise.h"
 #include "fit/compare.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/statistics.h"
@@ -33,9 +34,13 @@ class Finder {
       if (auto searched = search(); !searched) return fail(searched.error());
       if (!suspect_again()) break;
     }
-    f_.chance = measure_chance(*f_.bench, f_.best,
-                               shuffled(*f_.bench, f_.best, f_.residual(f_.best), f_.part.table,
-                                        f_.repeats.pass, f_.seed));
+    if (walks_rather()) {
+      alone_ = true;
+      if (auto searched = search(); !searched) return fail(searched.error());
+    }
+    f_.chance = measure_chance(
+        *f_.bench, f_.best,
+        shuffled(*f_.bench, f_.best, f_.residual(f_.best), f_.repeats.pass, f_.seed));
     prune();
     if (auto fitted = fit_both(); !fitted) return fail(fitted.error());
     return std::move(f_);
@@ -44,7 +49,10 @@ class Finder {
  private:
   Expected<void> search() {
     f_.weight = weights_without(f_.part.table.size(), f_.suspects);
-    f_.bench.emplace(f_.part.table, f_.terms, f_.weight, f_.repeats.target, f_.in_model, &made_);
+    f_.noise = noise_of(f_.part, f_.repeats, f_.weight);
+    if (alone_) f_.noise.in_repeats = f_.noise.neighbours = 0.0;
+    f_.bench.emplace(f_.part.table, f_.terms, f_.weight, f_.repeats.target, f_.in_model, &made_,
+                     f_.noise);
     auto start = best_start();
     if (!start) return fail(start.error());
     f_.start = std::move(*start);
@@ -60,6 +68,24 @@ class Finder {
       if (!(f_.best.criterion < before - worth_another_round)) break;
     }
     return {};
+  }
+
+  /// Within a pass a zero that walks looks like neighbours that are alike. Whether it is the better
+  /// explanation, beside the model, than those with all that was found: then readings are taken for
+  /// independent, and the walk stays to be seen.
+  bool walks_rather() {
+    if (!(f_.noise.in_repeats > 0.0)) return false;
+    Noise alone = f_.noise;
+    alone.in_repeats = alone.neighbours = 0.0;
+    const Observations& o = f_.part.table;
+    const auto model = f_.columns_of(terms_of_state(f_.start));
+    const auto all = f_.columns_of(terms_of_state(f_.best));
+    if (!model || !all) return false;
+    const double alike = criterion_of_neighbours(o, f_.weight, alone, *all) + f_.best.price +
+                         std::log(f_.bench->readings());
+    const double walk =
+        beside_walk(o, f_.weight, alone, *model).least() + f_.start.price + f_.price_of_zero();
+    return walk < alike;
   }
 
   /// Each effect of the best explanation alone beside the model: what a coarse grid leaves of a
@@ -163,7 +189,7 @@ class Finder {
   }
 
   bool add_fitted(const State& state, const std::vector<Term>& terms) {
-    const auto fitted = fit_near(f_.part.table, terms, flags(state, true), f_.weight);
+    const auto fitted = fit_near(f_.part.table, terms, flags(state, true), f_.weight, f_.noise);
     if (!fitted) return false;
     bool any = false;
     for (std::size_t t = 0; t < terms.size(); ++t) {
@@ -236,7 +262,8 @@ class Finder {
     const std::size_t n = f_.part.table.size();
     const auto fitted = fit_near(f_.part.table, terms_of_state(f_.best), flags(false), f_.weight);
     if (!fitted) return false;
-    const std::vector<double>& e = fitted->residual;
+    std::vector<double> e = fitted->residual;
+    for (std::size_t i = 0; i < f_.noise.rough.size(); ++i) e[i] /= f_.noise.rough[i];
     const double s = math::robust_deviation(e);
     if (!(s > 0.0)) return false;
     double least = 3.0;
@@ -299,17 +326,26 @@ class Finder {
   }
 
   Expected<void> fit_both() {
-    auto of_model =
-        fit_near(f_.part.table, terms_of_state(f_.start), flags(f_.start, true), f_.weight);
+    auto of_model = fit_near(f_.part.table, terms_of_state(f_.start), flags(f_.start, true),
+                             f_.weight, f_.noise);
+    if (of_model)
+      of_model = with_its_zero(f_.part.table, std::move(*of_model), flags(f_.start, true));
     if (!of_model) return fail(of_model.error());
     f_.of_model = comparison_of(f_.part, f_.repeats, std::move(*of_model), f_.suspects);
-    auto of_best = fit_near(f_.part.table, terms_of_state(f_.best), flags(true), f_.weight);
+    if (f_.best.blocks == f_.start.blocks) {  // nothing was found
+      f_.of_best = f_.of_model;
+      return {};
+    }
+    auto of_best =
+        fit_near(f_.part.table, terms_of_state(f_.best), flags(true), f_.weight, f_.noise);
+    if (of_best) of_best = with_its_zero(f_.part.table, std::move(*of_best), flags(true));
     if (!of_best) return fail(of_best.error());
     f_.of_best = comparison_of(f_.part, f_.repeats, std::move(*of_best), f_.suspects);
     return {};
   }
 
   Finding f_;
+  bool alone_ = false;  ///< readings are taken for independent
   const std::vector<Term>& model_;
   Workbench::Made made_;
 };
@@ -327,6 +363,26 @@ double Finding::dof(const State& state) const {
 }
 
 double Finding::left() const { return std::sqrt(best.squares / std::max(dof(best), 1.0)); }
+
+Unsteady Finding::beside_walk(const std::vector<Term>& some) const {
+  const auto columns = columns_of(some);
+  return columns ? model::beside_walk(part.table, weight, noise, *columns) : Unsteady{};
+}
+
+Expected<MatrixXd> Finding::columns_of(const std::vector<Term>& some) const {
+  const auto blocks = blocks_of(part.table, some, bench->root_weight());
+  if (!blocks) return fail(blocks.error());
+  MatrixXd out(static_cast<Index>(part.table.size()), 0);
+  for (const MatrixXd& block : *blocks) {
+    out.conservativeResize(Eigen::NoChange, out.cols() + block.cols());
+    out.rightCols(block.cols()) = block;
+  }
+  return out;
+}
+
+double Finding::price_of_zero() const {
+  return std::log(bench->readings()) + 2.0 * std::log(static_cast<double>(terms.size()));
+}
 
 VectorXd Finding::residual(const State& state) const {
   const MatrixXd basis = bench->basis(state);

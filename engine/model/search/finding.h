@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "data/noise.h"
 #include "data/repeats.h"
 #include "fit/workbench.h"
 #include "nonio/model/explain.h"
@@ -27,6 +28,7 @@ struct Finding {
   std::vector<Term> descriptions{};  ///< of the catalogue, that the model does not have
   std::vector<Suspect> suspects{};
   std::vector<double> weight{};  ///< of each reading: 0 for suspects
+  Noise noise{};                 ///< as the repeats show it
   std::optional<Workbench> bench{};
   /// Few readings without repeats: effects that with another reading suspected, or none, are nearly
   /// as good an explanation.
@@ -39,7 +41,13 @@ struct Finding {
   double dof(const Workbench::State& state) const;
   /// Standard deviation that the best explanation leaves.
   double left() const;
-  /// What a state leaves, with root weights.
+  /// Of these terms, one beside the other.
+  Expected<MatrixXd> columns_of(const std::vector<Term>& some) const;
+  /// These terms beside a zero that is not steady.
+  Unsteady beside_walk(const std::vector<Term>& some) const;
+  /// What a zero that is not steady costs: one parameter, one name.
+  double price_of_zero() const;
+  /// What a state leaves, whitened.
   VectorXd residual(const Workbench::State& state) const;
 };
 

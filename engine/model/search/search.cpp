@@ -111,8 +111,7 @@ double Chance::corrected(double p) const {
 }
 
 SignFlips shuffled(const Workbench& bench, const State& complete, const VectorXd& residual,
-                   const Observations& o, const std::vector<std::uint32_t>& pass,
-                   std::uint64_t seed) {
+                   const std::vector<std::uint32_t>& pass, std::uint64_t seed) {
   // docs/constants.md, M15.
   constexpr std::size_t stretch = 5;  // readings whose sign is flipped together
   // docs/constants.md, M14.
@@ -134,7 +133,7 @@ SignFlips shuffled(const Workbench& bench, const State& complete, const VectorXd
   for (Index s = 0; s < shuffles; ++s)
     for (Index i = 0; i < residual.size(); ++i)
       out.noise(i, s) = sign(block[static_cast<std::size_t>(i)], s) * residual(i);
-  take_out_zeros(o, bench.root_weight(), out.noise);
+  bench.white().take_out_zeros(out.noise);
   const MatrixXd basis = bench.basis(complete);
   const MatrixXd said = basis.transpose() * out.noise;
   out.noise.noalias() -= basis * said;

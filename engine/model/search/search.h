@@ -30,8 +30,8 @@ struct SignFlips {
   VectorXd squares;      ///< of each shuffle
 };
 SignFlips shuffled(const Workbench& bench, const Workbench::State& complete,
-                   const VectorXd& residual, const Observations& o,
-                   const std::vector<std::uint32_t>& pass, std::uint64_t seed);
+                   const VectorXd& residual, const std::vector<std::uint32_t>& pass,
+                   std::uint64_t seed);
 
 Chance measure_chance(const Workbench& bench, const Workbench::State& complete,
                       const SignFlips& shuffles);

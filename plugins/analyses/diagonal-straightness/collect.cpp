@@ -218,7 +218,7 @@ class Gatherer {
       if (m.kind != kind || m.axis.empty() || m.axis[0] != axis[0]) continue;
       if (!lateral.empty() && (m.lateral.empty() || m.lateral[0] != lateral[0])) continue;
       if (observations(i).size() == 0 || observations(i).axes.front().rotary) continue;
-      const std::string of = ending(m.id);
+      const std::string of = state_of(m);
       const bool another = std::any_of(sets_.begin(), sets_.end(), [&](const Set& s) {
         return !s.name.empty() && s.name == of && s.name != set_.name;
       });

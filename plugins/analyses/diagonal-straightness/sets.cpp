@@ -5,17 +5,12 @@
 
 namespace nonio::diagonals {
 
-std::string ending(const std::string& id) {
-  const std::size_t blank = id.find(' ');
-  return blank == id.npos ? "" : id.substr(blank + 1);
-}
-
 std::vector<Set> sets_of(const Campaign& campaign) {
   std::vector<Set> sets;
   for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
     const Measurement& m = campaign.measurements[i];
     if (m.kind != "diagonal") continue;
-    const std::string name = ending(m.id);
+    const std::string name = state_of(m);
     auto at = std::find_if(sets.begin(), sets.end(), [&](const Set& s) { return s.name == name; });
     if (at == sets.end()) at = sets.insert(sets.end(), Set{name, {}});
     at->lines.push_back(i);

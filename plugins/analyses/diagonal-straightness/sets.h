@@ -10,14 +10,12 @@
 
 namespace nonio::diagonals {
 
-/// Diagonals measured together: `D1 00` and `D2 00` are the set "00", `D1` and `D2` the set "".
+/// Diagonals measured in one state of the machine.
 struct Set {
-  std::string name;
+  std::string name;                ///< the state: "final", or empty
   std::vector<std::size_t> lines;  ///< measurements of kind diagonal, in the manifest's order
 };
 
-/// What an id has behind its first blank: "final" of "D1 final".
-std::string ending(const std::string& id);
 std::vector<Set> sets_of(const Campaign&);
 /// The set whose first line this measurement is; none for the others.
 const Set* set_led_by(const std::vector<Set>&, const Campaign&, const Measurement&);

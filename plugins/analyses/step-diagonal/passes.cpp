@@ -250,16 +250,11 @@ math::AxisSeries series_of(const math::AxisTest& test, const std::vector<double>
   return s;
 }
 
-/// What follows the first space of an id: "final" of "SD final".
-std::string_view occasion(std::string_view id) {
-  return id.substr(std::min(id.find(' '), id.size()));
-}
-
-/// The lengths that were measured on the same occasion, or those that the user names.
-bool wanted(const AnalysisInput& in, const std::string& id) {
+/// The lengths that were measured in the same state, or those that the user names.
+bool wanted(const AnalysisInput& in, const Measurement& m) {
   const auto ids = in.options.texts("lengths");
-  if (!ids.empty()) return std::find(ids.begin(), ids.end(), id) != ids.end();
-  return occasion(id) == occasion(in.measurement.id);
+  if (!ids.empty()) return std::find(ids.begin(), ids.end(), m.id) != ids.end();
+  return state_of(m) == state_of(in.measurement);
 }
 
 }  // namespace
@@ -271,8 +266,7 @@ Lengths lengths_of(const AnalysisInput& in, const Passes& passes) {
     std::vector<std::size_t> candidates;
     for (std::size_t i = 0; i < in.all->size(); ++i) {
       const Measurement& m = in.campaign.measurements[i];
-      if (m.kind == "axis" && m.axis == passes.axes[k] && (*in.all)[i].size() > 0 &&
-          wanted(in, m.id))
+      if (m.kind == "axis" && m.axis == passes.axes[k] && (*in.all)[i].size() > 0 && wanted(in, m))
         candidates.push_back(i);
     }
     if (candidates.size() > 1)

@@ -202,14 +202,14 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return parser.tables;
 }
 
-Expected<OutputResult> write(const OutputInput& in) {
+Expected<OutputResult> write(const ControllerInput& in) {
   OutputResult result;
   const controllers::Writer writer{.name = "aerotech",
                                    .table = *controllers::chosen(declared(), in.options),
                                    .keys = {"number:", "step", "backlash"},
                                    .files = files,
                                    .parse = parse,
-                                   .wraps = false};
+                                   .turn_end = controllers::TurnEnd::closed};
   const auto jobs = controllers::write_axes(in, writer, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   const Campaign campaign = controllers::with_axes_of(in, *jobs);
@@ -225,9 +225,10 @@ Expected<OutputResult> write(const OutputInput& in) {
     for (const CrossCurve& c : set.curves)
       if (c.reference != 0.0)
         return controllers::wrong_axes("axis " + c.input +
-                                       ": a plane counts from home, where its entries are 0: "
-                                       "reference_mm must be 0, found " +
-                                       controllers::decimal(c.reference * 1e3, 4) + " mm");
+                                           ": a plane counts from home, where its entries are 0: "
+                                           "reference_mm must be 0, found " +
+                                           controllers::decimal(c.reference * 1e3, 4) + " mm",
+                                       c.input + ".reference_mm");
     if (controllers::oversized(set, in, result)) continue;
     const std::vector<Artifact> file{
         {"aerotech-plane-" + controllers::file_part(set.measurement) + ".cal", plane(set, *axes)}};
@@ -244,13 +245,13 @@ Expected<OutputResult> write(const OutputInput& in) {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  Output output = controllers::controller(
+  Controller controller = controllers::controller(
       {"aerotech", "1.0.0",
        "Axis calibration files (.cal, one and two dimensions) for Aerotech A3200 and Automation1.",
        controllers::table_options(
            declared(),
            "number (of the axis, from 1), step_mm, backlash_mm and the same with _deg")},
       declared(), nonio::write, parse);
-  output.merge = aerotech::merge;
-  registry.add(std::move(output));
+  controller.merge = aerotech::merge;
+  registry.add(std::move(controller));
 }

@@ -27,28 +27,6 @@ std::set<std::string> full_keys(const std::vector<std::string_view>& keys) {
   return out;
 }
 
-/// "X reference_mm=0 step_mm=50".
-Expected<void> take_entry(const std::string& entry, const std::set<std::string>& keys,
-                          std::map<std::string, AxisSettings>& out) {
-  const auto parts = words_of(entry);
-  if (parts.empty()) return wrong_axes("option axes: an empty entry");
-  AxisSettings& settings = out[std::string(parts.front())];
-  for (std::size_t i = 1; i < parts.size(); ++i) {
-    const std::size_t equals = parts[i].find('=');
-    const std::string key(parts[i].substr(0, equals));
-    const auto value =
-        equals == std::string_view::npos ? std::nullopt : real(parts[i].substr(equals + 1));
-    if (!keys.empty() && keys.count(key) == 0)
-      return wrong_axes("option axes, \"" + entry + "\": no setting " + key + "; there are " +
-                        joined({keys.begin(), keys.end()}, ", "));
-    if (!value)
-      return wrong_axes("option axes, \"" + entry + "\": expected " + key + "=NUMBER, found " +
-                        std::string(parts[i]));
-    settings[key] = *value;
-  }
-  return {};
-}
-
 }  // namespace
 
 std::optional<double> KnownAxis::setting(std::string_view key) const {
@@ -61,19 +39,23 @@ std::optional<double> KnownAxis::position_setting(std::string_view key) const {
   return value ? std::optional(*value / per_si()) : std::nullopt;
 }
 
-tl::unexpected<Error> wrong_axes(std::string message) {
+tl::unexpected<Error> wrong_axes(std::string message, const std::string& key) {
   Error error{std::move(message)};
-  error.key = "axes";
+  error.key = key.empty() ? "axes" : "axes." + key;
   return fail(std::move(error));
 }
 
-Expected<std::map<std::string, AxisSettings>> settings_of_axes(
-    const Settings& options, const std::vector<std::string_view>& keys) {
-  std::map<std::string, AxisSettings> out;
-  for (const std::string& entry : options.texts("axes"))
-    if (auto taken = take_entry(entry, full_keys(keys), out); !taken)
-      return tl::unexpected<Error>(taken.error());
-  return out;
+Expected<NumberTables> settings_of_axes(const Settings& options,
+                                        const std::vector<std::string_view>& keys) {
+  NumberTables tables = options.tables("axes");
+  const std::set<std::string> known = full_keys(keys);
+  for (const auto& [axis, settings] : tables)
+    for (const auto& [key, value] : settings)
+      if (!known.empty() && !known.contains(key))
+        return wrong_axes("option axes, axis " + axis + ": no setting " + key + "; there are " +
+                              joined({known.begin(), known.end()}, ", "),
+                          axis + "." + key);
+  return tables;
 }
 
 Expected<std::vector<KnownAxis>> known_axes(const TableInput& in) {

@@ -15,8 +15,7 @@
 namespace nonio::controllers {
 namespace {
 
-Expected<void> check_names(const std::map<std::string, AxisSettings>& settings,
-                           const OutputInput& input) {
+Expected<void> check_names(const NumberTables& settings, const ControllerInput& input) {
   std::set<std::string> known;
   for (const Axis& a : input.campaign.machine.axes) known.insert(a.name);
   for (const Measurement& m : input.campaign.measurements)
@@ -25,7 +24,8 @@ Expected<void> check_names(const std::map<std::string, AxisSettings>& settings,
   for (const auto& [axis, of_axis] : settings)
     if (known.count(axis) == 0)
       return wrong_axes("option axes: no axis " + axis + "; there are " +
-                        joined({known.begin(), known.end()}, ", "));
+                            joined({known.begin(), known.end()}, ", "),
+                        axis);
   return {};
 }
 
@@ -35,13 +35,13 @@ struct Present {
   bool backlash = false;             ///< somebody says it
 };
 
-const Measurement* measurement_of(const OutputInput& input, const AxisJob& job) {
+const Measurement* measurement_of(const ControllerInput& input, const AxisJob& job) {
   for (const Measurement& m : input.campaign.measurements)
     if (m.id == job.measurement) return &m;
   return nullptr;
 }
 
-Present present_of(const OutputInput& input, const AxisJob& job) {
+Present present_of(const ControllerInput& input, const AxisJob& job) {
   const Axis* axis = input.campaign.machine.axis(job.axis);
   const Measurement* m = measurement_of(input, job);
   const bool off = m != nullptr && m->compensation == "off";
@@ -53,7 +53,7 @@ Present present_of(const OutputInput& input, const AxisJob& job) {
   return p;
 }
 
-std::vector<std::string> present_lines(const OutputInput& input, const AxisJob& job) {
+std::vector<std::string> present_lines(const ControllerInput& input, const AxisJob& job) {
   const Present p = present_of(input, job);
   std::vector<std::string> lines;
   if (!p.table)
@@ -76,7 +76,7 @@ std::vector<std::string> present_lines(const OutputInput& input, const AxisJob& 
 
 /// False with a finding where compensation was on, and nobody says which table: what is left of
 /// the error would be loaded in place of the table that took the rest away.
-bool knows_what_was_on(const OutputInput& input, const AxisJob& job, OutputResult& result) {
+bool knows_what_was_on(const ControllerInput& input, const AxisJob& job, OutputResult& result) {
   const Present p = present_of(input, job);
   const Measurement* m = measurement_of(input, job);
   if (m != nullptr && m->compensation == "on" && !p.table) {
@@ -97,7 +97,7 @@ bool knows_what_was_on(const OutputInput& input, const AxisJob& job, OutputResul
   return true;
 }
 
-std::vector<std::string> about(const OutputInput& input, const AxisJob& job) {
+std::vector<std::string> about(const ControllerInput& input, const AxisJob& job) {
   const Machine& m = input.campaign.machine;
   std::vector<std::string> lines;
   lines.push_back("machine: " + plain(m.maker) + " " + plain(m.model) + ", serial " +
@@ -140,7 +140,7 @@ std::vector<std::string> suspects_of(const math::AxisTest& test, const AxisJob& 
   return readings;
 }
 
-AxisJob job_of(const OutputInput& input, std::size_t index) {
+AxisJob job_of(const ControllerInput& input, std::size_t index) {
   const Measurement& m = input.campaign.measurements[index];
   const math::AxisTest test = math::AxisTest::arrange(input.observations[index]);
   AxisJob job;
@@ -181,8 +181,8 @@ void refuse_drift(const AxisJob& job, OutputResult& result) {
        {{"axis", job.axis}, {"drift", joined(job.drift, ", ")}},
        job.measurement,
        "Do not compensate yet: find the cause of the drift and measure the axis again. To have the "
-       "table all the same: axes = [\"" +
-           job.axis + " drifted=1\"] under the options of this output."});
+       "table all the same: drifted = 1 under axes." +
+           job.axis + " in the options of this control."});
 }
 
 // Two measurements of one axis (before, after): each has its own files, and the user chooses.
@@ -195,7 +195,8 @@ Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
     const std::string& owner = numbers.emplace(j.number, j.axis).first->second;
     if (j.number != 0 && owner != j.axis)
       return wrong_axes("axes " + owner + " and " + j.axis + " would both be axis number " +
-                        std::to_string(j.number) + ": set axes = [\"" + j.axis + " number=...\"]");
+                            std::to_string(j.number) + ": set number = ... under axes." + j.axis,
+                        j.axis + ".number");
     if (count[j.axis] > 1) {
       j.stem += "-" + file_part(j.measurement);
       if (told.insert(j.axis).second)
@@ -239,7 +240,7 @@ bool number_unsaid(const AxisJob& job, const std::vector<std::string_view>& keys
 
 /// What to write, and where.
 void refuse_number(const std::string& axis, const std::string& measurement,
-                   const OutputInput& input, OutputResult& result) {
+                   const ControllerInput& input, OutputResult& result) {
   const std::string& asset = input.campaign.machine.asset;
   const std::string file = "machines/" + (asset.empty() ? "<asset>" : asset) + ".toml";
   result.findings.push_back({"table.axis-number",
@@ -248,8 +249,8 @@ void refuse_number(const std::string& axis, const std::string& measurement,
                              {{"axis", axis}, {"file", file}},
                              measurement,
                              "Say its number in the control: number = ... under [axes." + axis +
-                                 "] of " + file + ", or axes = [\"" + axis +
-                                 " number=...\"] under the options of this output."});
+                                 "] of " + file + ", or under axes." + axis +
+                                 " in the options of this control."});
 }
 
 }  // namespace
@@ -260,7 +261,7 @@ bool has_tables(const Campaign& campaign) {
       [](const Measurement& m) { return m.kind == "axis" || m.kind == "step-diagonal"; });
 }
 
-bool lacks_number(const std::vector<std::string>& of, const OutputInput& input,
+bool lacks_number(const std::vector<std::string>& of, const ControllerInput& input,
                   const std::vector<KnownAxis>& axes, const std::string& measurement,
                   OutputResult& result) {
   std::set<std::string> unsaid;
@@ -296,7 +297,7 @@ std::optional<double> AxisJob::position_setting(std::string_view name) const {
   return value ? std::optional(*value / per_si()) : std::nullopt;
 }
 
-Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
+Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
                                          const std::vector<std::string_view>& keys,
                                          OutputResult& result) {
   auto settings = settings_of_axes(input.options, keys);
@@ -336,8 +337,9 @@ Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
     if (const auto n = job.setting("number");
         n && std::find(keys.begin(), keys.end(), "number:") != keys.end()) {
       if (!(*n >= 1.0 && *n <= 99.0 && *n == std::floor(*n)))
-        return wrong_axes("option axes, axis " + job.axis +
-                          ": number must be a whole number from 1 to 99");
+        return wrong_axes(
+            "option axes, axis " + job.axis + ": number must be a whole number from 1 to 99",
+            job.axis + ".number");
       job.number = static_cast<std::size_t>(*n);
     }
     if (!job.drift.empty() && !job.takes_drift()) {
@@ -358,8 +360,8 @@ Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
 }
 
 Option axes_option(std::string keys) {
-  return {"axes", std::vector<std::string>{}, "",
-          "Settings of one axis, such as \"X step_mm=50\"; there are " + std::move(keys) + "."};
+  return {"axes", NumberTables{}, "",
+          "A table for each axis, such as X.step_mm = 50; there are " + std::move(keys) + "."};
 }
 
 std::vector<Option> step_options() {
@@ -372,8 +374,9 @@ double wished_step(const AxisJob& job, const Settings& options) {
   return options.number(job.rotary ? "step_deg" : "step_mm") / job.per_si();
 }
 
-bool refused(const AxisJob& job, bool directions, OutputResult& result) {
-  if (job.reversal.kind != math::Reversal::Kind::not_constant || directions) return false;
+bool refused(const AxisJob& job, Columns columns, OutputResult& result) {
+  if (job.reversal.kind != math::Reversal::Kind::not_constant || columns == Columns::both)
+    return false;
   const auto [low, high] = std::minmax_element(job.curve.mean.begin(), job.curve.mean.end());
   if (low == job.curve.mean.end() || job.reversal.largest_left < *high - *low) return false;
   const Quantity q = deviation_of(job.rotary);
@@ -441,12 +444,12 @@ std::vector<std::string> warnings(const AxisJob& job, OutputResult& result) {
   return lines;
 }
 
-std::string reversal_words(const AxisJob& job, bool directions) {
+std::string reversal_words(const AxisJob& job, Columns columns) {
   if (job.from_diagonals)
     return "from the step diagonals of " + plain(job.measurement) + ": no backlash value";
   if (!job.curve.bidirectional()) return "measured from one direction only: no backlash value";
   const std::string mean = deviation_words(job, job.curve.mean_reversal());
-  if (directions)
+  if (columns == Columns::both)
     return "mean reversal B = " + mean +
            ": contained in the two directions of the table; backlash parameter = " +
            with_unit(job, job.present_backlash(), 6) + ", as while it was measured";
@@ -492,9 +495,11 @@ void doubt_backlash(const AxisJob& job, OutputResult& result) {
        {{"mean", job.reversal.mean, deviation_of(job.rotary)}},
        {{"axis", job.axis}, {"setting", job.rotary ? "backlash_deg" : "backlash_mm"}},
        job.measurement,
-       "The control very likely compensates backlash already. Say how much (axes = [\"" + job.axis +
-           (job.rotary ? " backlash_deg" : " backlash_mm") +
-           "=...\"]), so that the new value is the present one less the excess."});
+       "The control very likely compensates backlash already. Say how much (" +
+           std::string(job.rotary ? "backlash_deg" : "backlash_mm") + " = ... under axes." +
+           job.axis +
+           " in the options of this control), so that the new value is the present one less the "
+           "excess."});
 }
 
 void predict(const AxisJob& job, const math::Correction& whole, OutputResult& result) {

@@ -56,7 +56,7 @@ std::optional<CrossCurve> curve_of(const Evaluation& e, const Part& part,
   return curve;
 }
 
-void make_zero(CrossCurve& curve, const std::map<std::string, AxisSettings>& settings) {
+void make_zero(CrossCurve& curve, const NumberTables& settings) {
   curve.reference = std::clamp(0.0, curve.position.front(), curve.position.back());
   if (const auto axis = settings.find(curve.input); axis != settings.end())
     if (const auto said = axis->second.find("reference_mm"); said != axis->second.end()) {
@@ -74,8 +74,8 @@ TableSize size_of_curve(const CrossCurve& curve) {
 }
 
 /// Settings of option `axes`; one that is malformed is said where the axes themselves are read.
-std::map<std::string, AxisSettings> known_settings(const OutputInput& in) {
-  return settings_of_axes(in.options).value_or(std::map<std::string, AxisSettings>{});
+NumberTables known_settings(const ControllerInput& in) {
+  return settings_of_axes(in.options).value_or(NumberTables{});
 }
 
 /// Both diagonals as read, at the stops of the curves.
@@ -135,7 +135,7 @@ std::vector<ReadLine> body_diagonals(const Measurement& m, const Observations& o
   return lines;
 }
 
-std::optional<CrossJob> of_volume(const OutputInput& in, const Results::Analysed& a,
+std::optional<CrossJob> of_volume(const ControllerInput& in, const Results::Analysed& a,
                                   std::size_t index) {
   const Evaluation& e = a.evaluation;
   const Observations& o = in.observations[index];
@@ -168,7 +168,7 @@ std::string CrossJob::axes() const {
   return out;
 }
 
-std::vector<CrossJob> cross_jobs(const OutputInput& in) {
+std::vector<CrossJob> cross_jobs(const ControllerInput& in) {
   std::vector<CrossJob> jobs;
   const auto settings = known_settings(in);
   const auto& measurements = in.campaign.measurements;
@@ -186,7 +186,7 @@ std::vector<CrossJob> cross_jobs(const OutputInput& in) {
   return jobs;
 }
 
-bool oversized(const CrossJob& job, const OutputInput& in, OutputResult& result) {
+bool oversized(const CrossJob& job, const ControllerInput& in, OutputResult& result) {
   const auto settings = known_settings(in);
   bool beyond = false;
   for (const CrossCurve& curve : job.curves) {
@@ -298,7 +298,7 @@ void predict_lines(const CrossJob& job, const std::vector<LoadedTable>& tables,
 
 Expected<void> predict_cross(const CrossJob& job, const std::vector<Artifact>& files,
                              Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
-                             const std::vector<AxisJob>& pitch, const OutputInput& input,
+                             const std::vector<AxisJob>& pitch, const ControllerInput& input,
                              OutputResult& result) {
   const Campaign campaign = with_axes_of(input, pitch);
   auto tables = parse({files, campaign, input.options});

@@ -10,6 +10,11 @@
 namespace nonio::controllers {
 namespace {
 
+/// Of a whole turn the closed one, where the control goes on at its beginning.
+const math::ErrorCurve& compensated_curve(const AxisJob& job, const Writer& w) {
+  return w.turn_end == TurnEnd::repeats ? job.table_curve() : job.curve;
+}
+
 using Entry = ControlTable::Entry;
 
 int decimals_of(double step, double unit) {
@@ -26,7 +31,7 @@ bool anchored(const ControlTable& t) {
   return t.entry == Entry::increment || t.zero == ControlTable::Zero::first;
 }
 
-math::GridRule rule_of(const AxisJob& job, const OutputInput& input, const Writer& w,
+math::GridRule rule_of(const AxisJob& job, const ControllerInput& input, const Writer& w,
                        const ControlTable& t, double reference) {
   math::GridRule rule;
   rule.unit = t.position_step.of(job.rotary);
@@ -34,7 +39,7 @@ math::GridRule rule_of(const AxisJob& job, const OutputInput& input, const Write
   rule.step = w.fixed_step > 0.0 ? w.fixed_step : wished_step(job, input.options);
   rule.rotary = job.rotary;
   rule.axis = job.axis;
-  rule.turn = job.turn.has_value() && w.wraps;
+  rule.turn = job.turn.has_value() && w.turn_end == TurnEnd::repeats;
   if (!rule.turn) rule.first = job.position_setting("first");
   rule.power_of_two = w.power_of_two && !rule.turn;
   if (anchored(t)) {
@@ -56,7 +61,7 @@ void surround(math::Grid& grid, double reference) {
 
 std::vector<double> wanted(const AxisJob& job, const Writer& w) {
   if (w.wanted) return w.wanted(job);
-  if (w.wraps) return job.table_curve().position;
+  if (w.turn_end == TurnEnd::repeats) return job.table_curve().position;
   std::vector<double> rows = job.curve.position;
   if (job.turn && rows.back() < rows.front() + full_turn - 1e-9)
     rows.push_back(rows.front() + full_turn);
@@ -95,9 +100,9 @@ Expected<void> place_points(Sheet& s, const Writer& w) {
 
 /// Where the curve is known over a turn that does not repeat itself, its end is its beginning.
 double value_at(const AxisJob& job, const Writer& w, const std::vector<double>& values, double x) {
-  const auto& position = (w.wraps ? job.table_curve() : job.curve).position;
+  const auto& position = compensated_curve(job, w).position;
   const double open = position.front() + full_turn - position.back();
-  if (w.wraps || !job.turn || x <= position.back() || open < 1e-9)
+  if (w.turn_end == TurnEnd::repeats || !job.turn || x <= position.back() || open < 1e-9)
     return math::ErrorCurve::at(position, values, x);
   const double part = std::min(1.0, (x - position.back()) / open);
   return values.back() + part * (values.front() - values.back());
@@ -105,17 +110,17 @@ double value_at(const AxisJob& job, const Writer& w, const std::vector<double>& 
 
 /// What the error is where entries are to be 0: the zero of the instrument is no error of the axis.
 double zero_of(const Sheet& s, const Writer& w, const math::ErrorCurve& curve) {
-  const auto& values = !s.directions || w.zero_of == 0 ? curve.mean
-                       : w.zero_of > 0                 ? curve.plus
-                                                       : curve.minus;
+  const auto& values = !s.directions || w.zero_of == ZeroOf::mean ? curve.mean
+                       : w.zero_of == ZeroOf::plus                ? curve.plus
+                                                                  : curve.minus;
   return math::ErrorCurve::at(curve.position, values, s.reference);
 }
 
 void fill(Sheet& s, const Writer& w) {
-  const math::ErrorCurve& curve = w.wraps ? s.job.table_curve() : s.job.curve;
+  const math::ErrorCurve& curve = compensated_curve(s.job, w);
   const double zero = zero_of(s, w, curve);
   const double sign = s.table.sign == ControlTable::Sign::error ? 1.0 : -1.0;
-  const bool dead = s.directions && w.replaces_backlash;
+  const bool dead = s.directions && w.directions != Directions::by_option;
   const auto entries = [&](const std::vector<double>& values, int direction) {
     const double half = dead ? direction * s.job.present_backlash() / 2.0 : 0.0;
     std::vector<double> out;
@@ -195,18 +200,20 @@ Expected<void> set_reference(Sheet& s, OutputResult& result) {
     return {};
   }
   if (s.table.zero == ControlTable::Zero::first && told.value_or(0.0) != 0.0)
-    return wrong_axes("axis " + s.job.axis +
-                      ": this control counts its table from the zero of the axis, where the entry "
-                      "is 0: reference_" +
-                      std::string(s.job.unit()) + " must be 0, found " +
-                      with_unit(s.job, *told, 4));
+    return wrong_axes(
+        "axis " + s.job.axis +
+            ": this control counts its table from the zero of the axis, where the entry "
+            "is 0: reference_" +
+            std::string(s.job.unit()) + " must be 0, found " + with_unit(s.job, *told, 4),
+        s.job.axis + ".reference_" + std::string(s.job.unit()));
   s.reference = s.job.turn ? 0.0 : told.value_or(0.0);
   if (!told) result.notes.push_back(remark(s.job, "table.reference-at-zero"));
   return {};
 }
 
-Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table, const OutputInput& input,
-                         const Writer& w, bool directions, OutputResult& result) {
+Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table,
+                         const ControllerInput& input, const Writer& w, bool directions,
+                         OutputResult& result) {
   Sheet s{.job = job,
           .table = table,
           .input = input,
@@ -237,12 +244,12 @@ void look_at_reversal(const AxisJob& job, const ControlTable& t, OutputResult& r
 }
 
 /// True with its files, false where the table is refused.
-Expected<bool> write_axis(AxisJob& job, const OutputInput& input, const Writer& w,
+Expected<bool> write_axis(AxisJob& job, const ControllerInput& input, const Writer& w,
                           OutputResult& result) {
   const bool directions =
-      w.always_directions ||
+      w.directions == Directions::always_without_backlash ||
       (w.table.bidirectional && input.options.flag("directions") && job.curve.bidirectional());
-  if (refused(job, directions, result)) return false;
+  if (refused(job, directions ? Columns::both : Columns::mean, result)) return false;
   if (job.rotary && !w.table.rotary)
     return fail("axis " + job.axis + ": these tables are of linear axes only");
   const auto table = w.of_axis ? w.of_axis(job, w.table) : Expected<ControlTable>(w.table);
@@ -312,7 +319,7 @@ std::vector<std::string> Sheet::words() const {
   const bool stays = table.backlash.empty() && !directions && job.curve.bidirectional();
   lines.push_back(stays ? "mean reversal B = " + deviation_words(job, job.curve.mean_reversal()) +
                               ": it stays, the table is of the mean of both directions"
-                        : reversal_words(job, directions));
+                        : reversal_words(job, columns()));
   if (!table.backlash.empty() && job.curve.bidirectional())
     lines.push_back(table.backlash + " = " + with_unit(job, backlash(), 6));
   return lines;
@@ -360,7 +367,7 @@ Expected<ControlTable> chosen(ControlTable t, const Settings& options) {
   return t;
 }
 
-Campaign with_axes_of(const OutputInput& input, const std::vector<AxisJob>& jobs) {
+Campaign with_axes_of(const ControllerInput& input, const std::vector<AxisJob>& jobs) {
   Campaign campaign = input.campaign;
   for (const AxisJob& job : jobs) {
     auto& axes = campaign.machine.axes;
@@ -374,7 +381,7 @@ Campaign with_axes_of(const OutputInput& input, const std::vector<AxisJob>& jobs
   return campaign;
 }
 
-Expected<std::vector<AxisJob>> write_axes(const OutputInput& input, const Writer& w,
+Expected<std::vector<AxisJob>> write_axes(const ControllerInput& input, const Writer& w,
                                           OutputResult& result) {
   auto jobs = axis_jobs(input, w.keys, result);
   if (!jobs) return jobs;
@@ -384,7 +391,7 @@ Expected<std::vector<AxisJob>> write_axes(const OutputInput& input, const Writer
   return jobs;
 }
 
-Expected<OutputResult> write_tables(const OutputInput& input, const Writer& w) {
+Expected<OutputResult> write_tables(const ControllerInput& input, const Writer& w) {
   OutputResult result;
   if (auto jobs = write_axes(input, w, result); !jobs) return tl::unexpected<Error>(jobs.error());
   note_facts(w, result);
@@ -396,7 +403,7 @@ void note_facts(const Writer& w, OutputResult& result) {
   for (const ControlTable::Fact& f : w.table.facts)
     if (f.confidence == ControlTable::Confidence::inferred ||
         f.confidence == ControlTable::Confidence::unsure)
-      result.notes.push_back({.id = w.name + "." + f.id, .english = f.says});
+      result.notes.push_back({.id = w.name + "." + f.id, .english = f.description});
 }
 
 Expected<LoadedTable> loaded(const ControlTable& t, const RawTable& raw) {
@@ -432,18 +439,18 @@ Expected<LoadedTable> loaded(const ControlTable& t, const RawTable& raw) {
   return out;
 }
 
-Output controller(Info info, const ControlTable& table,
-                  Expected<OutputResult> (*write)(const OutputInput&),
-                  Expected<std::vector<LoadedTable>> (*parse)(const TableInput&), bool on_request) {
-  Output output;
-  output.info = std::move(info);
-  output.info.on_request = on_request;
-  output.stage = Output::Stage::table;
-  output.applies = has_tables;
-  output.write = write;
-  output.control = table;
-  output.parse = parse;
-  return output;
+Controller controller(Info info, const ControlTable& table,
+                      Expected<OutputResult> (*write)(const ControllerInput&),
+                      Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
+                      Offered offered) {
+  Controller out;
+  out.info = std::move(info);
+  out.info.opt_in = offered == Offered::by_name;
+  out.table = table;
+  out.applies = has_tables;
+  out.write = write;
+  out.parse = parse;
+  return out;
 }
 
 }  // namespace nonio::controllers

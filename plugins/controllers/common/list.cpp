@@ -6,7 +6,8 @@
 
 namespace nonio::controllers {
 
-std::vector<Artifact> list_file(const Sheet& s, std::string_view name, bool two) {
+std::vector<Artifact> list_file(const Sheet& s, std::string_view name, Columns columns) {
+  const bool two = columns == Columns::both;
   const std::string unit = s.position_unit() == 25.4e-3 ? "inch" : std::string(s.job.unit());
   std::string out = comments(s.words(), "# ") + "# point position_" + unit + " entry" +
                     (two ? " entry_minus" : "") + "\n";
@@ -73,7 +74,8 @@ tl::unexpected<Error> no_point(std::string_view line) {
 }
 
 Expected<std::vector<LoadedTable>> parse_list(const TableInput& in, const ControlTable& table,
-                                              std::string_view name, bool two) {
+                                              std::string_view name, Columns columns) {
+  const bool two = columns == Columns::both;
   auto tables = parse_files(in, table, name, [&](auto line, RawTable& raw) -> Expected<bool> {
     if (line.empty() || line.front() == '#') return false;
     std::vector<double> v;

@@ -5,7 +5,7 @@
 
 namespace nonio::controllers {
 
-std::vector<AxisJob> series_jobs(const OutputInput& in) {
+std::vector<AxisJob> series_jobs(const ControllerInput& in) {
   std::vector<AxisJob> jobs;
   const auto measured = [&](const Evaluation& e, const std::string& axis) {
     return std::any_of(in.campaign.measurements.begin(), in.campaign.measurements.end(),

@@ -9,6 +9,6 @@ namespace nonio::controllers {
 
 /// Positioning as step diagonals give it (series EXX, EYY, EZZ), of axes whose own runs are not
 /// among what the step diagonals were evaluated with: those make the better table.
-std::vector<AxisJob> series_jobs(const OutputInput&);
+std::vector<AxisJob> series_jobs(const ControllerInput&);
 
 }  // namespace nonio::controllers

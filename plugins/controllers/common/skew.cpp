@@ -16,7 +16,8 @@ struct Square {
 constexpr std::array<Square, 3> squares{
     {{"XY", "C0Y", -1.0}, {"XZ", "B0Z", 1.0}, {"YZ", "A0Z", -1.0}}};
 
-double travel_of(const OutputInput& in, const std::string& measurement, const std::string& axis) {
+double travel_of(const ControllerInput& in, const std::string& measurement,
+                 const std::string& axis) {
   for (const Measurement& m : in.campaign.measurements) {
     const auto from = m.from.find(axis), to = m.to.find(axis);
     if (m.id == measurement && from != m.from.end() && to != m.to.end() &&
@@ -37,7 +38,7 @@ LoadedTable linear(std::string output, std::string input, double per_length) {
 
 }  // namespace
 
-std::vector<Face> faces_of(const OutputInput& in, OutputResult& result) {
+std::vector<Face> faces_of(const ControllerInput& in, OutputResult& result) {
   std::vector<Face> faces;
   for (const Square& s : squares) {
     const Results::Analysed* found = nullptr;
@@ -102,7 +103,7 @@ ControlTable skew_declared(std::string name) {
   return t;
 }
 
-Expected<OutputResult> write_skew(const OutputInput& in, const Writer& w,
+Expected<OutputResult> write_skew(const ControllerInput& in, const Writer& w,
                                   std::string (*text)(const std::vector<Face>&)) {
   OutputResult result;
   const auto faces = faces_of(in, result);

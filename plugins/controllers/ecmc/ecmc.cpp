@@ -54,7 +54,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return controllers::parse_files(in, table_of(in.options), "ecmc", take);
 }
 
-Expected<OutputResult> write(const OutputInput& in) {
+Expected<OutputResult> write(const ControllerInput& in) {
   return controllers::write_tables(
       in, {"ecmc", table_of(in.options), {"step", "first", "reference", "backlash"}, files, parse});
 }

@@ -25,7 +25,8 @@ ControlTable declared() {
 
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   const auto t = controllers::chosen(declared(), in.options);
-  return t ? controllers::parse_list(in, *t, "fagor-8055", true) : tl::unexpected<Error>(t.error());
+  return t ? controllers::parse_list(in, *t, "fagor-8055", controllers::Columns::both)
+           : tl::unexpected<Error>(t.error());
 }
 
 // A column of zeros is read as "the same as towards plus": zero itself cannot be said there.
@@ -35,10 +36,10 @@ Expected<std::vector<Artifact>> files(const controllers::Sheet& s) {
     return fail("axis " + s.job.axis +
                 ": the error towards minus is zero everywhere, which this "
                 "table cannot say: set another reference_mm or directions = false");
-  return controllers::list_file(s, "fagor-8055", true);
+  return controllers::list_file(s, "fagor-8055", controllers::Columns::both);
 }
 
-Expected<OutputResult> write(const OutputInput& in) {
+Expected<OutputResult> write(const ControllerInput& in) {
   const auto t = controllers::chosen(declared(), in.options);
   if (!t) return tl::unexpected<Error>(t.error());
   return controllers::write_tables(

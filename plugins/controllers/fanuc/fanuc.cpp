@@ -127,8 +127,8 @@ struct Numbering {
       if (r.axis != s.job.axis && p.low <= r.high && r.low <= p.high)
         return fail("axes " + r.axis + " and " + s.job.axis + " would share numbers " +
                     std::to_string(std::max(r.low, p.low)) + " to " +
-                    std::to_string(std::min(r.high, p.high)) + ": set axes = [\"" + s.job.axis +
-                    " reference_number=...\"]");
+                    std::to_string(std::min(r.high, p.high)) +
+                    ": set reference_number = ... under [options.fanuc.axes." + s.job.axis + "]");
     taken.push_back({s.job.axis, p.low, p.high, !asked && all < 0});
     next = std::max(next, p.high + 1);
     return {};
@@ -178,7 +178,7 @@ std::string words(const Sheet& s, const Parameters& p) {
   line("unit of a number: " + std::to_string(p.magnification) + " x " +
        short_text(o.number(job.rotary ? "detection_unit_arcsec" : "detection_unit_um"), 4) +
        (job.rotary ? " arcsec" : " um"));
-  line(controllers::reversal_words(job, s.directions));
+  line(controllers::reversal_words(job, s.columns()));
   for (const std::string& zero : s.zero_and_size()) line(zero);
   line("controlled axis number " + std::to_string(job.number) + "; reference position at " +
        controllers::with_unit(job, s.reference, 4));
@@ -201,7 +201,7 @@ std::string words(const Sheet& s, const Parameters& p) {
   return controllers::comments(lines, "");
 }
 
-Expected<OutputResult> write(const OutputInput& input) {
+Expected<OutputResult> write(const ControllerInput& input) {
   Numbering numbering;
   const Settings& o = input.options;
   controllers::Writer writer{
@@ -218,7 +218,8 @@ Expected<OutputResult> write(const OutputInput& input) {
                                      {stem + ".txt", words(s, *p)}};
       },
       .parse = parse,
-      .zero_of = o.text("reference_return", "+") != "-" ? 1 : -1,
+      .zero_of = o.text("reference_return", "+") != "-" ? controllers::ZeroOf::plus
+                                                        : controllers::ZeroOf::minus,
       .coarser = {
           "magnification", o.integer("magnification", 1), 100,
           o.flag("extended") ? "" : ", or set extended = true if the control takes -128..127"}};
@@ -271,11 +272,11 @@ std::vector<Option> options() {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  Output output = controllers::controller(
+  Controller controller = controllers::controller(
       {"fanuc", "1.1.0",
        "Stored pitch error compensation (3620-3627) and backlash (1851) for FANUC.",
        fanuc::options()},
-      fanuc::declared(), fanuc::write, fanuc::parse, false);
-  output.merge = fanuc::merge;
-  registry.add(std::move(output));
+      fanuc::declared(), fanuc::write, fanuc::parse, controllers::Offered::always);
+  controller.merge = fanuc::merge;
+  registry.add(std::move(controller));
 }

@@ -37,7 +37,7 @@ Expected<std::vector<Artifact>> files(const controllers::Sheet& s) {
   return controllers::list_file(s, "haas-classic");
 }
 
-Expected<OutputResult> write(const OutputInput& in) {
+Expected<OutputResult> write(const ControllerInput& in) {
   const auto t = controllers::chosen(declared(), in.options);
   if (!t) return tl::unexpected<Error>(t.error());
   return controllers::write_tables(in, {.name = "haas-classic",

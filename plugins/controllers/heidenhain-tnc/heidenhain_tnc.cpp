@@ -126,7 +126,7 @@ std::string words(const Sheet& s, const Crosses& crosses, const Layout& layout,
       std::string(job.unit()));
   for (std::string& line : s.zero_and_size()) lines.push_back(std::move(line));
   for (const CrossCurve* c : crosses) lines.push_back("column " + controllers::cross_words(*c));
-  lines.push_back(controllers::reversal_words(job, s.directions));
+  lines.push_back(controllers::reversal_words(job, s.columns()));
   if (job.curve.bidirectional()) {
     lines.emplace_back(layout.listed ? "CfgAxisComp/backLash (401802), positive where the encoder "
                                        "leads the table:"
@@ -172,7 +172,7 @@ std::string cma_table(const std::vector<const AxisJob*>& written,
 
 /// The columns that belong into the table of this axis, if one state of the machine alone has them.
 Crosses columns_of(const std::vector<CrossJob>& sets, const AxisJob& job,
-                   const OutputInput& input) {
+                   const ControllerInput& input) {
   Crosses columns;
   std::size_t states = 0;
   for (const CrossJob& set : sets) {
@@ -186,7 +186,7 @@ Crosses columns_of(const std::vector<CrossJob>& sets, const AxisJob& job,
 
 /// What the control makes of the columns of other axes, read from the tables of each.
 void predict_columns(const CrossJob& set, const std::vector<const AxisJob*>& written,
-                     const OutputInput& input, OutputResult& result) {
+                     const ControllerInput& input, OutputResult& result) {
   std::vector<LoadedTable> tables;
   for (const AxisJob* job : written)
     if (controllers::together(set, *job, input.campaign))
@@ -226,7 +226,7 @@ ControlTable table_of(const Layout& layout, bool directions, const Settings& opt
   return t;
 }
 
-Expected<OutputResult> write(const OutputInput& input) {
+Expected<OutputResult> write(const ControllerInput& input) {
   OutputResult result;
   const Layout layout = layout_of(input.options);
   const bool directions = input.options.flag("directions");
@@ -279,11 +279,11 @@ std::vector<Option> options() {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  Output output = controllers::controller(
+  Controller controller = controllers::controller(
       {"heidenhain-tnc", "1.1.0",
        "Non-linear axis error tables (.COM, .CMA) and backlash for HEIDENHAIN TNC.",
        heidenhain::options()},
-      heidenhain::declared(), heidenhain::write, heidenhain::parse, false);
-  output.merge = heidenhain::merge;
-  registry.add(std::move(output));
+      heidenhain::declared(), heidenhain::write, heidenhain::parse, controllers::Offered::always);
+  controller.merge = heidenhain::merge;
+  registry.add(std::move(controller));
 }

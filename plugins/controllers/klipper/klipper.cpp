@@ -28,7 +28,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return controllers::skew_tables(factors);
 }
 
-Expected<OutputResult> write(const OutputInput& in) {
+Expected<OutputResult> write(const ControllerInput& in) {
   const controllers::Writer writer{"klipper", controllers::skew_declared("skew"), {}, {}, parse};
   return controllers::write_skew(in, writer, text);
 }
@@ -38,10 +38,10 @@ Expected<OutputResult> write(const OutputInput& in) {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  Output output = controllers::controller(
+  Controller controller = controllers::controller(
       {"klipper", "1.0.0",
        "Skew correction (SET_SKEW) for Klipper, from the squareness of the planes."},
       controllers::skew_declared("skew"), nonio::write, parse);
-  output.applies = controllers::has_squareness;
-  registry.add(std::move(output));
+  controller.applies = controllers::has_squareness;
+  registry.add(std::move(controller));
 }

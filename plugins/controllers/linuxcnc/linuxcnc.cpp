@@ -59,7 +59,8 @@ std::string section_of(const AxisJob& job) {
   const std::string axis = controllers::plain(job.axis);
   return "# the joint of " + axis +
          " is not stated: put these lines into its section; to have it\n" +
-         "# here say axes = [\"" + axis + " joint=...\"], or number in the machine's record\n";
+         "# here say joint = ... under [options.linuxcnc.axes." + axis +
+         "], or number in the machine's record\n";
 }
 
 /// The table itself has no end that shows: how long it is stands beside it.
@@ -180,15 +181,14 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return tables;
 }
 
-Expected<OutputResult> write(const OutputInput& input) {
+Expected<OutputResult> write(const ControllerInput& input) {
   const controllers::Writer writer{.name = "linuxcnc",
                                    .table = table_of(input.options),
                                    .keys = {"joint:", "step", "first", "reference", "backlash"},
                                    .files = files,
                                    .parse = parse,
-                                   .always_directions = true,
-                                   .replaces_backlash = true,
-                                   .wraps = false};
+                                   .directions = controllers::Directions::always_without_backlash,
+                                   .turn_end = controllers::TurnEnd::closed};
   return controllers::write_tables(input, writer);
 }
 
@@ -218,5 +218,5 @@ NONIO_PLUGIN(registry) {
   registry.add(nonio::controllers::controller(
       {"linuxcnc", "1.1.0", "Screw compensation files (COMP_FILE, types 0 and 1) for LinuxCNC.",
        nonio::options()},
-      nonio::declared(), nonio::write, nonio::parse, false));
+      nonio::declared(), nonio::write, nonio::parse, nonio::controllers::Offered::always));
 }

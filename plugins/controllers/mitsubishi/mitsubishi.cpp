@@ -66,7 +66,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return controllers::parse_files(in, scaled(in.options), "mitsubishi", take);
 }
 
-Expected<OutputResult> write(const OutputInput& in) {
+Expected<OutputResult> write(const ControllerInput& in) {
   return controllers::write_tables(in,
                                    {.name = "mitsubishi",
                                     .table = scaled(in.options),

@@ -31,9 +31,9 @@ Expected<ControlTable> in_counts(const controllers::AxisSettings& settings, cons
                                  bool rotary, ControlTable t) {
   const auto counts = settings.find(rotary ? "counts_per_deg" : "counts_per_mm");
   if (counts == settings.end() || !(counts->second > 0.0))
-    return controllers::wrong_axes("axis " + axis +
-                                   ": how many counts has the encoder? Set axes = [\"" + axis +
-                                   (rotary ? " counts_per_deg" : " counts_per_mm") + "=...\"]");
+    return controllers::wrong_axes("axis " + axis + ": how many counts has the encoder? Set " +
+                                   (rotary ? "counts_per_deg" : "counts_per_mm") +
+                                   " = ... under [options.pmac.axes." + axis + "]");
   const double count = 1.0 / (counts->second * (rotary ? deg_per_rad : 1e3));
   t.position_unit = t.position_step = {count, count};
   t.value_unit = t.value_step = {count / 16.0, count / 16.0};
@@ -99,7 +99,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return tables;
 }
 
-Expected<OutputResult> write(const OutputInput& in) {
+Expected<OutputResult> write(const ControllerInput& in) {
   return controllers::write_tables(in, {.name = "pmac",
                                         .table = *controllers::chosen(declared(), in.options),
                                         .keys = {"number:", "counts_per", "step", "backlash"},

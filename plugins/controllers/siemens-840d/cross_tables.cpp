@@ -45,7 +45,7 @@ std::string table(const CrossCurve& curve, std::int64_t number, const Naming& na
          line("DIRECTION", "0") + line("MULT_BY_TABLE", "0");
 }
 
-std::string file_text(const CrossJob& job, const OutputInput& input, std::int64_t number,
+std::string file_text(const CrossJob& job, const ControllerInput& input, std::int64_t number,
                       const Naming& name) {
   std::size_t points = 0;
   for (const CrossCurve& curve : job.curves) points = std::max(points, curve.position.size());
@@ -97,7 +97,7 @@ void note_chosen(const std::string& axis, std::int64_t first, std::size_t count,
        {{"axis", axis}, {"numbers", std::to_string(first) + "-" + std::to_string(last)}}});
 }
 
-Expected<void> write_cross_tables(const OutputInput& input,
+Expected<void> write_cross_tables(const ControllerInput& input,
                                   const std::vector<controllers::AxisJob>& pitch,
                                   OutputResult& result) {
   const Campaign campaign = controllers::with_axes_of(input, pitch);

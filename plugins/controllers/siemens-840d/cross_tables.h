@@ -17,7 +17,7 @@ std::string chosen_words(std::int64_t first, std::size_t count);
 void note_chosen(const std::string& axis, std::int64_t first, std::size_t count,
                  OutputResult& result);
 
-Expected<void> write_cross_tables(const OutputInput&,
+Expected<void> write_cross_tables(const ControllerInput&,
                                   const std::vector<controllers::AxisJob>& pitch, OutputResult&);
 
 }  // namespace nonio::siemens

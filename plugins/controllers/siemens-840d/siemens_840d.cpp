@@ -57,12 +57,12 @@ std::string encoder_table(const Sheet& s) {
   const std::string system = std::to_string(s.input.options.integer("measuring_system"));
   const std::string axis = axis_name(s);
   std::string out = "%_N_" + axis + "_EEC_INI\nCHANDATA(1)\n";
-  out +=
-      remarks(s, {sign_is, sign_does,
-                  "zero at the reference position " + controllers::with_unit(s.job, s.reference, 4),
-                  s.zero_and_size().back(), controllers::reversal_words(s.job, false),
-                  "MD38000[" + system + "] >= " + std::to_string(s.grid.points) +
-                      "; load with MD32700[" + system + "] = 0, then 1, power on, reference"});
+  out += remarks(
+      s, {sign_is, sign_does,
+          "zero at the reference position " + controllers::with_unit(s.job, s.reference, 4),
+          s.zero_and_size().back(), controllers::reversal_words(s.job, controllers::Columns::mean),
+          "MD38000[" + system + "] >= " + std::to_string(s.grid.points) + "; load with MD32700[" +
+              system + "] = 0, then 1, power on, reference"});
   for (std::size_t i = 0; i < s.plus.size(); ++i)
     out += "$AA_ENC_COMP[" + system + "," + std::to_string(i) + "," + axis +
            "]=" + s.entry(s.plus[i]) + "\n";
@@ -71,7 +71,7 @@ std::string encoder_table(const Sheet& s) {
 
 std::string backlash_file(const Sheet& s) {
   return "%_N_" + axis_name(s) + "_TEA_INI\nCHANDATA(1)\n" +
-         remarks(s, {controllers::reversal_words(s.job, false),
+         remarks(s, {controllers::reversal_words(s.job, controllers::Columns::mean),
                      "MD32450: positive where the encoder leads the machine part (lost motion)"}) +
          "$MA_BACKLASH[" + std::to_string(s.input.options.integer("measuring_system")) + "," +
          axis_name(s) + "]=" + decimal(s.backlash() * s.job.per_si(), 6) + "\nM17\n";
@@ -90,7 +90,7 @@ std::string direction_tables(const Sheet& s) {
   out += remarks(
       s, {sign_is, sign_does,
           "mean of both directions zero at " + controllers::with_unit(s.job, s.reference, 4),
-          s.zero_and_size().back(), controllers::reversal_words(s.job, true),
+          s.zero_and_size().back(), controllers::reversal_words(s.job, controllers::Columns::both),
           chosen_words(first_table(s), 2),
           "MD18342[t] >= " + std::to_string(s.grid.points) +
               "; enable MD32710 of the axis and SD41300[t]"});
@@ -118,7 +118,7 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
   return out;
 }
 
-Expected<OutputResult> write(const OutputInput& input) {
+Expected<OutputResult> write(const ControllerInput& input) {
   OutputResult result;
   auto table = controllers::chosen(declared(), input.options);
   if (!input.options.flag("directions")) table->facts.pop_back();
@@ -163,11 +163,11 @@ std::vector<Option> options() {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  Output output = controllers::controller(
+  Controller controller = controllers::controller(
       {"siemens-840d", "1.1.0",
        "Leadscrew error tables (EEC), direction tables (CEC) and backlash for SINUMERIK.",
        siemens::options()},
-      siemens::declared(), siemens::write, siemens::parse, false);
-  output.merge = siemens::merge;
-  registry.add(std::move(output));
+      siemens::declared(), siemens::write, siemens::parse, controllers::Offered::always);
+  controller.merge = siemens::merge;
+  registry.add(std::move(controller));
 }

@@ -207,8 +207,8 @@ std::string cross_list(const CrossCurve& c, const std::vector<controllers::Known
 }
 
 /// A slave has one master: two diagonals have that, step diagonals do not.
-Expected<void> write_cross(const OutputInput& in, const std::vector<controllers::AxisJob>& pitch,
-                           OutputResult& result) {
+Expected<void> write_cross(const ControllerInput& in,
+                           const std::vector<controllers::AxisJob>& pitch, OutputResult& result) {
   const std::string said = in.options.text("cross_sign");
   const Campaign campaign = controllers::with_axes_of(in, pitch);
   const auto axes = controllers::known_axes({{}, campaign, in.options});
@@ -233,14 +233,15 @@ Expected<void> write_cross(const OutputInput& in, const std::vector<controllers:
   return {};
 }
 
-Expected<OutputResult> write(const OutputInput& in) {
+Expected<OutputResult> write(const ControllerInput& in) {
   OutputResult result;
-  const controllers::Writer writer{.name = "twincat-cnc",
-                                   .table = *controllers::chosen(declared(), in.options),
-                                   .keys = {"number:", "step", "first", "reference", "backlash"},
-                                   .files = files,
-                                   .parse = parse,
-                                   .replaces_backlash = true};
+  const controllers::Writer writer{
+      .name = "twincat-cnc",
+      .table = *controllers::chosen(declared(), in.options),
+      .keys = {"number:", "step", "first", "reference", "backlash"},
+      .files = files,
+      .parse = parse,
+      .directions = controllers::Directions::by_option_without_backlash};
   const auto jobs = controllers::write_axes(in, writer, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   if (auto done = write_cross(in, *jobs, result); !done) return tl::unexpected<Error>(done.error());
@@ -266,11 +267,11 @@ std::vector<Option> options() {
 
 NONIO_PLUGIN(registry) {
   using namespace nonio;
-  Output output = controllers::controller(
+  Controller controller = controllers::controller(
       {"twincat-cnc", "1.0.0",
        "Correction lists (kw.ssfk, kw.crosscomp) for Beckhoff TwinCAT CNC and the ISG kernel.",
        nonio::options()},
       declared(), nonio::write, parse);
-  output.merge = twincat_cnc::merge;
-  registry.add(std::move(output));
+  controller.merge = twincat_cnc::merge;
+  registry.add(std::move(controller));
 }

@@ -82,7 +82,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return controllers::parse_files(in, declared(), "twincat-nc-ptp", take);
 }
 
-Expected<OutputResult> write(const OutputInput& in) {
+Expected<OutputResult> write(const ControllerInput& in) {
   return controllers::write_tables(in, {"twincat-nc-ptp",
                                         *controllers::chosen(declared(), in.options),
                                         {"step", "first", "reference", "backlash"},

@@ -147,7 +147,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return tables.empty() ? Expected<std::vector<LoadedTable>>(fail("no block of errors")) : tables;
 }
 
-Expected<OutputResult> write(const OutputInput& in) {
+Expected<OutputResult> write(const ControllerInput& in) {
   OutputResult result;
   const auto table = controllers::chosen(declared(), in.options);
   if (!table) return tl::unexpected<Error>(table.error());
@@ -157,7 +157,7 @@ Expected<OutputResult> write(const OutputInput& in) {
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   std::erase_if(*jobs, [&](const AxisJob& j) {
     return j.axis.size() != 1 || j.axis < "X" || j.axis > "Z" ||
-           controllers::refused(j, false, result);
+           controllers::refused(j, controllers::Columns::mean, result);
   });
   const auto twice =
       [all = *jobs](const AxisJob& j) {  // whose positioning is it? Not told apart here

@@ -63,8 +63,8 @@ NONIO_PLUGIN(registry) {
              .shapes = {},
              .applies = always,
              .columns = centre,
-             .of = of,
-             .always = true});
+             .instances = of,
+             .is_nuisance = true});
   registry.add(Effect{
       .info = {"direction", "1.0.0", "Where the rotary axis points, from a ball: in every model"},
       .linear = {{"d1", "tilt towards the first machine axis across it", Quantity::small_angle},
@@ -72,6 +72,6 @@ NONIO_PLUGIN(registry) {
       .shapes = {},
       .applies = always,
       .columns = direction,
-      .of = of,
-      .always = true});
+      .instances = of,
+      .is_nuisance = true});
 }

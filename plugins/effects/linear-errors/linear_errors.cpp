@@ -42,7 +42,7 @@ Effect effect_of(const char* kind, const char* summary, Effect::Parameter parame
     }
     return fail(std::string(kind) + ": cannot be of " + place.name);
   };
-  e.of = [&pairs](const Observations& o) {
+  e.instances = [&pairs](const Observations& o) {
     std::vector<std::string> names;
     if (!of_ball_centres(o)) return names;
     const SpaceReadings s = space_of(o);

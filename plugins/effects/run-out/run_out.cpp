@@ -50,7 +50,7 @@ Effect effect_of(const char* kind, const char* summary, std::uint32_t line) {
   e.columns = [line](const Observations& o, const Axis&, const std::vector<double>& shape) {
     return columns(o, shape, line);
   };
-  e.of = [](const Observations& o) {
+  e.instances = [](const Observations& o) {
     return of_ball_centres(o) ? std::vector<std::string>{o.axes.front().axis}
                               : std::vector<std::string>{};
   };

@@ -86,8 +86,8 @@ NONIO_PLUGIN(registry) {
       .shapes = {},
       .applies = always,
       .columns = slope,
-      .of = [](const Observations& o) { return lines_that(o, sensed_across); },
-      .always = true});
+      .instances = [](const Observations& o) { return lines_that(o, sensed_across); },
+      .is_nuisance = true});
   registry.add(
       Effect{.info = {"mirror-tilt", "1.0.0",
                       "How the mirror of a step diagonal stood to its beam: in every model"},
@@ -96,9 +96,9 @@ NONIO_PLUGIN(registry) {
              .shapes = {},
              .applies = always,
              .columns = tilt,
-             .of =
+             .instances =
                  [](const Observations& o) {
                    return lines_that(o, [](const SpaceLine& line) { return line.goes_in_steps(); });
                  },
-             .always = true});
+             .is_nuisance = true});
 }

@@ -49,5 +49,5 @@ NONIO_PLUGIN(registry) {
              .compensable = true,
              .applies = [](const Observations&, const Axis&) { return true; },
              .columns = columns,
-             .of = of});
+             .instances = of});
 }

@@ -62,5 +62,5 @@ NONIO_PLUGIN(registry) {
              .compensable = true,
              .applies = [](const Observations& o, const Axis& a) { return !grid(o, a).empty(); },
              .columns = columns,
-             .of = of});
+             .instances = of});
 }

@@ -177,7 +177,7 @@ Effect effect_of(const char* kind, const char* summary) {
       return fail(std::string(kind) + ": expected a number of knots, 0 to 1000");
     return columns(o, *a, static_cast<int>(std::lround(shape[0])));
   };
-  e.of = [kind](const Observations& o) {
+  e.instances = [kind](const Observations& o) {
     std::vector<std::string> names;
     if (of_ball_centres(o)) return names;
     const SpaceReadings s = space_of(o);

@@ -150,11 +150,10 @@ NONIO_PLUGIN(registry) {
                  "The signed calibration report or certificate for the customer, with its DCC.",
                  {},
                  true};
-  output.stage = nonio::Output::Stage::document;
   output.applies = nonio::certificate::applies;
   output.write = nonio::certificate::write;
   output.prepare = nonio::certificate::prepare;
-  output.lacks = nonio::certificate::lacks;
+  output.certificate = {.missing_requirements = nonio::certificate::lacks};
   output.check_templates = nonio::certificate::check_templates;
   registry.add(std::move(output));
 }

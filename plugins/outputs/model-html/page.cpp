@@ -53,10 +53,10 @@ std::string notes(const Source& source) {
   std::string note, list;
   bool attention = false;
   const auto says = [&](const Finding& f, const char* part) {
-    return html(typeset(finding_text(source.in.templates, source.words.language(), f, part)));
+    return typeset_html(finding_text(source.in.templates, source.words.language(), f, part));
   };
-  for (const Finding& f : source.fit.says) {
-    if (&f != &source.fit.says.front()) {
+  for (const Finding& f : source.fit.diagnosis) {
+    if (&f != &source.fit.diagnosis.front()) {
       list += element("li", says(f, "says"));
       continue;
     }
@@ -102,7 +102,7 @@ std::string cards(const Source& source) {
               nonio::words(source.in.templates, source.words.language(),
                            "effect." + c.effect.substr(0, c.effect.find(':')) + "." + what);
           !words.empty())
-        text += element("p", html(typeset(words)));
+        text += element("p", typeset_html(words));
     if (!text.empty())
       out +=
           element("details", element("summary", html(c.effect)) + text, out.empty() ? "open" : "");
@@ -138,7 +138,7 @@ std::string candidates(const Source& source) {
   out += cards(source);
   std::string next;
   for (const Finding& f : source.fit.next)
-    next += element("li", html(typeset(finding_text(source.in.templates, language, f, "says"))));
+    next += element("li", typeset_html(finding_text(source.in.templates, language, f, "says")));
   if (!next.empty()) out += element("h3", html(words.get("model.next"))) + element("ul", next);
   return out;
 }
@@ -229,7 +229,7 @@ std::string choices(const Source& source) {
     out += "<div id=\"" + std::string(id) + "\"><span>" +
            html(source.words.get("page." + std::string(id))) + "</span></div>\n";
   out += "<p id=\"rms\"></p>\n" +
-         element("p", html(source.words.get("page.toggling")), "class=\"muted hint\"");
+         element("p", typeset_html(source.words.get("page.toggling")), "class=\"muted hint\"");
   return element("section", out, "id=\"choices\" hidden");
 }
 

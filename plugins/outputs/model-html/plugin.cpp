@@ -45,7 +45,6 @@ NONIO_PLUGIN(registry) {
       "1.0.0",
       "The error model as an interactive page for a browser, in one file.",
       {{"language", std::string("en"), "", "Language of the page.", {"de", "en", "it"}}}};
-  output.stage = nonio::Output::Stage::document;
   output.applies = nonio::model_html::applies;
   output.write = nonio::model_html::write;
   registry.add(std::move(output));

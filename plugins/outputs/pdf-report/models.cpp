@@ -17,11 +17,11 @@ namespace {
 /// The verdict as a note, a sentence without a title; then where something is left, line by line.
 void add_what_it_says(const Source& source, const ModelFit& fit, Blocks& blocks) {
   const std::string field = "model of " + fit.part;
-  for (const Finding& f : fit.says) {
+  for (const Finding& f : fit.diagnosis) {
     Block block = note_of(source, f);
     auto& note = std::get<Note>(block.what);
     if (note.title == f.id && !note.says.empty()) note.title = std::exchange(note.says, "");
-    if (&f == &fit.says.front())
+    if (&f == &fit.diagnosis.front())
       blocks.push_back(std::move(block));
     else
       blocks.push_back({Paragraph{"• " + note.title, Paragraph::Look::small}, field});

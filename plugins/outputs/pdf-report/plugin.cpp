@@ -54,7 +54,6 @@ NONIO_PLUGIN(registry) {
       {{"language", std::string("en"), "", "Language of the report.", {"de", "en", "it"}},
        {"template", std::string("report"), "", "Name of the template: templates/<name>.toml."},
        {"sign", false, "", "Have it signed with the key of [signing] in site.toml."}}};
-  output.stage = nonio::Output::Stage::document;
   output.applies = nonio::pdf_report::applies;
   output.check_templates = nonio::pdf_report::check_templates;
   output.write = nonio::pdf_report::write;

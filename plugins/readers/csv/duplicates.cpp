@@ -33,23 +33,6 @@ bool same_values(Observations& obs, std::size_t a, std::size_t b) {
   return true;
 }
 
-template <class T>
-void drop_rows(std::vector<T>& column, const std::vector<bool>& drop) {
-  if (column.empty()) return;
-  std::size_t to = 0;
-  for (std::size_t from = 0; from < column.size(); ++from)
-    if (!drop[from]) column[to++] = column[from];
-  column.resize(to);
-}
-
-void drop_rows(Observations& obs, const std::vector<bool>& drop) {
-  for (std::vector<double>* column : value_columns(obs)) drop_rows(*column, drop);
-  drop_rows(obs.axes[0].position, drop);
-  drop_rows(obs.axes[0].approach, drop);
-  drop_rows(obs.run, drop);
-  drop_rows(obs.source_line, drop);
-}
-
 std::string target_text(const Observations::AxisColumn& axis, std::size_t row) {
   const Quantity quantity = position_of(axis.rotary);
   std::array<char, 40> buffer{};
@@ -117,7 +100,7 @@ void PassOrder::see(const Key& key) {
 
 Expected<void> settle_duplicates(Observations& obs, std::vector<Key>& not_taken) {
   const std::vector<std::uint32_t> rows = sorted_rows(obs);
-  std::vector<bool> drop(obs.size(), false);
+  std::vector<char> kept(obs.size(), 1);
   std::uint64_t dropped = 0;
   std::uint32_t first_dropped = 0;
   std::optional<std::pair<std::size_t, std::size_t>> worst;  // the contradiction met first
@@ -125,7 +108,7 @@ Expected<void> settle_duplicates(Observations& obs, std::vector<Key>& not_taken)
     if (!(key_of(obs, rows[i]) == key_of(obs, rows[first]))) {
       first = i;
     } else if (same_values(obs, rows[first], rows[i])) {
-      drop[rows[i]] = true;
+      kept[rows[i]] = 0;
       first_dropped = dropped++ == 0 ? rows[i] : std::min(first_dropped, rows[i]);
     } else if (!worst || rows[i] < worst->second) {
       worst = {rows[first], rows[i]};
@@ -140,7 +123,7 @@ Expected<void> settle_duplicates(Observations& obs, std::vector<Key>& not_taken)
   obs.notes.push_back({"csv.repeated-rows",
                        {count("rows", static_cast<double>(dropped)),
                         count("line", obs.source_line[first_dropped])}});
-  drop_rows(obs, drop);
+  keep_rows(obs, kept);
   return {};
 }
 

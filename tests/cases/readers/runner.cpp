@@ -56,7 +56,7 @@ struct Run {
     for (const nonio::Option& o : reader.info.options) {
       const auto given = c.options.find(o.name);
       options.values[o.name] =
-          given == c.options.end() ? o.otherwise : setting_of(o.otherwise, given->second);
+          given == c.options.end() ? o.default_value : setting_of(o.default_value, given->second);
     }
     for (const auto& [name, text] : c.options)
       if (!options.has(name)) std::cerr << c.name << ": no option " << name << "\n";

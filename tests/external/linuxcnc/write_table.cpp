@@ -12,12 +12,13 @@
 
 namespace {
 
-struct OneOutput final : nonio::Registry {
-  nonio::Output output;
+struct OneController final : nonio::Registry {
+  nonio::Controller controller;
   void add(nonio::Reader) override {}
   void add(nonio::Effect) override {}
   void add(nonio::Analysis) override {}
-  void add(nonio::Output o) override { output = std::move(o); }
+  void add(nonio::Output) override {}
+  void add(nonio::Controller c) override { controller = std::move(c); }
 };
 
 nonio::Observations measured(std::istream& in) {
@@ -51,7 +52,7 @@ int main(int argc, char** argv) {
   if (library == nullptr) return complain(dlerror());
   const auto* entry = static_cast<const nonio::PluginEntry*>(dlsym(library, "nonio_plugin"));
   if (entry == nullptr) return complain(dlerror());
-  OneOutput registry;
+  OneController registry;
   entry->add_to(registry);
 
   nonio::Campaign campaign;
@@ -63,10 +64,10 @@ int main(int argc, char** argv) {
   measurement.kind = "axis";
   campaign.measurements.push_back(measurement);
   nonio::Settings options;
-  for (const auto& o : registry.output.info.options) options.values[o.name] = o.otherwise;
+  for (const auto& o : registry.controller.info.options) options.values[o.name] = o.default_value;
   options.values["type"] = std::int64_t{std::string(argv[2]) == "1" ? 1 : 0};
   const std::vector<nonio::Observations> observations{measured(std::cin)};
-  const auto result = registry.output.write({campaign, observations, {}, options, {}});
+  const auto result = registry.controller.write({campaign, observations, {}, options});
   if (!result) return complain(result.error().message);
   for (const auto& artifact : result->artifacts)
     if (artifact.name == "linuxcnc-X.comp") {

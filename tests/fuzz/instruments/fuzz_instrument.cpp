@@ -94,7 +94,7 @@ struct World {
 
   nonio::Settings options(std::string_view bytes) const {
     nonio::Settings s;
-    for (const nonio::Option& o : reader.info.options) s.values[o.name] = o.otherwise;
+    for (const nonio::Option& o : reader.info.options) s.values[o.name] = o.default_value;
     const auto set = [&](const char* name, nonio::Setting value) {
       if (s.has(name)) s.values[name] = std::move(value);
     };

@@ -102,14 +102,52 @@ void state(Truth& truth, const Piece& piece, const Cause& cause, const Cycle& c,
                                                      : rms_about_mean(fitted.left) / s.noise);
 }
 
+/// What is added to each reading beside what it has by itself: a walk, a zero of each run.
+std::vector<double> wandering(const Scenario& s, const Cycle& c) {
+  std::vector<double> out(c.size(), 0.0);
+  if (s.unrest.walk > 0.0) {
+    Random steps(s.seed, 9);
+    double at = 0.0;
+    for (double& x : out) x = at += steps.normal();
+    const double size = s.unrest.walk / rms_about_mean(out);
+    for (double& x : out) x *= size;
+  }
+  Random zeros(s.seed, 7);
+  double zero = 0.0;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    if (i == 0 || c.run[i] != c.run[i - 1]) zero = s.unrest.run_zero * zeros.normal();
+    out[i] += zero;
+  }
+  return out;
+}
+
+/// How much more each reading scatters than the noise.
+std::vector<double> roughness(const Scenario& s, const Cycle& c) {
+  Random where(s.seed, 8);
+  const double long_ = where.uniform(0.25, 0.5) * c.length;
+  const double from = c.targets.front() + where.uniform(0.0, 1.0) * (c.length - long_);
+  std::vector<double> out(c.size(), 1.0);
+  for (std::size_t i = 0; i < c.size(); ++i)
+    if (c.position[i] >= from && c.position[i] <= from + long_) out[i] = s.unrest.rough;
+  return out;
+}
+
 void measure(Hidden& h, const Cycle& c) {
   const Scenario& s = h.scenario;
   Random noise(s.seed, 4), wrong(s.seed, 5);
   const double zero = noise.uniform(-10.0, 10.0) * s.noise;
-  const double resolution = s.rotary ? pi / 180.0 / 3600.0 * 1e-4 : 1e-10;
+  const double fine = s.rotary ? pi / 180.0 / 3600.0 * 1e-4 : 1e-10;
+  const double resolution = s.unrest.digit > 0.0
+                                ? std::max(1.0, std::round(s.unrest.digit * s.noise / fine)) * fine
+                                : fine;
+  const std::vector<double> wander = wandering(s, c), rough = roughness(s, c);
+  const double rho = s.unrest.correlation;
+  double before = 0.0;
   const std::size_t only = s.one_misread ? Random(s.seed, 6).below(c.size()) : c.size();
   for (std::size_t i = 0; i < c.size(); ++i) {
-    double e = zero + s.noise * noise.normal();
+    const double fresh = noise.normal();
+    before = i == 0 ? fresh : rho * before + std::sqrt(1.0 - rho * rho) * fresh;
+    double e = zero + s.noise * (rough[i] * before + wander[i]);
     for (const auto& cause : h.causes) e += cause[i];
     const bool misread = s.one_misread ? i == only : wrong.flag(s.misread);
     const double by = wrong.sign() * wrong.uniform(8.0, 40.0) * s.noise;

@@ -66,7 +66,7 @@ void draw_pitch(Scenario& s, Random& random) {
 bool always_linear(Kind kind) {
   return kind == Kind::wave_under_curve || kind == Kind::screw_and_curve ||
          kind == Kind::fixed_end || kind == Kind::blank_temperatures || kind == Kind::day_wave ||
-         kind == Kind::short_misread;
+         kind == Kind::short_misread || kind == Kind::short_complete;
 }
 
 /// Of a fixed bearing a little outside the stretch.
@@ -82,11 +82,11 @@ void draw_story(Scenario& s, Random& random) {
     s.runs = static_cast<std::uint32_t>(random.whole(4, 8));
     s.pause = 3600.0 * random.uniform(8.0, 30.0) / s.runs;
   }
-  if (s.kind == Kind::short_misread) {
+  if (s.kind == Kind::short_misread || s.kind == Kind::short_complete) {
     s.one_way = random.flag(0.5);
     s.targets = s.one_way ? random.whole(10, 12) : random.whole(5, 6);
     s.runs = 1;
-    s.one_misread = true;
+    s.one_misread = s.kind == Kind::short_misread || random.flag(0.5);
   }
 }
 
@@ -125,6 +125,11 @@ void draw_causes(Scenario& s, Random& random) {
     case Kind::day_wave:
       s.hidden = {{Source::shop_day, random.uniform(3.5, 9.0)}};
       break;
+    case Kind::short_complete: {
+      const Source of_one_run[] = {Source::wrong_scale, Source::optics_slip, Source::lost_motion};
+      if (random.flag(0.5)) s.model = {{of_one_run[random.below(3)], random.uniform(3.5, 9.0)}};
+      break;
+    }
     case Kind::short_misread: {
       const Source shown_by_one_run[] = {Source::wrong_scale, Source::lost_motion,
                                          Source::lead_error, Source::optics_slip};

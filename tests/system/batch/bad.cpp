@@ -99,7 +99,6 @@ NONIO_PLUGIN(registry) {
                         [](const Campaign& c, const Measurement&) { return asked(c, "analysis"); },
                         analyse});
   registry.add(Output{{"bad-output", "1", "Misbehaves", options},
-                      Output::Stage::document,
                       [](const Campaign& c) { return asked(c, "output"); },
                       write,
                       nullptr});

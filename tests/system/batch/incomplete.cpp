@@ -7,8 +7,7 @@ NONIO_PLUGIN(registry) {
   registry.add(Analysis{{"complete", "1", "Beside what is not", {}},
                         [](const Campaign&, const Measurement&) { return true; },
                         [](const AnalysisInput&) { return Expected<Evaluation>(); }});
-  registry.add(Output{{"incomplete", "1", "Has no `applies`", {}},
-                      Output::Stage::document,
-                      nullptr,
-                      [](const OutputInput&) { return Expected<OutputResult>(); }});
+  registry.add(Output{{"incomplete", "1", "Has no `applies`", {}}, nullptr, [](const OutputInput&) {
+                        return Expected<OutputResult>();
+                      }});
 }

@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import random
+import sqlite3
 import subprocess
 import tempfile
 import unittest
@@ -71,7 +72,17 @@ class NightTest(unittest.TestCase):
         return next(e["reason"] for e in self.summary()[section] if e["id"] == campaign_id)
 
 
+def rows_of(store):
+    """What a database says; how its pages lie depends on how it grew."""
+    database = sqlite3.connect(f"file:{store}?mode=ro", uri=True)
+    try:
+        return "\n".join(database.iterdump()).encode()
+    finally:
+        database.close()
+
+
 def tree(folder):
-    """Every file below a folder with its bytes."""
+    """Every file below a folder with its bytes, of the history its rows."""
     folder = pathlib.Path(folder)
-    return {str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+    return {str(p.relative_to(folder)): rows_of(p) if p.name == "history.sqlite" else p.read_bytes()
+            for p in folder.rglob("*") if p.is_file()}

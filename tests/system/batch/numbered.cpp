@@ -78,7 +78,7 @@ NONIO_PLUGIN(registry) {
   output.info = {"numbered", "1", "Issued under a number", {}, true};
   output.applies = [](const Campaign&) { return true; };
   output.write = write;
-  output.lacks = lacks;
+  output.certificate = {.missing_requirements = lacks};
   registry.add(output);
   output.info.name = "numbered-too";
   registry.add(std::move(output));

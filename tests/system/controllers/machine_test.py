@@ -53,7 +53,7 @@ class Number(MachineTest):
             self.assertEqual([f["id"] for f in table["findings"]], ["table.axis-number"], control)
             advice = table["findings"][0]["advice"]
             self.assertIn("number = ... under [axes.Z] of machines/<asset>.toml", advice)
-            self.assertIn('axes = ["Z number=...\\"]'.replace("\\", ""), advice)
+            self.assertIn("number = ... under [options.NAME.axes.Z]", advice)
             self.assertFalse([n for n in self.written() if n.startswith(control)], control)
             self.measured(control, options='[options.%s]\naxes = ["Z number=3%s"]\n' % (control, more))
             self.assertNotIn("table.axis-number", self.findings(control))

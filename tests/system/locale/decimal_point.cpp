@@ -20,7 +20,6 @@ Expected<OutputResult> write(const OutputInput&) {
 
 NONIO_PLUGIN(registry) {
   registry.add(Output{{"decimal-point", "1", "Writes 1.5 with printf", {}},
-                      Output::Stage::document,
                       [](const Campaign&) { return true; },
                       write,
                       nullptr});

@@ -68,7 +68,7 @@ ControlTable declared() {
   t.facts = {{"sign", ControlTable::Confidence::documented, "Wrong on purpose."}};
   if (has("without-facts")) t.facts.clear();
   if (has("fact-twice")) t.facts.push_back(t.facts.front());
-  if (has("fact-without-words")) t.facts.front().says = "";
+  if (has("fact-without-words")) t.facts.front().description = "";
   if (has("step-of-zero")) t.value_step.linear = 0.0;
   if (has("step-of-nan")) t.position_step.rotary = spoiled::nan;
   if (has("increments-of-nothing")) t.increment = {5, 5};
@@ -78,8 +78,11 @@ ControlTable declared() {
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (has("unreadable")) return fail("expected a table");
   if (has("reads-nothing")) return std::vector<LoadedTable>();
-  auto tables = controllers::parse_list(
-      in, declared(), "spoiled", in.files.front().bytes.find(" entry_minus") != std::string::npos);
+  auto tables =
+      controllers::parse_list(in, declared(), "spoiled",
+                              in.files.front().bytes.find(" entry_minus") != std::string::npos
+                                  ? controllers::Columns::both
+                                  : controllers::Columns::mean);
   if (!tables) return tables;
   for (LoadedTable& t : *tables) {
     const auto entries = [&](const auto& change) {
@@ -153,7 +156,7 @@ Expected<std::vector<Artifact>> files(const controllers::Sheet& given) {
   if (has("columns-exchanged")) std::swap(s.plus, s.minus);
   if (has("minus-backwards")) std::reverse(s.minus.begin(), s.minus.end());
   if (has("rotary-in-radians") && s.job.rotary) both([](double x) { return x / deg_per_rad; });
-  return controllers::list_file(s, "spoiled", s.directions);
+  return controllers::list_file(s, "spoiled", s.columns());
 }
 
 /// What the kit would not let through: points are changed once it has written and read them.
@@ -187,7 +190,7 @@ void spoil_lines(Artifact& file, bool rotary) {
   file.bytes = std::move(out);
 }
 
-[[maybe_unused]] Expected<OutputResult> write_table(const OutputInput& in) {
+[[maybe_unused]] Expected<OutputResult> write_table(const ControllerInput& in) {
   if (has("refuses-all")) return fail("expected something else");
   if (has("throws")) throw std::runtime_error("wrong on purpose");
   if (has("writes-nothing")) return OutputResult{};
@@ -209,9 +212,8 @@ NONIO_PLUGIN(registry) {
   spoiled::at_registration();
   if (has("registers-nothing")) return;
 #ifdef SPOILED_TABLE
-  Output o = controllers::controller(spoiled::info("spoiled"), declared(), write_table, parse);
+  Controller o = controllers::controller(spoiled::info("spoiled"), declared(), write_table, parse);
   if (has("without-parse")) o.parse = nullptr;
-  if (has("of-the-wrong-stage")) o.stage = Output::Stage::document;
 #else
   Output o;
   o.info = spoiled::info("spoiled");

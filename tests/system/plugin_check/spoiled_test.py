@@ -79,7 +79,7 @@ OWN = {
     },
     "table": {
         "declared": "without-a-name without-facts fact-twice fact-without-words step-of-zero step-of-nan "
-                    "increments-of-nothing without-parse of-the-wrong-stage",
+                    "increments-of-nothing without-parse",
         "truth": "reads-x1000 reads-tenths reads-inches reads-the-other-sign reads-increments reads-places-in-m "
                  "reads-places-from-the-first reads-without-the-last reads-without-the-first reads-the-next-entry "
                  "reads-backwards",

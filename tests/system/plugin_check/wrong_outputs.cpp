@@ -100,7 +100,7 @@ Expected<std::vector<Artifact>> right_files(const controllers::Sheet& s) {
 }
 
 /// Writes what is measured, and reads it as what is added.
-Expected<OutputResult> wrong_sign(const OutputInput& in) {
+Expected<OutputResult> wrong_sign(const ControllerInput& in) {
   ControlTable t = declared();
   t.sign = ControlTable::Sign::error;
   return controllers::write_tables(
@@ -142,7 +142,7 @@ Expected<std::vector<Artifact>> wrapping_files(const controllers::Sheet& s) {
   return lines(s, values);
 }
 
-Expected<OutputResult> drifting(const OutputInput& in) {
+Expected<OutputResult> drifting(const ControllerInput& in) {
   const auto read = [](const TableInput& t) {
     return controllers::parse_list(t, finer(), "wrong");
   };
@@ -150,13 +150,13 @@ Expected<OutputResult> drifting(const OutputInput& in) {
       in, {.name = "wrong", .table = finer(), .keys = {}, .files = drifting_files, .parse = read});
 }
 
-Expected<OutputResult> wrapping(const OutputInput& in) {
+Expected<OutputResult> wrapping(const ControllerInput& in) {
   return controllers::write_tables(
       in,
       {.name = "wrong", .table = declared(), .keys = {}, .files = wrapping_files, .parse = parse});
 }
 
-Expected<OutputResult> right(const OutputInput& in) {
+Expected<OutputResult> right(const ControllerInput& in) {
   return controllers::write_tables(
       in, {.name = "wrong", .table = declared(), .keys = {}, .files = right_files, .parse = parse});
 }
@@ -165,7 +165,7 @@ Expected<std::vector<LoadedTable>> unreadable(const TableInput&) {
 }
 Expected<std::vector<LoadedTable>> empty(const TableInput&) { return std::vector<LoadedTable>(); }
 
-Output table(const char* name, Expected<OutputResult> (*written)(const OutputInput&)) {
+Controller table(const char* name, Expected<OutputResult> (*written)(const ControllerInput&)) {
   return controllers::controller({name, "1", "Wrong on purpose", {}}, declared(), written, parse);
 }
 
@@ -218,7 +218,7 @@ NONIO_PLUGIN(registry) {
   registry.add(made("writes-a-file", writing));
   registry.add(made("opens-a-socket", talking));
   registry.add(made("makes-a-process", bearing));
-  Output unread = table("unreadable", right);
+  Controller unread = table("unreadable", right);
   unread.parse = unreadable;
   registry.add(unread);
   unread.info.name = "reads-nothing";
@@ -226,8 +226,8 @@ NONIO_PLUGIN(registry) {
   registry.add(unread);
   registry.add(table("nothing-wrong", right));
   registry.add(table("wrong-sign", wrong_sign));
-  Output fine = table("drifting", drifting);
-  fine.control = finer();
+  Controller fine = table("drifting", drifting);
+  fine.table = finer();
   fine.parse = [](const TableInput& t) { return controllers::parse_list(t, finer(), "wrong"); };
   registry.add(fine);
   registry.add(table("wrapping", wrapping));

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the host takes manifests, many at a time: schema_reads campaign|site|machine, the paths
-// on stdin; a line for each, "ok" or the first error.
+// Whether the host takes manifests, many at a time: schema_reads campaign|site|machine|events|...,
+// the paths on stdin; a line for each, "ok" or the first error.
 #include <iostream>
 #include <string>
 
 #include "host/config/machines.h"
 #include "host/config/manifest.h"
+#include "host/config/site_logs.h"
 #include "host/storage/files.h"
 
 namespace {
@@ -17,19 +18,26 @@ std::string verdict(const nonio::host::config::Checked<File>& read) {
   return std::to_string(first.line) + ": " + first.message;
 }
 
+std::string verdict_of(const std::string& file, const std::string& text) {
+  namespace config = nonio::host::config;
+  if (file == "campaign") return verdict(config::parse_manifest(text, "campaign.toml"));
+  if (file == "site") return verdict(config::parse_site(text, "site.toml"));
+  if (file == "machine") return verdict(config::parse_machine(text, "machines/S-1.toml", "S-1"));
+  if (file == "events") return verdict(config::parse_events(text, config::events_name));
+  if (file == "acknowledged")
+    return verdict(config::parse_acknowledged(text, config::acknowledged_name));
+  if (file == "forgotten") return verdict(config::parse_forgotten(text, config::forgotten_name));
+  return {};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string file = argc == 2 ? argv[1] : "";
-  if (file != "campaign" && file != "site" && file != "machine") return 2;
+  if (verdict_of(file, "").empty()) return 2;
   for (std::string path; std::getline(std::cin, path);) {
     const auto text = nonio::host::storage::read_file(path);
     if (!text) return 1;
-    std::cout << (file == "campaign"
-                      ? verdict(nonio::host::config::parse_manifest(*text, "campaign.toml"))
-                  : file == "site" ? verdict(nonio::host::config::parse_site(*text, "site.toml"))
-                                   : verdict(nonio::host::config::parse_machine(
-                                         *text, "machines/S-1.toml", "S-1")))
-              << "\n";
+    std::cout << verdict_of(file, *text) << "\n";
   }
 }

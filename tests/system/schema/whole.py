@@ -9,7 +9,7 @@ def campaign():
     return {
         "format": 1,
         "campaign": {"id": "2026-11-03-a", "customer": "C", "site": "S", "operator": "O", "customer_address": "A",
-                     "date": DAY, "end_date": DAY, "received": DAY},
+                     "date": DAY, "end_date": DAY, "received": DAY, "purpose": "check"},
         "machine": {
             "asset": "S-1", "maker": "M", "model": "M", "serial": "1", "description": "D", "condition": "C", "control": "fanuc",
             "structure": "gantry",
@@ -33,6 +33,7 @@ def campaign():
         "run": {"analyses": ["iso230-2", "model-fit"], "outputs": ["json"]},
         "measurement": [
             {"id": "X 1", "kind": "axis", "file": "x.csv", "reader": "csv", "axis": "X", "adjustment": "before", "order": "pendulum", "side": "master",
+             "state": "final",
              "exclude": [3, 4], "exclude_reason": "R", "at": {"Y": 300}, "feed_mm_per_min": 1200, "dwell_s": 3,
              "over_travel_mm": 2.5, "tool_offset": {"Z": -120}, "workpiece_offset": {"X": 40}, "compensation": "on"},
             {"id": "S", "kind": "straightness", "file": "s.csv", "axis": "X", "lateral": "Y"},
@@ -50,6 +51,19 @@ def campaign():
         "tables": {"may_stand": [{"finding": "plausibility.passes-identical", "reason": "R"}]},
         "options": {"iso230-2": {"edition": 2006}},
     }
+
+
+LOGS = {
+    "events": {"event": [{"date": DAY, "machine": "S-1", "axis": "X", "kind": "crash", "text": "T", "by": "B"}]},
+    "acknowledged": {"acknowledged": [{"date": DAY, "finding": "F", "machine": "S-1", "axis": "X", "quantity": "Q",
+                                       "until": DAY, "value": 1.5, "U": 0.5, "by": "B", "why": "W"}]},
+    "forgotten": {"forgotten": [{"date": DAY, "campaign": "c", "by": "B", "why": "W"}]},
+}
+
+
+def log(file):
+    """What people say of machines, in a file of its own."""
+    return {"format": 1, **LOGS[file]}
 
 
 def machine():
@@ -71,10 +85,11 @@ def site():
         "language": "de",
         "laboratory": {"name": "L", "address": "A", "country": "IT", "accreditation": "N", "authoriser": "B",
                        "contact": "C", "cmc": {"fixed_um": 0.3, "per_m_um": 0.5, "arcsec": 0.1}},
-        "limits": {"seconds": 60, "memory_MB": 2000.5, "disk_seconds": 5},
+        "limits": {"seconds": 60, "memory_MB": 2000.5, "disk_seconds": 5, "vanished": 2},
         "results": {"folders": "hashed"},
         "run": {"analyses": ["iso230-2"], "outputs": ["json"]},
         "options": {"iso230-2": {"edition": 2006}},
+        "alias": [{"name": "N", "asset": "S-1", "why": "W"}],
         "signing": {"pkcs12": "k.p12", "pkcs11": "", "module": "", "certificates": "c.pem", "password_file": "p",
                     "password_env": "", "password_credential": "", "trust": "t.pem", "revocation": "r.pem",
                     "signer": "CN=A", "time_stamp": "http://tsa.example/", "time_stamp_missing": "sign",

@@ -97,7 +97,7 @@ std::string with_windows_ends(const std::string& text) {
 
 TEST(Backup, CutAtEveryByteItIsTheWholeTableOrNone) {
   for (const Kind& k : kinds()) {
-    const Output output = plugin(k.path);
+    const Controller output = plugin(k.path);
     const auto r = machine(k.below).write(output, with_axes(k));
     ASSERT_TRUE(r) << k.name << r.error().message;
     const auto whole = read_back(output, r->artifacts, with_axes(k), {{.name = "X"}});
@@ -124,7 +124,7 @@ TEST(Backup, CutAtEveryByteItIsTheWholeTableOrNone) {
 
 TEST(Backup, LineEndsOfWindowsAndCommentsChangeNothing) {
   for (const Kind& k : kinds()) {
-    const Output output = plugin(k.path);
+    const Controller output = plugin(k.path);
     const auto r = machine(k.below).write(output, with_axes(k));
     ASSERT_TRUE(r) << k.name;
     const auto whole = read_back(output, r->artifacts, with_axes(k), {{.name = "X"}});
@@ -148,7 +148,7 @@ TEST(Backup, LineEndsOfWindowsAndCommentsChangeNothing) {
 
 // kw.crosscomp of which the end is missing: what is left is a table of a shorter way.
 TEST(Backup, ACrossTableOfTwincatHasAllItsPoints) {
-  const Output output = plugin(plugin_twincat_cnc);
+  const Controller output = plugin(plugin_twincat_cnc);
   std::string list =
       "kopf.achs_nr 2\nkw.crosscomp.unit 1\nkw.crosscomp.last_index 2\n"
       "kw.crosscomp.master_ax_nr 1\n";

@@ -242,7 +242,7 @@ struct Renewed {
 };
 
 /// The old table is loaded, the axis measured with it, and the engine writes the new one.
-std::optional<Renewed> renewed(const Kind& k, const Output& output, const Blind& b,
+std::optional<Renewed> renewed(const Kind& k, const Controller& output, const Blind& b,
                                std::mt19937& random, const std::string& who) {
   const auto first = bench_of(years_ago(random, b)).write(output, with(k, b.settings));
   EXPECT_TRUE(first) << who << (first ? "" : first.error().message);
@@ -263,8 +263,7 @@ std::optional<Renewed> renewed(const Kind& k, const Output& output, const Blind&
   EXPECT_TRUE(on && *on) << who << (on ? "nothing was on" : on.error().message);
   if (!on || !*on) return std::nullopt;
   const Results none;
-  const Templates templates;
-  auto second = output.write({r.bench.campaign, (*on)->readings, none, (*on)->options, templates});
+  auto second = output.write({r.bench.campaign, (*on)->readings, none, (*on)->options});
   EXPECT_TRUE(second) << who << (second ? "" : second.error().message);
   if (!second || second->artifacts.empty()) return std::nullopt;
   r.control = k.control(second->artifacts, b.axis);
@@ -307,7 +306,7 @@ TEST(BlindMachines, WhatIsLeftIsWhatWasPredicted) {
   const std::uint32_t seed = 20261122;
   print_seed(seed);
   for (const Kind& k : kinds()) {
-    const Output output = plugin(k.path);
+    const Controller output = plugin(k.path);
     std::mt19937 random(seed);
     int written = 0;
     const int so_far = failures();
@@ -332,7 +331,7 @@ TEST(BlindMachines, WithATableAlreadyOn) {
   const std::uint32_t seed = 20261123;
   print_seed(seed);
   for (const Kind& k : kinds()) {
-    const Output output = plugin(k.path);
+    const Controller output = plugin(k.path);
     std::mt19937 random(seed);
     int written = 0;
     const int so_far = failures();

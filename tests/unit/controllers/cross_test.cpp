@@ -88,7 +88,7 @@ const Remark* note(const OutputResult& r, const std::string& id, const std::stri
 // not at the first point, where the axis may never stand when the table is switched on.
 TEST(Cross, ZeroAtTheReferencePointAndSaid) {
   struct Kind {
-    Output output;
+    Controller output;
     Options options;
     std::vector<std::string> files;
   };
@@ -137,7 +137,7 @@ TEST(Cross, ZeroAtTheReferencePointAndSaid) {
 TEST(Cross, APlaneOfAerotechCountsFromHome) {
   Bench bench = gantry();
   bench.results.analyses.push_back(analysed(true));
-  const Output aerotech = plugin(plugin_aerotech);
+  const Controller aerotech = plugin(plugin_aerotech);
   const auto result = bench.write(aerotech);
   ASSERT_TRUE(result) << result.error().message;
   EXPECT_TRUE(contains(file(*result, "aerotech-plane-D1.cal"), "; Y over X: zero at 0.0 mm of X"));
@@ -384,7 +384,7 @@ TEST(Cross, HeidenhainColumnsOfTheVolume) {
 }
 
 TEST(Cross, PitchOfStepDiagonalsGoesToEveryControl) {
-  for (const Output& output : {fanuc_plugin(), linuxcnc_plugin()}) {
+  for (const Controller& output : {fanuc_plugin(), linuxcnc_plugin()}) {
     const Bench bench = volume(false);
     EXPECT_TRUE(output.applies(bench.campaign));
     const auto result =

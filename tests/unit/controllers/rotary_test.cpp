@@ -9,7 +9,7 @@ namespace {
 
 struct Kind {
   const char* name;
-  Output (*output)();
+  Controller (*output)();
   Options options;
   double resolution;  // of the table, rad
 };

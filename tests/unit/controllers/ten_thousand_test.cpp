@@ -58,7 +58,7 @@ TEST(TenThousandCurves, EveryEntryIsWithinHalfAStep) {
   print_seed(seed);
   std::mt19937 random(seed);
   const auto all = kinds();
-  std::vector<Output> outputs;
+  std::vector<Controller> outputs;
   for (const Kind& k : all) outputs.push_back(plugin(k.path));
   for (int round = 0; round < 10000; ++round) {
     const std::size_t which = static_cast<std::size_t>(round) % all.size();
@@ -94,7 +94,7 @@ TEST(TenThousandCurves, IncrementsAreInRangeAndTurnsClose) {
   print_seed(seed);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
-  const Output fanuc = fanuc_plugin(), cnc = plugin(plugin_twincat_cnc);
+  const Controller fanuc = fanuc_plugin(), cnc = plugin(plugin_twincat_cnc);
   for (int round = 0; round < 2000; ++round) {
     Measured m;
     m.axis = m.id = "C";
@@ -103,7 +103,7 @@ TEST(TenThousandCurves, IncrementsAreInRangeAndTurnsClose) {
     const double a = 8 * arcsec * u(random), p = 3 * u(random), open = arcsec * u(random);
     m.plus = [=](double x) { return a * std::sin(x + p) + open * x; };  // need not close
     m.minus = [e = m.plus](double x) { return e(x) + 5 * arcsec; };
-    for (const Output* output : {&fanuc, &cnc}) {
+    for (const Controller* output : {&fanuc, &cnc}) {
       const Options options = output == &fanuc
                                   ? Options{{"extended", true}, {"detection_unit_arcsec", 0.36}}
                                   : Options{};

@@ -9,6 +9,7 @@
 #include <functional>
 #include <iostream>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -24,43 +25,65 @@ using namespace nonio;
 inline constexpr double um = 1e-6, mm = 1e-3;
 inline constexpr double deg = 1.0 / deg_per_rad, arcsec = 1.0 / arcsec_per_rad;
 
-struct OneOutput final : Registry {
-  Output output;
+struct OneController final : Registry {
+  Controller controller;
   void add(Reader) override {}
   void add(Effect) override {}
   void add(Analysis) override {}
-  void add(Output o) override { output = std::move(o); }
+  void add(Output) override {}
+  void add(Controller c) override { controller = std::move(c); }
 };
 
 /// NONIO_TEST_PLUGINS: a folder whose plugins take the place of those of that name (tests/mutants).
-inline Output plugin(const char* built) {
+inline Controller plugin(const char* built) {
   std::filesystem::path path = built;
   if (const char* folder = std::getenv("NONIO_TEST_PLUGINS"))
     if (const auto other = folder / path.filename(); exists(other)) path = other;
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw std::runtime_error(dlerror());
   const auto* entry = static_cast<const PluginEntry*>(dlsym(library, "nonio_plugin"));
-  OneOutput registry;
+  OneController registry;
   entry->add_to(registry);
-  return registry.output;
+  return registry.controller;
 }
 
 inline void print_seed(std::uint32_t seed) { std::cout << "seed " << seed << '\n'; }
 
-inline Output siemens_plugin() { return plugin(plugin_siemens_840d); }
-inline Output heidenhain_plugin() { return plugin(plugin_heidenhain_tnc); }
-inline Output fanuc_plugin() { return plugin(plugin_fanuc); }
-inline Output linuxcnc_plugin() { return plugin(plugin_linuxcnc); }
+inline Controller siemens_plugin() { return plugin(plugin_siemens_840d); }
+inline Controller heidenhain_plugin() { return plugin(plugin_heidenhain_tnc); }
+inline Controller fanuc_plugin() { return plugin(plugin_fanuc); }
+inline Controller linuxcnc_plugin() { return plugin(plugin_linuxcnc); }
 
 using Options = std::map<std::string, Setting>;
 
+/// "X number=1 step_mm=50": a table X.
+inline NumberTables tables_of(const std::vector<std::string>& texts) {
+  NumberTables tables;
+  for (const std::string& text : texts) {
+    std::istringstream words(text);
+    std::string axis, word;
+    words >> axis;
+    NumberTable& table = tables[axis];
+    while (words >> word) {
+      const std::size_t equals = word.find('=');
+      table[word.substr(0, equals)] = std::stod(word.substr(equals + 1));
+    }
+  }
+  return tables;
+}
+
 /// Defaults as declared, then the given ones; an undeclared or differently typed one is a mistake
 /// of the test.
-inline Settings settings(const Output& output, const Options& given) {
+inline Settings settings(const Controller& output, const Options& given) {
   Settings s;
-  for (const Option& o : output.info.options) s.values[o.name] = o.otherwise;
+  for (const Option& o : output.info.options) s.values[o.name] = o.default_value;
   for (const auto& [name, value] : given) {
     EXPECT_EQ(s.values.count(name), 1U) << "undeclared option " << name;
+    if (const auto* texts = std::get_if<std::vector<std::string>>(&value);
+        texts != nullptr && std::holds_alternative<NumberTables>(s.values[name])) {
+      s.values[name] = tables_of(*texts);
+      continue;
+    }
     EXPECT_EQ(s.values[name].index(), value.index()) << name;
     s.values[name] = value;
   }
@@ -68,24 +91,20 @@ inline Settings settings(const Output& output, const Options& given) {
 }
 
 /// As the record of a machine would say it, for the axes whose entries do not: X is the first.
-inline void state_numbers(Settings& s, const Output& output, const std::vector<Axis>& axes) {
+inline void state_numbers(Settings& s, const Controller& output, const std::vector<Axis>& axes) {
   if (!s.has("axes")) return;
-  auto entries = s.texts("axes");
+  NumberTables tables = s.tables("axes");
   const bool joints = output.info.name == "linuxcnc";  // counts from 0
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    const std::string begin = axes[i].name + " ";
-    bool said = false;
-    for (const std::string& e : entries)
-      said = said || (e.rfind(begin, 0) == 0 && (e.find(" number=") != std::string::npos ||
-                                                 e.find(" joint=") != std::string::npos));
-    if (!said) entries.push_back(begin + "number=" + std::to_string(joints ? i : i + 1));
+    NumberTable& table = tables[axes[i].name];
+    if (!table.contains("joint")) table.emplace("number", static_cast<double>(joints ? i : i + 1));
   }
-  s.values["axes"] = entries;
+  s.values["axes"] = tables;
 }
 
 /// What the control makes of these files, on a machine with these axes.
 inline Expected<std::vector<LoadedTable>> read_back(
-    const Output& output, const std::vector<Artifact>& files, const Options& options = {},
+    const Controller& output, const std::vector<Artifact>& files, const Options& options = {},
     const std::vector<Axis>& axes = {{.name = "X"}, {.name = "Y"}, {.name = "Z"}}) {
   Campaign campaign;
   campaign.machine.axes = axes;
@@ -95,7 +114,8 @@ inline Expected<std::vector<LoadedTable>> read_back(
 }
 
 /// What it adds to one axis by its own position.
-inline Expected<math::Correction> control(const Output& output, const std::vector<Artifact>& files,
+inline Expected<math::Correction> control(const Controller& output,
+                                          const std::vector<Artifact>& files,
                                           const Options& options = {},
                                           const std::string& axis = "X") {
   const auto tables = read_back(output, files, options);
@@ -106,7 +126,7 @@ inline Expected<math::Correction> control(const Output& output, const std::vecto
 }
 
 /// What it adds to `out` by the position of `in`.
-inline Expected<math::Correction> control_cross(const Output& output,
+inline Expected<math::Correction> control_cross(const Controller& output,
                                                 const std::vector<Artifact>& files,
                                                 const std::string& in, const std::string& out,
                                                 const Options& options = {}) {
@@ -180,10 +200,10 @@ struct Bench {
     observations.push_back(std::move(o));
   }
 
-  Expected<OutputResult> write(const Output& output, const Options& options = {}) const {
+  Expected<OutputResult> write(const Controller& output, const Options& options = {}) const {
     Settings s = settings(output, options);
     if (numbered) state_numbers(s, output, campaign.machine.axes);
-    return output.write({campaign, observations, results, s, templates});
+    return output.write({campaign, observations, results, s});
   }
 };
 

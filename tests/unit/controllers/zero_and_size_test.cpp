@@ -122,7 +122,7 @@ TEST(ZeroRule, ZeroWhereItIsSaid) {
 
 TEST(SizeRule, TheMakersLimitsAreKept) {
   for (const Kind& k : kinds()) {
-    const Output output = plugin(k.path);
+    const Controller output = plugin(k.path);
     const auto bench = sensor_at(0.0, k.below);
     ASSERT_FALSE(
         bench.write(output, with(k, " largest_um=30 slope_um_per_m=300"))->artifacts.empty())
@@ -202,7 +202,7 @@ TEST(Reversal, ASmallUnevenReversalDoesNotRefuseALargePitch) {
     EXPECT_GT(prediction(*r, "E").before, 30 * um) << name;
     // The backlash value is decided by itself: it stays.
     EXPECT_NEAR(prediction(*r, "B").after, prediction(*r, "B").before, 0.05 * um) << name;
-    if (plugin(k.path).control->backlash.empty()) continue;
+    if (plugin(k.path).table.backlash.empty()) continue;
     EXPECT_NE(finding(*r, "table.backlash-not-constant"), nullptr) << name;
   }
 }
@@ -232,7 +232,7 @@ TEST(Cut, AShorterFileIsNoTable) {
     const std::string name = k.name;
     const char* ending = name == "linuxcnc" ? ".comp" : name == "twincat-nc-ptp" ? ".st" : nullptr;
     if (ending == nullptr) continue;
-    const Output output = plugin(k.path);
+    const Controller output = plugin(k.path);
     const auto r = bench.write(output, with(k, ""));
     ASSERT_TRUE(r);
     for (const Artifact& a : r->artifacts) {

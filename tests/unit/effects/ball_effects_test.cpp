@@ -117,12 +117,12 @@ TEST(BallEffects, AreOfTheAxisAndOfWhatItsCircleCrosses) {
            {"A", "YZ", {"Y", "Z"}}, {"B", "XZ", {"X", "Z"}}, {"C", "XY", {"X", "Y"}}}) {
     const Observations o = measured(turning_about(name)).table;
     for (const char* kind : {"centre", "direction", "radial-run-out", "axial-run-out"})
-      EXPECT_EQ(effect(kind).of(o), Names{name}) << kind;
-    EXPECT_EQ(effect("linear-squareness").of(o), Names{pair});
-    EXPECT_EQ(effect("linear-scale").of(o), axes);
+      EXPECT_EQ(effect(kind).instances(o), Names{name}) << kind;
+    EXPECT_EQ(effect("linear-squareness").instances(o), Names{pair});
+    EXPECT_EQ(effect("linear-scale").instances(o), axes);
     for (const char* kind :
          {"squareness", "straightness", "yaw", "pitch", "roll", "line-slope", "mirror-tilt"})
-      EXPECT_EQ(effect(kind).of(o), Names{}) << kind;
+      EXPECT_EQ(effect(kind).instances(o), Names{}) << kind;
   }
 }
 

@@ -178,7 +178,7 @@ TEST(SpaceEffects, AreOfWhatTheReadingsCanShow) {
     for (const auto* kinds : {&space_kinds, &set_up_kinds, &ball_kinds})
       for (const std::string& kind : *kinds) {
         const auto wanted = g.of.find(kind);
-        EXPECT_EQ(effect(kind).of(o), wanted == g.of.end() ? Names{} : wanted->second)
+        EXPECT_EQ(effect(kind).instances(o), wanted == g.of.end() ? Names{} : wanted->second)
             << g.name << ", " << kind;
       }
   }
@@ -187,7 +187,7 @@ TEST(SpaceEffects, AreOfWhatTheReadingsCanShow) {
 // There the carriage's way would only be another name for the straightness that is read.
 TEST(SpaceEffects, AStraightnessLineOfASingleColumnIsNoYaw) {
   const auto of = [](const char* kind, const Line& line) {
-    return effect(kind).of(table({line}, "single-column"));
+    return effect(kind).instances(table({line}, "single-column"));
   };
   const Line level = sensed(straight("L", {0, 0, 0}, {1, 0, 0}), {0, 1, 0});
   const Line upright = sensed(straight("L", {0, 0, 0}, {1, 0, 0}), {0, 0, 1});
@@ -196,9 +196,9 @@ TEST(SpaceEffects, AStraightnessLineOfASingleColumnIsNoYaw) {
 }
 
 TEST(SpaceEffects, OnlySetUpsAreAlwaysThere) {
-  for (const auto& kind : set_up_kinds) EXPECT_TRUE(effect(kind).always) << kind;
+  for (const auto& kind : set_up_kinds) EXPECT_TRUE(effect(kind).is_nuisance) << kind;
   for (const auto* kinds : {&space_kinds, &ball_kinds})
-    for (const auto& kind : *kinds) EXPECT_FALSE(effect(kind).always) << kind;
+    for (const auto& kind : *kinds) EXPECT_FALSE(effect(kind).is_nuisance) << kind;
 }
 
 TEST(SpaceEffects, CrossTablesTakeSquarenessAndStraightnessAway) {
@@ -212,7 +212,7 @@ TEST(SpaceEffects, SquarenessIsThatOfTheExactMachine) {
       {"XY", &Errors::C0Y}, {"XZ", &Errors::B0Z}, {"YZ", &Errors::A0Z}};
   for (const auto& lines : {two_diagonals(), step_diagonals()}) {
     const Observations o = table(lines);
-    const Names shown = effect("squareness").of(o);
+    const Names shown = effect("squareness").instances(o);
     for (const auto& [name, error] : all) {
       if (std::find(shown.begin(), shown.end(), name) == shown.end()) continue;
       Errors e;
@@ -243,7 +243,7 @@ TEST(SpaceEffects, StraightnessIsThatOfTheExactMachine) {
   std::mt19937 rng(seed);
   for (const auto& lines : {two_diagonals(), step_diagonals(), all_straightness()}) {
     const Observations o = table(lines);
-    for (const std::string& name : effect("straightness").of(o)) {
+    for (const std::string& name : effect("straightness").instances(o)) {
       const auto s = random_smooth(rng, o, static_cast<std::size_t>(name[2] - 'X'), um, false);
       const auto columns = effect("straightness").columns(o, named(name), {5.0});
       ASSERT_TRUE(columns) << columns.error().message;
@@ -262,7 +262,7 @@ TEST(SpaceEffects, AnglesAreThoseOfTheExactMachine) {
        {two_diagonals(), axis_runs(), upright_diagonals(), across, step_diagonals()}) {
     const Observations o = table(lines);
     for (const std::string kind : {"yaw", "pitch", "roll"})
-      for (const std::string& axis : effect(kind).of(o)) {
+      for (const std::string& axis : effect(kind).instances(o)) {
         const auto s = random_smooth(rng, o, static_cast<std::size_t>(axis[0] - 'X'), urad, true);
         const auto columns = effect(kind).columns(o, named(axis), {5.0});
         ASSERT_TRUE(columns) << columns.error().message;
@@ -322,7 +322,7 @@ TEST(SpaceEffects, WhereNobodySaidAnAxisStoodThereIsNoLever) {
   zero_only_at("straightness", "EXY", {3.0}, y_unknown);
   zero_only_at("yaw", "X", {3.0}, x_unknown);
   zero_only_at("yaw", "X", {3.0}, y_unknown);
-  EXPECT_EQ(effect("pitch").of(o), Names{});
+  EXPECT_EQ(effect("pitch").instances(o), Names{});
 }
 
 // Whichever end a line was begun at.
@@ -375,7 +375,7 @@ TEST(SpaceEffects, ARoundedDiagonalDoesNotGoInSteps) {
     for (Point& stop : line.stops) stop = (stop * 1e6).array().round() * 1e-6;
     line.sense = (line.sense * 1e3).array().round() * 1e-3;
   }
-  EXPECT_EQ(effect("mirror-tilt").of(table(lines)), Names{});
+  EXPECT_EQ(effect("mirror-tilt").instances(table(lines)), Names{});
 }
 
 }  // namespace nonio

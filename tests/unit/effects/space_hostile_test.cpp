@@ -42,7 +42,7 @@ TEST(SpaceEffects, HostileReadingsAreRefusedOrGiveFiniteColumns) {
     for (const auto* kinds : {&space_kinds, &set_up_kinds, &ball_kinds})
       for (const std::string& kind : *kinds) {
         const Effect& e = effect(kind);
-        Names names = e.of(o);
+        Names names = e.instances(o);
         const std::size_t shown = names.size();
         for (const char* other : {"", "X", "XY", "EYX", "E", "EXX", "EQX", "C", "L", "PPP"})
           names.push_back(other);

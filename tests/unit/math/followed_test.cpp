@@ -198,6 +198,36 @@ TEST(Followed, UncertaintiesHoldWhereRunsDiffer) {
   EXPECT_LT(shared.rms, 1.1);
 }
 
+/// Neighbouring readings of a pass are alike.
+AxisTest correlated(double r, Random& random) {
+  Observations o;
+  for (std::uint32_t run = 1; run <= 5; ++run)
+    for (const int direction : {1, -1}) {
+      double e = made::normal(random);
+      for (int i = 0; i < 15; ++i) {
+        made::add(o, i / 14.0, direction, 0.3 * um * e, run);
+        e = r * e + std::sqrt(1.0 - r * r) * made::normal(random);
+      }
+    }
+  return AxisTest::arrange(o);
+}
+
+TEST(Followed, UncertaintiesHoldWhereNeighboursAreAlike) {
+  for (const double r : {0.0, 0.4, 0.7})
+    for (const char* name : {"B_mean", "curve_2", "curve_3"}) {
+      Random random(79);
+      double square = 0.0;
+      constexpr int trials = 1500;
+      for (int i = 0; i < trials; ++i) {
+        const FollowedAxis all = followed_quantities(correlated(r, random), {}, "X", std::nullopt);
+        const Followed& f = of(all, name);
+        square += f.value * f.value / f.u / f.u / trials;
+      }
+      EXPECT_GT(std::sqrt(square), 0.8) << name << ' ' << r << " seed 79";
+      EXPECT_LT(std::sqrt(square), 1.15) << name << ' ' << r << " seed 79";
+    }
+}
+
 TEST(Followed, TheLogarithmOfTheScatterKnowsItsDegreesOfFreedom) {
   const Scatter s = scatter_of("ln_s", std::log(0.3), {.reading = 0.3 * um}, 74);
   EXPECT_GT(s.rms, 0.75);  // what runs may share is reckoned with although nothing is

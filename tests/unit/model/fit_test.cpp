@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+
+#include "nonio/sdk/axis_readings.h"
 
 namespace nonio::model {
 
@@ -88,6 +91,57 @@ TEST(Fit, TimesThatNobodyMeasuredAreNotHours) {
   f = fit(o, {{&drift, Axis{.name = "X"}}});
   ASSERT_TRUE(f) << f.error().message;
   EXPECT_EQ(unit_of(f->parameters[0].quantity).symbol, "um/reading");
+}
+
+namespace {
+
+/// 41 readings, a minute apart, of a growth with the temperature, one in four of them without one.
+Observations with_blanks(const std::function<double(double)>& kelvin, bool blank) {
+  Observations o = points({}, {});
+  for (int i = 0; i < 41; ++i) {
+    const double t = 60.0 * i, noise = ((i * 37) % 41 - 20) / 20.0;
+    o.axes[0].position.push_back(0.01 * ((i * 7) % 41));
+    o.axes[0].approach.push_back(1);
+    o.time.push_back(t);
+    o.material.push_back(blank && i % 4 == 1 ? std::nan("") : 20.0 + kelvin(t));
+    o.deviation.push_back(1e-6 * (10.0 * kelvin(t) + noise));
+  }
+  return o;
+}
+
+Effect growth() {
+  Effect e;
+  e.info = {"growth", "1", "", {}};
+  e.linear = {{"a", "", Quantity::number}};
+  e.columns = [](const Observations& o, const Axis& axis, const std::vector<double>&) {
+    return columns_of(o, axis, [](const AxisReadings& r, std::size_t i) { return r.K[i]; });
+  };
+  return e;
+}
+
+double u_of_growth(const Observations& o) {
+  const Effect effect = growth();
+  const auto f = fit(o, {{&effect, Axis{.name = "X"}}});
+  EXPECT_TRUE(f) << f.error().message;
+  return f ? f->parameters[0].u : -1.0;
+}
+
+}  // namespace
+
+TEST(Fit, UHoldsWhatInterpolatedTemperaturesMayBeOff) {
+  const auto swings = [](double t) { return std::sin(t / 90.0); };
+  const auto steady = [](double t) { return t / 600.0; };
+  // Readings between known temperatures are off by more than the noise says: seen where known.
+  const Observations rough = with_blanks(swings, true);
+  std::vector<double> weight(rough.size(), 1.0);
+  for (std::size_t i = 0; i < rough.size(); ++i) weight[i] = std::isfinite(rough.material[i]);
+  const Effect effect = growth();
+  const auto known = fit(with_blanks(swings, false), {{&effect, Axis{.name = "X"}}}, weight);
+  ASSERT_TRUE(known) << known.error().message;
+  EXPECT_GT(u_of_growth(rough), 1.5 * known->parameters[0].u);
+  // A straight line in time is right everywhere.
+  EXPECT_NEAR(u_of_growth(with_blanks(steady, true)), u_of_growth(with_blanks(steady, false)),
+              1e-3 * u_of_growth(with_blanks(steady, false)));
 }
 
 TEST(Fit, EachLineHasItsOwnZero) {

@@ -51,7 +51,7 @@ TEST(LongTable, PlaceOfAReversal) {
   const auto c = compare(part, {});
   ASSERT_TRUE(c) << c.error().message;
   ASSERT_TRUE(c->fails());
-  EXPECT_EQ(c->places.front().where, "direction");
+  EXPECT_EQ(to_text(c->places.front().where), "direction");
 }
 
 TEST(LongTable, MisreadValueIsSuspectedAndMakesNoPlace) {

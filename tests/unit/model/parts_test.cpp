@@ -346,6 +346,55 @@ TEST(Parts, EachStateOfTheMachineIsAPart) {
   for (const Part& part : parts) expect_traceable(part, t);
 }
 
+// The key says what the ids said before, and an id with a space may say nothing.
+TEST(Parts, TheKeyOfTheStateCountsBeforeTheId) {
+  Visit t;
+  t.run("X 1", "X", {1, 0, 0}).state = "";
+  t.run("Y1", "Y", {0, 1, 0}).state = "final";
+  t.diagonals("a");
+  t.diagonals("b");
+  for (Measurement& m : t.campaign.measurements)
+    if (m.kind == "diagonal") m.state = m.id.back() == 'a' ? "00" : "final";
+  const auto parts = t.parts();
+  ASSERT_EQ(names(parts), (Ids{"XY 00", "XY final"}));
+  EXPECT_EQ(parts[0].measurements, (Ids{"X 1", "D1a", "D2a"}));
+  EXPECT_EQ(parts[1].measurements, (Ids{"X 1", "Y1", "D1b", "D2b"}));
+}
+
+// What was measured beside the deviation is there in the part, NaN where a measurement has none.
+TEST(Parts, NoColumnIsLost) {
+  Visit t;
+  t.run("X1", "X", {1, 0, 0});
+  Observations& first = t.read.back();
+  const std::size_t n = first.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto x = static_cast<double>(i);
+    first.u.push_back(1e-7 * (x + 1.0)), first.time.push_back(x),
+        first.material.push_back(20.0 + x);
+    first.air.push_back(30.0 + x), first.pressure.push_back(1000.0 + x),
+        first.humidity.push_back(40.0 + x);
+  }
+  t.run("X2", "X", {1, 0, 0});
+  const auto parts = t.parts();
+  ASSERT_EQ(parts.size(), 1U);
+  const Observations& o = parts[0].table;
+  for_each_measured_column(
+      [&](const auto& column, const auto& given) {
+        ASSERT_EQ(column.size(), o.size());
+        for (std::size_t i = 0; i < given.size(); ++i) EXPECT_EQ(column[i], given[i]);
+      },
+      o, t.read[0]);
+  for (const auto* column : {&o.u, &o.time, &o.material, &o.air, &o.pressure, &o.humidity})
+    for (std::size_t i = n; i < o.size(); ++i) EXPECT_TRUE(std::isnan((*column)[i]));
+}
+
+TEST(Parts, ReadingsOfALineThatIsNotThereAreInNoPart) {
+  Visit t;
+  t.run("X", "X", {1, 0, 0});
+  t.read.back().line.assign(t.read.back().size(), 7);
+  EXPECT_TRUE(t.parts().empty());
+}
+
 TEST(Parts, ARunOfAStateWithoutDiagonalsStaysAlone) {
   Visit t;
   t.run("X spring", "X", {1, 0, 0});

@@ -21,6 +21,7 @@ inline Output the_output() {
     void add(Effect) override { ADD_FAILURE() << "an effect"; }
     void add(Analysis) override { ADD_FAILURE() << "an analysis"; }
     void add(Output o) override { output = std::move(o); }
+    void add(Controller) override { ADD_FAILURE() << "a controller"; }
   } taker;
   nonio_plugin.add_to(taker);
   return taker.output;

@@ -35,10 +35,11 @@ struct Certificate : testing::Test {
   Case whole() const { return whole_case(plugins); }
   OutputInput input(const Case& c, bool drawn = true) const {
     static const Settings none;
-    return {c.campaign, c.observations,          c.results, none, templates,
-            nullptr,    drawn ? &issue : nullptr};
+    return {c.campaign, c.observations, c.results, none, templates, drawn ? &issue : nullptr};
   }
-  std::vector<std::string> lacks(const Case& c) const { return output().lacks(input(c, false)); }
+  std::vector<std::string> lacks(const Case& c) const {
+    return output().certificate->missing_requirements(input(c, false));
+  }
   Expected<OutputResult> write(const Case& c) const { return output().write(input(c)); }
   std::string text(const Case& c) const {
     const auto result = write(c);

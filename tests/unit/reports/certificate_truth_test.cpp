@@ -29,7 +29,7 @@ struct Truth : testing::Test {
   const Output& output() const { return plugins.outputs.front(); }
   OutputInput input(const Case& c) const {
     static const Settings none;
-    return {c.campaign, c.observations, c.results, none, templates, nullptr, &issue};
+    return {c.campaign, c.observations, c.results, none, templates, &issue};
   }
   std::vector<std::string> files(const Case& c) const {
     const auto result = output().write(input(c));
@@ -87,13 +87,13 @@ TEST_F(Truth, WhatWasExcludedIsSaidWithItsReasonAndWithoutOneThereIsNoCertificat
       {"reading.excluded",
        {{"line", 57, Quantity::count}, {"deviation", 88e-6, Quantity::deviation}},
        {{"file", "X.csv"}}}};
-  const auto keys = output().lacks(input(c));
+  const auto keys = output().certificate->missing_requirements(input(c));
   ASSERT_EQ(keys.size(), 1U);
   EXPECT_TRUE(keys[0].starts_with("measurement.X.exclude_reason")) << keys[0];
   c.campaign.measurements[0].exclude_reason = " - ";
-  EXPECT_EQ(output().lacks(input(c)), keys) << "a dash is no reason";
+  EXPECT_EQ(output().certificate->missing_requirements(input(c)), keys) << "a dash is no reason";
   c.campaign.measurements[0].exclude_reason = "beam interrupted";
-  EXPECT_TRUE(output().lacks(input(c)).empty());
+  EXPECT_TRUE(output().certificate->missing_requirements(input(c)).empty());
   const std::string said = "X.csv: line 57 (88.0 µm). Reason: beam interrupted.";
   EXPECT_TRUE(has(page(c), said));
   EXPECT_TRUE(has(dcc(c), said));

@@ -68,6 +68,7 @@ struct Plugins final : Registry {
   void add(Effect) override {}
   void add(Analysis a) override { analyses.push_back(std::move(a)); }
   void add(Output o) override { outputs.push_back(std::move(o)); }
+  void add(Controller) override {}
 
   bool load(const std::string& path) {
     void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -83,7 +84,7 @@ struct Plugins final : Registry {
 
 inline Settings defaults(const Info& info) {
   Settings settings;
-  for (const Option& option : info.options) settings.values[option.name] = option.otherwise;
+  for (const Option& option : info.options) settings.values[option.name] = option.default_value;
   return settings;
 }
 

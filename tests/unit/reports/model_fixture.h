@@ -112,7 +112,7 @@ inline ModelFit made_model(const MadeModel& made = {}) {
   Finding verdict;
   verdict.id = "model.nothing";
   verdict.advice = "The model is good down to the noise.";
-  f.says = {verdict};
+  f.diagnosis = {verdict};
   return f;
 }
 

@@ -67,7 +67,7 @@ TEST_F(ModelHtml, HostileTextStaysText) {
   fit.axis = fit.measurements[0] = hostile;
   fit.effects[0].name = fit.parameters[0].effect = fit.parameters[1].name = hostile;
   fit.steps[1].effect = hostile;
-  fit.says[0].id = fit.says[0].advice = hostile;
+  fit.diagnosis[0].id = fit.diagnosis[0].advice = hostile;
   Measurement m;
   m.id = m.file = hostile;
   made.campaign.measurements = {m};
@@ -91,6 +91,14 @@ TEST_F(ModelHtml, NeedsNothingFromOutside) {
   EXPECT_FALSE(std::regex_search(text, std::regex("[ \n](src|href|style|on[a-z]+)=\"")))
       << "nothing is fetched, and no handler or style stands in an attribute";
   EXPECT_EQ(occurrences(text, "http:"), 1U) << "the name of SVG";
+}
+
+TEST_F(ModelHtml, CommandsInASentenceAreCode) {
+  for (const char* language : {"en", "it"}) {
+    const std::string text = page(made_model(), language);
+    EXPECT_TRUE(has(text, "<code>nonio model drop</code>")) << language;
+    EXPECT_FALSE(has(text, "`nonio")) << language;
+  }
 }
 
 TEST_F(ModelHtml, CandidatesCardsSizesAndWhatToMeasureStandOnIt) {

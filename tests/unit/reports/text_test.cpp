@@ -6,6 +6,7 @@
 #include "font_outlines.h"
 #include "font_subset.h"
 #include "nonio/reports/document.h"
+#include "nonio/reports/wording.h"
 #include "pdf_reader.h"
 #include "text.h"
 
@@ -29,6 +30,15 @@ Glyphs shaped(std::string_view text, bool bold = false) {
   auto glyphs = shape(text, fonts(), bold, "field");
   EXPECT_TRUE(glyphs) << glyphs.error().message;
   return glyphs ? *glyphs : Glyphs{};
+}
+
+TEST(Sentences, WhatStandsBetweenBackquotesIsQuotedOrCode) {
+  EXPECT_EQ(typeset("as `nonio model drop` does, by -8.1 um"),
+            "as \"nonio model drop\" does, by \u22128.1 \u00b5m");
+  EXPECT_EQ(typeset_html("from `a<b` to `c -1 um`, -1 um & more"),
+            "from <code>a&lt;b</code> to <code>c -1 um</code>, \u22121 \u00b5m &amp; more");
+  EXPECT_EQ(typeset("a lone ` stays"), "a lone ` stays");
+  EXPECT_EQ(typeset_html(""), "");
 }
 
 TEST(Shaping, EachCharacterHasTheFontThatHasIt) {

@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
   const auto write = [&](Case& of, const std::vector<std::string>& languages, std::string name) {
     of.campaign.certificate.languages = languages;
     const auto result = plugins.outputs.front().write(
-        {of.campaign, of.observations, of.results, none, templates, nullptr, &issue});
+        {of.campaign, of.observations, of.results, none, templates, &issue});
     if (!result) return std::cerr << result.error().message << '\n', false;
     for (const std::string& language : languages) name += "-" + language;
     for (const auto& [artifact, end] :

@@ -38,7 +38,11 @@ class Wording {
   mutable std::string complaint_;
 };
 
-/// Units and signs of a plugin's sentence as they are printed: "-8.1 um" becomes "−8.1 µm".
+/// Units and signs of a plugin's sentence as they are printed: "-8.1 um" becomes "−8.1 µm"; what
+/// stands between backquotes (commands, keys) comes into quotation marks.
 std::string typeset(std::string_view sentence);
+
+/// The same as HTML: what stands between backquotes is code.
+std::string typeset_html(std::string_view sentence);
 
 }  // namespace nonio::reports

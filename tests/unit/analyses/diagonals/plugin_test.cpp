@@ -26,6 +26,7 @@ const Analysis& the_analysis() {
     void add(Effect) override {}
     void add(Analysis a) override { analysis = std::move(a); }
     void add(Output) override {}
+    void add(Controller) override {}
   };
   static const Taker taker = [] {
     Taker t;
@@ -147,7 +148,7 @@ struct Workpiece {
   }
   Evaluation evaluate(const std::string& id = "D1") const {
     Settings settings;
-    for (const Option& o : the_analysis().info.options) settings.values[o.name] = o.otherwise;
+    for (const Option& o : the_analysis().info.options) settings.values[o.name] = o.default_value;
     for (const auto& [name, value] : options) {
       EXPECT_EQ(settings.values.count(name), 1U) << name;
       settings.values[name] = value;
@@ -451,6 +452,19 @@ TEST(DiagonalPlugin, SetsBeforeAndAfterAreApart) {
   EXPECT_EQ(finding(before, "remeasured"), nullptr);
   EXPECT_NE(finding(after, "remeasured"), nullptr);
   EXPECT_FALSE(the_analysis().applies(w.campaign, w.campaign.measurements[w.index("D2 00")]));
+}
+
+TEST(DiagonalPlugin, SetsAreThoseOfTheKeyState) {
+  Workpiece w({12.0, 9.0, 30});
+  w.errors.C0Y = 8e-6;
+  w.X("X 1", 0.5), w.X("X 2", 8.5), w.Y(), w.D1("D1"), w.D2("D2");
+  w.errors.C0Y = 0.5e-6;
+  w.D1("D3"), w.D2("D4");
+  for (Measurement& m : w.campaign.measurements)
+    m.state = m.kind != "diagonal" ? "" : m.id < "D3" ? "before" : "final";
+  EXPECT_NEAR(value(w.evaluate("D1"), "C0Y"), 8e-6, 0.01e-6);
+  EXPECT_NEAR(value(w.evaluate("D3"), "C0Y"), 0.5e-6, 0.01e-6);
+  EXPECT_FALSE(the_analysis().applies(w.campaign, w.campaign.measurements[w.index("D4")]));
 }
 
 /// Two lines of X; yaw by an autocollimator; diagonals from one direction; a third diagonal.

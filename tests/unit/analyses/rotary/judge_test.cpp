@@ -23,6 +23,7 @@ Analysis the_analysis() {
     void add(Effect) override { ADD_FAILURE() << "an effect"; }
     void add(Analysis a) override { analysis = std::move(a); }
     void add(Output) override { ADD_FAILURE() << "an output"; }
+    void add(Controller) override { ADD_FAILURE() << "a controller"; }
   } taker;
   nonio_plugin.add_to(taker);
   return taker.analysis;
@@ -35,7 +36,7 @@ struct Workshop {
   Settings options;
 
   Workshop() {
-    for (const Option& o : the_analysis().info.options) options.values[o.name] = o.otherwise;
+    for (const Option& o : the_analysis().info.options) options.values[o.name] = o.default_value;
   }
   Workshop& measured(const std::string& id, const std::vector<math::BallCentre>& centres) {
     Measurement m;

@@ -23,6 +23,7 @@ Analysis the_analysis() {
     void add(Reader) override { ADD_FAILURE() << "a reader"; }
     void add(Effect) override { ADD_FAILURE() << "an effect"; }
     void add(Output) override { ADD_FAILURE() << "an output"; }
+    void add(Controller) override { ADD_FAILURE() << "a controller"; }
     void add(Analysis a) override { analysis = std::move(a); }
   } taker;
   nonio_plugin.add_to(taker);
@@ -66,7 +67,7 @@ struct Bench {
   Settings options;
 
   Bench() {
-    for (const Option& o : the_analysis().info.options) options.values[o.name] = o.otherwise;
+    for (const Option& o : the_analysis().info.options) options.values[o.name] = o.default_value;
     for (const char* name : {"X", "Y", "Z"}) {
       Axis axis;
       axis.name = name;

@@ -37,7 +37,8 @@ backlash_deg = "none"
 since = 2026-05-01
 )";
 
-std::string errors_of(const config::Checked<config::MachineRecord>& record) {
+template <class T>
+std::string errors_of(const config::Checked<T>& record) {
   std::string all;
   if (!record)
     for (const Error& e : record.error())
@@ -65,7 +66,7 @@ Info control_named(const char* name) {
   return {name,
           "1",
           "A control.",
-          {{"axes", std::vector<std::string>{}, "", "Axes."},
+          {{"axes", NumberTables{}, "", "Axes."},
            {"taken", std::vector<std::string>{}, "", "Numbers in use."}}};
 }
 
@@ -116,10 +117,57 @@ TEST(Machines, OptionAxesHasSiteThenRecordThenCampaign) {
   const auto settled = config::settle_table_options(
       control_named("fanuc"), site_axes({"Z number=9 step_mm=50 drifted=1", "Q number=7"}), m, &r);
   ASSERT_TRUE(settled);
-  EXPECT_EQ(settled->texts("axes"),
-            Texts({"Z number=3 step_mm=25 drifted=1 from_mm=0 largest_um=100 reference_mm=500 "
-                   "slope_um_per_m=200 to_mm=800"}));
+  const NumberTables expected{{"Z",
+                               {{"number", 3},
+                                {"step_mm", 25},
+                                {"drifted", 1},
+                                {"from_mm", 0},
+                                {"largest_um", 100},
+                                {"reference_mm", 500},
+                                {"slope_um_per_m", 200},
+                                {"to_mm", 800}}}};
+  EXPECT_EQ(settled->tables("axes"), expected);
   EXPECT_EQ(settled->texts("taken"), Texts({"0", "100-227"}));
+}
+
+// The same axes, written as tables and as texts.
+TEST(Machines, TablesAndTextsOfAxesAreTheSame) {
+  const config::MachineRecord r = record_from(whole_record);
+  const config::Manifest tables =
+      manifest_with("[options.fanuc.axes.Z]\nstep_mm = 25\n[options.fanuc.axes.X]\nnumber = 1\n");
+  const config::Manifest texts =
+      manifest_with("[options.fanuc]\naxes = [\"Z step_mm=25\", \"X number=1\"]\n");
+  const auto one = config::settle_table_options(control_named("fanuc"), {}, tables, &r);
+  const auto two = config::settle_table_options(control_named("fanuc"), {}, texts, &r);
+  ASSERT_TRUE(one && two);
+  EXPECT_EQ(one->tables("axes"), two->tables("axes"));
+  EXPECT_EQ(one->tables("axes").at("X").at("number"), 1.0);
+}
+
+// A key of a table has a line of its own.
+TEST(Machines, AMistakeInATableOfAnAxisHasItsLine) {
+  const config::MachineRecord r = record_from(whole_record);
+  const config::Manifest m = manifest_with("[options.fanuc.axes.Z]\nstep_mm = 25\n\nnumber = 1\n");
+  const auto settled = config::settle_table_options(control_named("fanuc"), {}, m, &r);
+  ASSERT_FALSE(settled);
+  EXPECT_EQ(settled.error().front().line, 15U) << settled.error().front().message;
+  const std::string found = errors_of(config::parse_manifest(
+      "format = 1\n[options.fanuc.axes.Z]\nstep_mm = 25\nnumber = \"1\"\n", "campaign.toml"));
+  EXPECT_NE(found.find("campaign.toml:4: options.fanuc.axes.Z.number: expected a finite number"),
+            std::string::npos)
+      << found;
+}
+
+TEST(Machines, WhatIsNoNumberInATextOfAnAxisIsRefused) {
+  for (const char* entry :
+       {"X step_mm", "X step_mm=", "X step_mm=5,5", "X step_mm=nan", "X step_mm=1e999"}) {
+    const auto tables = config::number_tables_of({entry});
+    ASSERT_FALSE(tables) << entry;
+    EXPECT_NE(tables.error().message.find("expected step_mm=NUMBER"), std::string::npos) << entry;
+  }
+  EXPECT_FALSE(config::number_tables_of({""}));
+  EXPECT_EQ(config::number_tables_of({"X number=3 number=4"}).error().message,
+            "axis X has number=3 and number=4: which of them?");
 }
 
 TEST(Machines, ARecordIsOfItsControlOnly) {
@@ -127,11 +175,11 @@ TEST(Machines, ARecordIsOfItsControlOnly) {
   const config::Manifest m = manifest_with("");
   const auto settled = config::settle_table_options(control_named("pmac"), {}, m, &r);
   ASSERT_TRUE(settled);
-  EXPECT_EQ(settled->texts("axes"), Texts());
+  EXPECT_EQ(settled->tables("axes"), NumberTables());
   std::string text = whole_record;
   text.erase(text.find("control = \"fanuc\"\n"), 18);
   const config::MachineRecord any = record_from(text);
-  EXPECT_EQ(config::settle_table_options(control_named("pmac"), {}, m, &any)->texts("axes").size(),
+  EXPECT_EQ(config::settle_table_options(control_named("pmac"), {}, m, &any)->tables("axes").size(),
             1U);
 }
 
@@ -165,8 +213,8 @@ TEST(Machines, ACampaignThatContradictsTheRecordIsRefused) {
 
 TEST(Machines, WhatWasOnWhileMeasuredIsTheBacklashThen) {
   const config::Manifest m = manifest_with("[machine.axes.Z]\nbacklash_on_mm = 0.02\n");
-  EXPECT_EQ(config::settle_table_options(control_named("fanuc"), {}, m, nullptr)->texts("axes"),
-            Texts({"Z backlash_mm=0.020000000"}));
+  EXPECT_EQ(config::settle_table_options(control_named("fanuc"), {}, m, nullptr)->tables("axes"),
+            (NumberTables{{"Z", {{"backlash_mm", 0.02}}}}));
   const config::Manifest other = manifest_with(
       "[machine.axes.Z]\nbacklash_on_mm = 0.02\n[options.fanuc]\naxes = [\"Z "
       "backlash_mm=0.01\"]\n");

@@ -30,19 +30,18 @@ loader::Plugins plugins() {
   Reader reader;
   reader.info = {"both", "1", "A reader.", {{"only-here", false, "", "A flag."}}};
   all.add(reader);
-  Output output;
-  output.info = {"table", "1", "A table."};
-  output.stage = Output::Stage::table;
-  all.add(output);
+  Controller controller;
+  controller.info = {"table", "1", "A table."};
+  all.add(controller);
   Effect effect;
   effect.info = {"lost.motion", "1", "Of an axis"};
   all.add(effect);
   effect.info.name = "set-up";
-  effect.always = true;
+  effect.is_nuisance = true;
   all.add(effect);
   effect.info.name = "yaw";
-  effect.always = false;
-  effect.of = [](const Observations&) { return std::vector<std::string>{}; };
+  effect.is_nuisance = false;
+  effect.instances = [](const Observations&) { return std::vector<std::string>{}; };
   all.add(effect);
   return all;
 }

@@ -45,7 +45,8 @@ inline bool stood_somewhere(const Part& part) {
 
 /// What can be explained together, in the order of the measurements: runs of one axis; where
 /// something is sensed across the axes or in several at once, all linear axes and their
-/// measurements in one table; ball centres of a rotary axis. Others are left out.
+/// measurements in one table; ball centres of a rotary axis. Others are left out, and so are
+/// readings that `check` (sdk/check.h) refuses.
 std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observations>& read);
 
 /// All effects that apply to a part, without those that are always in a model.
@@ -62,7 +63,8 @@ Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
                                      const std::vector<Effect>& effects);
 
 /// Scatter of repeated readings of one target in one direction, after what a whole pass shares
-/// (its own zero and slope) is taken out: no model of the catalogue is in it.
+/// (its own zero, slope and curvature) is taken out: no model of the catalogue is in it. Not below
+/// what a display of coarse digits hides, digit/sqrt(12).
 struct NoiseFloor {
   double s = 0.0;    ///< m or rad
   double u = 0.0;    ///< its standard uncertainty, s / sqrt(2 dof)
@@ -74,10 +76,24 @@ struct LackOfFit {
   double F = 0.0, p = 1.0, dof1 = 0.0, dof2 = 0.0;
 };
 
-/// Where something is left. `where` is one of direction, position, run, time, temperature,
-/// screw-phase, angle, or two of them joined by " x " ("direction x time").
+/// What readings are split by.
+enum class Factor : char { direction, position, screw_phase, angle, run, time, temperature };
+
+/// One factor, or the product of two.
+struct Where {
+  Factor first = Factor::direction;
+  std::optional<Factor> second{};
+
+  bool has(Factor f) const { return first == f || second == f; }
+  bool operator==(const Where&) const = default;
+};
+
+/// "direction", "screw-phase"; of a product "direction x time".
+std::string to_text(const Where& where);
+
+/// Where something is left.
 struct Place {
-  std::string where;
+  Where where;
   double share = 0.0;  ///< of the sum of squares of what is left, less what noise would give
   double p = 1.0;      ///< F-test, corrected for the number of places looked at
   double rms = 0.0;    ///< of that part, m or rad

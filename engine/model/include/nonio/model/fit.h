@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,37 @@ struct Parameter {
   bool shape = false;
 };
 
+/// How the noise of the readings hangs together, as far as their repeats and their order show it.
+struct Noise {
+  /// The zero of a line beside what the model says of it.
+  enum class Zero {
+    steady,
+    walks,    ///< from reading to reading
+    of_run,   ///< each run has its own
+    of_pass,  ///< each run in one direction
+  };
+  /// Targets that scatter differently from the others.
+  struct Stretch {
+    double from = 0.0, to = 0.0;  ///< m or rad
+    double inside = 1.0;          ///< its standard deviation over that of a reading in the mean
+    double outside = 1.0;         ///< that of the others
+  };
+  double measured = 0.0;      ///< correlation of neighbours in a pass; NaN: not known
+  double p = 1.0;             ///< chance that independent readings show as much
+  double in_repeats = 0.0;    ///< the same as search and tests use it: 0 where repeats show none
+  double u_neighbours = 0.0;  ///< standard uncertainty of `in_repeats`, where it is used
+  double neighbours = 0.0;    ///< as values and u of a fit have it
+  Zero zero = Zero::steady;
+  double zero_size = 0.0;   ///< of a zero, or a step of the walk, over s, as u has it
+  double zero_found = 0.0;  ///< the most likely one
+  bool zero_open = false;   ///< these readings leave open how large it may be
+  double digit = 0.0;       ///< last digit of the readings, m or rad
+  std::optional<Stretch> stretch{};
+  std::vector<double> rough{};        ///< of each reading its standard deviation over s; empty: 1
+  std::vector<std::uint32_t> pass{};  ///< of each reading
+  bool independent() const { return !(neighbours > 0.0) && zero == Zero::steady; }
+};
+
 struct Fit {
   std::vector<Term> terms;                       ///< with the shapes that were found
   std::vector<Parameter> parameters;             ///< term by term: linear ones, then shapes
@@ -42,6 +75,7 @@ struct Fit {
   double rms = 0.0;            ///< of the weighted residuals, m or rad
   double s = 0.0;              ///< standard deviation of a reading, from residuals and redundancy
   std::size_t redundancy = 0;  ///< readings less unknowns
+  Noise noise{};               ///< as the weights and u have it
 };
 
 /// Weighted least squares: deviation = zero of its line + sum of columns * parameters + e, by QR
@@ -49,8 +83,10 @@ struct Fit {
 /// one after the other until nothing improves, then between the grid's values; their uncertainty is
 /// that of the linearised problem. `weight` (0..1 a reading, or empty) is for suspected
 /// misreadings. Parameters that the readings cannot tell apart are an error that names them; there
-/// is no minimum-norm guess. Source: GUM-6:2020 9 for the covariance.
+/// is no minimum-norm guess. Source: GUM-6:2020 9 for the covariance. Where repeats show noise that
+/// is not independent, generalised least squares: all rows whitened first; what else is known of it
+/// is in u only.
 Expected<Fit> fit(const Observations& observations, std::vector<Term> terms,
-                  std::vector<double> weight = {});
+                  std::vector<double> weight = {}, const Noise& noise = {});
 
 }  // namespace nonio::model

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -11,23 +12,38 @@
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/plugin.h"
 
+/// What effects on one axis are made of. With theta the commanded position, [a, b] the stretch that
+/// was measured, and the readings i that moved the axis:
+///
+///     length   L = b - a                        m, rad
+///     middle   m = (a + b) / 2                  m, rad
+///     p_i      = theta_i - m                    m, rad, in [-L/2, L/2]
+///     d_i      = +1 reached from below, -1 from above
+///     t_i      = time since the first reading of its line, s
+///     K_i      = material temperature - its mean over the readings, K
+///
+///            a               m               b
+///     -------|---------------+---------------|------> coordinate of the axis
+///                     p < 0  |  p > 0
+///                  d = +1  ----->   <-----  d = -1
+///
+/// docs/conventions.md has the signs of deviations.
 namespace nonio {
 
-/// What the columns of an effect on one axis are made of; each of length observations.size(), 0 in
-/// rows in which the axis did not move.
+/// Each column has observations.size() entries, 0 in rows in which the axis did not move.
 struct AxisReadings {
-  std::vector<char> moved;
+  std::vector<char> moved;    ///< 1 where it did
   std::vector<double> p;      ///< position from the middle of the measured stretch, m or rad
   std::vector<double> theta;  ///< position as commanded, m or rad
   std::vector<double> d;      ///< direction of approach: +1, -1
   std::vector<double> t;      ///< since the first reading of its line, s
   std::vector<double> K;  ///< material temperature less its mean, K; 0 everywhere if not measured
-  double length = 0.0;    ///< of the measured stretch
+  double length = 0.0;    ///< of the measured stretch, m or rad
   double duration = 0.0;  ///< of the longest line, s
   /// False: one reading counts as one second, in the order of the rows; where that is not known
   /// either, `t` is 0 everywhere.
   bool timed = false;
-  double middle = 0.0;  ///< of the measured stretch, as commanded
+  double middle = 0.0;  ///< of the measured stretch, as commanded, m or rad
   /// Every reading has a material temperature; of those in `interpolated` it lies, in time, on the
   /// straight line between their neighbours'.
   bool temperature = false;
@@ -36,170 +52,36 @@ struct AxisReadings {
 
 namespace detail {
 
-inline bool complete(const std::vector<double>& column, const std::vector<char>& rows) {
-  if (column.size() != rows.size()) return false;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    if (rows[i] && !std::isfinite(column[i])) return false;
-  return true;
-}
-
-inline void fill_times(const Observations& o, AxisReadings& r) {
-  r.timed = complete(o.time, r.moved);
-  const auto line_of = [&](std::size_t i) { return o.line.empty() ? 0U : o.line[i]; };
-  const std::size_t lines = std::max<std::size_t>(o.line.empty() ? 1 : o.lines.size(), 1);
-  std::vector<double> first(lines, std::numeric_limits<double>::infinity()), count(lines, 0.0);
-  for (std::size_t i = 0; i < o.size(); ++i) {
-    if (!r.moved[i]) continue;
-    r.t[i] = r.timed ? o.time[i] : o.order_known ? count[line_of(i)]++ : 0.0;
-    first[line_of(i)] = std::min(first[line_of(i)], r.t[i]);
-  }
-  for (std::size_t i = 0; i < o.size(); ++i) {
-    if (!r.moved[i]) continue;
-    r.t[i] -= first[line_of(i)];
-    r.duration = std::max(r.duration, r.t[i]);
-  }
-}
-
-/// Temperatures of one line whose rows without one lie between others; false where a gap is longer
-/// than a quarter of the line, or an end is more than an eighth away.
-inline bool fill_blanks(const std::vector<std::uint32_t>& known,
-                        const std::vector<std::uint32_t>& blank, AxisReadings& r) {
-  if (blank.empty()) return true;
-  if (known.size() < 3) return false;
-  const auto& t = r.t;
-  const double whole = std::max(t[known.back()], t[blank.back()]);
-  for (const std::uint32_t i : blank) {
-    const auto after = std::upper_bound(known.begin(), known.end(), t[i],
-                                        [&](double at, std::uint32_t k) { return at < t[k]; });
-    if (after == known.begin() || after == known.end()) {
-      const std::uint32_t end = after == known.end() ? known.back() : known.front();
-      if (std::fabs(t[i] - t[end]) > whole / 8.0) return false;
-      r.K[i] = r.K[end];
-    } else {
-      const std::uint32_t a = *std::prev(after), b = *after;
-      if (t[b] - t[a] > whole / 4.0) return false;
-      r.K[i] = r.K[a] + (r.K[b] - r.K[a]) * (t[i] - t[a]) / (t[b] - t[a]);
-    }
-    r.interpolated.push_back(i);
-  }
-  return true;
-}
-
-inline bool known_temperatures(const Observations& o, AxisReadings& r) {
-  if (o.material.size() != o.size()) return false;
-  const std::size_t lines = std::max<std::size_t>(o.line.empty() ? 1 : o.lines.size(), 1);
-  std::vector<std::vector<std::uint32_t>> known(lines), blank(lines);
-  bool gaps = false;
-  for (std::uint32_t i = 0; i < o.size(); ++i) {
-    if (!r.moved[i]) continue;
-    const bool has = std::isfinite(o.material[i]);
-    if (has) r.K[i] = o.material[i];
-    gaps = gaps || !has;
-    (has ? known : blank)[o.line.empty() ? 0 : o.line[i]].push_back(i);
-  }
-  if (gaps && !(r.duration > 0.0)) return false;  // nobody knows what lies between what
-  const auto earlier = [&](std::uint32_t a, std::uint32_t b) { return r.t[a] < r.t[b]; };
-  for (std::size_t line = 0; line < lines; ++line) {
-    std::stable_sort(known[line].begin(), known[line].end(), earlier);
-    std::stable_sort(blank[line].begin(), blank[line].end(), earlier);
-    if (!fill_blanks(known[line], blank[line], r)) return false;
-  }
-  return true;
-}
-
-inline void fill_temperatures(const Observations& o, AxisReadings& r) {
-  r.temperature = known_temperatures(o, r);
-  double sum = 0.0, n = 0.0;
-  for (std::size_t i = 0; i < o.size(); ++i)
-    if (r.moved[i]) sum += r.K[i], ++n;
-  for (std::size_t i = 0; i < o.size(); ++i)
-    r.K[i] = r.temperature && r.moved[i] ? r.K[i] - sum / n : 0.0;
-  if (!r.temperature) r.interpolated.clear();
-}
+/// Fill `t`, `timed`, `duration`; and `K`, `temperature`, `interpolated`. A gap of temperatures is
+/// filled where it is at most a quarter of its line long, and an end at most an eighth away.
+void fill_times(const Observations& o, AxisReadings& r);
+void fill_temperatures(const Observations& o, AxisReadings& r);
 
 }  // namespace detail
 
-/// Fails if the readings do not move this axis in a known direction.
-inline Expected<AxisReadings> readings_of(const Observations& o, const Axis& axis) {
-  const Observations::AxisColumn* column = nullptr;
-  for (const auto& c : o.axes)
-    if (c.axis == axis.name && !c.approach.empty()) column = &c;
-  if (column == nullptr)
-    return fail("the readings do not say from where axis " + axis.name + " came");
-  const std::size_t n = o.size();
-  AxisReadings r;
-  r.moved.assign(n, 0);
-  for (auto* values : {&r.p, &r.theta, &r.d, &r.t, &r.K}) values->assign(n, 0.0);
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (column->approach[i] == 0) continue;
-    r.moved[i] = 1;
-    r.theta[i] = column->position[i];
-    r.d[i] = column->approach[i];
-    low = std::min(low, r.theta[i]);
-    high = std::max(high, r.theta[i]);
-  }
-  if (!(low <= high)) return fail("the readings do not move axis " + axis.name);
-  r.length = high - low;
-  r.middle = (low + high) / 2.0;
-  for (std::size_t i = 0; i < n; ++i)
-    if (r.moved[i]) r.p[i] = r.theta[i] - r.middle;
-  detail::fill_times(o, r);
-  detail::fill_temperatures(o, r);
-  return r;
-}
+/// An error if the readings do not move this axis in a known direction.
+Expected<AxisReadings> readings_of(const Observations& o, const Axis& axis);
 
-inline bool from_both_directions(const AxisReadings& r) {
-  return std::any_of(r.d.begin(), r.d.end(), [](double d) { return d > 0.0; }) &&
-         std::any_of(r.d.begin(), r.d.end(), [](double d) { return d < 0.0; });
-}
+/// Some were reached from below, some from above.
+bool from_both_directions(const AxisReadings& r);
 
 /// Where to look for the point of a screw or scale that stays where it is, from the middle of the
 /// stretch, m: known from the manifest, else the middle (rotary axes, several axes), else also
 /// a bearing at an end or anywhere between. Steps of about 20 deg of the angle between what moves
 /// all readings alike and what fans them out.
-inline std::vector<double> fixed_points(const Observations& o, const Axis& axis) {
-  const auto r = readings_of(o, axis);
-  if (!r) return {};
-  if (axis.fixed_point && !axis.rotary) return {*axis.fixed_point - r->middle};
-  if (axis.rotary || o.axes.size() > 1 || !(r->length > 0.0)) return {0.0};
-  std::vector<double> points;
-  for (const double at : {-1.5, -0.5, -0.2, 0.0, 0.2, 0.5, 1.5}) points.push_back(at * r->length);
-  return points;
-}
+std::vector<double> fixed_points(const Observations& o, const Axis& axis);
 
-inline Effect::Shape fixed_point_shape() {
-  return {.parameter = {"fixed", "fixed point, from the middle of the measured stretch",
-                        Quantity::length, Quantity::angle},
-          .grid = fixed_points,
-          .usual = 0.0};
-}
+Effect::Shape fixed_point_shape();
 
 /// Why an effect that asks for the course of time does not apply.
-inline WhyNot no_order(const Observations& o, const Axis& axis) {
-  const auto r = readings_of(o, axis);
-  return {r && !(r->duration > 0.0) ? "no-order" : ""};
-}
+WhyNot no_order(const Observations& o, const Axis& axis);
 
 /// Why an effect that asks for both directions of approach does not apply.
-inline WhyNot one_direction(const Observations& o, const Axis& axis) {
-  const auto r = readings_of(o, axis);
-  return {r && !from_both_directions(*r) ? "one-direction" : ""};
-}
+WhyNot one_direction(const Observations& o, const Axis& axis);
 
 /// The positions that were measured, each once, ascending, from the middle of the stretch. What
 /// lies nearer than 1e-9 of the length is one target.
-inline std::vector<double> targets_of(const AxisReadings& r) {
-  std::vector<double> targets;
-  for (std::size_t i = 0; i < r.p.size(); ++i)
-    if (r.moved[i] && std::isfinite(r.p[i])) targets.push_back(r.p[i]);
-  std::sort(targets.begin(), targets.end());
-  const double near = 1e-9 * r.length;
-  targets.erase(std::unique(targets.begin(), targets.end(),
-                            [near](double a, double b) { return b - a <= near; }),
-                targets.end());
-  return targets;
-}
+std::vector<double> targets_of(const AxisReadings& r);
 
 /// A column for each of `values`, which are called as value(readings, row) for the rows in which
 /// the axis moved; the others are 0.

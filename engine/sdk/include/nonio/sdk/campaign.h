@@ -130,8 +130,17 @@ struct Measurement {
   std::map<std::string, double> tool_offset{};       ///< m, from the spindle nose to the probe
   std::map<std::string, double> workpiece_offset{};  ///< m, from the table to the place measured
   std::string compensation{};                        ///< "on" or "off": the control's tables
-  std::string side{};  ///< of a gantry axis: "master" or "slave"; empty: not said
+  std::string side{};                  ///< of a gantry axis: "master" or "slave"; empty: not said
+  std::optional<std::string> state{};  ///< of the machine, as the manifest says it; see `state_of`
 };
+
+/// State of the machine in which something was measured: "final". Empty: it holds for every state.
+/// A manifest without key `state` says it behind the first space of the id ("D1 final").
+inline std::string state_of(const Measurement& m) {
+  if (m.state) return *m.state;
+  const std::size_t space = m.id.find(' ');
+  return space == std::string::npos ? std::string() : m.id.substr(space + 1);
+}
 
 /// The axis of the control whose scale a measurement of an axis was made on: on the second side of
 /// a gantry the slave, else the axis itself.

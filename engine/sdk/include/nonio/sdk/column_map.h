@@ -15,7 +15,7 @@
 /// rows are. Nothing of it is guessed.
 namespace nonio {
 
-/// An error of an option: "option unit: wanted ..., found ...".
+/// An error of an option: "option unit: expected ..., found ...".
 inline Error of_option(std::string_view option, std::string message) {
   Error error{"option " + std::string(option) + ": " + std::move(message)};
   error.key = option;

@@ -38,7 +38,7 @@ struct ControlTable {
   struct Fact {
     std::string id;  ///< "sign"; where it is not documented, tables come with a note <plugin>.<id>
     Confidence confidence = Confidence::documented;
-    std::string says;  ///< one sentence, English
+    std::string description;  ///< one sentence, English
   };
 
   std::string name;  ///< as the maker calls it: "kw.ssfk"
@@ -81,10 +81,10 @@ struct TableInput {
   const Settings& options;
 };
 
-/// A control's backup, and the files of a new table: what `Output::merge` puts together.
+/// A control's backup, and the files of a new table: what `Controller::merge` puts together.
 struct MergeInput {
   const std::vector<Artifact>& backup;  ///< as it was saved, all files that hold tables
-  const std::vector<Artifact>& table;   ///< of this axis, as `Output::write` made them
+  const std::vector<Artifact>& table;   ///< of this axis, as `Controller::write` made them
   const std::string& axis;
   const Campaign& campaign;
   const Settings& options;

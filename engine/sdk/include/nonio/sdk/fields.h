@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/powers_of_10.h"
 #include "nonio/sdk/text.h"
 
 /// The lowest floor of readers of text: lines to fields, fields to numbers, text to words for a

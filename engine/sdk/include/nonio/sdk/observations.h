@@ -84,4 +84,44 @@ struct Observations {
   }
 };
 
+/// Calls f(column...) for each column of what was measured beside the deviation itself, with that
+/// of each table: u, run, source_line, time, material, air, pressure, humidity.
+template <class F, class... Tables>
+void for_each_measured_column(F f, Tables&... tables) {
+  f(tables.u...);
+  f(tables.run...);
+  f(tables.source_line...);
+  f(tables.time...);
+  f(tables.material...);
+  f(tables.air...);
+  f(tables.pressure...);
+  f(tables.humidity...);
+}
+
+/// Calls f(column) for each column that has an entry for each reading, those of the axes first.
+template <class Table, class F>
+void for_each_column(Table& o, F f) {
+  // A new member of Observations stops the compiler here: is it a column?
+  [[maybe_unused]] const auto& [measurement, angular, axes, lines, deviation, u, run, line,
+                                source_line, time, material, air, pressure, humidity, sense,
+                                structure, order_known, missing, notes, doubts] = o;
+  for (auto& axis : o.axes) {
+    f(axis.position);
+    f(axis.approach);
+  }
+  f(o.deviation);
+  f(o.line);
+  f(o.sense);
+  for_each_measured_column(f, o);
+}
+
+/// Adds the readings of `more` behind those of `to`: the deviations, and what was measured beside
+/// them. In a column that only one of the two has, the rows of the other are NaN; run 1, source
+/// line 0. Axes and lines are the caller's.
+void append_measured(Observations& to, const Observations& more);
+/// The rows that `kept` has something at, in their order, and nothing of the others.
+void keep_rows(Observations& o, const std::vector<char>& kept);
+/// Row `order[i]` as row i; lines and their names stay.
+Observations rearranged(const Observations& o, const std::vector<std::uint32_t>& order);
+
 }  // namespace nonio

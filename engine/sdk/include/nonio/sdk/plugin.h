@@ -15,7 +15,7 @@
 #include "nonio/sdk/settings.h"
 #include "nonio/sdk/units.h"
 
-/// A plugin is a shared library with one exported symbol. It registers values of the four kinds
+/// A plugin is a shared library with one exported symbol. It registers values of the five kinds
 /// below: pure functions from a value to a value or an error. The host owns disk, clock, log,
 /// locale, threads, processes and configuration.
 ///
@@ -25,11 +25,11 @@ namespace nonio {
 /// One option of a plugin. The host checks kind, range and choices and fills in the default.
 struct Option {
   std::string name;
-  Setting otherwise;                      ///< the default; it also fixes the kind
-  std::string unit;                       ///< "" if none
-  std::string help;                       ///< one sentence
-  std::vector<std::string> choices{};     ///< of a text option: what is allowed; empty: anything
-  std::optional<double> least{}, most{};  ///< of a number: the allowed range
+  Setting default_value;               ///< it also fixes the kind
+  std::string unit;                    ///< "" if none
+  std::string help;                    ///< one sentence
+  std::vector<std::string> choices{};  ///< of a text option: what is allowed; empty: anything
+  std::optional<double> min{}, max{};  ///< of a number: the allowed range, ends included
 };
 
 struct Info {
@@ -39,7 +39,7 @@ struct Info {
   std::vector<Option> options{};
   /// Of an analysis or output: not among "all that apply", only where `[run]` names it or the
   /// campaign has its `[options.<name>]`.
-  bool on_request = false;
+  bool opt_in = false;
 };
 
 struct ReadInput {
@@ -106,10 +106,10 @@ struct Effect {
   /// are the deviation as it is sensed (`Observations::sense_of`). Without it: of each axis, the
   /// columns are the error along the axis, and the engine takes its component where readings are
   /// sensed in another direction.
-  std::function<std::vector<std::string>(const Observations&)> of{};
+  std::function<std::vector<std::string>(const Observations&)> instances{};
   /// An unknown of the set-up (how a mirror stood): in every model that it applies to, never a
   /// candidate.
-  bool always = false;
+  bool is_nuisance = false;
   /// A curve that says what is left and not why ("a reversal for each target"): never a candidate,
   /// offered where no effect explains. Beside other effects it is what they leave of it.
   bool description = false;
@@ -151,38 +151,55 @@ struct OutputInput {
   const Results& results;
   const Settings& options;
   const Templates& templates;
-  /// For a table: the readings themselves, where `observations` is what the campaign's model says
-  /// of them (manifest, compensate = "model"); else null.
-  const std::vector<Observations>* measured = nullptr;
-  const Issue* issue = nullptr;  ///< of an output with `lacks`; null while that is asked
+  const Issue* issue = nullptr;  ///< of a certificate; null while it is asked what is missing
 };
 
-/// results -> artifacts
+/// results -> documents. It is written after the tables of all controllers, and sees in
+/// `results.outputs` what they predict.
 struct Output {
-  enum class Stage {
-    table,     ///< for a controller; written first
-    document,  ///< sees in `results.outputs` what the tables predict
+  /// Of what is issued under a number, once and for good.
+  struct Certificate {
+    /// Everything that is missing for it, as keys to fill. When nothing is, `write` is called for a
+    /// draft (Issue::is_draft): every page of its PDF has to say that it is one. When a person has
+    /// released it, the host draws a number and calls `write` again; the same data are never issued
+    /// anew.
+    std::vector<std::string> (*missing_requirements)(const OutputInput&) = nullptr;
   };
   Info info;
-  Stage stage = Stage::document;
   bool (*applies)(const Campaign&) = nullptr;
   Expected<OutputResult> (*write)(const OutputInput&) = nullptr;
   /// Optional: called once in a run, before any campaign, to pay for what all documents share
   /// (fonts). It must not change what `write` gives.
   void (*prepare)(const Templates&) = nullptr;
-  /// Of what is issued under a number, once and for good: everything that is missing for it, as
-  /// keys to fill. When nothing is, `write` is called for a draft (Issue::is_draft): every page of
-  /// its PDF has to say that it is one. When a person has released it, the host draws a number and
-  /// calls `write` again; the same data are never issued anew.
-  std::vector<std::string> (*lacks)(const OutputInput&) = nullptr;
   /// Optional: what is wrong with the templates and words that this output uses.
   std::vector<Error> (*check_templates)(const Templates&) = nullptr;
-  /// Of a table: what the control takes, and what it makes of files that are in it. Where the
-  /// output has an option `axes` of texts, the host puts into it what the record of the machine
-  /// says: "X number=1 reference_mm=0 from_mm=0 to_mm=800 resolution_um=1 largest_um=100
-  /// slope_um_per_m=200", and the same of rotary axes (_deg, _arcsec, slope_arcsec_per_deg). What
-  /// of it the control does not need is passed over.
-  std::optional<ControlTable> control{};
+  std::optional<Certificate> certificate{};  ///< none: it is written without a number
+};
+
+struct ControllerInput {
+  const Campaign& campaign;
+  /// One entry for each measurement of the campaign, in its order; empty where nothing could read
+  /// it.
+  const std::vector<Observations>& observations;
+  const Results& results;
+  const Settings& options;
+  /// The readings themselves, where `observations` is what the campaign's model says of them
+  /// (manifest, compensate = "model"); else null.
+  const std::vector<Observations>* measured = nullptr;
+};
+
+/// readings and results -> the tables of one control, and back. `[run] outputs` names it among the
+/// outputs: no output has the same name.
+struct Controller {
+  /// Where it has an option `axes` of tables, the host puts into it what the record of the machine
+  /// says of each axis: number, reference_mm, from_mm, to_mm, resolution_um, largest_um,
+  /// slope_um_per_m, and the same of rotary axes (_deg, _arcsec, slope_arcsec_per_deg). What of it
+  /// the control does not need is passed over.
+  Info info;
+  ControlTable table;  ///< what the control takes
+  bool (*applies)(const Campaign&) = nullptr;
+  Expected<OutputResult> (*write)(const ControllerInput&) = nullptr;
+  /// What the control makes of files that are in it.
   Expected<std::vector<LoadedTable>> (*parse)(const TableInput&) = nullptr;
   /// Optional: the files of the backup with the table of this axis in place of its present one, all
   /// else byte for byte as it was. Only files that changed are given. An error where it would touch
@@ -197,12 +214,14 @@ class Registry {
   virtual void add(Effect) = 0;
   virtual void add(Analysis) = 0;
   virtual void add(Output) = 0;
+  virtual void add(Controller) = 0;
 
  protected:
   ~Registry() = default;
 };
 
-inline constexpr int sdk_version = 8;
+/// The version of this interface: the one place that it stands in.
+#define NONIO_SDK_VERSION 9
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
@@ -226,7 +245,9 @@ inline constexpr int sdk_version = 8;
 #endif
 
 /// Everything that must agree before a plugin may be called.
-#define NONIO_ABI_TAG "nonio-sdk 8; " NONIO_COMPILER "; " NONIO_STDLIB "; " NONIO_DEBUG
+#define NONIO_ABI_TAG                                                                \
+  "nonio-sdk " NONIO_STRING(NONIO_SDK_VERSION) "; " NONIO_COMPILER "; " NONIO_STDLIB \
+                                               "; " NONIO_DEBUG
 
 /// The one exported symbol, `nonio_plugin`. Plain: the host reads the tag before it calls anything.
 struct PluginEntry {

@@ -242,7 +242,7 @@ struct ModelFit {
   std::vector<Step> steps;                       ///< the last one is the model
   std::optional<double> floor{}, floor_u{};      ///< scatter of repeats, its standard uncertainty
   std::vector<Suspect> suspects;
-  std::vector<Finding> says;            ///< the verdict, then what else the model says
+  std::vector<Finding> diagnosis;       ///< the verdict, then what else the model says
   std::vector<Without> without{};       ///< for each effect that can be left out
   std::vector<Candidate> candidates{};  ///< most evidence first
   /// Of the others, "No sign of A (would be seen from 1 um)", "B (2 um)", ...: one sentence.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -10,8 +11,12 @@
 
 namespace nonio {
 
+/// Tables of numbers by their names: `[options.fanuc.axes.X] number = 1` is {"X": {"number": 1}}.
+using NumberTable = std::map<std::string, double, std::less<>>;
+using NumberTables = std::map<std::string, NumberTable, std::less<>>;
+
 using Setting = std::variant<bool, std::int64_t, double, std::string, std::vector<double>,
-                             std::vector<std::string>>;
+                             std::vector<std::string>, NumberTables>;
 
 /// Names and values: the options of one plugin, or one file of templates/ with its tables
 /// flattened ("finding.drift.parallel.advice"). An accessor gives `otherwise` where the name is
@@ -44,6 +49,7 @@ class Settings {
   std::vector<double> numbers(std::string_view name) const {
     return get<std::vector<double>>(name, {});
   }
+  NumberTables tables(std::string_view name) const { return get<NumberTables>(name, {}); }
 
  private:
   template <class T>

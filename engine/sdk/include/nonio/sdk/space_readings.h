@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,14 +14,26 @@
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/plugin.h"
 
+/// What effects in space are made of. An effect gives the error vector e of the tool point at
+/// (x, y, z), in m from the corner of the measured volume; a reading senses n . e, n the unit
+/// vector of its line, so that a column is
+///
+///     column_i = sum over k of n_k(i) de_k/dparameter (x_i, y_i, z_i)
+///
+/// Chain bed - X - Y - Z - tool, right-handed; docs/conventions.md draws it:
+///
+///              Z   Y
+///              |  /       corner: the lowest measured position of each axis
+///              | /        lever of an angle about k: the coordinates across k, from the corner
+///       corner +------ X
 namespace nonio {
 
-/// What the columns of an effect in space are made of.
+/// Where the tool point was. The corner is the lowest measured position of each axis.
 struct SpaceReadings {
   /// x, y, z of each reading from the corner of the measured volume, m; NaN where nobody said where
-  /// the axis stood. A coordinate that no axis has is empty.
+  /// the axis stood. A coordinate that no axis has is empty. k is 0, 1, 2 for x, y, z.
   std::array<std::vector<double>, 3> r;
-  std::array<double, 3> length{};  ///< of the measured volume
+  std::array<double, 3> length{};  ///< of the measured volume, m
 
   bool moves(std::size_t k) const { return length[k] > 0.0; }
   /// How far a point is from the corner: 0 where nobody said.
@@ -29,71 +42,25 @@ struct SpaceReadings {
   }
 };
 
-inline SpaceReadings space_of(const Observations& o) {
-  SpaceReadings out;
-  for (const auto& axis : o.axes) {
-    const std::size_t k = coordinate_of(axis.axis);
-    if (axis.rotary || k > 2) continue;
-    auto& r = out.r[k];
-    r.resize(o.size(), std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t i = 0; i < o.size(); ++i)
-      if (std::isfinite(axis.position[i])) r[i] = axis.position[i];
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const double x : out.r[k])
-      if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
-    if (!(low <= high)) continue;
-    out.length[k] = high - low;
-    for (double& x : out.r[k]) x -= low;
-  }
-  return out;
-}
+/// Of what the readings' axes were commanded to.
+SpaceReadings space_of(const Observations& o);
 
 /// Centres of a ball that turns with a rotary axis: lengths over an angle.
-inline bool of_ball_centres(const Observations& o) {
-  return !o.angular && !o.axes.empty() && o.axes.front().rotary;
-}
+bool of_ball_centres(const Observations& o);
 
 /// Whether coordinate k changes within a line whose readings sense direction `error`: else its zero
 /// takes whatever depends on k. `away`: looks only at readings that are away from the corner along
 /// this coordinate.
-inline bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::size_t k,
-                                std::size_t error, std::size_t away = 3) {
-  constexpr double never = std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> first(std::max<std::size_t>(o.lines.size(), 1), never);
-  for (std::size_t i = 0; i < s.r[k].size(); ++i) {
-    if (!std::isfinite(s.r[k][i]) || !(std::fabs(o.sense_of(i)[error]) > 1e-9)) continue;
-    if (away < 3 && !(s.lever(away, i) > 1e-9 * s.length[away])) continue;
-    double& x = first[o.line.empty() ? 0 : o.line[i]];
-    if (!std::isfinite(x)) x = s.r[k][i];
-    if (std::fabs(s.r[k][i] - x) > 1e-9 * s.length[k]) return true;
-  }
-  return false;
-}
+bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::size_t k,
+                         std::size_t error, std::optional<std::size_t> away = std::nullopt);
 
 /// The places of coordinate k that were measured, each once, ascending, m from the corner. What
 /// lies nearer than 1e-9 of the length is one.
-inline std::vector<double> places_of(const SpaceReadings& s, std::size_t k) {
-  std::vector<double> places;
-  for (const double x : s.r[k])
-    if (std::isfinite(x)) places.push_back(x);
-  std::sort(places.begin(), places.end());
-  const double near = 1e-9 * s.length[k];
-  places.erase(std::unique(places.begin(), places.end(),
-                           [near](double a, double b) { return b - a <= near; }),
-               places.end());
-  return places;
-}
+std::vector<double> places_of(const SpaceReadings& s, std::size_t k);
 
 /// Numbers of knots for a smooth curve: at most 10, and at least two places for each free value, so
 /// that it cannot follow single places.
-inline std::vector<double> knots_over(const std::vector<double>& places) {
-  std::vector<double> knots;
-  for (std::size_t k = 3; k < std::min<std::size_t>(places.size() / 2, 11); ++k)
-    knots.push_back(static_cast<double>(k));
-  return knots;
-}
+std::vector<double> knots_over(const std::vector<double>& places);
 
 /// The readings of one line, as it goes through space; without those that do not know where an axis
 /// was that the first one knows.
@@ -115,39 +82,11 @@ struct SpaceLine {
   bool goes_in_steps() const { return !straight && std::fabs(dot(farthest, sense)) > 0.5 * length; }
 };
 
-inline SpaceLine space_line(const Observations& o, const SpaceReadings& s, std::size_t line) {
-  SpaceLine out;
-  const auto same_are_known = [&s](std::size_t one, std::size_t other) {
-    return std::all_of(s.r.begin(), s.r.end(), [=](const std::vector<double>& r) {
-      return r.empty() || std::isfinite(r[one]) == std::isfinite(r[other]);
-    });
-  };
-  for (std::size_t i = 0; i < o.size(); ++i) {
-    if ((o.line.empty() ? 0 : o.line[i]) != line) continue;
-    if (!out.rows.empty() && !same_are_known(i, out.rows.front())) continue;
-    out.way.push_back({s.lever(0, i), s.lever(1, i), s.lever(2, i)});
-    out.rows.push_back(i);
-  }
-  if (out.rows.empty()) return out;
-  out.sense = o.sense_of(out.rows.front());
-  const auto first = out.way.front();
-  for (auto& way : out.way) {
-    for (std::size_t k = 0; k < 3; ++k) way[k] -= first[k];
-    if (const double length = std::sqrt(SpaceLine::dot(way, way)); length > out.length)
-      out.length = length, out.farthest = way;
-  }
-  for (const auto& way : out.way) {
-    const auto off = SpaceLine::cross(way, out.farthest);  // times the length
-    if (std::sqrt(SpaceLine::dot(off, off)) > 1e-4 * out.length * out.length) out.straight = false;
-  }
-  return out;
-}
+/// Of line `line`, an index into Observations::lines.
+SpaceLine space_line(const Observations& o, const SpaceReadings& s, std::size_t line);
 
-inline std::vector<double> finite_or_zero(std::vector<double> x) {
-  for (double& v : x)
-    if (!std::isfinite(v)) v = 0.0;
-  return x;
-}
+/// What is not finite becomes 0.
+std::vector<double> finite_or_zero(std::vector<double> x);
 
 /// Letter of a coordinate, and back: 3 if it is none.
 inline char letter_of(std::size_t k) { return "XYZ"[k]; }

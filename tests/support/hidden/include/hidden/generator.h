@@ -81,11 +81,21 @@ enum class Kind {
   day_wave,            ///< a day's wave over 8 to 30 hours
   smallest,            ///< one, to be made as large as `explain` says that it would be found
   short_misread,       ///< one that a single run of 10 to 12 readings shows, one of them misread
+  short_complete,      ///< such a run, and nothing that the model does not hold
 };
 
 struct Piece {
   Source source;
   double size;  ///< RMS of its noiseless deviation, mean taken out, in units of the noise
+};
+
+/// How the noise differs from independent readings of one scatter.
+struct Unrest {
+  double correlation = 0.0;  ///< of a reading with the one before: AR(1), on through all passes
+  double run_zero = 0.0;     ///< each run its own zero: standard deviation in units of the noise
+  double walk = 0.0;         ///< of the zero, RMS about its mean in units of the noise
+  double rough = 1.0;        ///< a stretch of a quarter to a half scatters so many times as much
+  double digit = 0.0;        ///< last digit of the display in units of the noise; 0: fine
 };
 
 /// One campaign as it is to be made.
@@ -108,10 +118,11 @@ struct Scenario {
   /// Point of the screw or scale that stays where it is, from the middle of the stretch, in
   /// lengths of the stretch.
   double fixed = 0.0;
-  bool one_way = false;       ///< the targets are met from one side only
-  double noise = 5e-7;        ///< standard deviation of a reading, m or rad
-  double misread = 0.0;       ///< share of readings that are wrong by 8 to 40 times the noise
-  bool one_misread = false;   ///< instead: exactly one
+  bool one_way = false;      ///< the targets are met from one side only
+  double noise = 5e-7;       ///< standard deviation of a reading, m or rad
+  double misread = 0.0;      ///< share of readings that are wrong by 8 to 40 times the noise
+  bool one_misread = false;  ///< instead: exactly one
+  Unrest unrest{};
   std::vector<Piece> model;   ///< causes that the campaign's model holds already
   std::vector<Piece> hidden;  ///< causes that it does not
 };

@@ -23,7 +23,8 @@
 ///     turn_cos,    the same of one turn of a rotary axis
 ///     turn_sin
 ///     B_mean       mean of B_i
-///     ln_s         ln of the root of the mean of s_i^2 over targets and directions, s in um or arcsec
+///     ln_s         ln of the root of the mean of s_i^2 over targets and directions
+///                  (s in um or arcsec)
 ///
 /// Each is f = sum J_k y_k over the readings (ln_s aside). Its uncertainty u is of what is new in
 /// each campaign. Of the readings: with e of a single reading, and of each run the offset and slope
@@ -31,12 +32,14 @@
 ///
 ///     u^2 = sum_dir v_dir sum J_k^2 + sum_runs (v_s (G+ + G-)^2 + v_d (G+ - G-)^2 + slopes alike)
 ///
-/// G: sum of J_k over a pass, of J_k (x_k - middle) for slopes. v_s, v_d: variance of the offsets
-/// over the runs less what single readings make of it; not below 0. Beside it in the scale, from
-/// the manifest: misalignment, temperature reading, and expansion where the temperature is not in
-/// the file (docs/formulas.md). What campaigns share is apart: an error of the instrument's length,
-/// and of the expansion coefficient. Sources: JCGM 100:2008, 5.2; variance components by the
-/// analysis of variance (derived), checked by simulation (tests/unit/math/followed_test.cpp).
+/// Where readings of neighbouring targets are alike (their correlation r is estimated), r^|k - l|
+/// joins the readings of a pass in the first sum. G: sum of J_k over a pass, of J_k (x_k - middle)
+/// for slopes. v_s, v_d: variance of the offsets over the runs less what single readings make of
+/// it; not below 0. Beside it in the scale, from the manifest: misalignment, temperature reading,
+/// and expansion where the temperature is not in the file (docs/formulas.md). What campaigns share
+/// is apart: an error of the instrument's length, and of the expansion coefficient. Sources: JCGM
+/// 100:2008, 5.2; variance components by the analysis of variance (derived), checked by simulation
+/// (tests/unit/math/followed_test.cpp).
 namespace nonio::math {
 
 struct Followed {

@@ -12,7 +12,7 @@
 /// The axes of the machine as a control knows them: option `axes` holds what each has of its own.
 namespace nonio::controllers {
 
-using AxisSettings = std::map<std::string, double, std::less<>>;
+using AxisSettings = NumberTable;
 
 struct KnownAxis {
   std::string name;
@@ -26,15 +26,15 @@ struct KnownAxis {
   double per_si() const { return rotary ? deg_per_rad : 1e3; }
 };
 
-/// Entries "X number=1 step_mm=50" of option `axes`, by axis. `keys`: "reference" stands for
+/// Tables of option `axes`, by axis. `keys`: "reference" stands for
 /// reference_mm and reference_deg, a name with ':' at its end for a plain number; none: any. What
 /// the record of a machine may say is always taken: number, reference, from, to, backlash,
 /// resolution, largest, slope.
-Expected<std::map<std::string, AxisSettings>> settings_of_axes(
-    const Settings& options, const std::vector<std::string_view>& keys = {});
+Expected<NumberTables> settings_of_axes(const Settings& options,
+                                        const std::vector<std::string_view>& keys = {});
 
-/// Error of option `axes`.
-tl::unexpected<Error> wrong_axes(std::string message);
+/// Error of option `axes`: of a key in it ("X.number"), or of the whole.
+tl::unexpected<Error> wrong_axes(std::string message, const std::string& key = {});
 
 /// The axes of the manifest with their settings.
 Expected<std::vector<KnownAxis>> known_axes(const TableInput&);

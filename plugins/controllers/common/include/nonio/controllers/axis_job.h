@@ -17,6 +17,9 @@
 /// mend, predict what is left. Compiled into each plugin; a plugin has no part of another.
 namespace nonio::controllers {
 
+/// The columns of a table: one of the mean of both directions, or one for each direction.
+enum class Columns { mean, both };
+
 /// One measured axis of which a table is to be written. SI.
 struct AxisJob {
   std::string axis, measurement;
@@ -63,13 +66,13 @@ bool has_tables(const Campaign&);
 /// axes without them. `keys` are the settings that
 /// option `axes` takes for one axis: "reference" stands for reference_mm and reference_deg, a
 /// name with ':' at its end for a plain number. Findings and notes go to `result`.
-Expected<std::vector<AxisJob>> axis_jobs(const OutputInput& input,
+Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
                                          const std::vector<std::string_view>& keys,
                                          OutputResult& result);
 
 /// True, with a finding that names the key and the file, where nobody says the number of one of
 /// these axes in the control.
-bool lacks_number(const std::vector<std::string>& of, const OutputInput& input,
+bool lacks_number(const std::vector<std::string>& of, const ControllerInput& input,
                   const std::vector<KnownAxis>& axes, const std::string& measurement,
                   OutputResult& result);
 
@@ -85,13 +88,13 @@ double wished_step(const AxisJob& job, const Settings& options);
 
 /// True, with a finding, where the reversal changes along the axis by as much as the pitch table
 /// takes away, and no direction tables are asked for.
-bool refused(const AxisJob& job, bool directions, OutputResult& result);
+bool refused(const AxisJob& job, Columns columns, OutputResult& result);
 
 /// Lines for a table of an axis that was not stable while it was measured, or of readings that
 /// do not belong to the others; empty otherwise.
 std::vector<std::string> warnings(const AxisJob& job, OutputResult& result);
 /// How the reversal was dealt with, for the words beside a table.
-std::string reversal_words(const AxisJob& job, bool directions);
+std::string reversal_words(const AxisJob& job, Columns columns);
 
 /// For a single backlash value. A finding where the axis goes too far at reversal and nobody said
 /// what the control compensates already: the value written then replaces one that it should have

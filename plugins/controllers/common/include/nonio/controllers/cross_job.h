@@ -46,14 +46,14 @@ struct CrossJob {
 };
 
 /// Of the analyses that could separate the straightnesses: what is not known has no table.
-std::vector<CrossJob> cross_jobs(const OutputInput&);
+std::vector<CrossJob> cross_jobs(const ControllerInput&);
 
 /// Whether this pitch table and these curves are of one state of the machine.
 bool together(const CrossJob&, const AxisJob&, const Campaign&);
 
 /// True, with findings, where a curve is larger or steeper than the maker of the machine allows a
 /// table of its output axis: settings largest_um and slope_um_per_m.
-bool oversized(const CrossJob&, const OutputInput&, OutputResult&);
+bool oversized(const CrossJob&, const ControllerInput&, OutputResult&);
 
 /// "Y over X: zero at 0.0 mm of X, largest entry ...", for the file; and the same as notes.
 std::string cross_words(const CrossCurve&);
@@ -70,7 +70,7 @@ void predict_lines(const CrossJob&, const std::vector<LoadedTable>&, OutputResul
 /// them. An error where a curve is not found in the files.
 Expected<void> predict_cross(const CrossJob&, const std::vector<Artifact>&,
                              Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
-                             const std::vector<AxisJob>& pitch, const OutputInput&,
+                             const std::vector<AxisJob>& pitch, const ControllerInput&,
                              OutputResult& result);
 
 }  // namespace nonio::controllers

@@ -27,8 +27,9 @@ inline constexpr double full_turn = 2.0 * std::numbers::pi;  // rad
 struct Sheet {
   const AxisJob& job;
   const ControlTable& table;  ///< as declared, with what the options change
-  const OutputInput& input;
-  bool directions = false;       ///< there is a table for each direction
+  const ControllerInput& input;
+  bool directions = false;  ///< there is a table for each direction
+  Columns columns() const { return directions ? Columns::both : Columns::mean; }
   math::Grid grid{};             ///< where evenly spaced
   double reference = 0.0;        ///< where an entry is 0; of two columns, their mean; SI
   std::vector<double> position;  ///< SI
@@ -57,6 +58,23 @@ struct Sheet {
   std::vector<std::string> words() const;
 };
 
+/// How a control takes the two directions of travel.
+enum class Directions {
+  by_option,                   ///< a table of the mean; of each direction where option `directions`
+                               ///< says so, and the backlash parameter goes on to count
+  by_option_without_backlash,  ///< the same, but beside direction tables the parameter is dead
+  always_without_backlash,     ///< two columns in any case, no backlash parameter beside them
+};
+
+/// How a table of a whole turn ends.
+enum class TurnEnd {
+  repeats,  ///< the control goes on at its beginning
+  closed,   ///< an entry at the end repeats the first one
+};
+
+/// Of tables for each direction: which of them is 0 at the reference.
+enum class ZeroOf { mean, plus, minus };
+
 /// What a plugin is beside its Info; made for each run, with what its options change.
 struct Writer {
   std::string name;  ///< of the plugin: files begin with it, ids of notes too
@@ -65,12 +83,11 @@ struct Writer {
   std::function<Expected<std::vector<Artifact>>(const Sheet&)> files;
   Expected<std::vector<LoadedTable>> (*parse)(const TableInput&) = nullptr;
 
-  bool always_directions = false;  ///< its tables have two columns in any case
-  bool replaces_backlash = false;  ///< beside direction tables the backlash parameter is dead
-  bool wraps = true;               ///< a turn repeats itself; else it is closed by hand
-  bool power_of_two = false;       ///< the step of linear axes
-  int zero_of = 0;                 ///< the direction whose entry is 0 at the reference; 0: the mean
-  double fixed_step = 0.0;         ///< of a control whose points nobody chooses
+  Directions directions = Directions::by_option;
+  TurnEnd turn_end = TurnEnd::repeats;
+  ZeroOf zero_of = ZeroOf::mean;
+  bool power_of_two = false;  ///< the step of linear axes
+  double fixed_step = 0.0;    ///< of a control whose points nobody chooses
   /// The declaration for one axis, where its units are of the axis.
   std::function<Expected<ControlTable>(const AxisJob&, ControlTable)> of_axis{};
   /// Where the points are wanted; else at the targets.
@@ -93,8 +110,8 @@ Expected<ControlTable> chosen(ControlTable, const Settings&);
 
 /// A sheet of each axis, its files, and what is left when the control has read them back. The jobs
 /// that were written have `loaded`.
-Expected<std::vector<AxisJob>> write_axes(const OutputInput&, const Writer&, OutputResult&);
-Expected<OutputResult> write_tables(const OutputInput&, const Writer&);
+Expected<std::vector<AxisJob>> write_axes(const ControllerInput&, const Writer&, OutputResult&);
+Expected<OutputResult> write_tables(const ControllerInput&, const Writer&);
 
 /// Entries as a file has them, in its units; one for each position. An increment is the change over
 /// the interval that ends at its position, so that of the first position is 0: nothing lies before
@@ -117,12 +134,16 @@ Expected<LoadedTable> loaded(const ControlTable&, const RawTable&);
 /// Notes of all that is not documented.
 void note_facts(const Writer&, OutputResult&);
 
-/// An output of stage `table`; `on_request`: only where the manifest names it.
-Output controller(Info, const ControlTable&, Expected<OutputResult> (*write)(const OutputInput&),
-                  Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
-                  bool on_request = true);
+/// Whether a controller is among all that apply, or only where the manifest names it.
+enum class Offered { by_name, always };
+
+/// A controller of pitch tables.
+Controller controller(Info, const ControlTable&,
+                      Expected<OutputResult> (*write)(const ControllerInput&),
+                      Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
+                      Offered offered = Offered::by_name);
 
 /// The axes of the manifest, and those that are only in readings, as a parser needs them.
-Campaign with_axes_of(const OutputInput&, const std::vector<AxisJob>&);
+Campaign with_axes_of(const ControllerInput&, const std::vector<AxisJob>&);
 
 }  // namespace nonio::controllers

@@ -8,12 +8,14 @@
 namespace nonio::controllers {
 
 /// "NAME-X.txt": number of the point, its position, the entry, and that towards minus where there
-/// are `two` columns (0 without a table for each direction).
-std::vector<Artifact> list_file(const Sheet&, std::string_view name, bool two = false);
+/// are columns of both directions (0 without a table for each direction).
+std::vector<Artifact> list_file(const Sheet&, std::string_view name,
+                                Columns columns = Columns::mean);
 
 /// Such lists read back, as the control takes them once they are typed in.
 Expected<std::vector<LoadedTable>> parse_list(const TableInput&, const ControlTable&,
-                                              std::string_view name, bool two = false);
+                                              std::string_view name,
+                                              Columns columns = Columns::mean);
 
 /// Files that hold a table of one axis each, "NAME-X-...": `take` puts a line into the table, or
 /// says false where it is none of its points. A file without a point is passed over; none with one

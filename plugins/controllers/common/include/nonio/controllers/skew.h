@@ -17,7 +17,7 @@ struct Face {
 };
 
 /// The planes whose squareness the analyses know, over the travels they measured it on.
-std::vector<Face> faces_of(const OutputInput&, OutputResult&);
+std::vector<Face> faces_of(const ControllerInput&, OutputResult&);
 
 /// Something of which squareness may be known: diagonals, step diagonals.
 bool has_squareness(const Campaign&);
@@ -31,7 +31,7 @@ double skew_factor(double AC, double BD, double AD);
 std::vector<LoadedTable> skew_tables(const std::map<std::string, double>& factors);
 
 /// Files of the faces, predicted by `parse`.
-Expected<OutputResult> write_skew(const OutputInput&, const Writer&,
+Expected<OutputResult> write_skew(const ControllerInput&, const Writer&,
                                   std::string (*text)(const std::vector<Face>&));
 /// What a firmware's skew correction is.
 ControlTable skew_declared(std::string name);

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "host/config/site_logs.h"
+#include "host/history/query.h"
+#include "printable.h"
+#include "verbs.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+namespace config = host::config;
+
+namespace {
+
+struct EventWish {
+  std::string site, out;
+  config::Event event;
+};
+
+struct AckWish {
+  std::string site, value, U;
+  config::Acknowledgement known;
+};
+
+struct ForgetWish {
+  std::string site, by, why, date;
+  std::vector<std::string> campaigns;
+};
+
+int refuse_all(const std::string& verb, const std::vector<Error>& errors) {
+  for (const Error& e : errors) complain(verb, text_of(e));
+  return exit_usage;
+}
+
+int wrong_day(const std::string& verb, const std::string& day) {
+  return complain(verb, "expected a day as YYYY-MM-DD, found \"" + day + "\"");
+}
+
+void say(const Common& common, const std::string& site, const char* file, const Json& entry) {
+  if (common.json)
+    std::cout << entry.dump(1, ' ', false, Json::error_handler_t::replace) << "\n";
+  else if (!common.quiet)
+    std::cout << "entered in " << printable(site) << "/" << file << "\n";
+}
+
+int list_events(const EventWish& wish, const Common& common) {
+  const auto logs = config::read_site_logs(wish.site);
+  if (!logs) return refuse_all("nonio event", logs.error());
+  Json all = Json::array();
+  for (const config::Event& e : logs->events) {
+    if (!wish.event.machine.empty() && e.machine != wish.event.machine) continue;
+    all.push_back({{"date", e.date},
+                   {"machine", e.machine},
+                   {"axis", e.axis},
+                   {"kind", e.kind},
+                   {"text", e.text},
+                   {"by", e.by},
+                   {"line", e.line}});
+    if (common.json) continue;
+    std::cout << e.date << "  " << printable(e.machine) << "  "
+              << (e.axis.empty() ? "" : printable(e.axis) + "  ") << e.kind << "  "
+              << printable(e.text) << (e.by.empty() ? "" : "  (" + printable(e.by) + ")") << "\n";
+  }
+  if (common.json)
+    std::cout << Json{{"schema", "nonio-events/1"}, {"events", std::move(all)}}.dump(
+                     1, ' ', false, Json::error_handler_t::replace)
+              << "\n";
+  else if (all.empty() && !common.quiet)
+    std::cout << "no event is entered yet\n";
+  return exit_done;
+}
+
+int event(EventWish& wish, const Common& common) {
+  const char* const verb = "nonio event";
+  config::Event& e = wish.event;
+  if (e.kind.empty() && e.text.empty()) return list_events(wish, common);
+  if (e.kind.empty() || e.text.empty() || e.machine.empty())
+    return complain(verb, "--machine, --kind and --text go together");
+  if (e.date.empty()) e.date = today();
+  if (!is_day(e.date)) return wrong_day(verb, e.date);
+  if (!wish.out.empty()) {
+    host::history::Query known;
+    known.machine = e.machine;
+    known.axis = e.axis;
+    if (const auto found = host::history::query(wish.out, known); !found)
+      return complain(verb, found.error().message);
+  }
+  if (const auto added = config::add_event(wish.site, e); !added)
+    return refuse_all(verb, added.error());
+  say(common, wish.site, config::events_name,
+      {{"schema", "nonio-event/1"}, {"date", e.date}, {"machine", e.machine}, {"kind", e.kind}});
+  return exit_done;
+}
+
+/// False if it is no number.
+bool take_number(const std::string& text, std::optional<double>& into) {
+  if (text.empty()) return true;
+  double x = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, x);
+  if (error != std::errc() || at != end) return false;
+  into = x;
+  return true;
+}
+
+int acknowledge(AckWish& wish, const Common& common) {
+  const char* const verb = "nonio ack";
+  config::Acknowledgement& a = wish.known;
+  if (a.date.empty()) a.date = today();
+  for (const std::string& day : {a.date, a.until})
+    if (!is_day(day)) return wrong_day(verb, day);
+  if (!take_number(wish.value, a.value) || !take_number(wish.U, a.U))
+    return complain(verb, "--value and --U: expected a number with a decimal point");
+  if (const auto added = config::add_acknowledgement(wish.site, a); !added)
+    return refuse_all(verb, added.error());
+  say(common, wish.site, config::acknowledged_name,
+      {{"schema", "nonio-ack/1"},
+       {"finding", a.finding},
+       {"machine", a.machine},
+       {"until", a.until}});
+  return exit_done;
+}
+
+int forget(ForgetWish& wish, const Common& common) {
+  const char* const verb = "nonio forget";
+  if (wish.date.empty()) wish.date = today();
+  if (!is_day(wish.date)) return wrong_day(verb, wish.date);
+  for (const std::string& campaign : wish.campaigns) {
+    if (const auto added =
+            config::add_forgotten(wish.site, {wish.date, campaign, wish.by, wish.why});
+        !added)
+      return refuse_all(verb, added.error());
+  }
+  say(common, wish.site, config::forgotten_name,
+      {{"schema", "nonio-forget/1"}, {"campaigns", wish.campaigns}});
+  return exit_done;
+}
+
+Argument site_argument(std::string& site) {
+  return required(existing(Argument::Takes::folder, {"SITE", &site, "The site"}));
+}
+
+}  // namespace
+
+Verb event_verb(Common& common) {
+  auto wish = std::make_shared<EventWish>();
+  config::Event& e = wish->event;
+  return {
+      .name = "event",
+      .summary = "Enter what happened to a machine: a crash, a repair, a new table",
+      .arguments = joined(
+          {site_argument(wish->site),
+           {"--machine", &e.machine, "Its asset, or maker and serial, as `nonio query` calls it"},
+           {"--axis", &e.axis, "The axis that it concerns; without it the whole machine"},
+           one_of({"crash", "repair", "compensation", "moved", "instrument", "software", "other"},
+                  {"--kind", &e.kind, "What happened"}),
+           {"--text", &e.text, "In the words of who was there, one line"},
+           {"--date", &e.date, "The day, YYYY-MM-DD; without it today"},
+           {"--by", &e.by, "Who says so"},
+           existing(Argument::Takes::folder,
+                    {"--out", &wish->out,
+                     "Output folder of `nonio run`: a machine or axis that its history does not\n"
+                     "know is refused, with the nearest name"})},
+          common_arguments(common)),
+      .footer =
+          "Without --kind and --text: what is entered, of one machine or all.\n"
+          "The entry goes to the end of SITE/events.toml, a file that you may also write by hand;\n"
+          "comments stay. A wrong entry is mended there. From the next night on the machine's\n"
+          "history knows it: a step of its numbers on that day is then no news but its effect.\n\n"
+          "Example: nonio event site --machine S-0042 --axis X --kind crash --date 2026-03-04 "
+          "--text \"tool hit the vice\"",
+      .run = [wish, &common] { return event(*wish, common); }};
+}
+
+Verb ack_verb(Common& common) {
+  auto wish = std::make_shared<AckWish>();
+  config::Acknowledgement& a = wish->known;
+  return {
+      .name = "ack",
+      .summary = "Acknowledge what the morning says of a machine, until a day",
+      .arguments = joined(
+          {site_argument(wish->site),
+           required({"--finding", &a.finding, "Id of the finding, as the night's summary has it"}),
+           required({"--machine", &a.machine, "As `nonio query` calls it"}),
+           {"--axis", &a.axis, "The axis; without it all"},
+           {"--quantity", &a.quantity, "The quantity, such as B_mean; without it all"},
+           required({"--until", &a.until, "Last day on which it is known, YYYY-MM-DD"}),
+           {"--value", &wish->value,
+            "The quantity's value now, in its unit: it returns where it\n"
+            "moves by more than --U"},
+           {"--U", &wish->U, "Expanded uncertainty (k = 2) of that value"},
+           required({"--by", &a.by, "Who says so"}),
+           required({"--why", &a.why, "Why it may stand until then"}),
+           {"--date", &a.date, "The day on which it is said, YYYY-MM-DD; without it today"}},
+          common_arguments(common)),
+      .footer =
+          "The entry goes to the end of SITE/acknowledged.toml; comments stay. Nothing is "
+          "hidden by it:\nwhat is known stays in the results and in the history.\n\n"
+          "Example: nonio ack site --finding reversal.constant --machine S-0042 --axis X "
+          "--until 2026-06-30\n         --by \"B. Sample\" --why \"nut is ordered\"",
+      .run = [wish, &common] { return acknowledge(*wish, common); }};
+}
+
+Verb forget_verb(Common& common) {
+  auto wish = std::make_shared<ForgetWish>();
+  return {.name = "forget",
+          .summary = "Say that campaigns are meant to be gone from the site",
+          .arguments = joined({site_argument(wish->site),
+                               required({"CAMPAIGN", &wish->campaigns, "Their ids"}),
+                               required({"--by", &wish->by, "Who says so"}),
+                               required({"--why", &wish->why, "Why they are gone"}),
+                               {"--date", &wish->date,
+                                "The day on which it is said, YYYY-MM-DD; without it today"}},
+                              common_arguments(common)),
+          .footer =
+              "A campaign that the night before has seen and this one does not is named every "
+              "night, with exit\nstatus 1, until it is back or forgotten. The entry goes to the "
+              "end of SITE/forgotten.toml. What was\nknown of the campaign stays in the output "
+              "folder and in the history.\n\n"
+              "Example: nonio forget site 2021-03-02-rossi --by \"B. Sample\" --why \"machine "
+              "was sold\"",
+          .run = [wish, &common] { return forget(*wish, common); }};
+}
+
+}  // namespace nonio::app

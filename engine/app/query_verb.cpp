@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "host/history/query.h"
+#include "printable.h"
+#include "verbs.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+using host::history::NamedMachine;
+using host::history::Point;
+using host::history::Spelling;
+
+namespace {
+
+constexpr const char* query_name = "nonio query";
+
+struct QueryWish {
+  std::string out;
+  host::history::Query query;
+  bool csv = false;
+};
+
+struct QueryColumn {
+  const char* name;
+  std::string Point::*member;
+  bool number = false;
+};
+
+/// All of a point, under its names in CSV and JSON.
+constexpr auto query_columns = std::to_array<QueryColumn>({
+    {"machine", &Point::machine},
+    {"axis", &Point::axis},
+    {"quantity", &Point::quantity},
+    {"source", &Point::source},
+    {"day", &Point::day},
+    {"state", &Point::state},
+    {"value", &Point::value, true},
+    {"unit", &Point::unit},
+    {"u_repeat", &Point::u_repeat, true},
+    {"u_common", &Point::u_common, true},
+    {"U", &Point::expanded, true},
+    {"k", &Point::k, true},
+    {"tolerance", &Point::tolerance, true},
+    {"decision", &Point::decision},
+    {"campaign", &Point::campaign},
+    {"measurement", &Point::measurement},
+    {"purpose", &Point::purpose},
+    {"instrument", &Point::instrument},
+    {"instrument_certificate", &Point::instrument_certificate},
+    {"evaluation", &Point::evaluation, true},
+    {"superseded_by", &Point::superseded_by, true},
+});
+
+/// RFC 4180: in quotes where it needs them.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+void print_csv(const std::vector<Point>& points) {
+  for (std::size_t i = 0; i < query_columns.size(); ++i)
+    std::cout << (i == 0 ? "" : ",") << query_columns[i].name;
+  std::cout << "\n";
+  for (const Point& p : points) {
+    for (std::size_t i = 0; i < query_columns.size(); ++i)
+      std::cout << (i == 0 ? "" : ",") << csv_field(p.*query_columns[i].member);
+    std::cout << "\n";
+  }
+}
+
+Json to_json(const Point& p) {
+  Json json = Json::object();
+  for (const QueryColumn& c : query_columns) {
+    const std::string& text = p.*c.member;
+    if (text.empty()) continue;
+    if (c.number)
+      json[c.name] = Json::parse(text);
+    else
+      json[c.name] = text;
+  }
+  if (!p.conditions.empty()) json["conditions"] = Json::parse(p.conditions, nullptr, false);
+  return json;
+}
+
+Json to_json(const std::vector<Spelling>& spellings) {
+  Json all = Json::array();
+  for (const Spelling& s : spellings)
+    all.push_back({{"one", s.one}, {"other", s.other}, {"why", s.why}});
+  return all;
+}
+
+/// How many characters a terminal shows of UTF-8, as good as nobody asks more.
+std::size_t shown_width(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  }));
+}
+
+void print_rows(const std::vector<std::vector<std::string>>& rows, const std::string& right) {
+  std::vector<std::size_t> widths(rows.front().size());
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i)
+      widths[i] = std::max(widths[i], shown_width(row[i]));
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string pad(widths[i] - shown_width(row[i]), ' ');
+      line += (i == 0 ? "" : "  ") + (right[i] == 'r' ? pad + row[i] : row[i] + pad);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    std::cout << line << "\n";
+  }
+}
+
+/// Of a standard uncertainty nobody reads more.
+std::string three_digits(const std::string& number) {
+  if (number.empty()) return number;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", std::strtod(number.c_str(), nullptr));
+  return text.data();
+}
+
+void print_table(const std::vector<Point>& points) {
+  std::vector<std::vector<std::string>> rows{
+      {"machine", "axis", "quantity", "day", "state", "value", "unit", "u", "U", "campaign"}};
+  for (const Point& p : points) {
+    rows.push_back({p.machine, p.axis, p.quantity, p.day, p.state, p.value, p.unit,
+                    three_digits(p.u_repeat), p.expanded,
+                    p.campaign + (p.superseded_by.empty() ? "" : " (superseded)")});
+    for (std::string& cell : rows.back()) cell = printable(cell);
+  }
+  print_rows(rows, "lllllrlrrl");
+}
+
+int print_machines(const QueryWish& wish, const Common& common) {
+  const auto machines = host::history::machines_in(wish.out);
+  if (!machines) return complain(query_name, machines.error().message);
+  const auto spellings = host::history::spellings_in(wish.out);
+  if (!spellings) return complain(query_name, spellings.error().message);
+  if (common.json) {
+    Json all = Json::array();
+    for (const NamedMachine& m : *machines)
+      all.push_back({{"machine", m.name}, {"campaigns", m.campaigns}});
+    std::cout << Json{{"schema", "nonio-query/1"},
+                      {"machines", std::move(all)},
+                      {"spellings", to_json(*spellings)}}
+                     .dump(1, ' ', false, Json::error_handler_t::replace)
+              << "\n";
+    return exit_done;
+  }
+  std::vector<std::vector<std::string>> rows{{"machine", "campaigns"}};
+  for (const NamedMachine& m : *machines)
+    rows.push_back({m.name.empty() ? "(says neither asset nor serial)" : printable(m.name),
+                    std::to_string(m.campaigns)});
+  print_rows(rows, "lr");
+  for (const Spelling& s : *spellings)
+    std::cout << "one machine? \"" << printable(s.one) << "\" and \"" << printable(s.other)
+              << "\": " << s.why << "; if so, say it in site.toml: [[alias]] name, asset, why\n";
+  return exit_done;
+}
+
+int query(const QueryWish& wish, const Common& common) {
+  const host::history::Query& q = wish.query;
+  if (q.machine.empty() && q.axis.empty() && q.quantity.empty() && q.source.empty() &&
+      q.from.empty() && q.to.empty() && !wish.csv)
+    return print_machines(wish, common);
+  for (const std::string& day : {q.from, q.to})
+    if (!day.empty() && !is_day(day))
+      return complain(query_name, "expected a day as YYYY-MM-DD, found \"" + day + "\"");
+  const auto points = host::history::query(wish.out, q);
+  if (!points) return complain(query_name, points.error().message);
+  if (common.json) {
+    Json all = Json::array();
+    for (const Point& p : *points) all.push_back(to_json(p));
+    std::cout << Json{{"schema", "nonio-query/1"}, {"points", std::move(all)}}.dump(
+                     1, ' ', false, Json::error_handler_t::replace)
+              << "\n";
+  } else if (wish.csv) {
+    print_csv(*points);
+  } else if (points->empty()) {
+    if (!common.quiet) std::cout << "nothing of that in the history\n";
+  } else {
+    print_table(*points);
+  }
+  return exit_done;
+}
+
+}  // namespace
+
+Verb query_verb(Common& common) {
+  auto wish = std::make_shared<QueryWish>();
+  host::history::Query& q = wish->query;
+  return {
+      .name = "query",
+      .summary = "What all campaigns say of a machine, out of the history of an output folder",
+      .arguments = joined(
+          {required(existing(Argument::Takes::folder,
+                             {"OUT", &wish->out, "Output folder of `nonio run`"})),
+           {"MACHINE", &q.machine,
+            "Its asset, or maker and serial with a space between them; without it all machines"},
+           {"--axis", &q.axis, "As the control calls it: X, or X1 and X2 of a gantry"},
+           {"--quantity", &q.quantity, "scale, B_mean, ln_s, A, R, ... as in results.json"},
+           {"--source", &q.source,
+            "\"followed\" (with covariance, for trends), or an analysis: iso230-2"},
+           {"--from", &q.from, "First day of the campaigns, YYYY-MM-DD"},
+           {"--to", &q.to, "Last day, YYYY-MM-DD"},
+           {"--superseded", &q.superseded,
+            "Also what was replaced since: other readings, other options, another version"},
+           {"--csv", &wish->csv, "Comma-separated, all columns, for a spreadsheet"}},
+          common_arguments(common)),
+      .footer =
+          "Without anything but OUT: the machines, and names that may be one machine.\n"
+          "u is the standard uncertainty of what is new in each campaign, U the expanded one (k = "
+          "2);\n"
+          "what campaigns share (the instrument, the expansion) is u_common in --csv and --json.\n"
+          "The numbers are those of results.json, digit for digit. The history is "
+          "OUT/history.sqlite,"
+          "\nwhich any SQLite tool reads: tables `evaluation`, `result`, ..., view `point`.\n\n"
+          "Example: nonio query out S-0042 --axis X --quantity B_mean --csv",
+      .run = [wish, &common] { return query(*wish, common); }};
+}
+
+}  // namespace nonio::app

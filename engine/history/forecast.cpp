@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/history/forecast.h"
+
+#include <cmath>
+
+#include "gls.h"
+
+namespace nonio::history {
+namespace {
+
+constexpr double keep_below = 0.05, act_beyond = 0.5;
+constexpr double one_sided = 1.6448536269514722;  // of 95 %
+constexpr double farthest = 0.5;                  // of the observed span
+constexpr double years_ahead = 20.0;
+
+struct State {
+  double value = 0.0, u = 0.0;
+};
+
+State state_at(const Series& s, const Trend& t, double time) {
+  const std::size_t p = t.coefficients.size();
+  std::vector<double> x(p, 1.0);
+  if (t.drifts) x.back() = time - s.points.front().time;
+  State out;
+  double variance = t.walk * (time - s.points.back().time);
+  for (std::size_t i = 0; i < p; ++i) {
+    out.value += x[i] * t.coefficients[i];
+    for (std::size_t j = 0; j < p; ++j) variance += x[i] * x[j] * t.covariance[i * p + j];
+  }
+  out.u = std::sqrt(std::max(variance, 0.0));
+  return out;
+}
+
+/// P(|state| > limit).
+double beyond(double value, double u, double limit) {
+  if (!(u > 0.0)) return std::fabs(value) > limit ? 1.0 : 0.0;
+  return normal_upper((limit - value) / u) + normal_upper((limit + value) / u);
+}
+
+bool bound_meets(const Series& s, const Trend& t, double time, double limit) {
+  const State at = state_at(s, t, time);
+  return std::fabs(at.value) + one_sided * at.u >= limit;
+}
+
+std::optional<double> leaving(const Series& s, const Trend& t, double limit) {
+  double low = s.points.back().time, high = low + years_ahead;
+  if (bound_meets(s, t, low, limit)) return low;
+  if (!bound_meets(s, t, high, limit)) return std::nullopt;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = (low + high) / 2.0;
+    (bound_meets(s, t, middle, limit) ? high : low) = middle;
+  }
+  return high;
+}
+
+}  // namespace
+
+Forecast forecast(const Series& s, const Trend& t, double time, std::optional<double> limit,
+                  std::optional<double> u_new) {
+  Forecast out;
+  out.time = time;
+  if (t.coefficients.empty() || !std::isfinite(time)) return out;
+  const State at = state_at(s, t, time);
+  out.value = at.value, out.u = at.u;
+  out.u_reading = std::hypot(at.u, s.excess * u_new.value_or(s.points.back().u));
+  const double span = s.points.back().time - s.points.front().time;
+  const bool near = time <= s.points.back().time + farthest * span;
+  if (!limit) {
+    if (s.points.size() >= 3 && near) out.answer = Answer::keep;
+    return out;
+  }
+  out.p_out = beyond(at.value, at.u, *limit);
+  out.p_read_out = beyond(at.value, out.u_reading, *limit);
+  out.leaves = leaving(s, t, *limit);
+  if (std::fabs(s.points.back().value) > *limit)
+    out.answer = Answer::act;
+  else if (s.points.size() >= 3 && near)
+    out.answer = out.p_out < keep_below    ? Answer::keep
+                 : out.p_out <= act_beyond ? Answer::watch
+                                           : Answer::act;
+  return out;
+}
+
+}  // namespace nonio::history

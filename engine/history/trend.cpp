@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/history/trend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "gls.h"
+#include "nonio/sdk/splitmix64.h"
+#include "walk.h"
+
+namespace nonio::history {
+namespace {
+
+constexpr int most_steps = 3;
+constexpr int draws = 10000;
+constexpr double sharp = 1e-3;     // below it Bonferroni's bound is nearly exact
+constexpr double inseparable = 4;  // of chi2, between a line and a step
+constexpr std::size_t fewest_for_walk = 8;
+
+/// What the model is made of beside the level.
+struct Shape {
+  std::vector<Change> changes;
+  bool drifts = false;
+};
+
+/// The columns of a model, as they are at each point.
+class Columns {
+ public:
+  explicit Columns(const Series& s) : s_(s), n_(static_cast<Index>(s.points.size())) {}
+
+  VectorXd ones() const { return VectorXd::Ones(n_); }
+  VectorXd step(std::size_t after) const {
+    VectorXd out = VectorXd::Zero(n_);
+    out.tail(n_ - static_cast<Index>(after) - 1).setOnes();
+    return out;
+  }
+  /// From the first point, so that the level is that of the beginning.
+  VectorXd time() const {
+    VectorXd out(n_);
+    for (Index i = 0; i < n_; ++i)
+      out(i) = s_.points[static_cast<std::size_t>(i)].time - s_.points.front().time;
+    return out;
+  }
+  MatrixXd of(const Shape& shape) const {
+    MatrixXd X(n_, 1 + static_cast<Index>(shape.changes.size()) + (shape.drifts ? 1 : 0));
+    X.col(0) = ones();
+    for (std::size_t k = 0; k < shape.changes.size(); ++k)
+      X.col(static_cast<Index>(k) + 1) = step(shape.changes[k].after);
+    if (shape.drifts) X.rightCols(1) = time();
+    return X;
+  }
+
+ private:
+  const Series& s_;
+  Index n_;
+};
+
+class Trending {
+ public:
+  explicit Trending(const Series& s) : s_(s), columns_(s), w_(s) {}
+
+  Trend run() {
+    declare();
+    for (int step = 0; step <= most_steps; ++step)
+      if (!improve()) break;
+    Trend out = fitted();
+    smallest(out);
+    walk(out);
+    return out;
+  }
+
+ private:
+  MatrixXd whitened(const Shape& shape) const {
+    MatrixXd X = columns_.of(shape);
+    for (Index k = 0; k < X.cols(); ++k) X.col(k) = w_.column(X.col(k));
+    return X;
+  }
+  std::optional<Gls> fit(const Shape& shape) const { return gls(w_, whitened(shape)); }
+
+  /// A column for each place at which something is known to have happened and the values may have
+  /// stepped. An instrument is in the covariance: its places only say whose a step is.
+  void declare() {
+    for (std::size_t d = 0; d < s_.declared.size(); ++d) {
+      const Declared& known = s_.declared[d];
+      if (known.kind == Declared::Kind::instrument || taken(known.after)) continue;
+      Shape more = shape_;
+      more.changes.push_back(
+          {known.after, 0.0, 0.0, 1.0,
+           known.kind == Declared::Kind::table ? Change::Cause::table : Change::Cause::event, d});
+      if (fit(more)) shape_ = std::move(more);
+    }
+  }
+
+  bool taken(std::size_t after) const {
+    return std::any_of(shape_.changes.begin(), shape_.changes.end(),
+                       [&](const Change& c) { return c.after == after; });
+  }
+
+  /// Directions in which a step at each free place is seen, beside the model.
+  struct Places {
+    std::vector<std::size_t> after;
+    MatrixXd direction;  // a column of unit length for each
+    VectorXd length;     // 1/u of the step
+  };
+
+  Places places(const Gls& base) const {
+    Places out;
+    std::vector<VectorXd> found;
+    std::vector<double> lengths;
+    for (std::size_t k = 0; k + 1 < s_.points.size(); ++k) {
+      if (taken(k)) continue;
+      const VectorXd z = w_.column(columns_.step(k));
+      const VectorXd rest = z - base.basis * (base.basis.transpose() * z);
+      const double length = rest.norm();
+      if (!(length > 1e-9 * z.norm())) continue;
+      out.after.push_back(k);
+      found.emplace_back(rest / length);
+      lengths.push_back(length);
+    }
+    out.direction.resize(w_.y.size(), static_cast<Index>(found.size()));
+    out.length.resize(static_cast<Index>(found.size()));
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      out.direction.col(static_cast<Index>(k)) = found[k];
+      out.length(static_cast<Index>(k)) = lengths[k];
+    }
+    return out;
+  }
+
+  /// P(largest of G over these places > G) where nothing stepped.
+  double p_of_largest(const Places& places, double G) const {
+    const auto many = static_cast<double>(places.after.size());
+    const double bound = std::min(1.0, many * normal_two_sided(std::sqrt(G)));
+    if (bound < sharp || places.after.size() == 1) return bound;
+    SplitMix64 random(s_.seed);
+    int beyond = 0;
+    VectorXd noise(w_.y.size());
+    for (int draw = 0; draw < draws; ++draw) {
+      for (double& x : noise.reshaped()) {
+        const double r = std::sqrt(-2.0 * std::log1p(-random.uniform()));
+        x = r * std::cos(2.0 * std::numbers::pi * random.uniform());
+      }
+      beyond += (places.direction.transpose() * noise).cwiseAbs2().maxCoeff() > G;
+    }
+    return std::min(bound, (beyond + 1.0) / (draws + 1.0));
+  }
+
+  /// The step or the drift that says most comes in; false if none does.
+  bool improve() {
+    const auto base = fit(shape_);
+    if (!base || !(base->dof > 0.0)) return false;
+    Shape stepped = shape_, drifting = shape_;
+    double p_step = 1.0, p_drift = 1.0;
+    const Places at = places(*base);
+    if (!at.after.empty() && steps_ < most_steps) {
+      Index best = 0;
+      const double G = (at.direction.transpose() * w_.y).cwiseAbs2().maxCoeff(&best);
+      p_step = p_of_largest(at, G);
+      stepped.changes.push_back({at.after[static_cast<std::size_t>(best)],
+                                 0.0,
+                                 0.0,
+                                 p_step,
+                                 cause_at(at.after[static_cast<std::size_t>(best)]),
+                                 {}});
+    }
+    std::optional<Gls> with_step, with_drift;
+    if (p_step < named_below) with_step = fit(stepped);
+    if (!shape_.drifts && s_.points.size() >= 3) {
+      drifting.drifts = true;
+      with_drift = fit(drifting);
+      if (with_drift)
+        p_drift = normal_two_sided(std::sqrt(std::max(0.0, base->chi2 - with_drift->chi2)));
+      if (!(p_drift < named_below)) with_drift.reset();
+    }
+    if (!with_step && !with_drift) return false;
+    const bool line =
+        with_drift && (!with_step || with_drift->chi2 <= with_step->chi2 + inseparable);
+    line_or_step_ = line_or_step_ || (with_step && with_drift &&
+                                      std::fabs(with_drift->chi2 - with_step->chi2) < inseparable);
+    shape_ = line ? std::move(drifting) : std::move(stepped);
+    steps_ += line ? 0 : 1;
+    return true;
+  }
+
+  /// Whose a step is where the instrument changed: the points share an uncertainty with others.
+  Change::Cause cause_at(std::size_t after) const {
+    for (const Declared& d : s_.declared)
+      if (d.kind == Declared::Kind::instrument && d.after == after &&
+          !s_.points[after + 1].common.empty())
+        return Change::Cause::instrument;
+    return Change::Cause::undeclared;
+  }
+
+  Trend fitted() const {
+    Trend out;
+    const auto last = fit(shape_);
+    if (!last) return out;
+    const Index p = last->b.size();
+    out.chi2 = last->chi2, out.dof = last->dof, out.drifts = shape_.drifts;
+    out.line_or_step = line_or_step_;
+    out.coefficients.assign(last->b.begin(), last->b.end());
+    for (Index i = 0; i < p; ++i)
+      for (Index j = 0; j < p; ++j) out.covariance.push_back(last->C(i, j));
+    out.changes = shape_.changes;
+    for (std::size_t k = 0; k < out.changes.size(); ++k) {
+      const auto i = static_cast<Index>(k) + 1;
+      Change& c = out.changes[k];
+      c.size = last->b(i), c.u = std::sqrt(last->C(i, i));
+      if (c.declared) c.p = normal_two_sided(c.size / c.u);
+    }
+    segments(*last, out);
+    std::stable_sort(out.changes.begin(), out.changes.end(),
+                     [](const Change& a, const Change& b) { return a.after < b.after; });
+    const bool undeclared = std::any_of(out.changes.begin(), out.changes.end(),
+                                        [](const Change& c) { return !c.declared; });
+    out.model = s_.points.size() < 3 ? Model::none
+                : undeclared         ? Model::step
+                : shape_.drifts      ? Model::drift
+                                     : Model::level;
+    return out;
+  }
+
+  void segments(const Gls& last, Trend& out) const {
+    std::set<std::size_t> ends{s_.points.size() - 1};
+    for (const Change& c : shape_.changes) ends.insert(c.after);
+    const MatrixXd X = columns_.of(shape_);
+    const auto u_of = [&](std::size_t i) {
+      const VectorXd x = X.row(static_cast<Index>(i)).transpose();
+      return std::sqrt(x.dot(last.C * x));
+    };
+    std::size_t from = 0;
+    for (const std::size_t to : ends) {
+      Segment s{from,
+                to,
+                X.row(static_cast<Index>(from)).dot(last.b),
+                X.row(static_cast<Index>(to)).dot(last.b),
+                u_of(from),
+                u_of(to)};
+      if (shape_.drifts) {
+        s.slope = last.b(last.b.size() - 1);
+        s.u_slope = std::sqrt(last.C(last.b.size() - 1, last.b.size() - 1));
+      }
+      out.segments.push_back(s);
+      from = to + 1;
+    }
+  }
+
+  void smallest(Trend& out) const {
+    const auto base = fit(shape_);
+    if (!base || s_.points.size() < 2) return;
+    const Places at = places(*base);
+    if (at.after.empty()) return;
+    const double critical =
+        normal_quantile(1.0 - named_below / 2.0 / static_cast<double>(at.after.size()));
+    out.smallest_change = (critical + normal_quantile(0.8)) / at.length(at.length.size() - 1);
+  }
+
+  /// Of a level that does not hold: local level, its variance by maximum likelihood (independent
+  /// u). At the border q = 0 the likelihood ratio is half a chi-square with 1 degree of freedom.
+  void walk(Trend& out) const {
+    constexpr double at_border = 5.412;  // its quantile of 1 %
+    if (out.model != Model::level || !shape_.changes.empty() ||
+        s_.points.size() < fewest_for_walk || !(chi2_upper(out.chi2, out.dof) < named_below))
+      return;
+    const Walk walk = likeliest_walk(s_);
+    if (!(2.0 * (walk.log_likelihood - walk_with(s_, 0.0).log_likelihood) > at_border)) return;
+    out.model = Model::walk, out.walk = walk.q;
+    out.coefficients = {walk.state}, out.covariance = {walk.variance};
+    for (Segment& s : out.segments) s.last = walk.state, s.u_last = std::sqrt(walk.variance);
+  }
+
+  const Series& s_;
+  Columns columns_;
+  Whitened w_;
+  Shape shape_;
+  int steps_ = 0;
+  bool line_or_step_ = false;
+};
+
+}  // namespace
+
+Expected<Trend> trend_of(const Series& s) {
+  if (auto sound = check(s); !sound) return fail(sound.error());
+  if (s.points.size() < 2) return Trend{};
+  return Trending(s).run();
+}
+
+}  // namespace nonio::history

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/batch/history_update.h"
+
+#include "host/batch/read_apart.h"
+
+namespace nonio::host::batch {
+
+namespace {
+
+std::string in_one_line(const std::vector<Error>& errors) {
+  std::string all;
+  for (const Error& e : errors) {
+    if (!all.empty()) all += "; ";
+    if (!e.file.empty()) all += e.file + (e.line == 0 ? "" : ":" + std::to_string(e.line)) + ": ";
+    all += e.message;
+  }
+  return all;
+}
+
+/// Tables that came into a control on a day that the record of its machine gives.
+std::vector<config::Event> events_of(const config::MachineRecords& records) {
+  std::vector<config::Event> events;
+  for (const config::RecordFile& file : records) {
+    if (!file.record) continue;  // its campaigns fail, and say why
+    for (const auto& [axis, recorded] : file.record->axes) {
+      if (recorded.since.empty()) continue;
+      std::string text = !recorded.table ? "" : recorded.table->empty() ? "none" : *recorded.table;
+      const auto line = file.record->lines.find("axes." + axis + ".since");
+      events.push_back({recorded.since,
+                        file.asset,
+                        axis,
+                        "compensation",
+                        std::move(text),
+                        {},
+                        line == file.record->lines.end() ? 0 : line->second});
+    }
+  }
+  return events;
+}
+
+}  // namespace
+
+Expected<history::Told> read_told(const RunOptions& options, const reading::Context& context) {
+  auto logs = read_apart<config::SiteLogs>(
+      "what the site says of its machines", context.site.limits.disk_seconds,
+      [&](process::SignsOfLife& signs) -> Expected<config::SiteLogs> {
+        signs.reading((options.site / config::events_name).string());
+        auto read = config::read_site_logs(options.site);
+        if (!read) return fail(in_one_line(read.error()));
+        return std::move(*read);
+      });
+  if (!logs) return fail(logs.error());
+  return history::Told{std::move(*logs), context.site.aliases, events_of(context.machines)};
+}
+
+Expected<void> HistoryUpdate::begin() {
+  const auto known = history::known_night(options_.out);
+  if (!known) return fail(known.error());
+  known_ = *known;
+  return history::forget_known_night(options_.out);
+}
+
+Expected<std::vector<std::string>> HistoryUpdate::end(std::uint64_t last, std::uint64_t night,
+                                                      const std::vector<std::string>& campaigns,
+                                                      const Expected<history::Told>& told) const {
+  if (!told) return fail(told.error());
+  auto updated =
+      read_apart<history::Updated>("the history", context_.site.limits.disk_seconds,
+                                   [&](process::SignsOfLife& signs) -> Expected<history::Updated> {
+                                     signs.reading((options_.out / history::store_name).string());
+                                     return history::update(options_.out, known_ != last, campaigns,
+                                                            *told, [&] { signs.beat(); });
+                                   });
+  if (!updated) return fail(updated.error());
+  std::vector<std::string> notes;
+  for (const std::string& left : updated->left_out) notes.push_back("not in the history: " + left);
+  if (!notes.empty()) return notes;
+  if (auto noted = history::note_known_night(options_.out, night); !noted)
+    return fail(noted.error());
+  return notes;
+}
+
+Expected<std::vector<std::string>> HistoryUpdate::end(const std::vector<std::string>& campaigns,
+                                                      const Expected<history::Told>& told) const {
+  if (!known_) return std::vector<std::string>{};
+  return end(*known_, *known_, campaigns, told);
+}
+
+}  // namespace nonio::host::batch

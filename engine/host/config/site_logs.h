@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/config/manifest.h"
+
+/// What people say of the machines of a site: SITE/events.toml, acknowledged.toml, forgotten.toml.
+namespace nonio::host::config {
+
+inline constexpr const char* events_name = "events.toml";
+inline constexpr const char* acknowledged_name = "acknowledged.toml";
+inline constexpr const char* forgotten_name = "forgotten.toml";
+
+struct Event {
+  std::string date, machine, axis, kind, text, by;  ///< axis: empty: the whole machine
+  std::uint64_t line = 0;
+};
+
+struct Acknowledgement {
+  std::string date, finding, machine, axis, quantity, until;
+  std::optional<double> value{}, U{};  ///< of the quantity on that day, in its unit
+  std::string by, why;
+  std::uint64_t line = 0;
+};
+
+struct Forgotten {
+  std::string date, campaign, by, why;
+  std::uint64_t line = 0;
+};
+
+struct SiteLogs {
+  std::vector<Event> events{};
+  std::vector<Acknowledgement> acknowledged{};
+  std::vector<Forgotten> forgotten{};
+};
+
+/// All that is wrong with a file at once, each with its line.
+Checked<std::vector<Event>> parse_events(std::string_view text, const std::string& file);
+Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
+                                                         const std::string& file);
+Checked<std::vector<Forgotten>> parse_forgotten(std::string_view text, const std::string& file);
+
+/// The three files of a site; one that is not there says nothing.
+Checked<SiteLogs> read_site_logs(const std::filesystem::path& site);
+
+/// Adds an entry at the end of the file, behind whatever stands there, comments included; the file
+/// is made if it is not there. Refused, and nothing written, if the file is wrong as it stands, if
+/// the entry would be wrong in it, or if somebody else writes it meanwhile.
+Checked<void> add_event(const std::filesystem::path& site, const Event& event);
+Checked<void> add_acknowledgement(const std::filesystem::path& site, const Acknowledgement& known);
+Checked<void> add_forgotten(const std::filesystem::path& site, const Forgotten& forgotten);
+
+}  // namespace nonio::host::config

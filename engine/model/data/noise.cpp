@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "nonio/math/distributions.h"
+#include "whitening.h"
+
+namespace nonio::model {
+
+namespace {
+
+constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+constexpr double least_dof = 8.0;
+constexpr double most_neighbours = 0.95;
+
+/// What is left of a pass of m readings with correlation rho when k powers of the order are taken
+/// out: M = P V P, its trace, what stands beside its diagonal, and its sum of squares.
+struct Moments {
+  double trace = 0.0, beside = 0.0, squares = 0.0;
+};
+
+MatrixXd powers_of_order(Index m, Index k) {
+  MatrixXd columns(m, k);
+  const VectorXd z = VectorXd::LinSpaced(m, -1.0, 1.0);
+  for (Index c = 0; c < k; ++c) columns.col(c) = z.array().pow(static_cast<double>(c));
+  return Eigen::HouseholderQR<MatrixXd>(columns).householderQ() * MatrixXd::Identity(m, k);
+}
+
+MatrixXd without_powers(const MatrixXd& q, const MatrixXd& v) {
+  const MatrixXd half = v - q * (q.transpose() * v);
+  return half - (half * q) * q.transpose();
+}
+
+MatrixXd correlations(Index m, double rho) {
+  MatrixXd v(m, m);
+  VectorXd power = VectorXd::Ones(m);
+  for (Index i = 1; i < m; ++i) power(i) = power(i - 1) * rho;
+  for (Index i = 0; i < m; ++i)
+    for (Index j = 0; j < m; ++j) v(i, j) = power(std::abs(i - j));
+  return v;
+}
+
+Moments moments(Index m, Index k, double rho) {
+  if (rho == 0.0) {
+    const MatrixXd q = powers_of_order(m, k);
+    const auto left = static_cast<double>(m - k);
+    return {left, -q.topRows(m - 1).cwiseProduct(q.bottomRows(m - 1)).sum(), left};
+  }
+  const MatrixXd M = without_powers(powers_of_order(m, k), correlations(m, rho));
+  return {M.trace(), M.diagonal<1>().sum(), M.squaredNorm()};
+}
+
+/// Variance of the sum of products of neighbours of independent readings.
+double variance_of_products(Index m, Index k) {
+  MatrixXd b = MatrixXd::Zero(m, m);
+  b.diagonal<1>().setConstant(0.5);
+  b.diagonal<-1>().setConstant(0.5);
+  return 2.0 * without_powers(powers_of_order(m, k), b).squaredNorm();
+}
+
+/// AlikePasses that are alike: so many readings, of which so many powers are taken out. `share`: of
+/// how many of them, less what the means of their cells take.
+class AlikePasses {
+ public:
+  AlikePasses(const Repeats& r, const std::vector<double>& weight) {
+    std::vector<double> in_cell(r.cells, 0.0), share(r.passes, 0.0);
+    std::vector<Index> used(r.passes, 0);
+    for (std::size_t i = 0; i < weight.size(); ++i)
+      if (weight[i] > 0.0) in_cell[r.cell[i]] += 1.0;
+    for (std::size_t i = 0; i < weight.size(); ++i)
+      if (weight[i] > 0.0) ++used[r.pass[i]], share[r.pass[i]] += 1.0 - 1.0 / in_cell[r.cell[i]];
+    for (std::size_t p = 0; p < r.passes; ++p)
+      if (used[p] > shared_columns(used[p]))
+        share_[{std::min(used[p], longest), shared_columns(used[p])}] +=
+            share[p] / static_cast<double>(std::min(used[p], longest));
+  }
+
+  Moments operator()(double rho) const {
+    Moments sum;
+    for (const auto& [pass, share] : share_) {
+      const Moments one = moments(pass.first, pass.second, rho);
+      sum.trace += share * one.trace;
+      sum.beside += share * one.beside;
+      sum.squares += share * one.squares;
+    }
+    return sum;
+  }
+  double variance() const {
+    double sum = 0.0;
+    for (const auto& [pass, share] : share_)
+      sum += share * variance_of_products(pass.first, pass.second);
+    return sum;
+  }
+
+ private:
+  static constexpr Index longest = 60;  // of a longer one the ends matter no more
+  std::map<std::pair<Index, Index>, double> share_;
+};
+
+/// Products of neighbours in a pass, and squares.
+struct Products {
+  double beside = 0.0, squares = 0.0;
+};
+
+Products products_of(const Repeats& r, const Saturated& s, const std::vector<double>& weight) {
+  Products out;
+  std::vector<double> before(r.passes, not_measured);
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    double& last = before[r.pass[i]];
+    const double e = weight[i] > 0.0 ? std::sqrt(weight[i]) * s.e[i] : not_measured;
+    if (std::isfinite(e)) out.squares += e * e;
+    if (std::isfinite(e) && std::isfinite(last)) out.beside += e * last;
+    last = e;
+  }
+  return out;
+}
+
+/// What the products of neighbours over the squares are with each correlation, on a grid.
+class ExpectedRatio {
+ public:
+  explicit ExpectedRatio(const AlikePasses& passes) {
+    for (int k = 0; k <= steps; ++k) {
+      const Moments m = passes(step * k);
+      ratio_.push_back(m.beside / m.trace);
+    }
+  }
+  double operator()(double rho) const {
+    const double at = std::min(rho / step, static_cast<double>(steps) - 1e-9);
+    const auto k = static_cast<std::size_t>(at);
+    return ratio_[k] + (at - static_cast<double>(k)) * (ratio_[k + 1] - ratio_[k]);
+  }
+
+ private:
+  static constexpr int steps = 19;
+  static constexpr double step = 0.05;
+  std::vector<double> ratio_;
+};
+
+/// The correlation of neighbours, from the products of neighbours over the squares. It is used
+/// where more than `least_seen` standard deviations are seen, and then drawn to 0 as far as few
+/// readings leave it open: normal, most are below `usual`.
+void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<double>& weight,
+                     Noise& noise) {
+  constexpr double usual = 0.8, least_seen = 1.5, fine = 0.01;
+  noise.measured = not_measured;
+  if (!(s.dof >= least_dof) || !(s.squares > 0.0)) return;
+  const Products found = products_of(r, s, weight);
+  const AlikePasses passes(r, weight);
+  const Moments none = passes(0.0);
+  if (!(none.trace > 0.0)) return;
+  const double ratio = found.beside / found.squares;
+  const double sd = std::sqrt(passes.variance()) / none.trace;
+  const double z = (ratio - none.beside / none.trace) / sd;
+  if (!std::isfinite(z)) return;
+  noise.p = 0.5 * std::erfc(z / std::sqrt(2.0));
+  if (z <= least_seen) {  // not used, so told coarsely: near 0 the ratio is a straight line
+    const Moments little = passes(0.05);
+    const double slope = (little.beside / little.trace - none.beside / none.trace) / 0.05;
+    noise.measured = std::clamp(z * sd / slope, -most_neighbours, most_neighbours);
+    return;
+  }
+  const ExpectedRatio expected(passes);
+  double least = std::numeric_limits<double>::infinity(), nearest = least;
+  for (double rho = 0.0; rho <= most_neighbours; rho += fine) {
+    const double off = (ratio - expected(rho)) / sd;
+    if (std::fabs(off) < nearest) nearest = std::fabs(off), noise.measured = rho;
+    const double value = off * off + rho * rho / (usual * usual);
+    if (value < least) least = value, noise.neighbours = noise.in_repeats = rho;
+  }
+  noise.u_neighbours = noise.measured / z;
+}
+
+/// Sum of squares and degrees of freedom of each target's repeats, along the axis.
+struct TargetScatter {
+  std::vector<double> at, squares, dof;
+};
+
+TargetScatter scatter_of(const Part& part, const Saturated& s, const std::vector<double>& weight,
+                         double dof) {
+  std::map<double, std::pair<double, double>> of;
+  double used = 0.0;
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    if (!(weight[i] > 0.0)) continue;
+    auto& [squares, n] = of[part.table.axes.front().position[i]];
+    squares += s.e[i] * s.e[i], n += 1.0, used += 1.0;
+  }
+  TargetScatter out;
+  for (const auto& [at, sum] : of) {
+    out.at.push_back(at);
+    out.squares.push_back(sum.first);
+    out.dof.push_back(sum.second * dof / used);
+  }
+  return out;
+}
+
+/// What a stretch says of each reading.
+void spread_out(const Part& part, Noise& noise) {
+  noise.rough.clear();
+  for (const double x : part.table.axes.front().position)
+    noise.rough.push_back(x >= noise.stretch->from && x <= noise.stretch->to
+                              ? noise.stretch->inside
+                              : noise.stretch->outside);
+}
+
+/// The stretch of targets whose scatter differs most from that of the others, if chance does not
+/// give such a one: F-test of the two variances, times the number of stretches.
+void find_stretch(const Part& part, const Saturated& s, const std::vector<double>& weight,
+                  Noise& noise) {
+  constexpr std::size_t fewest = 3, most_targets = 400;
+  constexpr double least_ratio = 1.5, by_chance = 0.005;
+  const double rho2 = noise.in_repeats * noise.in_repeats;
+  const double independent = (1.0 - rho2) / (1.0 + rho2);  // squares of neighbours go together
+  if (part.kind != Part::Kind::axis || !(s.dof >= 2.0 * least_dof)) return;
+  const TargetScatter scatter = scatter_of(part, s, weight, s.dof * independent);
+  const std::size_t targets = scatter.at.size();
+  if (targets < 2 * fewest || targets > most_targets) return;
+  std::vector<double> squares(targets + 1, 0.0), dof(targets + 1, 0.0);
+  for (std::size_t k = 0; k < targets; ++k) {
+    squares[k + 1] = squares[k] + scatter.squares[k];
+    dof[k + 1] = dof[k] + scatter.dof[k];
+  }
+  const double all = squares.back(), n = dof.back();
+  const double stretches = 0.5 * static_cast<double>(targets * targets);
+  double best = 12.0;  // below, chance gives it to one stretch in two thousand
+  for (std::size_t a = 0; a + fewest <= targets; ++a)
+    for (std::size_t b = a + fewest; b <= targets; ++b) {
+      const double in = squares[b] - squares[a], f = dof[b] - dof[a];
+      const double out = all - in, g = n - f;
+      if (targets - (b - a) < fewest || !(in > 0.0) || !(out > 0.0)) continue;
+      // Bartlett's test of two variances, with his correction for few degrees of freedom.
+      const double gain = (n * std::log(all / n) - f * std::log(in / f) - g * std::log(out / g)) /
+                          (1.0 + (1.0 / f + 1.0 / g - 1.0 / n) / 3.0);
+      const double ratio = std::sqrt(in / f / (out / g));
+      const double p = gain > best ? ratio > 1.0 ? math::f_upper(ratio * ratio, f, g)
+                                                 : math::f_upper(1.0 / (ratio * ratio), g, f)
+                                   : 1.0;
+      if (!(2.0 * p * stretches < by_chance) || (ratio < least_ratio && ratio > 1.0 / least_ratio))
+        continue;
+      best = gain;
+      const double mean = std::sqrt(all / n);
+      noise.stretch = Noise::Stretch{scatter.at[a], scatter.at[b - 1], std::sqrt(in / f) / mean,
+                                     std::sqrt(out / g) / mean};
+    }
+  if (noise.stretch) spread_out(part, noise);
+}
+
+/// Inside and outside of a known stretch anew, from what is left with their weights.
+void measure_stretch(const Part& part, const Saturated& s, const std::vector<double>& weight,
+                     Noise& noise) {
+  const TargetScatter scatter = scatter_of(part, s, weight, s.dof);
+  double in = 0.0, f = 0.0, out = 0.0, g = 0.0;
+  for (std::size_t k = 0; k < scatter.at.size(); ++k) {
+    const bool inside = scatter.at[k] >= noise.stretch->from && scatter.at[k] <= noise.stretch->to;
+    (inside ? in : out) += scatter.squares[k];
+    (inside ? f : g) += scatter.dof[k];
+  }
+  if (!(in > 0.0) || !(out > 0.0)) return;
+  const double mean = std::sqrt((in + out) / (f + g));
+  noise.stretch->inside = std::sqrt(in / f) / mean;
+  noise.stretch->outside = std::sqrt(out / g) / mean;
+  spread_out(part, noise);
+}
+
+}  // namespace
+
+double digit_of(const Observations& o) {
+  constexpr double same = 1e-13;  // m or rad: beyond any display
+  std::vector<double> value = o.deviation;
+  std::sort(value.begin(), value.end());
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < value.size(); ++i)
+    if (value[i] - value[i - 1] > same) step = std::min(step, value[i] - value[i - 1]);
+  if (!std::isfinite(step)) return 0.0;
+  // The smallest step carries the rounding of two values; the whole span measures it better.
+  const double steps = std::round((value.back() - value.front()) / step);
+  if (!(steps >= 1.0) || steps > 1e6) return 0.0;
+  step = (value.back() - value.front()) / steps;
+  for (const double x : value) {
+    const double k = (x - value.front()) / step;
+    if (std::fabs(k - std::round(k)) > 0.02) return 0.0;
+  }
+  return step;
+}
+
+std::vector<double> with_scatter(const std::vector<double>& weight, const Noise& noise) {
+  std::vector<double> out = weight;
+  for (std::size_t i = 0; i < noise.rough.size(); ++i) out[i] /= noise.rough[i] * noise.rough[i];
+  return out;
+}
+
+Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<double>& weight) {
+  Noise noise;
+  noise.pass = repeats.pass;
+  noise.digit = digit_of(part.table);
+  Saturated left = saturate(repeats, part.table.deviation, weight);
+  find_neighbours(repeats, left, weight, noise);
+  find_stretch(part, left, weight, noise);
+  if (!noise.stretch) return noise;
+  std::vector<double> with = with_scatter(weight, noise);
+  // What a pass shares carries scatter of the stretch to the others: less with its weights.
+  for (int round = 0; round < 3; ++round) {
+    left = saturate(repeats, part.table.deviation, with);
+    measure_stretch(part, left, weight, noise);
+    with = with_scatter(weight, noise);
+  }
+  left = saturate(repeats, part.table.deviation, with);
+  noise.neighbours = noise.in_repeats = noise.u_neighbours = 0.0;
+  find_neighbours(repeats, left, with, noise);
+  return noise;
+}
+
+std::optional<NoiseFloor> noise_floor(const Repeats& repeats, const Saturated& s,
+                                      const std::vector<double>& weight, const Noise& noise) {
+  if (!(s.dof >= 3.0)) return std::nullopt;
+  double variance = s.squares / s.dof, dof = s.dof, by_neighbours = 0.0;
+  if (noise.in_repeats > 0.0) {
+    const AlikePasses passes(repeats, weight);
+    const Moments with = passes(noise.in_repeats), none = passes(0.0);
+    variance *= none.trace / with.trace;
+    dof *= with.trace * with.trace / with.squares / none.trace;  // Satterthwaite
+    const Moments more = passes(std::min(noise.in_repeats + noise.u_neighbours, most_neighbours));
+    by_neighbours = std::sqrt(with.trace / more.trace) - 1.0;
+  }
+  const double floor = std::max(std::sqrt(variance), noise.digit / std::sqrt(12.0));
+  return NoiseFloor{floor, floor * std::hypot(1.0 / std::sqrt(2.0 * dof), by_neighbours), dof};
+}
+
+}  // namespace nonio::model

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "noise.h"
+#include "whitening.h"
+
+namespace nonio::model {
+
+namespace {
+
+using Zero = Noise::Zero;
+
+/// Columns of a model, one beside the other, each of unit length.
+MatrixXd columns_of_model(const std::vector<MatrixXd>& blocks, Index rows) {
+  MatrixXd out(rows, 0);
+  for (const MatrixXd& block : blocks) {
+    out.conservativeResize(Eigen::NoChange, out.cols() + block.cols());
+    out.rightCols(block.cols()) = block;
+  }
+  for (Index k = 0; k < out.cols(); ++k) out.col(k) /= std::max(out.col(k).norm(), 1e-300);
+  return out;
+}
+
+/// Restricted likelihood of what a model leaves.
+class Likelihood {
+ public:
+  Likelihood(const Observations& o, const MatrixXd& model, const std::vector<double>& weight)
+      : o_(o), model_(model), weight_(weight) {}
+
+  /// -2 ln of it.
+  double operator()(const Noise& noise) const {
+    const Whitening white(o_, weight_, noise);
+    MatrixXd x = white(model_);
+    MatrixXd y = white(Eigen::Map<const VectorXd>(o_.deviation.data(), model_.rows()));
+    white.take_out_zeros(x);
+    white.take_out_zeros(y);
+    double squares = y.squaredNorm(), log_det = white.log_det();
+    if (x.cols() > 0) {
+      const Eigen::HouseholderQR<MatrixXd> qr(x);
+      VectorXd rotated = y.col(0);
+      rotated.applyOnTheLeft(qr.householderQ().transpose());
+      squares = rotated.tail(rotated.size() - x.cols()).squaredNorm();
+      log_det += 2.0 * qr.matrixQR().diagonal().cwiseAbs().array().log().sum();
+    }
+    const double dof = static_cast<double>((white.root().array() > 0.0).count()) -
+                       static_cast<double>(lines_of(o_)) - static_cast<double>(x.cols());
+    return dof * std::log(squares / dof) + log_det;
+  }
+
+ private:
+  const Observations& o_;
+  const MatrixXd& model_;
+  const std::vector<double>& weight_;
+};
+
+/// Signs of a noise that is not as it is taken to be, from what a model leaves: score tests, by far
+/// cheaper than the likelihood. In standard deviations; where there is none, nothing is searched.
+class Signs {
+ public:
+  Signs(const Observations& o, const MatrixXd& model, const std::vector<double>& weight,
+        const Noise& noise)
+      : white_(o, weight, noise) {
+    MatrixXd x = white_(model);
+    MatrixXd y = white_(Eigen::Map<const VectorXd>(o.deviation.data(), model.rows()));
+    white_.take_out_zeros(x);
+    white_.take_out_zeros(y);
+    basis_ = x;
+    if (x.cols() > 0)
+      basis_ =
+          Eigen::HouseholderQR<MatrixXd>(x).householderQ() * MatrixXd::Identity(x.rows(), x.cols());
+    left_ = y.col(0) - basis_ * (basis_.transpose() * y.col(0));
+    const auto used = static_cast<double>((white_.root().array() > 0.0).count());
+    dof_ = used - static_cast<double>(x.cols()) - static_cast<double>(lines_of(o));
+    variance_ = left_.squaredNorm() / dof_;
+  }
+
+  /// Of a random share of each of these columns.
+  double of(const MatrixXd& columns) const {
+    MatrixXd z = white_(columns);
+    white_.take_out_zeros(z);
+    z -= basis_ * (basis_.transpose() * z);
+    const MatrixXd products = z.transpose() * z;
+    const double trace = products.trace();
+    const double spread = 2.0 * (products.squaredNorm() - trace * trace / dof_);
+    if (!(spread > 0.0) || !(variance_ > 0.0)) return 0.0;
+    return ((z.transpose() * left_).squaredNorm() / variance_ - trace) / std::sqrt(spread);
+  }
+
+  /// Of neighbours that are alike.
+  double of_neighbours() const {
+    double found = 0.0, expected = 0.0, pairs = 0.0;
+    for (Index i = 1; i < left_.size(); ++i) {
+      found += left_(i) * left_(i - 1);
+      expected -= basis_.row(i).dot(basis_.row(i - 1)) + 1.0 / static_cast<double>(left_.size());
+      ++pairs;
+    }
+    if (!(variance_ > 0.0) || pairs < 1.0) return 0.0;
+    return (found / variance_ - expected) / std::sqrt(pairs);
+  }
+
+ private:
+  Whitening white_;
+  MatrixXd basis_;
+  VectorXd left_;
+  double dof_ = 0.0, variance_ = 0.0;
+};
+
+/// A column for each group; neighbours share one where there are very many.
+MatrixXd of_groups(const std::vector<std::uint32_t>& group) {
+  constexpr Index most = 60;
+  std::map<std::uint32_t, Index> number;
+  for (const std::uint32_t g : group) number.try_emplace(g, 0);
+  Index next = 0;
+  for (auto& [g, k] : number) k = next++;
+  const Index together = (next + most - 1) / most;
+  MatrixXd out = MatrixXd::Zero(static_cast<Index>(group.size()), (next + together - 1) / together);
+  for (std::size_t i = 0; i < group.size(); ++i)
+    out(static_cast<Index>(i), number[group[i]] / together) = 1.0;
+  return out;
+}
+
+/// Steps of a walk, some readings taken together.
+MatrixXd steps_of_walk(const Observations& o) {
+  constexpr Index most = 24;
+  const auto n = static_cast<Index>(o.size());
+  const Index steps = std::min(most, n - 1);
+  MatrixXd out = MatrixXd::Zero(n, steps);
+  for (Index k = 0; k < steps; ++k) {
+    const Index from = (k + 1) * n / (steps + 1);
+    const std::uint32_t line = line_of(o, static_cast<std::size_t>(from));
+    for (Index i = from; i < n; ++i)
+      if (line_of(o, static_cast<std::size_t>(i)) == line) out(i, k) = 1.0;
+  }
+  return out;
+}
+
+/// Kinds and sizes of a zero, tried one after the other.
+class Search {
+ public:
+  Search(const Likelihood& likelihood, const Noise& noise, double worth)
+      : likelihood_(likelihood), noise_(noise), best_(noise), least_(likelihood(noise) - worth) {}
+
+  void neighbours() {
+    constexpr double less_likely = 2.0;
+    double before = std::numeric_limits<double>::infinity();
+    for (const double rho : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9}) {
+      Noise with = noise_;
+      with.neighbours = rho;
+      // A walk that is as likely is worse for u of what changes in time.
+      const double value = likelihood_(with) + less_likely;
+      if (value < least_) least_ = value, best_ = with, likely_.clear();
+      if (rho > noise_.neighbours && value > before) break;
+      before = value;
+    }
+  }
+
+  void zero(Zero kind, const std::vector<double>& sizes) {
+    constexpr double unlikely = 12.0;  // of -2 ln: of so many sizes none counts
+    std::vector<Tried> tried;
+    double least = std::numeric_limits<double>::infinity();
+    for (const double size : sizes) {
+      Noise with = noise_;
+      with.zero = kind, with.zero_size = with.zero_found = size;
+      tried.push_back({size, likelihood_(with)});
+      const double value = tried.back().value;
+      if (value < least_) least_ = value, best_ = with, likely_.clear();
+      least = std::min(least, value);
+      if (value > least + unlikely) break;  // beyond its minimum
+    }
+    if (best_.zero == kind && likely_.empty())
+      likely_ = tried, whole_ = tried.size() == sizes.size();
+  }
+
+  /// The most likely noise; its zero as large as it is in the mean over all likely sizes, since a
+  /// few runs leave that open: u is then what GUM-S1 (6.4.9.4) gives few values, and covers.
+  Noise found() const {
+    constexpr double open_beyond = 0.02;
+    Noise out = best_;
+    double weights = 0.0, squares = 0.0, last = 0.0;
+    for (const Tried& t : likely_) {
+      const double weight = std::exp(-0.5 * (t.value - least_));
+      weights += weight, squares += weight * t.size * t.size, last = weight;
+    }
+    if (weights > 0.0) {
+      out.zero_size = std::sqrt(squares / weights);
+      out.zero_open = whole_ && last > open_beyond * weights;
+    }
+    return out;
+  }
+
+ private:
+  struct Tried {
+    double size, value;
+  };
+  const Likelihood& likelihood_;
+  const Noise& noise_;
+  Noise best_;
+  double least_;
+  std::vector<Tried> likely_;  // of the best kind
+  bool whole_ = false;
+};
+
+}  // namespace
+
+Noise with_zero(const Observations& o, const std::vector<Term>& terms,
+                const std::vector<double>& weight, const Noise& noise) {
+  constexpr double worth = 1.5;       // an uncertainty too small is worse than one too large
+  constexpr double no_sign = 1.2;     // score, where a gain of `worth` is hardly to be had
+  constexpr std::size_t most = 1500;  // beyond, the covariance of all readings is too large
+  if (o.size() > most || o.size() < 10 || noise.pass.empty()) return noise;
+  const auto blocks = blocks_of(o, terms, root_weights(o, weight));
+  if (!blocks) return noise;
+  const MatrixXd model = columns_of_model(*blocks, static_cast<Index>(o.size()));
+  if (model.cols() + static_cast<Index>(lines_of(o)) + 3 > model.rows()) return noise;
+  const bool runs = !o.run.empty() && std::any_of(o.run.begin(), o.run.end(),
+                                                  [&](auto run) { return run != o.run.front(); });
+  const auto passes = *std::max_element(noise.pass.begin(), noise.pass.end()) + 1;
+  const Signs signs(o, model, weight, noise);
+  const bool of_neighbours = signs.of_neighbours() > no_sign;
+  const bool walks = signs.of(steps_of_walk(o)) > no_sign;
+  const bool of_run = runs && signs.of(of_groups(o.run)) > no_sign;
+  const bool of_pass = passes > 2 && signs.of(of_groups(noise.pass)) > no_sign;
+  if (!of_neighbours && !walks && !of_run && !of_pass) return noise;
+  const Likelihood likelihood(o, model, weight);
+  Search search(likelihood, noise, worth);
+  if (of_neighbours) search.neighbours();
+  if (walks)
+    search.zero(Zero::walks, {0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.33, 0.55, 0.9, 1.5, 2.5, 4.0});
+  const std::vector<double> sizes = {0.1, 0.18, 0.3, 0.55, 1.0, 1.8, 3.0, 5.5, 10.0, 18.0, 30.0};
+  if (of_run) search.zero(Zero::of_run, sizes);
+  if (of_pass) search.zero(Zero::of_pass, sizes);
+  return search.found();
+}
+
+namespace {
+
+/// n ln(squares/n) + ln|V| of whitened columns, the last of them the readings.
+double deviance(const Observations& o, const std::vector<double>& weight, const Noise& noise,
+                const MatrixXd& columns) {
+  const Whitening white(o, weight, noise);
+  MatrixXd whole = white(columns);
+  white.take_out_zeros(whole);
+  const auto n = static_cast<double>((white.root().array() > 0.0).count());
+  const MatrixXd x = whole.leftCols(whole.cols() - 1);
+  VectorXd y = whole.rightCols(1);
+  double squares = y.squaredNorm();
+  if (x.cols() > 0) {
+    y.applyOnTheLeft(Eigen::HouseholderQR<MatrixXd>(x).householderQ().transpose());
+    squares = y.tail(y.size() - x.cols()).squaredNorm();
+  }
+  return n * std::log(squares / n) + white.log_det();
+}
+
+}  // namespace
+
+Unsteady beside_walk(const Observations& o, const std::vector<double>& weight, Noise noise,
+                     const MatrixXd& model) {
+  constexpr double beyond_minimum = 12.0;
+  MatrixXd columns(model.rows(), model.cols() + 1);
+  columns << model, Eigen::Map<const VectorXd>(o.deviation.data(), model.rows());
+  noise.zero = Noise::Zero::steady;
+  const double none = Whitening(o, weight, noise).log_det();
+  const auto least_of = [&](Noise::Zero zero, const std::vector<double>& sizes) {
+    double least = std::numeric_limits<double>::infinity();
+    noise.zero = zero;
+    for (const double size : sizes) {
+      noise.zero_size = size;
+      const double value = deviance(o, weight, noise, columns) - none;
+      least = std::min(least, value);
+      if (value > least + beyond_minimum) break;
+    }
+    return least;
+  };
+  std::vector<double> steps;
+  for (int k = 0; k <= 12; ++k) steps.push_back(std::pow(10.0, 0.125 * k - 1.0));
+  Unsteady out;
+  out.walks = least_of(Noise::Zero::walks, steps);
+  if (std::any_of(o.run.begin(), o.run.end(),
+                  [&](std::uint32_t run) { return run != o.run.front(); }))
+    out.of_run = least_of(Noise::Zero::of_run, {0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8});
+  return out;
+}
+
+double criterion_of_neighbours(const Observations& o, const std::vector<double>& weight,
+                               Noise noise, const MatrixXd& model) {
+  MatrixXd columns(model.rows(), model.cols() + 1);
+  columns << model, Eigen::Map<const VectorXd>(o.deviation.data(), model.rows());
+  noise.zero = Noise::Zero::steady;
+  noise.neighbours = 0.0;
+  const double none = Whitening(o, weight, noise).log_det();
+  double least = std::numeric_limits<double>::infinity();
+  // Beyond, they are a walk in all but name.
+  for (const double rho : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8}) {
+    noise.neighbours = rho;
+    least = std::min(least, deviance(o, weight, noise, columns) - none);
+  }
+  return least;
+}
+
+}  // namespace nonio::model

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/sdk/space_readings.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace nonio {
+
+SpaceReadings space_of(const Observations& o) {
+  SpaceReadings out;
+  for (const auto& axis : o.axes) {
+    const std::size_t k = coordinate_of(axis.axis);
+    if (axis.rotary || k > 2) continue;
+    auto& r = out.r[k];
+    r.resize(o.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < o.size(); ++i)
+      if (std::isfinite(axis.position[i])) r[i] = axis.position[i];
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const double x : out.r[k])
+      if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
+    if (!(low <= high)) continue;
+    out.length[k] = high - low;
+    for (double& x : out.r[k]) x -= low;
+  }
+  return out;
+}
+
+bool of_ball_centres(const Observations& o) {
+  return !o.angular && !o.axes.empty() && o.axes.front().rotary;
+}
+
+bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::size_t k,
+                         std::size_t error, std::optional<std::size_t> away) {
+  constexpr double never = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> first(std::max<std::size_t>(o.lines.size(), 1), never);
+  for (std::size_t i = 0; i < s.r[k].size(); ++i) {
+    if (!std::isfinite(s.r[k][i]) || !(std::fabs(o.sense_of(i)[error]) > 1e-9)) continue;
+    if (away && !(s.lever(*away, i) > 1e-9 * s.length[*away])) continue;
+    double& x = first[o.line.empty() ? 0 : o.line[i]];
+    if (!std::isfinite(x)) x = s.r[k][i];
+    if (std::fabs(s.r[k][i] - x) > 1e-9 * s.length[k]) return true;
+  }
+  return false;
+}
+
+std::vector<double> places_of(const SpaceReadings& s, std::size_t k) {
+  std::vector<double> places;
+  for (const double x : s.r[k])
+    if (std::isfinite(x)) places.push_back(x);
+  std::sort(places.begin(), places.end());
+  const double near = 1e-9 * s.length[k];
+  places.erase(std::unique(places.begin(), places.end(),
+                           [near](double a, double b) { return b - a <= near; }),
+               places.end());
+  return places;
+}
+
+std::vector<double> knots_over(const std::vector<double>& places) {
+  std::vector<double> knots;
+  for (std::size_t k = 3; k < std::min<std::size_t>(places.size() / 2, 11); ++k)
+    knots.push_back(static_cast<double>(k));
+  return knots;
+}
+
+SpaceLine space_line(const Observations& o, const SpaceReadings& s, std::size_t line) {
+  SpaceLine out;
+  const auto same_are_known = [&s](std::size_t one, std::size_t other) {
+    return std::all_of(s.r.begin(), s.r.end(), [=](const std::vector<double>& r) {
+      return r.empty() || std::isfinite(r[one]) == std::isfinite(r[other]);
+    });
+  };
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    if ((o.line.empty() ? 0 : o.line[i]) != line) continue;
+    if (!out.rows.empty() && !same_are_known(i, out.rows.front())) continue;
+    out.way.push_back({s.lever(0, i), s.lever(1, i), s.lever(2, i)});
+    out.rows.push_back(i);
+  }
+  if (out.rows.empty()) return out;
+  out.sense = o.sense_of(out.rows.front());
+  const auto first = out.way.front();
+  for (auto& way : out.way) {
+    for (std::size_t k = 0; k < 3; ++k) way[k] -= first[k];
+    if (const double length = std::sqrt(SpaceLine::dot(way, way)); length > out.length)
+      out.length = length, out.farthest = way;
+  }
+  for (const auto& way : out.way) {
+    const auto off = SpaceLine::cross(way, out.farthest);  // times the length
+    if (std::sqrt(SpaceLine::dot(off, off)) > 1e-4 * out.length * out.length) out.straight = false;
+  }
+  return out;
+}
+
+std::vector<double> finite_or_zero(std::vector<double> x) {
+  for (double& v : x)
+    if (!std::isfinite(v)) v = 0.0;
+  return x;
+}
+
+}  // namespace nonio

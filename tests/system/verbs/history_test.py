@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""event, ack, forget and query, as a person uses them."""
+import csv
+import io
+import json
+import sqlite3
+import subprocess
+import unittest
+
+from verbs import NONIO, VerbTest, manifest, readings
+
+MACHINE = '[machine]\nasset = "S-0042"\nmaker = "Sample"\nserial = "417"\n'
+
+
+class HistoryVerbs(VerbTest):
+    def setUp(self):
+        super().setUp()
+        self.out = self.site.parent / "out"
+
+    def write(self, name, day, seed, machine=MACHINE, **effects):
+        folder = self.site / name
+        folder.mkdir(exist_ok=True)
+        text = manifest(campaign_id=name).replace("[machine.axes", machine + "[machine.axes", 1)
+        (folder / "campaign.toml").write_text(text.replace(f'id = "{name}"\n', f'id = "{name}"\ndate = {day}\n', 1))
+        (folder / "x.csv").write_text(readings(seed=seed, **effects))
+
+    def nonio(self, *args, expect=0):
+        done = subprocess.run([NONIO, *map(str, args)], capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
+        return done
+
+    def night(self, expect=0):
+        return self.nonio("run", self.site, "--out", self.out, "--date", "2026-06-01", expect=expect)
+
+    def event(self, *args, expect=0):
+        return self.nonio("event", self.site, *args, expect=expect)
+
+    def test_query(self):
+        self.write("c", "2025-01-02", 1, backlash=4)
+        self.write("d", "2026-01-02", 2, backlash=6)
+        self.write("e", "2026-02-02", 3, MACHINE.replace("S-0042", "s 0O42"))
+        self.night()
+        said = self.nonio("query", self.out).stdout
+        self.assertIn('one machine? "S-0042" and "s 0O42": spelled alike', said)
+        result = json.loads((self.out / "d" / "results.json").read_text())
+        expected = next(a for a in result["analyses"] if a["plugin"] == "iso230-2")["values"]["B_mean"]["value"]
+        wanted = ("S-0042", "--quantity", "B_mean", "--source", "iso230-2", "--from", "2026-01-01", "--to", "2026-12-31")
+        points = json.loads(self.nonio("query", self.out, *wanted, "--json").stdout)["points"]
+        self.assertEqual([(p["campaign"], p["value"], p["unit"]) for p in points], [("d", expected, "um")])
+        rows = list(csv.DictReader(io.StringIO(self.nonio("query", self.out, *wanted, "--csv").stdout)))
+        self.assertEqual([(r["campaign"], float(r["value"])) for r in rows], [("d", expected)])
+        self.assertIn(repr(expected), self.nonio("query", self.out, *wanted).stdout)
+        (self.site / "site.toml").write_text('[[alias]]\nname = "s 0O42"\nasset = "S-0042"\nwhy = "same plate"\n')
+        self.night()
+        everything = self.nonio("query", self.out, "s 0O42", "--quantity", "B_mean", "--source", "iso230-2", "--json").stdout
+        self.assertEqual([p["campaign"] for p in json.loads(everything)["points"]], ["c", "d", "e"])
+        self.assertNotIn("one machine?", self.nonio("query", self.out).stdout)
+
+    def test_query_says_what_is_wrong(self):
+        self.assertIn("nonio run SITE", self.nonio("query", self.site, expect=2).stderr)
+        self.write("c", "2025-01-02", 1)
+        self.night()
+        for args, words in ((("S-042",), 'nearest: "S-0042"'), (("--axis", "Q"), 'no axis "Q"'),
+                            (("--quantity", "B_maen"), 'nearest: "B_mean"'), (("--from", "2026-13-01"), "expected a day")):
+            self.assertIn(words, self.nonio("query", self.out, *args, expect=2).stderr)
+
+    def test_events(self):
+        self.write("c", "2025-01-02", 1)
+        self.night()
+        one = ("--machine", "S-0042", "--kind", "crash", "--text", 'hit "the" vice, 4 µm', "--date", "2025-03-04")
+        self.event(*one, "--axis", "Q", "--out", self.out, expect=2)
+        self.assertIn("S-0042", self.event(*one[:1], "S-0O42", *one[2:], "--out", self.out, expect=2).stderr)
+        self.assertFalse((self.site / "events.toml").exists())
+        self.event(*one)
+        self.event("--machine", "S-0042", "--kind", "repair", "--text", "new nut", "--by", "B. Sample")
+        self.assertIn('2025-03-04  S-0042  crash  hit "the" vice, 4 µm', self.event().stdout)
+        self.assertEqual(len(json.loads(self.event("--json").stdout)["events"]), 2)
+        self.night()
+        kept = sqlite3.connect(self.out / "history.sqlite").execute("SELECT day, kind, note FROM event ORDER BY item").fetchall()
+        self.assertEqual(kept[0], ("2025-03-04", "crash", 'hit "the" vice, 4 µm'))
+        before = (self.site / "events.toml").read_bytes()
+        self.assertIn("one line", self.event(*one[:5], "a\nb", expect=2).stderr)
+        self.assertIn("--kind", self.event("--text", "x", expect=2).stderr)
+        self.assertEqual((self.site / "events.toml").read_bytes(), before)
+
+    def test_ack(self):
+        args = ["ack", self.site, "--finding", "reversal.constant", "--machine", "S-0042", "--by", "B", "--why", "nut is ordered",
+                "--date", "2026-03-04"]
+        self.nonio(*args, "--until", "2026-06-30", "--value", "-5.25", "--U", "0.4", "--quantity", "B_mean")
+        self.assertIn("until = 2026-06-30\nvalue = -5.25\nU = 0.4\n", (self.site / "acknowledged.toml").read_text())
+        self.assertIn("not before", self.nonio(*args, "--until", "2026-01-01", expect=2).stderr)
+        self.assertIn("decimal point", self.nonio(*args, "--until", "2026-06-30", "--value", "5,2", expect=2).stderr)
+
+    def test_forget(self):
+        self.write("c", "2025-01-02", 1)
+        self.write("d", "2025-01-03", 2)
+        self.night()
+        for path in (self.site / "d").iterdir():
+            path.unlink()
+        (self.site / "d").rmdir()
+        self.assertIn("d has vanished", self.night(expect=1).stderr)
+        (self.site / "site.toml").write_text("[limits]\nvanished = 1\n")
+        self.night()
+        (self.site / "site.toml").unlink()
+        self.nonio("forget", self.site, "d", "--by", "B", "--why", "sold")
+        self.assertNotIn("vanished", self.night().stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

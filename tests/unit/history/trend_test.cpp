@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a series did: reference values, and what must fail for wrong work.
+#include "nonio/history/trend.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "made.h"
+
+namespace nonio::history {
+namespace {
+
+TEST(Trend, ALineIsNotTakenForAStep) {
+  const auto t = trend_of(reference_series());
+  ASSERT_TRUE(t);
+  EXPECT_EQ(t->model, Model::drift);
+  EXPECT_TRUE(t->changes.empty());
+  EXPECT_NEAR(t->segments.front().slope, -0.42385, 6e-6);
+  EXPECT_NEAR(t->segments.front().u_slope, 0.07140, 6e-6);
+}
+
+Series stepped(std::size_t n, std::size_t after, double size) {
+  Series s;
+  for (std::size_t i = 0; i < n; ++i)
+    s.points.push_back(
+        {0.5 * static_cast<double>(i), (i > after ? size : 0.0) + (i % 2 == 0 ? 0.1 : -0.1), 0.2});
+  return s;
+}
+
+TEST(Trend, ALargeStepIsNamedWithItsPlaceAndSize) {
+  for (const std::size_t after : {0U, 3U, 6U}) {
+    const auto t = trend_of(stepped(8, after, -4.0));
+    ASSERT_TRUE(t);
+    EXPECT_EQ(t->model, Model::step);
+    ASSERT_EQ(t->changes.size(), 1U);
+    EXPECT_EQ(t->changes[0].after, after);
+    EXPECT_NEAR(t->changes[0].size, -4.0, 0.2);
+    EXPECT_EQ(t->changes[0].cause, Change::Cause::undeclared);
+    EXPECT_LT(t->changes[0].p, 1e-9);
+    EXPECT_EQ(t->segments.size(), 2U);
+  }
+}
+
+TEST(Trend, TwoPointsAreCompared) {
+  const auto t = trend_of(stepped(2, 0, 4.0));
+  ASSERT_TRUE(t);
+  EXPECT_EQ(t->model, Model::none);  // a difference, no model
+  ASSERT_EQ(t->changes.size(), 1U);
+  EXPECT_NEAR(t->changes[0].size, 3.8, 1e-12);
+  EXPECT_NEAR(t->changes[0].u, 0.2 * std::sqrt(2.0), 1e-12);
+}
+
+TEST(Trend, AStepAtADeclaredEventIsItsOwn) {
+  Series s = stepped(8, 3, -4.0);
+  s.declared = {{3, Declared::Kind::event}};
+  const auto t = trend_of(s);
+  ASSERT_TRUE(t);
+  ASSERT_EQ(t->changes.size(), 1U);
+  EXPECT_EQ(t->changes[0].cause, Change::Cause::event);
+  EXPECT_EQ(t->changes[0].declared, std::optional<std::size_t>(0));
+  EXPECT_NE(t->model, Model::step);
+}
+
+TEST(Trend, AnInstrumentsJumpIsNotTheMachines) {
+  Series s = stepped(8, 3, 0.6);  // two of the uncertainties that its certificates state
+  s.declared = {{3, Declared::Kind::instrument}};
+  for (std::size_t i = 0; i < 8; ++i)
+    s.points[i].common = {{i <= 3 ? "instrument 1" : "instrument 2", 0.3}};
+  const auto small = trend_of(s);
+  ASSERT_TRUE(small);
+  EXPECT_TRUE(small->changes.empty());
+  for (std::size_t i = 4; i < 8; ++i) s.points[i].value += 4.0;
+  const auto large = trend_of(s);
+  ASSERT_EQ(large->changes.size(), 1U);
+  EXPECT_EQ(large->changes[0].cause, Change::Cause::instrument);
+}
+
+TEST(Trend, WhatAllHaveInCommonChangesNoSlope) {
+  Series s = reference_series();
+  const auto without = trend_of(s);
+  for (Point& p : s.points) p.common = {{"instrument 1", 0.30}};
+  const auto with = trend_of(s);
+  ASSERT_TRUE(with && without);
+  EXPECT_NEAR(with->segments[0].slope, without->segments[0].slope, 1e-12);
+  EXPECT_NEAR(with->segments[0].u_slope, without->segments[0].u_slope, 1e-12);
+  EXPECT_GT(with->segments[0].u_first, without->segments[0].u_first);
+}
+
+TEST(Trend, FollowsShiftsAndUnits) {
+  Series s = reference_series(), moved = s, scaled = s;
+  for (Point& p : moved.points) p.time += 17.0, p.value += 3.0;
+  for (Point& p : scaled.points) p.value *= 1e-6, p.u *= 1e-6;
+  const auto a = trend_of(s), b = trend_of(moved), c = trend_of(scaled);
+  EXPECT_NEAR(b->segments[0].last, a->segments[0].last + 3.0, 1e-9);
+  EXPECT_NEAR(c->segments[0].last, 1e-6 * a->segments[0].last, 1e-15);
+  EXPECT_NEAR(*c->smallest_change, 1e-6 * *a->smallest_change, 1e-15);
+}
+
+TEST(Trend, WhatIsNoSeriesIsRefusedByName) {
+  Series s = reference_series();
+  s.points[2].value = NAN;
+  EXPECT_NE(trend_of(s).error().message.find("point 3"), std::string::npos);
+  s = reference_series();
+  s.points[4].u = 0.0;
+  EXPECT_NE(trend_of(s).error().message.find("point 5"), std::string::npos);
+  s = reference_series();
+  s.points[1].time = -1.0;
+  EXPECT_NE(trend_of(s).error().message.find("point 2"), std::string::npos);
+  s = reference_series();
+  s.declared = {{7, Declared::Kind::event}};
+  EXPECT_FALSE(trend_of(s));
+  EXPECT_FALSE(trend_of({}));
+  s.declared.clear(), s.points.resize(1);
+  EXPECT_EQ(trend_of(s)->model, Model::none);
+}
+
+TEST(Trend, TwiceTheSame) {
+  const auto a = trend_of(stepped(8, 3, 0.5)), b = trend_of(stepped(8, 3, 0.5));
+  EXPECT_EQ(a->coefficients, b->coefficients);
+  EXPECT_EQ(a->changes.size(), b->changes.size());
+}
+
+// Each with its own noise: rates, not examples.
+struct Rates {
+  double news = 0.0, right = 0.0;
+};
+
+template <class Truth>
+Rates rates(std::size_t n, std::optional<std::size_t> after, const Truth& truth, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::cout << "seed " << seed << '\n';
+  constexpr int trials = 2000;
+  Rates out;
+  for (int i = 0; i < trials; ++i) {
+    const auto t = trend_of(made_series(n, 0.3, random, truth));
+    const bool news = t->model == Model::step;
+    out.news += news ? 1.0 / trials : 0.0;
+    out.right += news && after && t->changes.size() == 1 && t->changes[0].after == *after
+                     ? 1.0 / trials
+                     : 0.0;
+  }
+  return out;
+}
+
+TEST(Trend, QuietMachinesAreSeldomNews) {
+  for (const std::size_t n : {3U, 5U, 8U, 15U}) {
+    const Rates r = rates(
+        n, {}, [](std::size_t, double) { return 1.0; }, 100 + static_cast<unsigned>(n));
+    EXPECT_LT(r.news, 0.018) << n;
+  }
+}
+
+TEST(Trend, WearIsNoStep) {
+  const Rates r = rates(
+      10, {}, [](std::size_t, double t) { return 0.8 * t; }, 201);
+  EXPECT_LT(r.news, 0.03);
+}
+
+TEST(Trend, LargeStepsAreFoundWhereTheyAre) {
+  const Rates r = rates(
+      10, 5, [](std::size_t i, double) { return i > 5 ? 6 * 0.3 : 0.0; }, 301);
+  EXPECT_GT(r.news, 0.97);
+  EXPECT_GT(r.right, 0.9);
+}
+
+TEST(Trend, TheSmallestChangeIsFoundEightTimesInTen) {
+  std::mt19937_64 random(401);
+  std::cout << "seed 401\n";
+  const auto quiet = trend_of(made_series(8, 0.3, random, [](std::size_t, double) { return 0.0; }));
+  ASSERT_TRUE(quiet->smallest_change);
+  const double size = *quiet->smallest_change;
+  const Rates r = rates(
+      8, 6, [&](std::size_t i, double) { return i > 6 ? size : 0.0; }, 402);
+  EXPECT_NEAR(r.news, 0.8, 0.1);
+}
+
+TEST(ExcessScatter, IsThatOfTheLaboratory) {
+  std::mt19937_64 random(501);
+  std::cout << "seed 501\n";
+  std::vector<Series> all;
+  for (int i = 0; i < 40; ++i) {
+    all.push_back(made_series(8, 0.45, random,
+                              [&](std::size_t k, double) { return i < 4 && k > 3 ? 9.0 : 0.0; }));
+    for (Point& p : all.back().points) p.u = 0.3;
+  }
+  std::vector<const Series*> pointers;
+  for (const Series& s : all) pointers.push_back(&s);
+  EXPECT_NEAR(excess_scatter(pointers), 1.5, 0.2);
+  pointers.resize(2);
+  EXPECT_EQ(excess_scatter(pointers), 1.0);  // too few to say
+}
+
+}  // namespace
+}  // namespace nonio::history

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/config/site_logs.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "host/storage/files.h"
+
+namespace nonio::test {
+
+namespace {
+namespace fs = std::filesystem;
+namespace config = host::config;
+
+class SiteFolder {
+ public:
+  SiteFolder() : root_(fs::temp_directory_path() / ("nonio-logs-" + std::to_string(::getpid()))) {
+    fs::remove_all(root_);
+    fs::create_directories(root_);
+  }
+  ~SiteFolder() { fs::remove_all(root_); }
+  SiteFolder(const SiteFolder&) = delete;
+  SiteFolder& operator=(const SiteFolder&) = delete;
+  const fs::path& root() const { return root_; }
+  void write(const char* name, const std::string& text) const {
+    std::ofstream(root_ / name, std::ios::binary) << text;
+  }
+  std::string read(const char* name) const {
+    return host::storage::read_file(root_ / name).value_or("(none)");
+  }
+
+ private:
+  fs::path root_;
+};
+
+config::Event an_event() {
+  return {.date = "2026-03-04",
+          .machine = "S-0042",
+          .axis = "X",
+          .kind = "crash",
+          .text = "tool hit the vice",
+          .by = "B. Sample"};
+}
+
+std::string first_error(const config::Checked<void>& done) {
+  if (done) return "";
+  const Error& e = done.error().front();
+  return e.file + ":" + std::to_string(e.line) + ": " + e.message;
+}
+
+}  // namespace
+
+TEST(SiteLogs, AnEntryGoesToTheEndAndCommentsStay) {
+  const SiteFolder site;
+  ASSERT_TRUE(config::add_event(site.root(), an_event()));
+  EXPECT_EQ(site.read("events.toml"),
+            "format = 1\n\n[[event]]\ndate = 2026-03-04\nmachine = \"S-0042\"\naxis = \"X\"\n"
+            "kind = \"crash\"\ntext = \"tool hit the vice\"\nby = \"B. Sample\"\n");
+  const std::string hand =
+      "# ours\nformat = 1 # one\n\n[[event]] # first\ndate = 2020-01-02\n"
+      "machine = 'A'\nkind = \"other\"\ntext = \"x y\"   # no newline at the end";
+  site.write("events.toml", hand);
+  ASSERT_TRUE(config::add_event(site.root(), an_event()));
+  EXPECT_TRUE(site.read("events.toml").starts_with(hand + "\n\n[[event]]\n"));
+  const auto logs = config::read_site_logs(site.root());
+  ASSERT_TRUE(logs);
+  ASSERT_EQ(logs->events.size(), 2U);
+  EXPECT_EQ(logs->events[0].line, 4U);
+  EXPECT_EQ(logs->events[1].text, "tool hit the vice");
+}
+
+TEST(SiteLogs, WhatIsWrongIsRefusedAndNothingIsWritten) {
+  const SiteFolder site;
+  const auto refused = [&](config::Event e) {
+    const std::string why = first_error(config::add_event(site.root(), e));
+    EXPECT_FALSE(fs::exists(site.root() / "events.toml")) << why;
+    return why;
+  };
+  config::Event e = an_event();
+  e.text = "one\ntwo";
+  EXPECT_NE(refused(e).find("expected one line of text, found a line break"), std::string::npos);
+  e = an_event();
+  e.kind = "crsh";
+  EXPECT_NE(refused(e).find("nearest: \"crash\""), std::string::npos);
+  e = an_event();
+  e.date = "2026-02-30";
+  EXPECT_NE(refused(e), "");
+  e = an_event();
+  e.machine.clear();
+  EXPECT_NE(refused(e).find("machine"), std::string::npos);
+  config::Acknowledgement a{"2026-03-04", "f", "S", "", "", "2026-03-03", {}, {}, "B", "because"};
+  EXPECT_NE(first_error(config::add_acknowledgement(site.root(), a)).find("not before date"),
+            std::string::npos);
+  a.until = "2026-04-01";
+  a.why = "--";
+  EXPECT_NE(first_error(config::add_acknowledgement(site.root(), a)).find("a reason in words"),
+            std::string::npos);
+  EXPECT_NE(first_error(config::add_forgotten(site.root(), {"2026-03-04", "A B", "B", "sold"})),
+            "");
+}
+
+TEST(SiteLogs, AFileThatIsWrongIsLeftAsItIs) {
+  const SiteFolder site;
+  for (const std::string& text :
+       {std::string("format = 1\n[[event]\n"), std::string("format = 2\n"),
+        std::string("format = 1\n[[evnt]]\n"), std::string("[[event]]\ndate = \"2026-01-01\"\n"),
+        std::string("format = 1\nevent = 3\n"), std::string("\xff\xfe"), std::string(1, '\0')}) {
+    site.write("events.toml", text);
+    EXPECT_NE(first_error(config::add_event(site.root(), an_event())), "");
+    EXPECT_EQ(site.read("events.toml"), text);
+  }
+  std::string large = "format = 1\n";
+  while (large.size() < 10'000'000)
+    large += "[[event]]\ndate = 2026-01-01\nmachine = \"S\"\nkind = \"other\"\ntext = \"t\"\n";
+  site.write("events.toml", large);
+  const std::string why = first_error(config::add_event(site.root(), an_event()));
+  EXPECT_NE(why.find("events.toml"), std::string::npos) << why;
+  EXPECT_EQ(fs::file_size(site.root() / "events.toml"), large.size());
+  EXPECT_FALSE(config::read_site_logs(site.root()));
+}
+
+TEST(SiteLogs, AnyTextComesBackAsItWas) {
+  const SiteFolder site;
+  const std::string text = R"(quotes " and \ and ''' and # [x] = \u0041 €)";
+  config::Event e = an_event();
+  e.text = text;
+  ASSERT_TRUE(config::add_event(site.root(), e));
+  const auto logs = config::read_site_logs(site.root());
+  ASSERT_TRUE(logs);
+  EXPECT_EQ(logs->events.at(0).text, text);
+  config::Acknowledgement a{.date = "2026-03-04",
+                            .finding = "f",
+                            .machine = "S",
+                            .axis = "X",
+                            .quantity = "B_mean",
+                            .until = "2026-06-01",
+                            .value = -5.25,
+                            .U = 0.4,
+                            .by = "B",
+                            .why = "nut is ordered"};
+  ASSERT_TRUE(config::add_acknowledgement(site.root(), a));
+  a.value = 5.0;
+  ASSERT_TRUE(config::add_acknowledgement(site.root(), a));
+  const auto known = config::read_site_logs(site.root());
+  ASSERT_TRUE(known);
+  ASSERT_EQ(known->acknowledged.size(), 2U);
+  EXPECT_NE(site.read("acknowledged.toml").find("value = -5.25\nU = 0.4\n"), std::string::npos);
+  EXPECT_EQ(known->acknowledged[0].value, -5.25);
+  EXPECT_EQ(known->acknowledged[1].value, 5.0);
+}
+
+TEST(SiteLogs, AnAliasLeadsToAMachineAndNoFurther) {
+  const auto site = config::parse_site(
+      "[[alias]]\nname = \"a\"\nasset = \"S\"\nwhy = \"plate\"\n[limits]\nvanished = 3\n",
+      "site.toml");
+  ASSERT_TRUE(site);
+  ASSERT_EQ(site->aliases.size(), 1U);
+  EXPECT_EQ(site->limits.vanished, 3U);
+  const auto wrong = config::parse_site(
+      "[[alias]]\nname = \"a\"\nasset = \"b\"\nwhy = \"plate\"\n[[alias]]\nname = \"b\"\nasset = "
+      "\"c\"\nwhy = \"plate\"\n[[alias]]\nname = \"b\"\nasset = \"d\"\nwhy = \"-\"\n",
+      "site.toml");
+  ASSERT_FALSE(wrong);
+  std::string all;
+  for (const Error& e : wrong.error()) all += std::to_string(e.line) + ": " + e.message + "\n";
+  EXPECT_NE(all.find("\"b\" is itself the name of an alias"), std::string::npos) << all;
+  EXPECT_NE(all.find("\"b\" is there twice"), std::string::npos) << all;
+  EXPECT_NE(all.find("expected how this is known"), std::string::npos) << all;
+}
+
+}  // namespace nonio::test
