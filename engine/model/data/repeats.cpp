@@ -280,6 +280,7 @@ std::vector<double> without_set_up(const Observations& o, const std::vector<Term
 /// median; 1 where it is not twice as much. A rough stretch is no row of misreadings.
 std::vector<double> rougher_than(double s, const Observations& o, const std::vector<double>& e) {
   constexpr std::size_t fewest = 16;
+  // docs/constants.md, M27.
   constexpr double much = 2.0;
   std::vector<double> out(e.size(), 1.0);
   if (o.axes.size() != 1 || e.size() < 4 * fewest || e.size() > 20000) return out;

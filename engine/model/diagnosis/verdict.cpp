@@ -36,6 +36,7 @@ constexpr double certain_evidence = 50.0;
 constexpr double most_of_one_target = 0.3;
 // Evidence of effects below it is not asked whether a zero that is not steady gives as much: sizes
 // that are printed as the smallest would be lost.
+// docs/constants.md, M29.
 constexpr double least_against_zero = 30.0;
 // Two effects whose parts run against each other like this are one thing without a name.
 // docs/constants.md, M10.
@@ -131,6 +132,7 @@ class Judge {
   /// How much less evidence is as good for zeros of runs, of so much: a small effect is not lost
   /// for zeros that might be there; a large one would leave far more of itself beside them.
   static double as_good_as(double evidence) {
+    // docs/constants.md, M30.
     constexpr double share = 0.1;
     return std::clamp(share * evidence, 0.0, alias_evidence);
   }
