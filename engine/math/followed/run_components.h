@@ -16,8 +16,8 @@ struct RunComponents {
     double variance = 0.0, noise = 0.0;
   };
   PassModel passes;
-  double runs = 0.0;               ///< complete ones: with a pass in each direction that occurs
-  double reading[2] = {};          ///< variance of a single reading, + and -
+  double runs = 0.0;       ///< complete ones: with a pass in each direction that occurs
+  double reading[2] = {};  ///< variance of a single reading, + and -
   /// Correlation of neighbouring targets of a pass; at distance k its k-th power. 0 where the
   /// readings do not show one.
   double neighbours = 0.0;

@@ -345,8 +345,8 @@ MatrixXd levels_of(const FactorColumns& f, const Whitening& white) {
 
 /// The level of a factor of dummies that holds most of its sum of squares, if one does; `s2` known
 /// from `dof`.
-void find_level(const FactorColumns& f, const MatrixXd& columns, const VectorXd& residual, double s2,
-                double dof, Place& place) {
+void find_level(const FactorColumns& f, const MatrixXd& columns, const VectorXd& residual,
+                double s2, double dof, Place& place) {
   if (columns.cols() == 0) return;
   double most = 0.0, total = 0.0, t_most = 0.0;
   for (Index k = 0; k < columns.cols(); ++k) {

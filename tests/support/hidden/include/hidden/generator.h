@@ -118,10 +118,10 @@ struct Scenario {
   /// Point of the screw or scale that stays where it is, from the middle of the stretch, in
   /// lengths of the stretch.
   double fixed = 0.0;
-  bool one_way = false;       ///< the targets are met from one side only
-  double noise = 5e-7;        ///< standard deviation of a reading, m or rad
-  double misread = 0.0;       ///< share of readings that are wrong by 8 to 40 times the noise
-  bool one_misread = false;   ///< instead: exactly one
+  bool one_way = false;      ///< the targets are met from one side only
+  double noise = 5e-7;       ///< standard deviation of a reading, m or rad
+  double misread = 0.0;      ///< share of readings that are wrong by 8 to 40 times the noise
+  bool one_misread = false;  ///< instead: exactly one
   Unrest unrest{};
   std::vector<Piece> model;   ///< causes that the campaign's model holds already
   std::vector<Piece> hidden;  ///< causes that it does not
