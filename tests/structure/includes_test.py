@@ -44,11 +44,11 @@ PARTS_OF_ROOMS = {"reading": {"model"}, "modelling": {"model"}, "evaluation": {"
 SHARED = {"common"}
 # third-party header -> the parts that are its home
 HOMES = {
-    "Poco/": {"engine/host", "plugins/readers"}, "boost/dll": {"engine/host"}, "boost/math": {"engine/math"},
-    "boost/": {"engine/host", "engine/math"}, "toml++": {"engine/host"}, "muParser": {"engine/host"}, "hpdf": {"engine/pdf"}, "qrencode": {"reports"},
+    "Poco/": {"engine/host", "plugins/readers"}, "boost/dll": {"engine/host"}, "boost/math": {"engine/math", "engine/history"},
+    "boost/": {"engine/host", "engine/math", "engine/history"}, "toml++": {"engine/host"}, "muParser": {"engine/host"}, "hpdf": {"engine/pdf"}, "qrencode": {"reports"},
     "libdeflate": {"engine/pdf"}, "openssl/": {"engine/pdf", "engine/sign", "engine/host"}, "xmlsec/": {"engine/sign"},
     "libxml/": {"engine/sign", "plugins/readers"}, "utf8proc": {"reports"}, "CLI/": {"engine/app"}, "nlohmann": {"engine/host", "engine/app", "plugins/outputs"},
-    "Eigen": {"engine/math", "engine/model", "plugins/analyses", "plugins/effects"}, "tl/": {"engine/sdk"}, "sqlite3": {"engine/host"},
+    "Eigen": {"engine/math", "engine/history", "engine/model", "plugins/analyses", "plugins/effects"}, "tl/": {"engine/sdk"}, "sqlite3": {"engine/host"},
 }
 
 

@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <ctime>
+#include <iterator>
 #include <new>
 #include <thread>
 
@@ -265,7 +268,7 @@ class Runner {
     const evaluation::Evaluated& evaluated = *evaluation;
     if (locked && !last_trial_) return Answer::waits;
     if (evaluated.status == evaluation::Status::failed && !first) return Answer::again;
-    const bool may_pass = evaluated.retry || is_out_of_memory(evaluated);
+    const bool may_pass = evaluated.retry || is_of_the_machine(evaluated);
     if (evaluated.status == evaluation::Status::failed && !locked &&
         !evaluated.results.errors.empty())
       numbers_.note_failure(c.id, evaluated.results.errors.front().message);
@@ -286,11 +289,18 @@ class Runner {
                                                                : Answer::ok;
   }
 
-  /// Memory that was refused says nothing about the readings.
-  static bool is_out_of_memory(const evaluation::Evaluated& evaluated) {
-    return std::any_of(
-        evaluated.results.errors.begin(), evaluated.results.errors.end(),
-        [](const Error& e) { return e.message.find("out of memory") != e.message.npos; });
+  /// Memory that was refused, and a disk or share that did not answer, say nothing about the
+  /// readings.
+  static bool is_of_the_machine(const Error& e) {
+    if (e.message.find("out of memory") != e.message.npos) return true;
+    constexpr int codes[] = {EIO, ESTALE, ETIMEDOUT, ENOTCONN, EHOSTDOWN, EHOSTUNREACH, ENOMEM};
+    return std::any_of(std::begin(codes), std::end(codes),
+                       [&](int code) { return e.message.ends_with(std::strerror(code)); });
+  }
+  static bool is_of_the_machine(const evaluation::Evaluated& evaluated) {
+    const auto& errors = evaluated.results.errors;
+    return std::any_of(errors.begin(), errors.end(),
+                       [](const Error& e) { return is_of_the_machine(e); });
   }
 
   static void fail_certificate(evaluation::Evaluated& evaluated, const Error& why) {

@@ -1342,21 +1342,21 @@ constexpr Key forgotten_keys[] = {
 };
 
 constexpr Key events_file_keys[] = {
-    required_format(),
+    format_key,
     {.name = "event",
      .holds = tables,
      .help = "What happened to a machine, [[event]].",
      .keys = event_keys},
 };
 constexpr Key acknowledged_file_keys[] = {
-    required_format(),
+    format_key,
     {.name = "acknowledged",
      .holds = tables,
      .help = "What somebody knows and lets stand, [[acknowledged]].",
      .keys = acknowledged_keys},
 };
 constexpr Key forgotten_file_keys[] = {
-    required_format(),
+    format_key,
     {.name = "forgotten",
      .holds = tables,
      .help = "Campaigns that are meant to be gone, [[forgotten]].",

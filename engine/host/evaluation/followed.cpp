@@ -248,7 +248,8 @@ void put_quantity(storage::JsonWriter& json, const FollowedQuantity& q) {
   json.end_object();
 }
 
-/// Upper triangle, row by row, in the units of the quantities.
+/// Upper triangle, row by row, in the units of the quantities. Nothing where a correlation is no
+/// more than what rounding leaves.
 void put_covariance(storage::JsonWriter& json, const FollowedGroup& group, std::size_t first) {
   const std::size_t n = group.quantities.size();
   json.begin_object();
@@ -256,10 +257,14 @@ void put_covariance(storage::JsonWriter& json, const FollowedGroup& group, std::
   json.member("count", static_cast<std::uint64_t>(n));
   json.key("upper");
   json.begin_array();
+  constexpr double rounding = 1e-12;
+  const auto& v = group.covariance;
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i; j < n; ++j)
-      json.value(printed(printed(group.covariance[i * n + j], group.quantities[i].quantity),
-                         group.quantities[j].quantity));
+    for (std::size_t j = i; j < n; ++j) {
+      const double least = rounding * std::sqrt(v[i * n + i] * v[j * n + j]);
+      const double one = std::fabs(v[i * n + j]) > least ? v[i * n + j] : 0.0;
+      json.value(printed(printed(one, group.quantities[i].quantity), group.quantities[j].quantity));
+    }
   json.end_array();
   json.end_object();
 }

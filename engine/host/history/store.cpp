@@ -261,11 +261,8 @@ Expected<std::optional<std::uint64_t>> known_night(const fs::path& out) {
 }
 
 Expected<void> forget_known_night(const fs::path& out) {
-  const fs::path path = out / known_folder / known_name;
-  std::error_code error;
-  fs::remove(path, error);
-  if (error) return fail("cannot remove " + path.string() + ": " + error.message());
-  return {};
+  // Written over and not removed: there are shares on which nothing can be removed.
+  return storage::publish(out / known_folder, {{known_name, "none\n"}});
 }
 
 Expected<void> note_known_night(const fs::path& out, std::uint64_t night) {

@@ -220,7 +220,7 @@ class Durable(NightTest):
         self.assertEqual(0, self.status("--max-age", "48").returncode)
         said = json.loads(self.status("--json").stdout)
         self.assertEqual((False, 1, "complete"), (said["well"], said["night"], said["state"]))
-        self.run_nonio("--force", env=fault("rename:4:KILL"))
+        self.run_nonio("--force", env=fault("rename:3:KILL", main=True))
         done = self.status("--max-age", "0")
         self.assertEqual(1, done.returncode)
         self.assertIn("night 2", done.stdout)
