@@ -69,7 +69,7 @@ int list_events(const EventWish& wish, const Common& common) {
                      1, ' ', false, Json::error_handler_t::replace)
               << "\n";
   else if (all.empty() && !common.quiet)
-    std::cout << "no event is entered yet\n";
+    std::cout << "no events yet\n";
   return exit_done;
 }
 
@@ -78,7 +78,7 @@ int event(EventWish& wish, const Common& common) {
   config::Event& e = wish.event;
   if (e.kind.empty() && e.text.empty()) return list_events(wish, common);
   if (e.kind.empty() || e.text.empty() || e.machine.empty())
-    return complain(verb, "--machine, --kind and --text go together");
+    return complain(verb, "expected --machine, --kind and --text together");
   if (e.date.empty()) e.date = today();
   if (!is_day(e.date)) return wrong_day(verb, e.date);
   if (!wish.out.empty()) {
@@ -150,26 +150,26 @@ Verb event_verb(Common& common) {
   config::Event& e = wish->event;
   return {
       .name = "event",
-      .summary = "Enter what happened to a machine: a crash, a repair, a new table",
+      .summary = "Record an event of a machine: a crash, a repair, a new table",
       .arguments = joined(
           {site_argument(wish->site),
-           {"--machine", &e.machine, "Its asset, or maker and serial, as `nonio query` calls it"},
-           {"--axis", &e.axis, "The axis that it concerns; without it the whole machine"},
+           {"--machine", &e.machine, "Its asset, or maker and serial, as `nonio query` names it"},
+           {"--axis", &e.axis, "The axis concerned; default: the whole machine"},
            one_of({"crash", "repair", "compensation", "moved", "instrument", "software", "other"},
-                  {"--kind", &e.kind, "What happened"}),
-           {"--text", &e.text, "In the words of who was there, one line"},
-           {"--date", &e.date, "The day, YYYY-MM-DD; without it today"},
-           {"--by", &e.by, "Who says so"},
+                  {"--kind", &e.kind, "Kind of event"}),
+           {"--text", &e.text, "Description in the words of a witness, one line"},
+           {"--date", &e.date, "The day, YYYY-MM-DD; default: today"},
+           {"--by", &e.by, "Name of the author of the entry"},
            existing(Argument::Takes::folder,
                     {"--out", &wish->out,
-                     "Output folder of `nonio run`: a machine or axis that its history does not\n"
-                     "know is refused, with the nearest name"})},
+                     "Output folder of `nonio run`: a machine or axis that is not in its history\n"
+                     "is rejected, with the nearest name"})},
           common_arguments(common)),
       .footer =
-          "Without --kind and --text: what is entered, of one machine or all.\n"
-          "The entry goes to the end of SITE/events.toml, a file that you may also write by hand;\n"
-          "comments stay. A wrong entry is mended there. From the next night on the machine's\n"
-          "history knows it: a step of its numbers on that day is then no news but its effect.\n\n"
+          "Without --kind and --text: lists the events, of one machine or all.\n"
+          "Appends to SITE/events.toml. You can also edit this file; comments stay. Correct a\n"
+          "wrong entry there. The machine's history contains the event from the next night on: a\n"
+          "step of its values on that day then counts as its effect.\n\n"
           "Example: nonio event site --machine S-0042 --axis X --kind crash --date 2026-03-04 "
           "--text \"tool hit the vice\"",
       .run = [wish, &common] { return event(*wish, common); }};
@@ -180,25 +180,26 @@ Verb ack_verb(Common& common) {
   config::Acknowledgement& a = wish->known;
   return {
       .name = "ack",
-      .summary = "Acknowledge what the morning says of a machine, until a day",
+      .summary = "Acknowledge a finding of a machine until a given day",
       .arguments = joined(
           {site_argument(wish->site),
            required({"--finding", &a.finding, "Id of the finding, as the night's summary has it"}),
-           required({"--machine", &a.machine, "As `nonio query` calls it"}),
-           {"--axis", &a.axis, "The axis; without it all"},
-           {"--quantity", &a.quantity, "The quantity, such as B_mean; without it all"},
-           required({"--until", &a.until, "Last day on which it is known, YYYY-MM-DD"}),
+           required({"--machine", &a.machine, "As `nonio query` names it"}),
+           {"--axis", &a.axis, "The axis; default: all"},
+           {"--quantity", &a.quantity, "The quantity, such as B_mean; default: all"},
+           required({"--until", &a.until, "Last day on which it counts as known, YYYY-MM-DD"}),
            {"--value", &wish->value,
-            "The quantity's value now, in its unit: it returns where it\n"
-            "moves by more than --U"},
+            "Present value of the quantity, in its unit: the finding returns\n"
+            "if the value changes by more than --U"},
            {"--U", &wish->U, "Expanded uncertainty (k = 2) of that value"},
-           required({"--by", &a.by, "Who says so"}),
-           required({"--why", &a.why, "Why it may stand until then"}),
-           {"--date", &a.date, "The day on which it is said, YYYY-MM-DD; without it today"}},
+           required({"--by", &a.by, "Name of the author of the entry"}),
+           required({"--why", &a.why, "Reason why it is accepted until then"}),
+           {"--date", &a.date, "Day of the entry, YYYY-MM-DD; default: today"}},
           common_arguments(common)),
       .footer =
-          "The entry goes to the end of SITE/acknowledged.toml; comments stay. Nothing is "
-          "hidden by it:\nwhat is known stays in the results and in the history.\n\n"
+          "Appends to SITE/acknowledged.toml; comments stay. It hides nothing: the finding stays "
+          "in "
+          "the\nresults and in the history.\n\n"
           "Example: nonio ack site --finding reversal.constant --machine S-0042 --axis X "
           "--until 2026-06-30\n         --by \"B. Sample\" --why \"nut is ordered\"",
       .run = [wish, &common] { return acknowledge(*wish, common); }};
@@ -206,23 +207,22 @@ Verb ack_verb(Common& common) {
 
 Verb forget_verb(Common& common) {
   auto wish = std::make_shared<ForgetWish>();
-  return {.name = "forget",
-          .summary = "Say that campaigns are meant to be gone from the site",
-          .arguments = joined({site_argument(wish->site),
-                               required({"CAMPAIGN", &wish->campaigns, "Their ids"}),
-                               required({"--by", &wish->by, "Who says so"}),
-                               required({"--why", &wish->why, "Why they are gone"}),
-                               {"--date", &wish->date,
-                                "The day on which it is said, YYYY-MM-DD; without it today"}},
-                              common_arguments(common)),
-          .footer =
-              "A campaign that the night before has seen and this one does not is named every "
-              "night, with exit\nstatus 1, until it is back or forgotten. The entry goes to the "
-              "end of SITE/forgotten.toml. What was\nknown of the campaign stays in the output "
-              "folder and in the history.\n\n"
-              "Example: nonio forget site 2021-03-02-rossi --by \"B. Sample\" --why \"machine "
-              "was sold\"",
-          .run = [wish, &common] { return forget(*wish, common); }};
+  return {
+      .name = "forget",
+      .summary = "Record that campaigns were removed from the site on purpose",
+      .arguments = joined({site_argument(wish->site),
+                           required({"CAMPAIGN", &wish->campaigns, "Their ids"}),
+                           required({"--by", &wish->by, "Name of the author of the entry"}),
+                           required({"--why", &wish->why, "Reason for the removal"}),
+                           {"--date", &wish->date, "Day of the entry, YYYY-MM-DD; default: today"}},
+                          common_arguments(common)),
+      .footer =
+          "The nightly run reports a campaign that has vanished every night, with exit status 1, "
+          "until it\nis back or forgotten. Appends to SITE/forgotten.toml. The results of the "
+          "campaign stay in the\noutput folder and in the history.\n\n"
+          "Example: nonio forget site 2021-03-02-rossi --by \"B. Sample\" --why \"machine "
+          "was sold\"",
+      .run = [wish, &common] { return forget(*wish, common); }};
 }
 
 }  // namespace nonio::app

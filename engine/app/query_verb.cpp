@@ -159,12 +159,12 @@ int print_machines(const QueryWish& wish, const Common& common) {
   }
   std::vector<std::vector<std::string>> rows{{"machine", "campaigns"}};
   for (const NamedMachine& m : *machines)
-    rows.push_back({m.name.empty() ? "(says neither asset nor serial)" : printable(m.name),
+    rows.push_back({m.name.empty() ? "(neither asset nor serial)" : printable(m.name),
                     std::to_string(m.campaigns)});
   print_rows(rows, "lr");
   for (const Spelling& s : *spellings)
     std::cout << "one machine? \"" << printable(s.one) << "\" and \"" << printable(s.other)
-              << "\": " << s.why << "; if so, say it in site.toml: [[alias]] name, asset, why\n";
+              << "\": " << s.why << "; if so, state it in site.toml: [[alias]] name, asset, why\n";
   return exit_done;
 }
 
@@ -187,7 +187,7 @@ int query(const QueryWish& wish, const Common& common) {
   } else if (wish.csv) {
     print_csv(*points);
   } else if (points->empty()) {
-    if (!common.quiet) std::cout << "nothing of that in the history\n";
+    if (!common.quiet) std::cout << "no such result in the history\n";
   } else {
     print_table(*points);
   }
@@ -201,30 +201,30 @@ Verb query_verb(Common& common) {
   host::history::Query& q = wish->query;
   return {
       .name = "query",
-      .summary = "What all campaigns say of a machine, out of the history of an output folder",
+      .summary = "Results of all campaigns of a machine, from the history of an output folder",
       .arguments = joined(
           {required(existing(Argument::Takes::folder,
                              {"OUT", &wish->out, "Output folder of `nonio run`"})),
            {"MACHINE", &q.machine,
-            "Its asset, or maker and serial with a space between them; without it all machines"},
-           {"--axis", &q.axis, "As the control calls it: X, or X1 and X2 of a gantry"},
+            "Its asset, or maker and serial with a space between them; default: all machines"},
+           {"--axis", &q.axis, "As the control names it: X, or X1 and X2 of a gantry"},
            {"--quantity", &q.quantity, "scale, B_mean, ln_s, A, R, ... as in results.json"},
            {"--source", &q.source,
             "\"followed\" (with covariance, for trends), or an analysis: iso230-2"},
            {"--from", &q.from, "First day of the campaigns, YYYY-MM-DD"},
            {"--to", &q.to, "Last day, YYYY-MM-DD"},
            {"--superseded", &q.superseded,
-            "Also what was replaced since: other readings, other options, another version"},
+            "Also replaced results: other readings, other options, another version"},
            {"--csv", &wish->csv, "Comma-separated, all columns, for a spreadsheet"}},
           common_arguments(common)),
       .footer =
-          "Without anything but OUT: the machines, and names that may be one machine.\n"
-          "u is the standard uncertainty of what is new in each campaign, U the expanded one (k = "
-          "2);\n"
-          "what campaigns share (the instrument, the expansion) is u_common in --csv and --json.\n"
-          "The numbers are those of results.json, digit for digit. The history is "
-          "OUT/history.sqlite,"
-          "\nwhich any SQLite tool reads: tables `evaluation`, `result`, ..., view `point`.\n\n"
+          "With OUT alone: lists the machines, and names that may be one machine.\n"
+          "u is the standard uncertainty of the contributions that are new in each campaign, U "
+          "the\n"
+          "expanded one (k = 2); the contributions that campaigns share (the instrument, the\n"
+          "expansion) are u_common in --csv and --json. The values are those of results.json,\n"
+          "digit for digit. The history is OUT/history.sqlite; any SQLite tool reads it: tables\n"
+          "`evaluation`, `result`, ..., view `point`.\n\n"
           "Example: nonio query out S-0042 --axis X --quantity B_mean --csv",
       .run = [wish, &common] { return query(*wish, common); }};
 }

@@ -44,8 +44,8 @@ std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
   for (const CampaignState& c : campaigns) id_of.emplace(storage::path_text(c.folder), c.id);
   for (const EarlierResult& e : earlier) {
     const auto now = id_of.find(e.folder);
-    const std::string meant = "if that is meant, say so (nonio forget SITE " + e.id +
-                              " --by NAME --why TEXT), else bring it back";
+    const std::string meant = "if it was removed on purpose, record that (nonio forget SITE " +
+                              e.id + " --by NAME --why TEXT); otherwise restore it";
     const auto above = std::find_if(unlisted.begin(), unlisted.end(), [&](const auto& u) {
       const std::string folder = storage::path_text(u.folder);
       return e.folder == folder || e.folder.starts_with(folder + "/");

@@ -190,8 +190,8 @@ constexpr Key campaign_keys[] = {
              "certificate."},
     {.name = "purpose",
      .holds = text,
-     .help = "Why the machine was measured. A check is a series of its own in the machine's "
-             "history; the others are told apart in it.",
+     .help = "Reason for the measurements. Checks are a series of their own in the machine's "
+             "history; the other reasons are shown in it.",
      .otherwise = "periodic",
      .choices = purposes},
 };
@@ -369,8 +369,8 @@ constexpr Words an_end = "the axis positions of that end, { X = 0, Y = 0 }";
 constexpr Key measurement_keys[] = {
     {.name = "id",
      .holds = text,
-     .help = "Name of the measurement, unique in the campaign. Without `state`, what follows its "
-             "first space is the state of the machine.",
+     .help = "Name of the measurement, unique in the campaign. Without `state`, the text after "
+             "its first space is the state of the machine.",
      .required = true,
      .wanted = "expected up to 60 characters without / and \\, not starting with a point",
      .text = {.not_letters = "/\\\n\t", .not_first = ". ", .longest = 60}},
@@ -418,8 +418,8 @@ constexpr Key measurement_keys[] = {
     {.name = "state",
      .holds = text,
      .help =
-         "State of the machine in which it was measured. Diagonals, straightness lines and runs "
-         "of one state are evaluated together; \"\": it holds for every state.",
+         "State of the machine during the measurement. Diagonals, straightness lines and runs of "
+         "one state are evaluated together; \"\" belongs to every state.",
      .wanted = "expected up to 60 characters without / and \\, not starting with a point",
      .text = {.not_letters = "/\\\n\t", .not_first = ". ", .longest = 60}},
     {.name = "about",
@@ -884,22 +884,22 @@ constexpr Key limits_keys[] = {
      .above = true},
     {.name = "vanished",
      .holds = whole,
-     .help = "So many campaigns may be gone that the night before has seen; with more of them the "
-             "night's exit status is 1. What is meant to be gone is said with `nonio forget`.",
+     .help = "Number of campaigns of the night before that may be missing; with more of them the "
+             "exit status is 1. Record campaigns removed on purpose with `nonio forget`.",
      .otherwise = "0"},
 };
 
 constexpr Key alias_keys[] = {
     {.name = "name",
      .holds = text,
-     .help = "How a machine is called in campaigns: an asset, or maker and serial with a space "
-             "between them.",
+     .help = "Name of a machine in campaigns: an asset, or maker and serial with a space between "
+             "them.",
      .required = true},
     {.name = "asset",
      .holds = text,
-     .help = "The machine that it is, as `nonio query` calls it.",
+     .help = "The same machine as `nonio query` names it.",
      .required = true},
-    {.name = "why", .holds = text, .help = "How this is known.", .required = true},
+    {.name = "why", .holds = text, .help = "Evidence for it.", .required = true},
 };
 
 constexpr Choice result_folders[] = {{"flat", "OUT/<id>"}, {"hashed", "OUT/ab/<id>"}};
@@ -985,7 +985,7 @@ constexpr Key site_file_keys[] = {
     options_key,
     {.name = "alias",
      .holds = tables,
-     .help = "Two names of one machine, [[alias]]: its campaigns are one history.",
+     .help = "Two names of one machine, [[alias]]: its campaigns form one history.",
      .keys = alias_keys},
     {.name = "signing",
      .holds = table,
@@ -1279,9 +1279,10 @@ constexpr Key machine_file_keys[] = {
 };
 
 constexpr Words an_asset_or_serial =
-    "The machine as `nonio query` calls it: its asset, or maker and serial with a space between "
+    "The machine as `nonio query` names it: its asset, or maker and serial with a space between "
     "them.";
-constexpr Key written_by = {.name = "by", .holds = text, .help = "Who says so.", .required = true};
+constexpr Key written_by = {
+    .name = "by", .holds = text, .help = "Name of the author of this entry.", .required = true};
 
 constexpr Choice event_kinds[] = {{"crash"},      {"repair"},   {"compensation"}, {"moved"},
                                   {"instrument"}, {"software"}, {"other"}};
@@ -1291,89 +1292,96 @@ constexpr Key event_keys[] = {
     {.name = "machine", .holds = text, .help = an_asset_or_serial, .required = true},
     {.name = "axis",
      .holds = text,
-     .help = "The axis that it concerns, as the control calls it; without it the whole machine."},
+     .help = "The axis concerned, as the control names it. Default: the whole machine."},
     {.name = "kind",
      .holds = text,
-     .help = "What happened: crash, repair, compensation (a table came into the control), moved "
-             "(set up anew), instrument (another one from now on), software, other.",
+     .help = "Kind of event: crash, repair, compensation (a table was loaded into the control), "
+             "moved (set up again), instrument (another one from now on), software, other.",
      .required = true,
      .choices = event_kinds},
-    {.name = "text", .holds = text, .help = "In the words of who was there.", .required = true},
-    {.name = "by", .holds = text, .help = "Who says so."},
+    {.name = "text",
+     .holds = text,
+     .help = "Description in the words of a witness.",
+     .required = true},
+    {.name = "by", .holds = text, .help = "Name of the author of this entry."},
 };
 
 constexpr Key acknowledged_keys[] = {
-    {.name = "date", .holds = date, .help = "Day on which it was said.", .required = true},
+    {.name = "date", .holds = date, .help = "Day of the entry.", .required = true},
     {.name = "finding",
      .holds = text,
-     .help = "Id of the finding, or kind of the line of the morning.",
+     .help = "Id of the finding, or kind of a line of the daily list.",
      .required = true},
     {.name = "machine", .holds = text, .help = an_asset_or_serial, .required = true},
-    {.name = "axis", .holds = text, .help = "The axis; without it all of them."},
-    {.name = "quantity", .holds = text, .help = "The quantity, such as B_mean; without it all."},
+    {.name = "axis", .holds = text, .help = "The axis. Default: all axes."},
+    {.name = "quantity", .holds = text, .help = "The quantity, such as B_mean. Default: all."},
     {.name = "until",
      .holds = date,
-     .help = "Last day on which it is known; then it is new again.",
+     .help = "Last day on which the finding counts as known; then it is new again.",
      .required = true},
     {.name = "value",
      .holds = number,
-     .help = "Value of the quantity on that day, in its unit: it is new again where it moves by "
-             "more than U."},
+     .help = "Value of the quantity on that day, in its unit: the finding is new again if the "
+             "value changes by more than U."},
     {.name = "U",
      .holds = number,
      .help = "Expanded uncertainty (k = 2) of that value.",
      .wanted = not_negative,
      .least = 0.0},
     written_by,
-    {.name = "why", .holds = text, .help = "Why it may stand until then.", .required = true},
+    {.name = "why",
+     .holds = text,
+     .help = "Reason why it is accepted until then.",
+     .required = true},
 };
 
 constexpr Key forgotten_keys[] = {
-    {.name = "date", .holds = date, .help = "Day on which it was said.", .required = true},
+    {.name = "date", .holds = date, .help = "Day of the entry.", .required = true},
     {.name = "campaign",
      .holds = text,
-     .help = "Id of a campaign that is meant to be gone.",
+     .help = "Id of a campaign that was removed on purpose.",
      .required = true,
      .wanted = "expected a-z 0-9 . _ - and no more than 100, not starting with a point; found "
                "\"{}\"",
      .text = campaign_id_rule},
     written_by,
-    {.name = "why", .holds = text, .help = "Why it is gone.", .required = true},
+    {.name = "why", .holds = text, .help = "Reason for the removal.", .required = true},
 };
 
 constexpr Key events_file_keys[] = {
     format_key,
     {.name = "event",
      .holds = tables,
-     .help = "What happened to a machine, [[event]].",
+     .help = "Events of a machine, [[event]].",
      .keys = event_keys},
 };
 constexpr Key acknowledged_file_keys[] = {
     format_key,
     {.name = "acknowledged",
      .holds = tables,
-     .help = "What somebody knows and lets stand, [[acknowledged]].",
+     .help = "Findings that a person knows and accepts, [[acknowledged]].",
      .keys = acknowledged_keys},
 };
 constexpr Key forgotten_file_keys[] = {
     format_key,
     {.name = "forgotten",
      .holds = tables,
-     .help = "Campaigns that are meant to be gone, [[forgotten]].",
+     .help = "Campaigns that were removed on purpose, [[forgotten]].",
      .keys = forgotten_keys},
 };
 
 constexpr Key events_toml = {.name = "events.toml",
                              .holds = table,
-                             .help = "What happened to the machines of a site.",
+                             .help = "Events of the machines of a site.",
                              .keys = events_file_keys};
-constexpr Key acknowledged_toml = {.name = "acknowledged.toml",
-                                   .holds = table,
-                                   .help = "What is known of the machines of a site, until when.",
-                                   .keys = acknowledged_file_keys};
+constexpr Key acknowledged_toml = {
+    .name = "acknowledged.toml",
+    .holds = table,
+    .help = "Known findings of the machines of a site, and until when.",
+    .keys = acknowledged_file_keys};
 constexpr Key forgotten_toml = {.name = "forgotten.toml",
                                 .holds = table,
-                                .help = "Campaigns of a site that are meant to be gone.",
+                                .help = "Campaigns of a site that were removed on purpose.",
                                 .keys = forgotten_file_keys};
 
 constexpr Key machine_toml = {.name = "machine.toml",

@@ -37,7 +37,7 @@ Error wrong_option(const std::string& place, const toml::node& value, const std:
       const std::string at = place + "." + std::string(name.str());
       const toml::table* entries = node.as_table();
       if (entries == nullptr)
-        return {at + ": wanted a table of numbers, found " + type_name(node), file,
+        return {at + ": expected a table of numbers, found " + type_name(node), file,
                 node.source().begin.line};
       for (const auto& [key, item] : *entries)
         if (const auto number = item.is_number() ? item.value<double>() : std::nullopt;
@@ -46,7 +46,7 @@ Error wrong_option(const std::string& place, const toml::node& value, const std:
                       type_name(item),
                   file, item.source().begin.line};
     }
-  return {place + ": wanted a value, found " + type_name(value), file, value.source().begin.line};
+  return {place + ": expected a value, found " + type_name(value), file, value.source().begin.line};
 }
 
 /// Of plugins that only the run knows: what is wrong with them is said there.
