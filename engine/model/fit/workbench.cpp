@@ -270,6 +270,13 @@ MatrixXd Workbench::products(const std::vector<std::size_t>& blocks) const {
   return out;
 }
 
+MatrixXd Workbench::product(std::size_t a, std::size_t b) const {
+  const Block &one = blocks_[a], &other = blocks_[b];
+  if (products_[b].size() > 0) return products_[b].middleRows(one.first, one.count);
+  if (products_[a].size() > 0) return products_[a].middleRows(other.first, other.count).transpose();
+  return x_.middleCols(one.first, one.count).transpose() * x_.middleCols(other.first, other.count);
+}
+
 MatrixXd Workbench::gram(const std::vector<std::size_t>& blocks) const {
   Index columns = 0;
   for (const std::size_t b : blocks) columns += blocks_[b].count;
@@ -278,8 +285,7 @@ MatrixXd Workbench::gram(const std::vector<std::size_t>& blocks) const {
   for (const std::size_t b : blocks) {
     Index row = 0;
     for (const std::size_t a : blocks) {
-      out.block(row, column, blocks_[a].count, blocks_[b].count) =
-          products_of(b).middleRows(blocks_[a].first, blocks_[a].count);
+      out.block(row, column, blocks_[a].count, blocks_[b].count) = product(a, b);
       row += blocks_[a].count;
     }
     column += blocks_[b].count;

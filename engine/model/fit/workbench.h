@@ -128,6 +128,8 @@ class Workbench {
   void push(Block block, const MatrixXd& columns);
   void count_shapes(Instance& instance) const;
   void fill_search(Block& block) const;
+  /// Of the columns of two blocks: from what is kept of all columns, if it is.
+  MatrixXd product(std::size_t a, std::size_t b) const;
   const MatrixXd& products_of(std::size_t block) const;
   double criterion(double squares, double price, Index parameters) const;
 
