@@ -96,11 +96,11 @@ class Paper(SigningTest):
         self.assertIn(STANDARD, self.said("plain"))
         for words in ("Evaluated: 8 of 9 targets.", "1 of 9 targets were left out"):
             self.assertIn(words, self.said("left-out"))
-        for words in ("asks 5", "whole multiples of 10 mm apart", "plan of its own"):
+        for words in ("requires 5", "whole multiples of 10 mm apart", "non-standard test plan"):
             self.assertIn(words, self.said("short"))
         self.assertNotIn(STANDARD, self.said("short"))
         self.assertNotIn(STANDARD, self.said("left-out"))
-        self.assertIn("plan of its own", self.said("left-out"))
+        self.assertIn("non-standard test plan", self.said("left-out"))
         self.assertIn("drifted by", self.said("drifting"))
         self.assertIn("Approached in direction + only.", self.said("one-direction"))
         self.assertNotIn(STANDARD, self.said("one-direction"))
