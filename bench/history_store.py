@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The history of many campaigns: made again from nothing, and brought up to date after 100 new ones.
+"""The history of many campaigns and the morning after: made again from nothing, and brought up to date after 100 new ones.
 
     python3 bench/history_store.py build/ci [CAMPAIGNS] [FOLDER]
 
@@ -16,6 +16,7 @@ import sys
 import tempfile
 
 SEED = 20260319
+TEMPLATES = pathlib.Path(__file__).resolve().parent.parent / "templates"
 QUANTITIES = ["scale", "B_mean", "ln_s", "cyclic_cos", "cyclic_sin", "curve_2", "curve_3", "curve_4"]
 VALUES = ["A", "A+", "A-", "E", "E+", "E-", "M", "R", "R+", "R-", "B", "B_mean"]
 
@@ -26,8 +27,8 @@ def results(rng, campaign, machine, day):
         covariance.append({"first": len(followed), "count": len(QUANTITIES),
                            "upper": [round(rng.uniform(0, 0.1), 9) for _ in range(len(QUANTITIES) * (len(QUANTITIES) + 1) // 2)]})
         for q in QUANTITIES:
-            followed.append({"measurement": axis, "axis": axis, "quantity": q, "unit": "um", "value": round(rng.gauss(0, 5), 9),
-                             "u": round(rng.uniform(0.1, 0.4), 9), "state": "as-found",
+            followed.append({"measurement": axis, "axis": axis, "quantity": q, "unit": "um", "value": round(rng.gauss(0, 0.3), 9),
+                             "u": round(rng.uniform(0.2, 0.3), 9), "state": "as-found",
                              "common": [{"source": "instrument Sample Optics L-001 SO-2026-0001 2026-01-12", "u": 0.3}],
                              "conditions": {"from": 13.2, "to": 986.5, "compensation": "on"}})
         analyses.append({"plugin": "iso230-2", "version": "1", "measurement": axis,
@@ -69,10 +70,12 @@ def main():
         print(f"seed {SEED}, {count} campaigns", flush=True)
         program = next(p for p in build.rglob("bench_history") if p.is_file())
         subprocess.run([program, "rebuild", out], check=True)
+        subprocess.run([program, "morning", out, TEMPLATES], check=True)
         new = [f"n{i:03}" for i in range(100)]
         for campaign in new:
             write(out, campaign, 2, rng, kinds)
         subprocess.run([program, "update", out, *new], check=True)
+        subprocess.run([program, "morning", out, TEMPLATES], check=True)
         print(f"{(out / 'history.sqlite').stat().st_size / 1e6:.0f} MB")
     finally:
         shutil.rmtree(above)

@@ -6,6 +6,7 @@ execute_process(COMMAND ${NONIO} run ${OUT}/site --out ${OUT}/out --plugin-path 
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "nonio run ended with ${status}")
 endif()
+# A script at the time of the test, not a build: what the folder holds is what is wanted.
 file(GLOB_RECURSE wanted RELATIVE ${CASE}/expected ${CASE}/expected/*)
 if(NOT wanted)
   message(FATAL_ERROR "${CASE}/expected is empty: nothing is compared")

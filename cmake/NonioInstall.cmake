@@ -53,10 +53,8 @@ install(CODE "
 # Docs, the papers of each plugin, and samples to try it on.
 set(papers ${CMAKE_INSTALL_DATADIR}/doc/nonio)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${papers} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.svg)
-file(GLOB readmes CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/plugins/*/*/README.md)
-foreach(readme IN LISTS readmes)
-  get_filename_component(folder ${readme} DIRECTORY)
-  install(FILES ${PROJECT_SOURCE_DIR}/${readme} DESTINATION ${papers}/${folder})
+foreach(folder IN LISTS NONIO_PLUGIN_FOLDERS)
+  install(FILES ${PROJECT_SOURCE_DIR}/plugins/${folder}/README.md DESTINATION ${papers}/plugins/${folder})
 endforeach()
 # Named one by one: a key or a register that somebody made here to try things out stays here.
 set(samples ${PROJECT_SOURCE_DIR}/samples)

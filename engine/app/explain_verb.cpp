@@ -72,14 +72,7 @@ class Explain {
   }
 
   /// What belongs into the model beyond doubt; empty: nothing more.
-  std::string next() const {
-    if (all_.empty()) return {};
-    const model::Explanation& worst = all_[host::modelling::most_severe(all_)].explanation;
-    if (worst.verdict.kind == model::Verdict::Kind::missing) return worst.verdict.effect;
-    if (worst.verdict.kind == model::Verdict::Kind::unknown && !worst.certain.empty())
-      return worst.certain.front();
-    return {};
-  }
+  std::string next() const { return host::modelling::next_effect(host::modelling::told_of(all_)); }
 
   bool add(const std::string& effect) {
     const auto change = host::modelling::change_model(open_.folder, open_.read, effect, true);

@@ -52,15 +52,16 @@ int main(int argc, char** argv) try {
       program.verbs.push_back(std::move(verb));
     }
   };
-  add("Every night", {run_verb(common), status_verb(common)});
+  add("Every night", {run_verb(common), status_verb(common), morning_verb(common)});
   add("Campaigns", {apart(new_verb(common)), apart(import_verb(common)), apart(show_verb(common)),
                     open_verb(common), apart(schema_verb(common))});
-  add("The machines over the years",
-      {query_verb(common), event_verb(common), ack_verb(common), forget_verb(common)});
+  add("The machines over the years", {query_verb(common), history_verb(common), event_verb(common),
+                                      ack_verb(common), forget_verb(common)});
   add("Certificates", {release_verb(common), certificates_verb(common), apart(verify_verb(common)),
                        restamp_verb(common), apart(template_verb(common))});
-  add("The error model", {apart(compare_verb(common)), apart(explain_verb(common)),
-                          apart(model_verb(common)), apart(simulate_verb(common))});
+  add("The error model",
+      {live_verb(common), apart(compare_verb(common)), apart(explain_verb(common)),
+       apart(model_verb(common)), apart(simulate_verb(common))});
   add("At the machine",
       {apart(plan_verb(common)), apart(controllers_verb(common)), apart(diff_verb(common)),
        apart(apply_verb(common)), apart(merge_verb(common))});

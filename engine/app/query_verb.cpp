@@ -223,8 +223,10 @@ Verb query_verb(Common& common) {
           "the\n"
           "expanded one (k = 2); the contributions that campaigns share (the instrument, the\n"
           "expansion) are u_common in --csv and --json. The values are those of results.json,\n"
-          "digit for digit. The history is OUT/history.sqlite; any SQLite tool reads it: tables\n"
-          "`evaluation`, `result`, ..., view `point`.\n\n"
+          "digit for digit. The history is OUT/history.sqlite, or a schema on the PostgreSQL "
+          "server\n"
+          "of [database] in site.toml; any tool for them reads it: tables `evaluation`, `result`,\n"
+          "..., view `point`.\n\n"
           "Example: nonio query out S-0042 --axis X --quantity B_mean --csv",
       .run = [wish, &common] { return query(*wish, common); }};
 }

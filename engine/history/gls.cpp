@@ -24,13 +24,23 @@ MatrixXd covariance_of(const Series& s) {
   return V;
 }
 
-Whitened::Whitened(const Series& s) : factor(covariance_of(s)) {
+Whitened::Whitened(const Series& s) : spread(s.spread), factor(covariance_of(s)) {
   VectorXd values(static_cast<Index>(s.points.size()));
   for (Index i = 0; i < values.size(); ++i) values(i) = s.points[static_cast<std::size_t>(i)].value;
   y = column(values);
 }
 
-VectorXd Whitened::column(const VectorXd& x) const { return factor.matrixL().solve(x); }
+VectorXd Whitened::column(const VectorXd& x) const {
+  VectorXd out = VectorXd::Zero(x.size() + (spread > 0.0 ? 1 : 0));
+  out.head(x.size()) = factor.matrixL().solve(x);
+  return out;
+}
+
+VectorXd Whitened::slope(const VectorXd& times) const {
+  VectorXd out = column(times);
+  if (spread > 0.0) out(times.size()) = 1.0 / spread;
+  return out;
+}
 
 std::optional<Gls> gls(const Whitened& w, const MatrixXd& X) {
   const Eigen::ColPivHouseholderQR<MatrixXd> ranked(X);

@@ -14,11 +14,15 @@ using Eigen::VectorXd;
 
 MatrixXd covariance_of(const Series&);
 
-/// Points whitened by the Cholesky factor of their covariance.
+/// Points whitened by the Cholesky factor of their covariance; behind them one row more where the
+/// spread of slopes is known: slope / spread = 0 +- 1.
 struct Whitened {
   explicit Whitened(const Series&);
   /// A column of the model, whitened.
   VectorXd column(const VectorXd&) const;
+  /// That of the slope.
+  VectorXd slope(const VectorXd& times) const;
+  double spread = 0.0;
   Eigen::LLT<MatrixXd> factor;
   VectorXd y;
 };

@@ -4,21 +4,34 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace nonio::history {
 namespace {
 
 constexpr double median_of_chi2 = 0.45493642311957;  // with 1 degree of freedom
-constexpr std::size_t fewest_differences = 20;
+constexpr std::size_t fewest_ratios = 20;
 
-/// Variance of the difference of two points: what they have in common cancels.
-double variance_of_difference(const Point& a, const Point& b) {
-  std::map<std::string, double> left;
-  for (const Common& c : a.common) left[c.source] -= c.u;
-  for (const Common& c : b.common) left[c.source] += c.u;
-  double out = a.u * a.u + b.u * b.u;
-  for (const auto& [source, u] : left) out += u * u;
-  return out;
+/// How far a point is from the line through its neighbours, in variances of that: a level, a slope
+/// and what the three have in common cancel. None over a declared event, or on one day.
+std::optional<double> off_line(const Series& s, std::size_t i) {
+  for (const Declared& d : s.declared)
+    if (d.kind != Declared::Kind::instrument && (d.after == i || d.after + 1 == i))
+      return std::nullopt;
+  const double whole = s.points[i + 1].time - s.points[i - 1].time;
+  if (!(whole > 0.0)) return std::nullopt;
+  const double share = (s.points[i].time - s.points[i - 1].time) / whole;
+  const double weights[] = {share - 1.0, 1.0, -share};
+  double off = 0.0, variance = 0.0;
+  std::map<std::string, double> common;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point& p = s.points[i - 1 + k];
+    off += weights[k] * p.value;
+    variance += weights[k] * weights[k] * p.u * p.u;
+    for (const Common& c : p.common) common[c.source] += weights[k] * c.u;
+  }
+  for (const auto& [source, u] : common) variance += u * u;
+  return off * off / variance;
 }
 
 std::string which(std::size_t i) { return "point " + std::to_string(i + 1); }
@@ -42,24 +55,33 @@ Expected<void> check(const Series& s) {
   for (const Declared& d : s.declared)
     if (d.after + 1 >= s.points.size())
       return fail("an event behind " + which(d.after) + ": expected a point after it");
+  if (!std::isfinite(s.spread) || s.spread < 0.0)
+    return fail("expected a spread of slopes of 0 or more");
   if (!std::isfinite(s.excess) || s.excess < 1.0) return fail("expected an excess of 1 or more");
   return {};
 }
 
-double excess_scatter(const std::vector<const Series*>& all) {
+std::vector<double> scatter_ratios(const Series& s) {
   std::vector<double> ratios;
-  for (const Series* s : all)
-    for (std::size_t i = 0; i + 1 < s->points.size(); ++i) {
-      if (std::any_of(s->declared.begin(), s->declared.end(),
-                      [&](const Declared& d) { return d.after == i; }))
-        continue;
-      const double d = s->points[i + 1].value - s->points[i].value;
-      ratios.push_back(d * d / variance_of_difference(s->points[i], s->points[i + 1]));
-    }
-  if (ratios.size() < fewest_differences) return 1.0;
+  for (std::size_t i = 1; i + 1 < s.points.size(); ++i)
+    if (const auto ratio = off_line(s, i)) ratios.push_back(*ratio);
+  return ratios;
+}
+
+double excess_of_ratios(std::vector<double> ratios) {
+  if (ratios.size() < fewest_ratios) return 1.0;
   const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
   std::nth_element(ratios.begin(), middle, ratios.end());
   return std::max(1.0, std::sqrt(*middle / median_of_chi2));
+}
+
+double excess_scatter(const std::vector<const Series*>& all) {
+  std::vector<double> ratios;
+  for (const Series* s : all) {
+    const std::vector<double> own = scatter_ratios(*s);
+    ratios.insert(ratios.end(), own.begin(), own.end());
+  }
+  return excess_of_ratios(std::move(ratios));
 }
 
 }  // namespace nonio::history

@@ -14,7 +14,7 @@ namespace nonio::history {
 namespace {
 
 constexpr int most_steps = 3;
-constexpr int draws = 10000;
+constexpr int draws = 10000, batch = 100;
 constexpr double sharp = 1e-3;     // below it Bonferroni's bound is nearly exact
 constexpr double inseparable = 4;  // of chi2, between a line and a step
 constexpr std::size_t fewest_for_walk = 8;
@@ -23,6 +23,7 @@ constexpr std::size_t fewest_for_walk = 8;
 struct Shape {
   std::vector<Change> changes;
   bool drifts = false;
+  bool free = false;  ///< of what is known of slopes before
 };
 
 /// The columns of a model, as they are at each point.
@@ -62,6 +63,9 @@ class Trending {
   explicit Trending(const Series& s) : s_(s), columns_(s), w_(s) {}
 
   Trend run() {
+    // A slope of which something is known before needs no test to come in.
+    shape_.drifts = s_.spread > 0.0 && s_.points.size() >= 3;
+    if (shape_.drifts && !fit(shape_)) shape_.drifts = false;
     declare();
     for (int step = 0; step <= most_steps; ++step)
       if (!improve()) break;
@@ -73,11 +77,18 @@ class Trending {
 
  private:
   MatrixXd whitened(const Shape& shape) const {
-    MatrixXd X = columns_.of(shape);
-    for (Index k = 0; k < X.cols(); ++k) X.col(k) = w_.column(X.col(k));
-    return X;
+    const MatrixXd X = columns_.of(shape);
+    MatrixXd out(w_.y.size(), X.cols());
+    for (Index k = 0; k < X.cols(); ++k)
+      out.col(k) = shape.drifts && !shape.free && k + 1 == X.cols() ? w_.slope(X.col(k))
+                                                                    : w_.column(X.col(k));
+    return out;
   }
-  std::optional<Gls> fit(const Shape& shape) const { return gls(w_, whitened(shape)); }
+  std::optional<Gls> fit(const Shape& shape) const {
+    auto out = gls(w_, whitened(shape));
+    if (out && w_.spread > 0.0 && !(shape.drifts && !shape.free)) out->dof -= 1.0;
+    return out;
+  }
 
   /// A column for each place at which something is known to have happened and the values may have
   /// stepped. An instrument is in the covariance: its places only say whose a step is.
@@ -131,19 +142,29 @@ class Trending {
   /// P(largest of G over these places > G) where nothing stepped.
   double p_of_largest(const Places& places, double G) const {
     const auto many = static_cast<double>(places.after.size());
-    const double bound = std::min(1.0, many * normal_two_sided(std::sqrt(G)));
-    if (bound < sharp || places.after.size() == 1) return bound;
+    const double of_one = normal_two_sided(std::sqrt(G));
+    const double bound = std::min(1.0, many * of_one);
+    if (bound < sharp || of_one >= named_below || places.after.size() == 1) return bound;
     SplitMix64 random(s_.seed);
     int beyond = 0;
-    VectorXd noise(w_.y.size());
-    for (int draw = 0; draw < draws; ++draw) {
-      for (double& x : noise.reshaped()) {
+    VectorXd noise(w_.y.size() + w_.y.size() % 2);
+    for (int draw = 1; draw <= draws; ++draw) {
+      for (Index i = 0; i < noise.size(); i += 2) {
         const double r = std::sqrt(-2.0 * std::log1p(-random.uniform()));
-        x = r * std::cos(2.0 * std::numbers::pi * random.uniform());
+        const double angle = 2.0 * std::numbers::pi * random.uniform();
+        noise(i) = r * std::cos(angle), noise(i + 1) = r * std::sin(angle);
       }
-      beyond += (places.direction.transpose() * noise).cwiseAbs2().maxCoeff() > G;
+      beyond += (places.direction.transpose() * noise.head(w_.y.size())).cwiseAbs2().maxCoeff() > G;
+      if (draw % batch == 0 && is_surely_more(beyond, draw))
+        return std::min(bound, (beyond + 1.0) / (draw + 1.0));
     }
     return std::min(bound, (beyond + 1.0) / (draws + 1.0));
+  }
+
+  /// Five standard deviations beyond what is named: more draws would not change that.
+  static bool is_surely_more(int beyond, int of) {
+    const double expected = named_below * of;
+    return beyond > expected + 5.0 * std::sqrt(expected);
   }
 
   /// The step or the drift that says most comes in; false if none does.
@@ -166,12 +187,12 @@ class Trending {
     }
     std::optional<Gls> with_step, with_drift;
     if (p_step < named_below) with_step = fit(stepped);
-    if (!shape_.drifts && s_.points.size() >= 3) {
-      drifting.drifts = true;
+    if ((!shape_.drifts || (w_.spread > 0.0 && !shape_.free)) && s_.points.size() >= 3) {
+      drifting.drifts = drifting.free = true;
       with_drift = fit(drifting);
       if (with_drift)
         p_drift = normal_two_sided(std::sqrt(std::max(0.0, base->chi2 - with_drift->chi2)));
-      if (!(p_drift < named_below)) with_drift.reset();
+      if (!(p_drift < s_.drift_below)) with_drift.reset();
     }
     if (!with_step && !with_drift) return false;
     const bool line =
@@ -216,9 +237,16 @@ class Trending {
                                         [](const Change& c) { return !c.declared; });
     out.model = s_.points.size() < 3 ? Model::none
                 : undeclared         ? Model::step
-                : shape_.drifts      ? Model::drift
+                : is_drift(*last)    ? Model::drift
                                      : Model::level;
     return out;
+  }
+
+  /// A slope that came in without a test is a drift only if it passes one.
+  bool is_drift(const Gls& last) const {
+    const Index i = last.b.size() - 1;
+    return shape_.drifts &&
+           (shape_.free || normal_two_sided(last.b(i) / std::sqrt(last.C(i, i))) < named_below);
   }
 
   void segments(const Gls& last, Trend& out) const {
@@ -256,18 +284,40 @@ class Trending {
     out.smallest_change = (critical + normal_quantile(0.8)) / at.length(at.length.size() - 1);
   }
 
-  /// Of a level that does not hold: local level, its variance by maximum likelihood (independent
-  /// u). At the border q = 0 the likelihood ratio is half a chi-square with 1 degree of freedom.
+  /// Of a level that does not hold, and of two steps or more that nobody declared: local level, its
+  /// variance by maximum likelihood (independent u), if it is likelier than the steps at their
+  /// price. At the border q = 0 the likelihood ratio is half a chi-square with 1 degree of freedom.
   void walk(Trend& out) const {
     constexpr double at_border = 5.412;  // its quantile of 1 %
-    if (out.model != Model::level || !shape_.changes.empty() ||
-        s_.points.size() < fewest_for_walk || !(chi2_upper(out.chi2, out.dof) < named_below))
+    const bool restless = chi2_upper(out.chi2, out.dof) < named_below;
+    if (s_.points.size() < fewest_for_walk || static_cast<int>(shape_.changes.size()) > steps_ ||
+        !(steps_ > 1 || (steps_ == 0 && out.model == Model::level && restless)))
       return;
+    for (const Change& c : shape_.changes)
+      if (c.cause == Change::Cause::instrument) return;
     const Walk walk = likeliest_walk(s_);
-    if (!(2.0 * (walk.log_likelihood - walk_with(s_, 0.0).log_likelihood) > at_border)) return;
+    const double better = 2.0 * (walk.log_likelihood - walk_with(s_, 0.0).log_likelihood);
+    if (!(better > at_border) || (steps_ > 1 && !(better - 2.0 > gained(out)))) return;
+    as_one_segment(out);
     out.model = Model::walk, out.walk = walk.q;
     out.coefficients = {walk.state}, out.covariance = {walk.variance};
     for (Segment& s : out.segments) s.last = walk.state, s.u_last = std::sqrt(walk.variance);
+  }
+
+  /// By the steps: fall of chi2 less the price of each, 3 ln n (as of segmentations), and of a
+  /// line.
+  double gained(const Trend& out) const {
+    const auto level = fit(Shape{});
+    const double price = 3.0 * std::log(static_cast<double>(s_.points.size()));
+    return level ? level->chi2 - out.chi2 - price * steps_ - (shape_.drifts ? 2.0 : 0.0) : 0.0;
+  }
+
+  static void as_one_segment(Trend& out) {
+    out.changes.clear();
+    out.line_or_step = out.drifts = false;
+    out.segments.front().to = out.segments.back().to;
+    out.segments.resize(1);
+    out.segments[0].slope = out.segments[0].u_slope = 0.0;
   }
 
   const Series& s_;
@@ -279,6 +329,45 @@ class Trending {
 };
 
 }  // namespace
+
+std::optional<Slope> slope_beside_steps(const Series& given) {
+  constexpr double surely = 1e-4;
+  Series s = given;
+  s.spread = 0.0;
+  const auto trend = trend_of(s);
+  if (!trend || s.points.size() < 4) return std::nullopt;
+  const Columns columns(s);
+  const Whitened w(s);
+  Shape shape;
+  shape.drifts = true;
+  for (const Change& c : trend->changes)
+    if (c.declared || c.p < surely) shape.changes.push_back(c);
+  MatrixXd X = columns.of(shape);
+  for (Index k = 0; k < X.cols(); ++k) X.col(k) = w.column(X.col(k));
+  const auto fit = gls(w, X);
+  if (!fit || !(fit->dof > 0.0)) return std::nullopt;
+  const Index i = X.cols() - 1;
+  return Slope{fit->b(i), std::sqrt(fit->C(i, i))};
+}
+
+double spread_of_slopes(const std::vector<Slope>& slopes) {
+  constexpr double most = 9.0, expected = 0.99501, variance = 1.855;  // of min(z^2, 9)
+  if (slopes.size() < 3) return 0.0;
+  const auto n = static_cast<double>(slopes.size());
+  const auto mean = [&](double sigma) {
+    double sum = 0.0;
+    for (const Slope& s : slopes) sum += std::min(most, s.b * s.b / (sigma * sigma + s.u * s.u));
+    return sum / n;
+  };
+  if (mean(0.0) <= expected + normal_quantile(0.97) * std::sqrt(variance / n)) return 0.0;
+  double low = 0.0, high = 0.0;
+  for (const Slope& s : slopes) high = std::max(high, 2.0 * std::fabs(s.b));
+  for (int step = 0; step < 60; ++step) {
+    const double middle = (low + high) / 2.0;
+    (mean(middle) > expected ? low : high) = middle;
+  }
+  return high;
+}
 
 Expected<Trend> trend_of(const Series& s) {
   if (auto sound = check(s); !sound) return fail(sound.error());

@@ -12,8 +12,8 @@ namespace nonio::reports::site {
 
 namespace {
 
-constexpr double width = 720.0, height = 260.0, left = 58.0, right = 12.0, top = 14.0,
-                 bottom = 34.0;
+constexpr double width = 720.0, height = 260.0, left = 58.0, right = 12.0, top = 22.0,
+                 bottom = 40.0;
 
 std::string coordinate(double v) { return fixed_text(v, 1); }
 
@@ -67,7 +67,7 @@ std::string rules(const Frame& f, const std::string& unit) {
     out += line_of(x, top, x, height - bottom, "rule") +
            text_at(x, height - bottom + 16, f.x.labels[i], "middle");
   }
-  return out + text_at(4, top - 3, unit, "start");
+  return out + text_at(4, top - 10, unit, "start");
 }
 
 std::string picture(const std::string& label, const std::string& inside) {
@@ -237,9 +237,13 @@ class HistoryDrawing {
       if (!day_of(p.date)) continue;
       const double x = at(p.date), y = at_value(p.value);
       std::string inside =
-          element("title", html(p.date + ' ' + p.campaign + ": " +
-                                value_text(page_, p.value, p.u, series_.unit) +
-                                (p.joined ? "" : " (" + p.why_not + ")"))) +
+          element(
+              "title",
+              html(
+                  p.date + ' ' + p.campaign + ": " + value_text(page_, p.value, p.u, series_.unit) +
+                  (p.joined ? ""
+                            : " (" + page_.words.get_or("site.not_joined." + p.why_not, p.why_not) +
+                                  ")"))) +
           line_of(x, at_value(p.value - 2 * p.u), x, at_value(p.value + 2 * p.u), "bar");
       const char* style = !p.joined                                 ? "point apart"
                           : p.state == HistoryPoint::State::as_left ? "point left"

@@ -46,9 +46,28 @@ std::string link(std::string_view to, std::string_view text_as_html) {
   return "<a href=\"" + html(to) + "\">" + std::string(text_as_html) + "</a>";
 }
 
-std::string whole_page(const Page& page, const std::string& title, const std::string& main) {
-  const std::string night = page.words.get(
-      "site.night", {{"night", std::to_string(page.site.night)}, {"date", page.site.date}});
+std::string with_whole_days(std::string html) {
+  constexpr std::size_t length = 10;
+  std::string out;
+  std::size_t done = 0;
+  for (std::size_t at = 0; at + length <= html.size(); ++at) {
+    if (html[at + 4] != '-' || !day_of(std::string_view(html).substr(at, length))) continue;
+    out +=
+        html.substr(done, at - done) + "<span class=\"day\">" + html.substr(at, length) + "</span>";
+    done = at + length;
+    at = done - 1;
+  }
+  return out + html.substr(done);
+}
+
+std::string scrolled(std::string_view label, std::string_view inner) {
+  return element(
+      "div", inner,
+      "class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" + html(label) + "\"");
+}
+
+std::string whole_page(const Page& page, const std::string& title, const std::string& main,
+                       const std::string& beside_navigation) {
   return "<!DOCTYPE html>\n<html lang=\"" + html(page.words.language()) +
          "\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src '" +
@@ -58,9 +77,10 @@ std::string whole_page(const Page& page, const std::string& title, const std::st
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" +
          element("title", html(title) + " · Nonio") + element("style", page_style) +
          "</head>\n<body>\n<header>\n" + navigation(page) +
-         element("p", html(night), "class=\"muted\"") + "</header>\n<main>\n" +
-         element("h1", html(title)) + main + "</main>\n" + element("script", page_script) +
-         "</body>\n</html>\n";
+         (beside_navigation.empty() ? ""
+                                    : element("p", html(beside_navigation), "class=\"muted\"")) +
+         "</header>\n<main>\n" + element("h1", html(title)) + main + "</main>\n" +
+         element("script", page_script) + "</body>\n</html>\n";
 }
 
 std::string value_text(const Page& page, double value, std::optional<double> u, Quantity q) {
@@ -76,12 +96,29 @@ std::string short_number(const Page& page, double value, Quantity q) {
   return localised(short_text(value * unit_of(q).per_si), page.words.language());
 }
 
+std::string proposal_text(const Page& page, const IntervalProposal& proposal) {
+  if (proposal.method.empty()) return {};
+  const std::string why =
+      typeset(finding_text(page.templates, page.words.language(), proposal.why, "says"));
+  if (!proposal.months) return why;
+  const std::string months =
+      *proposal.months == 1
+          ? page.words.get("site.one_month")
+          : page.words.get("site.months_count", {{"count", std::to_string(*proposal.months)}});
+  return months + ". " + why;
+}
+
 std::string quantity_text(const Page& page, const std::string& quantity) {
   const auto colon = quantity.find(':');
   const std::string kind = quantity.substr(0, colon);
   const std::string name = page.words.get_or("site.quantity." + kind, quantity);
   if (name == quantity || colon == std::string::npos) return name;
-  return name + " " + quantity.substr(colon + 1);
+  // "straightness:Z.curve_2": of which movement, and which part of it.
+  const auto dot = quantity.find('.', colon);
+  const std::string of = name + " " + quantity.substr(colon + 1, dot - colon - 1);
+  if (dot == std::string::npos || quantity.substr(dot + 1) == "c") return of;
+  const std::string part = quantity.substr(dot + 1);
+  return of + ", " + page.words.get_or("site.part." + part, part);
 }
 
 std::optional<Day> day_of(std::string_view date) {

@@ -23,11 +23,20 @@ std::string html(std::string_view text);
 std::string element(std::string_view name, std::string_view inner, std::string_view more = "");
 std::string link(std::string_view to, std::string_view text_as_html);
 
+/// HTML in which no day breaks at its dashes.
+std::string with_whole_days(std::string html);
+
+/// What may be wider than the page: a keyboard reaches it, `label` names it.
+std::string scrolled(std::string_view label, std::string_view inner);
+
 /// A whole page; `main` is HTML.
-std::string whole_page(const Page&, const std::string& title, const std::string& main);
+std::string whole_page(const Page&, const std::string& title, const std::string& main,
+                       const std::string& beside_navigation = {});
 
 /// "−4.2 ± 0.4 µm", U = 2 u; without u the number and its unit.
 std::string value_text(const Page&, double value, std::optional<double> u, Quantity);
+/// "6 months. Why.", or why there is none; empty where nobody asked.
+std::string proposal_text(const Page&, const IntervalProposal&);
 /// Name of a quantity in words, with its symbol where it has none.
 std::string quantity_text(const Page&, const std::string& quantity);
 /// A number with three significant digits, in its printed unit, without the unit.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <span>
 
 #include "chart.h"
 #include "html.h"
@@ -15,12 +16,16 @@ namespace {
 
 using Kind = MorningLine::Kind;
 
-const MachineHistory* machine_of(const Page& page, const std::string& id) {
-  const auto& all = page.site.machines;
+const MachineHistory* machine_in(const SiteHistory& site, const std::string& id) {
+  const auto& all = site.machines;
   const auto at =
       std::lower_bound(all.begin(), all.end(), id,
                        [](const MachineHistory& m, const std::string& x) { return m.id < x; });
   return at != all.end() && at->id == id ? &*at : nullptr;
+}
+
+const MachineHistory* machine_of(const Page& page, const std::string& id) {
+  return machine_in(page.site, id);
 }
 
 std::string machine_link(const Page& page, const std::string& id) {
@@ -43,6 +48,15 @@ std::string counts(const Page& page) {
   return element("p", html(out), "class=\"counts\"");
 }
 
+constexpr std::size_t most_lines = 200;    // one page, not a download
+constexpr std::size_t most_machines = 60;  // of the strip
+constexpr std::size_t most_months = 36;
+
+std::span<const MorningLine> shown_lines(const Page& page) {
+  const auto& all = page.site.lines;
+  return std::span(all).first(std::min(all.size(), most_lines));
+}
+
 std::string select(const Page& page, const char* name,
                    const std::map<std::string, std::string>& values) {
   if (values.size() < 2) return {};
@@ -55,7 +69,7 @@ std::string select(const Page& page, const char* name,
 
 std::string filters(const Page& page) {
   std::map<std::string, std::string> kinds, customers, machines, axes;
-  for (const MorningLine& l : page.site.lines) {
+  for (const MorningLine& l : shown_lines(page)) {
     kinds[name_of(l.kind)] = page.words.get("site.kind." + std::string(name_of(l.kind)));
     if (!l.customer.empty()) customers[l.customer] = l.customer;
     if (!l.machine.empty()) machines[l.machine] = l.machine;
@@ -111,7 +125,7 @@ std::string row_of(const Page& page, const MorningLine& l) {
                          "class=\"kind " + what + "\""),
                  "class=\"what\"") +
          element("td", where(page, l)) + element("td", value, "class=\"value\"") +
-         element("td", text) + element("td", advice, "class=\"do\"") + "</tr>\n";
+         element("td", with_whole_days(text)) + element("td", advice, "class=\"do\"") + "</tr>\n";
 }
 
 std::string lines(const Page& page) {
@@ -122,11 +136,15 @@ std::string lines(const Page& page) {
   for (const char* key : {"what", "where", "value", "says", "do"})
     head += element("th", html(page.words.get("site.column." + std::string(key))), "scope=\"col\"");
   std::string rows;
-  for (const MorningLine& l : page.site.lines) rows += row_of(page, l);
-  return element("div",
-                 element("table", element("thead", element("tr", head)) + element("tbody", rows),
-                         "class=\"lines\""),
-                 "class=\"scroll\"");
+  const auto shown = shown_lines(page);
+  for (const MorningLine& l : shown) rows += row_of(page, l);
+  const std::size_t more = page.site.lines.size() - shown.size();
+  return scrolled(page.words.get("site.morning"),
+                  element("table", element("thead", element("tr", head)) + element("tbody", rows),
+                          "class=\"lines\"")) +
+         (more == 0 ? ""
+                    : element("p", html(page.words.get("site.and_more",
+                                                       {{"count", std::to_string(more)}}))));
 }
 
 const char* style_of(Kind kind) {
@@ -146,6 +164,7 @@ const char* style_of(Kind kind) {
   return "fine";
 }
 
+// Long: one table, from its head to its cells.
 /// A row a machine, a cell a month: a letter beside the colour, so that no one needs the colour.
 std::string strip(const Page& page) {
   std::set<std::string> months;
@@ -155,6 +174,14 @@ std::string strip(const Page& page) {
     cells[m.machine][m.month] = &m;
   }
   if (months.empty()) return {};
+  while (months.size() > most_months) months.erase(months.begin());
+  std::set<std::string> first;  // those that the lines name come first
+  for (const MorningLine& l : page.site.lines)
+    if (first.size() < most_machines && cells.contains(l.machine)) first.insert(l.machine);
+  for (const auto& [machine, of] : cells)
+    if (first.size() < most_machines) first.insert(machine);
+  const std::size_t more = cells.size() - first.size();
+  std::erase_if(cells, [&](const auto& one) { return !first.contains(one.first); });
   std::string head = "<td></td>";
   std::string year;
   for (const std::string& month : months) {
@@ -191,23 +218,35 @@ std::string strip(const Page& page) {
   }
   return element("h2", html(page.words.get("site.months"))) +
          element("p", html(page.words.get("site.months_key")), "class=\"muted\"") +
-         element("div",
-                 element("table", element("thead", element("tr", head)) + element("tbody", rows),
-                         "class=\"strip\""),
-                 "class=\"scroll\"");
+         scrolled(page.words.get("site.months"),
+                  element("table", element("thead", element("tr", head)) + element("tbody", rows),
+                          "class=\"strip\"")) +
+         (more == 0 ? ""
+                    : element("p",
+                              html(page.words.get("site.more_machines",
+                                                  {{"count", std::to_string(more)}})),
+                              "class=\"muted\""));
 }
 
 constexpr std::size_t most_sparks = 10;
 
+/// The first lines that a machine has, one of each axis.
+std::vector<const MorningLine*> drawn_lines(const SiteHistory& site) {
+  std::vector<const MorningLine*> out;
+  std::set<std::string> seen;
+  for (const MorningLine& l : site.lines)
+    if (out.size() < most_sparks && machine_in(site, l.machine) != nullptr &&
+        seen.insert(l.machine + ' ' + l.axis).second)
+      out.push_back(&l);
+  return out;
+}
+
 /// Largest deviations of machines whose lines come first.
 std::string sparks(const Page& page) {
   std::string rows;
-  std::set<std::string> seen;
-  for (const MorningLine& l : page.site.lines) {
+  for (const MorningLine* line : drawn_lines(page.site)) {
+    const MorningLine& l = *line;
     const MachineHistory* machine = machine_of(page, l.machine);
-    if (machine == nullptr || seen.size() == most_sparks ||
-        !seen.insert(l.machine + ' ' + l.axis).second)
-      continue;
     std::string row;
     for (const char* quantity : {"A", "B", "R"}) {
       const auto series = std::find_if(
@@ -228,14 +267,27 @@ std::string sparks(const Page& page) {
   }
   if (rows.empty()) return {};
   return element("h2", html(page.words.get("site.worst"))) +
-         element("div", element("table", rows), "class=\"scroll\"");
+         scrolled(page.words.get("site.worst"), element("table", rows, "class=\"sparks\""));
 }
 
 }  // namespace
 
 std::string index_page(const Page& page) {
   return whole_page(page, page.words.get("site.morning"),
-                    counts(page) + filters(page) + lines(page) + sparks(page) + strip(page));
+                    counts(page) + filters(page) + lines(page) + sparks(page) + strip(page),
+                    page.words.get("site.night", {{"night", std::to_string(page.site.night)},
+                                                  {"date", page.site.date}}));
 }
 
 }  // namespace nonio::reports::site
+
+namespace nonio::reports {
+
+std::vector<std::string> drawn_first(const SiteHistory& site) {
+  std::vector<std::string> out;
+  for (const MorningLine* l : site::drawn_lines(site))
+    if (std::find(out.begin(), out.end(), l->machine) == out.end()) out.push_back(l->machine);
+  return out;
+}
+
+}  // namespace nonio::reports

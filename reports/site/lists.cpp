@@ -69,20 +69,18 @@ std::string due_page(const Page& page) {
   const auto close = [&] {
     if (!rows.empty())
       out += element("h2", html(open)) +
-             element("div",
-                     element("table", head(page, {"due", "machine", "customer", "place", "rule"}) +
-                                          element("tbody", rows)),
-                     "class=\"scroll\"");
+             scrolled(open, element("table", head(page, {"due", "machine", "customer", "place",
+                                                         "rule", "proposal"}) +
+                                                 element("tbody", rows)));
     rows.clear();
   };
   for (const MachineHistory* m : by_due(page.site)) {
     if (const std::string now = bucket(page, m->due); now != open) close(), open = now;
-    std::string why = m->why_due;
-    if (!m->proposal.empty()) why += (why.empty() ? "" : "; ") + m->proposal;
     rows += element("tr", element("td", html(m->due)) +
                               element("td", link("machines/" + m->file, html(m->id))) +
                               element("td", html(m->customer)) + element("td", html(m->place)) +
-                              element("td", html(why)));
+                              element("td", html(m->why_due)) +
+                              element("td", html(proposal_text(page, m->proposal))));
   }
   close();
   if (out.empty())
@@ -130,11 +128,9 @@ std::string instruments_page(const Page& page) {
                     element("summary",
                             html(page.words.get("site.results_on",
                                                 {{"count", std::to_string(i.results.size())}}))) +
-                        element("div",
-                                element("table",
-                                        head(page, {"date", "machine", "campaign", "certificate"}) +
-                                            element("tbody", rows)),
-                                "class=\"scroll\"")));
+                        scrolled(title, element("table", head(page, {"date", "machine", "campaign",
+                                                                     "certificate"}) +
+                                                             element("tbody", rows)))));
   }
   return whole_page(page, page.words.get("site.instruments"), out);
 }
@@ -149,13 +145,15 @@ std::string compare_page(const Page& page) {
           element("td", html(m.machine)) +
               element("td", html(value_text(page, m.value, m.u, c.unit)), "class=\"number\"") +
               element("td", html(short_number(page, m.z, Quantity::number)), "class=\"number\""));
+    const std::string title = c.model + " · " + c.axis + " · " + quantity_text(page, c.quantity);
     out += element(
         "section",
-        element("h3", html(c.model + " · " + c.axis + " · " + quantity_text(page, c.quantity))) +
-            comparison_chart(page, c) +
-            element("details", element("summary", html(page.words.get("site.numbers"))) +
-                                   element("table", head(page, {"machine", "value", "distance"}) +
-                                                        element("tbody", rows))));
+        element("h2", html(title)) + comparison_chart(page, c) +
+            element(
+                "details",
+                element("summary", html(page.words.get("site.numbers"))) +
+                    scrolled(title, element("table", head(page, {"machine", "value", "distance"}) +
+                                                         element("tbody", rows)))));
   }
   if (out.empty())
     out = element("p", html(page.words.get("site.no_compare")));

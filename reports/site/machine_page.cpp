@@ -26,7 +26,7 @@ std::string identity(const Page& page, const MachineHistory& m) {
   return element("dl", entry(page, "machine", made) + entry(page, "serial", m.serial) +
                            entry(page, "customer", m.customer) + entry(page, "place", m.place) +
                            entry(page, "control", m.control) + entry(page, "next_due", due) +
-                           entry(page, "proposal", m.proposal));
+                           entry(page, "proposal", proposal_text(page, m.proposal)));
 }
 
 std::string open_lines(const Page& page, const MachineHistory& m) {
@@ -54,16 +54,33 @@ std::string events(const Page& page, const MachineHistory& m) {
   return element("h2", html(page.words.get("site.events"))) + element("ol", items);
 }
 
+std::string tables(const Page& page, const MachineHistory& m) {
+  std::string items;
+  for (const TableKept& t : m.tables) {
+    const auto value = [&](double x) { return value_text(page, x, std::nullopt, t.unit); };
+    items += element("li", html(page.words.get(t.good ? "site.table_good" : "site.table_wrong",
+                                               {{"axis", t.axis},
+                                                {"date", t.date},
+                                                {"name", t.quantity},
+                                                {"left", value(t.left)},
+                                                {"promised", value(t.promised)},
+                                                {"found", value(t.found)}})));
+  }
+  if (items.empty()) return items;
+  return element("h2", html(page.words.get("site.last_tables"))) + element("ul", items);
+}
+
 std::string changes(const Page& page, const HistorySeries& s) {
   std::string out;
   for (const HistoryChange& c : s.changes)
-    out += element("p",
-                   html(page.words.get("site.change." + c.cause,
-                                       {{"size", value_text(page, c.size, c.u, s.unit)},
-                                        {"after", c.after},
-                                        {"before", c.before},
-                                        {"event", c.event},
-                                        {"p", evidence_text({"p", c.p, Quantity::probability})}})));
+    out += element(
+        "p", html(page.words.get("site.change." + c.cause,
+                                 {{"size", value_text(page, c.size, c.u, s.unit)},
+                                  {"after", c.after},
+                                  {"before", c.before},
+                                  {"event", c.event},
+                                  {"p", localised(evidence_text({"p", c.p, Quantity::probability}),
+                                                  page.words.language())}})));
   if (s.changes.empty() && s.smallest_change)
     out +=
         element("p",
@@ -77,10 +94,14 @@ std::string changes(const Page& page, const HistorySeries& s) {
 std::string forecast(const Page& page, const HistorySeries& s) {
   if (!s.forecast) return {};
   const HistoryForecast& f = *s.forecast;
-  std::string text = page.words.get("site.forecast." + f.answer,
-                                    {{"date", f.date},
-                                     {"value", value_text(page, f.value, f.u, s.unit)},
-                                     {"p", short_number(page, 100 * f.p_out, Quantity::number)}});
+  constexpr double least_printed = 1e-4;
+  const std::string p = f.p_out < least_printed
+                            ? "< " + localised("0.01", page.words.language())
+                            : short_number(page, 100 * f.p_out, Quantity::number);
+  const bool asked = s.limit || f.answer == "cannot-say";
+  std::string text = page.words.get(
+      "site.forecast." + (asked ? f.answer : "expected"),
+      {{"date", f.date}, {"value", value_text(page, f.value, f.u, s.unit)}, {"p", p}});
   if (!f.leaves.empty()) text += " " + page.words.get("site.leaves", {{"date", f.leaves}});
   return element("p", html(text));
 }
@@ -95,7 +116,8 @@ std::string numbers(const Page& page, const HistorySeries& s) {
   for (const HistoryPoint& p : s.points) {
     std::string state =
         page.words.get("site.state." + std::string(states[static_cast<int>(p.state)]));
-    if (!p.joined) state += " (" + p.why_not + ")";
+    if (!p.joined)
+      state += " (" + page.words.get_or("site.not_joined." + p.why_not, p.why_not) + ")";
     rows += element(
         "tr",
         element("td", html(p.date)) + element("td", html(state)) +
@@ -103,10 +125,9 @@ std::string numbers(const Page& page, const HistorySeries& s) {
             element("td", link(p.link.empty() ? "" : page.to_root + p.link, html(p.campaign))));
   }
   return element("details", element("summary", html(page.words.get("site.numbers"))) +
-                                element("div",
-                                        element("table", element("thead", element("tr", head)) +
-                                                             element("tbody", rows)),
-                                        "class=\"scroll\""));
+                                scrolled(s.axis + " " + quantity_text(page, s.quantity),
+                                         element("table", element("thead", element("tr", head)) +
+                                                              element("tbody", rows))));
 }
 
 std::string one_series(const Page& page, const MachineHistory& m, const HistorySeries& s) {
@@ -141,7 +162,7 @@ std::string machine_page(const Page& page, const MachineHistory& m) {
   for (const HistorySeries& s : m.series)
     if (!s.points.empty()) charts += one_series(page, m, s);
   return whole_page(page, m.id,
-                    identity(page, m) + open_lines(page, m) + events(page, m) +
+                    identity(page, m) + open_lines(page, m) + events(page, m) + tables(page, m) +
                         element("h2", html(page.words.get("site.trends"))) +
                         element("p", html(page.words.get("site.legend")), "class=\"muted\"") +
                         element("div", charts, "class=\"charts\"") + curves(page, m));

@@ -3,18 +3,38 @@
 
 namespace nonio::reports {
 
-Expected<std::vector<Artifact>> site_pages(const SiteHistory& history, const Templates& templates,
+Expected<std::vector<Artifact>> site_lists(const SiteHistory& history, const Templates& templates,
                                            const std::string& language) {
   const Wording words(templates, language, {"site"});
-  const site::Page root{history, templates, words, ""}, below{history, templates, words, "../"};
+  const site::Page root{history, templates, words, ""};
   std::vector<Artifact> out{{"index.html", site::index_page(root)},
                             {"due.html", site::due_page(root)},
                             {"due.ics", site::due_calendar(root)},
                             {"instruments.html", site::instruments_page(root)},
                             {"compare.html", site::compare_page(root)}};
-  for (const MachineHistory& m : history.machines)
-    out.push_back({"machines/" + m.file, site::machine_page(below, m)});
   if (auto complete = words.complete(); !complete) return fail(complete.error());
+  return out;
+}
+
+Expected<Artifact> machine_page_of(const SiteHistory& history, const MachineHistory& machine,
+                                   const Templates& templates, const std::string& language) {
+  const Wording words(templates, language, {"site"});
+  const site::Page below{history, templates, words, "../"};
+  Artifact page{std::string(machines_folder) + "/" + machine.file,
+                site::machine_page(below, machine)};
+  if (auto complete = words.complete(); !complete) return fail(complete.error());
+  return page;
+}
+
+Expected<std::vector<Artifact>> site_pages(const SiteHistory& history, const Templates& templates,
+                                           const std::string& language) {
+  auto out = site_lists(history, templates, language);
+  if (!out) return out;
+  for (const MachineHistory& m : history.machines) {
+    auto page = machine_page_of(history, m, templates, language);
+    if (!page) return fail(page.error());
+    out->push_back(std::move(*page));
+  }
   return out;
 }
 

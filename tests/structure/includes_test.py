@@ -13,14 +13,14 @@ MAY = {
     "engine/model": {"sdk", "math", "model"},
     "engine/pdf": {"sdk", "pdf"},
     "engine/sign": {"sdk", "pdf", "sign"},
-    "engine/host": {"sdk", "math", "model", "pdf", "sign", "host"},
+    "engine/host": {"sdk", "math", "history", "model", "pdf", "sign", "reports", "workbench", "host"},
     "engine/app": {"sdk", "host", "app"},
-    "reports": {"sdk", "pdf", "reports"},
+    "reports": {"sdk", "pdf", "reports", "workbench"},
     "plugins/readers": {"sdk", "math"},
     "plugins/analyses": {"sdk", "math"},
     "plugins/effects": {"sdk", "math"},
     "plugins/controllers": {"sdk", "math", "controllers"},
-    "plugins/outputs": {"sdk", "math", "reports"},
+    "plugins/outputs": {"sdk", "math", "reports", "workbench"},
 }
 # Rooms of engine/host, from below upwards -> the rooms below that each may include. Beside the sdk:
 ROOMS = {
@@ -35,11 +35,13 @@ ROOMS = {
     "certificates": {"storage", "process", "config", "loader", "reading", "modelling", "tables", "evaluation"},
 }
 ROOMS["history"] = {"storage", "process", "config", "loader", "reading", "evaluation"}
+ROOMS["morning"] = ROOMS["history"] | {"history"}
 # Three users of the engine, which do not know each other.
 ROOMS |= {room: set(ROOMS) for room in ("batch", "plugin_check", "tools")}
+ROOMS["live"] = ROOMS["batch"] | {"batch"}
 # What a room takes of the other parts, beside sdk and math.
 PARTS_OF_ROOMS = {"reading": {"model"}, "modelling": {"model"}, "evaluation": {"model"}, "plugin_check": {"model"},
-                  "certificates": {"sign"}, "batch": {"sign"}}
+                  "certificates": {"sign"}, "batch": {"sign", "reports"}, "morning": {"history", "reports"}, "live": {"model", "reports", "sign", "workbench"}}
 # Folders that know each other only through these.
 SHARED = {"common"}
 # third-party header -> the parts that are its home
@@ -48,7 +50,7 @@ HOMES = {
     "boost/": {"engine/host", "engine/math", "engine/history"}, "toml++": {"engine/host"}, "muParser": {"engine/host"}, "hpdf": {"engine/pdf"}, "qrencode": {"reports"},
     "libdeflate": {"engine/pdf"}, "openssl/": {"engine/pdf", "engine/sign", "engine/host"}, "xmlsec/": {"engine/sign"},
     "libxml/": {"engine/sign", "plugins/readers"}, "utf8proc": {"reports"}, "CLI/": {"engine/app"}, "nlohmann": {"engine/host", "engine/app", "plugins/outputs"},
-    "Eigen": {"engine/math", "engine/history", "engine/model", "plugins/analyses", "plugins/effects"}, "tl/": {"engine/sdk"}, "sqlite3": {"engine/host"},
+    "Eigen": {"engine/math", "engine/history", "engine/model", "plugins/analyses", "plugins/effects"}, "tl/": {"engine/sdk"}, "sqlite3": {"engine/host"}, "libpq": {"engine/host"},
 }
 
 

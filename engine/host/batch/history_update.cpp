@@ -2,6 +2,7 @@
 #include "host/batch/history_update.h"
 
 #include "host/batch/read_apart.h"
+#include "host/history/place.h"
 
 namespace nonio::host::batch {
 
@@ -50,13 +51,24 @@ Expected<history::Told> read_told(const RunOptions& options, const reading::Cont
         return std::move(*read);
       });
   if (!logs) return fail(logs.error());
-  return history::Told{std::move(*logs), context.site.aliases, events_of(context.machines)};
+  return history::Told{std::move(*logs), context.site.aliases, events_of(context.machines),
+                       context.site.due};
 }
 
 Expected<void> HistoryUpdate::begin() {
   const auto known = history::known_night(options_.out);
   if (!known) return fail(known.error());
   known_ = *known;
+  std::optional<storage::Server> server;
+  if (const auto& choice = context_.site.database)
+    server =
+        storage::Server{choice->url, choice->schema,
+                        choice->password_file.empty()
+                            ? std::filesystem::path()
+                            : std::filesystem::absolute(options_.site / choice->password_file)};
+  const auto elsewhere = history::note_place(options_.out, server);
+  if (!elsewhere) return fail(elsewhere.error());
+  if (*elsewhere) known_.reset();
   return history::forget_known_night(options_.out);
 }
 

@@ -7,6 +7,8 @@
 #include <new>
 
 #include "host/batch/history_update.h"
+#include "host/batch/mail.h"
+#include "host/batch/morning_update.h"
 #include "host/batch/night_state.h"
 #include "host/batch/read_apart.h"
 #include "host/batch/runner.h"
@@ -211,7 +213,7 @@ void write_history(Night& night, const HistoryUpdate& history, const NightState&
   auto notes = history.end(state.last ? state.last->night.number : 0, state.number, done, told);
   if (!notes) {
     night.history_error = notes.error().message;
-    notes = {"this night is not in the history (history.sqlite): " + night.history_error +
+    notes = {"this night is not in the history: " + night.history_error +
              "; the results are all there, and the next night enters them"};
   } else if (!notes->empty()) {
     night.history_error = notes->front();
@@ -222,13 +224,41 @@ void write_history(Night& night, const HistoryUpdate& history, const NightState&
   }
 }
 
+/// Pages that cannot be made are no reason to lose a night: they are made again from the results.
+Morning morning_of(Night& night, const RunOptions& options, const RunEvents& events,
+                   const reading::Context& context) {
+  auto made = make_morning(options, context, tonight_of(night, options.out, context.templates));
+  if (made) return std::move(*made);
+  if (process::is_stop_requested()) return {};
+  night.morning_error = "the pages of the morning were not made: " + made.error().message;
+  night.notes.push_back(night.morning_error + "; the next night makes them");
+  events.note(night.notes.back());
+  return {};
+}
+
+/// A mail that cannot be sent is said in the summary, and loses nothing.
+void write_mail(Night& night, const RunOptions& options, const RunEvents& events,
+                const reading::Context& context, const Morning& morning) {
+  if (morning.mail.empty() || process::is_stop_requested()) return;
+  const config::TerminalWords words(context.templates, context.site.language);
+  const std::string subject = words(
+      "mail.subject", {{"number", std::to_string(night.night.number)}, {"date", night.night.date}});
+  const auto sent = send_mail(*context.site.mail, options.site, {subject, morning.mail});
+  if (sent) return;
+  night.morning_error = "the mail of this night was not sent: " + sent.error().message;
+  night.notes.push_back(night.morning_error);
+  events.note(night.notes.back());
+}
+
 /// First what cannot be left lying; then what the register says; the summary last.
-Expected<void> close_night(Night& night, const RunOptions& options, const reading::Context& context,
-                           NightState& state) {
+Expected<void> close_night(Night& night, const RunOptions& options, const RunEvents& events,
+                           const reading::Context& context, NightState& state) {
   if (auto tidied = tidy_all(night, options.out, state.resumed); !tidied) return tidied;
   if (auto noted = note_certificates(night, options, context, state); !noted) return noted;
+  const Morning morning = morning_of(night, options, events, context);
+  write_mail(night, options, events, context, morning);
   const config::TerminalWords words(context.templates, context.site.language);
-  if (auto written = write_summary(night, options.out, options.version, words); !written)
+  if (auto written = write_summary(night, options.out, options.version, words, morning); !written)
     return written;
   return end_night(options.out, state, {state.of(), night.campaigns.size(), night.failed()});
 }
@@ -314,7 +344,7 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
   }
   if (!process::is_stop_requested()) write_history(night, history, *state, told, events);
   // The campaigns are safe; if this fails the night stays open, and the next run ends it.
-  const auto closed = close_night(night, options, context, *state);
+  const auto closed = close_night(night, options, events, context, *state);
   if (closed) return;
   tidy_root(options.out);
   if (process::is_stop_requested()) return refuse({});

@@ -79,9 +79,11 @@ struct Night {
   std::size_t failed() const;  ///< campaigns, and folders that could not be listed
   /// Whether anything failed or vanished, or is not in the history.
   bool any_failed() const {
-    return failed() > 0 || vanished.size() > may_vanish || !history_error.empty();
+    return failed() > 0 || vanished.size() > may_vanish || !history_error.empty() ||
+           !morning_error.empty();
   }
   std::size_t may_vanish = 0;   ///< so many may, by site.toml
+  std::string morning_error{};  ///< why the pages were not made, or the mail not sent
   std::string history_error{};  ///< why OUT/history.sqlite does not know this night
 };
 

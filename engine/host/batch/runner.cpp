@@ -59,8 +59,7 @@ class Runner {
         night_(night),
         signer_(desk.signer),
         plugins_(*desk.plugins),
-        secrets_(context.site.signing ? config::secret_files(*context.site.signing, options.site)
-                                      : std::vector<fs::path>()),
+        secrets_(config::secret_files(context.site, options.site)),
         numbers_({options.site, options.out, day_of(std::time(nullptr)), signer_ != nullptr},
                  context, desk.releasing),
         releasing_(desk.releasing != nullptr),

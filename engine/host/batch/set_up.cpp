@@ -79,11 +79,10 @@ Expected<void> check_user(const RunOptions& options) {
 
 /// In a process of their own.
 Expected<void> load_plugins(SetUp& place, const RunOptions& options) {
-  const auto& signing = place.context.site.signing;
-  PluginHost& host = place.host.emplace(PluginHost::Request{
-      options.plugin_folders, library_folders(options.own_plugins),
-      signing ? config::secret_files(*signing, options.site) : std::vector<fs::path>(),
-      place.context, process::is_stop_requested, options.confine});
+  PluginHost& host = place.host.emplace(
+      PluginHost::Request{options.plugin_folders, library_folders(options.own_plugins),
+                          config::secret_files(place.context.site, options.site), place.context,
+                          process::is_stop_requested, options.confine});
   auto catalogue = host.start();
   if (!catalogue) return fail(catalogue.error());
   place.plugins = loader::Plugins(std::move(*catalogue));

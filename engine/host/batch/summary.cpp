@@ -2,6 +2,8 @@
 #include "host/batch/summary.h"
 
 #include <algorithm>
+#include <map>
+#include <vector>
 
 #include "host/batch/night_state.h"
 #include "host/batch/runner.h"
@@ -21,14 +23,6 @@ std::string where(const Error& e) {
   if (e.line != 0) text += ":" + std::to_string(e.line);
   if (!e.column.empty()) text += " (" + e.column + ")";
   return text.empty() ? e.message : text + ": " + e.message;
-}
-
-/// With "(and 3 more)" in the language of `words`.
-std::string first_error(const CampaignState& c, const config::TerminalWords& words) {
-  if (c.errors.empty()) return c.reason;
-  const std::size_t more = c.errors.size() - 1;
-  return where(c.errors.front()) +
-         (more == 0 ? "" : " " + words("more", {{"count", std::to_string(more)}}));
 }
 
 /// Why a campaign was done, in the language of `words`: a fixed text, or a name and what became of
@@ -51,7 +45,9 @@ std::string reason_in(const std::string& text, const config::TerminalWords& word
   return out;
 }
 
-/// One list of the summary, as text for a person and as lines of JSON for a program.
+constexpr std::size_t most_shown = 6;  // of a list, in summary.txt
+
+/// One list of the summary, as the begin of a text for a person and as lines of JSON for a program.
 struct List {
   List(const char* list_name, const fs::path& folder)
       : name(list_name), text(storage::Spool::in(folder)), json(storage::Spool::in(folder)) {}
@@ -60,7 +56,7 @@ struct List {
   storage::Spool text, json;
 
   void add(const std::string& line, const storage::Json& entry) {
-    text.add("  " + line + "\n");
+    if (count < most_shown) text.add("  " + line + "\n");
     json.add((count == 0 ? "\n  " : ",\n  ") +
              entry.dump(-1, ' ', false, storage::Json::error_handler_t::replace));
     ++count;
@@ -101,6 +97,12 @@ std::string night_line(const Night& night, const config::TerminalWords& words) {
          "\n";
 }
 
+/// New findings of one heading: how many, and where the first are.
+struct Fresh {
+  std::size_t count = 0;
+  std::string where;
+};
+
 struct Lists {
   Lists(const fs::path& folder, const config::TerminalWords& in_words)
       : words(in_words),
@@ -109,11 +111,10 @@ struct Lists {
         attention("attention", folder),
         failed("failed", folder),
         vanished("vanished", folder),
-        fresh("new_findings", folder),
-        fresh_text(storage::Spool::in(folder)) {}
+        fresh("new_findings", folder) {}
   const config::TerminalWords& words;
   List done, unchanged, attention, failed, vanished, fresh;
-  storage::Spool fresh_text;  // of those that ask for attention
+  std::map<std::string, Fresh> fresh_by_heading;  ///< those that ask for attention
 
   void add(const Vanished& v) {
     vanished.add(v.id + ": " + v.why, {{"campaign", v.id},
@@ -182,14 +183,17 @@ struct Lists {
   }
 
   void add_fresh(const CampaignState& c, const evaluation::KnownFinding& f) {
-    const std::string line =
-        c.id + (f.measurement.empty() ? "" : ", " + f.measurement) + ": " + f.heading();
-    fresh.add(line, {{"campaign", c.id},
-                     {"measurement", f.measurement},
-                     {"id", f.id},
-                     {"severity", f.attention ? "attention" : "info"},
-                     {"title", f.title}});
-    if (f.attention) fresh_text.add("  " + line + "\n");
+    const std::string where = c.id + (f.measurement.empty() ? "" : ", " + f.measurement);
+    fresh.add(where + ": " + f.heading(), {{"campaign", c.id},
+                                           {"measurement", f.measurement},
+                                           {"id", f.id},
+                                           {"severity", f.attention ? "attention" : "info"},
+                                           {"title", f.title}});
+    if (!f.attention) return;
+    constexpr std::size_t most_places = 3;
+    Fresh& alike = fresh_by_heading[f.heading()];
+    if (++alike.count <= most_places) alike.where += (alike.count == 1 ? "" : "; ") + where;
+    if (alike.count == most_places + 1) alike.where += "; ...";
   }
 };
 
@@ -215,39 +219,78 @@ std::string waiting_line(const std::vector<certificates::WaitingDraft>& drafts,
   return line + (drafts.size() > most ? ", ..." : "") + "\n";
 }
 
-void write_text(storage::Spool& out, const Night& night, Lists& lists, const std::string& version) {
+/// "12 campaigns: 3 done, 9 unchanged, 0 failed; 2 lines ask for a decision".
+std::string counts_line(const Night& night, const Lists& lists, const Morning& morning,
+                        const std::string& version) {
   const auto n = [](std::size_t count) { return std::to_string(count); };
   const config::TerminalWords& words = lists.words;
-  out.add("Nonio " + version + ": " + words.counted("campaigns", night.campaigns.size()) + ": " +
-          words("counts", {{"done", n(lists.done.count)},
-                           {"unchanged", n(lists.unchanged.count)},
-                           {"failed", n(lists.failed.count)}}) +
-          "; " +
-          (lists.vanished.count == 0
-               ? ""
-               : words("vanished", {{"count", n(lists.vanished.count)}}) + "; ") +
-          words.counted("attention", lists.attention.count) + "\n");
+  return "Nonio " + version + ": " + words.counted("campaigns", night.campaigns.size()) + ": " +
+         words("counts", {{"done", n(lists.done.count)},
+                          {"unchanged", n(lists.unchanged.count)},
+                          {"failed", n(lists.failed.count)}}) +
+         "; " +
+         (lists.vanished.count == 0
+              ? ""
+              : words("vanished", {{"count", n(lists.vanished.count)}}) + "; ") +
+         words.counted("asking", morning.asking) + "\n";
+}
+
+/// One line a heading, those with the most findings first.
+void write_fresh(storage::Spool& out, const Lists& lists) {
+  if (lists.fresh_by_heading.empty()) return;
+  std::vector<std::pair<std::string, Fresh>> all(lists.fresh_by_heading.begin(),
+                                                 lists.fresh_by_heading.end());
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.second.count > b.second.count; });
+  out.add("\n" + lists.words("heading.new") + "\n");
+  for (std::size_t i = 0; i < std::min(all.size(), most_shown); ++i)
+    out.add("  " + all[i].first + ": " + std::to_string(all[i].second.count) + " (" +
+            all[i].second.where + ")\n");
+  if (all.size() > most_shown)
+    out.add("  " + lists.words("more-lines", {{"count", std::to_string(all.size() - most_shown)}}) +
+            "\n");
+}
+
+/// A night on which nothing is new, and nobody must decide anything.
+bool is_quiet(const Night& night, const Lists& lists, const Morning& morning) {
+  return lists.done.count == 0 && lists.failed.count == 0 && lists.vanished.count == 0 &&
+         morning.asking == 0 && !morning.json.empty() && night.issued.empty() &&
+         night.waiting.empty() && night.notes.empty();
+}
+
+/// What somebody must act on comes first. Of long lists the begin: summary.json has them whole.
+void write_text(storage::Spool& out, const Night& night, Lists& lists, const std::string& version,
+                const Morning& morning) {
+  const config::TerminalWords& words = lists.words;
+  if (is_quiet(night, lists, morning)) {
+    std::string line = night_line(night, words);
+    line.pop_back();
+    out.add(line + ": " + words(morning.judged ? "quiet" : "quiet.not-judged") + "\n");
+    return;
+  }
+  out.add(counts_line(night, lists, morning, version));
   out.add(night_line(night, words));
   if (!night.issued.empty()) out.add(issued_line(night.issued, words));
   if (!night.waiting.empty()) out.add(waiting_line(night.waiting, words));
-  // What somebody must act on comes first.
-  const auto section = [&](const char* heading, storage::Spool& body) {
-    if (body.empty()) return;
+  const auto section = [&](const char* heading, List& list) {
+    if (list.count == 0) return;
     out.add("\n" + words(heading) + "\n");
-    out.add(body);
+    out.add(list.text);
+    if (list.count > most_shown)
+      out.add("  " + words("more-lines", {{"count", std::to_string(list.count - most_shown)}}) +
+              "\n");
   };
-  section("heading.failed", lists.failed.text);
-  section("heading.vanished", lists.vanished.text);
-  section("heading.attention", lists.attention.text);
-  section("heading.new", lists.fresh_text);
-  section("heading.done", lists.done.text);
-  section("heading.unchanged", lists.unchanged.text);
+  section("heading.failed", lists.failed);
+  section("heading.vanished", lists.vanished);
+  if (!morning.text.empty()) out.add("\n" + words("heading.morning") + "\n" + morning.text);
+  write_fresh(out, lists);
+  section("heading.done", lists.done);
   if (!night.notes.empty()) out.add("\n" + words("heading.notes") + "\n");
   for (const std::string& note : night.notes) out.add("  " + note + "\n");
 }
 
 void write_json(storage::Spool& out, const Night& night, Lists& lists, const std::string& version,
-                const fs::path& out_folder) {
+                const fs::path& out_folder, const Morning& morning) {
   const std::initializer_list<List*> all{&lists.done,   &lists.unchanged, &lists.attention,
                                          &lists.failed, &lists.vanished,  &lists.fresh};
   storage::Json seen = {{"tonight", night.campaigns.size()}, {"night_before", nullptr}};
@@ -258,12 +301,14 @@ void write_json(storage::Spool& out, const Night& night, Lists& lists, const std
   out.add("{\n \"schema\": \"nonio-summary/1\",\n \"nonio\": " + storage::Json(version).dump() +
           ",\n \"night\": " + std::to_string(night.night.number) +
           ",\n \"date\": " + storage::Json(night.night.date).dump() +
+          ",\n \"language\": " + storage::Json(lists.words.language()).dump() +
           ",\n \"seen\": " + seen.dump() + ",\n \"counts\": " + counts.dump());
   for (List* l : all) {
     out.add(std::string(",\n \"") + l->name + "\": [");
     out.add(l->json);
     out.add(l->count == 0 ? "]" : "\n ]");
   }
+  out.add(",\n \"lines\": " + (morning.json.empty() ? "[]" : morning.json));
   storage::Json issued = storage::Json::array();
   for (const certificates::RegisterEntry& e : night.issued) {
     storage::Json one = {{"number", e.number}, {"campaign", e.campaign}};
@@ -295,8 +340,15 @@ std::size_t Night::failed() const {
                     [](const CampaignState& c) { return c.status == evaluation::Status::failed; }));
 }
 
+std::string first_error(const CampaignState& c, const config::TerminalWords& words) {
+  if (c.errors.empty()) return c.reason;
+  const std::size_t more = c.errors.size() - 1;
+  return where(c.errors.front()) +
+         (more == 0 ? "" : " " + words("more", {{"count", std::to_string(more)}}));
+}
+
 Expected<void> write_summary(const Night& night, const fs::path& out, const std::string& version,
-                             const config::TerminalWords& words) {
+                             const config::TerminalWords& words, const Morning& morning) {
   const std::vector<std::string> names{"summary.txt", "summary.json"};
   storage::remove_leftovers(out);
   storage::Spool text = storage::Spool::at(storage::temporary_path(out, names[0]));
@@ -309,8 +361,8 @@ Expected<void> write_summary(const Night& night, const fs::path& out, const std:
     return fail("cannot write the summary in " + out.string() + ": " + added.error().message);
   }
   for (const Vanished& v : night.vanished) lists.add(v);
-  write_text(text, night, lists, version);
-  write_json(json, night, lists, version, out);
+  write_text(text, night, lists, version, morning);
+  write_json(json, night, lists, version, out, morning);
   auto written = text.flush();
   if (written) written = json.flush();
   if (written) written = storage::rename_temporaries(out, names);

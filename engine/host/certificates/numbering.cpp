@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: one protocol, draw to issue; its steps are only right in their order.
 #include "host/certificates/numbering.h"
 
 #include <algorithm>

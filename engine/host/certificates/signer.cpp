@@ -20,6 +20,7 @@
 #include <iostream>
 #include <utility>
 
+#include "host/config/secret_files.h"
 #include "host/process/channel.h"
 #include "host/process/child.h"
 #include "host/process/guarded.h"
@@ -32,27 +33,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Expected<std::string> password_of(const config::Signing& signing, const fs::path& site) {
-  if (!signing.password_env.empty()) {
-    const char* value = std::getenv(signing.password_env.c_str());
-    if (value == nullptr)
-      return fail("the environment has no " + signing.password_env +
-                  " (password_env in [signing] of site.toml)");
-    return std::string(value);
-  }
-  fs::path path = site / signing.password_file;
-  if (!signing.password_credential.empty()) {
-    const char* folder = std::getenv("CREDENTIALS_DIRECTORY");
-    if (folder == nullptr)
-      return fail(
-          "systemd gave no credentials (password_credential in [signing] of site.toml; "
-          "LoadCredential= in the unit)");
-    path = fs::path(folder) / signing.password_credential;
-  }
-  auto text = storage::read_file(path);
-  if (!text) return fail("the key's password: " + text.error().message);
-  while (text->ends_with('\n') || text->ends_with('\r')) text->pop_back();
-  return text;
+Expected<std::string> password_of(const config::Signing& s, const fs::path& site) {
+  return config::read_password(
+      {s.password_file, s.password_env, s.password_credential, "the key's password", "signing"},
+      site);
 }
 
 /// Relative to the site; empty stays empty.

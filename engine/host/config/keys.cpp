@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: one table, a row a key; a page that shows all of a file is what its reader looks for.
 #include "host/config/keys.h"
 
 #include <algorithm>
@@ -902,6 +903,43 @@ constexpr Key alias_keys[] = {
     {.name = "why", .holds = text, .help = "Evidence for it.", .required = true},
 };
 
+constexpr Key database_keys[] = {
+    {.name = "url",
+     .holds = text,
+     .help = "The PostgreSQL database that keeps the history in place of OUT/history.sqlite, "
+             "postgresql://user@host/name?sslmode=verify-full, as libpq reads it; without a "
+             "password.",
+     .required = true,
+     .wanted = "expected postgresql://user@host/name",
+     .may_be_secret = true,
+     .text = {.begins = "postgresql://"}},
+    {.name = "password_file",
+     .holds = text,
+     .help = "File with the password, for its owner alone (chmod 600). Default: as libpq finds it: "
+             "service, ~/.pgpass, PGPASSFILE, PGPASSWORD."},
+    {.name = "schema",
+     .holds = text,
+     .help = "Schema of this site's tables; each site of a database has its own.",
+     .otherwise = "nonio",
+     .wanted = "expected 1 to 63 characters of a-z, 0-9 and _, not starting with a digit, found "
+               "\"{}\"",
+     .text = {.letters = "a-z0-9_", .not_first = "0123456789", .longest = 63}},
+};
+
+constexpr Key due_keys[] = {
+    {.name = "machine",
+     .holds = text,
+     .help = "The machine for which it holds, as `nonio query` calls it; without it for all that "
+             "no other says."},
+    {.name = "months",
+     .holds = whole,
+     .help = "From the last campaign to the next.",
+     .required = true,
+     .wanted = "expected 1 to 240 months",
+     .least = 1,
+     .most = 240},
+};
+
 constexpr Choice result_folders[] = {{"flat", "OUT/<id>"}, {"hashed", "OUT/ab/<id>"}};
 
 constexpr Key results_keys[] = {
@@ -962,6 +1000,72 @@ constexpr Key signing_keys[] = {
      .most = 300},
 };
 
+constexpr TextRule address_rule{
+    .not_letters = " \t\r\n,;<>\"\\", .not_first = "-.@", .longest = 250};
+constexpr Words address_wanted = "expected an address, found \"{}\"";
+
+constexpr Choice mail_reasons[] = {
+    {"lost"}, {"out", "what is lost or out of tolerance"}, {"decision", "whatever is new"}};
+constexpr Choice mail_tls[] = {
+    {"starttls", "port 587"}, {"tls", "port 465"}, {"none", "port 25, no password"}};
+
+constexpr Key mail_keys[] = {
+    {.name = "to",
+     .holds = texts,
+     .help = "Addresses that get it.",
+     .required = true,
+     .wanted = "expected addresses without spaces, commas and brackets",
+     .text = address_rule,
+     .longest_list = 50,
+     .distinct = true},
+    {.name = "from",
+     .holds = text,
+     .help = "Address of the sender.",
+     .required = true,
+     .wanted = address_wanted,
+     .text = address_rule},
+    {.name = "on",
+     .holds = text,
+     .help = "From what on a night writes: a campaign is lost or failed; or a machine is out of "
+             "tolerance; or any line asks for a decision.",
+     .otherwise = "decision",
+     .choices = mail_reasons},
+    {.name = "sendmail",
+     .holds = text,
+     .help = "Program that takes the mail, with its whole path; alternative to smtp.",
+     .wanted = "expected a path that begins with /, found \"{}\"",
+     .text = {.begins = "/"}},
+    {.name = "smtp",
+     .holds = text,
+     .help = "Name of the mail server; alternative to sendmail.",
+     .wanted = "expected the name of a server, found \"{}\"",
+     .text = {.letters = "a-zA-Z0-9.:_-", .not_first = "-.", .longest = 250}},
+    {.name = "tls",
+     .holds = text,
+     .help = "Encryption of the way to the server: begun with STARTTLS, from the first byte, or "
+             "none.",
+     .otherwise = "starttls",
+     .choices = mail_tls},
+    {.name = "port",
+     .holds = whole,
+     .help = "Port of the server; by tls 587, 465 or 25.",
+     .wanted = "expected 1 to 65535",
+     .least = 1,
+     .most = 65535},
+    {.name = "trust",
+     .holds = text,
+     .help = "PEM file with the roots that the server's certificate must come from; without it "
+             "those of the system."},
+    {.name = "user", .holds = text, .help = "Name at the server; without it nobody logs in."},
+    {.name = "password_file",
+     .holds = text,
+     .help = "File with the password; alternative to password_env and password_credential."},
+    {.name = "password_env", .holds = text, .help = "Environment variable with the password."},
+    {.name = "password_credential",
+     .holds = text,
+     .help = "Credential of systemd with the password."},
+};
+
 constexpr Choice terminal_languages[] = {{"de"}, {"en"}, {"it"}};
 
 constexpr Key site_file_keys[] = {
@@ -987,15 +1091,26 @@ constexpr Key site_file_keys[] = {
      .holds = tables,
      .help = "Two names of one machine, [[alias]]: its campaigns form one history.",
      .keys = alias_keys},
+    {.name = "due",
+     .holds = tables,
+     .help = "When machines are measured again, [[due]].",
+     .keys = due_keys},
     {.name = "signing",
      .holds = table,
      .help = "Key and time stamps for signed certificates.",
      .keys = signing_keys},
+    {.name = "mail",
+     .holds = table,
+     .help = "Mail of the nightly run, only when something asks for it.",
+     .keys = mail_keys},
     {.name = "certificate",
      .holds = table,
      .help = "Content and numbering of certificates.",
      .keys = certificate_of_site},
-    {.name = "database", .holds = anything, .help = "Reserved; no effect in this version."},
+    {.name = "database",
+     .holds = table,
+     .help = "A PostgreSQL server for the history.",
+     .keys = database_keys},
 };
 
 constexpr Words from_0 = "expected a number from 0";

@@ -68,6 +68,7 @@ struct Key {
   std::string_view missing{};
   /// What is said of a value that what follows refuses; {} stands for the value.
   std::string_view wanted{};
+  bool may_be_secret = false;             ///< of a text: no message repeats it
   std::span<const Choice> choices{};      ///< of a text
   Named named = Named::nothing;           ///< of a text or of each in a list
   TextRule text{};                        ///< of a text or of each in a list
@@ -97,12 +98,15 @@ const Key& specification_file();
 /// What tells the kind of axis that a cycle moves; settled by the code that reads cycles.
 inline constexpr std::string_view cycle_axis = "(axis)";
 
-inline constexpr std::string_view summaries[] = {"summary.json", "summary.txt"};
+/// What the nightly run writes beside the folders of the campaigns.
+inline constexpr std::string_view files_of_a_night[] = {
+    "summary.json", "summary.txt", "history.sqlite",   "history.json", "index.html",
+    "due.html",     "due.ics",     "instruments.html", "compare.html", "machines"};
 /// Its record is the file of that name in SITE/machines.
 inline constexpr TextRule asset_rule{.not_letters = "/\\\n\t", .not_first = ". ", .longest = 100};
 /// Folders of results are named by it.
 inline constexpr TextRule campaign_id_rule{
-    .letters = "a-z0-9._-", .not_first = ".", .longest = 100, .except = summaries};
+    .letters = "a-z0-9._-", .not_first = ".", .longest = 100, .except = files_of_a_night};
 
 bool obeys(std::string_view text, const TextRule& rule);
 bool in_range(double value, const Key& key);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: every table of campaign.toml and site.toml in the order of the files.
 #include "host/config/manifest.h"
 
 #include <algorithm>
@@ -9,7 +10,9 @@
 
 #include "host/config/certificate_reader.h"
 #include "host/config/formula_reader.h"
+#include "host/config/mail_reader.h"
 #include "host/config/toml_reader.h"
+#include "host/storage/database.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/statement.h"
 
@@ -430,6 +433,32 @@ std::vector<Alias> read_aliases(TableReader& top) {
   return aliases;
 }
 
+DatabaseChoice read_database(TableReader& reader) {
+  DatabaseChoice choice{reader.text("url"), reader.text("password_file")};
+  if (const std::string schema = reader.text("schema"); !schema.empty()) choice.schema = schema;
+  if (!choice.url.empty())
+    if (const auto well = storage::check_address(choice.url); !well)
+      reader.error("url", well.error().message);
+  reader.finish();
+  return choice;
+}
+
+std::vector<DueRule> read_due(TableReader& top) {
+  std::vector<DueRule> rules;
+  std::set<std::string> machines;
+  for (TableReader& reader : top.tables("due")) {
+    DueRule rule{reader.text("machine"), 0};
+    rule.months = reader.integer("months").value_or(0);
+    if (!machines.insert(rule.machine).second)
+      reader.error(rule.machine.empty() ? "months" : "machine",
+                   rule.machine.empty() ? "a rule for all machines is there twice"
+                                        : "\"" + rule.machine + "\" is there twice");
+    reader.finish();
+    rules.push_back(std::move(rule));
+  }
+  return rules;
+}
+
 std::string settings_of(const toml::table& root, std::initializer_list<const char*> keys) {
   toml::table out;
   for (const char* key : keys)
@@ -442,6 +471,7 @@ std::string settings_of(const toml::table& root, std::initializer_list<const cha
 
 }  // namespace
 
+// Long: the keys of site.toml, one after the other.
 Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   auto root = parse_toml(text, file);
   if (!root) return tl::unexpected(std::vector<Error>{root.error()});
@@ -473,6 +503,7 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   site.run = read_run(top);
   site.options = read_options(top, errors);
   site.aliases = read_aliases(top);
+  site.due = read_due(top);
   site.evaluation = settings_of(*root, {"run", "options"});
   toml::table printed = *root;
   // How it comes to a release is the laboratory's own business, and nothing that is printed.
@@ -488,14 +519,13 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
       rule && *rule != "iso14253-1")
     site.evaluation += "decision_rule = \"" + *rule + "\"\n";
   if (auto reader = top.table("signing")) site.signing = read_signing(*reader);
+  if (auto reader = top.table("mail")) site.mail = read_mail(*reader);
   if (auto reader = top.table("certificate")) {
     site.certificate = read_certificate(*reader);
     site.numbering = read_numbering(*reader);
     reader->finish();
   }
-  if (top.anything("database") != nullptr)
-    site.notes.push_back(file + ", line " + std::to_string(top.line_of("database")) +
-                         ": [database] has no effect in this version");
+  if (auto reader = top.table("database")) site.database = read_database(*reader);
   top.finish();
   if (!errors.empty()) return tl::unexpected(std::move(errors));
   note_lines(*root, "", site.lines);

@@ -68,6 +68,20 @@ struct Alias {
   std::string name, asset, why;
 };
 
+/// `[database]` of site.toml. The path is relative to the site.
+struct DatabaseChoice {
+  std::string url;  ///< without a password
+  std::string password_file{};
+  std::string schema = "nonio";
+};
+
+/// `[[due]]` of site.toml: months from the last campaign to the next. machine empty: all that no
+/// other rule names.
+struct DueRule {
+  std::string machine;
+  int months = 0;
+};
+
 /// `[signing]` of site.toml: where the key is, where its password comes from, time stamps, and whom
 /// `verify` expects and trusts. Paths are relative to the site.
 struct Signing {
@@ -95,8 +109,28 @@ struct Numbering {
   bool two_persons = false;  ///< author and authoriser must not be the same
 };
 
+/// `[mail]` of site.toml: to whom a night writes, by which way, and from what on.
+struct Mail {
+  enum class On {
+    lost,
+    out,
+    decision
+  };  ///< what is lost or failed; or out; or asks for a decision
+  enum class Tls { starttls, tls, none };
+  std::vector<std::string> to;
+  std::string from;
+  On on = On::decision;
+  std::string sendmail, smtp;  ///< exactly one: a program, the name of a server
+  Tls tls = Tls::starttls;
+  int port = 0;       ///< never 0 when read
+  std::string trust;  ///< PEM file with roots, relative to the site; empty: those of the system
+  std::string user;
+  std::string password_file, password_env, password_credential;  ///< exactly one with `user`
+};
+
 struct SiteFile {
   std::optional<Signing> signing;
+  std::optional<Mail> mail{};
   CertificateTexts certificate;
   Numbering numbering;
   Laboratory laboratory;
@@ -104,6 +138,8 @@ struct SiteFile {
   RawOptions options;
   Limits limits;
   std::vector<Alias> aliases{};  ///< each name once; no asset is a name
+  std::vector<DueRule> due{};    ///< one for each machine at most
+  std::optional<DatabaseChoice> database{};
   KeyLines lines;
   std::string language = "en";     ///< of the terminal and of summary.txt
   bool hashed_folders = false;     ///< results in OUT/ab/<id>

@@ -2,14 +2,26 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "host/config/manifest.h"
+#include "nonio/sdk/error.h"
 
 namespace nonio::host::config {
 
-/// The files in which key and password lie, wherever they are.
-std::vector<std::filesystem::path> secret_files(const Signing& signing,
+/// The files in which keys and passwords lie, wherever they are.
+std::vector<std::filesystem::path> secret_files(const SiteFile& file,
                                                 const std::filesystem::path& site);
+
+/// From where a password comes: exactly one of these.
+struct PasswordSource {
+  const std::string &file, &env, &credential;
+  std::string what;     ///< "the key's password"
+  std::string section;  ///< of site.toml
+};
+
+/// Without the end of its line.
+Expected<std::string> read_password(const PasswordSource&, const std::filesystem::path& site);
 
 }  // namespace nonio::host::config

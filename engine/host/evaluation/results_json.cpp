@@ -222,6 +222,9 @@ void put_analysis(storage::JsonWriter& json, const Results::Analysed& a,
   json.member("plugin", a.plugin);
   json.member("version", a.version);
   put_text(json, "measurement", a.measurement);
+  for (const Remark& note : a.evaluation.notes)
+    for (const Number& n : note.evidence)
+      if (n.name == "edition") json.member("edition", static_cast<std::uint64_t>(n.value));
   if (!a.evaluation.uses.empty()) {
     json.key("uses");
     json.begin_array();

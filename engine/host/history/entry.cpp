@@ -65,7 +65,11 @@ class EntryReader {
     for (const dom::object c : list_at(json_, "conformity"))
       axes_.emplace(text_at(c, "measurement"), text_at(c, "axis"));
     for (const dom::object a : list_at(json_, "analyses")) read_analysis(a);
-    for (const dom::object t : list_at(json_, "tables")) read_findings(t, {});
+    for (const dom::object t : list_at(json_, "tables")) {
+      for (const dom::object p : list_at(t, "predictions"))
+        read_prediction(p, text_at(t, "plugin"));
+      read_findings(t, {});
+    }
     dom::object certificate;
     if (json_["certificate"].get(certificate) == simdjson::SUCCESS) read_certificate(certificate);
     return std::move(entry_);
@@ -145,9 +149,23 @@ class EntryReader {
                   .k = number_at(v, "k")};
     row.tolerance = number_at(v, "tolerance");
     row.decision = text_at(v, "decision");
+    if (const auto edition = number_at(analysis, "edition"))
+      row.conditions = R"({"edition":)" + std::to_string(static_cast<std::int64_t>(*edition)) + "}";
     if (dom::object budget; analysis["budget"].get(budget) == simdjson::SUCCESS)
       read_parts(budget, name, row);
     entry_.results.push_back(std::move(row));
+  }
+
+  /// What a table promises of a result, beside that result.
+  void read_prediction(dom::object p, const std::string& plugin) {
+    const std::string measurement = text_at(p, "measurement");
+    entry_.results.push_back({.measurement = measurement,
+                              .axis = axis_of(measurement),
+                              .quantity = std::string(std::string_view(p["name"])),
+                              .source = plugin,
+                              .unit = text_at(p, "unit"),
+                              .state = predicted_state,
+                              .value = p["predicted"]});
   }
 
   /// The instrument's part and that of the expansion come back in other campaigns; the rest of the
@@ -230,21 +248,7 @@ void put_result(Canonical& put, const ResultRow& r) {
   for (const CommonPart& c : r.common) put(c.source)(c.u);
 }
 
-}  // namespace
-
-std::string campaign_sha256(const reading::Inputs& inputs) {
-  std::vector<std::string> own;
-  for (const auto& [name, digest] : inputs)
-    if (name != "site.toml" && name != "plugins" && name != "templates" && name != "version" &&
-        !name.starts_with(config::machine_prefix))
-      own.push_back(name + '\n' + digest);
-  std::sort(own.begin(), own.end());
-  std::string all;
-  for (const std::string& one : own) all += one + '\n';
-  return storage::sha256(all);
-}
-
-std::string digest_of(const Entry& e) {
+std::string canonical_of(const Entry& e) {
   Canonical put;
   put(e.campaign)(e.campaign_sha256)(e.day)(e.customer)(e.purpose)(e.status)(e.message);
   put(e.machine.asset)(e.machine.maker)(e.machine.model)(e.machine.serial);
@@ -259,8 +263,24 @@ std::string digest_of(const Entry& e) {
   }
   put(e.findings.size());
   for (const FindingRow& f : e.findings) put(f.measurement)(f.source)(f.id)(f.severity);
-  return storage::sha256(put.take());
+  return put.take();
 }
+
+}  // namespace
+
+std::string campaign_sha256(const reading::Inputs& inputs) {
+  std::vector<std::string> own;
+  for (const auto& [name, digest] : inputs)
+    if (name != "site.toml" && name != "plugins" && name != "templates" && name != "version" &&
+        !name.starts_with(config::machine_prefix))
+      own.push_back(name + '\n' + digest);
+  std::sort(own.begin(), own.end());
+  std::string all;
+  for (const std::string& one : own) all += one + '\n';
+  return storage::sha256(all);
+}
+
+std::string digest_of(const Entry& e) { return storage::sha256(canonical_of(e)); }
 
 Entry read_entry(dom::object results, const reading::Inputs& inputs) {
   return EntryReader(results, inputs).read();
@@ -271,6 +291,9 @@ Expected<Entry> entry_of(std::string_view results, const reading::Inputs& inputs
   try {
     dom::parser parser;
     Entry entry = read_entry(parser.parse(results), inputs);
+    // No manifest has one; a server keeps no text with it.
+    if (canonical_of(entry).find('\0') != std::string::npos)
+      return fail(std::string(evaluation::results_name) + ": a text with a character 0 in it");
     if (entry.campaign == id) return entry;
     return fail(std::string(evaluation::results_name) + ": expected campaign " + id + ", found \"" +
                 entry.campaign + "\"");

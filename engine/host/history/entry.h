@@ -14,6 +14,9 @@
 /// be made again from them.
 namespace nonio::host::history {
 
+/// State of a result that is none yet: what a table promises (its controller is the source).
+inline constexpr const char* predicted_state = "predicted";
+
 /// Standard uncertainty that other results with the same source share.
 struct CommonPart {
   std::string source;
@@ -25,7 +28,7 @@ struct ResultRow {
   std::string measurement, axis, quantity;
   std::string source;  ///< "followed", or the analysis
   std::string unit;
-  std::string state;  ///< as-found, as-left, check
+  std::string state;  ///< as-found, as-left, check; predicted
   double value = 0.0;
   std::optional<double> u_repeat{};       ///< standard, of what is new in each campaign
   std::optional<double> expanded{}, k{};  ///< U

@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <map>
 
-#include "host/history/schema.h"
-#include "host/history/store.h"
+#include "host/history/place.h"
 #include "host/storage/database.h"
-#include "host/storage/files.h"
 #include "host/storage/nearest.h"
 
 namespace nonio::host::history {
@@ -15,24 +13,6 @@ namespace fs = std::filesystem;
 using storage::Database;
 
 namespace {
-
-Expected<Database> open_store(const fs::path& out) {
-  const fs::path path = out / store_name;
-  const auto there = storage::is_there(path);
-  if (!there) return fail(there.error());
-  if (!*there)
-    return fail("there is no " + path.string() + ": `nonio run SITE --out " + out.string() +
-                "` writes it");
-  auto database = Database::open(path, Database::Use::write);
-  if (!database) return database;
-  const auto version = version_of(*database);
-  if (auto well = database->take_error(); !well) return fail(well.error());
-  if (version != schema_version)
-    return fail(path.string() + " is of version " + std::to_string(version.value_or(0)) +
-                ", this program reads " + std::to_string(schema_version) +
-                ": `nonio run` makes it again");
-  return database;
-}
 
 Expected<std::vector<NamedMachine>> machines_of(Database& database, const char* sql) {
   std::vector<NamedMachine> machines;
@@ -129,6 +109,12 @@ Expected<std::vector<Point>> query(const fs::path& out, const Query& wanted) {
     found.push_back(point_of(row));
   if (auto well = database.take_error(); !well) return fail(well.error());
   return found;
+}
+
+Expected<std::string> machine_named(const fs::path& out, const std::string& name) {
+  auto opened = open_store(out);
+  if (!opened) return fail(opened.error());
+  return known_machine(*opened, name);
 }
 
 Expected<std::vector<NamedMachine>> machines_in(const fs::path& out) {

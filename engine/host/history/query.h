@@ -30,6 +30,10 @@ struct Point {
 /// store, or nothing of that machine, axis or quantity in it: with the nearest name.
 Expected<std::vector<Point>> query(const std::filesystem::path& out, const Query& wanted);
 
+/// The name under which a machine's campaigns stand, of that or of an alias. An error names the
+/// nearest.
+Expected<std::string> machine_named(const std::filesystem::path& out, const std::string& name);
+
 /// The machines of a store, with aliases joined, by name.
 Expected<std::vector<NamedMachine>> machines_in(const std::filesystem::path& out);
 

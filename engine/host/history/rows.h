@@ -26,6 +26,7 @@ void insert(storage::Database& database, const std::string& campaign,
 /// What people say, as the site's files have it now, in place of what they had.
 void replace_logs(storage::Database& database, const config::SiteLogs& logs,
                   const std::vector<config::Alias>& aliases,
-                  const std::vector<config::Event>& of_records);
+                  const std::vector<config::Event>& of_records,
+                  const std::vector<config::DueRule>& due);
 
 }  // namespace nonio::host::history

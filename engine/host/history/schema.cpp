@@ -3,8 +3,10 @@
 
 #include <charconv>
 #include <string>
+#include <string_view>
 
 namespace nonio::host::history {
+using storage::Database;
 
 namespace {
 
@@ -52,6 +54,7 @@ CREATE TABLE acknowledgement (
 CREATE TABLE forgotten (
   item BIGINT PRIMARY KEY, day TEXT NOT NULL, campaign TEXT NOT NULL, said_by TEXT NOT NULL, why TEXT NOT NULL,
   line BIGINT NOT NULL);
+CREATE TABLE due_rule (machine TEXT PRIMARY KEY, months BIGINT NOT NULL);
 CREATE VIEW latest AS
   SELECT e.* FROM evaluation e
   WHERE NOT EXISTS (SELECT 1 FROM evaluation n WHERE n.supersedes = e.evaluation);
@@ -65,7 +68,7 @@ CREATE VIEW point AS
   LEFT JOIN machine_alias a ON a.alias = c.machine;
 )sql";
 
-/// The one type that they call differently.
+/// Of types that they call differently.
 constexpr const char* covariance_table = R"sql(
 CREATE TABLE covariance (
   evaluation BIGINT NOT NULL, first_item BIGINT NOT NULL, items BIGINT NOT NULL, upper_triangle BLOB NOT NULL,
@@ -77,9 +80,31 @@ constexpr const char* append_only[] = {"machine",     "campaign",   "evaluation"
                                        "common_part", "covariance", "finding",    "certificate"};
 /// Children first.
 constexpr const char* all_tables[] = {
-    "common_part", "covariance",    "finding", "result", "certificate",
-    "evaluation",  "campaign",      "machine", "event",  "acknowledgement",
-    "forgotten",   "machine_alias", "store"};
+    "common_part", "covariance",    "finding", "result",  "certificate",
+    "evaluation",  "campaign",      "machine", "event",   "acknowledgement",
+    "forgotten",   "machine_alias", "store",   "due_rule"};
+
+/// For a statement, so that TRUNCATE is refused too.
+std::string server_triggers() {
+  std::string sql =
+      "CREATE FUNCTION append_only() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN "
+      "RAISE EXCEPTION '% is append-only', TG_TABLE_NAME; END $$;\n";
+  for (const std::string table : append_only)
+    sql += "CREATE TRIGGER " + table + "_append_only BEFORE UPDATE OR DELETE OR TRUNCATE ON " +
+           table + " FOR EACH STATEMENT EXECUTE FUNCTION append_only();\n";
+  return sql;
+}
+
+/// In PostgreSQL's words. Texts are ordered by their bytes, as SQLite orders them.
+std::string server_words(std::string sql) {
+  const auto replace_all = [&](std::string_view old, std::string_view by) {
+    for (std::size_t at = 0; (at = sql.find(old, at)) != std::string::npos; at += by.size())
+      sql.replace(at, old.size(), by);
+  };
+  replace_all(" TEXT", " TEXT COLLATE \"C\"");
+  replace_all(" BLOB", " BYTEA");
+  return sql;
+}
 
 std::string triggers() {
   std::string sql;
@@ -92,23 +117,33 @@ std::string triggers() {
 
 }  // namespace
 
-std::optional<std::int64_t> version_of(storage::Database& database) {
-  const std::string has =
-      database.first("SELECT COUNT(*) FROM sqlite_master WHERE type = 'table' AND name = 'store'");
-  if (has != "1") return std::nullopt;
+bool has_table(Database& database, std::string_view name) {
+  return database.first(database.kind() == Database::Kind::sqlite
+                            ? "SELECT COUNT(*) FROM sqlite_master WHERE type = 'table' AND name = ?"
+                            : "SELECT COUNT(*) FROM pg_catalog.pg_tables WHERE schemaname = "
+                              "current_schema() AND tablename = ?",
+                        {name}) == "1";
+}
+
+std::optional<std::int64_t> version_of(Database& database) {
+  if (!has_table(database, "store")) return std::nullopt;
   const std::string text = database.first("SELECT value FROM store WHERE name = 'schema'");
   std::int64_t version = 0;
   std::from_chars(text.data(), text.data() + text.size(), version);
   return version;
 }
 
-void make_tables(storage::Database& database) {
+void make_tables(Database& database) {
+  // The same table first as those who read lock it: none waits for the other in a circle.
+  if (database.kind() == Database::Kind::postgresql && has_table(database, "store"))
+    database.script("LOCK TABLE store IN ACCESS EXCLUSIVE MODE");
   std::string sql = "DROP VIEW IF EXISTS point;\nDROP VIEW IF EXISTS latest;\n";
   for (const std::string table : all_tables) sql += "DROP TABLE IF EXISTS " + table + ";\n";
-  sql += tables;
-  sql += covariance_table;
-  sql += triggers();
-  sql += "PRAGMA user_version = " + std::to_string(schema_version) + ";\n";
+  const std::string made = std::string(tables) + covariance_table;
+  if (database.kind() == Database::Kind::postgresql)
+    sql += "DROP FUNCTION IF EXISTS append_only();\n" + server_words(made) + server_triggers();
+  else
+    sql += made + triggers() + "PRAGMA user_version = " + std::to_string(schema_version) + ";\n";
   database.script(sql);
   database.rows("INSERT INTO store VALUES ('schema', ?)", {schema_version});
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "host/storage/database.h"
 
@@ -10,7 +11,9 @@ namespace nonio::host::history {
 
 /// Of the tables below. A store of an older version is made again from the results; one of a newer
 /// version is refused.
-inline constexpr std::int64_t schema_version = 1;
+inline constexpr std::int64_t schema_version = 3;
+
+bool has_table(storage::Database& database, std::string_view name);
 
 /// The version that a database says it is of; none: it is empty.
 std::optional<std::int64_t> version_of(storage::Database& database);

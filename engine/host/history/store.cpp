@@ -9,6 +9,7 @@
 
 #include "host/config/manifest.h"
 #include "host/history/earlier.h"
+#include "host/history/place.h"
 #include "host/history/rows.h"
 #include "host/history/schema.h"
 #include "host/storage/database.h"
@@ -36,9 +37,9 @@ Before before_of(std::int64_t number, const Known& known) {
   return {number, known.entry.campaign_sha256, known.since.version};
 }
 
-std::int64_t next_number(Database& database) {
+std::int64_t last_number(Database& database) {
   const std::string last = database.first("SELECT MAX(evaluation) FROM evaluation");
-  return last.empty() ? 1 : std::stoll(last) + 1;
+  return last.empty() ? 0 : std::stoll(last);
 }
 
 class Filling {
@@ -121,7 +122,7 @@ class Filling {
   }
 
   Expected<bool> add(std::map<Place, std::pair<Known, Before>> added) {
-    std::int64_t number = next_number(database_);
+    std::int64_t number = last_number(database_) + 1;
     std::map<std::string, Before> last;
     for (auto& [place, what] : added) {
       auto& [known, before] = what;
@@ -180,7 +181,8 @@ Expected<Database> open(const fs::path& out) {
 
 /// An index is worth nothing where it cannot be read: it is made anew. Another process that has it
 /// open is none of that.
-Expected<Database> open_or_replace(const fs::path& out) {
+Expected<Database> open_or_replace(const fs::path& out, const StorePlace& place) {
+  if (place.server) return Database::open(*place.server);
   auto database = open(out);
   if (database) {
     version_of(*database);
@@ -198,24 +200,40 @@ Expected<Database> open_or_replace(const fs::path& out) {
   return open(out);
 }
 
-Expected<void> check_version(std::optional<std::int64_t> version, const fs::path& out) {
+Expected<void> check_version(std::optional<std::int64_t> version, const std::string& name) {
   if (!version || *version <= schema_version) return {};
-  return fail((out / store_name).string() + " is of version " + std::to_string(*version) +
-              ", this program writes " + std::to_string(schema_version) +
-              ": use the newer program, or remove the file; it is made again");
+  return fail(name + " is of version " + std::to_string(*version) + ", this program writes " +
+              std::to_string(schema_version) +
+              ": use the newer program, or remove it; it is made again");
+}
+
+/// A file of before would grow old, and nobody would see it.
+Expected<void> leave_to_server(const fs::path& out, std::int64_t evaluations) {
+  std::error_code error;
+  const fs::path path = out / store_name;
+  if (!fs::remove(path, error) && error)
+    return fail("cannot remove " + path.string() + ", which is no longer kept: " + error.message());
+  return note_evaluations(out, evaluations);
 }
 
 /// In one transaction: all of it or nothing.
 Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::string>& campaigns,
                         const Told& told, const std::function<void()>& alive) {
-  auto opened = open_or_replace(out);
+  const auto place = place_of(out);
+  if (!place) return fail(place.error());
+  auto opened = open_or_replace(out, *place);
   if (!opened) return fail(opened.error());
   Database& database = *opened;
-  const auto version = version_of(database);
-  if (auto fit = check_version(version, out); !fit) return fail(fit.error());
   Updated updated;
   Database::Transaction transaction(database);
+  const auto version = version_of(database);
+  if (database.failed()) return fail(database.take_error().error());
+  if (auto fit = check_version(version, name_of(*place, out)); !fit) return fail(fit.error());
+  if (place->server)
+    if (auto ours = take_schema(database, *place); !ours) return fail(ours.error());
   bool again = all || version != schema_version;
+  // A server whose backup was restored, or whose standby took over, has forgotten the last nights.
+  if (!again && place->server) again = last_number(database) != place->evaluations;
   Filling filling(out, database, alive, updated);
   if (!again) {
     const auto added = filling.some(campaigns);
@@ -227,8 +245,11 @@ Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::st
     make_tables(database);
     if (auto filled = filling.all(); !filled) return fail(filled.error());
   }
-  replace_logs(database, told.logs, told.aliases, told.of_records);
+  replace_logs(database, told.logs, told.aliases, told.of_records, told.due);
+  const std::int64_t last = last_number(database);
   if (auto ended = transaction.end(); !ended) return fail(ended.error());
+  if (place->server)
+    if (auto noted = leave_to_server(out, last); !noted) return fail(noted.error());
   return updated;
 }
 

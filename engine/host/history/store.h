@@ -20,6 +20,7 @@ struct Told {
   config::SiteLogs logs{};
   std::vector<config::Alias> aliases{};
   std::vector<config::Event> of_records{};  ///< tables that came into a control
+  std::vector<config::DueRule> due{};
 };
 
 struct Updated {

@@ -46,20 +46,30 @@ ModelStep step_of(const Change& change, const std::string& effect, bool add) {
   return step;
 }
 
-Expected<void> write(const fs::path& folder, const reading::ReadCampaign& read,
-                     const ModelStep& step) {
+/// The file as `read` knows it; what somebody else has written meanwhile is not overwritten.
+Expected<std::string> unchanged_manifest(const fs::path& folder,
+                                         const reading::ReadCampaign& read) {
   std::error_code error;
   if (fs::is_symlink(folder / config::manifest_name, error))
     return fail(
         Error{"is a link; expected the file itself, which is written anew", config::manifest_name});
-  const auto text = storage::read_file(folder / config::manifest_name);
-  if (!text) return fail(text.error());
-  if (storage::sha256(*text) != read.inputs.front().second)
+  auto text = storage::read_file(folder / config::manifest_name);
+  if (text && storage::sha256(*text) != read.inputs.front().second)
     return fail(
         Error{"changed while the model was fitted; nothing was written", config::manifest_name});
-  auto edited = step.added ? with_effect(*text, step.effect) : without_effect(*text, step.effect);
+  return text;
+}
+
+Expected<void> write(const fs::path& folder, const reading::ReadCampaign& read,
+                     const std::vector<Change>& changes) {
+  const auto text = unchanged_manifest(folder, read);
+  if (!text) return fail(text.error());
+  std::vector<ModelEdit> edits;
+  for (const Change& change : changes) edits.push_back({change.step.effect, change.step.added, {}});
+  auto edited = edited_manifest(*text, edits);
   if (!edited) return fail(edited.error());
   std::string history;
+  std::error_code error;
   if (fs::exists(folder / history_name, error)) {
     const auto old = storage::read_file(folder / history_name);
     if (!old) return fail(old.error());
@@ -67,25 +77,25 @@ Expected<void> write(const fs::path& folder, const reading::ReadCampaign& read,
     history = *old;
     if (!history.empty() && history.back() != '\n') history += '\n';
   }
-  history += history_line(step);
+  for (const Change& change : changes) history += history_line(change.step);
   return storage::publish(
       folder, {{history_name, std::move(history)}, {config::manifest_name, std::move(*edited)}});
 }
 
-}  // namespace
-
-Expected<Change> change_model(const fs::path& folder, reading::ReadCampaign& read,
-                              const std::string& effect, bool add) {
-  Campaign& campaign = read.manifest->campaign;
+/// From one model to the next.
+Expected<Change> changed(const reading::ReadCampaign& read, const std::vector<std::string>& model,
+                         const ModelEdit& edit) {
+  const std::string& effect = edit.effect;
+  const bool add = edit.add;
   Change change;
-  change.effects = campaign.model;
+  change.effects = model;
   if (add) {
     change.effects.push_back(effect);
   } else {
     const auto found = std::find(change.effects.begin(), change.effects.end(), effect);
     if (found != change.effects.end()) change.effects.erase(found);
   }
-  auto before = compare_axis(read, campaign.model, effect);
+  auto before = compare_axis(read, model, effect);
   if (before)
     change.before = std::move(*before);
   else
@@ -99,11 +109,57 @@ Expected<Change> change_model(const fs::path& folder, reading::ReadCampaign& rea
   if (add && !change.after)
     return fail("no measurement of this campaign can show \"" + effect + "\"");
   change.step = step_of(change, effect, add);
-  if (auto written = write(folder, read, change.step); !written) return fail(written.error());
-  campaign.model = change.effects;
+  change.step.why = edit.why;
+  return change;
+}
+
+}  // namespace
+
+std::vector<ModelEdit> edits_between(const std::vector<std::string>& from,
+                                     const std::vector<std::string>& to) {
+  const auto has = [](const std::vector<std::string>& list, const std::string& effect) {
+    return std::find(list.begin(), list.end(), effect) != list.end();
+  };
+  std::vector<ModelEdit> edits;
+  for (const std::string& effect : from)
+    if (!has(to, effect)) edits.push_back({effect, false, {}});
+  for (const std::string& effect : to)
+    if (!has(from, effect)) edits.push_back({effect, true, {}});
+  return edits;
+}
+
+Expected<std::string> edited_manifest(std::string_view text, const std::vector<ModelEdit>& edits) {
+  std::string out(text);
+  for (const ModelEdit& edit : edits) {
+    auto next = edit.add ? with_effect(out, edit.effect) : without_effect(out, edit.effect);
+    if (!next) return next;
+    out = std::move(*next);
+  }
+  return out;
+}
+
+Expected<std::vector<Change>> change_model(const fs::path& folder, reading::ReadCampaign& read,
+                                           const std::vector<ModelEdit>& edits) {
+  std::vector<Change> changes;
+  std::vector<std::string> model = read.manifest->campaign.model;
+  for (const ModelEdit& edit : edits) {
+    auto change = changed(read, model, edit);
+    if (!change) return fail(change.error());
+    model = change->effects;
+    changes.push_back(std::move(*change));
+  }
+  if (auto written = write(folder, read, changes); !written) return fail(written.error());
+  read.manifest->campaign.model = std::move(model);
   if (const auto text = storage::read_file(folder / config::manifest_name))
     read.inputs.front().second = storage::sha256(*text);
-  return change;
+  return changes;
+}
+
+Expected<Change> change_model(const fs::path& folder, reading::ReadCampaign& read,
+                              const std::string& effect, bool add) {
+  auto changes = change_model(folder, read, {{effect, add, {}}});
+  if (!changes) return fail(changes.error());
+  return std::move(changes->front());
 }
 
 }  // namespace nonio::host::modelling

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/modelling/campaign_model.h"
@@ -23,6 +24,23 @@ struct Change {
   std::optional<Compared> before, after;  ///< absent where it could not be fitted
   std::string no_before;                  ///< why not
 };
+
+/// An effect that comes into a model, or leaves it.
+struct ModelEdit {
+  std::string effect;
+  bool add = true;
+  std::string why{};  ///< what a person said of it; goes into the history
+};
+/// What leads from one model to another: first what leaves, then what comes in.
+std::vector<ModelEdit> edits_between(const std::vector<std::string>& from,
+                                     const std::vector<std::string>& to);
+/// The text of a campaign.toml after them.
+Expected<std::string> edited_manifest(std::string_view text, const std::vector<ModelEdit>& edits);
+
+/// Several changes in a row: all of them are written, each with its line of the history, or none.
+Expected<std::vector<Change>> change_model(const std::filesystem::path& folder,
+                                           reading::ReadCampaign& read,
+                                           const std::vector<ModelEdit>& edits);
 
 /// Adds an effect to campaign.toml or takes it out, and notes that in the history. Both files are
 /// written whole or not at all; an effect is only added if the new model can be fitted. `read` then

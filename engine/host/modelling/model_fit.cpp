@@ -184,19 +184,6 @@ void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& wh
       {order.empty() ? "" : part.terms[order.back()].name(), whole.fit.rms, whole.cv_rms});
 }
 
-/// As `nonio model drop` would leave it, for each effect.
-void put_without(ModelFit& out, const PartModel& part) {
-  if (part.part.table.size() > most_refitted) return;
-  for (std::size_t t = 0; t < part.terms.size(); ++t) {
-    if (part.terms[t].effect->is_nuisance) continue;
-    PartModel rest = part;
-    rest.terms.erase(rest.terms.begin() + static_cast<std::ptrdiff_t>(t));
-    if (auto c = compare_part(rest))
-      out.without.push_back(
-          {part.terms[t].name(), c->fit.rms, c->cv_rms, std::move(c->fit.residual)});
-  }
-}
-
 void put_candidates(ModelFit& out, const PartModel& part, const model::Explanation& e) {
   for (const model::Candidate& c : e.candidates) {
     if (!is_ranked(c) || !(c.score > 0.0)) continue;
@@ -226,23 +213,9 @@ const Axis* one_moved(const model::Part& part) {
 
 /// The value that documents draw.
 ModelFit value_of(const PartModel& part, const model::Explanation& e) {
-  const bool balls = part.part.kind == model::Part::Kind::balls;
-  const Axis* const axis = balls ? nullptr : one_moved(part.part);
-  ModelFit out;
-  out.part = out.axis = part.part.name;
-  out.measurements = part.part.measurements;
-  out.rotary = part.position() == Quantity::angle;
-  out.angular = part.part.table.angular;
-  if (axis != nullptr && axis->rotary && axis->teeth)
-    out.period = 2.0 * std::numbers::pi / static_cast<double>(*axis->teeth);
-  else if (axis != nullptr)
-    out.period = axis->screw_pitch;
-  else if (!balls)
-    out.period = 0.0;
-  put_readings(out, part.part);
-  put_fit(out, part, e.comparison);
+  ModelFit out = fitted_value(part, e.comparison);
   put_steps(out, part, e.comparison);
-  put_without(out, part);
+  out.without = without_each(part);
   put_candidates(out, part, e);
   out.diagnosis = {verdict_finding(e, part)};
   if (e.comparison.lack_of_fit && std::isfinite(e.comparison.lack_of_fit->F))
@@ -297,6 +270,38 @@ Remark compensated(const PartModel& part, const std::vector<std::string>& effect
 }
 
 }  // namespace
+
+ModelFit fitted_value(const PartModel& part, const model::Comparison& comparison) {
+  const bool balls = part.part.kind == model::Part::Kind::balls;
+  const Axis* const axis = balls ? nullptr : one_moved(part.part);
+  ModelFit out;
+  out.part = out.axis = part.part.name;
+  out.measurements = part.part.measurements;
+  out.rotary = part.position() == Quantity::angle;
+  out.angular = part.part.table.angular;
+  if (axis != nullptr && axis->rotary && axis->teeth)
+    out.period = 2.0 * std::numbers::pi / static_cast<double>(*axis->teeth);
+  else if (axis != nullptr)
+    out.period = axis->screw_pitch;
+  else if (!balls)
+    out.period = 0.0;
+  put_readings(out, part.part);
+  put_fit(out, part, comparison);
+  return out;
+}
+
+std::vector<ModelFit::Without> without_each(const PartModel& part) {
+  std::vector<ModelFit::Without> out;
+  if (part.part.table.size() > most_refitted) return out;
+  for (std::size_t t = 0; t < part.terms.size(); ++t) {
+    if (part.terms[t].effect->is_nuisance) continue;
+    PartModel rest = part;
+    rest.terms.erase(rest.terms.begin() + static_cast<std::ptrdiff_t>(t));
+    if (auto c = compare_part(rest))
+      out.push_back({part.terms[t].name(), c->fit.rms, c->cv_rms, std::move(c->fit.residual)});
+  }
+  return out;
+}
 
 Expected<ModelFits> model_fit(const reading::ReadCampaign& read, const reading::Context& context) {
   const Campaign& campaign = read.manifest->campaign;

@@ -20,6 +20,14 @@ struct ModelFits {
 /// fitted is a finding; one that names what does not exist is an error.
 Expected<ModelFits> model_fit(const reading::ReadCampaign& read, const reading::Context& context);
 
+/// A comparison as documents draw it: readings, residuals, effects, parameters, noise floor; without
+/// what an explanation adds.
+ModelFit fitted_value(const PartModel& part, const model::Comparison& comparison);
+
+/// As `nonio model drop` would leave it, for each effect of the model; none of more than 20,000
+/// readings, whose fits take seconds.
+std::vector<ModelFit::Without> without_each(const PartModel& part);
+
 /// What a table takes where the manifest says compensate = "model": for each target and direction
 /// that was measured, one reading that is the sum of the model's compensable effects. None of an
 /// axis whose model has no such effect; measurements that are not of an axis stay as they are.

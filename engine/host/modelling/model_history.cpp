@@ -26,6 +26,7 @@ ModelStep step_of(const storage::Json& json) {
   step.cv_before = get(json, "cv_rms_before", q);
   step.cv_after = get(json, "cv_rms_after", q);
   step.floor = get(json, "noise_floor", q);
+  step.why = json.value("why", "");
   return step;
 }
 
@@ -38,7 +39,8 @@ std::string history_line(const ModelStep& step) {
   storage::put(json, "cv_rms_before", step.cv_before, step.quantity);
   storage::put(json, "cv_rms_after", step.cv_after, step.quantity);
   storage::put(json, "noise_floor", step.floor, step.quantity);
-  return json.dump() + "\n";
+  if (!step.why.empty()) json["why"] = step.why;
+  return json.dump(-1, ' ', false, storage::Json::error_handler_t::replace) + "\n";
 }
 
 Expected<std::vector<ModelStep>> parse_history(std::string_view text) {

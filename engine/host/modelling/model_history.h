@@ -20,6 +20,7 @@ struct ModelStep {
   /// m or rad; absent where that model could not be fitted.
   std::optional<double> rms_before{}, rms_after{};
   std::optional<double> cv_before{}, cv_after{}, floor{};  ///< left-out runs; noise floor
+  std::string why{};  ///< what a person said of it; mostly nothing
 };
 
 /// Beside campaign.toml: a JSON object a line for each change of the model, oldest first. It holds

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: three documents that share their parts.
 #include "host/modelling/model_json.h"
 
 #include <algorithm>
@@ -319,12 +320,36 @@ std::vector<Correlated> correlated(const model::Fit& fit) {
   return out;
 }
 
-std::size_t most_severe(const std::vector<Explained>& all) {
-  using Kind = model::Verdict::Kind;
-  for (const Kind kind : {Kind::missing, Kind::unrepeatable, Kind::unknown})
-    for (std::size_t i = 0; i < all.size(); ++i)
-      if (all[i].explanation.verdict.kind == kind) return i;
+namespace {
+
+std::size_t most_severe_of(const std::vector<Told>& parts) {
+  using Verdict = model::Verdict::Kind;
+  for (const Verdict kind : {Verdict::missing, Verdict::unrepeatable, Verdict::unknown})
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (parts[i].kind == to_text(kind)) return i;
   return 0;
+}
+
+}  // namespace
+
+std::vector<Told> told_of(const std::vector<Explained>& all) {
+  std::vector<Told> told;
+  for (const Explained& e : all)
+    told.push_back(
+        {to_text(e.explanation.verdict.kind), e.explanation.verdict.effect, e.explanation.certain});
+  return told;
+}
+
+std::size_t most_severe(const std::vector<Explained>& all) { return most_severe_of(told_of(all)); }
+
+std::string next_effect(const std::vector<Told>& parts) {
+  using Verdict = model::Verdict::Kind;
+  if (parts.empty()) return {};
+  const Told& worst = parts[most_severe_of(parts)];
+  if (worst.kind == to_text(Verdict::missing)) return worst.effect;
+  if (worst.kind == to_text(Verdict::unknown) && !worst.certain.empty())
+    return worst.certain.front();
+  return {};
 }
 
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
@@ -342,6 +367,18 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
   if (part.interpolated.count > 0) out.push_back(words.temperature_interpolated(part.interpolated));
   for (std::string& said : words.noise(fit, part)) out.push_back(std::move(said));
   return out;
+}
+
+std::string part_json(const Compared& compared, const Campaign& campaign, const ModelWords& words) {
+  return storage::dump(compared_json(compared, campaign, words));
+}
+
+std::string part_json(const Explained& explained, const Campaign& campaign,
+                      const ModelWords& words) {
+  storage::Json one = storage::Json::object();
+  put_part(one, explained.part);
+  put_explained(one, explained, campaign, words);
+  return storage::dump(one);
 }
 
 std::string compare_json(const std::vector<Compared>& all, const Campaign& campaign,

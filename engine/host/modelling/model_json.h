@@ -22,6 +22,20 @@ std::size_t most_severe(const std::vector<Explained>& all);
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
                                      const ModelWords& words);
 
+/// One entry of "parts" in nonio-compare/1 and nonio-explain/1.
+std::string part_json(const Compared& compared, const Campaign& campaign, const ModelWords& words);
+std::string part_json(const Explained& explained, const Campaign& campaign,
+                      const ModelWords& words);
+
+/// What belongs into the model beyond doubt, by the verdict that asks most; "": nothing more. This
+/// is one step of `nonio explain --auto`.
+struct Told {
+  std::string kind, effect;          ///< of the verdict of one part
+  std::vector<std::string> certain;  ///< most evidence first
+};
+std::vector<Told> told_of(const std::vector<Explained>& all);
+std::string next_effect(const std::vector<Told>& parts);
+
 /// docs/json.md: nonio-compare/1, nonio-explain/1 and nonio-model/1. `all` is not empty;
 /// `warnings` and `errors` are those of the campaign.
 std::string compare_json(const std::vector<Compared>& all, const Campaign& campaign,

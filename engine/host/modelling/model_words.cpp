@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: one finding after the other, from the numbers of the model to its words.
 #include "host/modelling/model_words.h"
 
 #include <algorithm>

@@ -14,6 +14,10 @@ namespace nonio::host::plugin_check::kit {
 
 namespace {
 
+char any_byte(storage::Random& random) {
+  return static_cast<char>(static_cast<unsigned char>(random.uniform() * 256.0));
+}
+
 /// Files this long are long enough for every law; longer ones are damaged at fewer places.
 constexpr std::size_t most_tokens = 120, damages = 300;
 constexpr double no_reading = 1e6;  // m or rad: no machine is so long
@@ -171,7 +175,7 @@ Verdict reader_damaged(const Reader& r, const Bench& bench) {
       for (int n = 0; n <= static_cast<int>(k % 4); ++n) {
         const auto at =
             static_cast<std::size_t>(random.uniform() * static_cast<double>(bytes.size()));
-        bytes[at] = static_cast<char>(random.uniform() * 256.0);
+        bytes[at] = any_byte(random);
       }
       if (const auto o = read(r, f, bytes))
         if (const std::string why = unsound(*o); !why.empty())
@@ -324,7 +328,7 @@ Verdict reader_foreign(const Reader& r, const Bench& bench) {
   storage::Random random = bench.random(9);
   if (!r.recognises || !r.reads || !r.read) return failed("recognises, reads or read is missing");
   std::string noise(4096, '\0');
-  for (char& c : noise) c = static_cast<char>(random.uniform() * 256.0);
+  for (char& c : noise) c = any_byte(random);
   const std::vector<std::pair<const char*, std::string>> foreign = {
       {"random bytes", noise},
       {"a PDF", "%PDF-1.4\n%\xe2\xe3\xcf\xd3\n1 0 obj\n<< /Type /Catalog >>\nendobj\n"},

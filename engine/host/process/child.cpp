@@ -97,7 +97,7 @@ void keep_silent() {
   if (nothing < 0) return;
   ::dup2(nothing, STDIN_FILENO);
   ::dup2(nothing, STDOUT_FILENO);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef NONIO_SANITIZED
   ::dup2(nothing, STDERR_FILENO);
 #endif
   if (nothing > STDERR_FILENO) ::close(nothing);
@@ -130,7 +130,7 @@ bool has_grown(std::size_t at_start) {
 }
 
 void limit_memory(double megabytes) {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef NONIO_SANITIZED
   const auto bytes = static_cast<rlim_t>(megabytes * 1e6);
   const rlimit limit{bytes, bytes};
   ::setrlimit(RLIMIT_DATA, &limit);

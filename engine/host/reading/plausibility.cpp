@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: one check after the other, each a function of its own, on the same readings.
 #include "host/reading/plausibility.h"
 
 #include <algorithm>

@@ -38,8 +38,7 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   auto templates = config::read_templates(*folders, context.templates_sha256, nullptr, {}, below);
   if (!templates) return fail(templates.error());
   context.templates = std::move(*templates);
-  if (context.site.signing)
-    process::hide_from_plugins(config::secret_files(*context.site.signing, site));
+  process::hide_from_plugins(config::secret_files(context.site, site));
   place->plugins.load(plugin_folders);
   if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
   place->notes = place->plugins.refusal_notes();

@@ -7,18 +7,26 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <variant>
 #include <vector>
 
 #include "nonio/sdk/error.h"
 
-struct sqlite3;
-struct sqlite3_stmt;
-
 namespace nonio::host::storage {
 
-/// A connection to an SQLite file: one process, one thread, never across a fork. After the first
+class Connection;
+
+/// A database of PostgreSQL, as `[database]` of site.toml names it.
+struct Server {
+  std::string url;  ///< postgresql://..., as libpq reads it; without a password
+  std::string schema;
+  std::filesystem::path password_file;  ///< empty: as libpq finds it (service, ~/.pgpass, ...)
+};
+
+/// Whether libpq reads this address and no password is in it. The error never repeats it.
+Expected<void> check_address(const std::string& url);
+
+/// A connection to an SQLite file or a server: one process, one thread, never across a fork. After the first
 /// trouble in a transaction nothing more of it is done, and `Transaction::end` says what it was.
 class Database {
  public:
@@ -35,12 +43,23 @@ class Database {
   /// seconds; the error is then one of which `is_locked` is true.
   static Expected<Database> open(const std::filesystem::path& path, Use use,
                                  double patience = usual_patience);
+  /// Names of tables are those of the server's schema, whether it is there or not.
+  static Expected<Database> open(const Server& server, double patience = usual_patience);
+  Database(Database&&) noexcept;
+  Database& operator=(Database&&) noexcept;
+  ~Database();
+
+  enum class Kind { sqlite, postgresql };
+  Kind kind() const { return kind_; }
 
   /// The rows of one statement whose `?` are these values. NULL comes as "", a double in the fewest
   /// digits that give it back. A statement is prepared once and kept.
   std::vector<Row> rows(const char* sql, std::initializer_list<Value> values = {});
   /// The first column of the first row; "" if there is none.
   std::string first(const char* sql, std::initializer_list<Value> values = {});
+  /// A statement without rows. A server gets many of them in one go, so that an error may show
+  /// only with a later call, at the latest with `rows` or the end of the transaction.
+  void put(const char* sql, std::initializer_list<Value> values = {});
   /// Statements one after the other, without values and rows.
   void script(const std::string& sql);
   bool failed() const { return !error_.empty(); }
@@ -63,23 +82,14 @@ class Database {
   };
 
  private:
-  struct Close {
-    void operator()(sqlite3*) const;
-  };
-  Database(sqlite3* file, std::filesystem::path path) : file_(file), path_(std::move(path)) {}
-  void note_error();
-  sqlite3_stmt* prepared(const char* sql);
+  Database(std::unique_ptr<Connection> connection, Kind kind);
 
-  struct Finalize {
-    void operator()(sqlite3_stmt*) const;
-  };
-  std::unique_ptr<sqlite3, Close> file_;
-  std::unordered_map<std::string, std::unique_ptr<sqlite3_stmt, Finalize>> statements_;
-  std::filesystem::path path_;
+  std::unique_ptr<Connection> connection_;
+  Kind kind_;
   std::string error_;
 };
 
-/// Whether it was another process that kept the file to itself: the same may succeed later.
+/// Whether it was another process that kept the database to itself: the same may succeed later.
 bool is_locked(const Error& error);
 
 }  // namespace nonio::host::storage

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: the one place of system calls on files; splitting it would share their error words.
 #include "host/storage/files.h"
 
 #include <fcntl.h>

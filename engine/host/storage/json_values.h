@@ -20,6 +20,11 @@ inline std::string dump(const Json& json) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+/// The same in one line.
+inline std::string dump_line(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 inline Json to_json(const Error& error) {
   Json json = Json::object();
   if (!error.file.empty()) json["file"] = error.file;

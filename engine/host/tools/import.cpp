@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: one importer: what it finds, asks, and writes into a manifest.
 #include "host/tools/import.h"
 
 #include <algorithm>

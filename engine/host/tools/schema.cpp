@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: one recursive walk through the table of keys; each method writes what another one nests.
 #include "host/tools/schema.h"
 
 #include <algorithm>

@@ -29,7 +29,10 @@ bool is_long(const AxisTest& test) {
 
 std::size_t wanted_targets(const AxisTest& test) {
   const double L = test.length();
-  const auto whole = [](double x) { return static_cast<std::size_t>(std::ceil(x - 1e-9)); };
+  const auto whole = [](double x) {
+    constexpr double most = 1e9;  // of an absurd length too
+    return static_cast<std::size_t>(std::min(most, std::ceil(x - 1e-9)));
+  };
   if (test.rotary) return static_cast<std::size_t>(rotary_points(L));
   if (L > long_axis + close) return whole(L / 0.25);
   return std::max<std::size_t>(5, whole(5.0 * L));

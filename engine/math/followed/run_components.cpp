@@ -36,7 +36,7 @@ double squared(double x) { return x * x; }
 /// Of values of the runs that have the mean 0 but for what is missing.
 RunPart run_part(const std::vector<double>& values, double noise) {
   const double s = standard_deviation(values);
-  return {std::max(0.0, s * s - noise), noise};
+  return {std::max(0.0, s * s - noise), noise, s * s};
 }
 
 /// Collects the offsets and slopes of the runs.
@@ -76,6 +76,7 @@ struct Alike {
   double lag1 = 0.0;                 ///< expected of the residuals
   double residual = 1.0;             ///< their variance by degree of freedom, of 1 of a reading
   double offset = 1.0, slope = 1.0;  ///< variances of mean and slope, of those of independent ones
+  double dof = 1.0;                  ///< of the residuals, of those of independent ones
 };
 
 Alike alike(Index m, double r) {
@@ -89,7 +90,8 @@ Alike alike(Index m, double r) {
   const MatrixXd M = MatrixXd::Identity(m, m) - X * X.transpose(), e = M * R * M;
   const double n = static_cast<double>(m);
   return {e.diagonal(1).sum() / (n - 1.0) / (e.trace() / n), e.trace() / (n - 2.0),
-          X.col(0).dot(R * X.col(0)), X.col(1).dot(R * X.col(1))};
+          X.col(0).dot(R * X.col(0)), X.col(1).dot(R * X.col(1)),
+          squared(e.trace()) / e.squaredNorm() / (n - 2.0)};
 }
 
 /// Lag-1 correlation of the residuals, if it is beyond chance (one-sided 5 %).
@@ -152,6 +154,7 @@ RunComponents run_components(const AxisTest& test) {
   const bool both = test.bidirectional();
   RunValues c = run_values(out, pass_extents(test, out.passes), both);
   c.offset_noise *= of_pass.offset, c.slope_noise *= of_pass.slope;
+  out.independent = of_pass.dof;
   out.runs = static_cast<double>(c.shared_offset.size());
   if (out.runs < 2.0) return out;
   out.shared_offset = run_part(c.shared_offset, c.offset_noise);
@@ -187,34 +190,34 @@ double covariance_of(const AxisTest& test, const RunComponents& c, std::span<con
 }
 
 PooledScatter pooled_scatter(const AxisTest& test, const RunComponents& c) {
-  double squares = 0.0, n = 0.0, zz = 0.0, single = 0.0, dof = 0.0;
+  double squares = 0.0, n = 0.0, zz = 0.0, all_dof = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i) {
     zz += squared(test.targets[i] - c.passes.middle);
     for (const auto side : {test.plus(i), test.minus(i)}) {
       if (side.size() < 2) continue;
       squares += squared(standard_deviation(deviations(side))), n += 1.0;
+      all_dof += static_cast<double>(side.size() - 1);
     }
   }
   if (n == 0.0) return {};
   zz /= static_cast<double>(test.targets.size());
+  const double mean_square = squares / n;
+  double variance = 0.0, dof = 0.0;
   for (const auto& side : c.passes.side) {
     if (side.dof <= 0.0) continue;
-    single += 2.0 * squared(side.variance() * static_cast<double>(side.targets) / n) / side.dof;
+    variance += 2.0 * squared(side.squares / all_dof) / (side.dof * c.independent);
     dof += side.dof;
   }
-  const double mean_square = squares / n;
-  // The pooled variance is the sum of its parts; each part's estimate has the variance
-  // 2 (part + noise)^2/(runs - 1).
-  double variance = single;
+  // Of a part over the runs the estimate V has the variance 2 V^2/(runs - 1). It is itself known
+  // so badly that its square is too large in the mean: by this factor, where V is the share a of
+  // the mean square (second order in 1/V).
   const double of_runs = c.runs - 1.0;
-  const bool both = test.bidirectional();
-  for (const RunPart* p : {&c.shared_offset, &c.own_offset})
-    if (p == &c.shared_offset || both)
-      variance += 2.0 * squared(p->variance + (p->variance > 0.0 ? p->noise : 0.0)) / of_runs;
-  for (const RunPart* p : {&c.shared_slope, &c.own_slope})
-    if (p == &c.shared_slope || both)
-      variance +=
-          2.0 * squared(zz * (p->variance + (p->variance > 0.0 ? p->noise : 0.0))) / of_runs;
+  const auto put = [&](const RunPart& p, double factor) {
+    const double V = factor * p.whole, a = std::min(1.0, V / mean_square);
+    variance += 2.0 * squared(V) / of_runs / (1.0 + 2.0 / of_runs * (1.0 - a) * (1.0 - 3.0 * a));
+  };
+  put(c.shared_offset, 1.0), put(c.shared_slope, zz);
+  if (test.bidirectional()) put(c.own_offset, 1.0), put(c.own_slope, zz);
   return {std::sqrt(mean_square), dof > 0.0 ? 0.5 * std::sqrt(variance) / mean_square : 0.0};
 }
 

@@ -11,9 +11,9 @@ namespace nonio::math {
 
 /// What the scatter of a test is made of (followed.h).
 struct RunComponents {
-  /// Variance over the runs, and what of its estimate single readings make.
+  /// Variance over the runs, what of its estimate single readings make, and the estimate with it.
   struct Part {
-    double variance = 0.0, noise = 0.0;
+    double variance = 0.0, noise = 0.0, whole = 0.0;
   };
   PassModel passes;
   double runs = 0.0;       ///< complete ones: with a pass in each direction that occurs
@@ -21,6 +21,8 @@ struct RunComponents {
   /// Correlation of neighbouring targets of a pass; at distance k its k-th power. 0 where the
   /// readings do not show one.
   double neighbours = 0.0;
+  /// Share of a pass' residual degrees of freedom that neighbours which are alike leave.
+  double independent = 1.0;
   Part shared_offset, own_offset;  ///< m^2
   Part shared_slope, own_slope;    ///< slopes about the middle of the targets
 };
@@ -31,7 +33,9 @@ RunComponents run_components(const AxisTest&);
 double covariance_of(const AxisTest&, const RunComponents&, std::span<const double> a,
                      std::span<const double> b);
 
-/// Root mean square of the scatter at a target, and the standard uncertainty of its logarithm.
+/// Root mean square of the scatter at a target, and the standard uncertainty of its logarithm: the
+/// mean square is the sum of those of the residuals, of the runs' offsets and of their slopes, which
+/// are independent, each with its degrees of freedom.
 struct PooledScatter {
   double s = 0.0, u_ln = 0.0;
 };

@@ -85,16 +85,25 @@ MeasuringPath step_path(const std::string& name, const Volume& v, const Measurin
 
 }  // namespace
 
+namespace {
+
+// Of an absurd length too; more points nobody measures.
+int whole_points(double count) {
+  constexpr double most = 1e9;
+  return static_cast<int>(std::min(most, std::ceil(count - 1e-9)));
+}
+
+}  // namespace
+
 int axis_points(double length) {
   const double intervals = length > 2.0 ? length / 0.25 : 5.0 * length - 1.0;
-  return std::max(5, 1 + static_cast<int>(std::ceil(intervals - 1e-9)));
+  return std::max(5, 1 + whole_points(intervals));
 }
 
 int rotary_points(double angle) {
   constexpr double close = 1e-6;
   const double quarter = std::numbers::pi / 2.0;
-  if (angle > 4.0 * quarter + close)
-    return static_cast<int>(std::ceil(2.0 * angle / quarter - 1e-9));
+  if (angle > 4.0 * quarter + close) return whole_points(2.0 * angle / quarter);
   return angle <= quarter + close ? 3 : angle <= 2.0 * quarter + close ? 5 : 8;
 }
 

@@ -104,6 +104,42 @@ Repeats::Repeats(const Observations& o) {
   }
 }
 
+namespace {
+
+/// Columns of a pass over `order`: 1, z, z^2 as far as the pass is long enough; orthonormal in the
+/// weighted rows.
+struct PassColumns {
+  MatrixXd weighted, plain;
+};
+
+template <class Rows, class Weight>
+PassColumns columns_of_pass(const Rows& rows, const std::vector<double>& order, const Weight& w) {
+  const auto used = std::count_if(rows.begin(), rows.end(), [&](auto i) { return w(i) > 0.0; });
+  const Index k = shared_columns(used);
+  MatrixXd b(static_cast<Index>(rows.size()), k);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (Index c = 0; c < k; ++c)
+      b(static_cast<Index>(i), c) = c == 0   ? 1.0
+                                    : c == 1 ? order[rows[i]]
+                                             : order[rows[i]] * order[rows[i]];
+  // Gram-Schmidt with the weights, carried out on all rows.
+  MatrixXd wb = b;
+  for (Index c = 0; c < k; ++c) {
+    for (Index d = 0; d <= c; ++d)
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        wb(static_cast<Index>(i), d) = w(rows[i]) * b(static_cast<Index>(i), d);
+    for (Index d = 0; d < c; ++d) b.col(c) -= wb.col(d).dot(b.col(c)) * b.col(d);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      wb(static_cast<Index>(i), c) = w(rows[i]) * b(static_cast<Index>(i), c);
+    const double norm = std::sqrt(wb.col(c).dot(b.col(c)));
+    b.col(c) /= norm;
+    wb.col(c) /= norm;
+  }
+  return {std::move(wb), std::move(b)};
+}
+
+}  // namespace
+
 Saturated saturate(const Repeats& r, const std::vector<double>& y,
                    const std::vector<double>& weight) {
   const std::size_t n = y.size();
@@ -111,37 +147,9 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
   const auto w = [&](std::uint32_t i) { return weight.empty() ? 1.0 : weight[i]; };
   Saturated out;
   out.e = y;
-  // Columns of a pass over `order`: 1, z, z^2 as far as the pass is long enough.
-  std::vector<MatrixXd> basis(r.passes);  // orthonormal in the weighted rows
-  std::vector<MatrixXd> value(r.passes);  // the same columns at all rows
-  std::vector<Index> columns(r.passes, 0);
-  for (std::size_t p = 0; p < r.passes; ++p) {
-    const auto rows = passes[p];
-    const auto used = std::count_if(rows.begin(), rows.end(), [&](auto i) { return w(i) > 0.0; });
-    const Index k = shared_columns(used);
-    MatrixXd b(static_cast<Index>(rows.size()), k);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      for (Index c = 0; c < k; ++c)
-        b(static_cast<Index>(i), c) = c == 0   ? 1.0
-                                      : c == 1 ? r.order[rows[i]]
-                                               : r.order[rows[i]] * r.order[rows[i]];
-    // Gram-Schmidt with the weights, carried out on all rows.
-    MatrixXd wb = b;
-    for (Index c = 0; c < k; ++c) {
-      for (Index d = 0; d <= c; ++d)
-        for (std::size_t i = 0; i < rows.size(); ++i)
-          wb(static_cast<Index>(i), d) = w(rows[i]) * b(static_cast<Index>(i), d);
-      for (Index d = 0; d < c; ++d) b.col(c) -= wb.col(d).dot(b.col(c)) * b.col(d);
-      for (std::size_t i = 0; i < rows.size(); ++i)
-        wb(static_cast<Index>(i), c) = w(rows[i]) * b(static_cast<Index>(i), c);
-      const double norm = std::sqrt(wb.col(c).dot(b.col(c)));
-      b.col(c) /= norm;
-      wb.col(c) /= norm;
-    }
-    basis[p] = std::move(wb);
-    value[p] = std::move(b);
-    columns[p] = k;
-  }
+  std::vector<PassColumns> shared;
+  for (std::size_t p = 0; p < r.passes; ++p)
+    shared.push_back(columns_of_pass(passes[p], r.order, w));
   VectorXd part;
   double before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < 200; ++round) {
@@ -157,7 +165,7 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
       const auto rows = passes[p];
       part.resize(static_cast<Index>(rows.size()));
       for (std::size_t i = 0; i < rows.size(); ++i) part(static_cast<Index>(i)) = out.e[rows[i]];
-      part -= value[p] * (basis[p].transpose() * part);
+      part -= shared[p].plain * (shared[p].weighted.transpose() * part);
       for (std::size_t i = 0; i < rows.size(); ++i) {
         out.e[rows[i]] = part(static_cast<Index>(i));
         squares += w(rows[i]) * out.e[rows[i]] * out.e[rows[i]];
@@ -175,8 +183,9 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
   // What the passes of a side have in common is in its cells already.
   std::vector<Index> common(r.sides, 0);
   for (std::size_t p = 0; p < r.passes; ++p) {
-    out.dof -= static_cast<double>(columns[p]);
-    common[r.side[p]] = std::max(common[r.side[p]], columns[p]);
+    const Index columns = shared[p].plain.cols();
+    out.dof -= static_cast<double>(columns);
+    common[r.side[p]] = std::max(common[r.side[p]], columns);
   }
   for (const Index k : common) out.dof += static_cast<double>(k);
   return out;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: one fit: design, search of shapes, solution and its covariance.
 #include "nonio/model/fit.h"
 
 #include <algorithm>
@@ -343,6 +344,7 @@ void add_interpolation(MatrixXd& cofactor, const MatrixXd& plain, const Observat
 
 /// Covariance of the linear parameters and of the shapes that were searched, linearised: columns
 /// of the design and the derivatives by the shapes together.
+// Long: the columns of shapes, the noise and the correlation are steps on one matrix.
 void fill_covariance(Fit& out, const Observations& o, Design design, const Solution& s,
                      const std::vector<char>& searched, const Whitening& white) {
   std::vector<Index> place(out.parameters.size(), -1);  // row of the cofactor matrix

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: the steps of every table, from job to files, in the order in which they are done.
 #include "nonio/controllers/kit.h"
 
 #include <algorithm>

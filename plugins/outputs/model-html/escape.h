@@ -9,7 +9,4 @@ namespace nonio::model_html {
 /// Text as it may stand between tags and in quoted attributes.
 std::string html(std::string_view text);
 
-/// Text as a string of JSON that may stand in a <script>: nothing in it can end the element.
-std::string json(std::string_view text);
-
 }  // namespace nonio::model_html

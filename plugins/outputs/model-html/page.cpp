@@ -9,6 +9,7 @@
 #include "nonio/reports/model.h"
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
+#include "nonio/workbench/data.h"
 
 namespace nonio::model_html {
 
@@ -248,7 +249,7 @@ std::string nine(const Source& source) {
   return element("div", out, "class=\"pictures\"");
 }
 
-std::string legend(const Source& source, const Kept& kept) {
+std::string legend(const Source& source, const workbench::Kept& kept) {
   const ModelFit& fit = source.fit;
   const Wording& words = source.words;
   const Quantity q = deviation_of(fit.angular);
@@ -270,7 +271,8 @@ std::string legend(const Source& source, const Kept& kept) {
 
 std::string page_of(const Source& source) {
   const Wording& words = source.words;
-  const Kept kept = kept_readings(source.fit);
+  const workbench::Kept kept = workbench::kept_readings(source.fit);
+  const workbench::Drawn drawn{source.in.campaign, source.fit, words, source.pictures};
   std::string body = identity(source) + notes(source);
   if (!source.fit.steps.empty())
     body += element("h2", html(words.get("model.falls"))) + Falling(source).text();
@@ -281,7 +283,8 @@ std::string page_of(const Source& source) {
           choices(source) + element("noscript", html(words.get("page.noscript"))) +
           legend(source, kept) + nine(source) + "</section>\n";
   body += "<div id=\"tip\" hidden></div>\n";
-  body += "<script type=\"application/json\" id=\"data\">" + data_of(source, kept) + "</script>\n";
+  body += "<script type=\"application/json\" id=\"data\">" +
+          workbench::data_of(drawn, kept, false) + "</script>\n";
   body += element("script", page_script);
   return "<!DOCTYPE html>\n<html lang=\"" + html(words.language()) + "\">\n" + head(source) +
          element("body", body) + "</html>\n";

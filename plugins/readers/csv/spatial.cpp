@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: one layout after the other (step diagonals, ball centres, general), on common columns.
 #include "spatial.h"
 
 #include <algorithm>
@@ -365,6 +366,7 @@ class GeneralLines {
 
 }  // namespace
 
+// Long: one layout, column by column, then row by row.
 Expected<Observations> read_general(const ReadInput& input) {
   const auto possible = possible_axes(input.campaign);
   std::vector<ColumnSpec> columns{{"deviation_um", Kind::number, true},

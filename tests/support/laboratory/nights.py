@@ -20,6 +20,7 @@ import tomllib
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import make_laboratory  # noqa: E402 (this folder is no package)
+import physics  # noqa: E402
 import plain  # noqa: E402
 import presets  # noqa: E402
 import score  # noqa: E402
@@ -37,7 +38,8 @@ def nights_of(program, folder, given, seed):
         until = last - MONTH * (given.nights - 1 - night)
         truth = make_laboratory.write(presets.build(given.preset, seed, **sizes), folder / "site", until, given.known)
         # Whatever vanishes or fails is part of the story: 1 is no error here.
-        done = subprocess.run([program, "run", str(folder / "site"), "--out", str(folder / "out"), "--jobs", "1", "--quiet"],
+        done = subprocess.run([program, "run", str(folder / "site"), "--out", str(folder / "out"), "--jobs", "1", "--quiet",
+                               "--date", physics.date_of(until)],
                               capture_output=True, text=True)
         if done.returncode not in (0, 1):
             raise SystemExit("seed %d, night %d: run ended with %d\n%s" % (seed, night + 1, done.returncode, done.stderr))

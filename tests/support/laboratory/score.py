@@ -52,7 +52,10 @@ class Count:
 
 
 def same_axis(truth, told):
-    """X1, the first side of a gantry, is X of the control; squareness is of a plane or of one of its axes."""
+    """X1, the first side of a gantry, is X of the control; X-in-Z is X; squareness is of a plane or of one of its axes."""
+    if told == truth:
+        return True
+    truth = truth.split("-in-")[0]
     return told == truth or truth == told + "1" or (truth == "XY" and told in ("", "X", "Y"))
 
 

@@ -313,7 +313,8 @@ class Arithmetic(unittest.TestCase):
         self.assertIsNone(score.at_date(later, "2025-12-31"))
 
     def test_axes_and_quantities_by_the_names_of_the_control(self):
-        self.assertTrue(score.same_axis("X1", "X") and not score.same_axis("X2", "X") and not score.same_axis("X", "X1"))
+        self.assertTrue(score.same_axis("X1", "X") and not score.same_axis("X2", "X") and not score.same_axis("X", "X1")
+                        and score.same_axis("X-in-Z", "X") and not score.same_axis("X-in-Z", "Z"))
         self.assertTrue(score.same_quantity("squareness:XY", "squareness:XY.c") and not score.same_quantity("B_mean", "B"))
 
 

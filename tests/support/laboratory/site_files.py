@@ -35,7 +35,11 @@ def new_tables(laboratory, known):
     """The same of site.toml."""
     if not known:
         return ""
-    return "".join('\n[[alias]]\nname = "%s"\nasset = "%s"\nwhy = "%s"\n' % a for a in laboratory.aliases)
+    def called(serial):  # as the program calls a machine without an asset
+        machine = next(m for m in laboratory.machines if serial in [m.serial] + [p.serial for p in m.plans])
+        return machine.asset or "%s %s" % (machine.maker, serial)
+
+    return "".join('\n[[alias]]\nname = "%s"\nasset = "%s"\nwhy = "%s"\n' % (called(a), called(b), why) for a, b, why in laboratory.aliases)
 
 
 def axis_keys(axis, tolerance):
@@ -137,7 +141,7 @@ def campaign_files(laboratory, machine, plan, set_up, measured, known):
 
 
 def events_file(machines, until):
-    out = ["# What somebody wrote down. Not everything that happened stands here."]
+    out = ["# What somebody wrote down. Not everything that happened stands here.", "format = 1"]
     events = [(e["day"], m, e) for m in machines for e in m.events if e["entered"] <= until]
     for day, m, e in sorted(events, key=lambda x: (x[0], x[1].folder, x[2]["kind"])):
         out += ["", "[[event]]", "date = %s" % date_of(day), 'machine = "%s"' % (m.asset or m.serial)]

@@ -12,7 +12,9 @@ import unittest
 from nightly import NONIO, NightTest
 
 TABLES = ("machine", "campaign", "evaluation", "result", "common_part", "covariance", "finding", "certificate",
-          "machine_alias", "event", "acknowledgement", "forgotten")
+          "machine_alias", "event", "acknowledgement", "forgotten", "due_rule", "store")
+KILLS = int(os.environ.get("NONIO_KILLS", "8"))
+SEED = int(os.environ.get("NONIO_SEED", "19"))
 
 
 class HistoryTest(NightTest):
@@ -114,29 +116,33 @@ class HistoryTest(NightTest):
         self.assertEqual(self.rows(), before)
 
     def test_killed_nights(self):
-        rng = random.Random(19)
+        """At any moment: the night after it leaves the rows of a store that is made from nothing."""
+        print(f"seed {SEED}, {KILLS} kills", flush=True)
+        rng = random.Random(SEED)
         for i in range(6):
             self.campaign(f"c{i}")
         self.run_nonio()
-        start = time.monotonic()
-        self.campaign("c0", seed=3.0)
-        self.run_nonio()
-        whole = time.monotonic() - start
-        killed = 0
-        for moment in range(int(os.environ.get("NONIO_KILLS", "12"))):
+        killed, moment, longest = 0, 0, 5.0
+        while killed < KILLS:
+            self.assertLess(moment, 20 * KILLS, "no night could be killed before its end")
             for i in range(3):
-                self.campaign(f"c{(moment + i) % 6}", seed=4.0 + moment + i)
+                self.campaign(f"c{(moment + i) % 6}", seed=100.0 + 3 * moment + i)
+            moment += 1
+            start = time.monotonic()
             night = subprocess.Popen(self.command(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                      start_new_session=True)
-            time.sleep(whole * rng.uniform(0.3, 1.1))
-            if night.poll() is None:
-                killed += 1
+            try:
+                night.wait(rng.uniform(0.0, longest))
+                longest = time.monotonic() - start
+                continue
+            except subprocess.TimeoutExpired:
                 os.killpg(night.pid, signal.SIGKILL)
-            night.wait()
+                night.wait()
+            killed += 1
             self.assertEqual(self.ask("PRAGMA integrity_check"), [("ok",)])
-        self.run_nonio()
-        self.assertGreater(killed, 0, "seed 19")
-        self.assertEqual(self.made_again(), self.rows())
+            self.run_nonio()
+            self.assertEqual(self.rows(), self.made_again(), f"kill {killed}")
+        self.assertEqual(len(self.ask("SELECT 1 FROM evaluation")), 6 + 3 * moment)
 
 
 if __name__ == "__main__":

@@ -35,6 +35,7 @@ count=$(find "$work/plain" -name decimal-point.txt | wc -l)
 digest() { printf '%s\n' "$1" | sha256sum | cut -d ' ' -f 1; }
 digest_of() { sha256sum "$1" | cut -d ' ' -f 1; }
 for folder in "$work"/comma/*/; do
+  [ -f "$folder/results.json" ] || continue  # the pages of the machines
   before=$(digest_of "$folder/results.json")
   sed -i "s/$(digest 1,5)/$(digest 1.5)/" "$folder"/*.json
   sed -i "s/$before/$(digest_of "$folder/results.json")/" "$folder/run.json"

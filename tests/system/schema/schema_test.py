@@ -30,6 +30,7 @@ ONLY_PROGRAM = [
     (r"measurement\.\d+\.at", "the axis that moves"),
     (r"model\.formula\.0\.(axis|expression|parameters.*)", "a formula that is none on this machine"),
     (r"signing(\.(pkcs12|pkcs11|password_\w+|trust))?", "which keys stand together"),
+    (r"mail\.(to|smtp|sendmail|user|password_\w+)(\.\d+)?", "which keys stand together; addresses"),
     (r"certificate\.numbering", "a pattern of numbers"),
     (r".*\b(travel|range)", "the smaller number first"),
     (r"asset", "the name of the file"),

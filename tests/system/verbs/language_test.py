@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """The terminal and summary.txt speak the language of site.toml; JSON, errors and --help are English."""
 import json
+import shutil
 import unittest
 
 from verbs import VerbTest, manifest, readings
 
 WORDS = {"de": {"summary": "Kampagne", "title": "Lose bei der Umkehr", "verdict": "Urteil: ", "missing": "es fehlt",
                 "complete": "vollständig (nichts fehlt)", "floor": "Rauschgrenze", "value": "Wert",
-                "attention": "ZU BEACHTEN", "added": "hinzugefügt"},
+                "attention": "NEU SEIT DEM LETZTEN LAUF", "added": "hinzugefügt"},
          "en": {"summary": "campaign", "title": "Lost motion at reversal", "verdict": "verdict: ", "missing": "missing",
                 "complete": "complete (nothing missing)", "floor": "noise floor", "value": "value",
-                "attention": "ATTENTION", "added": "added"},
+                "attention": "NEW SINCE THE LAST RUN", "added": "added"},
          "it": {"summary": "campagna", "title": "Gioco all'inversione", "verdict": "verdetto: ", "missing": "manca",
                 "complete": "completo (non manca nulla)", "floor": "rumore di fondo", "value": "valore",
-                "attention": "ATTENZIONE", "added": "aggiunto"}}
+                "attention": "NUOVO DALL'ULTIMA ESECUZIONE", "added": "aggiunto"}}
 
 
 class Languages(VerbTest):
@@ -29,6 +30,7 @@ class Languages(VerbTest):
         for language, words in WORDS.items():
             with self.subTest(language):
                 self.speak(language)
+                shutil.rmtree(self.out, ignore_errors=True)
                 self.nonio("run", self.site, "--out", self.out, "--quiet")
                 summary = (self.out / "summary.txt").read_text()
                 for name in ("summary", "title", "attention"):

@@ -56,6 +56,13 @@ TEST(Gls, TwoInstruments) {
   expect(s, {-4.19257, -0.35534, 0.31080, 0.11733, 1.6766, 0.9469, -5.7916, 0.3901});
 }
 
+TEST(Gls, CampaignsThatScatterMore) {
+  Series s = reference_series();
+  s.excess = 2.0;
+  expect(s, {-4.07657, -0.42385, 2 * 0.163538, 2 * 0.071404, 2.2180 / 4, 0.99711, -5.9839,
+             2 * 0.19730});
+}
+
 TEST(Gls, ColumnsThatAreTheSameAreRefused) {
   const Series s = reference_series();
   const Whitened w(s);

@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "made.h"
+#include "nonio/history/forecast.h"
 
 namespace nonio::history {
 namespace {
@@ -98,16 +99,21 @@ TEST(Trend, FollowsShiftsAndUnits) {
   EXPECT_NEAR(*c->smallest_change, 1e-6 * *a->smallest_change, 1e-15);
 }
 
+std::string refusal(const Series& s) {
+  const auto t = trend_of(s);
+  return t ? "" : t.error().message;
+}
+
 TEST(Trend, WhatIsNoSeriesIsRefusedByName) {
   Series s = reference_series();
   s.points[2].value = NAN;
-  EXPECT_NE(trend_of(s).error().message.find("point 3"), std::string::npos);
+  EXPECT_NE(refusal(s).find("point 3"), std::string::npos);
   s = reference_series();
   s.points[4].u = 0.0;
-  EXPECT_NE(trend_of(s).error().message.find("point 5"), std::string::npos);
+  EXPECT_NE(refusal(s).find("point 5"), std::string::npos);
   s = reference_series();
   s.points[1].time = -1.0;
-  EXPECT_NE(trend_of(s).error().message.find("point 2"), std::string::npos);
+  EXPECT_NE(refusal(s).find("point 2"), std::string::npos);
   s = reference_series();
   s.declared = {{7, Declared::Kind::event}};
   EXPECT_FALSE(trend_of(s));
@@ -152,10 +158,81 @@ TEST(Trend, QuietMachinesAreSeldomNews) {
   }
 }
 
+// Of one day, so that no drift competes: the p of the largest of seven places at its 1 %, within
+// the bounds of chance (three standard deviations of 10,000).
+TEST(Trend, TheLargestOfManyPlacesIsChanceInOneOfAHundred) {
+  std::mt19937_64 random(20261127);
+  std::cout << "seed 20261127\n";
+  constexpr int trials = 10000;
+  int news = 0;
+  for (int i = 0; i < trials; ++i) {
+    Series s = made_series(8, 0.3, random, [](std::size_t, double) { return 1.0; });
+    for (Point& p : s.points) p.time = 0.0;
+    news += trend_of(s)->model == Model::step ? 1 : 0;
+  }
+  EXPECT_NEAR(100.0 * news / trials, 1.0, 0.3);
+}
+
+TEST(Trend, SeveralOfOneDayHaveNoSlope) {
+  Series s = reference_series();
+  for (Point& p : s.points) p.time = 2.0;
+  const auto t = trend_of(s);
+  ASSERT_TRUE(t);
+  EXPECT_FALSE(t->drifts);
+  EXPECT_TRUE(std::isfinite(t->segments.back().last));
+}
+
+TEST(Trend, OrderOfWhatIsKnownDoesNotMatter) {
+  Series a = stepped(8, 3, 2.0), b;
+  for (Point& p : a.points) p.common = {{"instrument 1", 0.3}, {"expansion of axis X", -0.1}};
+  a.declared = {{3, Declared::Kind::event}, {5, Declared::Kind::table}};
+  b = a;
+  for (Point& p : b.points) std::swap(p.common[0], p.common[1]);
+  std::swap(b.declared[0], b.declared[1]);
+  const auto x = trend_of(a), y = trend_of(b);
+  ASSERT_TRUE(x && y);
+  ASSERT_EQ(x->changes.size(), y->changes.size());
+  for (std::size_t k = 0; k < x->changes.size(); ++k) {
+    EXPECT_EQ(x->changes[k].after, y->changes[k].after);
+    EXPECT_NEAR(x->changes[k].size, y->changes[k].size, 1e-12);
+  }
+  EXPECT_NEAR(x->segments.back().last, y->segments.back().last, 1e-12);
+}
+
 TEST(Trend, WearIsNoStep) {
   const Rates r = rates(
       10, {}, [](std::size_t, double t) { return 0.8 * t; }, 201);
   EXPECT_LT(r.news, 0.03);
+}
+
+TEST(Trend, WhatWandersIsNoRowOfCrashes) {
+  std::mt19937_64 random(601);
+  std::cout << "seed 601\n";
+  constexpr int trials = 400;
+  int walks = 0, steps = 0;
+  for (int i = 0; i < trials; ++i) {
+    double is = 0.0;
+    const Series s = made_series(25, 0.3, random, [&](std::size_t, double) {
+      return is += 0.7 * std::normal_distribution<double>()(random);
+    });
+    const auto t = trend_of(s);
+    walks += t->model == Model::walk ? 1 : 0;
+    steps += t->changes.size() > 1 ? 1 : 0;
+  }
+  EXPECT_GT(walks, trials / 2);
+  EXPECT_LT(steps, trials / 2);
+}
+
+TEST(Trend, ACrashAndItsRepairAreNoWalk) {
+  const auto back = [](std::size_t i, double) { return i > 5 && i < 11 ? 6 * 0.3 : 0.0; };
+  std::mt19937_64 random(602);
+  std::cout << "seed 602\n";
+  int steps = 0;
+  for (int i = 0; i < 400; ++i) {
+    const auto t = trend_of(made_series(16, 0.3, random, back));
+    steps += t->model == Model::step && t->changes.size() >= 2 ? 1 : 0;
+  }
+  EXPECT_GT(steps, 380);
 }
 
 TEST(Trend, LargeStepsAreFoundWhereTheyAre) {
@@ -190,6 +267,79 @@ TEST(ExcessScatter, IsThatOfTheLaboratory) {
   EXPECT_NEAR(excess_scatter(pointers), 1.5, 0.2);
   pointers.resize(2);
   EXPECT_EQ(excess_scatter(pointers), 1.0);  // too few to say
+}
+
+TEST(SpreadOfSlopes, HoldsASlopeWhereTheLaboratoryHasIt) {
+  Series s = reference_series();
+  s.spread = 0.3;
+  const auto trend = trend_of(s);
+  ASSERT_TRUE(trend);
+  // (X'WX + diag(0, 1/spread^2)) b = X'Wy, by Cramer's rule.
+  double w = 0, wt = 0, wtt = 1 / (s.spread * s.spread), wy = 0, wty = 0;
+  for (const Point& p : s.points) {
+    const double weight = 1 / (p.u * p.u);
+    w += weight, wt += weight * p.time, wtt += weight * p.time * p.time;
+    wy += weight * p.value, wty += weight * p.time * p.value;
+  }
+  const double det = w * wtt - wt * wt;
+  ASSERT_EQ(trend->coefficients.size(), 2U);
+  EXPECT_NEAR(trend->coefficients[0], (wy * wtt - wt * wty) / det, 1e-9);
+  EXPECT_NEAR(trend->coefficients[1], (w * wty - wt * wy) / det, 1e-9);
+  EXPECT_NEAR(trend->segments[0].u_slope, std::sqrt(w / det), 1e-9);
+  EXPECT_EQ(trend->model, Model::drift);
+}
+
+TEST(SpreadOfSlopes, ASlopeThatIsUnlikeTheOthersIsFree) {
+  Series s = reference_series();
+  s.spread = 0.01;  // 42 of them
+  const auto trend = trend_of(s);
+  ASSERT_TRUE(trend);
+  EXPECT_NEAR(trend->coefficients[1], -0.42385, 5e-6);
+  EXPECT_NEAR(trend->segments[0].u_slope, 0.07140, 5e-6);
+}
+
+TEST(SpreadOfSlopes, IsThatOfTheLaboratory) {
+  std::mt19937_64 random(601);
+  std::cout << "seed 601\n";
+  std::normal_distribution<double> wear(0.0, 0.4);
+  const auto slopes = [&](bool wears, bool steps) {
+    std::vector<Slope> out;
+    for (int i = 0; i < 100; ++i) {
+      const double slope = wears ? wear(random) : 0.0;
+      const auto s = made_series(8, 0.3, random, [&](std::size_t k, double time) {
+        return slope * time + (steps && i < 10 && k > 3 ? 9.0 : 0.0);
+      });
+      if (const auto found = slope_beside_steps(s)) out.push_back(*found);
+    }
+    return out;
+  };
+  EXPECT_NEAR(spread_of_slopes(slopes(true, false)), 0.4, 0.08);
+  EXPECT_NEAR(spread_of_slopes(slopes(true, true)), 0.4, 0.1);
+  EXPECT_LT(spread_of_slopes(slopes(false, true)), 0.1);
+  EXPECT_EQ(spread_of_slopes({{5.0, 0.1}, {-5.0, 0.1}}), 0.0);  // too few to say
+}
+
+TEST(SpreadOfSlopes, SlopesAndForecastsAreCovered) {
+  std::mt19937_64 random(602);
+  std::cout << "seed 602\n";
+  std::normal_distribution<double> wear(0.0, 0.4);
+  int slopes = 0, states = 0;
+  constexpr int series = 4000;
+  for (int i = 0; i < series; ++i) {
+    const double slope = wear(random);
+    auto s = made_series(6, 0.3, random, [&](std::size_t, double time) { return slope * time; });
+    s.spread = 0.4;
+    const auto trend = trend_of(s);
+    ASSERT_TRUE(trend);
+    const double ahead = s.points.back().time + 0.5;
+    const Forecast f = forecast(s, *trend, ahead, std::nullopt);
+    slopes +=
+        std::fabs(trend->segments.back().slope - slope) < 1.96 * trend->segments.back().u_slope;
+    states += std::fabs(f.value - slope * ahead) < 1.96 * f.u;
+  }
+  // Within 94 to 96 %; 0.34 % is one standard deviation.
+  EXPECT_NEAR(slopes, 0.95 * series, 0.012 * series);
+  EXPECT_NEAR(states, 0.95 * series, 0.012 * series);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "axis_builder.h"
+#include "nonio/math/iso230_2.h"
 
 namespace nonio::math {
 namespace {
@@ -153,6 +154,7 @@ TEST(Followed, AcrossTheAxisTheSlopeIsSetUp) {
 
 struct Scatter {
   double rms = 0.0, beyond = 0.0;  ///< of (value - truth)/u; share beyond 2
+  double mean_u = 0.0;
 };
 
 Scatter scatter_of(const std::string& name, double truth, const Noise& noise, unsigned seed) {
@@ -169,6 +171,7 @@ Scatter scatter_of(const std::string& name, double truth, const Noise& noise, un
     const Followed& f = of(all, name);
     const double z = (f.value - truth) / f.u;
     out.rms += z * z / trials;
+    out.mean_u += f.u / trials;
     out.beyond += std::fabs(z) > 2.0 ? 1.0 / trials : 0.0;
   }
   out.rms = std::sqrt(out.rms);
@@ -228,14 +231,32 @@ TEST(Followed, UncertaintiesHoldWhereNeighboursAreAlike) {
     }
 }
 
+// 2 x 11 targets, 5 runs: u = 1/sqrt(2 * 88) where readings are independent.
 TEST(Followed, TheLogarithmOfTheScatterKnowsItsDegreesOfFreedom) {
   const Scatter s = scatter_of("ln_s", std::log(0.3), {.reading = 0.3 * um}, 74);
-  EXPECT_GT(s.rms, 0.75);  // what runs may share is reckoned with although nothing is
-  EXPECT_LT(s.rms, 1.1);
+  EXPECT_NEAR(s.mean_u, 1.0 / std::sqrt(176.0), 0.10 / std::sqrt(176.0));
+  EXPECT_GT(s.rms, 0.90);
+  EXPECT_LT(s.rms, 1.05);
   const Scatter runs =
       scatter_of("ln_s", std::log(std::hypot(0.3, 1.0)), {.reading = 0.3 * um, .run = um}, 75);
   EXPECT_GT(runs.rms, 0.7);
   EXPECT_LT(runs.rms, 1.6);
+}
+
+TEST(Followed, TheLogarithmOfTheScatterKnowsNeighboursThatAreAlike) {
+  for (const double r : {0.4, 0.7}) {
+    Random random(80);
+    double square = 0.0;
+    constexpr int trials = 1500;
+    for (int i = 0; i < trials; ++i) {
+      const FollowedAxis all = followed_quantities(correlated(r, random), {}, "X", std::nullopt);
+      const Followed& f = of(all, "ln_s");
+      const double d = f.value - std::log(0.3);
+      square += d * d / f.u / f.u / trials;
+    }
+    EXPECT_GT(std::sqrt(square), 0.85) << r << " seed 80";
+    EXPECT_LT(std::sqrt(square), 1.2) << r << " seed 80";
+  }
 }
 
 TEST(Followed, TheCovarianceIsThatOfManyCampaigns) {
@@ -256,6 +277,24 @@ TEST(Followed, TheCovarianceIsThatOfManyCampaigns) {
   }
   EXPECT_NEAR(printed / sizes, product / sizes, 0.05);
   EXPECT_GT(std::fabs(printed / sizes), 0.02);
+}
+
+// Why a largest value is not followed: it grows with the targets, the scatter does not.
+TEST(Followed, RepeatabilityFollowsMoreTargetsAndTheScatterDoesNot) {
+  Random random(81);
+  const auto truth = [](double, int, std::uint32_t) { return 0.0; };
+  double R[2] = {}, ln_s[2] = {};
+  constexpr int trials = 600;
+  for (const int more : {0, 1})
+    for (int i = 0; i < trials; ++i) {
+      const AxisTest test = AxisTest::arrange(
+          made::observe({even_targets(more ? 21 : 5, 1.0)}, truth, {.reading = um}, random));
+      R[more] += evaluate_iso230_2(test, 2.0).R_plus / (4.0 * um) / trials;
+      ln_s[more] += of(followed_quantities(test, {}, "X", std::nullopt), "ln_s").value / trials;
+    }
+  EXPECT_NEAR(R[0], 1.354, 0.03) << "seed 81";
+  EXPECT_NEAR(R[1], 1.643, 0.03) << "seed 81";
+  EXPECT_NEAR(ln_s[1] - ln_s[0], 0.0, 0.025) << "seed 81";
 }
 
 }  // namespace

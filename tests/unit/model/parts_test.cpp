@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: cases of one function, parts_of.
 // What of a campaign is explained together.
 #include <gtest/gtest.h>
 

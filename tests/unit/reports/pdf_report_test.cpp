@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: cases of one document, with its fixtures.
 #include <algorithm>
 
 #include "fixtures.h"

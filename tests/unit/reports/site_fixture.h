@@ -29,7 +29,7 @@ inline HistorySeries reversal_series() {
                         values[i] * 1e-6, 0.2e-6});
   s.points[4].state = HistoryPoint::State::as_left;
   s.points[2].joined = false;
-  s.points[2].why_not = "other span";
+  s.points[2].why_not = "span";
   s.segments = {{"2023-01-14", "2024-07-14", -5.1e-6, -5.1e-6, 0.1e-6, 0.1e-6, 0, 0},
                 {"2025-01-14", "2025-07-14", -9.35e-6, -9.35e-6, 0.15e-6, 0.15e-6, 0, 0}};
   s.changes = {{"2024-07-14", "2025-01-14", -4.2e-6, 0.2e-6, 1e-9, "undeclared"}};
@@ -54,6 +54,17 @@ inline MachineHistory made_machine(const std::string& id) {
                    "Padova", "siemens-840d",    {},     {}, {}};
   m.file = id + ".html";
   m.due = "2026-01-14", m.why_due = "every 12 months";
+  m.proposal = {.months = 6,
+                .method = "control-chart",
+                .axis = "X",
+                .quantity = "B_mean",
+                .why = {"interval.meets-limit",
+                        false,
+                        {{"limit", 8e-6, Quantity::deviation}},
+                        {{"what", "reversal"}, {"axis", "X"}}}};
+  m.tables = {
+      {"X", "E", "2023-4", "2025-01-14", Quantity::deviation, 13.7e-6, 0.8e-6, 1.4e-6, true},
+      {"Y", "M", "2023-4", "2025-01-14", Quantity::deviation, 6e-6, 0.5e-6, 11.9e-6, false}};
   m.events = {{"2024-10-02", "X", "crash", "Collision with the vice"},
               {"2025-01-14", "", "compensation", "EEC table loaded"}};
   m.series = {reversal_series(), plain_series("A", 12, 0.9), plain_series("B", 5, 0.3),
@@ -75,6 +86,7 @@ inline MachineHistory made_machine(const std::string& id) {
   return m;
 }
 
+// Long: every member of a history that a page prints.
 inline SiteHistory made_site() {
   SiteHistory site{.night = 12,
                    .campaigns = 510,
@@ -101,25 +113,29 @@ inline SiteHistory made_site() {
                   .u = 0.2e-6,
                   .limit = 8e-6,
                   .unit = Quantity::deviation,
-                  .finding = {"morning.out", true},
+                  .finding = {"morning.out", true, {{"limit", 8e-6, Quantity::deviation}}},
                   .since = "2025-01-14",
                   .link = "c5/report.pdf"};
-  MorningLine lost{.kind = Kind::lost,
-                   .id = "lost.m08",
-                   .machine = "",
-                   .axis = "",
-                   .quantity = "",
-                   .campaign = "site-b/2024-m08",
-                   .customer = "",
-                   .finding = {"morning.lost", true, {{"night", 11, Quantity::count}}}};
+  MorningLine lost{
+      .kind = Kind::lost,
+      .id = "lost.m08",
+      .machine = "",
+      .axis = "",
+      .quantity = "",
+      .campaign = "site-b/2024-m08",
+      .customer = "",
+      .finding = {
+          "morning.lost", true, {{"night", 11, Quantity::count}}, {{"folder", "site-b/2024-m08"}}}};
   MorningLine changed = out;
   changed.kind = Kind::changed, changed.machine = "S-0017", changed.quantity = "B_mean",
   changed.value = -9.4e-6, changed.limit.reset();
-  changed.finding = {
-      "morning.changed",
-      true,
-      {},
-      {{"size", "−4.2 ± 0.4 µm"}, {"after", "2024-07-14"}, {"before", "2025-01-14"}}};
+  changed.finding = {"morning.changed",
+                     true,
+                     {{"size", -4.2e-6, Quantity::deviation}, {"U", 0.4e-6, Quantity::deviation}},
+                     {{"after", "2024-07-14"},
+                      {"before", "2025-01-14"},
+                      {"what", "reversal"},
+                      {"look", "reversal"}}};
   MorningLine known = changed;
   known.state = MorningLine::State::known, known.by = "B. Sample", known.until = "2026-06-01",
   known.why = "repair ordered", known.customer = "Bianchi", known.machine = "S-0031";

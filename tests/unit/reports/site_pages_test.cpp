@@ -91,6 +91,43 @@ TEST(SitePages, AQuietNightIsOneSentence) {
       has(pages_of(site).at("index.html"), "Nothing was judged: no campaign states a limit."));
 }
 
+TEST(SitePages, ALargeSiteIsOnePageThatSaysWhatItLeavesOut) {
+  SiteHistory site = made_site();
+  const MorningLine one = site.lines[2];
+  site.lines.clear();
+  site.months.clear();
+  for (int i = 0; i < 5000; ++i) {
+    const std::string id = "S-" + std::to_string(10000 + i);
+    site.lines.push_back(one);
+    site.lines.back().machine = id;
+    site.lines.back().customer = "Customer " + std::to_string(i);
+    for (int k = 0; k < 60; ++k)
+      site.months.push_back(
+          {id,
+           std::to_string(2022 + k / 12) + (k % 12 < 9 ? "-0" : "-") + std::to_string(1 + k % 12),
+           k % 2 == 0 ? std::optional(MorningLine::Kind::out) : std::nullopt, k % 2 == 0, false});
+  }
+  const std::string page = pages_of(site).at("index.html");
+  EXPECT_LT(page.size(), 300000U);
+  EXPECT_TRUE(has(page, "And 4800 lines more"));
+  EXPECT_TRUE(has(page, "And 4940 machines more"));
+}
+
+TEST(SitePages, AQuantityWithinAnotherIsSaidInWords) {
+  SiteHistory site = made_site();
+  site.lines[2].quantity = "straightness:Z.curve_2";
+  site.lines[3].quantity = "squareness:XY.c";
+  const std::string page = pages_of(site).at("index.html");
+  EXPECT_TRUE(has(page, "Straightness Z, bow"));
+  EXPECT_TRUE(has(page, "Squareness XY "));
+  EXPECT_FALSE(has(page, "curve_2") || has(page, "XY.c"));
+}
+
+TEST(SitePages, NoDayBreaksAtItsDashes) {
+  EXPECT_TRUE(has(pages_of(made_site()).at("index.html"),
+                  "between <span class=\"day\">2024-07-14</span> and"));
+}
+
 TEST(SitePages, AnEmptySiteHasItsPages) {
   const SiteHistory none{};
   EXPECT_EQ(pages_of(none).size(), 5U);

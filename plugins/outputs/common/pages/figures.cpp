@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: one figure after the other, each a function of its own, with the same points.
 #include <algorithm>
 #include <cmath>
 #include <map>

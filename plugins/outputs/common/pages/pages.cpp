@@ -219,6 +219,7 @@ std::vector<Measured> measured(const OutputInput& in) {
   return out;
 }
 
+// Long: one list of texts, a line a text.
 Expected<void> check_texts(const Campaign& c, const Fonts& fonts) {
   const Machine& m = c.machine;
   const Instrument& i = c.instrument;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: cases of one plugin, with its fixtures.
 // The analysis step-diagonal from files to findings: what it gives, and what it refuses.
 #include <fstream>
 #include <iomanip>

@@ -5,6 +5,8 @@
 
 #include <map>
 
+#include "host/config/secret_files.h"
+
 namespace nonio::host {
 
 namespace {
@@ -176,11 +178,24 @@ TEST(Manifest, SalvagesTheIdOfABrokenFile) {
 
 TEST(Manifest, SiteFile) {
   const auto site = config::parse_site(
-      "[limits]\nseconds = 5\nmemory_MB = 512\n[database]\nkey = 1\n", "site.toml");
+      "[limits]\nseconds = 5\nmemory_MB = 512\n[database]\nurl = \"postgresql://u@h/d\"\n"
+      "password_file = \"p\"\n",
+      "site.toml");
   ASSERT_TRUE(site);
   EXPECT_EQ(site->limits.seconds, 5.0);
-  ASSERT_EQ(site->notes.size(), 1u);
-  EXPECT_NE(site->notes[0].find("line 4"), std::string::npos) << site->notes[0];
+  ASSERT_TRUE(site->database);
+  EXPECT_EQ(site->database->url, "postgresql://u@h/d");
+  EXPECT_EQ(site->database->schema, "nonio");
+  EXPECT_EQ(config::secret_files(*site, "/site"), std::vector<std::filesystem::path>{"/site/p"});
+  for (const char* bad :
+       {"url = \"postgresql://u:Geheim77@h/d\"", "url = \"Geheim77\"",
+        "password_file = \"Geheim77\"", "url = \"postgresql://h/d\"\nschema = \"1a\"",
+        "url = \"postgresql://h/d\"\nschema = \"a\\\"; DROP\""}) {
+    const auto refused = config::parse_site("[database]\n" + std::string(bad) + "\n", "site.toml");
+    ASSERT_FALSE(refused) << bad;
+    EXPECT_EQ(refused.error()[0].message.find("Geheim77"), std::string::npos)
+        << refused.error()[0].message;
+  }
   EXPECT_FALSE(config::parse_site("[limits]\nsecond = 5\n", "site.toml"));
 }
 

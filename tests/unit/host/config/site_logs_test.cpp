@@ -170,4 +170,25 @@ TEST(SiteLogs, AnAliasLeadsToAMachineAndNoFurther) {
   EXPECT_NE(all.find("expected how this is known"), std::string::npos) << all;
 }
 
+TEST(SiteLogs, AMachineIsDueByOneRule) {
+  const auto site = config::parse_site(
+      "[[due]]\nmonths = 12\n[[due]]\nmachine = \"S-1\"\nmonths = 6\n", "site.toml");
+  ASSERT_TRUE(site);
+  ASSERT_EQ(site->due.size(), 2U);
+  EXPECT_EQ(site->due[0].machine, "");
+  EXPECT_EQ(site->due[0].months, 12);
+  EXPECT_EQ(site->due[1].machine, "S-1");
+  EXPECT_EQ(site->due[1].months, 6);
+  const auto wrong = config::parse_site(
+      "[[due]]\nmonths = 12\n[[due]]\nmonths = 6\n[[due]]\nmachine = \"S-1\"\nmonths = 0\n"
+      "[[due]]\nmachine = \"S-2\"\n",
+      "site.toml");
+  ASSERT_FALSE(wrong);
+  std::string all;
+  for (const Error& e : wrong.error()) all += std::to_string(e.line) + ": " + e.message + "\n";
+  EXPECT_NE(all.find("a rule for all machines is there twice"), std::string::npos) << all;
+  EXPECT_NE(all.find("expected 1 to 240 months"), std::string::npos) << all;
+  EXPECT_NE(all.find("is missing"), std::string::npos) << all;
+}
+
 }  // namespace nonio::test

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <unistd.h>
+
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "host/evaluation/status.h"
 #include "host/history/earlier.h"
+#include "host/history/place.h"
 #include "host/history/schema.h"
 #include "host/history/store.h"
 #include "host/storage/database.h"
@@ -28,6 +33,7 @@ struct Made {
   double scale = 1.25, b_mean = -5.0;
   std::string certificate{};
   std::string status = "ok";
+  std::string A = "7.5", decision = "conforms";
   std::string json() const {
     const auto number = [](double x) { return std::to_string(x); };
     if (status == "failed")
@@ -43,8 +49,10 @@ struct Made {
            "\"C-7\", \"calibrated\": \"2026-01-01\"}},\n \"status\": \"" +
            status +
            "\",\n \"errors\": [],\n \"analyses\": [{\"plugin\": \"iso230-2\", \"version\": \"1\", "
-           "\"measurement\": \"X\", \"values\": {\"A\": {\"value\": 7.5, \"unit\": \"um\", \"U\": "
-           "1.9, \"k\": 2.0, \"tolerance\": 10.0, \"decision\": \"conforms\"}}, \"budget\": "
+           "\"measurement\": \"X\", \"values\": {\"A\": {\"value\": " +
+           A + ", \"unit\": \"um\", \"U\": 1.9, \"k\": 2.0, \"tolerance\": 10.0, \"decision\": \"" +
+           decision +
+           "\"}}, \"budget\": "
            "{\"results\": {\"A\": {\"u\": {\"device\": 0.3, \"expansion\": 0.4, \"drift\": "
            "0.5}}}}, \"findings\": [{\"id\": \"reversal.constant\", \"severity\": "
            "\"attention\"}]}],\n \"followed\": [{\"measurement\": \"X\", \"axis\": \"X\", "
@@ -66,6 +74,13 @@ struct Made {
   }
 };
 
+/// The server of these tests; none: they keep the store in SQLite files.
+#ifdef NONIO_TEST_POSTGRESQL
+inline constexpr bool on_server = true;
+#else
+inline constexpr bool on_server = false;
+#endif
+
 class Output {
  public:
   explicit Output(const std::string& name)
@@ -73,10 +88,33 @@ class Output {
               ("nonio-history-" + name + "-" + std::to_string(::getpid()))) {
     fs::remove_all(root_);
     fs::create_directories(root_ / ".nonio");
+    if (!on_server) return;
+    const char* url = std::getenv("NONIO_TEST_DATABASE");
+    if (url == nullptr) throw std::runtime_error("there is no NONIO_TEST_DATABASE");
+    schema_ = name + "_" + std::to_string(::getpid());
+    if (!history::note_place(root_, host::storage::Server{url, schema_, {}}))
+      throw std::runtime_error("cannot note the place of the store");
   }
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
-  ~Output() { fs::remove_all(root_); }
+  ~Output() {
+    if (on_server) lose_store();
+    fs::remove_all(root_);
+  }
+  /// As if there had never been one.
+  void lose_store() const {
+    if (on_server) {
+      const auto place = history::place_of(root_);
+      auto database = host::storage::Database::open(*place->server);
+      database->script("DROP SCHEMA IF EXISTS \"" + schema_ + "\" CASCADE");
+    } else {
+      fs::remove(root_ / history::store_name);
+    }
+  }
+  /// As messages name the store.
+  std::string store_words() const {
+    return on_server ? "schema " + schema_ : (root_ / history::store_name).string();
+  }
   const fs::path& root() const { return root_; }
 
   static void write(const fs::path& path, const std::string& bytes) {
@@ -124,13 +162,20 @@ class Output {
 
  private:
   fs::path root_;
-  std::string why_;
+  std::string why_, schema_;
 };
+
+inline Expected<host::storage::Database> open_to_look(const fs::path& out) {
+  const auto place = history::place_of(out);
+  if (!place) return fail(place.error());
+  if (place->server) return host::storage::Database::open(*place->server);
+  return host::storage::Database::open(out / history::store_name,
+                                       host::storage::Database::Use::write);
+}
 
 /// All rows of all tables and of the view, in order.
 inline std::string rows_of(const fs::path& out) {
-  auto database =
-      host::storage::Database::open(out / history::store_name, host::storage::Database::Use::write);
+  auto database = open_to_look(out);
   if (!database) return "no store: " + database.error().message;
   std::string all;
   for (const std::string of :
@@ -139,7 +184,7 @@ inline std::string rows_of(const fs::path& out) {
         "result ORDER BY evaluation, item", "common_part ORDER BY evaluation, item, part",
         "covariance ORDER BY evaluation, first_item", "finding ORDER BY evaluation, item",
         "certificate ORDER BY number", "machine_alias ORDER BY alias", "event ORDER BY item",
-        "acknowledgement ORDER BY item", "forgotten ORDER BY item",
+        "acknowledgement ORDER BY item", "forgotten ORDER BY item", "due_rule ORDER BY machine",
         "point ORDER BY evaluation, item"}) {
     all += of + "\n";
     for (const auto& row : database->rows(("SELECT * FROM " + of).c_str())) {
@@ -152,8 +197,7 @@ inline std::string rows_of(const fs::path& out) {
 }
 
 inline std::string ask(const fs::path& out, const char* sql) {
-  auto database =
-      host::storage::Database::open(out / history::store_name, host::storage::Database::Use::write);
+  auto database = open_to_look(out);
   if (!database) return database.error().message;
   std::string all;
   for (const auto& row : database->rows(sql)) {

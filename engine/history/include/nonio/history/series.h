@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,12 @@ struct Series {
   /// Factor of all `u`: campaigns of a laboratory may scatter more than each says of itself
   /// (excess_scatter).
   double excess = 1.0;
+  /// Standard deviation, per year, of the slopes that such series have in this laboratory
+  /// (spread_of_slopes): what is known of a slope before the points. 0: nothing is known, and a
+  /// drift is tested.
+  double spread = 0.0;
+  /// A drift comes in where chance makes one in fewer series than this share.
+  double drift_below = 0.01;
 };
 
 /// An error that names the first point at fault: a value that is not finite, u that is not above 0,
@@ -49,9 +56,27 @@ struct Series {
 Expected<void> check(const Series&);
 
 /// By how much points scatter more than their u, over many series: the root of the median of
-/// d^2/u(d)^2 of successive differences d over 0.4549, the median of chi-square with 1 degree of
-/// freedom; not below 1, and 1 for fewer than 20 differences. A step in few of them moves a median
-/// little. Differences over a declared event do not count.
+/// d^2/u(d)^2 over 0.4549, the median of chi-square with 1 degree of freedom, d each point less the
+/// line through its neighbours: levels, slopes and what they have in common cancel, and a step in
+/// few of them moves a median little. Not over a declared event; not below 1, and 1 for fewer than
+/// 20 points.
 double excess_scatter(const std::vector<const Series*>&);
+/// d^2/u(d)^2 of one series, and what it gives for those of many together.
+std::vector<double> scatter_ratios(const Series&);
+double excess_of_ratios(std::vector<double> ratios);
+
+/// Slope per year beside a step at each declared event and at each place where chance makes one in
+/// fewer than one of 10,000 series. None for fewer than four points, or if they cannot tell.
+struct Slope {
+  double b = 0.0, u = 0.0;
+};
+std::optional<Slope> slope_beside_steps(const Series&);
+
+/// Standard deviation sigma of the true slopes of many series, per year: the mean of
+/// min(b^2/(sigma^2 + u^2), 9) is what it is of a normal variable, 0.995; so a few series that are
+/// unlike the others move it little. 0 if chance alone makes such slopes in one laboratory of ten,
+/// and for fewer than three. Source: method of moments for random effects (R. C. Paule, J. Mandel
+/// 1982, general knowledge), trimmed.
+double spread_of_slopes(const std::vector<Slope>&);
 
 }  // namespace nonio::history

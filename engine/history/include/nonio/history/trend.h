@@ -18,7 +18,9 @@
 /// places without a declared one; its p is that of the largest, by Bonferroni's bound where that is
 /// below 0.001 (where it is sharp), else from 10,000 simulated series of the same V and X. A drift:
 /// the fall of chi2 by a column of time, normal. Whichever is significant at 1 % comes in, both:
-/// the drift where it says the same with a chi2 not more than 4 larger. Up to three steps. Sources:
+/// the drift where it says the same with a chi2 not more than 4 larger. Up to three steps. Of eight
+/// points or more: a level that wanders (random walk) in place of a level that does not hold, or of
+/// two steps or three if it is likelier than they are at a price of 3 ln n each. Sources:
 /// JCGM 100:2008; generalised likelihood ratio (general knowledge; the null of the largest is
 /// simulated here, reference values in tests/unit/history).
 namespace nonio::history {

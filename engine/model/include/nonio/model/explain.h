@@ -71,7 +71,11 @@ struct NoiseFloor {
   double dof = 0.0;  ///< degrees of freedom
 };
 
-/// F-test of the model against the cell means.
+/// F-test of the model against the cell means: of the weighted residuals e of a fit of redundancy
+/// dof1 + r, what exceeds the r degrees of freedom of the repeats and their floor s. Absent without
+/// repeats.
+///
+///     F = (sum e^2 - r s^2)/(dof1 s^2)      dof2: that of s; F >= 0
 struct LackOfFit {
   double F = 0.0, p = 1.0, dof1 = 0.0, dof2 = 0.0;
 };
@@ -208,6 +212,7 @@ struct Explanation {
   Verdict verdict;
 };
 
+/// Errors are those of `fit`: parameters that the readings cannot tell apart.
 Expected<Comparison> compare(const Part& part, const std::vector<Term>& model);
 
 /// `seed` is for the shuffles behind the false-alarm rate.

@@ -59,7 +59,8 @@ void fill_temperatures(const Observations& o, AxisReadings& r);
 
 }  // namespace detail
 
-/// An error if the readings do not move this axis in a known direction.
+/// An error if the readings do not move this axis in a known direction. Range: finite positions;
+/// times and temperatures may be NaN.
 Expected<AxisReadings> readings_of(const Observations& o, const Axis& axis);
 
 /// Some were reached from below, some from above.

@@ -35,7 +35,10 @@ struct Contribution {
 };
 
 /// How an uncertainty came about: what an analysis was told, and what of it is in each result.
-/// U = k sqrt(sum u^2), but where the laboratory's floor (its CMC) is larger.
+/// U = k sqrt(sum u^2), but where the laboratory's floor (its CMC) is larger; u and k of each
+/// result below. Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (degrees of freedom);
+/// docs/uncertainty.md. Range: u >= 0, k > 0, dof > 0 or infinite; `check` (sdk/check.h) refuses
+/// what is not finite.
 struct UncertaintyBudget {
   struct Result {
     std::string name;  ///< of a value

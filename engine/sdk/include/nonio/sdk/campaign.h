@@ -12,7 +12,8 @@
 
 namespace nonio {
 
-/// One axis of the machine. Lengths in m, angles in rad.
+/// One axis of the machine. Lengths in m, angles in rad. Ranges of all values of a campaign are
+/// those of its keys, which the host checks (docs/manifest.md).
 struct Axis {
   std::string name;
   bool rotary = false;

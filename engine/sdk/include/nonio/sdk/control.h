@@ -60,7 +60,8 @@ struct ControlTable {
   std::vector<Fact> facts{};
 };
 
-/// A table as its control reads it: what it adds to the position of `output`. SI.
+/// A table as its control reads it: c, what it adds to the position of `output`. SI. Range: what
+/// `validate_table` (math/loaded_table.h) accepts.
 struct LoadedTable {
   enum class Outside { holds, zero, repeats, continues };
   std::string output;                         ///< axis; as the file names it if nobody knows it

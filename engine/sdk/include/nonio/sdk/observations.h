@@ -23,7 +23,9 @@ inline std::size_t coordinate_of(std::string_view axis) {
 inline constexpr double grid_tolerance = 1e-7;
 
 /// The one table that all measurements reduce to: a row is one reading that was taken. Columns
-/// have `size()` entries, or none where the file did not have them. SI: m, rad, s, degC.
+/// have `size()` entries, or none where the file did not have them. SI: m, rad, s, degC. Signs:
+/// deviation = actual - target (ISO 230-2), drawn in docs/conventions.md. What must hold of it is
+/// what `check` (sdk/check.h) asks.
 struct Observations {
   /// Commanded position of one axis, and the direction from which it was reached.
   struct AxisColumn {

@@ -154,7 +154,9 @@ inline std::string identifier_of(std::string_view number, std::string_view readi
   return std::string(number) + "." + std::string(readings_sha256);
 }
 
-/// With an upper limit, by the rule of the certificate.
+/// Of a result y with expanded uncertainty U against an upper limit T, by the rule of the
+/// certificate. ISO 14253-1: conforms y <= T - U, does not conform y > T + U, between them it
+/// cannot be decided (docs/howto-certificate.md has the other rules).
 enum class Decision { conforms, does_not_conform, cannot_be_decided };
 
 /// One tolerance of the manifest held against one result.

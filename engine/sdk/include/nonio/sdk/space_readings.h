@@ -42,7 +42,7 @@ struct SpaceReadings {
   }
 };
 
-/// Of what the readings' axes were commanded to.
+/// Of what the readings' axes were commanded to. No errors: coordinates that nobody said are NaN.
 SpaceReadings space_of(const Observations& o);
 
 /// Centres of a ball that turns with a rotary axis: lengths over an angle.

@@ -7,7 +7,8 @@
 namespace nonio {
 
 /// What a number is. Inside the program every number is SI (m, rad, s; temperatures in degC); a
-/// formatter multiplies by `unit_of(q).per_si` and prints `unit_of(q).symbol`.
+/// formatter multiplies by `unit_of(q).per_si` and prints `unit_of(q).symbol`. Factors are exact
+/// (1 um = 1e-6 m, 1 h = 3600 s) but for 180/pi, which is rounded once.
 enum class Quantity {
   number,                  ///< dimensionless
   count,                   ///< dimensionless, integral
@@ -64,6 +65,7 @@ struct Unit {
   double per_si;            ///< printed value = SI value * per_si
 };
 
+/// 1 deg = pi/180 rad, 1 arcsec = 1 deg/3600.
 inline constexpr double arcsec_per_rad = 180.0 * 3600.0 / std::numbers::pi;
 inline constexpr double deg_per_rad = 180.0 / std::numbers::pi;
 

@@ -38,6 +38,7 @@ struct HistoryPoint {
   double value = 0.0, u = 0.0;
   bool joined = true;
   std::string why_not{};  ///< it is not joined
+  double u_common = 0.0;  ///< of what it shares with other campaigns: the instrument, the expansion
 };
 
 /// What the model of a series says between two days.
@@ -46,6 +47,7 @@ struct HistorySegment {
   double first = 0.0, last = 0.0;      ///< at `from`, at `to`
   double u_first = 0.0, u_last = 0.0;  ///< of these
   double slope = 0.0, u_slope = 0.0;   ///< per year
+  std::string from_campaign{}, to_campaign{};
 };
 
 struct HistoryChange {
@@ -53,6 +55,8 @@ struct HistoryChange {
   double size = 0.0, u = 0.0, p = 1.0;  ///< p: adjusted for all that was asked
   std::string cause;                    ///< undeclared, event, instrument, table
   std::string event{};
+  std::string after_campaign{}, before_campaign{};
+  double p_alone = 1.0;  ///< of this test alone
 };
 
 struct HistoryForecast {
@@ -72,6 +76,7 @@ struct HistorySeries {
   std::vector<HistoryChange> changes{};
   std::optional<double> smallest_change{}, limit{};
   std::optional<HistoryForecast> forecast{};
+  bool ended = false;  ///< later campaigns measure it otherwise, in a series of their own
 };
 
 struct MachineEvent {
@@ -86,14 +91,32 @@ struct ErrorCurve {
   double u = 0.0;  ///< of a mean
 };
 
+/// When to measure next. Nothing is changed by it.
+struct IntervalProposal {
+  std::optional<int> months{};     ///< none: refused, and `why` says why
+  std::string method{};            ///< staircase, control-chart, fleet; empty: nobody asked
+  std::string axis{}, quantity{};  ///< what decides it, where it is one quantity
+  Finding why{};                   ///< its words: says
+};
+
+/// Whether a table did what it promised: of one axis, the result that missed it by most.
+struct TableKept {
+  std::string axis, quantity;
+  std::string campaign, date;  ///< in which it was left
+  Quantity unit = Quantity::deviation;
+  double found = 0.0, promised = 0.0, left = 0.0;
+  bool good = true;
+};
+
 struct MachineHistory {
   std::string id, maker, model, serial, customer, place, control;
   std::vector<MachineEvent> events;
   std::vector<HistorySeries> series;
-  std::vector<ErrorCurve> curves;  ///< by day
-  std::string due{}, why_due{};    ///< next calibration; which rule says so
-  std::string proposal{};          ///< of another interval, in words
-  std::string file{};              ///< name of its page, without the folder
+  std::vector<ErrorCurve> curves;   ///< by day
+  std::vector<TableKept> tables{};  ///< the last one of each axis, where it can be told
+  std::string due{}, why_due{};     ///< next calibration; which rule says so
+  IntervalProposal proposal{};      ///< of an interval
+  std::string file{};               ///< name of its page, without the folder
 };
 
 /// Of one month: the gravest line, and whether something happened.
@@ -135,8 +158,28 @@ struct SiteHistory {
   bool judged = true;  ///< some campaign states a limit
 };
 
-/// index.html, machines/<file>, due.html, due.ics, instruments.html, compare.html. The same bytes
-/// for the same values.
+/// Whether somebody must decide something: it is new, and no mere note.
+bool asks(const MorningLine& line);
+
+/// summary.txt and `nonio morning`: one line a decision, at most `most`, then how many more there
+/// are of each kind. Where there is none, the one sentence that says so.
+Expected<std::string> morning_text(const SiteHistory&, const Templates&,
+                                   const std::string& language, std::size_t most);
+
+inline constexpr const char* machines_folder = "machines";
+
+/// Machines whose series index.html draws: those of the first lines.
+std::vector<std::string> drawn_first(const SiteHistory&);
+
+/// index.html, due.html, due.ics, instruments.html, compare.html. Of series they need those of
+/// `drawn_first`.
+Expected<std::vector<Artifact>> site_lists(const SiteHistory&, const Templates&,
+                                           const std::string& language);
+/// The page of one machine, with all its series; of `site` its lines.
+Expected<Artifact> machine_page_of(const SiteHistory& site, const MachineHistory&, const Templates&,
+                                   const std::string& language);
+
+/// All of these, machines/<file> too. The same bytes for the same values.
 Expected<std::vector<Artifact>> site_pages(const SiteHistory&, const Templates&,
                                            const std::string& language);
 

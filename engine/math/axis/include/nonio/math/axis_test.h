@@ -11,6 +11,10 @@ namespace nonio::math {
 
 /// The readings of one axis, arranged by target and direction of approach. Targets are matched by
 /// value, never by index: one that was reached from one side only has readings on that side only.
+///
+/// x_ij = P_ij - P_i: deviation of approach j = 1..n at target i = 1..m, m or rad; + and -:
+/// direction of approach. Source: ISO 230-2 (docs/formulas.md). Range: any number of targets and
+/// readings, n may differ; deviations finite (sdk/check.h).
 class AxisTest {
  public:
   struct Reading {
@@ -38,11 +42,12 @@ class AxisTest {
   /// Distance from the first target to the last, m or rad.
   double length() const { return targets.empty() ? 0.0 : targets.back() - targets.front(); }
 
-  /// The same test with only these targets (ascending indices).
+  /// The same test with only these targets (ascending indices, each below targets.size()).
   AxisTest only(std::span<const std::size_t> kept) const;
 
   /// From observations whose first axis column is the measured axis; rows without a direction of
-  /// approach do not occur. Readings at a target come in the order of their runs.
+  /// approach do not occur. Readings at a target come in the order of their runs. Empty, not an
+  /// error, if there is no axis column or it has no directions of approach.
   static AxisTest arrange(const Observations&);
 
  private:

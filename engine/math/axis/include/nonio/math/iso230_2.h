@@ -18,7 +18,14 @@ struct Iso230Point {
   double R_plus, R_minus, R;     ///< 2 k s; R_i = max(k s+ + k s- + |B_i|, R_i+, R_i-)
 };
 
-/// ISO 230-2 of the axis. A value is NaN unless every target gives its part of it, so that no
+/// ISO 230-2 of the axis, m or rad; max and min over the targets:
+///
+///     A    max(xm_i+ + k s_i+; xm_i- + k s_i-) - min(xm_i+ - k s_i+; xm_i- - k s_i-)
+///     E    max(xm_i+; xm_i-) - min(xm_i+; xm_i-)        M    max xm_i - min xm_i
+///     R    max R_i                                      R+   max R_i+
+///     A+, E+, R+ (and -): the same of the readings of one direction
+///
+/// A value is NaN unless every target gives its part of it, so that no
 /// printed range covers less than the whole axis; A+, E+ and R+ ask only the targets that were
 /// reached in direction +, and likewise for -.
 struct Iso230Result {
@@ -32,6 +39,8 @@ struct Iso230Result {
   double B_mean;  ///< mean of B_i, signed
 };
 
+/// Range: any test, k > 0; no errors: what cannot be given is NaN (s, and with it R and A, need two
+/// readings of each direction at every target).
 /// k = 3 for the edition of 1988, 2 for those of 1997, 2006 and 2014.
 /// Source: ISO 230-2:2014 clause 2 (symbols), k of 1988 from its forms 6 s and 3 s.
 Iso230Result evaluate_iso230_2(const AxisTest& test, double k);

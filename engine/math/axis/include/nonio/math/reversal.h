@@ -6,6 +6,15 @@
 namespace nonio::math {
 
 /// What the reversal error of an axis is like, by tests and not by rules of thumb.
+///
+///     B_i = xm_i+ - xm_i-                            m or rad; B_mean over the m targets
+///     F   = [sum (B_i - B_mean)^2/(m - 1)] / [s+^2/n+ + s-^2/n-]        does it vary?
+///     t   = B_mean/u(B_mean)                                            does it exist?
+///
+/// Level of both 1 %. u from the differences of the runs, pooled with the scatter of single
+/// readings where the runs show no more than that. Sources: B_i of ISO 230-2; pooling of
+/// T. A. Bancroft, Biometrics 20 (1964) 427; the decisions are ours (docs/formulas.md,
+/// docs/constants.md A3 to A5).
 struct Reversal {
   enum class Kind {
     unknown,      ///< not measured from both directions at every target, or no scatter is known
@@ -30,6 +39,8 @@ struct Reversal {
   bool opposed = false, concordant = false;
 };
 
+/// Range: both directions at every target, else `kind` is unknown and the lengths are NaN; waves of
+/// rotary axes need 5 angles and no gap above 120 deg. No errors.
 Reversal assess_reversal(const AxisTest& test);
 
 }  // namespace nonio::math

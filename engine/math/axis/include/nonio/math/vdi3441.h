@@ -7,6 +7,8 @@
 
 namespace nonio::math {
 
+/// direct: S = sqrt(sum (x - xm)^2/(n - 1)). from_range: S = (max x - min x)/d_n, d_n the mean
+/// range of n normal values (L. H. C. Tippett, Biometrika 17 (1925) 364).
 enum class StandardDeviation { direct, from_range };
 
 /// VDI/DGQ 3441 at one target; m or rad, NaN where the readings do not give the value.
@@ -19,6 +21,11 @@ struct VdiPoint {
   double Ps;  ///< 6 S
 };
 
+/// Of the axis, m or rad; max and min over the targets j:
+///
+///     P    max(xs_j + (U_j + Ps_j)/2) - min(xs_j - (U_j + Ps_j)/2)
+///     Pa   max xs_j - min xs_j                           M of ISO 230-2
+///     P+   max(xm_j+ + 3 S_j+) - min(xm_j+ - 3 S_j+)     Pa+ = max xm_j+ - min xm_j+; likewise -
 struct VdiResult {
   std::vector<VdiPoint> points;
   double P, Pa, Ps_max, Ps_mean, U_max, U_mean;
@@ -27,7 +34,8 @@ struct VdiResult {
 };
 
 /// VDI/DGQ 3441:1977. A value is NaN unless every target gives its part. `from_range` divides the
-/// range by d_n (n = 2..10; more readings or one give NaN).
+/// range by d_n (n = 2..10; more readings or one give NaN). No errors. The text of the standard was
+/// not available: confidence M in docs/formulas.md.
 VdiResult evaluate_vdi3441(const AxisTest& test, StandardDeviation how);
 
 }  // namespace nonio::math

@@ -15,7 +15,8 @@
 /// without drift, and what is left when the control has applied the table.
 namespace nonio::math {
 
-/// The deviation that a table should take away; m or rad over m or rad.
+/// The deviation that a table should take away; m or rad over m or rad. At target i, of means xm_i+
+/// and xm_i- (ISO 230-2): plus xm_i+, minus xm_i-, mean (xm_i+ + xm_i-)/2.
 struct ErrorCurve {
   std::vector<double> position;     ///< strictly ascending
   std::vector<double> mean;         ///< of both directions
@@ -61,11 +62,12 @@ struct GridRule {
 
 /// The coarsest grid that has every position of the curve on it, if it is not much finer than
 /// they are; else a grid of about half their smallest distance, between which the curve is
-/// interpolated. More points than the control takes are an error with a suggestion.
+/// interpolated. Errors name the axis: fewer than 2 targets or points; a wished step that is no
+/// whole multiple of `unit`; more points than the control takes, with a suggestion.
 Expected<Grid> choose_grid(const std::vector<double>& position, const GridRule& rule);
 
 /// Whole numbers of `unit`, each nearest to its value (half away from zero, to 12 digits: 2.5 um
-/// are a tie).
+/// are a tie). unit > 0; quotients within the range of std::int64_t.
 std::vector<std::int64_t> quantised(std::span<const double> value, double unit);
 /// q[i] - q[i-1], one less than there are values: rounding the absolute curve first keeps the sum
 /// of the increments within half a unit of the curve at every point.
@@ -83,7 +85,8 @@ struct MeanDeviations {
 };
 
 MeanDeviations before(const ErrorCurve& curve);
-/// actual - x = c(x) + e(x + c(x)): the error arises where the motor is.
+/// actual - x = c(x) + e(x + c(x)): the error arises where the motor is. e: curve, c: correction.
+/// Derived; checked by the controllers' tests (tests/unit/controllers).
 MeanDeviations after(const ErrorCurve& curve, const Correction& correction);
 
 }  // namespace nonio::math

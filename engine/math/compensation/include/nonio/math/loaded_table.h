@@ -14,8 +14,14 @@
 /// What a control does with tables that are in it.
 namespace nonio::math {
 
-/// What the table adds at these positions of its inputs, moving towards `direction`: linear between
-/// the points, beyond them as the table says. m or rad.
+/// c(x): what the table adds at these positions of its inputs, moving towards `direction` (+1, -1),
+/// m or rad. Between points k and k + 1 of one input
+///
+///     c(x) = c_k + (c_(k+1) - c_k) (x - x_k)/(x_(k+1) - x_k)
+///
+/// of two inputs the same in each of them; beyond the points as the table says (`outside`). Source:
+/// the control's manual or code, with its confidence in plugins/controllers/*/README.md. Range:
+/// what `validate_table` accepts.
 double added(const LoadedTable& table, std::span<const double> at, int direction);
 
 /// What all of these add to `output` where the axes are at `at`; a table of which an input is not
@@ -29,7 +35,8 @@ double added(const std::vector<LoadedTable>& tables, std::string_view output,
 std::optional<Correction> correction_of(const std::vector<LoadedTable>& tables,
                                         std::string_view axis, double present = 0.0);
 
-/// Whether positions rise, numbers are finite and there are as many as the points need.
+/// An error that names the table's output unless positions rise, numbers are finite, there are as
+/// many as the points need, and a table that repeats has equal ends.
 Expected<void> validate_table(const LoadedTable& table);
 
 }  // namespace nonio::math

@@ -12,6 +12,8 @@ namespace nonio::math {
 /// `incomplete_targets`: what to do with targets that do not give every value.
 Option incomplete_targets_option();
 
+/// What an analysis starts from: the readings that it evaluates, their budget and the findings that
+/// all standards have in common.
 struct AxisAnalysis {
   std::string axis;
   AxisTest test;

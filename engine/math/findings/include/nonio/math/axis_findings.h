@@ -11,7 +11,8 @@
 #include "nonio/sdk/results.h"
 
 /// What the readings of an axis say beside the numbers of a standard. docs/formulas.md has the
-/// tests; the words are in templates/words.
+/// tests with their formulas, levels (1 %) and least numbers of readings; the words are in
+/// templates/words. No errors: what these readings cannot show gives no finding. Evidence is SI.
 namespace nonio::math {
 
 /// Everything that does not depend on the standard: drift, reversal, scatter, suspected readings,

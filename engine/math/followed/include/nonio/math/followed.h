@@ -62,8 +62,8 @@ struct FollowedAxis {
 
 enum class Across : bool { no, yes };  ///< deviations across the axis: a straightness
 
-/// Of fewer than two runs or three targets nothing is followed. material: mean temperature of the
-/// machine during the test, degC, where the file has it.
+/// No errors. Of fewer than two runs or three targets nothing is followed. material: mean
+/// temperature of the machine during the test, degC, where the file has it.
 FollowedAxis followed_quantities(const AxisTest&, const Campaign&, const std::string& axis,
                                  std::optional<double> material, Across = Across::no);
 

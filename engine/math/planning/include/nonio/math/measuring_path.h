@@ -37,7 +37,9 @@ struct MeasuringRequest {
 /// even steps would not see an error with the period of the screw or of the scale. Multiples of
 /// `resolution` between first and last; the same seed gives the same targets on every computer.
 /// Those of `among` that lie in the range take the place of the nearest target.
-/// Source: ISO 230-2:2014, test plan; the 30 % where no period is known is common practice.
+/// Source: ISO 230-2:2014, test plan; the 30 % where no period is known is common practice. Range:
+/// points >= 2, last > first, resolution > 0. An error if two targets would lie closer than twice
+/// the resolution.
 struct AxisTargets {
   double first = 0.0, last = 0.0;
   int points = 5;
@@ -50,9 +52,9 @@ struct AxisTargets {
 Expected<std::vector<double>> axis_targets(const AxisTargets& wish);
 
 /// How many targets ISO 230-2 asks of a linear axis: five a metre up to 2 m and five at least, then
-/// one every 250 mm.
+/// one every 250 mm. length: m, above 0. Source: its test plan (docs/formulas.md, M).
 int axis_points(double length);
-/// The same of a rotary axis: 3, 5, 8 for up to 90, 180, 360 deg; 8 a turn beyond.
+/// The same of a rotary axis: 3, 5, 8 for up to 90, 180, 360 deg; 8 a turn beyond. angle: rad.
 int rotary_points(double angle);
 /// Which angles it wants among the targets: 0, 90, 180, 270 deg, in every turn of the range, rad.
 std::vector<double> cardinal_angles(double first, double last);

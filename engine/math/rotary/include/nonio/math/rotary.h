@@ -30,9 +30,9 @@ namespace nonio::math {
 using Vector3 = std::array<double, 3>;
 
 struct BallCentre {
-  Vector3 at{};
-  double angle = 0.0;
-  double weight = 1.0;
+  Vector3 at{};         ///< m
+  double angle = 0.0;   ///< of the axis, rad
+  double weight = 1.0;  ///< readings behind it, above 0
 };
 
 enum class RotaryRefusal {
@@ -81,7 +81,10 @@ DoubleWave double_wave(const RotaryFit& fit, std::span<const BallCentre> centres
 /// known sigma), Student's t for few; NaN for 0.
 double expansion_factor(int dof);
 
-/// Two lines in one frame: how far apart they pass, and the angle between their directions.
+/// Two lines in one frame, through p and q along m and n: how far apart they pass, and the angle
+/// between their directions. Derived (docs/formulas.md).
+///
+///     distance = |(q - p).(m x n)| / |m x n|        angle = atan2(|m x n|, m.n)
 struct LineRelation {
   double distance = 0.0, u_distance = 0.0;  ///< m
   double angle = 0.0, u_angle = 0.0;        ///< rad

@@ -11,7 +11,18 @@
 
 namespace nonio::math {
 
-/// Contributions to the uncertainty of a positioning test, expanded (k = 2), m or rad.
+/// Contributions to the uncertainty of a positioning test, expanded (k = 2), m or rad. A quantity
+/// known to lie within a full range r counts with 0.6 r (2/(2 sqrt 3) = 0.577, rounded up):
+///
+///     U_DEV = U_fixed + U_per_length L                 L: first target to last, m
+///     U_MIS = 0.6 R_mis^2/(2 L)                        R_mis: misalignment, m
+///     U_M   = 0.6 alpha L R(theta)                     alpha: expansion, 1/K; R(theta): K
+///     U_E   = 0.6 dT L R(alpha)                        dT: largest distance from 20 degC, K
+///     U_EVE = 0.6 E_VE                                 E_VE: range of the drift test, m or rad
+///     U_MD, U_ED: U_M and U_E of a device with a length of its own
+///
+/// Source: names of ISO/TR 230-9:2005 Annex C and ISO 230-2:2006 Annex A, whose texts were not
+/// available (docs/uncertainty.md, M).
 struct Budget {
   double U_DEV = 0.0;   ///< measuring instrument
   double U_MIS = 0.0;   ///< its misalignment to the axis
@@ -22,7 +33,7 @@ struct Budget {
   double U_EVE = 0.0;   ///< environmental variation, the drift test
   double length = 0.0;  ///< measured length for which they hold
   bool rotary = false;  ///< then only U_DEV and U_EVE
-  /// What does not average out over the approaches.
+  /// What does not average out over the approaches: S, root of the sum of squares of all but U_EVE.
   double systematic() const;
 };
 
@@ -46,13 +57,22 @@ std::vector<double> shares_of(const Budget&, double U, bool systematic);
 std::size_t approaches_behind_means(const AxisTest&);
 
 /// Expanded uncertainties (k = 2) of the results of ISO 230-2; m or rad. n: approaches behind each
-/// mean; k: coverage factor of R and A in the edition.
+/// mean, 1 or more; k: coverage factor of R and A in the edition.
+///
+///     U(B) = U(B_mean) = sqrt(2/n) U_EVE        U(R+) = U(R-) = k U_EVE
+///     U(M) = sqrt(S^2 + U_EVE^2/n)              U(R) = sqrt((k U_EVE)^2 + 2 U_EVE^2/n)
+///     U(E) = sqrt(S^2 + 2 U_EVE^2/n)            U(A) = sqrt(U(E)^2 + (k U_EVE)^2); + and - alike
+///
+/// Derived by the GUM (docs/uncertainty.md, L): compare with the standard before claiming it.
 struct Iso230Uncertainty {
   double A, A_plus, A_minus, E, E_plus, E_minus, M, R, R_plus, R_minus, B, B_mean;
 };
 Iso230Uncertainty iso230_2_uncertainty(const Budget&, std::size_t n, double k);
 
 /// The same for VDI/DGQ 3441, which has no such clause: derived by the rules of the GUM.
+///
+///     U(Pa) = U(M)    U(U_max) = U(U_mean) = U(B)    U(Ps_max) = U(Ps_mean) = 3 U_EVE
+///     U(P) = sqrt(S^2 + 2 U_EVE^2/n + (3 U_EVE)^2)
 struct VdiUncertainty {
   double P, Pa, Ps_max, Ps_mean, U_max, U_mean;
 };

@@ -123,13 +123,15 @@ struct DiagonalResult {
 /// there is one, are Y, X, ECX, D1, D2, the third lines, EYX, EXY, a reading for each mean.
 Expected<DiagonalResult> solve_diagonals(const DiagonalReadings&, const ReadingModel* = nullptr);
 
-/// What a bound abs(EXY_odd) <= G says of EYX_odd = (q_odd - c EXY_odd)/s.
+/// What a bound abs(EXY_odd) <= G (m) says of EYX_odd = (q_odd - c EXY_odd)/s:
+/// EYX_even + (q_odd -+ c G)/s at each stop, m. Derived, docs/formulas.md.
 struct Band {
   std::vector<double> low, high;
 };
 Band straightness_band(const DiagonalResult&, double Lx, double Ly, double G);
 
 /// 1/(2 min(c, s)): scatter of the worse straightness for scatter 1 of a diagonal's reading.
+/// c = Lx/L, s = Ly/L; Lx, Ly > 0.
 double diagonal_gain(double Lx, double Ly);
 
 }  // namespace nonio::math

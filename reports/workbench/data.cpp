@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "nonio/workbench/data.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
 #include <numeric>
 
-#include "escape.h"
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/splitmix64.h"
-#include "page.h"
 
-namespace nonio::model_html {
+namespace nonio::workbench {
 
 using namespace reports;
 
@@ -72,7 +72,7 @@ std::string column(const std::vector<T>& values, const std::vector<std::size_t>&
 /// A sample by this order falls in step with nothing that a test cycle repeats.
 std::uint64_t scrambled(std::size_t row) { return SplitMix64::mixed(row); }
 
-std::string words_of(const Source& source) {
+std::string words_of(const Drawn& source) {
   Object out;
   for (const char* name :
        {"rms_now", "without", "without_cv", "not_refitted", "reading", "deviation", "model",
@@ -83,9 +83,11 @@ std::string words_of(const Source& source) {
   return out.done();
 }
 
-std::string pictures_of(const Source& source) {
-  return list(source.pictures, [](std::string& out, const PictureWords& p) {
+std::string pictures_of(const Drawn& source, bool titles) {
+  return list(source.pictures, [titles](std::string& out, const PictureWords& p) {
     Object picture;
+    if (titles) picture.text("title", p.title);
+    if (titles) picture.text("says", p.says);
     picture.text("x", p.x);
     picture.text("y", p.y);
     picture.text("none", p.none);
@@ -94,10 +96,10 @@ std::string pictures_of(const Source& source) {
   });
 }
 
-std::string files_of(const Source& source) {
+std::string files_of(const Drawn& source) {
   return list(source.fit.measurements, [&](std::string& out, const std::string& id) {
     std::string file;
-    for (const Measurement& m : source.in.campaign.measurements)
+    for (const Measurement& m : source.campaign.measurements)
       if (m.id == id) file = m.file;
     out += json(file);
   });
@@ -116,6 +118,12 @@ std::string without_of(const ModelFit& fit, const std::string& effect,
   return out.done();
 }
 
+std::vector<std::size_t> all_rows(std::size_t n) {
+  std::vector<std::size_t> rows(n);
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  return rows;
+}
+
 /// Names of the lines that stand side by side; null where all readings have one axis.
 std::string lanes_text(const ModelFit& fit) {
   const Lanes lanes = lanes_of(fit);
@@ -127,8 +135,7 @@ std::string lanes_text(const ModelFit& fit) {
 
 Kept kept_readings(const ModelFit& fit) {
   Kept kept;
-  kept.rows.resize(fit.size());
-  std::iota(kept.rows.begin(), kept.rows.end(), std::size_t{0});
+  kept.rows = all_rows(fit.size());
   kept.counted.assign(fit.size(), 1);
   if (fit.size() <= most_readings) return kept;
   constexpr std::size_t largest = most_readings / 100;
@@ -149,7 +156,8 @@ Kept kept_readings(const ModelFit& fit) {
   return kept;
 }
 
-std::string data_of(const Source& source, const Kept& kept) {
+// Long: one list of what the page gets, a line a column.
+std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   const ModelFit& fit = source.fit;
   const std::vector<std::size_t>& rows = kept.rows;
   const Quantity along = position_of(fit.rotary), up = deviation_of(fit.angular);
@@ -179,8 +187,9 @@ std::string data_of(const Source& source, const Kept& kept) {
   out.number("period", period_of(fit) * across);
   out.number("floor", fit.floor ? *fit.floor * per_si : std::nan(""));
   out.raw("words", words_of(source));
-  out.raw("pictures", pictures_of(source));
+  out.raw("pictures", pictures_of(source, titles));
   out.raw("files", files_of(source));
+  if (rows.size() < fit.size()) out.raw("row", column(all_rows(fit.size()), rows));
   out.raw("measurement", column(known(fit.measurement, fit.size()), rows));
   out.raw("line", column(known(fit.source_line, fit.size()), rows));
   out.raw("run", column(known(fit.run, fit.size()), rows));
@@ -215,4 +224,21 @@ std::string data_of(const Source& source, const Kept& kept) {
   return out.done();
 }
 
-}  // namespace nonio::model_html
+std::string json(std::string_view text) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || c == '"' || c == '\\' || c == '<' || c == '>' || c == '&')
+      out += {'\\', 'u', '0', '0', digits[code >> 4], digits[code & 15]};
+    else
+      out += c;
+  }
+  return out + '"';
+}
+
+std::string json(const std::vector<double>& values) {
+  return list(values, [](std::string& out, double value) { append_number(out, value); });
+}
+
+}  // namespace nonio::workbench

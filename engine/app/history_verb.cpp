@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "history_chart.h"
+#include "host/config/template_files.h"
+#include "host/history/place.h"
+#include "host/history/query.h"
+#include "host/history/store.h"
+#include "host/morning/assess.h"
+#include "verbs.h"
+
+namespace nonio::app {
+
+namespace {
+
+constexpr const char* history_name = "nonio history";
+
+struct HistoryWish {
+  std::string out, machine, axis, quantity;
+};
+
+/// Leaves what is asked for.
+void keep(const HistoryWish& wish, const std::string& machine, reports::SiteHistory& site) {
+  if (!machine.empty())
+    std::erase_if(site.machines, [&](const auto& m) { return m.id != machine; });
+  for (reports::MachineHistory& m : site.machines)
+    std::erase_if(m.series, [&](const reports::HistorySeries& s) {
+      return (!wish.axis.empty() && s.axis != wish.axis) ||
+             (!wish.quantity.empty() && s.quantity != wish.quantity);
+    });
+}
+
+int history(const HistoryWish& wish, const Common& common) {
+  const auto tonight = host::morning::tonight_in(wish.out);
+  if (!tonight) return complain(history_name, tonight.error().message);
+  std::string machine;
+  if (!wish.machine.empty()) {
+    auto known = host::history::machine_named(wish.out, wish.machine);
+    if (!known) return complain(history_name, known.error().message);
+    machine = std::move(*known);
+  }
+  if (const auto known = host::history::known_night(wish.out);
+      !known || *known != std::optional(tonight->night))
+    std::cerr << history_name << ": " << host::history::store_in(wish.out)
+              << " does not know night " << tonight->night
+              << " yet: what follows is older; the next `nonio run` enters it\n";
+  auto site = host::morning::assess(wish.out, *tonight, [] {});
+  if (!site) return complain(history_name, site.error().message);
+  keep(wish, machine, *site);
+  if (common.json) {
+    std::string digest;
+    const auto templates = host::config::read_templates(common.template_folders(), digest);
+    if (!templates) return complain(history_name, templates.error().message);
+    std::cout << host::morning::history_json(*site, *tonight, *templates);
+    return exit_done;
+  }
+  if (machine.empty()) {
+    std::cout << machines_table(*site);
+    return exit_done;
+  }
+  for (const reports::MachineHistory& m : site->machines) std::cout << machine_chart(m);
+  return exit_done;
+}
+
+}  // namespace
+
+Verb history_verb(Common& common) {
+  auto wish = std::make_shared<HistoryWish>();
+  return {
+      .name = "history",
+      .summary = "What became of a machine over its campaigns: trends, changes, forecasts",
+      .arguments = joined(
+          {required(existing(Argument::Takes::folder,
+                             {"OUT", &wish->out, "Output folder of `nonio run`"})),
+           {"MACHINE", &wish->machine,
+            "Its asset, or maker and serial with a space between them; without it all machines"},
+           {"--axis", &wish->axis, "As the control calls it: X, or X1 and X2 of a gantry"},
+           {"--quantity", &wish->quantity, "scale, B_mean, ln_s, A, R, ... as in results.json"}},
+          common_arguments(common)),
+      .footer =
+          "A line a campaign: o as found, x as left, + check, . not comparable, with U (k = 2); !\n"
+          "the limit, * what happened, ~ what changed, with its U and p among all that its night\n"
+          "asked. What is not told as a change was too small to be seen: from which size on one\n"
+          "would have been stands below. A, E and R are shown, no line is drawn through them.\n\n"
+          "--json writes schema nonio-history/1 (docs/history.md).\n\n"
+          "Example: nonio history out S-0042 --axis X --quantity B_mean",
+      .run = [wish, &common] { return history(*wish, common); }};
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "host/config/manifest.h"
+#include "nonio/reports/site.h"
+#include "nonio/sdk/error.h"
+
+namespace nonio::host::batch {
+
+struct Letter {
+  std::string subject;  ///< UTF-8; line ends become spaces
+  std::string text;     ///< UTF-8
+};
+
+/// Whether this line is grave enough for a mail. What somebody acknowledged is not, nor what is
+/// fixed.
+bool is_reason_for_mail(const reports::MorningLine& line, config::Mail::On on);
+
+/// Gives the letter to the program or the server of `mail`, once. Paths are relative to `site`. In
+/// a process of its own, which may take `seconds` (s) in all. The password appears in no error.
+Expected<void> send_mail(const config::Mail& mail, const std::filesystem::path& site,
+                         const Letter& letter, double seconds = 60.0);
+
+}  // namespace nonio::host::batch

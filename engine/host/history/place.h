@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "host/storage/database.h"
+
+namespace nonio::host::history {
+
+/// Where the store of an output folder lies, kept in OUT/.nonio/database: whoever reads the output
+/// folder needs no site.toml for it.
+struct StorePlace {
+  std::optional<storage::Server> server{};  ///< none: OUT/history.sqlite
+  std::string owner{};                      ///< random; the schema on the server bears it too
+  std::int64_t evaluations = 0;  ///< that the server's store had when it was last written
+};
+
+/// An error if the file is damaged. Where it belongs to somebody else it names no password file:
+/// it would have us send our own password to a server of his choice.
+Expected<StorePlace> place_of(const std::filesystem::path& out);
+
+/// As site.toml has it. True: the store lay elsewhere before.
+Expected<bool> note_place(const std::filesystem::path& out,
+                          const std::optional<storage::Server>& server);
+Expected<void> note_evaluations(const std::filesystem::path& out, std::int64_t count);
+
+/// For messages: the file or the schema.
+std::string name_of(const StorePlace& place, const std::filesystem::path& out);
+std::string store_in(const std::filesystem::path& out);
+
+/// The store, opened to be read: on a server all that is read from it is of one night.
+Expected<storage::Database> open_store(const std::filesystem::path& out);
+
+/// Makes the server's schema if it is not there. An error if it is another output folder's.
+Expected<void> take_schema(storage::Database& database, const StorePlace& place);
+
+}  // namespace nonio::host::history

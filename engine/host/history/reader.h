@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "host/config/site_logs.h"
+#include "host/history/entry.h"
+#include "host/history/identity.h"
+#include "host/storage/database.h"
+
+namespace nonio::host::history {
+
+/// A campaign as its last evaluation knows it.
+struct StoredCampaign {
+  std::string id, day, customer, purpose, status;
+  InstrumentAsStated instrument;
+  std::int64_t evaluation = 0;
+  std::uint64_t night = 0;  ///< in which that evaluation came
+  std::string number{};     ///< of its last certificate
+};
+
+/// A number of a campaign: of what is followed, or a result with a tolerance or U.
+struct StoredResult {
+  std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
+  std::string measurement, axis, quantity;
+  std::string source{};  ///< "followed", or the analysis
+  std::string unit, state, decision, conditions;
+  bool followed = false;
+  double value = 0.0;
+  std::optional<double> u_repeat{}, expanded{}, k{}, tolerance{};
+  std::vector<CommonPart> common{};
+};
+
+/// All that the store says of one machine.
+struct StoredMachine {
+  std::vector<StoredCampaign> campaigns;  ///< by day, then by id
+  std::vector<StoredResult> results;      ///< in the order of their campaigns
+  std::vector<StoredResult> predicted{};  ///< by tables: the same order
+  /// Severity by finding of the last evaluation of each campaign.
+  std::vector<std::map<std::string, std::string>> findings;
+};
+
+/// A machine, with aliases joined.
+struct MachineState {
+  NamedMachine machine;
+  std::uint64_t night = 0;          ///< of the last evaluation that counts
+  std::set<std::string> serials{};  ///< that its campaigns state
+};
+
+/// An evaluation, whether another supersedes it or not.
+struct StoredEvaluation {
+  std::string machine;  ///< aliases joined; empty: of none
+  std::string campaign, sha256;
+  std::uint64_t night = 0;
+  bool counts = true;  ///< no other supersedes it
+};
+
+/// What people say, as the store has it.
+struct StoredLogs {
+  std::vector<config::Event> events;
+  std::vector<config::Acknowledgement> acknowledged;
+  std::vector<config::Forgotten> forgotten;
+  std::map<std::string, std::string> aliases;  ///< machine by alias
+  std::map<std::string, int> due;              ///< months by machine; "": of all others
+};
+
+/// Reads a store; evaluations that another supersedes are never seen.
+class StoreReader {
+ public:
+  /// An error if there is no store, or one of another version.
+  static Expected<StoreReader> open(const std::filesystem::path& out);
+
+  /// With aliases joined, by name; machines without a name are left out.
+  Expected<std::vector<MachineState>> machines();
+  Expected<StoredMachine> machine(const std::string& name);
+  Expected<StoredLogs> logs();
+  /// The machine of each campaign, aliases joined.
+  Expected<std::map<std::string, std::string>> machine_of_campaigns();
+  /// In their order: the same list, the same results.
+  Expected<std::vector<StoredEvaluation>> evaluations();
+  /// Numbers of each campaign and what they replace, as one text.
+  Expected<std::map<std::string, std::string>> certificates();
+  /// How many different quantities of axes each night from this one on has evaluated.
+  Expected<std::map<std::uint64_t, std::uint64_t>> followed_since(std::uint64_t night);
+
+ private:
+  explicit StoreReader(storage::Database database) : database_(std::move(database)) {}
+  storage::Database database_;
+};
+
+}  // namespace nonio::host::history

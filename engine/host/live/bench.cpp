@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/live/bench.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <deque>
+#include <iostream>
+#include <map>
+#include <new>
+
+#include "host/process/child.h"
+#include "host/process/confine.h"
+#include "host/process/watched.h"
+
+namespace nonio::host::live {
+using storage::Json;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Numbers that a child writes and others read: one a reading of a part.
+class Shared {
+ public:
+  explicit Shared(std::size_t size) : size_(size) {
+    void* const at =
+        ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (at == MAP_FAILED) throw std::bad_alloc();
+    data_ = static_cast<double*>(at);
+  }
+  Shared(const Shared&) = delete;
+  Shared& operator=(const Shared&) = delete;
+  ~Shared() { ::munmap(data_, bytes()); }
+  std::span<double> values() { return {data_, size_}; }
+
+ private:
+  std::size_t bytes() const { return std::max<std::size_t>(size_, 1) * sizeof(double); }
+  std::size_t size_;
+  double* data_ = nullptr;
+};
+
+/// What was fitted last of a part.
+struct Fitted {
+  std::string key;
+  std::shared_ptr<Shared> residual;
+};
+
+struct Job {
+  std::uint64_t number = 0;
+  Json request;
+  std::string key, kind, part;
+};
+
+struct Running {
+  Job job;
+  pid_t child = -1;
+  process::Handle pipe{};
+  std::string received{};
+  std::shared_ptr<Shared> residual{};
+  Clock::time_point begun = Clock::now();
+  int told = 0;  ///< seconds that were reported
+};
+
+bool write_all(int fd, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(fd, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+  return true;
+}
+
+std::string words_of(const Error& e) {
+  return (e.file.empty() ? "" : e.file + (e.line != 0 ? ":" + std::to_string(e.line) : "") + ": ") +
+         e.message;
+}
+
+/// The first byte of what a child sends: an answer, or why there is none.
+constexpr char answers = '+', refuses = '-';
+
+std::string answer_of(Bench& bench, const Job& job, std::span<double> residual, bool fitted) {
+  try {
+    auto done = calculate(bench, job.request, residual, fitted);
+    if (done) return answers + *done;
+    return refuses + words_of(done.error());
+  } catch (const std::bad_alloc&) {
+    return refuses + std::string("out of memory (the limit is in site.toml, [limits])");
+  } catch (const std::exception& e) {
+    return refuses + std::string(e.what());
+  }
+}
+
+[[noreturn]] void do_job(Bench& bench, const Job& job, int pipe, std::span<double> residual,
+                         bool fitted) {
+  process::init_child();
+  process::limit_memory(bench.place->context.site.limits.memory_MB);
+  if (!needs_files(job.kind)) {
+    std::string why = process::confine_files();
+    if (why.empty()) why = process::confine_computing();
+    if (!why.empty()) {
+      write_all(pipe, refuses + ("the plugins cannot be confined: " + why));
+      ::_exit(1);
+    }
+  }
+  const std::string answer = answer_of(bench, job, residual, fitted);
+  ::_exit(write_all(pipe, answer) ? 0 : 1);
+}
+
+class Loop {
+ public:
+  Loop(Bench bench, process::Handle channel)
+      : bench_(std::move(bench)),
+        channel_(std::move(channel)),
+        seconds_(bench_.place->context.site.limits.seconds) {}
+
+  /// Until the server has gone.
+  void run() {
+    tell(0, job_state::opened, storage::dump(described(bench_)));
+    while (!gone_) {
+      start_what_may();
+      wait();
+      look_after();
+    }
+    for (auto& [number, one] : running_) process::end_child(one.child);
+  }
+
+ private:
+  static constexpr std::size_t most_running = 3, most_slow = 2, most_waiting = 64;
+
+  static bool is_slow(const Job& job) { return job.kind == "explain"; }
+
+  void tell(std::uint64_t number, const char* state, std::string_view text) {
+    process::Parcel parcel;
+    parcel.add(number).add(state).add(text);
+    if (!process::write_text(channel_.get(), parcel.bytes())) gone_ = true;
+  }
+
+  void start_what_may() {
+    std::size_t slow = 0;
+    for (const auto& [number, one] : running_) slow += is_slow(one.job) ? 1 : 0;
+    for (const bool is_quick : {true, false})
+      for (auto it = waiting_.begin(); it != waiting_.end();) {
+        const bool may = is_slow(*it) != is_quick && running_.size() < most_running &&
+                         (is_quick || slow < most_slow);
+        if (!may) {
+          ++it;
+          continue;
+        }
+        slow += is_quick ? 0 : 1;
+        start(*it);
+        it = waiting_.erase(it);
+      }
+  }
+
+  void start(const Job& job) {
+    std::shared_ptr<Shared> residual;
+    const auto known = fitted_.find(job.part);
+    const bool fitted = job.kind != "fit" && known != fitted_.end() && known->second.key == job.key;
+    const modelling::PartModel* const part = bench_.part(job.part);
+    try {
+      residual = fitted ? known->second.residual
+                        : std::make_shared<Shared>(part != nullptr ? part->part.table.size() : 0);
+    } catch (const std::bad_alloc&) {
+      return tell(job.number, job_state::failed, "out of memory");
+    }
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0)
+      return tell(job.number, job_state::failed, std::strerror(errno));
+    process::Handle from(ends[0]), to(ends[1]);
+    std::cout.flush();
+    const pid_t child = process::fork_patiently();
+    if (child < 0) return tell(job.number, job_state::failed, std::strerror(errno));
+    if (child == 0) {
+      from = process::Handle();
+      channel_ = process::Handle();
+      do_job(bench_, job, to.get(), residual->values(), fitted);
+    }
+    tell(job.number, job_state::running, "0");
+    running_[job.number] = {job, child, std::move(from), "", std::move(residual), Clock::now(), 0};
+  }
+
+  void wait() {
+    std::vector<pollfd> all{{channel_.get(), POLLIN, 0}};
+    for (const auto& [number, one] : running_) all.push_back({one.pipe.get(), POLLIN, 0});
+    constexpr int tick = 200;
+    if (::poll(all.data(), all.size(), running_.empty() ? -1 : tick) <= 0) return;
+    if (all.front().revents != 0) take_request();
+    std::size_t k = 1;
+    std::vector<std::uint64_t> ended;
+    for (auto& [number, one] : running_) {
+      if (k < all.size() && all[k].fd == one.pipe.get() && all[k].revents != 0 && !read_from(one))
+        ended.push_back(number);
+      ++k;
+    }
+    for (const std::uint64_t number : ended) finish(number);
+  }
+
+  /// False at the end.
+  static bool read_from(Running& one) {
+    std::array<char, 1 << 16> bytes;
+    const ssize_t n = ::read(one.pipe.get(), bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) return true;
+    if (n <= 0) return false;
+    one.received.append(bytes.data(), static_cast<std::size_t>(n));
+    return true;
+  }
+
+  void take_request() {
+    std::string bytes;
+    if (!process::read_text(channel_.get(), bytes)) {
+      gone_ = true;
+      return;
+    }
+    process::Parcel parcel(std::move(bytes));
+    const std::string what = parcel.text();
+    const std::uint64_t number = parcel.number();
+    if (what == "cancel") return cancel(number);
+    Job job{number, Json::parse(parcel.text()), "", "", ""};
+    job.kind = job.request.value("kind", "");
+    job.part = job.request.value("part", "");
+    job.key = trial_key(job.request);
+    if (waiting_.size() == most_waiting)
+      return tell(number, job_state::failed, "too many requests wait");
+    waiting_.push_back(std::move(job));
+  }
+
+  void cancel(std::uint64_t number) {
+    std::erase_if(waiting_, [&](const Job& job) { return job.number == number; });
+    const auto found = running_.find(number);
+    if (found == running_.end()) return;
+    if (needs_files(found->second.job.kind)) return;  // it may be writing
+    process::end_child(found->second.child);
+    running_.erase(found);
+  }
+
+  void finish(std::uint64_t number) {
+    const auto found = running_.find(number);
+    Running one = std::move(found->second);
+    running_.erase(found);
+    const process::ChildEnd end = process::wait_for_child(one.child, 5.0);
+    if (one.received.empty() || (!end.well && one.received.front() == answers))
+      return tell(number, job_state::failed,
+                  "a plugin brought the process down in which it ran: " +
+                      (end.well ? std::string("it ended without an answer") : end.words));
+    const std::string_view text = std::string_view(one.received).substr(1);
+    if (one.received.front() == refuses) return tell(number, job_state::failed, text);
+    if (one.job.kind == "fit") fitted_[one.job.part] = {one.job.key, one.residual};
+    if (one.job.kind == "save") take_saved(text);
+    tell(number, job_state::done, text);
+  }
+
+  void take_saved(std::string_view text) {
+    const Json saved = Json::parse(text);
+    bench_.read.manifest->campaign.model = saved.at("model").get<std::vector<std::string>>();
+    bench_.read.inputs.front().second = saved.at("manifest_sha256").get<std::string>();
+  }
+
+  /// Ends what takes too long, and says how long the others have been at work.
+  void look_after() {
+    std::vector<std::uint64_t> overdue;
+    for (auto& [number, one] : running_) {
+      const double seconds = std::chrono::duration<double>(Clock::now() - one.begun).count();
+      if (seconds > seconds_) {
+        overdue.push_back(number);
+      } else if (seconds >= one.told + 1) {
+        one.told = static_cast<int>(seconds);
+        tell(number, job_state::running, std::to_string(one.told));
+      }
+    }
+    for (const std::uint64_t number : overdue) {
+      process::end_child(running_.at(number).child);
+      running_.erase(number);
+      tell(number, job_state::failed,
+           "no answer within " + std::to_string(static_cast<int>(seconds_)) +
+               " s (site.toml, [limits] seconds)");
+    }
+  }
+
+  Bench bench_;
+  process::Handle channel_;
+  double seconds_;
+  std::deque<Job> waiting_;
+  std::map<std::uint64_t, Running> running_;
+  std::map<std::string, Fitted> fitted_;
+  bool gone_ = false;
+};
+
+}  // namespace
+
+void run_bench(const BenchWish& wish, process::Handle channel) {
+  try {
+    auto bench = open_bench(wish);
+    if (!bench) {
+      process::Parcel parcel;
+      parcel.add(std::uint64_t{0}).add(job_state::failed).add(words_of(bench.error()));
+      process::write_text(channel.get(), parcel.bytes());
+      ::_exit(1);
+    }
+    Loop(std::move(*bench), std::move(channel)).run();
+  } catch (const std::exception& e) {
+    std::cerr << "nonio live: " << e.what() << "\n";
+    ::_exit(1);
+  }
+  ::_exit(0);
+}
+
+}  // namespace nonio::host::live

@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: Apache-2.0
+// Long: one function for each request, on the same few values.
+#include "host/live/calculation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "host/live/columns.h"
+#include "host/live/documents.h"
+#include "host/modelling/model_fit.h"
+#include "host/modelling/model_json.h"
+#include "host/process/keep_apart.h"
+#include "nonio/reports/residuals.h"
+#include "nonio/reports/wording.h"
+#include "nonio/workbench/data.h"
+
+namespace nonio::host::live {
+using modelling::PartModel;
+using storage::Json;
+
+namespace {
+
+modelling::ModelWords words_of(const Bench& bench) {
+  return {bench.place->context.templates, bench.language()};
+}
+
+std::string kind_of(const PartModel& part) {
+  const std::string kind = modelling::kind_of(part.part);
+  return kind == "axis" && part.part.axes.front().rotary ? "rotary" : kind;
+}
+
+Json axis_json(const Axis& axis) {
+  Json one = {{"name", axis.name}, {"rotary", axis.rotary}};
+  if (axis.travel) {
+    const Quantity q = position_of(axis.rotary);
+    storage::put(one, "from", axis.travel->first, q);
+    storage::put(one, "to", axis.travel->second, q);
+  }
+  storage::put(one, "screw_pitch", axis.screw_pitch, Quantity::length);
+  return one;
+}
+
+Json machine_json(const Machine& machine) {
+  Json json = {{"maker", machine.maker},         {"model", machine.model},
+               {"serial", machine.serial},       {"asset", machine.asset},
+               {"structure", machine.structure}, {"axes", Json::array()}};
+  for (const Axis& axis : machine.axes) json["axes"].push_back(axis_json(axis));
+  return json;
+}
+
+/// Ends of each line in the volume, mm: the readings that lie farthest apart along it.
+Json lines_in_space(const model::Part& part) {
+  struct Ends {
+    std::size_t low = 0, high = 0;
+    bool any = false;
+  };
+  std::vector<Ends> ends(part.measurements.size());
+  for (std::size_t i = 0; i < part.along.size(); ++i) {
+    Ends& e = ends[part.measurement[i]];
+    if (!e.any) e = {i, i, true};
+    if (part.along[i] < part.along[e.low]) e.low = i;
+    if (part.along[i] > part.along[e.high]) e.high = i;
+  }
+  const auto point = [&](std::size_t row) {
+    Json at = Json::array();
+    for (const char* axis : {"X", "Y", "Z"}) {
+      const auto* column = part.table.axis(axis);
+      const double x = column == nullptr ? 0.0 : column->position[row];
+      at.push_back(std::isfinite(x) ? printed(x, Quantity::length) : 0.0);
+    }
+    return at;
+  };
+  Json lines = Json::array();
+  for (std::size_t k = 0; k < ends.size(); ++k)
+    if (ends[k].any)
+      lines.push_back({{"id", part.measurements[k]},
+                       {"from", point(ends[k].low)},
+                       {"to", point(ends[k].high)}});
+  return {{"lines", std::move(lines)}};
+}
+
+Json card_of(const modelling::ModelWords& words, const std::string& effect) {
+  Json card = Json::object();
+  for (const char* what : {"title", "is", "size", "looks", "alike", "cure"})
+    if (std::string text = words.card(effect, what); !text.empty()) card[what] = std::move(text);
+  return card;
+}
+
+Json catalogue_json(const Bench& bench) {
+  const modelling::ModelWords words = words_of(bench);
+  Json list = Json::array();
+  for (const PartModel& part : bench.parts) {
+    for (const model::Term& term : part.catalogue)
+      list.push_back({{"effect", term.name()},
+                      {"part", part.part.name},
+                      {"card", card_of(words, term.name())},
+                      {"compensable", term.effect->compensable},
+                      {"why_not", nullptr}});
+    for (const model::Candidate& c : part.left_out)
+      list.push_back(
+          {{"effect", c.term.name()},
+           {"part", part.part.name},
+           {"card", card_of(words, c.term.name())},
+           {"compensable", c.term.effect->compensable},
+           {"why_not", words.unseen(c, modelling::place_of(part, bench.campaign(), c.rows))}});
+  }
+  return list;
+}
+
+/// Which rows of each measurement's table are left; empty: all.
+using Kept = std::vector<std::vector<std::uint32_t>>;
+
+Expected<Kept> exclude(Bench& bench, const Json& request) {
+  const auto& measurements = bench.campaign().measurements;
+  Kept kept(measurements.size());
+  std::map<std::size_t, std::vector<char>> masks;
+  for (const Json& one : request.value("excluded", Json::array())) {
+    const auto id = one.at("measurement").get<std::string>();
+    const auto row = one.at("row").get<std::size_t>();
+    const auto m = std::find_if(measurements.begin(), measurements.end(),
+                                [&](const Measurement& x) { return x.id == id; });
+    const auto at = static_cast<std::size_t>(m - measurements.begin());
+    if (m == measurements.end() || row >= bench.read.observations[at].size())
+      return fail("there is no reading " + std::to_string(row) + " of measurement " + id);
+    auto& mask = masks[at];
+    mask.resize(bench.read.observations[at].size(), 1);
+    mask[row] = 0;
+  }
+  for (const auto& [at, mask] : masks) {
+    for (std::uint32_t row = 0; row < mask.size(); ++row)
+      if (mask[row] != 0) kept[at].push_back(row);
+    keep_rows(bench.read.observations[at], mask);
+  }
+  return kept;
+}
+
+Expected<void> try_periods(Bench& bench, const Json& request) {
+  const Json periods = request.value("period_mm", Json::object());
+  for (const auto& [name, mm] : periods.items()) {
+    auto& axes = bench.read.manifest->campaign.machine.axes;
+    const auto axis = std::find_if(axes.begin(), axes.end(),
+                                   [&, &n = name](const Axis& a) { return a.name == n; });
+    if (axis == axes.end() || axis->rotary)
+      return fail("period_mm: the machine has no linear axis \"" + name + "\"");
+    axis->screw_pitch = mm.get<double>() * 1e-3;
+  }
+  return {};
+}
+
+/// A part with the model that is tried.
+struct Tried {
+  PartModel part;
+  std::vector<std::size_t> row;  ///< of each of its readings: that of the part with all readings
+};
+
+std::vector<std::size_t> rows_of(const PartModel& part, const PartModel& whole, const Bench& bench,
+                                 const Kept& kept) {
+  std::map<std::string, std::size_t> measurement;
+  for (std::size_t m = 0; m < bench.campaign().measurements.size(); ++m)
+    measurement[bench.campaign().measurements[m].id] = m;
+  std::map<std::pair<std::size_t, std::uint32_t>, std::size_t> place;
+  for (std::size_t i = 0; i < whole.part.row.size(); ++i)
+    place[{measurement[whole.part.measurements[whole.part.measurement[i]]], whole.part.row[i]}] = i;
+  std::vector<std::size_t> out(part.part.row.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::size_t m = measurement[part.part.measurements[part.part.measurement[i]]];
+    const std::uint32_t row = kept[m].empty() ? part.part.row[i] : kept[m].at(part.part.row[i]);
+    out[i] = place[{m, row}];
+  }
+  return out;
+}
+
+Expected<Tried> tried(Bench& bench, const Json& request) {
+  const auto name = request.at("part").get<std::string>();
+  const PartModel* whole = bench.part(name);
+  if (whole == nullptr) return fail("there is no part \"" + name + "\"");
+  const auto kept = exclude(bench, request);
+  if (!kept) return fail(kept.error());
+  if (auto done = try_periods(bench, request); !done) return fail(done.error());
+  auto parts =
+      modelling::part_models(bench.read, request.at("model").get<std::vector<std::string>>());
+  if (!parts) return fail(parts.error());
+  const bool all = request.value("excluded", Json::array()).empty();
+  for (PartModel& part : *parts) {
+    if (part.part.name != name) continue;
+    Tried out{std::move(part), {}};
+    if (all)
+      for (std::size_t i = 0; i < out.part.part.table.size(); ++i) out.row.push_back(i);
+    else
+      out.row = rows_of(out.part, *whole, bench, *kept);
+    return out;
+  }
+  return fail("no reading of part " + name + " is left");
+}
+
+std::vector<std::size_t> kept_rows(const ModelFit& fit) {
+  return workbench::kept_readings(fit).rows;
+}
+
+/// What model-html embeds, and `row`, where the page has not all readings: of each of them its row
+/// in the part as the files have it.
+Expected<std::string> page_data(const Bench& bench, const ModelFit& fit,
+                                const std::vector<std::size_t>& rows) {
+  const reports::Wording words(bench.place->context.templates, bench.language(), {"pictures"});
+  const workbench::Drawn drawn{bench.campaign(), fit, words, reports::picture_words(fit, words)};
+  const workbench::Kept kept = workbench::kept_readings(fit);
+  std::string data = workbench::data_of(drawn, kept);
+  Json places = Json::array();
+  bool same = true;
+  for (const std::size_t k : kept.rows) {
+    same = same && rows[k] == places.size();
+    places.push_back(rows[k]);
+  }
+  if (!same) data = "{\"row\":" + places.dump() + "," + data.substr(1);
+  if (const auto complete = words.complete(); !complete) return fail(complete.error());
+  return data;
+}
+
+Json text_of(const Bench& bench, const PartModel& part, const model::Comparison& c) {
+  const modelling::ModelWords words = words_of(bench);
+  Json text = Json::object();
+  if (c.lack_of_fit && std::isfinite(c.lack_of_fit->F))
+    text["left"] = words.lack_of_fit(c, part.deviation());
+  Json places = Json::array();
+  for (const model::Place& place : c.seats) places.push_back(words.place(place, part.deviation()));
+  text["places"] = std::move(places);
+  return text;
+}
+
+Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> residual) {
+  const auto one = tried(bench, request);
+  if (!one) return fail(one.error());
+  auto compared = modelling::compare_part(one->part);
+  if (!compared) return fail(compared.error());
+  std::fill(residual.begin(), residual.end(), std::nan(""));
+  for (std::size_t i = 0; i < one->row.size(); ++i)
+    residual[one->row[i]] = compared->fit.residual[i];
+  const ModelFit fitted = modelling::fitted_value(one->part, *compared);
+  auto data = page_data(bench, fitted, one->row);
+  if (!data) return data;
+  const std::string text = storage::dump(text_of(bench, one->part, *compared));
+  const modelling::Compared both{one->part, std::move(*compared)};
+  return "{\"compare\":" + modelling::part_json(both, bench.campaign(), words_of(bench)) +
+         ",\"page\":" + *data + ",\"text\":" + text + "}";
+}
+
+/// A column over the readings that the page has.
+Json column(const std::vector<double>& values, const std::vector<std::size_t>& rows, Quantity q) {
+  Json list = Json::array();
+  for (const std::size_t row : rows) {
+    const double shown = printed(values[row], q);
+    list.push_back(std::isfinite(shown) ? Json(shown) : Json(nullptr));
+  }
+  return list;
+}
+
+/// What each candidate would take away, beside the model, on these readings.
+Json fingerprints_of(const PartModel& part, const model::Explanation& e) {
+  constexpr std::size_t most = 40;
+  const std::vector<std::size_t> rows = kept_rows(modelling::fitted_value(part, e.comparison));
+  Json list = Json::array();
+  for (const model::Candidate& c : e.candidates) {
+    if (!modelling::is_ranked(c) || list.size() == most) continue;
+    std::vector<model::Term> terms = e.comparison.fit.terms;
+    terms.push_back(c.term);
+    const auto with = model::fit(part.part.table, terms, e.comparison.fit.weight);
+    if (!with) continue;
+    Json one = {{"effect", c.term.name()},
+                {"unit", unit_of(part.deviation()).symbol},
+                {"says", column(with->part.back(), rows, part.deviation())}};
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+Expected<std::string> explain(Bench& bench, const Json& request) {
+  const auto one = tried(bench, request);
+  if (!one) return fail(one.error());
+  auto explained = modelling::explain_part(one->part, request.value("seed", std::uint64_t{1}));
+  if (!explained) return fail(explained.error());
+  const Json fingerprints = fingerprints_of(one->part, *explained);
+  const modelling::Explained both{one->part, std::move(*explained)};
+  return "{\"explain\":" + modelling::part_json(both, bench.campaign(), words_of(bench)) +
+         ",\"fingerprints\":" + storage::dump_line(fingerprints) + "}";
+}
+
+Expected<std::string> without(Bench& bench, const Json& request) {
+  const auto one = tried(bench, request);
+  if (!one) return fail(one.error());
+  const auto compared = modelling::compare_part(one->part);
+  if (!compared) return fail(compared.error());
+  const auto rows = kept_rows(modelling::fitted_value(one->part, *compared));
+  const Quantity q = one->part.deviation();
+  Json list = Json::array();
+  for (const ModelFit::Without& w : modelling::without_each(one->part)) {
+    Json item = {{"effect", w.effect}};
+    storage::put(item, "rms", w.rms, q);
+    storage::put(item, "cv_rms", w.cv_rms, q);
+    item["residual"] = column(w.residual, rows, q);
+    list.push_back(std::move(item));
+  }
+  Json out = {{"without", std::move(list)}};
+  if (one->part.part.table.size() > 0 && !one->part.names().empty() && out["without"].empty())
+    out["why_not"] = "more than 20000 readings: each fit takes seconds";
+  return storage::dump_line(out);
+}
+
+/// Of each reading of the part what was fitted before, or now.
+Expected<void> fill_residuals(Bench& bench, const Json& request, std::span<double> residual,
+                              bool fitted) {
+  if (fitted) return {};
+  const auto done = fit(bench, request, residual);
+  if (!done) return fail(done.error());
+  return {};
+}
+
+}  // namespace
+
+const PartModel* Bench::part(const std::string& name) const {
+  const auto found = std::find_if(parts.begin(), parts.end(),
+                                  [&](const PartModel& p) { return p.part.name == name; });
+  return found == parts.end() ? nullptr : &*found;
+}
+
+Expected<Bench> open_bench(const BenchWish& wish) {
+  process::keep_plugins_apart(wish.own_plugins);
+  Bench bench{wish.folder, nullptr, {}, {}};
+  auto place = reading::open_workplace(wish.folder, wish.plugin_folders, wish.template_folders,
+                                       wish.version);
+  if (!place) return fail(place.error());
+  bench.place = std::move(*place);
+  bench.read = reading::read_campaign(wish.folder, bench.place->context, [](const std::string&) {});
+  if (!bench.read.manifest) return fail(bench.read.errors.front());
+  auto parts = modelling::part_models(bench.read, {});
+  if (!parts) return fail(parts.error());
+  bench.parts = std::move(*parts);
+  return bench;
+}
+
+Json described(const Bench& bench) {
+  const Campaign& campaign = bench.campaign();
+  Json json = {{"id", campaign.id},
+               {"machine", machine_json(campaign.machine)},
+               {"customer", campaign.customer},
+               {"date", campaign.date},
+               {"language", bench.language()},
+               {"model", campaign.model},
+               {"parts", Json::array()},
+               {"catalogue", catalogue_json(bench)},
+               {"inputs", Json::object()},
+               {"mistakes", modelling::model_mistakes(campaign.model, bench.read)},
+               {"errors", Json::array()},
+               {"notes", bench.place->notes}};
+  for (const PartModel& part : bench.parts) {
+    json["parts"].push_back({{"name", part.part.name},
+                             {"kind", kind_of(part)},
+                             {"measurements", part.part.measurements},
+                             {"readings", part.part.table.size()}});
+    if (part.part.kind == model::Part::Kind::space)
+      json["parts"].back()["space"] = lines_in_space(part.part);
+  }
+  json["manifest_sha256"] = bench.read.inputs.front().second;
+  for (const auto& [name, digest] : bench.read.inputs) {
+    if (name == config::manifest_name) json["inputs"][name] = digest;
+    for (const Measurement& m : campaign.measurements)
+      if (name == reading::input_name(m.file)) json["inputs"][m.file] = digest;
+  }
+  for (const Error& e : bench.read.errors) json["errors"].push_back(storage::to_json(e));
+  json["seconds"] = bench.place->context.site.limits.seconds;
+  return json;
+}
+
+bool needs_files(const std::string& kind) { return kind == "save" || kind == "difference"; }
+
+std::string trial_key(const Json& request) {
+  Json key = Json::object();
+  for (const char* name : {"part", "model", "excluded", "period_mm"})
+    if (request.contains(name)) key[name] = request[name];
+  return key.dump();
+}
+
+Expected<std::string> calculate(Bench& bench, const Json& request, std::span<double> residual,
+                                bool fitted) {
+  const auto kind = request.at("kind").get<std::string>();
+  if (kind == "fit") return fit(bench, request, residual);
+  if (kind == "explain") return explain(bench, request);
+  if (kind == "without") return without(bench, request);
+  if (kind == "save") return save(bench, request);
+  if (kind == "difference") return difference(bench, request);
+  if (kind == "page" || kind == "report") {
+    if (auto kept = exclude(bench, request); !kept) return fail(kept.error());
+    if (auto done = try_periods(bench, request); !done) return fail(done.error());
+    return document(bench, request);
+  }
+  const PartModel* const part = bench.part(request.at("part").get<std::string>());
+  if (part == nullptr) return fail("there is no such part");
+  if (auto done = fill_residuals(bench, request, residual, fitted); !done)
+    return fail(done.error());
+  if (kind == "series") return series(*part, request, residual);
+  if (kind == "readings") return readings(*part, bench.campaign(), request, residual);
+  return fail("there is no request \"" + kind + "\"");
+}
+
+}  // namespace nonio::host::live

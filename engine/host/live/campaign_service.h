@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "host/live/launcher.h"
+#include "host/live/server.h"
+#include "host/live/service.h"
+
+namespace nonio::host::live {
+
+/// A service that has its processes, and no thread yet.
+class Starting : public Service {
+ public:
+  /// Threads may be made from now on.
+  virtual Expected<void> begin() = 0;
+};
+
+/// Folders with a campaign.toml below a site, relative to it, in order.
+std::vector<std::string> campaigns_in(const std::filesystem::path& site);
+
+/// Of a site: its morning, and the workbench of each of its campaigns. `shell`: the page.
+std::unique_ptr<Starting> site_service(const LiveWish& wish, Launcher launcher, std::string shell);
+
+/// Of a campaign, or of a site if the folder has no campaign.toml.
+Expected<std::unique_ptr<Starting>> service_of(const LiveWish& wish);
+
+}  // namespace nonio::host::live

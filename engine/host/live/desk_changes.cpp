@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a person changes: model, excluded readings, steps; saving; effects found one by one.
+#include <algorithm>
+
+#include "host/live/bench.h"
+#include "host/live/desk.h"
+#include "host/modelling/model_json.h"
+
+namespace nonio::host::live {
+using storage::Json;
+
+namespace {
+
+constexpr std::size_t most_added = 12;  // as `nonio explain --auto`
+constexpr std::size_t longest_text = 2000;
+
+Answer json_answer(int status, const Json& json) {
+  return {status, "application/json", storage::dump_line(json)};
+}
+
+}  // namespace
+
+Answer Desk::post(const std::string& what, const Json& body, const Request& request) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (bench_state_ == "failed" && what != "reload") return refusal(503, bench_error_);
+    if (order_.empty() && what != "reload")
+      return refusal(409, "the campaign is not read yet; wait for event state");
+  }
+  if (what == "exclude") return exclude(body);
+  if (what == "suggest" || what == "finish") return search(what);
+  if (what == "cancel") return cancel(body);
+  if (what == "save") return save(request);
+  if (what == "reload") return reload();
+  const std::lock_guard lock(mutex_);
+  if (what != "name") end_search();
+  const auto before = session_.trial().model;
+  std::string told;
+  const auto done = change(what, body, told);
+  if (told.empty()) told = command_of(name_, before, session_.trial().model);
+  return changed(done, told);
+}
+
+/// Also where it failed: with words.
+Answer Desk::changed(const Expected<void>& done, const std::string& command_now) {
+  if (!done) return refusal(422, done.error().message);
+  refresh();
+  publish("state", "", Json::object());
+  return json_answer(200, {{"version", session_.version()}, {"command", command_now}});
+}
+
+std::optional<std::string> Desk::mistake_in(const std::vector<std::string>& effects) const {
+  for (const std::string& effect : effects) {
+    if (std::find(session_.saved().begin(), session_.saved().end(), effect) !=
+        session_.saved().end())
+      continue;
+    const Json& catalogue = campaign_.at("catalogue");
+    if (std::none_of(catalogue.begin(), catalogue.end(),
+                     [&](const Json& one) { return one.at("effect") == effect; }))
+      return "no measurement of this campaign can show \"" + effect.substr(0, 100) + "\"";
+  }
+  return std::nullopt;
+}
+
+Expected<void> Desk::change_model(const Json& body) {
+  if (body.contains("drop")) return session_.drop(body.at("drop").get<std::string>());
+  if (body.contains("add")) {
+    const auto effect = body.at("add").get<std::string>();
+    if (const auto mistake = mistake_in({effect})) return fail(*mistake);
+    return session_.add(effect);
+  }
+  const auto model = body.at("model").get<std::vector<std::string>>();
+  if (const auto mistake = mistake_in(model)) return fail(*mistake);
+  return session_.set(model);
+}
+
+Expected<void> Desk::change(const std::string& what, const Json& body, std::string& told) {
+  if (what == "model") return change_model(body);
+  if (what == "undo") return session_.undo();
+  if (what == "redo") return session_.redo();
+  if (what == "goto") return session_.go_to(body.at("n").get<std::size_t>());
+  if (what == "name") {
+    told = command();
+    return session_.name(body.at("n").get<std::size_t>(), body.at("name").get<std::string>());
+  }
+  told = "nonio compare " + quoted_for_shell(name_);
+  if (what == "include")
+    return session_.include(body.at("part").get<std::string>(),
+                            body.at("rows").get<std::vector<std::size_t>>());
+  const auto axis = body.at("axis").get<std::string>();
+  const Json& axes = campaign_.at("machine").at("axes");
+  if (std::none_of(axes.begin(), axes.end(), [&](const Json& one) {
+        return one.at("name") == axis && !one.at("rotary").get<bool>();
+      }))
+    return fail("the machine has no linear axis \"" + axis.substr(0, 40) + "\"");
+  return session_.period(axis, body.at("period_mm").get<double>());
+}
+
+Answer Desk::exclude(const Json& body) {
+  const auto part = body.at("part").get<std::string>();
+  const auto rows = body.at("rows").get<std::vector<std::size_t>>();
+  const auto why = body.at("why").get<std::string>();
+  if (why.empty() || why.size() > longest_text || why.find('\n') != std::string::npos)
+    return refusal(422, "why: expected the reason in one line");
+  if (rows.empty()) return refusal(422, "rows: expected at least one reading");
+  std::unique_lock lock(mutex_);
+  if (!has_part(part)) return refusal(404, "there is no part \"" + part.substr(0, 100) + "\"");
+  end_search();
+  Json wish = request_for("readings", part);
+  wish["rows"] = rows;
+  const Waiting found = wait_for(lock, wish, "");
+  if (!found.well) return refusal(422, found.text);
+  std::vector<Excluded> readings;
+  const Json list = Json::parse(found.text);
+  for (const Json& one : list.at("readings"))
+    readings.push_back({part, one.at("row").get<std::size_t>(),
+                        one.at("measurement").get<std::string>(), one.at("file").get<std::string>(),
+                        one.at("measurement_row").get<std::uint32_t>(),
+                        one.value("line", std::uint64_t{0}), why});
+  return changed(session_.exclude(readings), "nonio compare " + quoted_for_shell(name_));
+}
+
+Answer Desk::reload() {
+  const std::lock_guard lock(mutex_);
+  end_search();
+  read_again_ = true;
+  bench_state_ = "opening";
+  fits_.clear();
+  explanations_.clear();
+  bench_->restart();
+  forget_parts();
+  publish("state", "", Json::object());
+  return json_answer(202, {{"version", session_.version()},
+                           {"command", "nonio compare " + quoted_for_shell(name_)}});
+}
+
+Answer Desk::difference() {
+  std::unique_lock lock(mutex_);
+  const Waiting done = wait_for(lock, request_for("difference", ""), "");
+  if (!done.well) return refusal(done.done ? 422 : 503, done.text);
+  Json json = {{"version", session_.version()}};
+  json.update(Json::parse(done.text));
+  json["model"] = session_.trial().model;
+  json["command"] = command();
+  json["by_hand"] = by_hand();
+  return json_answer(200, json);
+}
+
+Answer Desk::save(const Request& request) {
+  const std::string wanted = request.head.first("If-Match");
+  if (wanted.empty()) return refusal(428, "expected If-Match: \"<manifest_sha256 of /api/state>\"");
+  std::unique_lock lock(mutex_);
+  const Waiting looked = wait_for(lock, request_for("difference", ""), "");
+  if (!looked.well) return refusal(looked.done ? 422 : 503, looked.text);
+  const Json now = Json::parse(looked.text);
+  const std::string digest = now.at("manifest_sha256").get<std::string>();
+  if (wanted != "\"" + digest + "\"" || now.at("changed_on_disk").get<bool>()) {
+    Json json = {{"error",
+                  "campaign.toml is not the file that this page has read; nothing was written. "
+                  "Read it again, then decide"},
+                 {"status", 412},
+                 {"yours", session_.trial().model},
+                 {"manifest_sha256", digest}};
+    json["on_disk"] = now.value("on_disk", Json(nullptr));
+    return json_answer(412, json);
+  }
+  const Json body = Json::parse(request.body.empty() ? "{}" : request.body);
+  const std::string told = command();
+  Json wish = request_for("save", "");
+  wish["why"] = body.value("why", "").substr(0, longest_text);
+  const Waiting done = wait_for(lock, wish, "");
+  if (!done.well)
+    return refusal(done.text.find("changed while") != std::string::npos ? 412 : 422, done.text);
+  const Json saved = Json::parse(done.text);
+  session_.was_saved(saved.at("model").get<std::vector<std::string>>());
+  campaign_["manifest_sha256"] = saved.at("manifest_sha256");
+  campaign_["inputs"]["campaign.toml"] = saved.at("manifest_sha256");
+  watch_->expect(campaign_.at("inputs").get<std::map<std::string, std::string>>());
+  publish("state", "", Json::object());
+  return json_answer(200, {{"version", session_.version()},
+                           {"manifest_sha256", saved.at("manifest_sha256")},
+                           {"steps", saved.at("steps")},
+                           {"by_hand", by_hand()},
+                           {"command", told}});
+}
+
+// ---- effects, one after the other
+
+Answer Desk::search(const std::string& kind) {
+  const std::lock_guard lock(mutex_);
+  if (bench_state_ != "open") return refusal(409, "the campaign is not read yet");
+  end_search();
+  searching_ = Searching{++searches_, kind, {}, {}};
+  for (const std::string& part : order_) ask_explanation(part, parts_[part]);
+  publish("progress", "job", {{"job", searching_->job}, {"kind", kind}, {"state", "running"}});
+  Json answer = {{"version", session_.version()},
+                 {"command", "nonio explain " + quoted_for_shell(name_) +
+                                 (kind == "finish" ? " --auto" : "")}};
+  const std::uint64_t job = searching_->job;
+  search_on();
+  answer["version"] = session_.version();
+  if (!searching_) return json_answer(200, answer);  // all was known
+  answer["job"] = job;
+  return json_answer(202, answer);
+}
+
+bool Desk::is_explained() const {
+  return std::all_of(order_.begin(), order_.end(), [&](const std::string& part) {
+    const std::string& state = parts_.at(part).explain.state;
+    return state == "done" || state == "failed";
+  });
+}
+
+void Desk::search_ended(const std::string& state, const std::string& says) {
+  publish("done", "job",
+          {{"job", searching_->job},
+           {"kind", searching_->kind},
+           {"state", state},
+           {"added", searching_->added},
+           {"says", says}});
+  searching_.reset();
+}
+
+void Desk::fail_search(const std::string& words) {
+  publish("failed", "job", {{"job", searching_->job}, {"error", words}});
+  searching_.reset();
+}
+
+void Desk::end_search() {
+  if (searching_) search_ended("cancelled", "");
+}
+
+/// When all parts are explained: the next effect, or the end.
+void Desk::search_on() {
+  while (searching_ && is_explained()) {
+    std::vector<modelling::Told> told;
+    std::string says;
+    for (const std::string& part : order_) {
+      const PartState& one = parts_.at(part);
+      if (one.explain.state == "failed") {
+        auto& before = searching_->failed_before;
+        if (searching_->added.empty()) {
+          before.push_back(part);
+        } else if (std::find(before.begin(), before.end(), part) == before.end()) {
+          const std::string words = one.explain.error;
+          if (session_.undo()) searching_->added.pop_back();
+          fail_search(words);
+          refresh();
+          publish("state", "", Json::object());
+          return;
+        }
+        continue;
+      }
+      const Json verdict = Json::parse(one.explain.text).at("explain");
+      told.push_back({verdict.at("verdict").at("kind").get<std::string>(),
+                      verdict.at("verdict").value("effect", ""),
+                      verdict.at("certain").get<std::vector<std::string>>()});
+      says += (says.empty() ? "" : "\n") + verdict.at("verdict").value("says", "");
+    }
+    const std::string next = modelling::next_effect(told);
+    if (next.empty()) return search_ended("done", says);
+    if (searching_->added.size() == most_added)
+      return fail_search("12 effects were added and one is still missing; stopped");
+    if (const auto added = session_.add(next); !added) return fail_search(added.error().message);
+    searching_->added.push_back(next);
+    refresh();
+    publish("state", "", Json::object());
+    if (searching_->kind == "suggest") return search_ended("done", says);
+    publish("progress", "job",
+            {{"job", searching_->job},
+             {"kind", searching_->kind},
+             {"state", "running"},
+             {"added", searching_->added}});
+  }
+}
+
+Answer Desk::cancel(const Json& body) {
+  const auto job = body.at("job").get<std::uint64_t>();
+  const std::lock_guard lock(mutex_);
+  if (!searching_ || searching_->job != job)
+    return refusal(404, "there is no job " + std::to_string(job) + " at work");
+  end_search();
+  return json_answer(200, {{"version", session_.version()}, {"command", ""}});
+}
+
+}  // namespace nonio::host::live

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/live/events.h"
+#include "host/live/guard.h"
+
+/// What stands between HTTP and what a person does: requests that the guard let through, answers.
+namespace nonio::host::live {
+
+struct Request {
+  const Head& head;
+  const Route& route;
+  const std::vector<std::string>& names;  ///< what stands for the names in the route's path
+  std::string body;
+
+  /// A value of the query; none if it is not there.
+  std::optional<std::string> query(std::string_view name) const;
+};
+
+struct Answer {
+  int status = 200;
+  std::string type = "application/json", body;
+  std::vector<std::pair<std::string, std::string>> headers{};
+  std::shared_ptr<Listener> stream{};  ///< instead of a body: events until one side ends
+  Events* events = nullptr;            ///< of the stream
+};
+
+/// {"error": words, "status": status}
+Answer refusal(int status, const std::string& words);
+
+class Service {
+ public:
+  virtual ~Service() = default;
+  virtual const std::vector<Route>& routes() const = 0;
+  virtual Answer answer(const Request& request) = 0;
+  /// All streams end; nothing is begun any more.
+  virtual void close() = 0;
+};
+
+/// The page's own files, which have no data.
+std::vector<Route> shell_routes();
+/// One of them, with the words of a language in the shell; status 404 if it is none. Answers
+/// If-None-Match.
+Answer shell_file(const Request& request, const std::string& shell);
+
+}  // namespace nonio::host::live

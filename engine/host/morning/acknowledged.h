@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "host/morning/series.h"
+#include "nonio/reports/site.h"
+
+namespace nonio::host::morning {
+
+/// A line that somebody has acknowledged, until then, is known. It is new again when what it says
+/// happened after that day, or when its value has moved by more than U since: from the value that
+/// the acknowledgement names, else from the last one before its day.
+void acknowledge(reports::MorningLine& line, const AssessedMachine& machine,
+                 const history::StoredLogs& logs, const std::string& date);
+
+}  // namespace nonio::host::morning

@@ -1,0 +1,448 @@
+// SPDX-License-Identifier: Apache-2.0
+// Long: one night over all machines, step by step, with what is kept of each.
+#include "host/morning/assess.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "host/history/query.h"
+#include "host/history/reader.h"
+#include "host/morning/bytes.h"
+#include "host/morning/changes.h"
+#include "host/morning/days.h"
+#include "host/morning/describe.h"
+#include "host/morning/kept_machines.h"
+#include "host/morning/lines.h"
+#include "host/morning/proposals.h"
+#include "host/morning/series.h"
+#include "host/morning/site_tables.h"
+#include "host/storage/digest.h"
+
+namespace nonio::host::morning {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// When a machine is measured again, and which rule says so.
+struct Due {
+  std::string day, why;
+};
+
+std::optional<int> months_of_rule(const std::string& machine, const history::StoredLogs& logs) {
+  auto rule = logs.due.find(machine);
+  if (rule == logs.due.end()) rule = logs.due.find("");
+  return rule == logs.due.end() ? std::nullopt : std::optional(rule->second);
+}
+
+Due due_of(const AssessedMachine& m, const history::StoredLogs& logs) {
+  const auto months = months_of_rule(m.state.machine.name, logs);
+  if (!months || m.stored.campaigns.empty()) return {};
+  return {months_later(m.stored.campaigns.back().day, *months),
+          "[[due]] months = " + std::to_string(*months)};
+}
+
+std::string page_of(const fs::path& out, const reports::MachineHistory& machine) {
+  return (out / reports::machines_folder / machine.file).string();
+}
+
+}  // namespace
+
+class Assessment::State {
+ public:
+  State(const fs::path& out, const Tonight& tonight, const std::function<void()>& alive,
+        history::StoreReader store, KeptMachines kept)
+      : out_(out),
+        tonight_(tonight),
+        alive_(alive),
+        store_(std::move(store)),
+        before_(std::move(kept)),
+        fits_(Fits::kept_in(out)) {}
+
+  Expected<void> make() {
+    auto logs = store_.logs();
+    if (!logs) return fail(logs.error());
+    logs_ = std::move(*logs);
+    if (auto well = list_machines(); !well) return well;
+    if (auto well = learn_all(); !well) return well;
+    if (auto well = fit_all(); !well) return well;
+    if (auto well = judge_all(); !well) return well;
+    return put_together();
+  }
+
+  /// What a page shows. Afterwards it is kept.
+  Expected<const reports::MachineHistory*> whole(std::size_t i) {
+    Assessed& m = machines_[i];
+    if (!m.described)
+      if (auto well = finish(m); !well) return fail(well.error());
+    m.read.reset();
+    m.described->proposal = site.machines[i].proposal;
+    return &*m.described;
+  }
+
+  /// All that a page is made of.
+  std::string page_key(std::size_t i, const std::string& templates) const {
+    const Assessed& m = machines_[i];
+    const auto lines = lines_.find(m.state.machine.name);
+    ByteWriter w;
+    w(m.kept.stood, templates, lines == lines_.end() ? std::string() : bytes_of(lines->second),
+      bytes_of(site.machines[i].proposal));
+    return storage::sha256(w.take());
+  }
+
+  bool has_page(std::size_t i, const std::string& templates) const {
+    const KeptMachine::Page& page = machines_[i].kept.page;
+    struct stat info {};
+    return !page.made_from.empty() && page.made_from == page_key(i, templates) &&
+           ::stat(page_of(out_, site.machines[i]).c_str(), &info) == 0 &&
+           static_cast<std::uint64_t>(info.st_size) == page.size && changed(info) == page.changed;
+  }
+
+  void note_page(std::size_t i, const std::string& templates) {
+    struct stat info {};
+    KeptMachine::Page& page = machines_[i].kept.page;
+    page = {};
+    if (::stat(page_of(out_, site.machines[i]).c_str(), &info) == 0)
+      page = {page_key(i, templates), static_cast<std::uint64_t>(info.st_size), changed(info)};
+    machines_[i].described.reset();
+  }
+
+  void keep() {
+    keep_trends();
+    KeptMachines now;
+    now.nights = std::move(before_.nights);
+    for (Assessed& m : machines_) now.machines.emplace(m.state.machine.name, std::move(m.kept));
+    now.keep_in(out_);
+  }
+  void keep_trends() {
+    for (const Assessed& m : machines_) fits_.retain(m.kept.fits);
+    fits_.keep_in(out_);
+  }
+
+  std::size_t count() const { return machines_.size(); }
+
+  reports::SiteHistory site;
+
+ private:
+  /// One machine on its way through an assessment.
+  struct Assessed {
+    history::MachineState state;
+    std::vector<config::Event> events;
+    std::vector<std::string> campaigns;  ///< those that count
+    KeptMachine kept;
+    std::optional<AssessedMachine> read{};  ///< out of the store, if it had to be
+    bool fitted = false;                    ///< `read` has its trends
+    std::vector<std::vector<double>> p_adjusted{};
+    std::optional<reports::MachineHistory> described{};
+  };
+
+  static std::int64_t changed(const struct stat& info) {
+    return std::int64_t{info.st_mtim.tv_sec} * 1'000'000'000 + info.st_mtim.tv_nsec;
+  }
+
+  /// With what was kept of them, as far as nothing is new.
+  Expected<void> list_machines() {
+    auto states = store_.machines();
+    if (!states) return fail(states.error());
+    auto evaluations = store_.evaluations();
+    if (!evaluations) return fail(evaluations.error());
+    auto numbers = store_.certificates();
+    if (!numbers) return fail(numbers.error());
+    if (auto well = count_tests(*evaluations); !well) return well;
+    std::map<std::string, std::vector<const history::StoredEvaluation*>> of_machine;
+    for (const auto& e : *evaluations) of_machine[e.machine].push_back(&e);
+    std::set<std::string> forgotten;
+    for (const config::Forgotten& f : logs_.forgotten) forgotten.insert(f.campaign);
+    for (const history::MachineState& state : *states) {
+      alive_();
+      Assessed m{state, events_of(state, *states, logs_), {}, {}};
+      ByteWriter rows;
+      put_identity(rows, m);
+      for (const history::StoredEvaluation* e : of_machine[state.machine.name]) {
+        rows(e->campaign, e->sha256, e->night, e->counts);
+        if (!e->counts) continue;
+        m.campaigns.push_back(e->campaign);
+        if (const auto n = numbers->find(e->campaign); n != numbers->end()) rows(n->second);
+      }
+      if (std::all_of(m.campaigns.begin(), m.campaigns.end(),
+                      [&](const std::string& id) { return forgotten.contains(id); }))
+        continue;  // everything of it was said to be gone on purpose
+      const std::string key = storage::sha256(rows.take());
+      if (const auto kept = before_.machines.find(state.machine.name);
+          kept != before_.machines.end() && kept->second.rows == key)
+        m.kept = std::move(kept->second);
+      m.kept.rows = key;
+      machines_.push_back(std::move(m));
+    }
+    return {};
+  }
+
+  static void put_identity(ByteWriter& rows, const Assessed& m) {
+    const history::NamedMachine& named = m.state.machine;
+    rows(named.name, named.stated.asset, named.stated.maker, named.stated.model,
+         named.stated.serial);
+    for (const config::Event& e : m.events) rows(e.date, e.axis, e.kind, e.text);
+    rows(std::uint64_t{m.events.size()});
+  }
+
+  /// A night's tests are counted once.
+  Expected<void> count_tests(const std::vector<history::StoredEvaluation>& evaluations) {
+    std::map<std::uint64_t, ByteWriter> of_night;
+    for (const history::StoredEvaluation& e : evaluations)
+      of_night[e.night](e.machine, e.campaign, e.sha256);
+    std::map<std::uint64_t, KeptMachines::Night> nights;
+    std::optional<std::uint64_t> first;
+    for (auto& [night, bytes] : of_night) {
+      const std::string key = storage::sha256(bytes.take());
+      const auto kept = before_.nights.find(night);
+      const bool same = kept != before_.nights.end() && kept->second.made_from == key;
+      nights[night] = {key, same ? kept->second.asked : 0};
+      if (!same && !first) first = night;
+    }
+    if (first) {
+      const auto counted = store_.followed_since(*first);
+      if (!counted) return fail(counted.error());
+      for (auto at = nights.lower_bound(*first); at != nights.end(); ++at) {
+        const auto found = counted->find(at->first);
+        at->second.asked = found == counted->end() ? 0 : found->second;
+      }
+    }
+    before_.nights = std::move(nights);
+    return {};
+  }
+
+  Expected<void> read(Assessed& m) {
+    auto stored = store_.machine(m.state.machine.name);
+    if (!stored) return fail(stored.error());
+    AssessedMachine read{m.state, std::move(*stored), m.events, {}, {}};
+    read.followed = followed_series(read.stored, read.events);
+    read.shown = shown_series(read.stored);
+    m.kept.fits.clear();
+    m.kept.series.resize(read.followed.size());
+    fits_.take_asked();
+    for (std::size_t k = 0; k < read.followed.size(); ++k)
+      m.kept.series[k].lesson = lesson_of(read.followed[k], fits_);
+    m.read = std::move(read);
+    m.fitted = false;
+    take_keys(m);
+    return {};
+  }
+
+  void take_keys(Assessed& m) {
+    for (std::string& key : fits_.take_asked()) m.kept.fits.push_back(std::move(key));
+  }
+
+  Expected<void> learn_all() {
+    std::vector<const Lesson*> lessons;
+    for (Assessed& m : machines_) {
+      alive_();
+      if (m.kept.stood.empty())
+        if (auto well = read(m); !well) return well;
+      for (const KeptMachine::Series& s : m.kept.series) lessons.push_back(&s.lesson);
+    }
+    learned_ = learn(lessons);
+    return {};
+  }
+
+  void fit_series(Assessed& m) {
+    fits_.take_asked();
+    for (std::size_t k = 0; k < m.read->followed.size(); ++k) {
+      KeptMachine::Series& kept = m.kept.series[k];
+      kept.manner = manner_of(kept.lesson.quantity, learned_);
+      fit(m.read->followed[k], kept.manner, fits_);
+      kept.tests = tests_of(m.read->followed[k]);
+    }
+    m.fitted = true;
+    take_keys(m);
+  }
+
+  Expected<void> fit_all() {
+    for (Assessed& m : machines_) {
+      alive_();
+      const bool as_before =
+          !m.read && std::all_of(m.kept.series.begin(), m.kept.series.end(),
+                                 [&](const KeptMachine::Series& s) {
+                                   return s.manner == manner_of(s.lesson.quantity, learned_);
+                                 });
+      if (as_before) continue;
+      if (!m.read)
+        if (auto well = read(m); !well) return well;
+      fit_series(m);
+    }
+    return {};
+  }
+
+  /// What changed, and the lines.
+  Expected<void> judge_all() {
+    std::vector<const SeriesTests*> tests;
+    for (const Assessed& m : machines_)
+      for (const KeptMachine::Series& s : m.kept.series) tests.push_back(&s.tests);
+    std::map<std::uint64_t, std::uint64_t> asked;
+    for (const auto& [night, of] : before_.nights) asked[night] = of.asked;
+    auto p = adjusted_by_night(tests, asked);
+    std::size_t next = 0;
+    for (Assessed& m : machines_) {
+      alive_();
+      for (std::size_t k = 0; k < m.kept.series.size(); ++k)
+        m.p_adjusted.push_back(std::move(p[next++]));
+      const std::string key = standing_key(m);
+      if (key == m.kept.stood && m.kept.date <= tonight_.date &&
+          tonight_.date <= m.kept.standing.until) {
+        m.read.reset();
+        continue;
+      }
+      if (auto well = finish(m); !well) return well;
+      m.kept.standing = standing_of(*m.read, *m.described, logs_, tonight_, out_);
+      m.kept.standing.interval =
+          interval_facts(*m.read, months_of_rule(m.state.machine.name, logs_));
+      m.kept.stood = key;
+      m.kept.date = tonight_.date;
+      m.read.reset();
+    }
+    return {};
+  }
+
+  std::string standing_key(const Assessed& m) const {
+    ByteWriter w;
+    w(m.kept.rows);
+    for (std::size_t k = 0; k < m.kept.series.size(); ++k) {
+      const KeptMachine::Series& s = m.kept.series[k];
+      w(s.manner.excess, s.manner.spread, s.manner.drift_below);
+      for (std::size_t i = 0; i < s.tests.changes.size(); ++i) {
+        const Verdict v = verdict_of(s.tests.changes[i], m.p_adjusted[k][i]);
+        w(v.told, v.surely, v.told ? m.p_adjusted[k][i] : 1.0);
+      }
+    }
+    w(std::int64_t{months_of_rule(m.state.machine.name, logs_).value_or(0)});
+    for (const config::Acknowledgement* a : acknowledgements_of(m.state.machine.name, logs_))
+      w(a->date, a->finding, a->machine, a->axis, a->quantity, a->until, a->value, a->U, a->by,
+        a->why);
+    for (const std::string& campaign : m.campaigns) w(link_of(out_, campaign));
+    // What came tonight is told as what came tonight.
+    if (m.state.night >= tonight_.night) w(tonight_.night);
+    return storage::sha256(w.take());
+  }
+
+  /// Described, with what its changes came to.
+  Expected<void> finish(Assessed& m) {
+    if (!m.read)
+      if (auto well = read(m); !well) return well;
+    if (!m.fitted) fit_series(m);
+    fits_.take_asked();
+    for (std::size_t k = 0; k < m.read->followed.size(); ++k)
+      tell(m.read->followed[k], m.p_adjusted[k]);
+    ask_others(*m.read, fits_);
+    take_keys(m);
+    const Due due = due_of(*m.read, logs_);
+    m.described = describe(*m.read, out_, due.day, due.why);
+    m.fitted = false;
+    return {};
+  }
+
+  Expected<void> put_together() {
+    const auto machine_of_campaign = store_.machine_of_campaigns();
+    if (!machine_of_campaign) return fail(machine_of_campaign.error());
+    const auto spellings = history::spellings_in(out_);
+    if (!spellings) return fail(spellings.error());
+    site.night = tonight_.night, site.date = tonight_.date;
+    site.campaigns = tonight_.campaigns, site.done = tonight_.done;
+    site.unchanged = tonight_.unchanged;
+    site.certificates = tonight_.issued.size(), site.waiting = tonight_.waiting.size();
+    std::vector<const Standing*> standings;
+    std::vector<const std::vector<reports::InstrumentUse>*> instruments;
+    std::vector<const IntervalFacts*> intervals;
+    for (const Assessed& m : machines_) {
+      const Standing& s = m.kept.standing;
+      standings.push_back(&s);
+      instruments.push_back(&s.instruments);
+      intervals.push_back(&s.interval);
+      site.machines.push_back(s.shown);
+      site.months.insert(site.months.end(), s.months.begin(), s.months.end());
+    }
+    auto proposals = proposals_of(intervals);
+    for (std::size_t i = 0; i < proposals.size(); ++i)
+      site.machines[i].proposal = std::move(proposals[i]);
+    site.judged = std::any_of(standings.begin(), standings.end(),
+                              [](const Standing* s) { return s->judged; });
+    site.lines = lines_of({tonight_, standings, *machine_of_campaign, *spellings, learned_.of});
+    for (const reports::MorningLine& l : site.lines) lines_[l.machine].push_back(l);
+    site.instruments = joined(instruments);
+    site.comparisons = comparisons_of(site.machines);
+    return add_sparks();
+  }
+
+  /// The machines of the first lines are drawn on the first page.
+  Expected<void> add_sparks() {
+    for (const std::string& name : reports::drawn_first(site)) {
+      const auto at = std::lower_bound(
+          site.machines.begin(), site.machines.end(), name,
+          [](const reports::MachineHistory& m, const std::string& x) { return m.id < x; });
+      if (at == site.machines.end() || at->id != name) continue;
+      const auto whole_one = whole(static_cast<std::size_t>(at - site.machines.begin()));
+      if (!whole_one) return fail(whole_one.error());
+      *at = **whole_one;
+    }
+    return {};
+  }
+
+  fs::path out_;
+  Tonight tonight_;
+  std::function<void()> alive_;
+  history::StoreReader store_;
+  history::StoredLogs logs_{};
+  KeptMachines before_;
+  Fits fits_;
+  Learned learned_{};
+  std::vector<Assessed> machines_{};
+  std::map<std::string, std::vector<reports::MorningLine>> lines_{};  ///< by machine
+};
+
+Assessment::Assessment(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Assessment::Assessment(Assessment&&) noexcept = default;
+Assessment& Assessment::operator=(Assessment&&) noexcept = default;
+Assessment::~Assessment() = default;
+
+Expected<Assessment> Assessment::of(const fs::path& out, const Tonight& tonight,
+                                    const std::function<void()>& alive, Kept kept) {
+  auto store = history::StoreReader::open(out);
+  if (!store) return fail(store.error());
+  auto state = std::make_unique<State>(out, tonight, alive, std::move(*store),
+                                       kept == Kept::used ? KeptMachines::in(out) : KeptMachines());
+  if (auto made = state->make(); !made) return fail(made.error());
+  return Assessment(std::move(state));
+}
+
+const reports::SiteHistory& Assessment::site() const { return state_->site; }
+Expected<reports::MachineHistory> Assessment::whole(std::size_t machine) {
+  const auto found = state_->whole(machine);
+  if (!found) return fail(found.error());
+  return **found;
+}
+bool Assessment::has_page(std::size_t machine, const std::string& templates) const {
+  return state_->has_page(machine, templates);
+}
+void Assessment::note_page(std::size_t machine, const std::string& templates) {
+  state_->note_page(machine, templates);
+}
+void Assessment::keep() { state_->keep(); }
+
+Expected<reports::SiteHistory> assess(const fs::path& out, const Tonight& tonight,
+                                      const std::function<void()>& alive, Keep keep) {
+  auto made = Assessment::of(out, tonight, alive, Assessment::Kept::ignored);
+  if (!made) return fail(made.error());
+  return std::move(*made).take_whole(keep);
+}
+
+Expected<reports::SiteHistory> Assessment::take_whole(Keep keep) && {
+  for (std::size_t i = 0; i < state_->count(); ++i) {
+    auto machine = whole(i);
+    if (!machine) return fail(machine.error());
+    state_->site.machines[i] = std::move(*machine);
+  }
+  if (keep == Keep::yes) state_->keep_trends();
+  return std::move(state_->site);
+}
+
+}  // namespace nonio::host::morning

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/morning/describe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "host/evaluation/record.h"
+#include "host/morning/days.h"
+#include "host/morning/tables_kept.h"
+#include "host/storage/digest.h"
+#include "host/storage/files.h"
+#include "nonio/history/forecast.h"
+#include "nonio/sdk/units.h"
+
+namespace nonio::host::morning {
+namespace fs = std::filesystem;
+namespace kernel = nonio::history;
+using history::StoredCampaign;
+using history::StoredResult;
+using reports::HistoryPoint;
+using reports::HistorySeries;
+
+namespace {
+
+HistoryPoint::State state_of(const std::string& text) {
+  if (text == "as-left") return HistoryPoint::State::as_left;
+  return text == "check" ? HistoryPoint::State::check : HistoryPoint::State::as_found;
+}
+
+const char* name_of(kernel::Model model) {
+  switch (model) {
+    case kernel::Model::level:
+      return "level";
+    case kernel::Model::drift:
+      return "drift";
+    case kernel::Model::step:
+      return "step";
+    case kernel::Model::walk:
+      return "walk";
+    case kernel::Model::none:
+      break;
+  }
+  return "none";
+}
+
+const char* name_of(kernel::Change::Cause cause) {
+  switch (cause) {
+    case kernel::Change::Cause::event:
+      return "event";
+    case kernel::Change::Cause::instrument:
+      return "instrument";
+    case kernel::Change::Cause::table:
+      return "table";
+    case kernel::Change::Cause::undeclared:
+      break;
+  }
+  return "undeclared";
+}
+
+const char* name_of(kernel::Answer answer) {
+  switch (answer) {
+    case kernel::Answer::keep:
+      return "keep";
+    case kernel::Answer::watch:
+      return "watch";
+    case kernel::Answer::act:
+      return "act";
+    case kernel::Answer::cannot_say:
+      break;
+  }
+  return "cannot-say";
+}
+
+class Describing {
+ public:
+  Describing(const AssessedMachine& m, const fs::path& out, const std::string& due) : m_(m) {
+    if (const auto day = day_number(due)) {
+      ahead_ = day;
+    } else if (const auto interval = usual_interval(m.stored.campaigns)) {
+      ahead_ = day_number(m.stored.campaigns.back().day);
+      if (ahead_) *ahead_ += *interval;
+    }
+    for (const StoredCampaign& c : m.stored.campaigns) links_.push_back(link_of(out, c.id));
+  }
+
+  HistorySeries of(const FollowedSeries& s) const {
+    const Quantity q = quantity_of_unit(s.unit);
+    HistorySeries out{.axis = s.axis,
+                      .quantity = s.quantity,
+                      .unit = q,
+                      .points = {},
+                      .model = name_of(s.trend.model)};
+    out.ended = s.ended;
+    for (const FollowedSeries::Apart& a : s.apart) {
+      out.points.push_back(point(a.result, q));
+      out.points.back().joined = false;
+      out.points.back().why_not = a.why;
+    }
+    for (const std::size_t i : s.results) out.points.push_back(point(i, q));
+    for (const kernel::Segment& g : s.trend.segments)
+      out.segments.push_back({day(s, g.from), day(s, g.to), si(g.first, q), si(g.last, q),
+                              si(g.u_first, q), si(g.u_last, q), si(g.slope, q), si(g.u_slope, q),
+                              campaign(s, g.from).id, campaign(s, g.to).id});
+    for (std::size_t i = 0; i < s.trend.changes.size(); ++i)
+      if (s.told[i]) out.changes.push_back(change(s, i, q));
+    if (s.trend.smallest_change) out.smallest_change = si(*s.trend.smallest_change, q);
+    if (const auto limit = limit_of(m_, s)) out.limit = si(*limit, q);
+    if (!s.ended) out.forecast = forecast(s, q);
+    return out;
+  }
+
+  HistorySeries of(const ShownSeries& s) const {
+    const Quantity q = quantity_of_unit(s.unit);
+    HistorySeries out{.axis = s.axis, .quantity = s.quantity, .unit = q, .points = {}, .model = ""};
+    // Definitions of A, E and R changed with the editions of the standard.
+    const StoredResult& last = m_.stored.results[s.results.back()];
+    for (const std::size_t i : s.results) {
+      out.points.push_back(point(i, q));
+      const StoredResult& r = m_.stored.results[i];
+      if (r.source == last.source && r.conditions != last.conditions)
+        out.points.back().joined = false, out.points.back().why_not = "edition";
+    }
+    if (const auto limit = last.tolerance) out.limit = si(*limit, q);
+    return out;
+  }
+
+ private:
+  const StoredCampaign& campaign(const FollowedSeries& s, std::size_t point) const {
+    return m_.stored.campaigns[m_.stored.results[s.results[point]].campaign];
+  }
+  const std::string& day(const FollowedSeries& s, std::size_t point) const {
+    return campaign(s, point).day;
+  }
+
+  HistoryPoint point(std::size_t result, Quantity q) const {
+    const StoredResult& r = m_.stored.results[result];
+    const StoredCampaign& c = m_.stored.campaigns[r.campaign];
+    HistoryPoint p{c.id, c.day, links_[r.campaign], state_of(r.state), si(r.value, q)};
+    if (r.followed)
+      p.u = si(r.u_repeat.value_or(0.0), q);
+    else if (r.expanded)
+      p.u = si(*r.expanded / r.k.value_or(2.0), q);
+    double common = 0.0;
+    for (const history::CommonPart& part : r.common) common += part.u * part.u;
+    p.u_common = si(std::sqrt(common), q);
+    return p;
+  }
+
+  reports::HistoryChange change(const FollowedSeries& s, std::size_t i, Quantity q) const {
+    const kernel::Change& c = s.trend.changes[i];
+    reports::HistoryChange out{day(s, c.after), day(s, c.after + 1), si(c.size, q),
+                               si(c.u, q),      s.p_adjusted[i],     name_of(c.cause)};
+    if (c.declared) {
+      const std::string& said = s.said[*c.declared];
+      out.event = s.kinds[*c.declared] + (said.empty() ? "" : ": " + said);
+    }
+    out.after_campaign = campaign(s, c.after).id;
+    out.before_campaign = campaign(s, c.after + 1).id;
+    out.p_alone = c.p;
+    return out;
+  }
+
+  std::optional<reports::HistoryForecast> forecast(const FollowedSeries& s, Quantity q) const {
+    if (!ahead_ || s.series.points.size() < 2) return std::nullopt;
+    const auto limit = limit_of(m_, s);
+    const kernel::Forecast f =
+        kernel::forecast(s.series, s.trend, static_cast<double>(*ahead_) / days_a_year, limit);
+    reports::HistoryForecast out{day_text(*ahead_), si(f.value, q), si(f.u, q), f.p_out, {},
+                                 name_of(f.answer)};
+    // Beyond half of what was observed a line is a guess.
+    const double last = s.series.points.back().time, first = s.series.points.front().time;
+    if (f.leaves && *f.leaves <= last + (last - first) / 2.0)
+      out.leaves = day_text(static_cast<std::int64_t>(std::floor(*f.leaves * days_a_year)));
+    return out;
+  }
+
+  const AssessedMachine& m_;
+  std::vector<std::string> links_;  ///< of each campaign
+  std::optional<std::int64_t> ahead_{};
+};
+
+/// A name that is a file's everywhere, and one machine's only.
+std::string file_of(const std::string& machine) {
+  std::string out;
+  for (const char c : machine) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_';
+    out += plain ? c : '_';
+  }
+  if (out != machine) out += "-" + storage::sha256(machine).substr(0, 8);
+  return out + ".html";
+}
+
+}  // namespace
+
+Quantity quantity_of_unit(const std::string& symbol) {
+  for (const Quantity q : {Quantity::number,
+                           Quantity::deviation,
+                           Quantity::deviation_per_length,
+                           Quantity::length,
+                           Quantity::angular_deviation,
+                           Quantity::small_angle,
+                           Quantity::angle,
+                           Quantity::deviation_per_angle,
+                           Quantity::expansion,
+                           Quantity::temperature_difference,
+                           Quantity::deviation_per_time,
+                           Quantity::angle_per_time,
+                           Quantity::growth,
+                           Quantity::angular_growth,
+                           Quantity::angular_expansion,
+                           Quantity::deviation_per_reading,
+                           Quantity::angle_per_reading,
+                           Quantity::growth_per_reading,
+                           Quantity::angular_growth_per_reading,
+                           Quantity::deviation_per_kelvin,
+                           Quantity::angle_per_kelvin,
+                           Quantity::time})
+    if (unit_of(q).symbol == symbol) return q;
+  return Quantity::number;
+}
+
+double si(double shown, Quantity quantity) { return shown / unit_of(quantity).per_si; }
+
+std::string link_of(const fs::path& out, const std::string& campaign) {
+  const fs::path folder = storage::results_folder(out, campaign);
+  std::error_code error;
+  const bool report = fs::exists(folder / "report.pdf", error);
+  return (folder / (report ? "report.pdf" : evaluation::results_name))
+      .lexically_relative(out)
+      .generic_string();
+}
+
+std::optional<std::int64_t> usual_interval(const std::vector<StoredCampaign>& campaigns) {
+  std::set<std::int64_t> days;
+  for (const StoredCampaign& c : campaigns)
+    if (const auto day = day_number(c.day)) days.insert(*day);
+  if (days.size() < 2) return std::nullopt;
+  std::vector<std::int64_t> gaps;
+  for (auto it = std::next(days.begin()); it != days.end(); ++it)
+    gaps.push_back(*it - *std::prev(it));
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  return *middle;
+}
+
+std::optional<double> limit_of(const AssessedMachine& machine, const FollowedSeries& series) {
+  if (series.quantity != "B_mean") return std::nullopt;
+  std::optional<double> out;
+  for (const ShownSeries& s : machine.shown)
+    if (s.axis == series.axis && s.quantity == "B" && s.unit == series.unit)
+      out = machine.stored.results[s.judged.back()].tolerance;
+  return out;
+}
+
+reports::MachineHistory describe(const AssessedMachine& machine, const fs::path& out,
+                                 const std::string& due, const std::string& why) {
+  const history::NamedMachine& named = machine.state.machine;
+  reports::MachineHistory m;
+  m.id = named.name, m.maker = named.stated.maker;
+  m.model = named.stated.model, m.serial = named.stated.serial;
+  if (!machine.stored.campaigns.empty()) m.customer = machine.stored.campaigns.back().customer;
+  for (const config::Event& e : machine.events)
+    m.events.push_back({e.date, e.axis, e.kind, e.text});
+  m.tables = tables_kept(machine);
+  m.due = due, m.why_due = why, m.file = file_of(named.name);
+  const Describing describing(machine, out, due);
+  for (const FollowedSeries& s : machine.followed) m.series.push_back(describing.of(s));
+  for (const ShownSeries& s : machine.shown) m.series.push_back(describing.of(s));
+  return m;
+}
+
+}  // namespace nonio::host::morning

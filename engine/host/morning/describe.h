@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/morning/series.h"
+#include "nonio/reports/site.h"
+
+namespace nonio::host::morning {
+
+/// Of a unit's symbol in results.json.
+Quantity quantity_of_unit(const std::string& symbol);
+/// From the printed unit to SI, so that `printed` gives the number back.
+double si(double shown, Quantity quantity);
+
+/// Where the results of a campaign are, relative to the output folder: its report, else its
+/// folder's results.json.
+std::string link_of(const std::filesystem::path& out, const std::string& campaign);
+
+/// Days; half of the gaps between campaign days are longer than this; none of one day.
+std::optional<std::int64_t> usual_interval(const std::vector<history::StoredCampaign>& campaigns);
+
+/// The limit that holds for a followed quantity today: of |mean reversal| that of B; none else.
+std::optional<double> limit_of(const AssessedMachine& machine, const FollowedSeries& series);
+
+/// What pages and programs show of a machine. `due`: day of the next calibration by a rule, `why`
+/// in words; empty: there is none, and forecasts look one usual interval ahead.
+reports::MachineHistory describe(const AssessedMachine& machine, const std::filesystem::path& out,
+                                 const std::string& due, const std::string& why);
+
+}  // namespace nonio::host::morning

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/morning/fits.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "host/morning/bytes.h"
+#include "host/storage/digest.h"
+#include "host/storage/files.h"
+
+namespace nonio::host::morning {
+namespace kernel = nonio::history;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Another program may come to another trend of the same series.
+constexpr std::string_view magic = "nonio-trends/1\n";
+constexpr const char* kept_folder = ".nonio";
+constexpr const char* kept_name = "trends";
+constexpr std::size_t key_size = 64;
+
+/// Everything that has a say in a trend.
+std::string key_of(char what, const kernel::Series& s) {
+  ByteWriter w;
+  w.put(what);
+  w.each(s.points, [&](const kernel::Point& p) {
+    w.put(p.time), w.put(p.value), w.put(p.u);
+    w.each(p.common, [&](const kernel::Common& c) { w.put(c.source), w.put(c.u); });
+  });
+  w.each(s.declared, [&](const kernel::Declared& d) { w.put(d.after), w.put(d.kind); });
+  w.put(s.seed), w.put(s.excess), w.put(s.spread), w.put(s.drift_below);
+  return storage::sha256(w.take());
+}
+
+std::string bytes_of(const kernel::Trend& t) {
+  ByteWriter w;
+  w.put(t.model);
+  w.each(t.segments, [&](const kernel::Segment& s) { w.put(s); });
+  w.each(t.changes, [&](const kernel::Change& c) {
+    w.put(c.after), w.put(c.size), w.put(c.u), w.put(c.p), w.put(c.cause), w.put(c.declared);
+  });
+  w.put(t.chi2), w.put(t.dof), w.put(t.smallest_change), w.put(t.line_or_step);
+  w.each(t.coefficients, [&](double x) { w.put(x); });
+  w.each(t.covariance, [&](double x) { w.put(x); });
+  w.put(t.drifts), w.put(t.walk);
+  return w.take();
+}
+
+std::optional<kernel::Trend> trend_in(std::string_view bytes) {
+  ByteReader r(bytes);
+  kernel::Trend t;
+  t.model = r.get<kernel::Model>();
+  r.each([&] { t.segments.push_back(r.get<kernel::Segment>()); });
+  r.each([&] {
+    kernel::Change c;
+    c.after = r.get<std::size_t>();
+    c.size = r.get<double>(), c.u = r.get<double>(), c.p = r.get<double>();
+    c.cause = r.get<kernel::Change::Cause>();
+    c.declared = r.perhaps<std::size_t>();
+    t.changes.push_back(c);
+  });
+  t.chi2 = r.get<double>(), t.dof = r.get<double>();
+  t.smallest_change = r.perhaps<double>();
+  t.line_or_step = r.get<bool>();
+  r.each([&] { t.coefficients.push_back(r.get<double>()); });
+  r.each([&] { t.covariance.push_back(r.get<double>()); });
+  t.drifts = r.get<bool>(), t.walk = r.get<double>();
+  return r.well() && r.at_end() ? std::optional(std::move(t)) : std::nullopt;
+}
+
+/// Whether it can be one of that series.
+bool fits_in(const kernel::Trend& t, const kernel::Series& s) {
+  const std::size_t n = s.points.size();
+  const bool segments =
+      std::all_of(t.segments.begin(), t.segments.end(),
+                  [&](const kernel::Segment& g) { return g.from <= g.to && g.to < n; });
+  const bool changes =
+      std::all_of(t.changes.begin(), t.changes.end(), [&](const kernel::Change& c) {
+        return c.after + 1 < n && (!c.declared || *c.declared < s.declared.size());
+      });
+  return segments && changes &&
+         t.covariance.size() == t.coefficients.size() * t.coefficients.size();
+}
+
+}  // namespace
+
+Fits Fits::kept_in(const fs::path& out) {
+  Fits fits;
+  const fs::path path = out / kept_folder / kept_name;
+  std::error_code error;
+  if (!fs::exists(path, error)) return fits;
+  const auto file = storage::read_file(path);
+  if (!file || file->size() < magic.size() + key_size) return fits;
+  const std::string_view all(*file);
+  // A digest at the end: what is damaged is none.
+  const std::string_view body = all.substr(0, all.size() - key_size);
+  if (!body.starts_with(magic) || storage::sha256(body) != all.substr(body.size())) return fits;
+  ByteReader r(body.substr(magic.size()));
+  while (r.well() && !r.at_end()) {
+    const std::string key(r.text(key_size));
+    const auto size = r.get<std::uint64_t>();
+    fits.kept_.emplace(key, Kept{std::string(r.text(size)), false});
+  }
+  return r.well() ? std::move(fits) : Fits();
+}
+
+void Fits::retain(const std::vector<std::string>& keys) {
+  for (const std::string& key : keys)
+    if (const auto found = kept_.find(key); found != kept_.end()) found->second.used = true;
+}
+
+Fits::Kept* Fits::find(const std::string& key) {
+  asked_.push_back(key);
+  const auto found = kept_.find(key);
+  if (found == kept_.end()) return nullptr;
+  found->second.used = true;
+  return &found->second;
+}
+
+kernel::Trend Fits::trend(const kernel::Series& series) {
+  const std::string key = key_of('t', series);
+  if (const Kept* kept = find(key))
+    if (auto trend = trend_in(kept->bytes); trend && fits_in(*trend, series))
+      return std::move(*trend);
+  ++computed_;
+  const auto trend = kernel::trend_of(series);
+  kernel::Trend out = trend ? *trend : kernel::Trend{};
+  kept_[key] = {bytes_of(out), true};
+  return out;
+}
+
+std::optional<kernel::Slope> Fits::slope(const kernel::Series& series) {
+  const std::string key = key_of('s', series);
+  if (const Kept* kept = find(key)) {
+    ByteReader r(kept->bytes);
+    const auto slope = r.perhaps<kernel::Slope>();
+    if (r.well() && r.at_end()) return slope;
+  }
+  ++computed_;
+  const auto slope = kernel::slope_beside_steps(series);
+  ByteWriter w;
+  w.put(slope);
+  kept_[key] = {w.take(), true};
+  return slope;
+}
+
+void Fits::keep_in(const fs::path& out) const {
+  const bool all_used =
+      std::all_of(kept_.begin(), kept_.end(), [](const auto& kept) { return kept.second.used; });
+  if (computed_ == 0 && all_used) return;
+  std::vector<const std::string*> keys;
+  for (const auto& [key, kept] : kept_)
+    if (kept.used) keys.push_back(&key);
+  std::sort(keys.begin(), keys.end(), [](const auto* a, const auto* b) { return *a < *b; });
+  std::string body(magic);
+  for (const std::string* key : keys) {
+    ByteWriter w;
+    w.put(kept_.at(*key).bytes);
+    body += *key + w.take();
+  }
+  body += storage::sha256(body);
+  [[maybe_unused]] const auto kept =
+      storage::publish(out / kept_folder, {{kept_name, std::move(body)}});
+}
+
+}  // namespace nonio::host::morning

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/morning/lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "host/morning/lines_of_machine.h"
+
+namespace nonio::host::morning {
+
+using reports::MorningLine;
+using Kind = MorningLine::Kind;
+
+namespace {
+
+constexpr std::size_t most_alike = 3;     // failures with one message, told one by one
+constexpr std::size_t most_machines = 5;  // that vanish, told one by one
+
+void put_count(MorningLine& line, const char* name, std::size_t n) {
+  line.finding.evidence.push_back({name, static_cast<double>(n), Quantity::count});
+}
+
+/// What vanished, by machine; where many did, by the folder that they had in common.
+std::vector<MorningLine> lost(const Known& known) {
+  std::map<std::string, std::vector<const Tonight::Vanished*>> by_machine, by_folder;
+  for (const Tonight::Vanished& v : known.tonight.vanished) {
+    const auto machine = known.machine_of_campaign.find(v.campaign);
+    by_machine[machine == known.machine_of_campaign.end() ? "" : machine->second].push_back(&v);
+    by_folder[v.folder.substr(0, v.folder.find('/'))].push_back(&v);
+  }
+  const bool many = by_machine.size() > most_machines;
+  std::vector<MorningLine> out;
+  for (const auto& [name, gone] : many ? by_folder : by_machine) {
+    if (gone.size() == 1 || (!many && name.empty())) {
+      for (const Tonight::Vanished* v : gone) {
+        MorningLine line = line_of(Kind::lost, "morning.lost", v->campaign);
+        line.machine = many ? "" : name;
+        line.campaign = v->campaign;
+        put_count(line, "night", v->last_seen_night);
+        put_text(line, "folder", v->folder);
+        put_text(line, "why", v->why);
+        out.push_back(std::move(line));
+      }
+      continue;
+    }
+    MorningLine line = line_of(Kind::lost, "morning.lost-several", name);
+    line.machine = many ? "" : name;
+    line.campaign = gone.front()->campaign;
+    std::uint64_t night = 0;
+    for (const Tonight::Vanished* v : gone) night = std::max(night, v->last_seen_night);
+    put_count(line, "night", night);
+    put_count(line, "count", gone.size());
+    put_text(line, "of", name);
+    out.push_back(std::move(line));
+  }
+  return out;
+}
+
+/// One mistake in site.toml fails every campaign, and is one line.
+std::vector<MorningLine> failed(const Known& known) {
+  std::map<std::string, std::vector<const Tonight::Failed*>> by_message;
+  for (const Tonight::Failed& f : known.tonight.failed) by_message[f.message].push_back(&f);
+  std::vector<MorningLine> out;
+  if (!known.tonight.history_error.empty()) {
+    out.push_back(line_of(Kind::failed, "morning.history", "history"));
+    put_text(out.back(), "message", known.tonight.history_error);
+  }
+  for (const auto& [message, alike] : by_message) {
+    if (alike.size() > most_alike) {
+      MorningLine line = line_of(Kind::failed, "morning.failed-several", alike.front()->campaign);
+      line.campaign = alike.front()->campaign;
+      line.since = alike.front()->since;
+      put_count(line, "count", alike.size());
+      put_text(line, "message", message);
+      out.push_back(std::move(line));
+      continue;
+    }
+    for (const Tonight::Failed* f : alike) {
+      MorningLine line = line_of(Kind::failed, "morning.failed", f->campaign);
+      const auto machine = known.machine_of_campaign.find(f->campaign);
+      if (machine != known.machine_of_campaign.end()) line.machine = machine->second;
+      line.campaign = f->campaign;
+      line.since = f->since;
+      put_text(line, "message", message);
+      out.push_back(std::move(line));
+    }
+  }
+  return out;
+}
+
+/// Machines of which nobody has said a limit: what they have is no conformity.
+void not_judged(const Known& known, std::vector<MorningLine>& out) {
+  std::string names;
+  std::size_t count = 0;
+  for (const Standing* m : known.machines) {
+    if (m->judged || !m->has_results) continue;
+    if (++count <= most_machines) names += (names.empty() ? "" : ", ") + m->shown.id;
+  }
+  if (count == 0) return;
+  out.push_back(line_of(Kind::information, "morning.not-judged", "site"));
+  put_count(out.back(), "count", count);
+  put_text(out.back(), "machines", names + (count > most_machines ? ", ..." : ""));
+}
+
+/// Findings that ask for attention in last campaigns that conform: nobody needs to do anything.
+void conforming(const Known& known, std::vector<MorningLine>& out) {
+  std::size_t machines = 0, lost_motion = 0;
+  for (const Standing* m : known.machines) {
+    if (!m->judged || !m->conforms) continue;
+    machines += m->attention;
+    lost_motion += m->reversal;
+  }
+  if (machines == 0) return;
+  out.push_back(line_of(Kind::information, "morning.conforms", "site"));
+  put_count(out.back(), "count", machines);
+  put_count(out.back(), "reversal", lost_motion);
+}
+
+std::vector<MorningLine> of_site(const Known& known) {
+  std::vector<MorningLine> out;
+  not_judged(known, out);
+  conforming(known, out);
+  for (const history::Spelling& s : known.spellings) {
+    out.push_back(line_of(Kind::information, "morning.spelling", s.one + "|" + s.other));
+    out.back().machine = s.one;
+    put_text(out.back(), "one", s.one);
+    put_text(out.back(), "other", s.other);
+    put_text(out.back(), "alike", s.why == "spelled alike" ? "alike" : "numbered");
+  }
+  std::string scatter;
+  double most = 1.0;
+  for (const auto& [quantity, of] : known.learned)
+    if (of.excess > 1.2) {
+      const std::string name = quantity.substr(0, quantity.find(' '));
+      scatter += (scatter.empty() ? "" : ", ") + name;
+      most = std::max(most, of.excess);
+    }
+  if (!scatter.empty()) {
+    out.push_back(line_of(Kind::information, "morning.scatter", "site"));
+    out.back().finding.evidence.push_back({"factor", most, Quantity::ratio});
+    put_text(out.back(), "quantities", scatter);
+  }
+  return out;
+}
+
+/// Where U decides, the same is to be done about all: a better measurement.
+void fold_undecided(std::vector<MorningLine>& lines) {
+  const auto is_one = [](const MorningLine& l) {
+    return l.kind == Kind::undecided && l.state == MorningLine::State::fresh;
+  };
+  const auto count = static_cast<std::size_t>(std::count_if(lines.begin(), lines.end(), is_one));
+  if (count <= most_alike) return;
+  MorningLine all = line_of(Kind::undecided, "morning.undecided-several", "site");
+  std::string names;
+  std::size_t named = 0;
+  for (const MorningLine& l : lines)
+    if (is_one(l) && named++ < most_machines)
+      names += (names.empty() ? "" : ", ") + l.machine + " " + l.axis;
+  put_count(all, "count", count);
+  put_text(all, "where", names + (count > most_machines ? ", ..." : ""));
+  std::erase_if(lines, is_one);
+  lines.push_back(std::move(all));
+}
+
+/// How much there is of it: of what is as grave, the largest comes first.
+double size_of(const MorningLine& l) {
+  if (l.value && l.limit && *l.limit > 0.0) return std::fabs(*l.value) / *l.limit;
+  if (l.value && l.u && *l.u > 0.0) return std::fabs(*l.value) / *l.u;
+  return 0.0;
+}
+
+bool comes_before(const MorningLine& a, const MorningLine& b) {
+  return std::tuple(a.kind, a.state, -size_of(a), std::tie(a.machine, a.axis, a.id)) <
+         std::tuple(b.kind, b.state, -size_of(b), std::tie(b.machine, b.axis, b.id));
+}
+
+}  // namespace
+
+std::string kind_of(const std::string& quantity) {
+  const auto is = [&](const char* begin) { return quantity.starts_with(begin); };
+  if (is("B_mean") || is("backlash")) return "reversal";
+  if (is("scale")) return "scale";
+  if (is("curve") || is("pitch-curve")) return "curve";
+  if (is("turn")) return "turn";
+  if (is("cyclic")) return "cyclic";
+  if (is("ln_s")) return "scatter";
+  if (is("squareness")) return "squareness";
+  if (is("straightness")) return "straightness";
+  if (is("centre") || is("direction")) return "centre";
+  return "parameter";
+}
+
+std::string axis_of(const std::string& axis, const std::string& quantity) {
+  const auto colon = quantity.find(':');
+  if (!axis.empty() || colon == std::string::npos) return axis;
+  return quantity.substr(colon + 1, quantity.find('.', colon) - colon - 1);
+}
+
+std::vector<MorningLine> lines_of(const Known& known) {
+  std::vector<MorningLine> out;
+  const auto add = [&](std::vector<MorningLine> lines) {
+    for (MorningLine& l : lines) out.push_back(std::move(l));
+  };
+  add(lost(known));
+  add(failed(known));
+  for (const Standing* m : known.machines) add(m->lines);
+  fold_undecided(out);
+  add(of_site(known));
+  std::stable_sort(out.begin(), out.end(), comes_before);
+  return out;
+}
+
+}  // namespace nonio::host::morning

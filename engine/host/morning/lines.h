@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "host/history/reader.h"
+#include "host/morning/changes.h"
+#include "host/morning/standing.h"
+#include "host/morning/tonight.h"
+#include "nonio/reports/site.h"
+
+namespace nonio::host::morning {
+
+/// All that lines are made from.
+struct Known {
+  const Tonight& tonight;
+  const std::vector<const Standing*>& machines;
+  const std::map<std::string, std::string>& machine_of_campaign;
+  const std::vector<history::Spelling>& spellings;
+  const std::map<std::string, OfQuantity>& learned;
+};
+
+/// What asks for a decision this morning, one line each: in the order of what ignoring it costs,
+/// within that new before known, then the largest first. One cause is told once.
+std::vector<reports::MorningLine> lines_of(const Known& known);
+
+/// Of a quantity: reversal, scale, curve, turn, cyclic, scatter, squareness, straightness, centre,
+/// parameter. Its words are `term.what` and `term.look`.
+std::string kind_of(const std::string& quantity);
+
+/// The axis of a series, out of its quantity (backlash:X.b) where it has none.
+std::string axis_of(const std::string& axis, const std::string& quantity);
+
+}  // namespace nonio::host::morning

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/morning/proposals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "host/morning/days.h"
+#include "host/morning/describe.h"
+#include "host/morning/lines.h"
+
+namespace nonio::host::morning {
+
+using nonio::history::Found;
+using reports::IntervalProposal;
+namespace kernel = nonio::history;
+
+namespace {
+
+constexpr double days_a_month = days_a_year / 12.0;
+constexpr const char *control_chart_name = "control-chart", *staircase_name = "staircase",
+                     *fleet_name = "fleet";
+
+void put(IntervalProposal& p, const char* name, double value, Quantity q = Quantity::count) {
+  p.why.evidence.push_back({name, value, q});
+}
+
+IntervalProposal because(const char* method, const std::string& why) {
+  IntervalProposal out;
+  out.method = method;
+  out.why.id = "interval." + why;
+  return out;
+}
+
+/// Whole months, at least one; down, so that nothing is promised that was not shown.
+void propose(IntervalProposal& p, double months) {
+  constexpr double rounding = 1e-9;
+  p.months = std::max(1, static_cast<int>(std::floor(months + rounding)));
+}
+
+/// What each axis was when it was last found: the worst of all that has a limit.
+std::optional<Found> last_found(const AssessedMachine& m) {
+  std::optional<Found> worst;
+  for (const ShownSeries& s : m.shown) {
+    const history::StoredResult* last = nullptr;
+    for (const std::size_t i : s.results)
+      if (m.stored.results[i].state == "as-found" && !m.stored.results[i].decision.empty())
+        last = &m.stored.results[i];
+    if (last == nullptr) continue;
+    const Found found = last->decision == "conforms"           ? Found::conforms
+                        : last->decision == "does not conform" ? Found::fails
+                                                               : Found::undecided;
+    worst = worst ? std::max(*worst, found) : found;
+  }
+  return worst;
+}
+
+using Fleet = std::tuple<std::string, std::string, double>;  // maker, model, months
+
+struct Counted {
+  int passed = 0, machines = 0;
+};
+
+std::optional<Fleet> fleet_of(const IntervalFacts& m) {
+  if (m.model.empty() || !(m.months > 0.0)) return std::nullopt;
+  return Fleet(m.maker, m.model, m.months);
+}
+
+IntervalProposal staircase(const IntervalFacts& m) {
+  const kernel::Proposal p = kernel::staircase(m.months, *m.found, reliability_target);
+  IntervalProposal out = because(staircase_name, p.why);
+  propose(out, p.months.value_or(m.months));
+  put(out, "interval", m.months);
+  return out;
+}
+
+/// None where they are too few, or say nothing beyond chance.
+std::optional<IntervalProposal> fleet(const IntervalFacts& m, const Counted& counted) {
+  if (static_cast<std::size_t>(counted.machines) < fewest_of_a_fleet) return std::nullopt;
+  const kernel::Proposal p =
+      kernel::fleet(m.months, counted.passed, counted.machines, reliability_target);
+  if (!p.months || p.why == "fleet-as-it-is") return std::nullopt;
+  IntervalProposal out = because(fleet_name, p.why);
+  propose(out, *p.months);
+  put(out, "interval", m.months);
+  put(out, "passed", counted.passed);
+  put(out, "machines", counted.machines);
+  out.why.texts.emplace_back("model", m.model);
+  return out;
+}
+
+/// The shortest of what has a limit and is followed; `refusal`: why one of them cannot say.
+std::optional<IntervalProposal> chart(const AssessedMachine& m,
+                                      std::optional<IntervalProposal>& refusal) {
+  std::optional<IntervalProposal> shortest;
+  double least = 0.0;
+  for (const FollowedSeries& s : m.followed) {
+    const auto limit = limit_of(m, s);
+    if (s.ended || !limit) continue;
+    const kernel::Proposal p = kernel::control_chart(s.series, s.trend, *limit);
+    const Quantity q = quantity_of_unit(s.unit);
+    IntervalProposal one = because(control_chart_name, p.why);
+    one.axis = s.axis, one.quantity = s.quantity;
+    one.why.texts = {{"what", kind_of(s.quantity)}, {"axis", s.axis}};
+    if (!p.months && p.why == "change-not-explained") refusal = one;
+    if (!p.months || p.why != "meets-limit" || (shortest && *p.months >= least)) continue;
+    least = *p.months;
+    if (least < 1.0) {  // sooner than any interval: it is to be measured or mended now
+      one.why.id = "interval.out-already";
+      one.months.reset();
+    } else {
+      propose(one, least);
+    }
+    put(one, "limit", si(*limit, q), q);
+    shortest = std::move(one);
+  }
+  return shortest;
+}
+
+IntervalProposal proposal_of(const IntervalFacts& m, const Counted& counted) {
+  constexpr std::uint64_t fewest_campaigns = 2;
+  if (m.days < fewest_campaigns) {
+    IntervalProposal out = because(staircase_name, "few-campaigns");
+    put(out, "campaigns", static_cast<double>(m.days));
+    return out;
+  }
+  if (!m.found) return because(staircase_name, "not-judged");
+  if (!(m.months > 0.0)) return because(staircase_name, "no-interval");
+  IntervalProposal out = staircase(m);
+  const auto by_fleet = fleet(m, counted);
+  if (by_fleet && (*m.found == Found::conforms || *by_fleet->months < *out.months)) out = *by_fleet;
+  if (m.chart && (!m.chart->months || *m.chart->months < *out.months)) out = *m.chart;
+  // Of what is not explained yet nobody knows how long it lasts; half after a failure is no longer.
+  if (m.refusal && *m.found != Found::fails) out = *m.refusal;
+  return out;
+}
+
+}  // namespace
+
+IntervalFacts interval_facts(const AssessedMachine& machine, std::optional<int> rule) {
+  const auto& stated = machine.state.machine.stated;
+  IntervalFacts out{stated.maker, stated.model};
+  std::set<std::string> days;
+  for (const history::StoredCampaign& c : machine.stored.campaigns)
+    if (day_number(c.day)) days.insert(c.day);
+  out.days = days.size();
+  if (rule)
+    out.months = *rule;
+  else if (const auto usual = usual_interval(machine.stored.campaigns))
+    out.months = std::round(static_cast<double>(*usual) / days_a_month);
+  out.found = last_found(machine);
+  out.chart = chart(machine, out.refusal);
+  return out;
+}
+
+std::vector<IntervalProposal> proposals_of(const std::vector<const IntervalFacts*>& machines) {
+  std::map<Fleet, Counted> fleets;
+  for (const IntervalFacts* m : machines) {
+    const auto one = fleet_of(*m);
+    if (!one || !m->found || *m->found == Found::undecided) continue;
+    Counted& counted = fleets[*one];
+    ++counted.machines;
+    counted.passed += *m->found == Found::conforms;
+  }
+  std::vector<IntervalProposal> out;
+  for (const IntervalFacts* m : machines) {
+    const auto one = fleet_of(*m);
+    out.push_back(proposal_of(*m, one ? fleets[*one] : Counted{}));
+  }
+  return out;
+}
+
+}  // namespace nonio::host::morning

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/morning/series.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "host/morning/days.h"
+#include "host/storage/json_values.h"
+
+namespace nonio::host::morning {
+
+namespace {
+
+using history::StoredMachine;
+using history::StoredResult;
+using storage::Json;
+namespace kernel = nonio::history;
+
+constexpr double same_place = 0.01;  // of the span
+
+bool near(double a, double b, double span) { return std::fabs(a - b) <= same_place * span; }
+
+double number_at(const Json& o, const char* key) {
+  const auto it = o.find(key);
+  return it != o.end() && it->is_number() ? it->get<double>() : 0.0;
+}
+
+/// Why two numbers cannot be points of one series; empty: they can. A table that is switched on or
+/// off is a step that is known, and no other quantity.
+std::string difference(const Json& a, const Json& b) {
+  const double span = number_at(a, "to") - number_at(a, "from");
+  if (a.contains("from") != b.contains("from") ||
+      !near(number_at(a, "from"), number_at(b, "from"), span) ||
+      !near(number_at(a, "to"), number_at(b, "to"), span))
+    return "span";
+  for (const auto& [key, why] : {std::pair("at", "place"), std::pair("across", "across"),
+                                 std::pair("model", "model"), std::pair("period", "period")}) {
+    const Json one = a.value(key, Json()), other = b.value(key, Json());
+    const bool same = one.is_number() && other.is_number()
+                          ? near(one.get<double>(), other.get<double>(), one.get<double>())
+                          : one == other;
+    if (!same) return why;
+  }
+  return {};
+}
+
+Json parsed(const std::string& conditions) {
+  Json json = Json::parse(conditions, nullptr, false);
+  return json.is_object() ? json : Json::object();
+}
+
+std::string compensation(const Json& conditions) {
+  const auto it = conditions.find("compensation");
+  return it != conditions.end() && it->is_string() ? it->get<std::string>() : "";
+}
+
+bool stepped_by_table(const std::string& before, const std::string& after) {
+  return !before.empty() && !after.empty() && before != after;
+}
+
+/// Sources of a point that are an instrument under one certificate.
+std::string instrument_in(const StoredResult& r) {
+  for (const history::CommonPart& c : r.common)
+    if (c.source.starts_with("instrument")) return c.source;
+  return {};
+}
+
+std::uint64_t seed_of(const StoredMachine& m, const std::vector<std::size_t>& results) {
+  std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a
+  for (const std::size_t i : results)
+    for (const std::string* text : {&m.campaigns[m.results[i].campaign].id, &m.results[i].quantity})
+      for (const char c : *text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return hash;
+}
+
+/// As found before as left, on one day.
+bool before(const StoredMachine& m, std::size_t a, std::size_t b) {
+  const auto key = [&](std::size_t i) {
+    const StoredResult& r = m.results[i];
+    const history::StoredCampaign& c = m.campaigns[r.campaign];
+    return std::tuple<const std::string&, bool, const std::string&, const std::string&>(
+        c.day, r.state == "as-left", c.id, r.measurement);
+  };
+  return key(a) < key(b);
+}
+
+bool concerns(const config::Event& e, const FollowedSeries& s) {
+  if (e.axis.empty() || s.axis.empty() || e.axis == s.axis) return true;
+  const auto colon = s.quantity.find(':');  // squareness:XY concerns X and Y
+  return colon != std::string::npos &&
+         s.quantity.substr(colon + 1).substr(0, s.quantity.find('.', colon)).find(e.axis) !=
+             std::string::npos;
+}
+
+/// What is known to have happened between the points of a series.
+class Happenings {
+ public:
+  Happenings(const StoredMachine& m, const std::vector<config::Event>& events, FollowedSeries& s)
+      : m_(m), events_(events), s_(s) {}
+
+  void declare() {
+    const std::size_t gaps = s_.results.size() - 1;
+    std::vector<bool> table(gaps, false);
+    for (std::size_t k = 0; k < gaps; ++k)
+      if (const std::string what = table_between(k); !what.empty()) {
+        table[k] = true;
+        put(k, kernel::Declared::Kind::table, "table", what);
+      }
+    for (std::size_t k = 0; k < gaps; ++k)
+      for (const config::Event& e : events_)
+        if (!table[k] && is_between(e, k) && !on_day_of_table(e, table)) put_event(k, e);
+    for (std::size_t k = 0; k < gaps; ++k) {
+      const std::string one = instrument_in(result(k)), other = instrument_in(result(k + 1));
+      if (!one.empty() && !other.empty() && one != other)
+        put(k, kernel::Declared::Kind::instrument, "instrument", other);
+    }
+  }
+
+ private:
+  const StoredResult& result(std::size_t k) const { return m_.results[s_.results[k]]; }
+  const std::string& day(std::size_t k) const { return m_.campaigns[result(k).campaign].day; }
+
+  /// An adjustment lies between a reading as found and one as left; a table that was on and is off.
+  std::string table_between(std::size_t k) const {
+    const StoredResult &a = result(k), &b = result(k + 1);
+    if (b.state == "as-left") return "as-left";
+    if (a.conditions == b.conditions) return {};
+    const std::string one = compensation(parsed(a.conditions)),
+                      other = compensation(parsed(b.conditions));
+    return stepped_by_table(one, other) ? "compensation " + other : "";
+  }
+
+  bool is_between(const config::Event& e, std::size_t k) const {
+    return concerns(e, s_) && day(k) <= e.date && e.date <= day(k + 1);
+  }
+
+  /// What somebody entered for the day of an adjustment is that adjustment.
+  bool on_day_of_table(const config::Event& e, const std::vector<bool>& table) const {
+    for (std::size_t k = 0; k < table.size(); ++k)
+      if (table[k] && (day(k) == e.date || day(k + 1) == e.date)) return true;
+    return false;
+  }
+
+  void put_event(std::size_t k, const config::Event& e) {
+    put(k,
+        e.kind == "compensation" ? kernel::Declared::Kind::table
+        : e.kind == "instrument" ? kernel::Declared::Kind::instrument
+                                 : kernel::Declared::Kind::event,
+        e.kind, e.text);
+  }
+
+  void put(std::size_t k, kernel::Declared::Kind kind, std::string name, std::string said) {
+    s_.series.declared.push_back({k, kind});
+    s_.kinds.push_back(std::move(name));
+    s_.said.push_back(std::move(said));
+  }
+
+  const StoredMachine& m_;
+  const std::vector<config::Event>& events_;
+  FollowedSeries& s_;
+};
+
+/// Points of one quantity, group by group of what can be joined.
+class Joining {
+ public:
+  Joining(const StoredMachine& m, std::vector<std::size_t> results) : m_(m) {
+    std::sort(results.begin(), results.end(),
+              [&](std::size_t a, std::size_t b) { return before(m_, a, b); });
+    for (const std::size_t i : results) put(i);
+  }
+
+  std::vector<FollowedSeries> take(const std::vector<config::Event>& events) {
+    std::vector<FollowedSeries> out;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      FollowedSeries s = series(groups_[g].results);
+      for (std::size_t h = 0; h < groups_.size(); ++h) {
+        if (h == g) continue;
+        const bool earlier = last_day(groups_[h]) < first_day(groups_[g]);
+        if (earlier)
+          for (const std::size_t i : groups_[h].results)
+            s.apart.push_back({i, difference(groups_[g].conditions, groups_[h].conditions)});
+        if (first_day(groups_[h]) > last_day(groups_[g])) s.ended = true;
+      }
+      for (FollowedSeries::Apart& a : s.apart)
+        if (a.why.empty()) a.why = "other";
+      if (s.results.size() > 1) Happenings(m_, events, s).declare();
+      out.push_back(std::move(s));
+    }
+    return out;
+  }
+
+ private:
+  struct Group {
+    Json conditions;
+    std::vector<std::size_t> results;
+  };
+
+  void put(std::size_t i) {
+    const StoredResult& r = m_.results[i];
+    if (!(r.u_repeat.value_or(0.0) > 0.0) || !std::isfinite(r.value) ||
+        !day_number(m_.campaigns[r.campaign].day))
+      return;
+    // Most campaigns state the same, to the letter.
+    for (Group& g : groups_) {
+      const StoredResult& first = m_.results[g.results.front()];
+      if (first.unit == r.unit && first.conditions == r.conditions) {
+        g.results.push_back(i);
+        return;
+      }
+    }
+    Json conditions = parsed(r.conditions);
+    for (Group& g : groups_)
+      if (m_.results[g.results.front()].unit == r.unit &&
+          difference(g.conditions, conditions).empty()) {
+        g.results.push_back(i);
+        return;
+      }
+    groups_.push_back({std::move(conditions), {i}});
+  }
+
+  const std::string& first_day(const Group& g) const {
+    return m_.campaigns[m_.results[g.results.front()].campaign].day;
+  }
+  const std::string& last_day(const Group& g) const {
+    return m_.campaigns[m_.results[g.results.back()].campaign].day;
+  }
+
+  FollowedSeries series(const std::vector<std::size_t>& results) const {
+    const StoredResult& any = m_.results[results.front()];
+    FollowedSeries s{.axis = any.axis,
+                     .quantity = any.quantity,
+                     .unit = any.unit,
+                     .results = results,
+                     .series = {}};
+    for (const std::size_t i : results) {
+      const StoredResult& r = m_.results[i];
+      const history::StoredCampaign& c = m_.campaigns[r.campaign];
+      kernel::Point p{static_cast<double>(*day_number(c.day)) / days_a_year, r.value, *r.u_repeat};
+      for (const history::CommonPart& part : r.common) p.common.push_back({part.source, part.u});
+      s.series.points.push_back(std::move(p));
+      s.night = std::max(s.night, c.night);
+    }
+    pool(s.series.points);
+    s.series.seed = seed_of(m_, results);
+    return s;
+  }
+
+  /// A campaign's u is itself an estimate, of few runs: one that is small by chance would make a
+  /// step of its noise. So half of each variance is the median of those of the series.
+  static void pool(std::vector<kernel::Point>& points) {
+    std::vector<double> variances;
+    for (const kernel::Point& p : points) variances.push_back(p.u * p.u);
+    const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
+    std::nth_element(variances.begin(), middle, variances.end());
+    for (kernel::Point& p : points) p.u = std::sqrt((p.u * p.u + *middle) / 2.0);
+  }
+
+  const StoredMachine& m_;
+  std::vector<Group> groups_;
+};
+
+std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> by_quantity(
+    const StoredMachine& m, bool followed) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> out;
+  for (std::size_t i = 0; i < m.results.size(); ++i)
+    if (m.results[i].followed == followed)
+      out[{m.results[i].axis, m.results[i].quantity}].push_back(i);
+  return out;
+}
+
+}  // namespace
+
+std::vector<FollowedSeries> followed_series(const StoredMachine& machine,
+                                            const std::vector<config::Event>& events) {
+  std::vector<FollowedSeries> out;
+  for (auto& [key, results] : by_quantity(machine, true))
+    for (FollowedSeries& s : Joining(machine, std::move(results)).take(events))
+      out.push_back(std::move(s));
+  return out;
+}
+
+namespace {
+
+/// 0 conforms or is not judged, 1 cannot be decided, 2 does not conform.
+int gravity(const StoredResult& r) {
+  if (r.decision.empty() || r.decision == "conforms") return 0;
+  return r.decision == "does not conform" ? 2 : 1;
+}
+
+double share_of_limit(const StoredResult& r) {
+  return r.tolerance && *r.tolerance > 0.0 ? std::fabs(r.value) / *r.tolerance : 0.0;
+}
+
+/// `results`: by campaign, as found before as left.
+std::vector<std::size_t> deciding(const StoredMachine& m, const std::vector<std::size_t>& results) {
+  const auto decides = [&](const StoredResult& a, const StoredResult& b) {
+    const auto key = [](const StoredResult& r) {
+      return std::tuple(r.state == "as-left", gravity(r), share_of_limit(r));
+    };
+    return key(a) > key(b);
+  };
+  std::vector<std::size_t> out;
+  for (const std::size_t i : results) {
+    if (out.empty() || m.results[out.back()].campaign != m.results[i].campaign)
+      out.push_back(i);
+    else if (decides(m.results[i], m.results[out.back()]))
+      out.back() = i;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<ShownSeries> shown_series(const StoredMachine& machine) {
+  std::vector<ShownSeries> out;
+  for (auto& [key, results] : by_quantity(machine, false)) {
+    std::sort(results.begin(), results.end(),
+              [&](std::size_t a, std::size_t b) { return before(machine, a, b); });
+    out.push_back({key.first, key.second, machine.results[results.front()].unit, results,
+                   deciding(machine, results)});
+  }
+  return out;
+}
+
+std::vector<config::Event> events_of(const history::MachineState& machine,
+                                     const std::vector<history::MachineState>& all,
+                                     const history::StoredLogs& logs) {
+  const auto own = [&](const std::string& serial) {
+    return machine.serials.contains(serial) &&
+           std::count_if(all.begin(), all.end(),
+                         [&](const auto& m) { return m.serials.contains(serial); }) == 1;
+  };
+  std::vector<config::Event> out;
+  for (const config::Event& e : logs.events) {
+    const auto alias = logs.aliases.find(e.machine);
+    const std::string& name = alias == logs.aliases.end() ? e.machine : alias->second;
+    if (name == machine.machine.name || own(name)) out.push_back(e);
+  }
+  return out;
+}
+
+}  // namespace nonio::host::morning

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/history/reader.h"
+#include "nonio/history/series.h"
+#include "nonio/history/trend.h"
+
+/// Which numbers of a machine's campaigns are points of one series, and what is known to have
+/// happened between them.
+namespace nonio::host::morning {
+
+/// One quantity of one axis, as far as its campaigns can be compared.
+struct FollowedSeries {
+  std::string axis, quantity, unit;
+  std::vector<std::size_t> results;  ///< of the points: indices into StoredMachine::results
+  /// Numbers of the same quantity before this series began, which cannot be joined.
+  struct Apart {
+    std::size_t result = 0;
+    std::string why;  ///< id of the word: span, place, across, model, period, other
+  };
+  std::vector<Apart> apart{};
+  nonio::history::Series series;
+  std::vector<std::string> said{};   ///< of each declared happening, in the words of who said it
+  std::vector<std::string> kinds{};  ///< and its kind: crash, repair, ..., table, instrument
+  bool ended = false;                ///< later campaigns measure it otherwise
+  std::uint64_t night = 0;           ///< in which its last point came
+  nonio::history::Trend trend{};
+  /// Of each change of the trend: p, adjusted for all that its night has asked.
+  std::vector<double> p_adjusted{};
+  /// Whether it is told.
+  std::vector<bool> told{};
+};
+
+/// Largest deviations and the like of one axis: shown, and held against limits.
+struct ShownSeries {
+  std::string axis, quantity, unit;
+  std::vector<std::size_t> results;
+  /// Of each campaign the one that decides: what was left, not what was found; the worst of several
+  /// lines of the axis.
+  std::vector<std::size_t> judged{};
+};
+
+/// All that is followed of a machine, by axis and quantity. `events`: those of this machine.
+std::vector<FollowedSeries> followed_series(const history::StoredMachine& machine,
+                                            const std::vector<config::Event>& events);
+
+std::vector<ShownSeries> shown_series(const history::StoredMachine& machine);
+
+/// A machine with all that its history is made of.
+struct AssessedMachine {
+  history::MachineState state;
+  history::StoredMachine stored;
+  std::vector<config::Event> events;
+  std::vector<FollowedSeries> followed;
+  std::vector<ShownSeries> shown;
+};
+
+/// Events of one machine, by day: said under its name, an alias, or a serial number that no other
+/// machine has.
+std::vector<config::Event> events_of(const history::MachineState& machine,
+                                     const std::vector<history::MachineState>& all,
+                                     const history::StoredLogs& logs);
+
+}  // namespace nonio::host::morning

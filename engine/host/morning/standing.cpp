@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/morning/standing.h"
+
+#include <algorithm>
+
+#include "host/morning/acknowledged.h"
+#include "host/morning/lines_of_machine.h"
+#include "host/morning/site_tables.h"
+
+namespace nonio::host::morning {
+
+using reports::MorningLine;
+
+namespace {
+
+constexpr const char* for_ever = "9999-12-31";
+
+reports::MachineHistory as_compared(const reports::MachineHistory& whole) {
+  reports::MachineHistory out;
+  out.id = whole.id, out.maker = whole.maker, out.model = whole.model, out.serial = whole.serial;
+  out.customer = whole.customer, out.place = whole.place, out.control = whole.control;
+  out.due = whole.due, out.why_due = whole.why_due, out.proposal = whole.proposal;
+  out.file = whole.file;
+  for (const reports::HistorySeries& s : whole.series)
+    if (const reports::HistoryPoint* last = compared_point(s))
+      out.series.push_back({.axis = s.axis,
+                            .quantity = s.quantity,
+                            .unit = s.unit,
+                            .points = {*last},
+                            .model = s.model});
+  return out;
+}
+
+/// Overdue begins after the due date, and a line of what comes soon names no day that has passed.
+std::string same_until(const reports::MachineHistory& described,
+                       const std::vector<MorningLine>& lines, const std::string& date) {
+  std::string until = for_ever;
+  if (!described.due.empty() && described.due >= date) until = described.due;
+  for (const MorningLine& l : lines)
+    for (const auto& [name, text] : l.finding.texts)
+      if (l.kind == MorningLine::Kind::soon && name == "leaves") until = std::min(until, text);
+  return until;
+}
+
+}  // namespace
+
+std::vector<const config::Acknowledgement*> acknowledgements_of(const std::string& machine,
+                                                                const history::StoredLogs& logs) {
+  std::vector<const config::Acknowledgement*> out;
+  for (const config::Acknowledgement& a : logs.acknowledged) {
+    const auto alias = logs.aliases.find(a.machine);
+    const std::string& name = alias == logs.aliases.end() ? a.machine : alias->second;
+    if (name.empty() || name == machine) out.push_back(&a);
+  }
+  return out;
+}
+
+Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& described,
+                     const history::StoredLogs& logs, const Tonight& tonight,
+                     const std::filesystem::path& out) {
+  Standing s{.shown = as_compared(described)};
+  s.lines = lines_of_machine(m, described, tonight);
+  s.until = acknowledgements_of(described.id, logs).empty()
+                ? same_until(described, s.lines, tonight.date)
+                : tonight.date;
+  for (MorningLine& l : s.lines) acknowledge(l, m, logs, tonight.date);
+  s.months = months_of(m, described);
+  s.instruments = instruments_of(m, out);
+  s.has_results = !m.stored.results.empty();
+  s.conforms = true;
+  for (const ShownSeries& shown : m.shown) {
+    const history::StoredResult& last = m.stored.results[shown.judged.back()];
+    s.judged = s.judged || last.tolerance.has_value();
+    s.conforms = s.conforms && (last.decision.empty() || last.decision == "conforms");
+  }
+  if (m.stored.findings.empty()) return s;
+  for (const auto& [id, severity] : m.stored.findings.back()) {
+    s.attention = s.attention || severity == "attention";
+    s.reversal = s.reversal || (severity == "attention" && id.starts_with("reversal."));
+  }
+  return s;
+}
+
+}  // namespace nonio::host::morning

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/reports/residuals.h"
+#include "nonio/reports/wording.h"
+#include "nonio/sdk/campaign.h"
+#include "nonio/sdk/results.h"
+
+/// What the pictures of a browser's page are drawn from (page/draw.js), as JSON.
+namespace nonio::workbench {
+
+/// A part's model, and what is said of it. The words are those of
+/// templates/words/<language>/pictures.toml.
+struct Drawn {
+  const Campaign& campaign;
+  const ModelFit& fit;
+  const reports::Wording& words;
+  std::array<reports::PictureWords, 9> pictures;
+};
+
+inline constexpr std::size_t most_readings = 20000;
+
+/// The readings that a page holds: all, or of many a sample, and with it those with the largest
+/// residuals, which are drawn but do not count in RMS and means.
+struct Kept {
+  std::vector<std::size_t> rows;
+  std::vector<char> counted;
+};
+Kept kept_readings(const ModelFit& fit);
+
+/// The data as JSON, in the units that are printed (um, mm; arcsec, deg). `titles`: with title and
+/// sentence of each picture, which a page from disk has in its text.
+std::string data_of(const Drawn& drawn, const Kept& kept, bool titles = true);
+
+/// Text as a string of JSON that may stand in a <script>: nothing in it can end the element.
+std::string json(std::string_view text);
+
+/// Numbers as JSON, null where there is none: columns of the page that data_of does not hold.
+std::string json(const std::vector<double>& values);
+
+}  // namespace nonio::workbench

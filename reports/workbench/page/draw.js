@@ -1,0 +1,552 @@
+// SPDX-License-Identifier: Apache-2.0
+// The nine pictures of residuals: the page from disk (model-html) and the live one draw with this code. The caller
+// brings the data, from the page itself or from the server, and says what is hidden and what is done with a reading.
+"use strict";
+/// figure(k): the element of picture k; tip: what shows a reading; hidden: {d: directions, r: runs}, sets.
+/// Where a caller wants them: pick(row) and brushed(rows) when a reading or a region is chosen, said(lines) when a key
+/// moves to a reading, drawn(k, frame) after each picture.
+function nonioPictures({figure, tip, hidden, pick, brushed, said, drawn}) {
+  let data, words, n, wrong, residual, place, ends_of_lane, lines, ghost = null;
+  let shown = [], range = [0, 1], pictures = [], marked = -1, by_key = false, printing = false, chosen = new Set();
+
+  const text = (template, places) =>
+    template.replace(/\{(\w+)\}/g, (all, name) => (name in places ? places[name] : all));
+  const number = (v, digits) => {
+    const s = v.toFixed(digits).replace("-", "\u2212");
+    return data.comma ? s.replace(".", ",") : s;
+  };
+  const finite = (v) => typeof v === "number" && isFinite(v);
+  const counts = (i) => data.weight[i] >= 0.5;
+
+  function common_range() {
+    let low = 0, high = 0;
+    for (const values of [residual, data.left_out])
+      if (values)
+        for (const i of shown)
+          if (!wrong.has(i) && finite(values[i])) {
+            low = Math.min(low, values[i]);
+            high = Math.max(high, values[i]);
+          }
+    if (data.floor) {
+      low = Math.min(low, -2.2 * data.floor);
+      high = Math.max(high, 2.2 * data.floor);
+    }
+    const edge = 0.06 * (high - low) || 1;
+    return [low - edge, high + edge];
+  }
+
+  // ---- scales ----
+  function ticks(low, high, count, kind) {
+    let raw = (high - low) / count, step = 0;
+    if (kind === "turn" && raw > 10)
+      step = [15, 30, 45, 60, 90, 180, 360].find((s) => raw <= s) || 0;
+    if (kind === "whole") raw = Math.max(raw, 1);
+    if (!step) {
+      const power = Math.pow(10, Math.floor(Math.log10(raw)));
+      const whole = kind === "whole" && power <= 1;
+      step = (whole ? [1, 2, 5, 10] : [1, 2, 2.5, 5, 10]).find((s) => raw <= s * power * (1 + 1e-9)) * power;
+    }
+    let digits = 0;
+    for (let s = step; digits < 9 && Math.abs(s - Math.round(s)) > 1e-6 * s; s *= 10) digits++;
+    const list = [];
+    for (let k = Math.ceil(low / step - 1e-6); k * step <= high + 1e-6 * step; k++)
+      list.push({at: k * step, label: number(k * step, digits)});
+    return list;
+  }
+
+  // ---- drawing ----
+  const ns = "http://www.w3.org/2000/svg";
+  function put(parent, name, attributes, content) {
+    const node = document.createElementNS(ns, name);
+    for (const key in attributes) node.setAttribute(key, attributes[key]);
+    if (content !== undefined) node.textContent = content;
+    parent.appendChild(node);
+    return node;
+  }
+  const r1 = (v) => v.toFixed(1);
+
+  class Frame {
+    constructor(k, xs, options) {
+      const holder = figure(k);
+      this.svg = holder.querySelector("svg");
+      this.svg.replaceChildren();
+      const width = printing ? 240 : Math.max(220, Math.round(holder.clientWidth) || 320), height = 230;
+      this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+      Object.assign(this, {k, x: 46, y: 6, w: width - 52, h: height - 44, points: []});
+      const said = data.pictures[k];
+      const ends = (list) => list.reduce(([a, b], v) => (finite(v) ? [Math.min(a, v), Math.max(b, v)] : [a, b]), [Infinity, -Infinity]);
+      let [low, high] = ends(xs);
+      this.empty = !(low <= high);
+      if (this.empty) [low, high] = [0, 1];
+      const side = 0.025 * (high - low) || 0.5;
+      this.lanes = options.lanes ? data.lanes : null;
+      this.left = this.lanes ? 0 : low - side;
+      this.right = this.lanes ? this.lanes.length : high + side;
+      [this.low, this.high] = options.range || range;
+      this.axes(said, options.kind || (said.degrees ? "turn" : ""));
+    }
+    px(v) { return this.x + (this.w * (v - this.left)) / (this.right - this.left); }
+    py(v) { return this.y + this.h * (1 - (v - this.low) / (this.high - this.low)); }
+    axes(said, kind) {
+      const {svg, x, y, w, h} = this;
+      if (data.floor && !this.own_band())
+        put(svg, "rect", {class: "band", x, y: r1(this.py(2 * data.floor)), width: w,
+                          height: r1(this.py(-2 * data.floor) - this.py(2 * data.floor))});
+      for (const t of ticks(this.low, this.high, 6, "")) {
+        put(svg, "line", {class: t.at === 0 ? "zero" : "rule", x1: x, x2: x + w, y1: r1(this.py(t.at)), y2: r1(this.py(t.at))});
+        put(svg, "text", {x: x - 4, y: r1(this.py(t.at) + 3.5), "text-anchor": "end"}, t.label);
+      }
+      let free = -Infinity;
+      const across = this.lanes
+        ? this.lanes.map((name, m) => ({at: m + 0.5, rule: m + 1, label: name}))
+        : ticks(this.left, this.right, Math.max(2, Math.min(7, Math.round(w / 50))), kind);
+      for (const t of across) {
+        const at = this.px(t.at), rule = this.px(t.rule === undefined ? t.at : t.rule), half = 3.2 * t.label.length;
+        put(svg, "line", {class: "rule", x1: r1(rule), x2: r1(rule), y1: y, y2: y + h});
+        if (at - half < free || at + half > x + w + 8) continue;
+        free = at + half + 4;
+        put(svg, "text", {x: r1(at), y: y + h + 13, "text-anchor": "middle"}, t.label);
+      }
+      put(svg, "rect", {class: "frame", x, y, width: w, height: h});
+      put(svg, "text", {x: x + w / 2, y: y + h + 31, "text-anchor": "middle"}, said.x);
+      put(svg, "text", {transform: `translate(11 ${y + h / 2}) rotate(-90)`, "text-anchor": "middle"}, said.y);
+      if (this.empty) put(svg, "text", {x: x + w / 2, y: y + h / 2 - 8, "text-anchor": "middle"}, this.k === 1 ? words.one_direction : words.no_readings);
+    }
+    own_band() { return this.k === 1; }
+    line(xs, ys, look) {
+      if (xs.length < 2) return;
+      const d = xs.map((v, i) => (i ? "L" : "M") + r1(this.px(v)) + " " + r1(this.py(ys[i]))).join("");
+      put(this.svg, "path", {class: "line " + look, d});
+    }
+    /// Readings by direction; suspects that lie outside stand at the edge.
+    scatter(rows, xs, ys) {
+      const path = {plus: "", minus: "", other: ""}, many = rows.length > 1200;
+      const inset = 0.03 * (this.high - this.low), rings = [];
+      rows.forEach((i, j) => {
+        if (!finite(xs[j]) || !finite(ys[j])) return;
+        const v = wrong.has(i) ? Math.min(Math.max(ys[j], this.low + inset), this.high - inset) : ys[j];
+        const x = this.px(xs[j]), y = this.py(v), at = "M" + r1(x) + " " + r1(y);
+        const d = data.direction[i];
+        path[d > 0 ? "plus" : d < 0 ? "minus" : "other"] +=
+          many || d === 0 ? at + "h0" : d > 0 ? at + "m-3 2.2h6l-3-5.2z" : at + "m-3-2.2h6l-3 5.2z";
+        this.points.push([x, y, i]);
+        if (wrong.has(i)) rings.push([x, y]);
+      });
+      for (const look in path)
+        if (path[look]) put(this.svg, "path", {class: (many || look === "other" ? "dots " : "marks ") + look, d: path[look]});
+      for (const [cx, cy] of rings) put(this.svg, "circle", {class: "suspect", cx: r1(cx), cy: r1(cy), r: 6});
+    }
+  }
+
+  // ---- places: lines in space stand side by side, each in a lane of width 1 ----
+  function place_of(m, target) {
+    if (!data.lanes) return target;
+    const [low, high] = ends_of_lane[m], room = 0.08;
+    return m + room + (1 - 2 * room) * (low < high ? (target - low) / (high - low) : 0.5);
+  }
+  const of_line = (rows, m) => rows.filter((i) => data.measurement[i] === m);
+
+  const mean = (list) => list.reduce((a, b) => a + b, 0) / list.length;
+  function grouped(rows, key, values) {
+    const map = new Map();
+    for (const i of rows)
+      if (counts(i)) {
+        if (!map.has(key[i])) map.set(key[i], []);
+        map.get(key[i]).push(values[i]);
+      }
+    return [...map.entries()].sort((a, b) => a[0] - b[0]);
+  }
+  function mean_by_part(frame, rows, xs) {
+    const used = rows.map((i, j) => [xs[j], residual[i], i]).filter((p) => finite(p[0]) && counts(p[2]));
+    const low = Math.min(...extremes(used.map((p) => p[0]))), high = Math.max(...extremes(used.map((p) => p[0])));
+    if (!(low < high) || used.length < 12) return;
+    const parts = Math.min(12, Math.floor(used.length / 6));
+    const groups = Array.from({length: parts}, () => []);
+    for (const p of used) groups[Math.min(parts - 1, Math.floor(((p[0] - low) / (high - low)) * parts))].push(p);
+    const good = groups.filter((g) => g.length >= 3);
+    frame.line(good.map((g) => mean(g.map((p) => p[0]))), good.map((g) => mean(g.map((p) => p[1]))), "mean");
+  }
+  const extremes = (list) => list.reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [Infinity, -Infinity]);
+
+  function over(k, column, kind) {
+    const xs = shown.map((i) => column[i]);
+    const frame = new Frame(k, xs, {kind});
+    frame.scatter(shown, xs, shown.map((i) => residual[i]));
+    if (kind !== "whole") mean_by_part(frame, shown, xs);
+    return frame;
+  }
+
+  function by_position() {
+    const xs = shown.map((i) => place[i]);
+    const frame = new Frame(0, xs, {lanes: true});
+    frame.scatter(shown, xs, shown.map((i) => residual[i]));
+    for (const m of lines)
+      for (const d of [1, -1, 0]) {
+        const groups = grouped(of_line(shown, m).filter((i) => data.direction[i] === d), data.target, residual);
+        frame.line(groups.map((g) => place_of(m, g[0])), groups.map((g) => mean(g[1])), d > 0 ? "plus" : d < 0 ? "minus" : "other");
+      }
+    return frame;
+  }
+
+  function by_reversal() {
+    const of_lines = lines.map((m) => reversal_of(m));
+    const all = (key) => of_lines.flatMap((line) => line[key]);
+    const [low, high] = extremes([0, ...all("ys"), ...all("half"), ...all("half").map((v) => -v)]);
+    const edge = 0.06 * (high - low) || 1;
+    const frame = new Frame(1, all("xs"), {range: [low - edge, high + edge], lanes: true});
+    if (lines.length > 1 && data.floor) {
+      // One belt for all lines: bands would darken each other.
+      const widest = Math.max(0, ...all("half"));
+      put(frame.svg, "rect", {class: "band", x: frame.x, y: r1(frame.py(widest)), width: frame.w,
+                              height: r1(frame.py(-widest) - frame.py(widest))});
+    }
+    for (const line of of_lines) draw_reversal(frame, line);
+    return frame;
+  }
+
+  /// mean(+) less mean(-) at each target of one measurement, and twice its standard deviation by the
+  /// floor.
+  function reversal_of(m) {
+    const rows = of_line(shown, m);
+    const minus = new Map(grouped(rows.filter((i) => data.direction[i] < 0), data.target, residual));
+    const both = grouped(rows.filter((i) => data.direction[i] > 0), data.target, residual).filter((g) => minus.has(g[0]));
+    return {
+      targets: both.map((g) => g[0]),
+      xs: both.map((g) => place_of(m, g[0])),
+      ys: both.map((g) => mean(g[1]) - mean(minus.get(g[0]))),
+      half: both.map((g) => 2 * (data.floor || 0) * Math.sqrt(1 / g[1].length + 1 / minus.get(g[0]).length)),
+    };
+  }
+
+  function draw_reversal(frame, {targets, xs, ys, half}) {
+    if (lines.length === 1 && data.floor && xs.length > 1) {
+      const there = xs.map((v, j) => r1(frame.px(v)) + " " + r1(frame.py(half[j])));
+      const back = xs.map((v, j) => r1(frame.px(v)) + " " + r1(frame.py(-half[j]))).reverse();
+      put(frame.svg, "path", {class: "band", d: "M" + there.concat(back).join("L") + "z"});
+    }
+    frame.line(xs, ys, "other");
+    xs.forEach((v, j) => {
+      put(frame.svg, "circle", {class: "dot", cx: r1(frame.px(v)), cy: r1(frame.py(ys[j])), r: 2.5});
+      frame.points.push([frame.px(v), frame.py(ys[j]), -1, [position(targets[j]), words.reversal + " " + number(ys[j], 2) + " " + data.unit]]);
+    });
+  }
+
+  function by_run() {
+    const frame = over(3, data.run, "whole");
+    const groups = grouped(shown, data.run, residual);
+    frame.line(groups.map((g) => g[0]), groups.map((g) => mean(g[1])), "mean");
+    return frame;
+  }
+
+  /// z with Phi(z) = p, by Newton's method from 0; Phi by its series and, far out, its continued
+  /// fraction (Abramowitz and Stegun, Handbook of Mathematical Functions, 26.2.11 and 26.2.14).
+  function quantile(p) {
+    if (p > 0.5) return -quantile(1 - p);
+    const density = (z) => Math.exp((-z * z) / 2) / Math.sqrt(2 * Math.PI);
+    const below = (z) => {
+      const x = -z;
+      if (x < 2.5) {
+        let term = x, sum = x;
+        for (let k = 1; k < 60; k++) sum += term *= (x * x) / (2 * k + 1);
+        return 0.5 - density(x) * sum;
+      }
+      let f = 0;
+      for (let k = 60; k > 0; k--) f = k / (x + f);
+      return density(x) / (x + f);
+    };
+    let z = 0;
+    for (let i = 0; i < 60; i++) {
+      const step = (below(z) - p) / density(z);
+      z -= step;
+      if (Math.abs(step) < 1e-9) break;
+    }
+    return z;
+  }
+  function by_normal() {
+    const order = shown.filter((i) => data.weight[i] > 0 || wrong.has(i)).sort((a, b) => residual[a] - residual[b]), m = order.length;
+    const outer = 300, step = m > 1600 ? Math.floor((m - 2 * outer) / 1000) : 1;
+    const kept = [], zs = [];
+    order.forEach((i, j) => {
+      if (j >= outer && j + outer < m && j % step !== 0) return;
+      kept.push(i);
+      zs.push(quantile((j + 0.5) / m));
+    });
+    const frame = new Frame(7, zs, {});
+    frame.scatter(kept, zs, kept.map((i) => residual[i]));
+    if (data.floor && zs.length > 1) {
+      const ends = [zs[0], zs[zs.length - 1]];
+      frame.line(ends, ends.map((z) => z * data.floor), "mean dashed");
+    }
+    return frame;
+  }
+
+  function phases() {
+    return data.target.map((p) => {
+      const v = p - data.period * Math.floor(p / data.period);
+      return data.period - v < 1e-9 * data.period ? 0 : v;
+    });
+  }
+  function left_out() {
+    const xs = shown.map((i) => place[i]);
+    const frame = new Frame(8, xs, {lanes: true});
+    frame.scatter(shown, xs, shown.map((i) => data.left_out[i]));
+    return frame;
+  }
+
+  // ---- what an effect would take away, over what remains: means, as a thin line ----
+  function ghost_line(frame, xs, group) {
+    const sums = new Map();
+    shown.forEach((i, j) => {
+      if (!finite(xs[j]) || !finite(ghost[i])) return;
+      const key = group(i, xs[j]), sum = sums.get(key) || [0, 0, 0];
+      sums.set(key, [sum[0] + 1, sum[1] + xs[j], sum[2] + ghost[i]]);
+    });
+    const points = [...sums.values()].map(([m, x, y]) => [x / m, y / m]).sort((a, b) => a[0] - b[0])
+      .filter((p) => p[1] >= frame.low && p[1] <= frame.high);
+    frame.line(points.map((p) => p[0]), points.map((p) => p[1]), "ghost");
+  }
+  function ghost_in(frame, k, columns) {
+    if (!ghost || k === 7 || frame.empty) return;
+    if (k === 1) return ghost_reversal(frame);
+    const all = columns[k];
+    if (!all) return;
+    const of = (rows) => rows.map((i) => all[i]);
+    if (k === 0 || k === 8) {
+      const keep = shown;
+      for (const m of lines) {
+        shown = of_line(keep, m);
+        ghost_line(frame, of(shown), (i, x) => x);
+      }
+      shown = keep;
+      return;
+    }
+    const xs = of(shown), [low, high] = extremes(xs.filter(finite)), parts = 60;
+    ghost_line(frame, xs, (i, x) => (k === 3 ? x : Math.floor(((x - low) / (high - low || 1)) * parts)));
+  }
+  function ghost_reversal(frame) {
+    for (const m of lines) {
+      const rows = of_line(shown, m);
+      const minus = new Map(grouped(rows.filter((i) => data.direction[i] < 0), data.target, ghost));
+      const both = grouped(rows.filter((i) => data.direction[i] > 0), data.target, ghost).filter((g) => minus.has(g[0]));
+      frame.line(both.map((g) => place_of(m, g[0])), both.map((g) => mean(g[1]) - mean(minus.get(g[0]))), "ghost");
+    }
+  }
+
+  /// `values`: the residuals that are drawn, if not those of the data.
+  function draw(values) {
+    if (values) residual = values;
+    shown = [];
+    for (let i = 0; i < n; i++)
+      if (!hidden.d.has(data.direction[i]) && !hidden.r.has(data.run[i])) shown.push(i);
+    range = common_range();
+    const says = data.deviation.map((v, i) => v - residual[i]);
+    const drawers = [by_position, by_reversal, () => over(2, data.time), by_run, () => over(4, phases()),
+                     () => over(5, data.temperature), () => over(6, says), by_normal, left_out];
+    const columns = [place, null, data.time, data.run, null, data.temperature, says, null, place];
+    if (ghost && !data.pictures[4].none) columns[4] = phases();
+    pictures = [];
+    drawers.forEach((drawer, k) => {
+      if (data.pictures[k].none) return;
+      const frame = drawer();
+      ghost_in(frame, k, columns);
+      pictures.push(frame);
+      if (drawn) drawn(k, frame);
+    });
+    mark(marked);
+    select(chosen);
+  }
+
+  // ---- one reading, in every picture ----
+  const position = (v) => data.axis + " " + number(v, 4).replace(/[.,]?0+$/, "") + " " + data.position_unit;
+  function about(i) {
+    const signed = (v) => (v > 0 ? "+" : "") + number(v, 2) + " " + data.unit;
+    const d = data.direction[i];
+    const lines = [
+      text(words.reading, {run: data.run[i], direction: d > 0 ? "+" : d < 0 ? "\u2212" : "?"}) + ", " + position(data.target[i]),
+      words.deviation + " " + signed(data.deviation[i]),
+      words.model + " " + signed(data.deviation[i] - residual[i]),
+      words.residual + " " + signed(residual[i]),
+    ];
+    if (data.time && finite(data.time[i])) lines.push(words.time + " " + number(data.time[i] , 1) + " " + data.time_unit);
+    if (data.temperature && finite(data.temperature[i])) lines.push(words.temperature + " " + number(data.temperature[i], 2) + " \u00B0C");
+    const file = data.files[data.measurement[i]];
+    lines.push(text(words.line, {file: file || "", line: data.line[i]}));
+    if (wrong.has(i)) lines.push(text(words.suspect, {size: number(wrong.get(i), 2), unit: data.unit}));
+    return lines;
+  }
+  function mark(i) {
+    marked = i;
+    for (const frame of pictures) {
+      const old = frame.svg.querySelector(".chosen");
+      if (old) old.remove();
+      const point = i >= 0 && frame.points.find((p) => p[2] === i);
+      if (point) put(frame.svg, "circle", {class: "chosen", cx: r1(point[0]), cy: r1(point[1]), r: 5});
+    }
+  }
+  /// The same readings in every picture; the others step back.
+  function select(rows) {
+    chosen = new Set(rows);
+    for (const frame of pictures) {
+      const old = frame.svg.querySelector(".picked");
+      if (old) old.remove();
+      frame.svg.classList.toggle("choosing", chosen.size > 0);
+      if (chosen.size === 0) continue;
+      const d = frame.points.filter((p) => chosen.has(p[2])).map((p) => `M${r1(p[0])} ${r1(p[1])}h0`).join("");
+      put(frame.svg, "path", {class: "picked", d});
+    }
+  }
+  function show(lines, x, y) {
+    tip.replaceChildren(...lines.map((line) => {
+      const p = document.createElement("p");
+      p.textContent = line;
+      return p;
+    }));
+    tip.hidden = false;
+    const room = document.documentElement.clientWidth - tip.offsetWidth - 6;
+    tip.style.left = Math.max(4, Math.min(x + 14, room)) + "px";
+    tip.style.top = (y + tip.offsetHeight + 24 > window.innerHeight ? y - tip.offsetHeight - 12 : y + 14) + "px";
+  }
+  function hide() {
+    tip.hidden = true;
+    if (marked >= 0) mark(-1);
+  }
+  function under(event, reach) {
+    const svg = event.target.closest && event.target.closest("figure svg");
+    const frame = svg && pictures.find((f) => f.svg === svg);
+    if (!frame) return [null, null];
+    const [x, y] = inside(frame, event);
+    let best = null, least = reach * reach;
+    for (const p of frame.points) {
+      const d = (p[0] - x) * (p[0] - x) + (p[1] - y) * (p[1] - y);
+      if (d < least) [best, least] = [p, d];
+    }
+    return [frame, best];
+  }
+  function inside(frame, event) {
+    const box = frame.svg.getBoundingClientRect(), scale = frame.svg.viewBox.baseVal.width / box.width;
+    return [(event.clientX - box.left) * scale, (event.clientY - box.top) * scale];
+  }
+  function hover(event) {
+    by_key = false;
+    const [, best] = under(event, 18);
+    if (!best) return hide();
+    if (best[2] !== marked || best[2] < 0) mark(best[2]);
+    show(best[2] >= 0 ? about(best[2]) : best[3], event.clientX, event.clientY);
+  }
+
+  // ---- a region: drawn with the pointer; what lies in it is chosen in every picture ----
+  let drag = null;
+  function down(event) {
+    hover(event);
+    const [frame] = under(event, 18);
+    if (!brushed || !frame || event.button !== 0 || event.pointerType === "touch") return;
+    drag = {frame, from: inside(frame, event), to: null, box: null};
+  }
+  function move(event) {
+    if (!drag) return hover(event);
+    hide();
+    event.preventDefault();
+    const {frame, from} = drag, clip = (v, low, size) => Math.min(Math.max(v, low), low + size);
+    const at = inside(frame, event);
+    if (!drag.box && Math.hypot(at[0] - from[0], at[1] - from[1]) < 5) return;
+    drag.to = [clip(at[0], frame.x, frame.w), clip(at[1], frame.y, frame.h)];
+    drag.box = drag.box || put(frame.svg, "rect", {class: "brush"});
+    const corner = (k) => Math.min(from[k], drag.to[k]), size = (k) => Math.abs(from[k] - drag.to[k]);
+    for (const [name, v] of [["x", corner(0)], ["y", corner(1)], ["width", size(0)], ["height", size(1)]])
+      drag.box.setAttribute(name, r1(v));
+  }
+  function up(event) {
+    const was = drag;
+    drag = null;
+    if (was && was.box) {
+      was.box.remove();
+      const within = (v, k) => v >= Math.min(was.from[k], was.to[k]) && v <= Math.max(was.from[k], was.to[k]);
+      const rows = was.frame.points.filter((p) => p[2] >= 0 && within(p[0], 0) && within(p[1], 1)).map((p) => p[2]);
+      select(rows);
+      brushed(rows);
+    } else if (pick) {
+      const [, best] = under(event, 12);
+      if (best && best[2] >= 0) pick(best[2]);
+    }
+  }
+
+  // ---- the same with keys: a cursor that goes from reading to reading, in the picture that has the focus ----
+  function key(event) {
+    const svg = event.target.closest && event.target.closest("figure svg");
+    const frame = svg && pictures.find((f) => f.svg === svg);
+    if (!frame || event.ctrlKey || event.altKey || event.metaKey) return;
+    const order = frame.points.filter((p) => p[2] >= 0).sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+    if (order.length === 0) return;
+    const at = order.findIndex((p) => p[2] === marked), last = order.length - 1;
+    const to = {ArrowRight: at + 1, ArrowLeft: at < 0 ? last : at - 1, Home: 0, End: last, PageDown: at + 10, PageUp: at - 10}[event.key];
+    if (to !== undefined) {
+      const point = order[Math.min(Math.max(to, 0), last)];
+      by_key = true;
+      mark(point[2]);
+      const box = svg.getBoundingClientRect(), scale = box.width / svg.viewBox.baseVal.width;
+      show(about(point[2]), box.left + point[0] * scale, box.top + point[1] * scale);
+      if (said) said(about(point[2]));
+    } else if (event.key === "Enter" && marked >= 0 && pick) pick(marked);
+    else if (event.key === "Escape" && tip.hidden) {
+      select([]);
+      if (brushed) brushed([]);
+    } else if (event.key === "Escape") hide();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+  document.addEventListener("pointermove", move);
+  document.addEventListener("pointerdown", down);
+  document.addEventListener("pointerup", up);
+  document.addEventListener("pointercancel", () => {
+    if (drag && drag.box) drag.box.remove();
+    drag = null;
+  });
+  // What a key has marked stays marked when the page moves under it.
+  document.addEventListener("scroll", () => (by_key ? (tip.hidden = true) : hide()), {passive: true, capture: true});
+  if (pick) document.addEventListener("keydown", key);
+
+  let pending = 0;
+  window.addEventListener("resize", () => {
+    clearTimeout(pending);
+    pending = setTimeout(() => data && draw(), 100);
+  });
+  for (const [event, now] of [["beforeprint", true], ["afterprint", false]])
+    window.addEventListener(event, () => {
+      printing = now;
+      if (data) draw();
+    });
+
+  return {
+    /// What the page has of a part: model-html embeds it, GET /api/parts/X/fit sends it.
+    set(page) {
+      const other = !data || data.residual.length !== page.residual.length || data.axis !== page.axis;
+      data = page;
+      words = data.words;
+      n = data.residual.length;
+      wrong = new Map(data.suspects);
+      residual = data.residual;
+      ghost = null;
+      if (other) [marked, chosen] = [-1, new Set()];
+      ends_of_lane = (data.lanes || []).map((name, m) =>
+        data.target.reduce(([a, b], v, i) => (data.measurement[i] === m ? [Math.min(a, v), Math.max(b, v)] : [a, b]), [Infinity, -Infinity]));
+      place = data.target.map((v, i) => place_of(data.measurement[i], v));
+      lines = Array.from({length: Math.max(1, data.measurements)}, (_, m) => m);
+    },
+    /// What an effect says of each reading, or nothing.
+    ghost(column) {
+      const means = new Map();
+      (column || []).forEach((v, i) => {
+        const m = means.get(data.measurement[i]) || [0, 0];
+        if (finite(v)) means.set(data.measurement[i], [m[0] + data.weight[i], m[1] + data.weight[i] * v]);
+      });
+      // Each measurement has a zero of its own, which takes the mean.
+      ghost = column && column.map((v, i) => v - means.get(data.measurement[i])[1] / means.get(data.measurement[i])[0]);
+    },
+    draw, mark, select, about, hide,
+    number, text, finite,
+    get shown() { return shown; },
+    get chosen() { return chosen; },
+    counted: (i) => data.weight[i] > 0 || wrong.has(i),
+  };
+}

@@ -1,0 +1,105 @@
+// ---- the server: every request has the token, which never stands in an address or a cookie ----
+const net = (() => {
+  const at = /(?:^|[#&])t=([0-9a-f]{32})(?:&|$)/.exec(location.hash);
+  if (at) {
+    sessionStorage.setItem("nonio-token", at[1]);
+    history.replaceState(null, "", location.pathname);
+  }
+  // A site's server has each campaign at an address of its own: the calls go there too.
+  const base = location.pathname.slice(0, location.pathname.lastIndexOf("/"));
+  const token = () => sessionStorage.getItem("nonio-token") || "";
+
+  class Refused extends Error {
+    constructor(status, answer) {
+      super((answer && answer.error) || say("net.status", {status}));
+      this.status = status;
+      this.answer = answer || {};
+    }
+  }
+  async function ask(path, {body, match, none, raw} = {}) {
+    const headers = {"X-Nonio-Token": token()};
+    if (match) headers["If-Match"] = `"${match}"`;
+    if (none) headers["If-None-Match"] = none;
+    const options = {headers, cache: "no-store"};
+    if (body !== undefined) {
+      options.method = "POST";
+      headers["Content-Type"] = "application/json";
+      options.body = JSON.stringify(body);
+    }
+    const response = await fetch(base + path, options);
+    if (response.status === 304) return null;
+    if (raw && response.ok) return response.blob();
+    const text = await response.text();
+    let answer = null;
+    try {
+      answer = JSON.parse(text);
+    } catch (e) {
+      answer = {error: text.slice(0, 500)};
+    }
+    if (!response.ok) throw new Refused(response.status, answer);
+    Object.defineProperty(answer, "etag", {value: response.headers.get("ETag")});
+    return answer;
+  }
+
+  /// Reads the stream of events for ever: a lost connection is told, and tried again from where it was. A hidden tab
+  /// keeps none, since a browser has only six connections for all tabs.
+  async function listen({since, event, lost, found}) {
+    let wait = 500, stop = null, gone = false;
+    document.addEventListener("visibilitychange", () => document.hidden && stop && stop.abort());
+    for (;;) {
+      if (document.hidden) {
+        await new Promise((done) => document.addEventListener("visibilitychange", done, {once: true}));
+        continue;
+      }
+      try {
+        stop = new AbortController();
+        const response = await fetch(`${base}/api/events?since=${since()}`, {headers: {"X-Nonio-Token": token()}, cache: "no-store", signal: stop.signal});
+        if (response.status === 403) return lost(403);
+        if (response.ok) {
+          if (gone) found();
+          gone = false;
+          wait = 500;
+          await read(response.body.getReader(), event);
+        }
+      } catch (e) {
+        if (!document.hidden) {
+          gone = true;
+          lost(0);
+        }
+      }
+      if (!document.hidden) await new Promise((done) => setTimeout(done, wait));
+      wait = Math.min(wait * 1.5, 3000);
+    }
+  }
+  async function read(reader, event) {
+    const decoder = new TextDecoder();
+    let rest = "";
+    for (;;) {
+      const {value, done} = await reader.read();
+      if (done) return;
+      rest += decoder.decode(value, {stream: true});
+      for (let end; (end = rest.indexOf("\n\n")) >= 0; rest = rest.slice(end + 2)) {
+        const lines = rest.slice(0, end).split("\n").filter((line) => !line.startsWith(":"));
+        const of = (name) => lines.filter((line) => line.startsWith(name + ":")).map((line) => line.slice(name.length + 1).trim()).join("\n");
+        if (lines.length === 0) continue;
+        let data = {};
+        try {
+          data = JSON.parse(of("data") || "{}");
+        } catch (e) {
+          // an event without data still says that something is new
+        }
+        event({type: of("event") || "state", id: Number(of("id")) || 0, data});
+      }
+    }
+  }
+  /// A file of the server, as the browser stores one.
+  async function download(path, name) {
+    const url = URL.createObjectURL(await ask(path, {raw: true}));
+    const link = el("a", {href: url, download: name});
+    document.body.append(link);
+    link.click();
+    link.remove();
+    setTimeout(() => URL.revokeObjectURL(url), 60000);
+  }
+  return {ask, listen, download, hasToken: () => token() !== "", Refused};
+})();

@@ -1,0 +1,550 @@
+# SPDX-License-Identifier: Apache-2.0
+"""live_page_test.py NONIO SOURCE_FOLDER: the page of `nonio live` in a real browser, with the real server: the tutorial by
+mouse and by keys, undo, reload, two tabs, hostile names, a file edited beside it, a server that ends, widths, dark, motion,
+what hinders people, and numbers that are those of `nonio compare` and `explain`.
+
+Waits for states, never sleeps. On failure the screenshot and the browser's log are kept beside the test. With
+NONIO_PICTURES=FOLDER the three pictures of README.md are written there."""
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+
+try:
+    from selenium import webdriver
+    from selenium.common.exceptions import StaleElementReferenceException
+    from selenium.webdriver.chrome.options import Options
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.support.ui import WebDriverWait
+except ImportError:
+    webdriver = None
+from browser import SKIPPED, program
+from hindrances import HINDRANCES
+
+NONIO, SOURCE = (pathlib.Path(a) for a in sys.argv[1:3])
+TUTORIAL = SOURCE / "samples/tutorial/site/missing-effect"
+DRIVER = shutil.which("chromedriver")
+PATIENCE = 30
+
+
+def browser(profile, width=1280, height=800):
+    options = Options()
+    options.binary_location = program()
+    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--hide-scrollbars", f"--user-data-dir={profile}",
+                     f"--window-size={width},{height}"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=Service(DRIVER), options=options)
+
+
+class Live:
+    """A `nonio live` of its own campaign, port and token."""
+
+    def __init__(self, folder, *more):
+        self.command, self.beside = [str(NONIO), "live", *more, folder.name], folder.parent
+        self.start()
+
+    def start(self):
+        self.process = subprocess.Popen(self.command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=self.beside)
+        self.address = self.process.stdout.readline().strip()
+        if not self.address.startswith("http://127.0.0.1:"):
+            raise AssertionError(f"{self.command}: {self.address} {self.process.stderr.read()}")
+
+    def stop(self, kill=False):
+        (self.process.kill if kill else self.process.terminate)()
+        self.process.wait(20)
+        for pipe in (self.process.stdout, self.process.stderr):
+            pipe.close()
+
+
+def said(verb, folder, *more):
+    got = subprocess.run([str(NONIO), verb, str(folder), "--json", *more], capture_output=True, text=True)
+    return json.loads(got.stdout)
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        cls.d = browser(cls.profile.name)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.d.quit()
+        cls.profile.cleanup()
+
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        self.folder = pathlib.Path(self.scratch.name)
+        self.servers = []
+        self.addCleanup(self.end)
+        self.size(1280, 800)
+
+    def end(self):
+        outcome = getattr(self._outcome, "result", None)
+        if outcome and any(test is self for test, _ in outcome.errors + outcome.failures):
+            name = pathlib.Path(tempfile.gettempdir()) / f"nonio-live-{self.id().split('.')[-1]}"
+            self.d.save_screenshot(f"{name}.png")
+            print(f"kept {name}.png;", self.d.get_log("browser"), flush=True)
+        self.d.switch_to.window(self.d.window_handles[0])
+        for server in self.servers:
+            if server.process.poll() is None:
+                server.stop()
+        self.scratch.cleanup()
+
+    # ---- tools ----
+    def size(self, width, height=800, scale=1):
+        self.d.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": scale, "mobile": False})
+
+    def media(self, **features):
+        self.d.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": k.replace("_", "-"), "value": v} for k, v in features.items()]})
+        self.addCleanup(self.d.execute_cdp_cmd, "Emulation.setEmulatedMedia", {"features": []})
+
+    def campaign(self, source=TUTORIAL, name=None):
+        return pathlib.Path(shutil.copytree(source, self.folder / (name or source.name)))
+
+    def serve(self, folder, *more):
+        server = Live(folder, *more)
+        self.servers.append(server)
+        return server
+
+    def open(self, server, wait="explained"):
+        self.d.get("about:blank")
+        self.d.get(server.address)
+        self.d.get_log("browser")
+        self.ready(wait)
+
+    def wait(self, condition, what=""):
+        return WebDriverWait(self.d, PATIENCE, 0.03).until(lambda d: condition(), what)
+
+    def js(self, text, *arguments):
+        return self.d.execute_script("return " + text, *arguments)
+
+    def ready(self, state="explained"):
+        self.wait(lambda: self.js("document.body.dataset.ready") == state, f"the page is {state}")
+
+    def text(self, identifier):
+        return self.js(f"document.getElementById('{identifier}').textContent")
+
+    def verdict(self, kind):
+        self.wait(lambda: self.js("document.getElementById('verdict').classList.contains(arguments[0])", kind), f"verdict {kind}")
+        return self.text("verdict")
+
+    def rms(self):
+        return float(self.js("document.querySelector('#now .number').dataset.value"))
+
+    def ticks(self, group=None):
+        where = f"[data-group=\"{group}\"] " if group else ""
+        return self.js(f"[...document.querySelectorAll('{where}input[data-effect]')].map((e) => e.dataset.effect + (e.checked ? '' : '?'))")
+
+    def tick(self, effect):
+        before, was = self.js("document.body.dataset.version"), effect in self.ticks()
+
+        def clicked():
+            try:  # what arrives meanwhile may draw the list again
+                box = self.d.find_element(By.CSS_SELECTOR, f"input[data-effect='{effect}']")
+                self.js("arguments[0].scrollIntoView({block: 'center'})", box)
+                box.click()
+                return True
+            except StaleElementReferenceException:
+                return False
+        self.wait(clicked, effect)
+        self.wait(lambda: self.js("document.body.dataset.version") != before and (effect + ("?" if was else "")) in self.ticks(), effect)
+        self.ready()
+
+    def press(self, *keys):
+        ActionChains(self.d).send_keys(*keys).perform()
+
+    def click(self, identifier):
+        self.d.find_element(By.ID, identifier).click()
+
+    def no_complaints(self):
+        # 409 (not explained yet) and lost connections are part of the conversation.
+        bad = [e["message"] for e in self.d.get_log("browser") if e["level"] == "SEVERE" and "status of 409" not in e["message"]]
+        self.assertEqual([], bad)
+
+    def own_requests_only(self):
+        origin = self.js("location.origin")
+        asked = self.js("performance.getEntriesByType('resource').map((e) => e.name)")
+        self.assertEqual([], [a for a in asked if not a.startswith(origin + "/")])
+        self.assertNotIn("t=", self.js("location.href"), "the token does not stay in the address")
+
+    # ---- the loop ----
+    def test_the_tutorial_by_mouse_only(self):
+        folder = self.campaign()
+        self.open(self.serve(folder, "--edit"))
+        self.assertIn("zero-drift:X", self.verdict("missing"))
+        for place, unit in ((0, "rms_um"),):
+            self.assertAlmostEqual(said("compare", folder)["parts"][place][unit], self.rms(), 9)
+        self.assertEqual(["scale:X", "backlash:X"], self.ticks("effects.model"))
+        self.picture("1-start")
+        self.tick("zero-drift:X")
+        self.assertIn("periodic:X", self.verdict("missing"))
+        self.assertIn("pitch-curve:X", self.verdict("missing"), "what these readings cannot separate is told")
+        self.picture("2-drift")
+        self.tick("periodic:X")
+        self.verdict("nothing")
+        self.assertIn("pitch-curve:X would fit these readings as well as periodic:X", self.text("limits"), "complete does not settle it")
+        self.picture("3-complete")
+        self.assertEqual(["scale:X", "backlash:X", "zero-drift:X", "periodic:X"], self.ticks("effects.model"))
+        self.assertEqual(["scale:X", "backlash:X"], tomllib.loads((folder / "campaign.toml").read_text())["model"]["effects"], "nothing is written before save")
+        self.assertIn("nonio model add", self.text("command"))
+        self.click("save")
+        self.wait(lambda: self.d.find_element(By.ID, "save-write").is_displayed())
+        self.assertIn("zero-drift:X", self.d.find_element(By.CSS_SELECTOR, ".diff .plus:last-of-type, .diff").text)
+        self.d.find_element(By.ID, "save-why").send_keys("seen in picture 3")
+        self.click("save-write")
+        self.wait(lambda: not self.js("document.getElementById('dialog').open"))
+        self.wait(lambda: not self.d.find_element(By.ID, "save").is_enabled())
+        self.assertEqual(["scale:X", "backlash:X", "zero-drift:X", "periodic:X"], tomllib.loads((folder / "campaign.toml").read_text())["model"]["effects"])
+        history = [json.loads(line) for line in (folder / "model-history.jsonl").read_text().splitlines()]
+        self.assertEqual(["zero-drift:X", "periodic:X"], [line["effect"] for line in history])
+        compared = said("compare", folder)["parts"][0]
+        self.assertAlmostEqual(compared["rms_um"], self.rms(), 9)
+        for parameter in compared["model"]["parameters"]:
+            shown = self.js("document.querySelector(`[data-parameter='${arguments[0]}']`).dataset.value", f"{parameter['effect']}.{parameter['name']}")
+            self.assertAlmostEqual(parameter["value"], float(shown), 9)
+        self.no_complaints()
+        self.own_requests_only()
+
+    def picture(self, name):
+        if folder := os.environ.get("NONIO_PICTURES"):
+            self.size(1280, 720)
+            self.js("document.querySelector('main').scrollTo(0, 0)")
+            ActionChains(self.d).move_to_element_with_offset(self.d.find_element(By.ID, "campaign"), 0, 0).perform()
+            self.wait(lambda: True)
+            self.js("document.activeElement.blur()")
+            self.d.save_screenshot(f"{folder}/live-{name}.png")
+            self.size(1280, 800)
+
+    def test_the_tutorial_by_keys_only(self):
+        folder = self.campaign()
+        self.open(self.serve(folder, "--edit"))
+
+        def reach(effect):
+            """With Tab to the first effect, then with arrows."""
+            focused = "(document.activeElement.dataset || {}).effect"
+            for _ in range(60):
+                if self.js(focused):
+                    break
+                self.press(Keys.TAB)
+            for _ in range(20):
+                if self.js(focused) == effect:
+                    return
+                self.press(Keys.ARROW_DOWN)
+            self.fail(f"{effect} is not reached by keys")
+
+        for effect in ("zero-drift:X", "periodic:X"):
+            reach(effect)
+            self.press(Keys.SPACE)
+            self.wait(lambda: effect in self.ticks("effects.model"), effect)
+            self.ready()
+            self.assertEqual("tick-" + effect, self.js("document.activeElement.dataset.key"), "the focus stays on the effect")
+        self.verdict("nothing")
+        self.press("s")
+        self.wait(lambda: self.js("document.getElementById('dialog').open"))
+        for _ in range(6):
+            if self.js("document.activeElement.id") == "save-why":
+                break
+            self.press(Keys.TAB)
+        self.press("by keys", Keys.ENTER)
+        self.wait(lambda: not self.js("document.getElementById('dialog').open"))
+        self.assertEqual(["scale:X", "backlash:X", "zero-drift:X", "periodic:X"], tomllib.loads((folder / "campaign.toml").read_text())["model"]["effects"])
+        self.press("z")
+        self.wait(lambda: "periodic:X?" in self.ticks())
+        self.press("y")
+        self.wait(lambda: "periodic:X" in self.ticks())
+        self.no_complaints()
+
+    def test_a_reading_is_reached_by_keys_and_left_out_with_a_reason(self):
+        self.open(self.serve(self.campaign()))
+        before = self.rms()
+        self.js("document.querySelector('#picture-2 svg').focus()")
+        self.press(Keys.END)
+        self.wait(lambda: "x.csv" in self.text("said"))
+        self.assertEqual(8, self.js("document.querySelectorAll('.chosen').length - document.querySelectorAll('.effect.chosen').length"), "marked in all pictures that have it")
+        self.press(Keys.ENTER)
+        self.wait(lambda: self.js("document.getElementById('dialog').open"))
+        self.assertIn("x.csv", self.text("dialog"))
+        do = self.d.find_element(By.CSS_SELECTOR, "#dialog .exclude-do")
+        do.click()
+        self.assertTrue(self.js("document.getElementById('dialog').open"), "no reason, no exclusion")
+        self.d.find_element(By.CSS_SELECTOR, "#dialog .exclude input").send_keys("beam interrupted")
+        do.click()
+        self.wait(lambda: "beam interrupted" in self.text("readings-list"))
+        self.ready()
+        self.wait(lambda: self.rms() != before)
+        self.d.find_element(By.CSS_SELECTOR, "#readings-list li button").click()
+        self.wait(lambda: "beam interrupted" not in self.text("readings-list") and abs(self.rms() - before) < 1e-9)
+        self.no_complaints()
+
+    def test_a_region_is_the_same_readings_in_all_pictures(self):
+        self.open(self.serve(self.campaign()))
+        picture = self.d.find_element(By.CSS_SELECTOR, "#picture-2 svg")
+        self.js("arguments[0].scrollIntoView({block: 'center'})", picture)
+        wide = picture.size["width"]
+        ActionChains(self.d).move_to_element_with_offset(picture, -int(wide * 0.2), -60).click_and_hold().move_by_offset(int(wide * 0.3), 100).release().perform()
+        self.wait(lambda: "readings chosen" in self.text("region"))
+        n = int(re.search(r"(\d+) of 210", self.text("region"))[1])
+        self.assertGreater(n, 20)
+        shown = self.js("[0, 2, 3, 4, 5, 6, 7, 8].map((k) => document.querySelector(`#picture-${k} .picked`).getAttribute('d').split('M').length - 1)")
+        self.assertEqual([n] * 8, shown)
+        self.click("region-clear")
+        self.wait(lambda: self.js("document.querySelectorAll('.picked').length") == 0 and self.js("document.querySelector('#region details') !== null"))
+        self.js("document.querySelector('#region details').open = true")
+        self.d.find_element(By.CSS_SELECTOR, "[data-key=region-from]").send_keys("500")
+        self.d.find_element(By.CSS_SELECTOR, "[data-key=region-to]").send_keys("700,5", Keys.ENTER)
+        self.wait(lambda: "readings chosen" in self.text("region"))
+        self.assertIn("40 of 210", self.text("region"), "four targets lie between, measured ten times each")
+
+    def test_a_place_that_fails_leads_to_its_picture(self):
+        self.open(self.serve(self.campaign()))
+        places = said("compare", TUTORIAL)["parts"][0]["left"]
+        shown = self.js("[...document.querySelectorAll('.place')].map((e) => [e.dataset.where, Number(e.dataset.share)])")
+        self.assertEqual([[p["where"], p["share"]] for p in places], shown)
+        self.assertIn("78 % of what remains depends on time", self.text("places-list"))
+        self.d.find_element(By.CSS_SELECTOR, "[data-where=time]").click()
+        self.wait(lambda: self.js("document.activeElement.closest('figure') && document.activeElement.closest('figure').id") == "picture-2")
+        self.assertIn("failing", self.js("document.getElementById('picture-2').className"))
+
+    def test_suggest_takes_one_step_and_finish_all_as_explain_auto_does(self):
+        folder = self.campaign()
+        self.open(self.serve(folder))
+        self.click("suggest")
+        self.wait(lambda: "zero-drift:X" in self.ticks("effects.model"))
+        self.wait(lambda: self.d.find_element(By.ID, "finish").is_enabled())
+        self.press("z")
+        self.wait(lambda: "zero-drift:X?" in self.ticks())
+        self.click("finish")
+        self.verdict("nothing")
+        self.wait(lambda: self.d.find_element(By.ID, "finish").is_enabled())
+        model = self.ticks("effects.model")
+        self.assertEqual(3, self.js("document.querySelectorAll('.trail li').length"), "each step is shown")
+        auto = self.campaign(name="auto")
+        said("explain", auto, "--auto")
+        self.assertEqual(tomllib.loads((auto / "campaign.toml").read_text())["model"]["effects"], model)
+
+    # ---- state ----
+    def test_undo_goto_name_and_reload_keep_the_state(self):
+        server = self.serve(self.campaign())
+        self.open(server)
+        self.tick("zero-drift:X")
+        fallen = self.rms()
+        name = self.d.find_element(By.ID, "step-name")
+        name.send_keys("with drift", Keys.TAB)
+        self.wait(lambda: "with drift" in self.text("trail"))
+        self.click("undo")
+        self.wait(lambda: "zero-drift:X?" in self.ticks())
+        self.d.refresh()
+        self.ready()
+        self.assertIn("zero-drift:X?", self.ticks())
+        self.assertIn("with drift", self.text("trail"))
+        self.js("[...document.querySelectorAll('.trail button')].pop().click()")
+        self.wait(lambda: "zero-drift:X" in self.ticks())
+        self.ready()
+        self.assertAlmostEqual(fallen, self.rms(), 9)
+
+    def test_two_tabs_show_the_same(self):
+        server = self.serve(self.campaign())
+        self.open(server)
+        first = self.d.current_window_handle
+        self.d.switch_to.new_window("tab")
+        self.d.get(server.address)
+        self.ready()
+        self.tick("zero-drift:X")
+        self.d.switch_to.window(first)
+        self.wait(lambda: "zero-drift:X" in self.ticks())
+        self.d.switch_to.window(self.d.window_handles[-1])
+        self.d.close()
+        self.d.switch_to.window(first)
+
+    def test_a_file_edited_beside_the_page_is_told_and_not_overwritten(self):
+        folder = self.campaign()
+        self.open(self.serve(folder, "--edit"))
+        self.tick("zero-drift:X")
+        manifest = folder / "campaign.toml"
+        manifest.write_text(manifest.read_text().replace('"scale:X", ', ""))
+        self.wait(lambda: "changed on disk" in self.text("alarm"))
+        self.js("document.getElementById('save').click()")
+        self.wait(lambda: self.d.find_element(By.ID, "save-write").is_displayed())
+        self.click("save-write")
+        self.wait(lambda: self.js("document.querySelector('#dialog .flag[role=alert]').textContent") != "")
+        self.assertEqual(["backlash:X"], tomllib.loads(manifest.read_text())["model"]["effects"])
+        self.press(Keys.ESCAPE)
+        self.click("reload")
+        self.wait(lambda: self.ticks("effects.model") == ["backlash:X"])
+
+    def test_read_only_says_so(self):
+        folder = self.campaign()
+        self.open(self.serve(folder))
+        self.tick("zero-drift:X")
+        self.click("save")
+        self.wait(lambda: self.js("document.getElementById('dialog').open"))
+        self.assertIn("--edit", self.text("dialog"))
+        self.assertFalse(self.d.find_element(By.ID, "save-write").is_enabled())
+
+    def test_a_server_that_ends_and_comes_back_is_told(self):
+        folder = self.campaign()
+        token = self.folder / "token"
+        server = self.serve(folder, "--token-file", str(token))
+        port = re.search(r":(\d+)/", server.address)[1]
+        self.open(server)
+        server.stop(kill=True)
+        self.wait(lambda: "No answer from the server" in self.text("alarm"))
+        server.command[2:2] = ["--port", port]
+        server.start()
+        self.wait(lambda: self.js("document.getElementById('alarm').hidden"))
+        self.ready()
+        self.tick("zero-drift:X")
+
+    def test_without_the_key_of_the_address_the_page_says_what_to_do(self):
+        server = self.serve(self.campaign())
+        self.d.switch_to.new_window("tab")
+        self.d.get(server.address.split("#")[0])
+        self.wait(lambda: self.js("document.querySelector('[role=alert]') && document.querySelector('[role=alert]').textContent.includes('#')"))
+        self.d.close()
+
+    # ---- for everybody ----
+    def test_hostile_names_stay_text(self):
+        folder = self.campaign()
+        hostile = "<img src=x onerror=window.hacked=1><script>window.hacked=1</script>"
+        manifest = folder / "campaign.toml"
+        text = manifest.read_text()
+        for key in ("maker", "model", "serial"):
+            text = re.sub(rf'(?m)^{key} = ".*"', f"{key} = {json.dumps(hostile)}", text, count=1)
+        file = "<img src=x onerror=hacked=1>.csv"
+        (folder / "x.csv").rename(folder / file)
+        manifest.write_text(text.replace('"x.csv"', json.dumps(file)))
+        self.open(self.serve(folder))
+        self.assertIn(hostile, self.text("machine"))
+        self.js("document.querySelector('#readings details').open = true")
+        self.assertIn(file, self.text("readings-list"))
+        self.assertIsNone(self.js("window.hacked || null"))
+        self.assertEqual(0, self.js("document.querySelectorAll('img').length"))
+        self.no_complaints()
+
+    def test_widths_zoom_dark_motion_and_hindrances(self):
+        self.open(self.serve(self.campaign()))
+        self.js("document.querySelectorAll('details').forEach((d) => d.open = true)")
+        for width, scale in ((320, 1), (420, 1), (640, 2), (1280, 1), (1920, 1)):
+            self.size(width, 800, scale)
+            self.wait(lambda: self.js("innerWidth") == width)
+            self.wait(lambda: self.js("document.documentElement.scrollWidth") <= width, f"{width} px")
+        for scheme in ("light", "dark"):
+            self.media(prefers_color_scheme=scheme)
+            for width in (1280, 420):
+                self.size(width)
+                self.wait(lambda: self.js("(() => { const s = document.querySelector('#picture-0 svg'); return Math.abs(s.viewBox.baseVal.width - s.clientWidth); })()") < 2)
+                self.assertEqual([], self.js(HINDRANCES), f"{scheme} {width}")
+        small = self.js("[...document.querySelectorAll('button, input, select, summary')].filter((e) => e.getClientRects().length && "
+                        "(e.type === 'checkbox' || e.type === 'radio' ? e.closest('label') : e).getBoundingClientRect().height < 24).map((e) => e.outerHTML.slice(0, 90))")
+        self.assertEqual([], small, "targets of 24 px")
+        self.media(prefers_reduced_motion="reduce")
+        self.assertEqual("0s", self.js("getComputedStyle(document.querySelector('.value')).transitionDuration"))
+        self.d.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+        self.assertEqual("none", self.js("getComputedStyle(document.querySelector('footer')).display"))
+
+    def test_learning_hides_what_is_known_and_says_when_it_is_right(self):
+        self.open(self.serve(self.campaign()))
+        self.click("learn")
+        self.wait(lambda: "Something is missing" in self.text("learn-says"))
+        self.assertNotIn("zero-drift", self.text("verdict") + self.text("places-list") + self.text("next-what"))
+        self.assertEqual([], self.ticks("effects.help"))
+        self.tick("backlash-slope:X")
+        self.wait(lambda: "hardly helps" in self.text("learn-says"))
+        self.click("undo")
+        self.wait(lambda: "backlash-slope:X?" in self.ticks())
+        self.ready()
+        self.tick("zero-drift:X")
+        self.wait(lambda: "Good" in self.text("learn-says"))
+        self.tick("periodic:X")
+        self.wait(lambda: "Right" in self.text("learn-says"))
+        self.click("learn")
+
+    def test_more_readings_than_the_page_holds_are_drawn_from_the_server_and_zoomed(self):
+        truth = (SOURCE / "samples/simulate/worn-screw.toml").read_text()
+        truth = re.sub(r"step_mm = 58.0", "step_mm = 1.0", truth).replace("runs = 5", "runs = 10").replace("dwell_s = 4.0", "dwell_s = 0.1")
+        (self.folder / "truth.toml").write_text(truth)
+        subprocess.run([str(NONIO), "simulate", str(self.folder / "truth.toml"), "--out", str(self.folder / "many"), "--quiet"], check=True, capture_output=True)
+        self.open(self.serve(self.folder / "many"), "fitted")
+        n = said("compare", self.folder / "many")["parts"][0]["observations"]
+        self.assertGreater(n, 20000)
+        self.wait(lambda: self.js("document.querySelectorAll('.big canvas').length") == 6, "position, time, run, phase, temperature, model")
+        zoomed = "document.querySelector('#picture-0 .zoom .muted').textContent"
+        count = lambda: int(re.match(r"\d+", self.js(zoomed))[0])
+        self.assertGreaterEqual(count(), n)
+        self.js("document.querySelector('#picture-0 .zoom button').click()")
+        self.wait(lambda: 0.4 * n < count() < 0.6 * n, "half of the axis")
+        self.js("document.querySelector('#picture-0 .big').focus()")
+        self.press("0")
+        self.wait(lambda: count() >= n)
+        self.no_complaints()
+
+    def test_numbers_of_all_samples_are_those_of_compare_and_explain(self):
+        seen = 0
+        for source in sorted((SOURCE / "samples/site").iterdir()):
+            got = subprocess.run([str(NONIO), "compare", str(source), "--json"], capture_output=True, text=True)
+            if not got.stdout.startswith("{"):
+                continue
+            parts = json.loads(got.stdout)["parts"]
+            if not parts:
+                continue
+            explained = said("explain", source)
+            server = self.serve(self.campaign(source))
+            self.open(server)
+            for part in parts:
+                name = part["axis"]
+                self.js("[...document.querySelectorAll('#parts button')].find((b) => b.dataset.key === arguments[0]).click()", "part-" + name)
+                self.wait(lambda: self.js("(document.querySelector('#parts [aria-pressed=true]') || {dataset: {}}).dataset.key") == "part-" + name)
+                self.ready()
+                wanted = part.get("rms_um", part.get("rms_arcsec"))
+                self.wait(lambda: abs(self.rms() - wanted) < 1e-9 * max(1, wanted), f"{source.name} {name}: {wanted}")
+                found = next(p for p in explained.get("parts") or [explained] if p["axis"] == name)
+                wanted = [c["effect"] for c in found["candidates"] if c.get("score", 0) > 0]
+                self.wait(lambda: [t.rstrip("?") for t in self.ticks("effects.help")] == wanted, f"{source.name} {name}: {wanted}")
+                seen += 1
+            self.no_complaints()
+            server.stop()
+        self.assertGreater(seen, 10)
+
+
+class Words(unittest.TestCase):
+    """Without a browser: every word that the scripts ask for is there in every language, with the same places."""
+
+    @staticmethod
+    def flat(table, before=""):
+        for key, value in table.items():
+            yield from Words.flat(value, before + key + ".") if isinstance(value, dict) else [(before + key, value)]
+
+    def test_words_are_complete(self):
+        read = lambda language: dict(self.flat(tomllib.loads((SOURCE / f"templates/words/{language}/workbench.toml").read_text())))
+        english = read("en")
+        script = "".join(p.read_text() for p in (SOURCE / "reports/workbench/page").glob("*.js"))
+        asked = set(re.findall(r'"([a-z]+\.[a-z_0-9]+)"', script)) - {"learn.step"}
+        self.assertGreater(len(asked), 100)
+        self.assertEqual(set(), asked - set(english))
+        made = ("where.", "x.", "column.", "key.", "verdict.", "drawn.", "learn.", "shell.")
+        self.assertEqual([], [k for k in english if k not in asked and not k.startswith(made)], "words that nobody asks for")
+        for language in ("de", "it"):
+            other = read(language)
+            self.assertEqual(set(english), set(other), language)
+            places = lambda text: sorted(re.findall(r"\{\w+\}", text))
+            self.assertEqual([], [k for k in english if places(english[k]) != places(other[k])], language)
+            same = [k for k in english if other[k] == english[k] and k != "shell.title" and re.search(r"[a-z]{4}.* .*[a-z]{4}", english[k])]
+            self.assertEqual([], same, f"{language}: not translated")
+
+
+if __name__ == "__main__":
+    if webdriver is None or program() is None or DRIVER is None:
+        print("skipped: needs Chromium, chromium-driver and python3-selenium")
+        sys.exit(SKIPPED)
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: Apache-2.0
+"""site_page_test.py WRITE_SITE_PAGES: the laboratory's pages in a real browser: nothing is wider than the
+screen, nothing is asked for, everybody can read and reach everything; filters, keyboard, print, no scripts."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from browser import SKIPPED, Browser, complaints, program
+from hindrances import HINDRANCES
+
+WIDTHS = (420, 1280, 1920)
+
+def check(browser, page, width, where):
+    browser.open(page.as_uri(), width)
+    wide = browser.value("document.documentElement.scrollWidth")
+    assert wide <= width, f"{where}: the page is {wide} wide"
+    browser.value("document.querySelectorAll('details').forEach((d) => d.open = true)")
+    wide = browser.value("document.documentElement.scrollWidth")
+    assert wide <= width, f"{where}: with its numbers the page is {wide} wide"
+    bad = browser.value(HINDRANCES) + complaints(browser, lambda url: url == page.as_uri())
+    assert not bad, where + ":\n  " + "\n  ".join(bad)
+
+
+def shown(browser):
+    return browser.value("[...document.querySelectorAll('tr[data-kind]')].filter((r) => r.getClientRects().length).length")
+
+
+def check_filters(browser, index):
+    browser.open(index.as_uri(), 1280)
+    assert shown(browser) == 4
+    browser.open(index.as_uri() + "#kind=changed&customer=Bianchi", 1280)
+    assert shown(browser) == 1
+    assert browser.value("document.getElementById('shown').textContent") == "1 / 4"
+    browser.value("""(() => { const s = document.querySelector('select[name=customer]');
+                     s.value = ''; s.dispatchEvent(new Event('change')); })()""")
+    assert shown(browser) == 2 and browser.value("location.hash") == "#kind=changed"
+    browser.value("new Promise((done) => { addEventListener('hashchange', () => done()); location.hash = '#kind=out'; })")
+    assert shown(browser) == 1 and browser.value("document.querySelector('select[name=kind]').value") == "out"
+    browser.open(index.as_uri() + "#kind=%22%3E%3Cscript%3E", 1280)
+    assert shown(browser) == 4, "a filter that is not there hides nothing"
+
+
+def press(browser, key):
+    for kind in ("keyDown", "keyUp"):
+        codes = {"Enter": 13, "Tab": 9}
+        extra = {"windowsVirtualKeyCode": codes[key]} if key in codes else {}
+        if kind == "keyDown" and (key == "Enter" or len(key) == 1):
+            extra["text"] = "\r" if key == "Enter" else key
+        browser.ask("Input.dispatchKeyEvent", type=kind, key=key, **extra)
+
+
+def check_keyboard(browser, index):
+    browser.open(index.as_uri(), 1280)
+    focused = "[...document.querySelectorAll('tr[data-kind]')].indexOf(document.activeElement)"
+    press(browser, "j")
+    assert browser.value(focused) == 0
+    for _ in range(2):
+        press(browser, "j")
+    assert browser.value(focused) == 2
+    press(browser, "k")
+    assert browser.value(focused) == 1
+    outline = browser.value("getComputedStyle(document.activeElement).outlineStyle")
+    assert outline == "solid", f"where the keyboard is, nobody sees: {outline}"
+    browser.events = []
+    press(browser, "Enter")
+    while not any(e.get("method") == "Page.loadEventFired" for e in browser.events):
+        browser.events.append(browser.receive())
+    assert browser.value("location.pathname").endswith("/machines/S-0042.html")
+    browser.open(index.as_uri(), 1280)
+    reached = []
+    for _ in range(6):
+        press(browser, "Tab")
+        reached.append(browser.value("document.activeElement.tagName + (document.activeElement.name || '')"))
+    assert reached == ["A", "A", "A", "A", "SELECTkind", "SELECTcustomer"], reached
+
+
+def check_print(browser, page, where):
+    browser.open(page.as_uri(), 1123 - 76)
+    browser.ask("Emulation.setEmulatedMedia", media="print")
+    assert browser.value("getComputedStyle(document.querySelector('nav')).display") == "none", where
+    wide = browser.value("[document.documentElement.scrollWidth, innerWidth]")
+    assert wide[0] <= wide[1], f"{where}: printed {wide}"
+    paper = browser.value("[...document.querySelectorAll('.fine, .heed, .grave')].every((e) => "
+                          "getComputedStyle(e).printColorAdjust === 'exact')")
+    assert paper, f"{where}: the months lose their colours"
+    assert len(browser.ask("Page.printToPDF", printBackground=False)["data"]) > 1000
+    browser.ask("Emulation.setEmulatedMedia", media="")
+
+
+def check_without_scripts(browser, index):
+    browser.open("about:blank", 1280)
+    browser.ask("Emulation.setScriptExecutionDisabled", value=True)
+    browser.events = []
+    browser.ask("Page.navigate", url=index.as_uri())
+    while not any(e.get("method") == "Page.loadEventFired" for e in browser.events):
+        browser.events.append(browser.receive())
+    root = browser.ask("DOM.getDocument")["root"]["nodeId"]
+    rows = browser.ask("DOM.querySelectorAll", nodeId=root, selector="tr[data-kind]:not([hidden])")["nodeIds"]
+    assert len(rows) == 4
+    filters = browser.ask("DOM.querySelector", nodeId=root, selector=".filters[hidden]")["nodeId"]
+    assert filters, "filters that do nothing are not shown"
+    browser.ask("Emulation.setScriptExecutionDisabled", value=False)
+
+
+def check_dark(browser, page, where):
+    browser.open(page.as_uri(), 1280)
+    browser.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+    bad = browser.value(HINDRANCES)
+    assert not bad, where + ", dark:\n  " + "\n  ".join(bad)
+
+
+def main():
+    if program() is None:
+        print("skipped: no Chromium on this machine")
+        return SKIPPED
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        pages = pathlib.Path(folder) / "pages"
+        subprocess.run([sys.argv[1], str(pages)], check=True)
+        browser = Browser(program(), folder + "/profile")
+        for page in sorted(pages.rglob("*.html")):
+            where = str(page.relative_to(pages))
+            for width in WIDTHS:
+                check(browser, page, width, f"{where} at {width}")
+            check_print(browser, page, where)
+            check_dark(browser, page, where)
+        check_filters(browser, pages / "en" / "index.html")
+        check_keyboard(browser, pages / "en" / "index.html")
+        check_without_scripts(browser, pages / "en" / "index.html")
+        browser.close()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`nonio history` of samples/laboratory, against what is true of it and against results.json."""
+import json
+import os
+import pathlib
+import shutil
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import unittest
+
+NONIO = os.environ["NONIO"]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests" / "support" / "laboratory"))
+import presets  # noqa: E402 (this folder is no package)
+import score  # noqa: E402
+import make_laboratory  # noqa: E402
+import truth as truths  # noqa: E402
+
+
+def nonio(*args, expect=0):
+    done = subprocess.run([NONIO, *map(str, args)], capture_output=True, text=True, timeout=300)
+    if done.returncode != expect:
+        raise AssertionError(f"{args}: status {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+    return done
+
+
+class Laboratory(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory(prefix="nonio-history-")
+        above = pathlib.Path(cls.folder.name)
+        cls.out, cls.site = above / "out", above / "site"
+        lab = presets.build("small", 1)
+        cls.truth = truths.rounded(make_laboratory.write(lab, cls.site, lab.night, True))
+        nonio("run", cls.site, "--out", cls.out, "--quiet", "--date", "2026-11-22")
+        cls.text = nonio("history", cls.out, "--json").stdout
+        cls.history = json.loads(cls.text)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def series(self, machine, axis, quantity):
+        return [s for s in self.history["series"] if (s["machine"], s["axis"], s["quantity"]) == (machine, axis, quantity)]
+
+    def changes(self, machine):
+        return [(s["axis"], s["quantity"], c["after"], c["before"], c["cause"]) for s in self.history["series"]
+                if s["machine"] == machine for c in s.get("changes", [])]
+
+    def test_the_schema_by_the_letter(self):
+        self.assertEqual((self.history["schema"], self.history["night"], self.history["vanished"]), ("nonio-history/1", 1, []))
+        self.assertEqual({m["machine"] for m in self.history["machines"]}, {s["machine"] for s in self.history["series"]})
+        for m in self.history["machines"]:
+            self.assertEqual(set(m), {"machine", "next_due", "proposal"})
+        for s in self.history["series"]:
+            for p in s["points"]:
+                self.assertLessEqual({"campaign", "date", "state", "value", "u", "u_common", "joined"}, set(p))
+                self.assertIn(p["state"], ("as-found", "as-left", "check"))
+                self.assertTrue(p["joined"] or p["why_not"])
+            if "model" not in s:  # a maximum: nothing is drawn through it
+                self.assertFalse({"segments", "changes", "forecast", "smallest_change"} & set(s))
+                continue
+            self.assertIn(s["model"], ("none", "level", "drift", "step", "walk"))
+            for g in s["segments"]:
+                self.assertEqual(set(g), {"from", "to", "value", "u", "slope_per_year", "u_slope"})
+            for c in s["changes"]:
+                self.assertEqual(set(c), {"after", "before", "size", "u", "p", "p_adjusted", "cause", "event"})
+                self.assertIn(c["cause"], ("undeclared", "event", "instrument", "table"))
+                self.assertLessEqual(c["p"], c["p_adjusted"])
+            if s["forecast"]:
+                self.assertEqual(set(s["forecast"]), {"date", "value", "u", "limit", "p_out", "leaves", "answer"})
+                self.assertIn(s["forecast"]["answer"], ("keep", "watch", "act", "cannot-say"))
+                self.assertEqual(s["forecast"]["value"] is None, s["forecast"]["answer"] == "cannot-say")
+
+    def test_numbers_are_those_of_the_results(self):
+        seen = 0
+        for s in self.history["series"]:
+            for p in s["points"]:
+                results = json.loads((self.out / p["campaign"] / "results.json").read_text())
+                if "model" in s:
+                    here = [(f["value"], f["u"]) for f in results["followed"] if (f["axis"], f["quantity"]) == (s["axis"], s["quantity"])]
+                    self.assertIn((p["value"], p["u"]), here)
+                else:
+                    self.assertIn(p["value"], [a["values"][s["quantity"]]["value"] for a in results["analyses"]
+                                               if s["quantity"] in a.get("values", {})])
+                seen += 1
+        self.assertGreater(seen, 1500)
+
+    def test_what_is_true_is_named(self):
+        total = score.Score()
+        total.add(self.truth, [self.history])
+        self.assertEqual(total.fails(), [], total.text())
+        self.assertEqual(total.steps["all"].hits, total.steps["all"].of, total.text())
+        self.assertGreaterEqual(total.steps["all"].of, 11)
+        self.assertEqual(total.causes.hits, total.causes.of, total.text())
+
+    def test_the_stories(self):
+        self.assertEqual(self.changes("LAB-01"), [])
+        self.assertIn(("X", "B_mean", "2025-07-lab-02", "2026-01-lab-02", "undeclared"), self.changes("LAB-02"))
+        self.assertEqual({c[4] for c in self.changes("LAB-03") if c[1] == "B_mean"}, {"event"})
+        self.assertIn(("X", "scale", "2025-01-lab-05", "2025-01-lab-05", "table"), self.changes("LAB-05"))
+        self.assertEqual({c[4] for c in self.changes("LAB-06") if c[1] == "scale"} - {"instrument"}, set())
+        self.assertEqual(len(self.series("LAB-10", "X2", "B_mean")), 1)
+        first, second = self.series("LAB-09", "X", "scale")
+        self.assertTrue(first["ended"])
+        self.assertEqual({p["why_not"] for p in second["points"] if not p["joined"]}, {"span"})
+        self.assertEqual(len([p for p in second["points"] if p["joined"]]), 2)
+
+    def test_made_again_it_is_the_same(self):
+        (self.out / "history.sqlite").unlink()
+        nonio("run", self.site, "--out", self.out, "--quiet", "--date", "2026-11-22")
+        again = json.loads(nonio("history", self.out, "--json").stdout)
+        self.assertEqual(again["series"], self.history["series"])
+
+    def test_a_store_that_is_behind_is_said(self):
+        self.assertEqual(nonio("history", self.out).stderr, "")
+        known = self.out / ".nonio" / "history"
+        text = known.read_text()
+        known.unlink()
+        self.addCleanup(known.write_text, text)
+        self.assertIn("does not know night", nonio("history", self.out).stderr)
+
+    def test_on_a_terminal(self):
+        table = nonio("history", self.out).stdout.splitlines()
+        self.assertEqual(table[0].split()[0], "machine")
+        self.assertEqual(len(table), 1 + len(self.history["machines"]))
+        said = nonio("history", self.out, "LAB-02", "--axis", "X", "--quantity", "B_mean").stdout
+        self.assertRegex(said, r"2025-07-14 .*\n +~ -4\.\d+ ± 0\.\d+ um, p < 0\.0001: changed; no event is known\n +2026-01-24")
+        said = nonio("history", self.out, "LAB-03", "--axis", "Z", "--quantity", "B_mean").stdout
+        self.assertIn("* crash: Drove into the pallet", said)
+        self.assertIn("slope", said)
+        said = nonio("history", self.out, "LAB-01", "--axis", "X", "--quantity", "B_mean").stdout
+        self.assertRegex(said, r"no change without a known event; from 0\.\d+ on one would have been seen")
+        self.assertIn('nearest: "LAB-01"', nonio("history", self.out, "LAB-O1", expect=2).stderr)
+        self.assertIn("nonio run", nonio("history", self.site, expect=2).stderr)
+        one = json.loads(nonio("history", self.out, "LAB-02", "--json").stdout)
+        self.assertEqual({s["machine"] for s in one["series"]}, {"LAB-02"})
+
+    def test_the_store_keeps_when_machines_are_due(self):
+        site, out = self.site.parent / "due", self.site.parent / "due-out"
+        shutil.copytree(self.site / "LAB-11", site / "LAB-11")
+        shutil.copy(self.site / "events.toml", site)
+        (site / "site.toml").write_text('[[due]]\nmonths = 12\n[[due]]\nmachine = "LAB-11"\nmonths = 6\n')
+        nonio("run", site, "--out", out, "--quiet", "--date", "2026-11-22")
+        self.assertEqual(json.loads(nonio("history", out, "--json").stdout)["machines"][0]["next_due"][:7], "2026-01")
+        kept = sqlite3.connect(out / "history.sqlite").execute("SELECT * FROM due_rule ORDER BY machine").fetchall()
+        self.assertEqual(kept, [("", 12), ("LAB-11", 6)])
+
+    def with_table(self, name, left):
+        """LAB-05 until its table was loaded, which Nonio wrote; `left` changes a deviation found into one left."""
+        site, out = self.site.parent / name, self.site.parent / (name + "-out")
+        for campaign in ("2024-01-lab-05", "2024-07-lab-05", "2025-01-lab-05"):
+            shutil.copytree(self.site / "LAB-05" / campaign, site / campaign)
+        (site / "site.toml").write_text('[run]\nanalyses = ["iso230-2"]\noutputs = ["siemens-840d"]\n')
+        if left:
+            folder = site / "2025-01-lab-05"
+            rows = (folder / "x-found.csv").read_text().splitlines(keepends=True)
+            changed = [",".join(f"{left * float(f):.2f}" if i == 3 else f for i, f in enumerate(row.split(","))) if row[:1].isdigit() else row
+                       for row in rows]
+            (folder / "x-left.csv").write_text("".join(changed))
+        nonio("run", site, "--out", out, "--quiet", "--date", "2025-02-01")
+        lines = json.loads(nonio("morning", out, "--json", expect=1 if left else 0).stdout)["lines"]
+        predictions = {p["name"]: p["predicted"] for t in json.loads((out / "2025-01-lab-05" / "results.json").read_text())["tables"]
+                       for p in t.get("predictions", [])}
+        return [line for line in lines if line["id"].startswith("morning.table")], predictions, (out / "machines" / "LAB-05.html").read_text()
+
+    def test_a_good_table_is_said_to_be_good(self):
+        lines, predictions, page = self.with_table("good-table", None)
+        self.assertEqual(lines, [])
+        self.assertIn(f"{predictions['E']:.3f} µm predicted, 13.700 µm as found. As promised.", page)
+
+    def test_a_table_with_the_wrong_sign_is_a_decision(self):
+        lines, _, page = self.with_table("wrong-sign", 2.0)
+        self.assertEqual([(line["kind"], line["machine"], line["axis"]) for line in lines], [("changed", "LAB-05", "X")])
+        self.assertIn("did not do what it promised", lines[0]["says"])
+        self.assertIn("Not as promised.", page)
+
+    def test_a_table_that_was_not_loaded_is_a_decision(self):
+        lines, _, _ = self.with_table("not-loaded", 0.97)
+        self.assertEqual(len(lines), 1)
+
+    def test_a_machine_has_a_proposal_or_a_reason(self):
+        for m in self.history["machines"]:
+            self.assertEqual(set(m["proposal"]), {"months", "method", "why"})
+            self.assertIn(m["proposal"]["method"], ("staircase", "control-chart", "fleet"))
+            self.assertTrue(m["proposal"]["why"])
+            self.assertEqual(m["proposal"]["months"] is None, m["proposal"]["why"].startswith("No proposal"))
+            self.assertNotIn("{", m["proposal"]["why"])
+            page = "".join(p.read_text() for p in (self.out / "machines").glob(m["machine"].replace(" ", "_") + "*"))
+            self.assertIn(m["proposal"]["why"], page.replace("&#39;", "'"))
+        proposals = {m["machine"]: m["proposal"] for m in self.history["machines"]}
+        self.assertEqual(proposals["LAB-02"]["months"], 3)  # out of tolerance after six months
+        self.assertEqual(proposals["LAB-01"]["months"], 6)
+
+    def test_another_edition_is_not_joined(self):
+        for quantity in "AER":
+            points = self.series("LAB-09", "X", quantity)[0]["points"]
+            self.assertEqual([p.get("why_not") for p in points], ["edition"] * 3 + [None] * 5, quantity)
+
+    def test_what_vanished_is_named_and_stays(self):
+        site, out = self.site.parent / "less", self.site.parent / "less-out"
+        for name in ("LAB-01", "LAB-02"):
+            shutil.copytree(self.site / name, site / name)
+        nonio("run", site, "--out", out, "--quiet", "--date", "2026-11-21")
+        shutil.rmtree(site / "LAB-02")
+        nonio("run", site, "--out", out, "--quiet", "--date", "2026-11-22", expect=1)
+        told = json.loads(nonio("history", out, "--json").stdout)
+        self.assertEqual(len(told["vanished"]), 8)
+        self.assertEqual({v["last_seen_night"] for v in told["vanished"]}, {1})
+        self.assertTrue(all(v["folder"].startswith("LAB-02/") for v in told["vanished"]))
+        self.assertIn("LAB-02", [m["machine"] for m in told["machines"]])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/morning/changes.h"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "made.h"
+
+namespace nonio::test {
+namespace {
+
+using Cause = nonio::history::Change::Cause;
+
+/// Quiet machines, three axes of three quantities each.
+std::vector<morning::AssessedMachine> quiet(std::mt19937_64& random, std::size_t machines) {
+  std::vector<morning::AssessedMachine> out;
+  for (std::size_t k = 0; k < machines; ++k) {
+    MadeMachine m("S-" + std::to_string(k));
+    for (const char* axis : {"X", "Y", "Z"})
+      for (const char* quantity : {"B_mean", "curve_2", "ln_s"})
+        m.follow(axis, quantity, around(random, 8, 0.1), 0.1);
+    out.push_back(m.assessed());
+  }
+  return out;
+}
+
+std::size_t told(const std::vector<morning::AssessedMachine>& machines) {
+  std::size_t n = 0;
+  for (const auto& m : machines)
+    for (const auto& s : m.followed) n += std::count(s.told.begin(), s.told.end(), true);
+  return n;
+}
+
+TEST(MorningChanges, AStepIsNamedAtItsPlaceAndWhatItDidBeside) {
+  std::mt19937_64 random(11);
+  std::cout << "seed 11\n";
+  auto machines = quiet(random, 12);
+  MadeMachine hit("S-HIT");
+  hit.follow("X", "B_mean", around(random, 8, 0.1, 4, -1.0), 0.1);
+  hit.follow("X", "curve_2", around(random, 8, 0.1, 4, 0.3), 0.1);  // alone it would be too small
+  hit.follow("Y", "B_mean", around(random, 8, 0.1), 0.1);
+  machines.push_back(hit.assessed());
+  judge_all(machines);
+  const auto& m = machines.back();
+  for (std::size_t i : {0U, 1U}) {
+    const auto& s = m.followed[i];
+    ASSERT_EQ(std::count(s.told.begin(), s.told.end(), true), 1) << s.quantity;
+    for (std::size_t k = 0; k < s.told.size(); ++k)
+      if (s.told[k]) {
+        EXPECT_EQ(s.trend.changes[k].after, 3U);
+        EXPECT_EQ(s.trend.changes[k].cause, Cause::undeclared);
+        EXPECT_NEAR(s.trend.changes[k].size, i == 0 ? -1.0 : 0.3, 0.25);
+      }
+  }
+  EXPECT_EQ(told({m}), 2U);
+}
+
+TEST(MorningChanges, WhatIsKnownIsNotSaidToBeUnknown) {
+  std::mt19937_64 random(12);
+  std::cout << "seed 12\n";
+  auto machines = quiet(random, 12);
+  MadeMachine hit("S-HIT");
+  hit.follow("X", "B_mean", around(random, 8, 0.1, 4, -1.0), 0.1);
+  hit.events() = {{"2021-10-01", "S-HIT", "X", "crash", "vice", "", 1}};
+  machines.push_back(hit.assessed());
+  judge_all(machines);
+  const auto& s = machines.back().followed[0];
+  ASSERT_EQ(s.trend.changes.size(), 1U);
+  EXPECT_TRUE(s.told[0]);
+  EXPECT_EQ(s.trend.changes[0].cause, Cause::event);
+}
+
+TEST(MorningChanges, AnInstrumentIsNotTheMachine) {
+  std::mt19937_64 random(13);
+  std::cout << "seed 13\n";
+  std::size_t blamed = 0;
+  for (int lab = 0; lab < 100; ++lab) {
+    MadeMachine m("S-1");
+    m.follow("X", "scale", around(random, 8, 0.1, 5, 1.0),
+             0.1);  // two of its standard uncertainties
+    for (std::size_t i = 0; i < 8; ++i)
+      m.stored().results[i].common = {{i < 5 ? "instrument 1" : "instrument 2", 0.5}};
+    std::vector<morning::AssessedMachine> machines{m.assessed()};
+    judge_all(machines);
+    const auto& s = machines[0].followed[0];
+    for (std::size_t i = 0; i < s.told.size(); ++i)
+      blamed += s.told[i] && s.trend.changes[i].after == 4 &&
+                s.trend.changes[i].cause != Cause::instrument;
+  }
+  EXPECT_EQ(blamed, 0U);
+}
+
+TEST(MorningChanges, QuietNightsTellNothing) {
+  // The share of nights with any news is 5 %; of 200 nights at most 18 with a chance of 0.995.
+  std::mt19937_64 random(14);
+  std::cout << "seed 14\n";
+  int nights = 0;
+  for (int night = 0; night < 200; ++night) {
+    auto machines = quiet(random, 4);
+    judge_all(machines);
+    nights += told(machines) > 0;
+  }
+  EXPECT_LE(nights, 18);
+}
+
+TEST(MorningChanges, ScatterAndSlopesAreLearnedFromTheLaboratory) {
+  std::mt19937_64 random(15);
+  std::cout << "seed 15\n";
+  std::vector<morning::AssessedMachine> machines;
+  std::normal_distribution<double> wear(0.0, 0.5);
+  for (int k = 0; k < 60; ++k) {
+    MadeMachine m("S-" + std::to_string(k));
+    auto values = around(random, 8, 0.2);  // twice what it says
+    const double slope = wear(random);
+    for (std::size_t i = 0; i < 8; ++i) values[i] += slope * 0.5 * static_cast<double>(i);
+    m.follow("X", "B_mean", values, 0.1);
+    m.follow("X", "ln_s", around(random, 8, 0.1), 0.1);
+    machines.push_back(m.assessed());
+  }
+  morning::Fits fits;
+  const auto learned = morning::learn(machines, fits);
+  EXPECT_NEAR(learned.at("B_mean um").excess, 2.0, 0.3);
+  EXPECT_NEAR(learned.at("B_mean um").spread, 0.5, 0.15);
+  EXPECT_NEAR(learned.at("ln_s um").excess, 1.0, 0.15);
+  EXPECT_LT(learned.at("ln_s um").spread, 0.05);
+}
+
+TEST(MorningChanges, ANightChargesATestOnce) {
+  // What one night asked of many machines is a family; a later night of one machine is another.
+  std::mt19937_64 random(16);
+  std::cout << "seed 16\n";
+  const auto values = around(random, 8, 0.1, 4, 0.3);
+  MadeMachine early("S-1", 8, 1), late("S-1", 8, 2);
+  early.follow("X", "B_mean", values, 0.1);
+  late.follow("X", "B_mean", values, 0.1);
+  std::vector<morning::AssessedMachine> one{early.assessed()}, other{late.assessed()};
+  morning::Fits fits;
+  for (auto* machines : {&one, &other}) morning::learn(*machines, fits);
+  const std::map<std::uint64_t, std::uint64_t> asked{{1, 1000}, {2, 2}};
+  morning::find_changes(one, asked, fits, not_asked);
+  morning::find_changes(other, asked, fits, not_asked);
+  ASSERT_EQ(one[0].followed[0].p_adjusted.size(), 1U);
+  EXPECT_NEAR(one[0].followed[0].p_adjusted[0],
+              std::min(1.0, 500.0 * other[0].followed[0].p_adjusted[0]), 1e-9);
+  EXPECT_FALSE(one[0].followed[0].told[0]);
+  EXPECT_TRUE(other[0].followed[0].told[0]);
+}
+
+}  // namespace
+}  // namespace nonio::test

@@ -1,0 +1,406 @@
+// SPDX-License-Identifier: Apache-2.0
+// Long: a test a kind of line, over one made laboratory.
+#include "host/morning/lines.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <random>
+#include <sstream>
+
+#include "host/config/manifest.h"
+#include "host/morning/describe.h"
+#include "host/morning/tables_kept.h"
+#include "made.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio::test {
+namespace {
+
+using reports::MorningLine;
+using Kind = MorningLine::Kind;
+using State = MorningLine::State;
+
+struct Laboratory {
+  morning::Tonight tonight{.night = 5, .date = "2024-06-01"};
+  history::StoredLogs logs{};
+  std::vector<MadeMachine> machines{};
+  std::map<std::string, std::string> machine_of_campaign{};
+  std::vector<history::Spelling> spellings{};
+  std::string due{};
+
+  std::vector<MorningLine> lines() const {
+    std::vector<morning::AssessedMachine> assessed;
+    for (const MadeMachine& m : machines) assessed.push_back(m.assessed());
+    morning::Fits fits;
+    const auto learned = morning::learn(assessed, fits);
+    morning::find_changes(assessed, {}, fits, not_asked);
+    std::vector<morning::Standing> standings;
+    for (const auto& m : assessed)
+      standings.push_back(morning::standing_of(m, morning::describe(m, "out", due, "12 months"),
+                                               logs, tonight, "out"));
+    std::vector<const morning::Standing*> all;
+    for (const auto& s : standings) all.push_back(&s);
+    return morning::lines_of({tonight, all, machine_of_campaign, spellings, learned});
+  }
+};
+
+std::vector<double> flat(double level, double last) {
+  std::vector<double> out{level,       level + 0.1, level - 0.1, level,
+                          level + 0.1, level - 0.1, level,       level};
+  for (std::size_t i = 5; i < 8; ++i) out[i] += last - level;
+  return out;
+}
+
+/// Hit between 2022-01 and 2022-07: reversal, curve, B and R.
+MadeMachine hit(double B = 10.0, double mean = -9.0) {
+  MadeMachine m("S-42");
+  m.follow("X", "B_mean", flat(-4.0, mean), 0.1);
+  m.follow("X", "curve_2", flat(0.0, 1.0), 0.1);
+  m.judge("X", "B", flat(6.0, B));
+  m.judge("X", "R", flat(6.5, B - 0.5));
+  return m;
+}
+
+std::string text_of(const MorningLine& l, const std::string& name) {
+  for (const auto& [key, text] : l.finding.texts)
+    if (key == name) return text;
+  return "";
+}
+
+config::Acknowledgement acknowledged(const std::string& finding, const std::string& date) {
+  return {date, finding, "S-42", "X", "", "2024-12-31", {}, {}, "B. Sample", "nut is ordered", 1};
+}
+
+TEST(MorningLines, OneCauseIsToldOnce) {
+  Laboratory lab;
+  lab.machines.push_back(hit());
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);  // B and R out, reversal and curve changed: one crash
+  const MorningLine& l = lines[0];
+  EXPECT_EQ(l.kind, Kind::out);
+  EXPECT_EQ(l.state, State::fresh);
+  EXPECT_EQ(l.id, "morning.out:S-42:X");
+  EXPECT_EQ(l.machine + " " + l.axis + " " + l.quantity, "S-42 X B");
+  EXPECT_EQ(l.finding.id, "morning.out-changed");
+  EXPECT_EQ(l.since, "2022-07-15");
+  EXPECT_EQ(text_of(l, "after"), "2022-01-15");
+  EXPECT_EQ(text_of(l, "before"), "2022-07-15");
+  EXPECT_EQ(text_of(l, "look"), "reversal");
+  EXPECT_NEAR(*l.value, 10.0e-6, 0.2e-6);
+  EXPECT_NEAR(*l.u, 0.25e-6, 1e-9);
+  EXPECT_NEAR(*l.limit, 8e-6, 1e-12);
+}
+
+TEST(MorningLines, WhatConformsAndChangedIsAChange) {
+  Laboratory lab;
+  lab.machines.push_back(hit(6.0, -5.5));
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].kind, Kind::changed);
+  EXPECT_EQ(lines[0].id, "morning.changed:S-42:X:2022-07-15");
+  EXPECT_EQ(text_of(lines[0], "also"), "curve_2");
+}
+
+TEST(MorningLines, OutNamesTheEventOfItsChange) {
+  Laboratory lab;
+  lab.machines.push_back(hit());
+  lab.machines[0].events() = {{"2022-03-01", "S-42", "X", "crash", "hit the vice", "", 1}};
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].finding.id, "morning.out-changed-event");
+  EXPECT_EQ(text_of(lines[0], "event"), "crash: hit the vice");
+}
+
+TEST(MorningLines, ARepairEndsAChange) {
+  Laboratory lab;
+  lab.machines.push_back(hit(6.0, -5.5));
+  lab.machines[0].events() = {{"2022-09-01", "S-42", "X", "repair", "new nut", "", 1}};
+  EXPECT_TRUE(lab.lines().empty());
+}
+
+TEST(MorningLines, ALimitThatIsExceededWithoutAChangeSaysNoChange) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("X", "A", {8.6, 8.7, 8.8, 8.9, 9.0, 9.1, 9.2, 9.3});
+  lab.machines.push_back(std::move(m));
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].finding.id, "morning.out");
+  EXPECT_EQ(lines[0].since, "2020-01-15");
+}
+
+TEST(MorningLines, AcknowledgedIsKnownUntilItMoves) {
+  Laboratory lab;
+  lab.machines.push_back(hit());
+  for (const char* finding : {"morning.out:S-42:X", "morning.out-changed", "morning.out"}) {
+    lab.logs.acknowledged = {acknowledged(finding, "2024-01-01")};
+    EXPECT_EQ(lab.lines()[0].state, State::known) << finding;
+  }
+  EXPECT_EQ(lab.lines()[0].by, "B. Sample");
+  EXPECT_EQ(lab.lines()[0].until, "2024-12-31");
+  lab.logs.acknowledged[0].until = "2024-05-31";
+  EXPECT_EQ(lab.lines()[0].state, State::fresh) << "past its day";
+  lab.logs.acknowledged = {acknowledged("morning.out", "2024-01-01")};
+  lab.logs.acknowledged[0].axis = "Y";
+  EXPECT_EQ(lab.lines()[0].state, State::fresh) << "another axis";
+  // Before it happened: of another cause.
+  lab.logs.acknowledged = {acknowledged("morning.out", "2022-03-01")};
+  EXPECT_EQ(lab.lines()[0].state, State::fresh) << "later change";
+  // Moved by more than its U of 0.5 um since.
+  lab.logs.acknowledged = {acknowledged("morning.out", "2023-08-01")};
+  auto& results = lab.machines[0].stored().results;
+  const auto last = std::find_if(results.rbegin(), results.rend(),
+                                 [](const auto& r) { return r.quantity == "B"; });
+  last->campaign = 7;
+  lab.machines[0].stored().campaigns[7].day = "2024-01-15";
+  last->value = 10.4;
+  EXPECT_EQ(lab.lines()[0].state, State::known);
+  last->value = 10.7;
+  EXPECT_EQ(lab.lines()[0].state, State::fresh) << "moved";
+  lab.logs.acknowledged[0].value = 10.6;
+  EXPECT_EQ(lab.lines()[0].state, State::known) << "from what was acknowledged";
+}
+
+TEST(MorningLines, WhatConformsAgainTonightIsFixed) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("X", "B", {9, 9, 9, 9, 9, 9, 9, 5});
+  m.stored().campaigns[7].night = 5;
+  lab.machines.push_back(std::move(m));
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].state, State::fixed);
+  lab.tonight.night = 6;  // told once
+  EXPECT_TRUE(lab.lines().empty());
+}
+
+/// As found and as left on 2023-07-15 with a table between them, which promised E = 0.8 um.
+MadeMachine with_table(double E_left, std::size_t campaign = 7) {
+  MadeMachine m("S-42");
+  const auto result = [&](const char* quantity, const char* state, double value) {
+    m.stored().results.push_back({.campaign = campaign,
+                                  .measurement = std::string("X ") + state,
+                                  .axis = "X",
+                                  .quantity = quantity,
+                                  .source = "iso230-2",
+                                  .unit = "um",
+                                  .state = state,
+                                  .decision = "",
+                                  .conditions = "",
+                                  .value = value,
+                                  .u_repeat = 0.1,
+                                  .common = {{"instrument", 2.0}}});
+  };
+  result("E", "as-found", 13.7);
+  result("E", "as-left", E_left);
+  result("ln_s", "as-left", std::log(0.4));
+  m.stored().results.back().followed = true;
+  m.stored().predicted.push_back(m.stored().results[0]);
+  m.stored().predicted[0].value = 0.8;
+  return m;
+}
+
+TEST(MorningLines, ATableThatDidNotDoWhatItPromisedIsADecision) {
+  const auto table_lines = [](const MadeMachine& m) {
+    Laboratory lab;
+    lab.machines.push_back(m);
+    auto lines = lab.lines();
+    std::erase_if(lines, [](const MorningLine& l) { return l.finding.id != "morning.table"; });
+    return lines;
+  };
+  EXPECT_TRUE(table_lines(with_table(1.4)).empty()) << "within what its readings scatter";
+  for (const double wrong : {27.0, 13.7}) {  // wrong sign; never loaded
+    const auto lines = table_lines(with_table(wrong));
+    ASSERT_EQ(lines.size(), 1U) << wrong;
+    EXPECT_EQ(lines[0].kind, Kind::changed);
+    EXPECT_EQ(lines[0].id, "morning.table:S-42:X:S-42-8");
+    EXPECT_NEAR(*lines[0].value, wrong * 1e-6, 1e-12);
+    EXPECT_EQ(lines[0].finding.evidence.size(), 3U);
+  }
+  MadeMachine later = with_table(27.0);  // measured again since: what matters now is that
+  later.add_campaign("2023-09-01", 1);
+  later.stored().results.push_back(later.stored().results[0]);
+  later.stored().results.back().campaign = 8;
+  EXPECT_TRUE(table_lines(later).empty());
+  MadeMachine old = with_table(27.0);  // promised half a year before
+  old.stored().predicted[0].campaign = 6;
+  EXPECT_TRUE(table_lines(old).empty());
+}
+
+TEST(MorningLines, OfGoodTablesOneInAHundredIsDoubtedAtMost) {
+  std::cout << "seed 20261123\n";
+  std::mt19937_64 random(20261123);
+  for (const int runs : {2, 5})
+    for (const int targets : {5, 21, 41}) {
+      // Nothing but scatter is left, and the table had promised exactly nothing.
+      std::normal_distribution<double> mean(0.0, 1.0 / std::sqrt(runs));
+      std::chi_squared_distribution<double> squares(2.0 * targets * (runs - 1));
+      constexpr int trials = 2000;
+      int doubted = 0;
+      for (int i = 0; i < trials; ++i) {
+        double low = 0.0, high = 0.0;
+        for (int k = 0; k < 2 * targets; ++k) {
+          const double x = mean(random);
+          low = std::min(low, x), high = std::max(high, x);
+        }
+        MadeMachine m = with_table(high - low);
+        m.stored().predicted[0].value = 0.0;
+        for (auto& r : m.stored().results)
+          if (r.followed)
+            r.value = std::log(squares(random) / (2.0 * targets * (runs - 1))) / 2.0;
+          else
+            r.u_repeat = 1e-6;
+        const auto kept = morning::tables_kept(m.assessed());
+        ASSERT_EQ(kept.size(), 1U);
+        doubted += kept[0].good ? 0 : 1;
+      }
+      EXPECT_LE(doubted, trials / 100 + 14) << runs << " runs, " << targets << " targets";
+    }
+}
+
+TEST(MorningLines, LostMotionThatConformsIsInformation) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("X", "B", {5, 5, 5, 5, 5, 5, 5, 5});
+  m.stored().findings.back() = {{"reversal.lost-motion", "attention"}};
+  lab.machines.push_back(m);
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].kind, Kind::information);
+  EXPECT_FALSE(lines[0].finding.attention);
+  // Where nobody stated a limit nothing was judged, and that is said.
+  for (auto& r : lab.machines[0].stored().results) r.tolerance.reset(), r.decision.clear();
+  lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].finding.id, "morning.not-judged");
+  EXPECT_EQ(text_of(lines[0], "machines"), "S-42");
+}
+
+TEST(MorningLines, StandInTheirOrder) {
+  Laboratory lab;
+  lab.tonight.vanished = {{"gone", "gone", 4, "not there"}};
+  lab.tonight.failed = {{"bad", "bad", "x.csv:17: \"1O8.9\" is no number", ""}};
+  lab.machines = {hit(), MadeMachine("S-43"), MadeMachine("S-44"), MadeMachine("S-45")};
+  lab.machines[1].follow("X", "B_mean", flat(-1.0, -3.0), 0.1);
+  lab.machines[2].judge("X", "B", {7, 7, 7, 7, 7, 7, 7, 7.9});
+  lab.machines[3].follow("X", "B_mean", {-1, -1.9, -3.1, -4, -5.1, -6, -7, -7.9}, 0.1);
+  lab.machines[3].judge("X", "B", {1, 2, 3, 4, 5, 6, 7, 7.4});
+  lab.due = "2024-03-01";
+  std::vector<Kind> kinds;
+  for (const MorningLine& l : lab.lines())
+    if (kinds.empty() || kinds.back() != l.kind) kinds.push_back(l.kind);
+  EXPECT_EQ(kinds,
+            (std::vector<Kind>{Kind::lost, Kind::failed, Kind::out, Kind::changed, Kind::soon,
+                               Kind::overdue, Kind::undecided, Kind::information}));
+}
+
+TEST(MorningLines, TheWorstLineOfAnAxisDecidesAndWhatWasLeft) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("X", "B", {9, 9});  // out, at Y = 100; conforms at Y = 500, named later
+  m.judge("X", "B", {5, 5});
+  for (std::size_t i = 0; i < 4; ++i)
+    m.stored().results[i].measurement = i < 2 ? "X at 100" : "X at 500";
+  lab.machines.push_back(m);
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].kind, Kind::out);
+  EXPECT_EQ(lines[0].since, "2020-01-15");
+  // Found out and left good is good.
+  for (std::size_t i = 2; i < 4; ++i) lab.machines[0].stored().results[i].state = "as-left";
+  EXPECT_TRUE(lab.lines().empty());
+}
+
+TEST(MorningLines, ManyOfOneKindAreOneLine) {
+  Laboratory lab;
+  for (int i = 0; i < 212; ++i) {
+    const std::string id = "c" + std::to_string(i);
+    lab.tonight.vanished.push_back({id, "site-b/" + id, 4, "not there"});
+    lab.machine_of_campaign[id] = "S-" + std::to_string(i % 20);
+  }
+  for (int i = 0; i < 9; ++i)
+    lab.tonight.failed.push_back({"f" + std::to_string(i), "f", "site.toml:3: wrong", ""});
+  for (int i = 0; i < 6; ++i) {
+    lab.machines.emplace_back("S-1" + std::to_string(i));
+    lab.machines.back().judge("X", "B", {8, 8, 8, 8, 8, 8, 8, 8});
+  }
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0].finding.id, "morning.lost-several");
+  EXPECT_EQ(text_of(lines[0], "of"), "site-b");
+  EXPECT_EQ(lines[1].finding.id, "morning.failed-several");
+  EXPECT_EQ(lines[2].finding.id, "morning.undecided-several");
+}
+
+TEST(MorningLines, TheCampaignsOfAMachineThatVanishedAreOneLine) {
+  Laboratory lab;
+  for (const char* id : {"a", "b"}) {
+    lab.tonight.vanished.push_back({id, id, 4, "not there"});
+    lab.machine_of_campaign[id] = "S-1";
+  }
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].machine, "S-1");
+}
+
+Templates words_of(const std::string& language) {
+  Templates out;
+  const std::string path = std::string(NONIO_WORDS) + "/" + language + "/site.toml";
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  auto settings = config::parse_settings(text.str(), path);
+  if (settings) out.tables["words/" + language + "/site"] = std::move(*settings);
+  return out;
+}
+
+TEST(MorningLines, EachHasWordsInEachLanguage) {
+  Laboratory lab;
+  lab.tonight.vanished = {{"gone", "gone", 4, "not there"}, {"a", "a", 4, ""}, {"b", "b", 4, ""}};
+  lab.machine_of_campaign = {{"a", "S-1"}, {"b", "S-1"}};
+  lab.tonight.failed = {{"bad", "bad", "wrong", ""}};
+  lab.tonight.history_error = "disk full";
+  lab.spellings = {{"S-42", "S-4Z", "spelled alike"}};
+  lab.machines = {hit(), MadeMachine("S-43"), MadeMachine("S-44"), MadeMachine("S-45"),
+                  MadeMachine("S-46")};
+  lab.machines[1].follow("X", "B_mean", flat(-1.0, -3.0), 0.1);
+  lab.machines[1].follow("Y", "squareness:XY.c", flat(-1.0, -3.0), 0.1);
+  lab.machines[1].events() = {{"2022-03-01", "S-43", "Y", "moved", "hall 2", "", 1}};
+  lab.machines[2].judge("X", "B", {7, 7, 7, 7, 7, 7, 7, 7.9});
+  lab.machines[3].follow("X", "B_mean", {-1, -1.9, -3.1, -4, -5.1, -6, -7, -7.9}, 0.1);
+  lab.machines[3].judge("X", "B", {1, 2, 3, 4, 5, 6, 7, 7.4});
+  lab.machines[4].judge("X", "B", {5, 5, 5, 5, 5, 5, 5, 5});
+  lab.machines[4].judge("Y", "B", {5, 5, 5, 5, 5, 5, 9, 5});
+  lab.machines[4].stored().campaigns[7].night = 5;
+  lab.machines[4].stored().findings.back() = {{"reversal.lost-motion", "attention"}};
+  lab.due = "2024-03-01";
+  const auto lines = lab.lines();
+  std::set<std::string> ids;
+  for (const char* language : {"en", "de", "it"}) {
+    const Templates words = words_of(language);
+    ASSERT_FALSE(words.tables.empty()) << language;
+    for (const MorningLine& l : lines) {
+      ids.insert(l.finding.id);
+      const std::string says = finding_text(words, language, l.finding, "says");
+      EXPECT_FALSE(says.empty()) << l.finding.id;
+      EXPECT_EQ(says.find('{'), std::string::npos) << language << ": " << says;
+      if (l.state == State::fixed) continue;
+      const std::string advice = finding_text(words, language, l.finding, "advice");
+      EXPECT_FALSE(advice.empty()) << l.finding.id;
+      EXPECT_EQ(advice.find('{'), std::string::npos) << language << ": " << advice;
+    }
+  }
+  for (const char* id :
+       {"morning.lost", "morning.lost-several", "morning.failed", "morning.history",
+        "morning.out-changed", "morning.changed", "morning.changed-event", "morning.soon",
+        "morning.overdue", "morning.undecided", "morning.fixed", "morning.conforms",
+        "morning.not-judged", "morning.spelling"})
+    EXPECT_TRUE(ids.contains(id)) << id;
+}
+
+}  // namespace
+}  // namespace nonio::test

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/morning/proposals.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "made.h"
+
+namespace nonio::test {
+namespace {
+
+using reports::IntervalProposal;
+using Due = std::map<std::string, int>;
+
+/// Yearly campaigns of `name`, judged by B.
+MadeMachine yearly(const std::string& name, const std::vector<double>& B) {
+  MadeMachine m(name, 0);
+  for (std::size_t i = 0; i < B.size(); ++i)
+    m.add_campaign(morning::months_later("2020-01-15", 12 * static_cast<int>(i)), 1);
+  m.judge("X", "B", B);
+  return m;
+}
+
+std::vector<IntervalProposal> proposed(const std::vector<MadeMachine>& machines,
+                                       const Due& due = {}) {
+  std::vector<morning::AssessedMachine> assessed;
+  for (const MadeMachine& m : machines) assessed.push_back(m.assessed());
+  judge_all(assessed);
+  std::vector<morning::IntervalFacts> facts;
+  for (const auto& m : assessed) {
+    auto rule = due.find(m.state.machine.name);
+    if (rule == due.end()) rule = due.find("");
+    facts.push_back(
+        morning::interval_facts(m, rule == due.end() ? std::nullopt : std::optional(rule->second)));
+  }
+  std::vector<const morning::IntervalFacts*> all;
+  for (const auto& f : facts) all.push_back(&f);
+  return morning::proposals_of(all);
+}
+
+double number(const IntervalProposal& p, const std::string& name) {
+  for (const Number& n : p.why.evidence)
+    if (n.name == name) return n.value;
+  return -1.0;
+}
+
+std::string why(const IntervalProposal& p) { return p.why.id; }
+
+TEST(Proposals, HalfAfterAFailureALittleMoreAfterASuccess) {
+  const auto p =
+      proposed({yearly("S-1", {5, 5, 5}), yearly("S-2", {5, 5, 9}), yearly("S-3", {5, 5, 8})});
+  EXPECT_EQ(why(p[0]), "interval.passed");
+  EXPECT_EQ(p[0].months, 12);  // 12.45: whole months, down
+  EXPECT_EQ(p[0].method, "staircase");
+  EXPECT_EQ(why(p[1]), "interval.failed");
+  EXPECT_EQ(p[1].months, 6);
+  EXPECT_EQ(number(p[1], "interval"), 12.0);
+  EXPECT_EQ(why(p[2]), "interval.undecided");
+  EXPECT_EQ(p[2].months, 12);
+}
+
+TEST(Proposals, BeginWithTheRuleOfTheSite) {
+  const std::vector<MadeMachine> one{yearly("S-1", {5, 5, 5})};
+  EXPECT_EQ(proposed(one, {{"", 36}})[0].months, 37);  // 36 * 2^(0.05/0.95) = 37.34
+  EXPECT_EQ(proposed(one, {{"", 36}, {"S-1", 24}})[0].months, 24);
+}
+
+TEST(Proposals, WhatWasLeftIsNoReason) {
+  MadeMachine m = yearly("S-1", {5, 5, 9});
+  history::StoredResult left = m.stored().results.back();
+  left.state = "as-left", left.decision = "conforms", left.value = 2.0;
+  m.stored().results.push_back(left);
+  EXPECT_EQ(why(proposed({m})[0]), "interval.failed");
+}
+
+TEST(Proposals, AreRefusedByName) {
+  const auto refusal = [](const MadeMachine& m) {
+    const IntervalProposal p = proposed({m})[0];
+    EXPECT_FALSE(p.months);
+    EXPECT_FALSE(p.method.empty());
+    return why(p);
+  };
+  EXPECT_EQ(refusal(yearly("S-1", {5})), "interval.few-campaigns");
+  MadeMachine free = yearly("S-1", {5, 5, 5});
+  for (auto& r : free.stored().results) r.tolerance.reset(), r.decision.clear();
+  EXPECT_EQ(refusal(free), "interval.not-judged");
+  // Hit before the last campaign: nobody knows what comes.
+  MadeMachine hit = yearly("S-1", {5, 5, 5, 5, 5, 5, 5, 6});
+  hit.follow("X", "B_mean", {-3, -3.1, -2.9, -3, -3.1, -2.9, -3, -6}, 0.1);
+  EXPECT_EQ(refusal(hit), "interval.change-not-explained");
+  // It wears by 1 um a year and stands at 7.95 of 8 um.
+  MadeMachine worn = yearly("S-1", {5, 5, 5, 5, 5, 5, 5, 7});
+  worn.follow("X", "B_mean", {-0.95, -1.95, -2.95, -3.95, -4.95, -5.95, -6.95, -7.95}, 0.02);
+  EXPECT_EQ(refusal(worn), "interval.out-already");
+}
+
+TEST(Proposals, ATrendShortensTheInterval) {
+  // 1 um a year, 5 um now, limit 8 um: before three years are over, and 36 months are the rule.
+  MadeMachine m = yearly("S-1", {1, 2, 3, 4, 5, 6, 7, 7});
+  m.follow("X", "B_mean", {2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0}, 0.05);
+  for (auto& r : m.stored().results)
+    if (r.followed) r.value -= 4.0;
+  const IntervalProposal p = proposed({m}, {{"", 48}})[0];
+  EXPECT_EQ(why(p), "interval.meets-limit");
+  EXPECT_EQ(p.method, "control-chart");
+  EXPECT_EQ(p.axis + " " + p.quantity, "X B_mean");
+  ASSERT_TRUE(p.months);
+  EXPECT_GE(*p.months, 30);
+  EXPECT_LE(*p.months, 35);
+  EXPECT_NEAR(number(p, "limit"), 8e-6, 1e-12);
+  EXPECT_EQ(why(proposed({m}, {{"", 12}})[0]), "interval.passed");  // sooner than that
+}
+
+TEST(Proposals, OfManyLikeMachinesTheFleetIsAsked) {
+  // Golden: 15 of 20 in tolerance, target 95 %, 365 days: 230.85 days.
+  std::vector<MadeMachine> machines;
+  for (int i = 0; i < 20; ++i)
+    machines.push_back(yearly("S-" + std::to_string(100 + i), {5, 5, i < 5 ? 9.0 : 5.0}));
+  auto p = proposed(machines);
+  EXPECT_EQ(why(p[19]), "interval.fleet-shorter");
+  EXPECT_EQ(p[19].method, "fleet");
+  EXPECT_EQ(p[19].months, 7);  // 12 * 230.85 / 365 = 7.59
+  EXPECT_EQ(number(p[19], "passed"), 15.0);
+  EXPECT_EQ(number(p[19], "machines"), 20.0);
+  EXPECT_EQ(p[0].months, 6) << "failed itself: not more than half";
+  for (MadeMachine& m : machines)
+    for (auto& r : m.stored().results) r.value = 5.0, r.decision = "conforms";
+  p = proposed(machines);
+  EXPECT_EQ(why(p[19]), "interval.fleet-longer");
+  EXPECT_GT(*p[19].months, 12);
+  machines.erase(machines.begin() + 4, machines.end());
+  EXPECT_EQ(why(proposed(machines)[0]), "interval.passed") << "four are no fleet";
+}
+
+}  // namespace
+}  // namespace nonio::test

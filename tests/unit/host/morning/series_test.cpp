@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/morning/series.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "made.h"
+
+namespace nonio::test {
+namespace {
+
+using Kind = nonio::history::Declared::Kind;
+
+const std::vector<double> eight{1.0, 1.1, 0.9, 1.0, 1.05, 0.95, 1.0, 1.02};
+
+TEST(MorningSeries, SpansThatAreAlikeAreOne) {
+  MadeMachine m("S-1");
+  m.follow("X", "scale", eight, 0.1);
+  for (std::size_t i = 4; i < 8; ++i)
+    m.stored().results[i].conditions = R"({"from":5.0,"to":795.0})";  // within 1 %
+  const auto series = m.series();
+  ASSERT_EQ(series.size(), 1U);
+  EXPECT_EQ(series[0].results.size(), 8U);
+  EXPECT_TRUE(series[0].apart.empty());
+}
+
+TEST(MorningSeries, AnotherSpanBeginsASeriesThatSaysWhy) {
+  MadeMachine m("S-1");
+  m.follow("X", "scale", eight, 0.1);
+  for (std::size_t i = 5; i < 8; ++i)
+    m.stored().results[i].conditions = R"({"from":0.0,"to":640.0})";
+  const auto series = m.series();
+  ASSERT_EQ(series.size(), 2U);
+  EXPECT_EQ(series[0].results.size(), 5U);
+  EXPECT_TRUE(series[0].ended);
+  EXPECT_TRUE(series[0].apart.empty());
+  EXPECT_EQ(series[1].results.size(), 3U);
+  EXPECT_FALSE(series[1].ended);
+  ASSERT_EQ(series[1].apart.size(), 5U);
+  EXPECT_EQ(series[1].apart[0].why, "span");
+}
+
+TEST(MorningSeries, OtherPlacesAndModelsAreOthers) {
+  MadeMachine m("S-1", 4);
+  m.follow("X", "scale", {1, 1, 1, 1}, 0.1, R"({"from":0.0,"to":800.0,"at":"Y=100"})");
+  m.follow("X", "scale", {2, 2, 2, 2}, 0.1, R"({"from":0.0,"to":800.0,"at":"Y=500"})");
+  m.follow("", "backlash:X.b", {1, 1}, 0.1, R"({"model":"backlash:X"})");
+  m.follow("X2", "scale", {1, 1, 1, 1}, 0.1);
+  const auto series = m.series();
+  ASSERT_EQ(series.size(), 4U);
+  EXPECT_EQ(std::count_if(series.begin(), series.end(), [](const auto& s) { return s.ended; }), 0);
+}
+
+TEST(MorningSeries, ATableIsAStepThatIsKnown) {
+  MadeMachine m("S-1");
+  m.follow("X", "scale", eight, 0.1);
+  auto& results = m.stored().results;
+  results[3].state = "as-left";
+  for (std::size_t i = 6; i < 8; ++i)
+    results[i].conditions = R"({"from":0.0,"to":800.0,"compensation":"on"})";
+  results[5].conditions = R"({"from":0.0,"to":800.0,"compensation":"off"})";
+  // Of the day of the adjustment: the same thing.
+  m.events() = {{MadeMachine::day(3), "S-1", "X", "compensation", "table", "", 1}};
+  const auto series = m.series();
+  ASSERT_EQ(series.size(), 1U);
+  ASSERT_EQ(series[0].series.declared.size(), 2U);
+  EXPECT_EQ(series[0].series.declared[0].after, 2U);
+  EXPECT_EQ(series[0].series.declared[1].after, 5U);
+  EXPECT_EQ(series[0].series.declared[1].kind, Kind::table);
+}
+
+TEST(MorningSeries, EventsStandBetweenTheirCampaigns) {
+  MadeMachine m("S-1");
+  m.follow("X", "scale", eight, 0.1);
+  m.follow("Y", "scale", eight, 0.1);
+  m.events() = {{"2021-03-01", "S-1", "X", "crash", "vice", "", 1},
+                {"2022-03-01", "S-1", "", "moved", "hall 2", "", 2},
+                {"2030-01-01", "S-1", "X", "crash", "later", "", 3}};
+  const auto series = m.series();
+  ASSERT_EQ(series.size(), 2U);
+  ASSERT_EQ(series[0].series.declared.size(), 2U);
+  EXPECT_EQ(series[0].series.declared[0].after, 2U);
+  EXPECT_EQ(series[0].kinds[0], "crash");
+  EXPECT_EQ(series[0].said[0], "vice");
+  ASSERT_EQ(series[1].series.declared.size(), 1U);
+  EXPECT_EQ(series[1].kinds[0], "moved");
+}
+
+TEST(MorningSeries, AnotherInstrumentIsKnown) {
+  MadeMachine m("S-1");
+  m.follow("X", "scale", eight, 0.1);
+  for (std::size_t i = 0; i < 8; ++i)
+    m.stored().results[i].common = {{i < 5 ? "instrument L-1 C-1" : "instrument L-1 C-2", 0.3}};
+  const auto series = m.series();
+  ASSERT_EQ(series[0].series.declared.size(), 1U);
+  EXPECT_EQ(series[0].series.declared[0].after, 4U);
+  EXPECT_EQ(series[0].series.declared[0].kind, Kind::instrument);
+}
+
+TEST(MorningSeries, TheOrderOfRowsIsNone) {
+  MadeMachine m("S-1");
+  m.follow("X", "scale", eight, 0.1);
+  const auto first = m.series();
+  std::reverse(m.stored().results.begin(), m.stored().results.end());
+  const auto second = m.series();
+  ASSERT_EQ(second.size(), 1U);
+  EXPECT_EQ(first[0].series.seed, second[0].series.seed);
+  for (std::size_t i = 0; i < 8; ++i)
+    EXPECT_EQ(first[0].series.points[i].value, second[0].series.points[i].value);
+}
+
+TEST(MorningSeries, WhatIsNotSureIsNoPoint) {
+  MadeMachine m("S-1");
+  m.follow("X", "scale", eight, 0.1);
+  m.stored().results[2].u_repeat.reset();
+  m.stored().results[3].u_repeat = 0.0;
+  m.stored().campaigns[4].day = "";
+  EXPECT_EQ(m.series()[0].results.size(), 5U);
+}
+
+TEST(MorningSeries, AnEventMayNameTheSerialNumberOfOneMachine) {
+  const auto state = [](const char* name, const char* serial) {
+    return history::MachineState{{name, {"", "M", "V", serial}, 1}, 1, {serial}};
+  };
+  history::StoredLogs logs;
+  logs.events = {{"2021-03-01", "417", "X", "crash", "vice", "", 1},
+                 {"2021-03-02", "old", "X", "crash", "vice", "", 1}};
+  logs.aliases = {{"old", "M 417"}};
+  std::vector<history::MachineState> all{state("M 417", "417"), state("M 418", "418")};
+  EXPECT_EQ(morning::events_of(all[0], all, logs).size(), 2U);
+  all[1].serials.insert("417");  // now it may be either
+  EXPECT_EQ(morning::events_of(all[0], all, logs).size(), 1U);
+  EXPECT_TRUE(morning::events_of(all[1], all, logs).empty());
+}
+
+}  // namespace
+}  // namespace nonio::test
