@@ -7,6 +7,7 @@
 #include <new>
 
 #include "host/batch/history_update.h"
+#include "host/batch/leftovers.h"
 #include "host/batch/mail.h"
 #include "host/batch/morning_update.h"
 #include "host/batch/night_state.h"
@@ -162,39 +163,6 @@ Expected<void> note_certificates(Night& night, const RunOptions& options,
   return {};
 }
 
-void tidy_root(const fs::path& out) {
-  storage::remove_leftovers(out);
-  storage::remove_leftovers(out / state_folder);
-}
-
-/// The folders of results in an output folder, whatever their layout.
-Expected<void> tidy_below(const fs::path& out, bool hashed) {
-  std::error_code error;
-  for (fs::directory_iterator it(out, error), end; !error && it != end; it.increment(error)) {
-    if (process::is_stop_requested()) return fail("interrupted");
-    std::error_code ignored;
-    if (!it->is_directory(ignored) || it->is_symlink(ignored)) continue;
-    if (hashed && it->path().filename().string().size() != 2) continue;
-    if (auto tidied = hashed ? tidy_below(it->path(), false) : tidy(it->path()); !tidied)
-      return tidied;
-  }
-  if (error) return fail("cannot read the output folder " + out.string() + ": " + error.message());
-  return {};
-}
-
-/// Nothing half-done is left in a folder that somebody reads. Where a run was cut short, it may lie
-/// in folders of campaigns that are not in the site any more.
-Expected<void> tidy_all(const Night& night, const fs::path& out, bool resumed) {
-  tidy_root(out);
-  if (resumed) return tidy_below(out, storage::results_folder(out, "a") != out / "a");
-  for (const CampaignState& c : night.campaigns) {
-    if (process::is_stop_requested()) return fail("interrupted");
-    if (c.action == Action::done && c.is_campaign)
-      if (auto tidied = tidy(storage::results_folder(out, c.id)); !tidied) return tidied;
-  }
-  return {};
-}
-
 /// Campaigns that somebody has said to be gone are none that vanished.
 void leave_out_forgotten(Night& night, const Expected<history::Told>& told) {
   if (!told) return;
@@ -273,6 +241,41 @@ void tell_vanished(const Night& night, const RunEvents& events) {
                 " more campaigns have vanished: see the summary");
 }
 
+/// Which campaigns there are, and what is to do with each.
+Expected<void> survey_site(const RunOptions& options, const reading::Context& context,
+                           const NightState& state, const std::optional<Known>& known,
+                           Night& night) {
+  SurveyInput input{options.site,
+                    options.out,
+                    context,
+                    state.number,
+                    state.force,
+                    std::nullopt,
+                    {},
+                    night.notes,
+                    process::is_stop_requested,
+                    options.verify_results};
+  if (known) {
+    input.numbers = known->numbers;
+    for (const certificates::WaitingDraft& draft : known->drafts)
+      input.drafts.insert(draft.campaign);
+  }
+  auto surveyed = survey(input);
+  if (!surveyed) return fail(surveyed.error());
+  night.campaigns = std::move(surveyed->campaigns);
+  night.vanished = std::move(surveyed->vanished);
+  night.may_vanish = context.site.limits.vanished;
+  return {};
+}
+
+void tell_plan(const Night& night, const RunEvents& events) {
+  tell_vanished(night, events);
+  const auto is_todo = [](const CampaignState& c) { return c.action == Action::todo; };
+  events.planned(night.campaigns.size(),
+                 static_cast<std::size_t>(
+                     std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));
+}
+
 /// The night itself, in an output folder that nobody else uses.
 void do_night(const RunOptions& options, const RunEvents& events, const std::string& site_text,
               SetUp& place, const std::optional<Known>& known, Night& night) {
@@ -291,38 +294,16 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
   night.night = state->of();
   if (state->last) night.seen_before = state->last->seen;
   const std::size_t notes_so_far = night.notes.size();
-  SurveyInput input{options.site,
-                    options.out,
-                    context,
-                    state->number,
-                    state->force,
-                    std::nullopt,
-                    {},
-                    night.notes,
-                    process::is_stop_requested,
-                    options.verify_results};
-  if (known) {
-    input.numbers = known->numbers;
-    for (const certificates::WaitingDraft& draft : known->drafts)
-      input.drafts.insert(draft.campaign);
-  }
-  auto surveyed = survey(input);
+  const auto surveyed = survey_site(options, context, *state, known, night);
   if (process::is_stop_requested()) {
     night.end = Night::End::interrupted;
     return;
   }
   if (!surveyed) return refuse(surveyed.error().message);
-  night.campaigns = std::move(surveyed->campaigns);
-  night.vanished = std::move(surveyed->vanished);
   const auto told = read_told(options, context);
   leave_out_forgotten(night, told);
-  night.may_vanish = context.site.limits.vanished;
   for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);
-  tell_vanished(night, events);
-  const auto is_todo = [](const CampaignState& c) { return c.action == Action::todo; };
-  events.planned(night.campaigns.size(),
-                 static_cast<std::size_t>(
-                     std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));
+  tell_plan(night, events);
   if (options.dry_run) return;
 
   HistoryUpdate history(options, context);

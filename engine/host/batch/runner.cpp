@@ -6,16 +6,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <ctime>
-#include <iterator>
-#include <new>
 #include <thread>
 
 #include "host/batch/committer.h"
-#include "host/batch/computing.h"
+#include "host/batch/one_campaign.h"
 #include "host/batch/read_apart.h"
 #include "host/batch/store.h"
 #include "host/batch/twins.h"
@@ -39,9 +35,6 @@ using Action = CampaignState::Action;
 /// tested with it: one of them, and every campaign gets a process of its own.
 constexpr std::size_t campaigns_per_worker = 64;
 
-constexpr const char* register_locked =
-    "the register of certificates: another process keeps it locked since the begin of the night";
-
 std::string day_of(std::time_t time) {
   std::tm local{};
   ::localtime_r(&time, &local);
@@ -62,9 +55,15 @@ class Runner {
         secrets_(config::secret_files(context.site, options.site)),
         numbers_({options.site, options.out, day_of(std::time(nullptr)), signer_ != nullptr},
                  context, desk.releasing),
-        releasing_(desk.releasing != nullptr),
-        twins_(releasing_ ? &desk.releasing->twins : nullptr),
+        work_{options,
+              context,
+              night,
+              campaigns,
+              numbers_,
+              signer_,
+              desk.releasing ? &desk.releasing->twins : nullptr},
         recheck_(desk.recheck),
+        register_{.read = recheck_ == nullptr},
         campaigns_(campaigns),
         disk_(options.out),
         losses_(campaigns.size()),
@@ -114,7 +113,7 @@ class Runner {
     const auto task = [this](int stream) {
       return [this, stream](std::size_t c, bool first, process::SharedStatus& stage) {
         Evaluator evaluator(stream, secrets_);
-        const Answer answer = work_guarded(c, first, stage, evaluator);
+        const Answer answer = do_campaign(work_, register_, c, first, stage, evaluator);
         return Outcome(answer, evaluator.grown());
       };
     };
@@ -170,7 +169,7 @@ class Runner {
     if (!give_up_)
       give_up_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                     std::chrono::duration<double>(numbering.patience));
-    last_trial_ = Clock::now() >= *give_up_;
+    register_.last_trial = Clock::now() >= *give_up_;
     constexpr double now_and_then = 0.5;  // s
     auto numbers = read_apart<std::vector<certificates::RegisterEntry>>(
         "the register of certificates", context_.site.limits.disk_seconds,
@@ -178,135 +177,13 @@ class Runner {
           return certificates::Register::entries(options_.site, numbering, now_and_then);
         });
     events_.tick();
-    if (!numbers && storage::is_locked(numbers.error()) && !last_trial_) return;
+    if (!numbers && storage::is_locked(numbers.error()) && !register_.last_trial) return;
     if (recheck_ && numbers) {
-      if (const auto sound = recheck_(*numbers); !sound) unsound_ = sound.error().message;
+      if (const auto sound = recheck_(*numbers); !sound) register_.unsound = sound.error().message;
       recheck_ = nullptr;
+      register_.read = true;
     }
     again_ = std::exchange(waiting_, {});
-  }
-
-  /// Read, analysed, numbered, written. `as_draft`: without a number, whatever the rules say.
-  Expected<evaluation::Evaluated> evaluated_apart(const CampaignState& c, const fs::path& folder,
-                                                  certificates::CampaignFiles& files, bool as_draft,
-                                                  bool& locked, Evaluator& evaluator) const {
-    const auto analysed =
-        evaluator.analyse(folder, c.id, releasing_ ? *twins_ : twins_of(c, campaigns_));
-    if (!analysed) return fail(analysed.error());
-    std::optional<evaluation::AssignedNumber> number;
-    if (analysed->missing)
-      number = number_of(analysed->evaluated, *analysed->missing, files, as_draft, locked);
-    return evaluator.write_documents(c.id, std::move(number));
-  }
-
-  /// Refused while the register is not known to be sound, or another process keeps it to itself.
-  evaluation::AssignedNumber number_of(const evaluation::Evaluated& evaluated,
-                                       const std::vector<std::string>& missing,
-                                       certificates::CampaignFiles& files, bool as_draft,
-                                       bool& locked) const {
-    evaluation::AssignedNumber assigned{std::nullopt, missing, std::nullopt};
-    if (!unsound_.empty()) {
-      assigned.error = Error{unsound_};
-    } else if (recheck_ != nullptr) {
-      locked = true;
-      assigned.error = Error{register_locked};
-    } else {
-      assigned = numbers_.assign(evaluated, files, missing, as_draft);
-      locked = locked || (assigned.error && storage::is_locked(*assigned.error));
-    }
-    return assigned;
-  }
-
-  /// Evaluated and, where it is to be, signed and entered. `locked`: not yet, since the register
-  /// is.
-  Expected<evaluation::Evaluated> certified(const CampaignState& c, process::SharedStatus& stage,
-                                            bool& locked, Evaluator& evaluator) const {
-    const fs::path folder = options_.site / c.folder;
-    certificates::CampaignFiles files(folder);
-    auto evaluation = evaluated_apart(c, folder, files, false, locked, evaluator);
-    if (evaluation && numbers_.held_up(*evaluation))
-      evaluation = evaluated_apart(c, folder, files, true, locked, evaluator);
-    if (!evaluation) return evaluation;
-    evaluation::Evaluated& evaluated = *evaluation;
-    if (evaluated.status != evaluation::Status::failed) numbers_.hold_unreleased(evaluated);
-    stage.set("signing");
-    auto done =
-        certificates::sign_artifacts(evaluated, files, context_, signer_, std::time(nullptr));
-    if (done) done = numbers_.issue(evaluated, c.folder);
-    locked = locked || (!done && storage::is_locked(done.error()));
-    if (!done) fail_certificate(evaluated, done.error());
-    return evaluation;
-  }
-
-  /// What plugins throw is caught where they are called.
-  Answer work_guarded(std::size_t index, bool first, process::SharedStatus& stage,
-                      Evaluator& evaluator) const {
-    try {
-      return work(index, first, stage, evaluator);
-    } catch (const std::bad_alloc&) {
-      stage.set(stage.get() +
-                ": out of memory (the limit for one campaign is in site.toml, [limits])");
-    } catch (const std::exception& e) {
-      stage.set(stage.get() + ": " + e.what());
-    }
-    storage::remove_leftovers(storage::results_folder(options_.out, campaigns_[index].id));
-    return Answer::not_stored;
-  }
-
-  /// In the worker's process, which has no plugin code: that runs at the other end of the stream.
-  Answer work(std::size_t index, bool first, process::SharedStatus& stage,
-              Evaluator& evaluator) const {
-    if (first && signer_ != nullptr) signer_->leave_to_worker();
-    const CampaignState& c = campaigns_[index];
-    bool locked = false;
-    const auto evaluation = certified(c, stage, locked, evaluator);
-    if (!evaluation) {
-      stage.set(evaluation.error().message);
-      return Answer::not_stored;
-    }
-    const evaluation::Evaluated& evaluated = *evaluation;
-    if (locked && !last_trial_) return Answer::waits;
-    if (evaluated.status == evaluation::Status::failed && !first) return Answer::again;
-    const bool may_pass = evaluated.retry || is_of_the_machine(evaluated);
-    if (evaluated.status == evaluation::Status::failed && !locked &&
-        !evaluated.results.errors.empty())
-      numbers_.note_failure(c.id, evaluated.results.errors.front().message);
-    if (releasing_ && !(evaluated.certificate && evaluated.certificate->issued)) {
-      stage.set(evaluated.results.errors.empty() ? "data are missing: run the night again"
-                                                 : evaluated.results.errors.front().message);
-      return Answer::not_stored;
-    }
-    stage.set("writing the results");
-    const auto staged = batch::stage(options_.out, evaluated, context_,
-                                     {c.folder, night_.of(), c.reason, may_pass});
-    if (!staged) {
-      stage.set(staged.error().message);
-      return Answer::not_stored;
-    }
-    return evaluated.status == evaluation::Status::failed      ? Answer::failed
-           : evaluated.status == evaluation::Status::attention ? Answer::attention
-                                                               : Answer::ok;
-  }
-
-  /// Memory that was refused, and a disk or share that did not answer, say nothing about the
-  /// readings.
-  static bool is_of_the_machine(const Error& e) {
-    if (e.message.find("out of memory") != e.message.npos) return true;
-    constexpr int codes[] = {EIO, ESTALE, ETIMEDOUT, ENOTCONN, EHOSTDOWN, EHOSTUNREACH, ENOMEM};
-    return std::any_of(std::begin(codes), std::end(codes),
-                       [&](int code) { return e.message.ends_with(std::strerror(code)); });
-  }
-  static bool is_of_the_machine(const evaluation::Evaluated& evaluated) {
-    const auto& errors = evaluated.results.errors;
-    return std::any_of(errors.begin(), errors.end(),
-                       [](const Error& e) { return is_of_the_machine(e); });
-  }
-
-  static void fail_certificate(evaluation::Evaluated& evaluated, const Error& why) {
-    certificates::remove_unsigned(evaluated);
-    evaluated.results.errors.push_back(why);
-    evaluated.status = evaluation::Status::failed;
-    evaluated.retry = true;
   }
 
   void wait() {
@@ -362,7 +239,8 @@ class Runner {
     return false;
   }
 
-  /// Nobody pays for his predecessors: only what fails in a new process has failed.
+  /// What an earlier campaign left behind in the process may be the cause: only what fails in a new
+  /// process has failed.
   void not_done(Worker& worker, const std::string& why) {
     worker.end();
     if (worker.given() > 1)
@@ -429,7 +307,7 @@ class Runner {
   void lost(std::size_t index, const std::string& why) {
     CampaignState& c = campaigns_[index];
     note_failure(c.id, why);
-    if (releasing_)
+    if (work_.twins != nullptr)
       return finish(index, evaluation::Status::failed, {Error{why}});  // the draft stays
     evaluation::Evaluated evaluated;
     evaluated.campaign.id = c.id;
@@ -471,10 +349,9 @@ class Runner {
   PluginHost& plugins_;
   const std::vector<fs::path> secrets_;
   const certificates::Numbers numbers_;
-  const bool releasing_;         ///< what is not issued leaves everything as it was
-  const reading::Twins* twins_;  ///< of the one campaign that is released
-  NumbersCheck recheck_;
-  std::string unsound_;  ///< why no number is drawn
+  const SiteWork work_;
+  NumbersCheck recheck_;  ///< null: done
+  RegisterState register_;
   std::vector<CampaignState>& campaigns_;
   const storage::Disk disk_;           ///< before the first process that writes
   std::vector<std::uint32_t> losses_;  ///< of the disk, when each campaign was begun
@@ -485,7 +362,6 @@ class Runner {
   std::vector<std::size_t> again_;    ///< get a second trial
   std::vector<std::size_t> waiting_;  ///< need the register, which is locked
   std::optional<Worker::Clock::time_point> give_up_;
-  bool last_trial_ = false;
   bool register_hangs_ = false;
   std::vector<Worker> workers_;
 };

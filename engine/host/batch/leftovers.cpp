@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/batch/leftovers.h"
+
+#include "host/batch/night_state.h"
+#include "host/batch/store.h"
+#include "host/process/stop.h"
+#include "host/storage/files.h"
+
+namespace nonio::host::batch {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The folders of results in an output folder, whatever their layout.
+Expected<void> tidy_below(const fs::path& out, bool hashed) {
+  std::error_code error;
+  for (fs::directory_iterator it(out, error), end; !error && it != end; it.increment(error)) {
+    if (process::is_stop_requested()) return fail("interrupted");
+    std::error_code ignored;
+    if (!it->is_directory(ignored) || it->is_symlink(ignored)) continue;
+    if (hashed && it->path().filename().string().size() != 2) continue;
+    if (auto tidied = hashed ? tidy_below(it->path(), false) : tidy(it->path()); !tidied)
+      return tidied;
+  }
+  if (error) return fail("cannot read the output folder " + out.string() + ": " + error.message());
+  return {};
+}
+
+}  // namespace
+
+void tidy_root(const fs::path& out) {
+  storage::remove_leftovers(out);
+  storage::remove_leftovers(out / state_folder);
+}
+
+Expected<void> tidy_all(const Night& night, const fs::path& out, bool resumed) {
+  tidy_root(out);
+  if (resumed) return tidy_below(out, storage::results_folder(out, "a") != out / "a");
+  for (const CampaignState& c : night.campaigns) {
+    if (process::is_stop_requested()) return fail("interrupted");
+    if (c.action == CampaignState::Action::done && c.is_campaign)
+      if (auto tidied = tidy(storage::results_folder(out, c.id)); !tidied) return tidied;
+  }
+  return {};
+}
+
+}  // namespace nonio::host::batch
