@@ -24,7 +24,7 @@ nonio::app::Verb apart(nonio::app::Verb verb) {
 
 /// What cannot be thrown further, out of a destructor or a library: with a word and a status.
 [[noreturn]] void give_up() noexcept {
-  constexpr std::string_view words = "nonio: out of memory, or an error that nobody caught\n";
+  constexpr std::string_view words = "nonio: out of memory, or an unexpected error\n";
   [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, words.data(), words.size());
   ::_exit(nonio::app::exit_failed);
 }

@@ -285,7 +285,7 @@ std::string example_readings(const Axis& axis) {
   const std::string position(unit_of(at).suffix),
       deviation(unit_of(deviation_of(axis.rotary)).suffix);
   std::string text = "# EXAMPLE readings of axis " + axis.name +
-                     ": nobody measured them. Put your own here.\n"
+                     ": they were not measured. Put your own here.\n"
                      "# run from 1; direction + or - in which the axis moved to the target;\n"
                      "# deviation = actual - target. Blank or nan: not taken.\n"
                      "run,direction,target" +

@@ -319,7 +319,8 @@ int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::
   if (common.quiet) return exit_done;
   for (const std::string& file : written) std::cout << file << "\n";
   if (example)
-    std::cout << "The readings are an EXAMPLE: nobody measured them. Put your own into the CSV.\n";
+    std::cout
+        << "The readings are an EXAMPLE: they were not measured. Put your own into the CSV.\n";
   if (what == "machine") return exit_done;
   std::cout << "Next:  nonio " << (what == "site" ? "run " : "show ") << wish.folder
             << (what == "site" ? " --out out\n" : "\n");

@@ -1056,7 +1056,9 @@ constexpr Key mail_keys[] = {
      .holds = text,
      .help = "PEM file with the roots that the server's certificate must come from; without it "
              "those of the system."},
-    {.name = "user", .holds = text, .help = "Name at the server; without it nobody logs in."},
+    {.name = "user",
+     .holds = text,
+     .help = "Name at the server; without it the mail is sent without a login."},
     {.name = "password_file",
      .holds = text,
      .help = "File with the password; alternative to password_env and password_credential."},

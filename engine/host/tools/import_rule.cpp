@@ -43,7 +43,7 @@ Expected<std::vector<Token>> tokens_of(const std::string& pattern) {
                                           (tokens.back().text == "*" && bounded(name)));
     if (!tokens.empty() && tokens.back().place && !told)
       return fail("pattern: expected something between {" + tokens.back().text + "} and {" + name +
-                  "}: nobody could tell where one ends");
+                  "}: the end of one cannot be found");
     tokens.push_back({name, true});
     i = close + 1;
   }

@@ -89,7 +89,7 @@ Expected<void> check_issued(const std::vector<CertificatePtr>& certificates, con
     ERR_clear_error();
     if (!fits)
       return fail("the certificate of " + quoted(subject_of(one.get())) +
-                  " is damaged, or nobody who is known issued it");
+                  " is damaged, or its issuer is not known");
   }
   return {};
 }

@@ -205,7 +205,7 @@ class Prolongation {
       if (*found) return {};
       if (why.empty()) why = "its certificate names no address that begins with http://";
     } else {
-      why = "nobody is to be asked";
+      why = "no server may be asked (--no-fetch)";
     }
     return fail("nothing says whether the certificate of " + quoted(subject_of(one)) +
                 " was revoked: no list or answer that was given does, and " + why);

@@ -118,7 +118,7 @@ Expected<void> check_responder(OCSP_BASICRESP* answer, X509* issuer) {
   const bool sound = found && OCSP_basic_verify(answer, candidates.get(), nullptr,
                                                 OCSP_NOVERIFY | OCSP_TRUSTOTHER) == 1;
   ERR_clear_error();
-  if (!sound) return fail("an answer (OCSP) that is damaged, or of nobody who is known");
+  if (!sound) return fail("an OCSP answer that is damaged, or whose signer is not known");
   const STACK_OF(X509)* carried = OCSP_resp_get0_certs(answer);
   for (int i = 0; i < sk_X509_num(carried); ++i)
     if (X509_cmp(sk_X509_value(carried, i), responder) != 0 || i > 0)

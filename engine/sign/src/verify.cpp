@@ -36,7 +36,7 @@ void Report::check_signer(X509* certificate, const Verifier& verifier) {
   out_.subject = subject;
   if (verifier.signer.empty())
     return skip("signer.expected", "signed by " + shown + ", certificate " + fingerprint +
-                                       "; nobody said who should have signed");
+                                       "; the expected signer was not stated");
   std::string wanted = verifier.signer;
   const bool by_subject = wanted == subject;
   std::erase(wanted, ':');
@@ -80,7 +80,7 @@ std::vector<CertificatePtr> Report::check_chain(X509* certificate,
   add("certificate.use", check_signer_use(certificate),
       "the certificate is for signatures on documents");
   if (known.roots.empty()) {
-    skip("certificate.chain", "nobody said whom to trust");
+    skip("certificate.chain", "no trusted certificates were given");
     skip("certificate.revocation", "needs the chain", false);
     return {};
   }
@@ -137,7 +137,7 @@ class PdfCheck {
     if (place) check_cms(*place);
     if (out_.holds()) return read(*place);
     for (const char* id : {"file.structure", "signature.one", "attachments"})
-      report_.skip(id, "nobody who is trusted signed it");
+      report_.skip(id, "no trusted signer signed it");
     return std::move(out_);
   }
 
@@ -220,7 +220,7 @@ class PdfCheck {
     const Time last = time_of(X509_get0_notAfter(signer)) - 1;
     if (known.roots.empty() ||
         !chain_of(signer, data.certificates(), known, std::min(verifier_.now, last)))
-      return fail("are not read: nobody who is trusted signed what stands before");
+      return fail("are not read: no trusted signer signed what precedes them");
     if (!file()) return fail(file().error());
     auto updater = pdf::Updater::of(*file());
     if (!updater) return fail(updater.error());

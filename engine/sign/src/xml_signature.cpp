@@ -308,7 +308,7 @@ class XmlCheck {
       report_.add("xml.form", check_form(bytes_, *parts, certificate),
                   "is its own canonical form, without comments and instructions");
     else
-      report_.skip("xml.form", "nobody who is trusted signed it");
+      report_.skip("xml.form", "no trusted signer signed it");
     return std::move(out_);
   }
 

@@ -58,14 +58,14 @@ std::vector<std::string> present_lines(const ControllerInput& input, const AxisJ
   std::vector<std::string> lines;
   if (!p.table)
     lines.emplace_back(
-        "ASSUMED, nobody says it: no table of this axis was on while it was measured (table_on)");
+        "ASSUMED, not stated: no table of this axis was on while it was measured (table_on)");
   else
     lines.push_back(p.table->empty()
                         ? "no table of this axis was on while it was measured"
                         : "while this axis was measured the table of " + plain(*p.table) +
                               " was on: this one takes its place and is the whole of it");
   if (!p.backlash && job.present_backlash() == 0.0)
-    lines.push_back(std::string("ASSUMED, nobody says it: the backlash parameter was 0 while the "
+    lines.push_back(std::string("ASSUMED, not stated: the backlash parameter was 0 while the "
                                 "axis was measured (backlash_on_") +
                     std::string(job.unit()) + ")");
   else

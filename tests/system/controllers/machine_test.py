@@ -209,7 +209,7 @@ class WhatWasOn(MachineTest):
         self.assertAlmostEqual(predicted["E"]["before"], E, places=4)
         self.assertLess(predicted["E"]["predicted"], 0.02)
         self.assertIn("the table of backup/z.comp was on", self.file("linuxcnc-Z.txt"))
-        self.assertFalse([n for n in table.get("notes", []) if "nobody says" in n])
+        self.assertFalse([n for n in table.get("notes", []) if "ASSUMED, not stated" in n])
         # It is an input of the night.
         self.comp(self.folder / "backup/z.comp", lambda x: 0.0)
         self.tables("linuxcnc")
@@ -228,7 +228,7 @@ class WhatWasOn(MachineTest):
             said_so = [n for n in table.get("notes", []) if "not stated" in n and "assumed" in n]
             self.assertEqual(len(said_so), 1 if note else 0, said)
             self.assertTrue(note is None or note in said_so[0], said_so)
-            self.assertEqual(self.file("siemens-840d-Z-EEC.ini").count("ASSUMED, nobody says it"), sentences, said)
+            self.assertEqual(self.file("siemens-840d-Z-EEC.ini").count("ASSUMED, not stated"), sentences, said)
 
     def test_compensation_on_wants_the_table_that_was(self):
         self.record(["Z"])
@@ -237,7 +237,7 @@ class WhatWasOn(MachineTest):
         self.assertFalse([n for n in self.written() if n.startswith("fanuc")])
         self.measured("fanuc", machine='asset = "S-1"\n', of_measurement='compensation = "off"\n')
         table, _ = self.tables("fanuc")
-        self.assertFalse([n for n in table.get("notes", []) if "nobody says" in n])
+        self.assertFalse([n for n in table.get("notes", []) if "ASSUMED, not stated" in n])
 
     def test_backlash_that_was_on_is_the_beginning_of_the_new_value(self):
         self.record(["X", "Y", "Z"])

@@ -70,7 +70,7 @@ class New(VerbTest):
         self.assertEqual(results["campaign"]["customer"], "Rossi (EXAMPLE, NOT MEASURED)")
         self.assertEqual(results["campaign"]["machine"]["model"], "FP 12 (EXAMPLE, NOT MEASURED)")
         self.assertEqual(done["rossi"], "ok")
-        self.assertIn("nobody measured", (folder / "EXAMPLE-x.csv").read_text())
+        self.assertIn("were not measured", (folder / "EXAMPLE-x.csv").read_text())
         self.assertIn("EXAMPLE READINGS, not measured", (folder / "campaign.toml").read_text())
         self.assertIn("EXAMPLE", self.nonio("show", folder).stdout)
 
