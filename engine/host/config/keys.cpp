@@ -429,6 +429,19 @@ constexpr Key measurement_keys[] = {
      .required = true,
      .only = {"kind", angle},
      .choices = linear_axes},
+    {.name = "foot_mm",
+     .holds = number,
+     .help = "Length of the foot or mirror base of a level or autocollimator that was moved by its "
+             "own length along the line: the angles then give the straightness.",
+     .unit = "mm",
+     .wanted = "expected a length above 0",
+     .least = 0.001,
+     .only = {"kind", angle}},
+    {.name = "reversal_of",
+     .holds = text,
+     .help = "The measurement of the same line before the straightedge was turned over: both give "
+             "the straightness of the motion without that of the straightedge.",
+     .only = {"kind", straightness}},
     {.name = "exclude",
      .holds = wholes,
      .help = "Lines of the file whose readings are excluded from all analyses; the results "

@@ -271,7 +271,11 @@ Measurement read_measurement(TableReader& reader) {
   if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
     reader.error("lateral", "expected another axis than " + m.axis +
                                 ", which moves: along it the deviation is one of positioning");
-  if (m.kind == "angle") m.lateral = reader.text("about");
+  if (m.kind == "straightness") m.reversal_of = reader.text("reversal_of");
+  if (m.kind == "angle") {
+    m.lateral = reader.text("about");
+    m.foot = reader.number("foot_mm", mm);
+  }
   m.exclude = reader.integers("exclude");
   m.exclude_reason = reader.text("exclude_reason");
   for (const auto& [axis, position] : reader.number_table("from", mm)) m.from[axis] = position;
@@ -311,6 +315,25 @@ void read_measurements(TableReader& top, Manifest& manifest, bool plans) {
       reader.error("side", "expected [machine.axes." + m.axis +
                                "] slave, the name of the control's axis on that side");
     campaign.measurements.push_back(std::move(m));
+  }
+  if (list.size() == campaign.measurements.size()) check_reversals(list, campaign.measurements);
+}
+
+/// A straightedge that was turned over: the same line, and each measurement in one pair.
+void check_reversals(std::vector<TableReader>& list, const std::vector<Measurement>& all) {
+  std::set<std::string> taken;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string& of = all[i].reversal_of;
+    if (of.empty()) continue;
+    const auto first =
+        std::find_if(all.begin(), all.end(), [&](const Measurement& m) { return m.id == of; });
+    const bool fits = first != all.end() && first->kind == "straightness" &&
+                      first->axis == all[i].axis && first->lateral == all[i].lateral &&
+                      first->reversal_of.empty() && of != all[i].id;
+    if (!fits || !taken.insert(of).second)
+      list[i].error("reversal_of", "expected the id of another straightness of " + all[i].axis +
+                                       " towards " + all[i].lateral +
+                                       " that has one reversal, found \"" + of + "\"");
   }
 }
 

@@ -129,6 +129,14 @@ class System {
   std::size_t first_of_X() const { return r_.Y.size() * (n_ + 1); }
   std::size_t first_of_yaw() const { return first_of_X() + r_.X.size() * (n_ + 1); }
   const Vector& y() const { return y_; }
+  /// Of the readings, by repetition; 1 of lines alike where it is not known.
+  const std::vector<double>& sigma() const { return sigma_; }
+  /// First reading of a direct straightness: EYX, or (second) EXY.
+  std::size_t first_of_direct(bool second) const {
+    const std::size_t both =
+        static_cast<std::size_t>(r_.EYX.has_value()) + static_cast<std::size_t>(r_.EXY.has_value());
+    return sigma_.size() - (both - (second && r_.EYX ? 1 : 0)) * (n_ + 1);
+  }
   bool noise_known() const { return noise_known_; }
   std::size_t unknowns() const { return unknowns_; }
   Matrix covariance() const { return scaled(sigma_) * scaled(sigma_).transpose(); }
@@ -298,6 +306,8 @@ class Solution {
   Shares shares(const Row& h) const {
     return model_ == nullptr ? Shares{} : shares_of_readings(h * jacobian_);
   }
+  /// Derivative of a functional by the readings; there is a model.
+  Row by_readings(const Row& h) const { return h * jacobian_; }
   /// Of what is made of the readings directly.
   Shares shares_of_readings(const Row& J) const {
     if (model_ == nullptr) return {};
@@ -436,6 +446,52 @@ void fill_yaw(const DiagonalReadings& r, const System& system, const Solution& s
   out.slave_shift = W * out.C0Y;
 }
 
+/// Variance of what is made of the readings, by repetition and all inputs.
+double variance_of(const System& system, const Solution& s, const Row& J) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < J.size(); ++i) {
+    const double sigma = s.factor() * system.sigma()[static_cast<std::size_t>(i)];
+    sum += J[i] * J[i] * sigma * sigma;
+  }
+  for (const double u : s.shares_of_readings(J).u) sum += u * u;
+  return sum;
+}
+
+Agreement agreement(const System& system, const Solution& s, const Functional& even,
+                    const DirectStraightness& direct, std::size_t first, double dof) {
+  const std::size_t n = direct.mean.size() - 1;
+  std::vector<Row> J;
+  Agreement out;
+  for (std::size_t k = 1; 2 * k <= n; ++k) {
+    Row row = -s.by_readings(even[k]);
+    for (const auto& [i, share] :
+         {std::pair{k, 0.5}, {n - k, 0.5}, {std::size_t{0}, -0.5}, {n, -0.5}})
+      row[at(first + i)] += share;
+    out.difference.push_back(
+        (direct.mean[k] + direct.mean[n - k] - direct.mean[0] - direct.mean[n]) / 2.0 -
+        s.value(even[k]));
+    out.u.push_back(std::sqrt(variance_of(system, s, row)));
+    J.push_back(std::move(row));
+  }
+  const std::size_t m = J.size();
+  Matrix V(at(m), at(m));
+  for (std::size_t a = 0; a < m; ++a)
+    for (std::size_t b = 0; b <= a; ++b)
+      V(at(a), at(b)) = V(at(b), at(a)) =
+          a == b
+              ? out.u[a] * out.u[a]
+              : (variance_of(system, s, J[a] + J[b]) - variance_of(system, s, J[a] - J[b])) / 4.0;
+  const Eigen::Map<const Vector> d(out.difference.data(), at(m));
+  out.chi2 = d.dot(V.ldlt().solve(d));
+  out.p = f_upper(out.chi2 / static_cast<double>(m), static_cast<double>(m), dof);
+  for (std::size_t k = 1; k < m; ++k)
+    if (std::fabs(out.difference[k]) * out.u[out.worst] >
+        std::fabs(out.difference[out.worst]) * out.u[k])
+      out.worst = k;
+  ++out.worst;  // the first inner point is point 1 of the grid
+  return out;
+}
+
 }  // namespace
 
 Expected<DiagonalResult> solve_diagonals(const DiagonalReadings& r, const ReadingModel* model) {
@@ -483,6 +539,15 @@ Expected<DiagonalResult> solve_diagonals(const DiagonalReadings& r, const Readin
   }
   out.closure = closure_of(system, r.n, s);
   fill_yaw(r, system, s, out);
+  if (model != nullptr) {
+    const double dof = system.noise_known() ? r.D1.dof : static_cast<double>(s.dof());
+    if (r.EYX && !r.EYX->whole)
+      out.EYX_agrees =
+          agreement(system, s, part(f, 1.0), *r.EYX, system.first_of_direct(false), dof);
+    if (r.EXY && !r.EXY->whole)
+      out.EXY_agrees =
+          agreement(system, s, part(g, 1.0), *r.EXY, system.first_of_direct(true), dof);
+  }
   return out;
 }
 

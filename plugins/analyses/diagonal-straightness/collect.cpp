@@ -121,7 +121,8 @@ class Gatherer {
       const std::string& one = observations(a).axes[k].axis;
       if (one != observations(b).axes[k].axis) return false;
       const auto x = ends(a, one), y = ends(b, one);
-      if (std::fabs(x.first - y.first) > same_stop || std::fabs(x.second - y.second) > same_stop)
+      if (std::fabs(x.first - y.first) > math::same_stop ||
+          std::fabs(x.second - y.second) > math::same_stop)
         return false;
     }
     return true;
@@ -135,8 +136,8 @@ class Gatherer {
     auto& r = out_.readings;
     r.Lx = x.second - x.first;
     r.Ly = y.second - y.first;
-    d1_ = curve_of(observations(out_.D1), 0);
-    d2_ = curve_of(observations(out_.D2), 0);
+    d1_ = math::measured_line(observations(out_.D1), 0);
+    d2_ = math::measured_line(observations(out_.D2), 0);
     if (d1_.stops.size() != d2_.stops.size())
       return refuse("refused-stops", {{"why", std::to_string(d1_.stops.size()) + " / " +
                                                   std::to_string(d2_.stops.size())},
@@ -146,10 +147,10 @@ class Gatherer {
     if (r.n < 3) return bad_stop(out_.D1, d1_.stops.front());
     for (const auto& [i, curve] : {std::pair{out_.D1, &d1_}, std::pair{out_.D2, &d2_}})
       for (std::size_t k = 0; k <= r.n; ++k) {
-        const Curve::Stop& stop = curve->stops[k];
+        const math::MeasuredLine::Stop& stop = curve->stops[k];
         const std::size_t across = i == out_.D1 ? k : r.n - k;
-        if (std::fabs(stop.position - grid_x(k)) > same_stop ||
-            std::fabs(stop.across - grid_y(across)) > same_stop)
+        if (std::fabs(stop.position - grid_x(k)) > math::same_stop ||
+            std::fabs(stop.across - grid_y(across)) > math::same_stop)
           return bad_stop(i, stop);
       }
     if (!d1_.direction() || !d2_.direction())
@@ -170,7 +171,7 @@ class Gatherer {
   double grid_x(std::size_t i) const { return out_.x0 + step_x() * static_cast<double>(i); }
   double grid_y(std::size_t i) const { return out_.y0 + step_y() * static_cast<double>(i); }
 
-  tl::unexpected<Finding> bad_stop(std::size_t i, const Curve::Stop& stop) const {
+  tl::unexpected<Finding> bad_stop(std::size_t i, const math::MeasuredLine::Stop& stop) const {
     std::string why = out_.x_axis + " " + mm_text(stop.position) + ", " + out_.y_axis + " " +
                       mm_text(stop.across) + " mm";
     if (stop.source_line > 0)
@@ -185,7 +186,7 @@ class Gatherer {
   }
 
   /// Sensed in the direction in which X grows, whichever way the line was named.
-  math::GridLine line_of(std::size_t i, const Curve& curve) {
+  math::GridLine line_of(std::size_t i, const math::MeasuredLine& curve) {
     const auto& sense = observations(i).lines.front().sense;
     const double sign = sense[0] < 0.0 ? -1.0 : 1.0;
     math::GridLine line;
@@ -193,7 +194,7 @@ class Gatherer {
     line.cy = sign * sense[1];
     line.x_direction = curve.direction().value_or(0);
     line.y_direction = rises(i) ? line.x_direction : -line.x_direction;
-    for (const Curve::Stop& stop : curve.stops)
+    for (const math::MeasuredLine::Stop& stop : curve.stops)
       line.mean.push_back(sign * stop.mean(line.x_direction));
     put_u(line, curve, line.x_direction);
     line.zeroed = curve.zeroed;
@@ -201,7 +202,7 @@ class Gatherer {
     return line;
   }
 
-  void put_u(math::MeanCurve& to, const Curve& curve, int direction) const {
+  void put_u(math::MeanCurve& to, const math::MeasuredLine& curve, int direction) const {
     const double stated = in_.options.number("reading_u_um") * 1e-6;
     to.u = stated > 0.0 ? stated : curve.u_mean(direction);
     if (stated > 0.0) return;
@@ -238,9 +239,9 @@ class Gatherer {
   }
 
   /// The curve of measurement i at the points of the grid, and only there.
-  OrRefusal<Curve> on_grid(std::size_t i, bool along_x) {
-    Curve all = curve_of(observations(i), 0);
-    Curve out = all;
+  OrRefusal<math::MeasuredLine> on_grid(std::size_t i, bool along_x) {
+    math::MeasuredLine all = math::measured_line(observations(i), 0);
+    math::MeasuredLine out = all;
     out.stops.clear();
     for (std::size_t k = 0; k <= out_.readings.n; ++k) {
       const double wanted = along_x ? grid_x(k) : grid_y(k);
@@ -257,8 +258,9 @@ class Gatherer {
     return out;
   }
 
-  void put(math::MeanCurve& to, const Curve& curve, int direction) const {
-    for (const Curve::Stop& stop : curve.stops) to.mean.push_back(stop.mean(direction));
+  void put(math::MeanCurve& to, const math::MeasuredLine& curve, int direction) const {
+    for (const math::MeasuredLine::Stop& stop : curve.stops)
+      to.mean.push_back(stop.mean(direction));
     put_u(to, curve, direction);
     to.zeroed = curve.zeroed;
     to.visits = curve.visits(direction);
@@ -275,14 +277,16 @@ class Gatherer {
     };
     add(of_x ? r.D2.x_direction : r.D2.y_direction);
     for (const std::size_t i : third_)
-      if (const auto d = curve_of(observations(i), 0).direction()) add(of_x || rises(i) ? *d : -*d);
+      if (const auto d = math::measured_line(observations(i), 0).direction())
+        add(of_x || rises(i) ? *d : -*d);
     return out;
   }
 
   /// One curve for each direction that is needed and was measured. False if both diagonals cannot
   /// be evaluated with them.
   template <class T>
-  bool put_all(std::vector<T>& to, const T& empty, const Curve& curve, bool of_x) const {
+  bool put_all(std::vector<T>& to, const T& empty, const math::MeasuredLine& curve,
+               bool of_x) const {
     const auto& r = out_.readings;
     for (const int d : directions(of_x)) {
       if (curve.has(d)) {
@@ -331,7 +335,7 @@ class Gatherer {
     if (found.size() <= 2 && !placed)
       return refuse("refused-place", {{"axis", out_.y_axis}, {"which", ids(found)}});
     if (found.size() > 2 ||
-        (found.size() == 2 && !(std::fabs(*place(found[1]) - *place(found[0])) > same_stop)))
+        (found.size() == 2 && !(std::fabs(*place(found[1]) - *place(found[0])) > math::same_stop)))
       return refuse("refused-ambiguous", {{"axis", out_.x_axis}, {"which", ids(found)}});
     for (const std::size_t i : found) {
       auto curve = on_grid(i, true);
@@ -431,7 +435,7 @@ class Gatherer {
   /// Lines beside the two diagonals, as far as their stops are points of the grid.
   void add_third_lines() {
     for (const std::size_t i : third_) {
-      const Curve curve = curve_of(observations(i), 0);
+      const math::MeasuredLine curve = math::measured_line(observations(i), 0);
       math::GridLine line = line_of(i, curve);
       const auto goes_with = [](const auto& curves, int direction) {
         return std::any_of(curves.begin(), curves.end(),
@@ -441,11 +445,11 @@ class Gatherer {
       bool fits = curve.stops.size() > 1 && curve.direction() && goes_with(r.X, line.x_direction) &&
                   goes_with(r.Y, line.y_direction) &&
                   (r.ECX.empty() || goes_with(r.ECX, line.x_direction));
-      for (const Curve::Stop& stop : curve.stops) {
+      for (const math::MeasuredLine::Stop& stop : curve.stops) {
         const double a = (stop.position - out_.x0) / step_x(),
                      b = (stop.across - out_.y0) / step_y();
-        fits = fits && std::fabs(a - std::round(a)) * step_x() <= same_stop &&
-               std::fabs(b - std::round(b)) * step_y() <= same_stop && std::round(a) >= 0.0 &&
+        fits = fits && std::fabs(a - std::round(a)) * step_x() <= math::same_stop &&
+               std::fabs(b - std::round(b)) * step_y() <= math::same_stop && std::round(a) >= 0.0 &&
                std::round(b) >= 0.0 && std::round(a) <= static_cast<double>(out_.readings.n) &&
                std::round(b) <= static_cast<double>(out_.readings.n);
         if (!fits) break;
@@ -483,17 +487,17 @@ class Gatherer {
   void compare_reversals() {
     const auto& r = out_.readings;
     const double c = std::fabs(r.D1.cx), s = std::fabs(r.D1.cy);
-    const auto along = [&](std::size_t i, const Curve& curve) {
+    const auto along = [&](std::size_t i, const math::MeasuredLine& curve) {
       return (observations(i).lines.front().sense[0] < 0.0 ? -1.0 : 1.0) * curve.mean_reversal();
     };
     out_.reversal_of_diagonals = along(out_.D1, d1_) + along(out_.D2, d2_);
     out_.reversal_of_axes = 2.0 * (c * reversal_x_ + s * reversal_y_);
     double squares = 0.0;
-    const auto add = [&](const Curve& curve, double factor) {
+    const auto add = [&](const math::MeasuredLine& curve, double factor) {
       squares += factor * curve.u_mean() * curve.u_mean() / static_cast<double>(r.n + 1);
     };
     add(d1_, 4.0), add(d2_, 4.0), add(y_, 16.0);
-    for (const Curve& curve : x_) add(curve, 16.0);
+    for (const math::MeasuredLine& curve : x_) add(curve, 16.0);
     out_.u_reversal = std::sqrt(squares);
   }
 
@@ -501,8 +505,8 @@ class Gatherer {
   const std::vector<Set>& sets_;
   const Set& set_;
   Collected out_;
-  Curve d1_, d2_, y_;
-  std::vector<Curve> x_;
+  math::MeasuredLine d1_, d2_, y_;
+  std::vector<math::MeasuredLine> x_;
   std::vector<std::size_t> third_, used_;
   double reversal_x_ = 0.0, reversal_y_ = 0.0;
 };

@@ -6,6 +6,7 @@
 
 #include "doubt.h"
 #include "nonio/math/diagonals.h"
+#include "nonio/math/distributions.h"
 #include "sets.h"
 
 using namespace nonio;
@@ -30,6 +31,7 @@ class Report {
         r_(r),
         e_(e),
         known_(r.noise_known || r.dof >= enough_dof),
+        complete_(model.missing.empty()),
         budget_(model, noise(), r.noise_known ? c.readings.D1.dof : static_cast<double>(r.dof),
                 Quantity::deviation, source(in)) {}
 
@@ -58,6 +60,8 @@ class Report {
       add_both();
     else
       add_parts();
+    if (complete_)
+      compare(r_.EYX_agrees, c_.x_axis, "EYX"), compare(r_.EXY_agrees, c_.y_axis, "EXY");
     if (!first_set) e_.findings.push_back({.id = "diagonals.remeasured"});
     if (known_ && budget_.budget().missing.empty()) e_.budget = budget_.budget();
   }
@@ -168,6 +172,23 @@ class Report {
     e_.findings.push_back(std::move(f));
   }
 
+  /// A straightness measured directly, with the even part that the diagonals have without it.
+  void compare(const std::optional<math::Agreement>& a, const std::string& axis,
+               const char* curve) {
+    constexpr double level = 0.01;
+    if (!a || !known_) return;
+    const bool differs = math::significant(a->p, level);
+    e_.findings.push_back(
+        {.id = differs ? "diagonals.straightness-disagrees" : "diagonals.straightness-agrees",
+         .attention = differs,
+         .evidence = {{"difference", a->difference[a->worst - 1], Quantity::deviation},
+                      {"u", a->u[a->worst - 1], Quantity::deviation},
+                      {"at", positions(axis)[a->worst], Quantity::length},
+                      {"mirrored", positions(axis)[c_.readings.n - a->worst], Quantity::length},
+                      {"p", a->p, Quantity::probability}},
+         .texts = {{"curve", curve}, {"axis", axis}}});
+  }
+
   static double largest(const std::vector<double>& v) {
     double most = 0.0;
     for (const double x : v) most = std::max(most, std::fabs(x));
@@ -199,6 +220,7 @@ class Report {
   const math::DiagonalResult& r_;
   Evaluation& e_;
   bool known_;
+  bool complete_;  ///< nothing is missing for the uncertainty
   math::BudgetOf budget_;
 };
 

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "curves.h"
+#include "nonio/math/diagonals.h"
+#include "nonio/math/measured_line.h"
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/plugin.h"
 

@@ -279,6 +279,67 @@ TEST(Diagonals, UncertaintiesCoverTheTruth) {
   EXPECT_GE(closed, 0.99 * campaigns);
 }
 
+/// Two lines of X, Y, both diagonals, EYX and EXY: lengths and laterals whose errors are the
+/// repetition alone.
+ReadingModel repetition_alone(const DiagonalReadings& r) {
+  ReadingModel model;
+  for (std::size_t k = 0; k < 7; ++k) {
+    BudgetLine line;
+    line.kind = k < 5 ? BudgetLine::Kind::length : BudgetLine::Kind::lateral;
+    line.group = k;
+    for (std::size_t i = 0; i <= r.n; ++i) line.length.push_back(static_cast<double>(i));
+    model.lines.push_back(std::move(line));
+  }
+  return model;
+}
+
+TEST(Diagonals, ADirectStraightnessAgreesAsOftenAsItShould) {
+  std::mt19937 rng(seed + 5);
+  std::cout << "seed " << seed + 5 << "\n";
+  const Rectangle rect{12.0, 9.0, 10};
+  const Errors e = random_gantry(rng, rect);
+  auto clean = read(e, rect, {0.5, 8.5});
+  clean.EYX = straightness(e.EYX, rect.Lx, rect.n);
+  clean.EXY = straightness(e.EXY, rect.Ly, rect.n);
+  const ReadingModel model = repetition_alone(clean);
+  constexpr int campaigns = 1000;
+  double below_half = 0.0, below_percent = 0.0, bent_found = 0.0;
+  const auto noisy = [&] {
+    auto r = clean;
+    for (MeanCurve* c : {static_cast<MeanCurve*>(&r.D1), static_cast<MeanCurve*>(&r.D2),
+                         static_cast<MeanCurve*>(&r.X[0]), static_cast<MeanCurve*>(&r.X[1]),
+                         static_cast<MeanCurve*>(&r.Y[0]), static_cast<MeanCurve*>(&*r.EYX),
+                         static_cast<MeanCurve*>(&*r.EXY)})
+      disturb(*c, 0.8 * um, rng), c->dof = 1000.0;
+    return r;
+  };
+  for (int c = 0; c < campaigns; ++c) {
+    auto r = noisy();
+    const auto s = solve_diagonals(r, &model);
+    ASSERT_TRUE(s && s->EYX_agrees && s->EXY_agrees);
+    for (const auto* a : {&*s->EYX_agrees, &*s->EXY_agrees}) {
+      below_half += (a->p < 0.5) / 2.0;
+      below_percent += (a->p < 0.01) / 2.0;
+    }
+    if (c % 10 != 0) continue;
+    for (std::size_t i = 0; i <= r.n; ++i) {  // a straightedge that sags by 8 um
+      const double t = static_cast<double>(i) / static_cast<double>(r.n);
+      r.EXY->mean[i] += 8 * um * 4.0 * t * (1.0 - t);
+    }
+    const auto bent = solve_diagonals(r, &model);
+    bent_found +=
+        bent->EXY_agrees->p < 0.01 && std::fabs(bent->EYX_agrees->p - s->EYX_agrees->p) < 1e-6
+            ? 10.0
+            : 0.0;
+  }
+  std::cout << "p below 0.5: " << 100.0 * below_half / campaigns
+            << " %, below 0.01: " << 100.0 * below_percent / campaigns
+            << " %, a sag of 8 um found: " << 100.0 * bent_found / campaigns << " %\n";
+  EXPECT_NEAR(below_half / campaigns, 0.5, 0.04);
+  EXPECT_LE(below_percent / campaigns, 0.02);
+  EXPECT_GE(bent_found / campaigns, 0.95);
+}
+
 TEST(Diagonals, UnknownNoiseComesFromTheResiduals) {
   std::mt19937 rng(seed + 4);
   std::cout << "seed " << seed + 4 << "\n";

@@ -133,6 +133,9 @@ struct Measurement {
   std::string compensation{};                        ///< "on" or "off": the control's tables
   std::string side{};                  ///< of a gantry axis: "master" or "slave"; empty: not said
   std::optional<std::string> state{};  ///< of the machine, as the manifest says it; see `state_of`
+  /// Of a straightness: id of the same line's measurement before the straightedge was turned over.
+  std::string reversal_of{};
+  std::optional<double> foot{};  ///< m, of a level or mirror that was moved by its own length
 };
 
 /// State of the machine in which something was measured: "final". Empty: it holds for every state.

@@ -100,6 +100,15 @@ struct Closure {
   static double std_abs(double v) { return v < 0.0 ? -v : v; }
 };
 
+/// The even part of a straightness measured directly against that of the diagonals, which does not
+/// use it: chi2 = d' V^-1 d with the covariance V of all readings and inputs, F = chi2/dof.
+struct Agreement {
+  std::vector<double> difference,
+      u;  ///< direct less diagonals at the inner points up to mid-travel
+  double chi2 = 0.0, p = 1.0;
+  std::size_t worst = 0;  ///< point of the grid with the largest difference in terms of its u
+};
+
 struct DiagonalResult {
   double C0Y = 0.0, u_C0Y = 0.0, gain_C0Y = 0.0;  ///< end-point gauge; gain in 1/m
   Shares shares_C0Y;
@@ -113,6 +122,8 @@ struct DiagonalResult {
   KnownCurve ECX;                     ///< yaw as it was subtracted; empty if there was none
   std::optional<double> slave_shift;  ///< of the second line's zero, removes C0Y; from two lines
   Closure closure;
+  /// Of a direct straightness that is not whole, with a model of the readings.
+  std::optional<Agreement> EYX_agrees, EXY_agrees;
   /// Standard deviation of a mean as the residuals of the fit say, with its degrees of freedom.
   double residual_u = 0.0;
   std::size_t dof = 0;

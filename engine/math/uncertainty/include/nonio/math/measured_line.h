@@ -6,17 +6,17 @@
 #include <optional>
 #include <vector>
 
-#include "nonio/math/diagonals.h"
+#include "nonio/math/budget.h"
 #include "nonio/sdk/observations.h"
 
-namespace nonio::diagonals {
+namespace nonio::math {
 
 /// Stops nearer than this are one stop: far above a control's resolution, and a slope of 10 um/m
 /// makes 1 nm of it.
 inline constexpr double same_stop = 1e-4;
 
 /// Readings by stop and direction of the axis in one column of the observations.
-struct Curve {
+struct MeasuredLine {
   struct Stop {
     double position = 0.0, across = 0.0;  ///< of the axis, and of the second axis if there is one
     double plus = 0.0, minus = 0.0;       ///< means
@@ -43,11 +43,11 @@ struct Curve {
   double u_mean(int direction = 0) const;
   double mean_reversal() const;
   /// What the means of this direction, or (0) of both, were made of, by time.
-  std::vector<math::BudgetLine::Visit> visits(int direction) const;
+  std::vector<BudgetLine::Visit> visits(int direction) const;
   /// Index of the stop at this position, or the number of stops.
   std::size_t find(double position) const;
 };
 
-Curve curve_of(const Observations& observations, std::size_t column);
+MeasuredLine measured_line(const Observations& observations, std::size_t column);
 
-}  // namespace nonio::diagonals
+}  // namespace nonio::math
