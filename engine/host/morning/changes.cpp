@@ -34,6 +34,7 @@ void fit_again(FollowedSeries& s, Fits& fits) {
   s.trend = fits.trend(s.series);
   s.p_adjusted.assign(s.trend.changes.size(), 1.0);
   s.told.assign(s.trend.changes.size(), false);
+  s.mailed.assign(s.trend.changes.size(), false);
 }
 
 /// Whether the instrument changed in this gap, and this quantity would show it.
@@ -48,15 +49,16 @@ bool shows_instrument(const FollowedSeries& s, std::size_t gap) {
 /// One test of a night.
 struct Asked {
   double p = 1.0;
-  double* adjusted = nullptr;
+  Adjusted* adjusted = nullptr;
 };
 
-/// Benjamini and Hochberg over the tests of one night; what is no candidate counts with p = 1.
-void adjust(const std::vector<Asked>& tests, std::size_t asked) {
+/// Over the tests of one night; what is no candidate counts with p = 1.
+void adjust(const std::vector<Asked>& tests, std::size_t asked, double Adjusted::*which,
+            std::vector<double> by(const std::vector<double>&)) {
   std::vector<double> p(std::max(asked, tests.size()), 1.0);
   for (std::size_t i = 0; i < tests.size(); ++i) p[i] = tests[i].p;
-  const auto all = kernel::benjamini_hochberg(p);
-  for (std::size_t i = 0; i < tests.size(); ++i) *tests[i].adjusted = all[i];
+  const auto all = by(p);
+  for (std::size_t i = 0; i < tests.size(); ++i) tests[i].adjusted->*which = all[i];
 }
 
 /// Between which campaigns of a machine something is known to have changed.
@@ -116,6 +118,7 @@ void ask_there(FollowedSeries& s, std::size_t gap, double level, Fits& fits) {
         if (tried.trend.changes[j].after == s.trend.changes[k].after) {
           tried.told[j] = s.told[k];
           tried.p_adjusted[j] = s.p_adjusted[k];
+          tried.mailed[j] = s.mailed[k];
         }
     tried.series.declared.pop_back();
     tried.kinds.pop_back();
@@ -176,12 +179,13 @@ SeriesTests tests_of(const FollowedSeries& s) {
   return out;
 }
 
-/// What nobody has said, and what is known to have happened: each a family of its own.
-std::vector<std::vector<double>> adjusted_by_night(
+/// News: what nobody has said, and what is known to have happened, are families of their own. For a
+/// mail they are one.
+std::vector<std::vector<Adjusted>> adjusted_by_night(
     const std::vector<const SeriesTests*>& tests,
     const std::map<std::uint64_t, std::uint64_t>& asked) {
-  std::vector<std::vector<double>> out;
-  for (const SeriesTests* s : tests) out.emplace_back(s->changes.size(), 1.0);
+  std::vector<std::vector<Adjusted>> out;
+  for (const SeriesTests* s : tests) out.emplace_back(s->changes.size());
   std::map<std::uint64_t, std::vector<Asked>> unsaid, said;
   std::map<std::uint64_t, std::size_t> still;  // of the series whose last night it was
   for (std::size_t k = 0; k < tests.size(); ++k) {
@@ -190,30 +194,35 @@ std::vector<std::vector<double>> adjusted_by_night(
     for (std::size_t i = 0; i < s.changes.size(); ++i)
       (s.changes[i].declared ? said : unsaid)[s.night].push_back({s.changes[i].p, &out[k][i]});
   }
-  for (const auto& [night, of_night] : unsaid) {
+  for (const auto& [night, open] : still) {
     const auto found = asked.find(night);
-    const std::size_t many = found == asked.end() ? 0 : found->second;
-    adjust(of_night, std::max(many, still[night]));
+    const std::size_t many = std::max(found == asked.end() ? 0 : found->second, open);
+    std::vector<Asked> all = unsaid[night];
+    adjust(all, many, &Adjusted::news, kernel::benjamini_hochberg);
+    adjust(said[night], 0, &Adjusted::news, kernel::benjamini_hochberg);
+    all.insert(all.end(), said[night].begin(), said[night].end());
+    adjust(all, many + said[night].size(), &Adjusted::any, kernel::holm);
   }
-  for (const auto& [night, of_night] : said) adjust(of_night, 0);
   return out;
 }
 
-Verdict verdict_of(const SeriesTests::Of& test, double adjusted) {
+Verdict verdict_of(const SeriesTests::Of& test, const Adjusted& adjusted) {
   Verdict out;
-  out.surely = adjusted < no_instrument_below;
-  out.told = adjusted < told_below && (!test.declared || test.p < declared_below);
+  out.surely = adjusted.news < no_instrument_below;
+  out.told = adjusted.news < told_below && (!test.declared || test.p < declared_below);
   if (test.shows_instrument && test.declared) out.told = out.told && out.surely;
+  out.mailed = out.told && adjusted.any < mailed_below;
   return out;
 }
 
-void tell(FollowedSeries& s, const std::vector<double>& adjusted) {
+void tell(FollowedSeries& s, const std::vector<Adjusted>& adjusted) {
   const SeriesTests tests = tests_of(s);
   for (std::size_t i = 0; i < s.trend.changes.size(); ++i) {
     kernel::Change& c = s.trend.changes[i];
     const Verdict verdict = verdict_of(tests.changes[i], adjusted[i]);
-    s.p_adjusted[i] = adjusted[i];
+    s.p_adjusted[i] = adjusted[i].news;
     s.told[i] = verdict.told;
+    s.mailed[i] = verdict.mailed;
     if (tests.changes[i].shows_instrument && c.cause == Cause::instrument && verdict.surely)
       c.cause = Cause::undeclared;
   }

@@ -32,8 +32,8 @@ struct FollowedSeries {
   nonio::history::Trend trend{};
   /// Of each change of the trend: p, adjusted for all that its night has asked.
   std::vector<double> p_adjusted{};
-  /// Whether it is told.
-  std::vector<bool> told{};
+  /// Whether it is told, and whether a mail tells it.
+  std::vector<bool> told{}, mailed{};
 };
 
 /// Largest deviations and the like of one axis: shown, and held against limits.

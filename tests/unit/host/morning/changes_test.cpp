@@ -147,5 +147,42 @@ TEST(MorningChanges, ANightChargesATestOnce) {
   EXPECT_TRUE(other[0].followed[0].told[0]);
 }
 
+TEST(MorningChanges, AMailIsSurerThanAList) {
+  // The same history, in nights that asked more and more: told below 5 %, mailed below 1 %.
+  std::mt19937_64 random(17);
+  std::cout << "seed 17\n";
+  const auto values = around(random, 8, 0.1, 4, 0.3);
+  const auto after = [&](std::uint64_t asked) {
+    MadeMachine m("S-1");
+    m.follow("X", "B_mean", values, 0.1);
+    std::vector<morning::AssessedMachine> machines{m.assessed()};
+    morning::Fits fits;
+    morning::learn(machines, fits);
+    morning::find_changes(machines, {{1, asked}}, fits, not_asked);
+    return machines[0].followed[0];
+  };
+  const double p = after(1).p_adjusted.at(0);
+  ASSERT_LT(p, 1e-4);
+  const auto of = [&](double level) { return static_cast<std::uint64_t>(level / p); };
+  for (const auto& [asked, told, mailed] :
+       {std::tuple(of(0.0099), true, true), std::tuple(of(0.0101) + 1, true, false),
+        std::tuple(of(0.0499), true, false), std::tuple(of(0.0501) + 1, false, false)}) {
+    const auto s = after(asked);
+    EXPECT_EQ(s.told.at(0), told) << asked;
+    EXPECT_EQ(s.mailed.at(0), mailed) << asked;
+  }
+}
+
+TEST(MorningChanges, AMailCountsAllThatItCouldTell) {
+  // Holm over both families: of two news alike the list is as sure as of one, the mail is not.
+  const morning::SeriesTests said{1, true, {{1e-3, true, false}}},
+      unsaid{1, true, {{2e-3, false, false}}}, quiet{1, true, {}};
+  const auto adjusted = morning::adjusted_by_night({&said, &unsaid, &quiet}, {{1, 9}});
+  EXPECT_DOUBLE_EQ(adjusted[0][0].news, 1e-3);
+  EXPECT_DOUBLE_EQ(adjusted[1][0].news, 9 * 2e-3);
+  EXPECT_DOUBLE_EQ(adjusted[0][0].any, 10 * 1e-3);
+  EXPECT_DOUBLE_EQ(adjusted[1][0].any, 9 * 2e-3);
+}
+
 }  // namespace
 }  // namespace nonio::test
