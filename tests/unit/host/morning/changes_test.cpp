@@ -151,7 +151,7 @@ TEST(MorningChanges, AMailIsSurerThanAList) {
   // The same history, in nights that asked more and more: told below 5 %, mailed below 1 %.
   std::mt19937_64 random(17);
   std::cout << "seed 17\n";
-  const auto values = around(random, 8, 0.1, 4, 0.3);
+  const auto values = around(random, 8, 0.1, 4, 0.5);
   const auto after = [&](std::uint64_t asked) {
     MadeMachine m("S-1");
     m.follow("X", "B_mean", values, 0.1);

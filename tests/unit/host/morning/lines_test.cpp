@@ -115,7 +115,7 @@ TEST(MorningLines, AChangeThatIsNotSureIsNotMailed) {
   m.follow("X", "B_mean", flat(0.0, 0.4), 0.1);
   lab.machines.push_back(std::move(m));
   ASSERT_EQ(lab.lines().size(), 1U);
-  const auto& evidence = lab.lines()[0].finding.evidence;
+  const auto evidence = lab.lines()[0].finding.evidence;
   const auto p = std::find_if(evidence.begin(), evidence.end(),
                               [](const Number& n) { return n.name == "p"; });
   ASSERT_NE(p, evidence.end());
