@@ -331,8 +331,10 @@ class Assessment::State {
       if (auto well = read(m); !well) return well;
     if (!m.fitted) fit_series(m);
     fits_.take_asked();
-    for (std::size_t k = 0; k < m.read->followed.size(); ++k)
+    for (std::size_t k = 0; k < m.read->followed.size(); ++k) {
       tell(m.read->followed[k], m.adjusted[k]);
+      drop_untold(m.read->followed[k], fits_);
+    }
     ask_others(*m.read, fits_);
     take_keys(m);
     const Due due = due_of(*m.read, logs_);

@@ -169,6 +169,7 @@ void fit(FollowedSeries& s, const Manner& manner, Fits& fits) {
   s.series.excess = manner.excess;
   s.series.spread = manner.spread;
   s.series.drift_below = manner.drift_below;
+  s.series.steps.reset();
   fit_again(s, fits);
 }
 
@@ -228,6 +229,29 @@ void tell(FollowedSeries& s, const std::vector<Adjusted>& adjusted) {
   }
 }
 
+void drop_untold(FollowedSeries& s, Fits& fits) {
+  std::vector<std::size_t> places;
+  bool all = true;
+  for (std::size_t i = 0; i < s.trend.changes.size(); ++i) {
+    if (s.trend.changes[i].declared) continue;
+    all = all && s.told[i];
+    if (s.told[i]) places.push_back(s.trend.changes[i].after);
+  }
+  if (all) return;
+  const FollowedSeries judged = s;
+  s.series.steps = std::move(places);
+  fit_again(s, fits);
+  for (std::size_t j = 0; j < s.trend.changes.size(); ++j)
+    for (std::size_t k = 0; k < judged.trend.changes.size(); ++k) {
+      kernel::Change& c = s.trend.changes[j];
+      const kernel::Change& before = judged.trend.changes[k];
+      if (c.after != before.after || c.declared != before.declared) continue;
+      c.p = before.p, c.cause = before.cause;
+      s.p_adjusted[j] = judged.p_adjusted[k];
+      s.told[j] = judged.told[k], s.mailed[j] = judged.mailed[k];
+    }
+}
+
 void ask_others(AssessedMachine& m, Fits& fits) {
   for (const Place& place : places_of(m)) {
     std::vector<std::pair<FollowedSeries*, std::size_t>> others;
@@ -272,7 +296,10 @@ void find_changes(std::vector<AssessedMachine>& machines,
   const auto p = adjusted_by_night(all, asked);
   std::size_t k = 0;
   for (AssessedMachine& m : machines)
-    for (FollowedSeries& s : m.followed) tell(s, p[k++]);
+    for (FollowedSeries& s : m.followed) {
+      tell(s, p[k++]);
+      drop_untold(s, fits);
+    }
   for (AssessedMachine& m : machines) ask_others(m, fits);
 }
 

@@ -82,6 +82,9 @@ struct Verdict {
 Verdict verdict_of(const SeriesTests::Of& test, const Adjusted& adjusted);
 /// Puts the verdicts into a series that was fitted.
 void tell(FollowedSeries& series, const std::vector<Adjusted>& adjusted);
+/// A step that no test of the night confirmed is no part of what is said of the series: one of a
+/// hundred level series has one by chance, and it would bend slope and forecast.
+void drop_untold(FollowedSeries& series, Fits& fits);
 /// What is news in one quantity of an axis is asked of the others at that place.
 void ask_others(AssessedMachine& machine, Fits& fits);
 

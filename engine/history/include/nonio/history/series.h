@@ -44,11 +44,14 @@ struct Series {
   /// (excess_scatter).
   double excess = 1.0;
   /// Standard deviation, per year, of the slopes that such series have in this laboratory
-  /// (spread_of_slopes): what is known of a slope before the points. 0: nothing is known, and a
-  /// drift is tested.
+  /// (spread_of_slopes): what is known of a slope before the points, while steps are asked for.
+  /// 0: nothing is known, and a drift is tested.
   double spread = 0.0;
   /// A drift comes in where chance makes one in fewer series than this share.
   double drift_below = 0.01;
+  /// Behind which points steps are that nobody declared, where that is known: others are not looked
+  /// for.
+  std::optional<std::vector<std::size_t>> steps{};
 };
 
 /// An error that names the first point at fault: a value that is not finite, u that is not above 0,
