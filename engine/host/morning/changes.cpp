@@ -21,14 +21,16 @@ constexpr double spread_step = 0.1;  // of its logarithm
 /// in the covariance, would have to be wrong by as much as nobody sees in years.
 constexpr double no_instrument_below = 1e-4;
 
-/// Of very many in two digits, upwards: one more series moves no trend of the others.
-std::size_t in_steps(std::size_t n) {
-  constexpr std::size_t very_many = 10'000;
-  if (n < very_many) return n;
-  std::size_t step = 1;
-  while (n / step >= 100) step *= 10;
-  return (n + step - 1) / step * step;
+/// Of very many the last of two digits counts: one more series or campaign moves no trend of the
+/// others.
+std::uint64_t step_of(std::uint64_t n) {
+  constexpr std::uint64_t very_many = 10'000;
+  std::uint64_t step = 1;
+  while (n >= very_many && n / step >= 100) step *= 10;
+  return step;
 }
+std::uint64_t upwards(std::uint64_t n) { return (n + step_of(n) - 1) / step_of(n) * step_of(n); }
+std::uint64_t downwards(std::uint64_t n) { return n / step_of(n) * step_of(n); }
 
 void fit_again(FollowedSeries& s, Fits& fits) {
   s.trend = fits.trend(s.series);
@@ -131,17 +133,23 @@ void ask_there(FollowedSeries& s, std::size_t gap, double level, Fits& fits) {
 }  // namespace
 
 Lesson lesson_of(const FollowedSeries& s, Fits& fits) {
-  return {s.quantity + " " + s.unit, s.series.points.size(), kernel::scatter_ratios(s.series),
-          fits.slope(s.series)};
+  Lesson out{s.quantity + " " + s.unit, s.series.points.size(), {}, fits.slope(s.series)};
+  for (const kernel::Scatter& one : kernel::scatter_of(s.series)) {
+    const auto first = s.evaluations.begin() + static_cast<std::ptrdiff_t>(one.point) - 1;
+    out.ratios.emplace_back(*std::max_element(first, first + 3), one.ratio);
+  }
+  return out;
 }
 
 Learned learn(const std::vector<const Lesson*>& lessons) {
   std::map<std::string, std::vector<const Lesson*>> all;
-  std::size_t asked = 0;
+  std::uint64_t asked = 0, last = 0;
   for (const Lesson* lesson : lessons) {
     all[lesson->quantity].push_back(lesson);
     asked += lesson->points >= 3;
+    for (const auto& [evaluation, ratio] : lesson->ratios) last = std::max(last, evaluation);
   }
+  const std::uint64_t counted = downwards(last);
   Learned out;
   for (const auto& [quantity, of_quantity] : all) {
     OfQuantity& of = out.of[quantity];
@@ -149,14 +157,15 @@ Learned learn(const std::vector<const Lesson*>& lessons) {
     std::vector<double> ratios;
     for (const Lesson* lesson : of_quantity) {
       if (lesson->slope) slopes.push_back(*lesson->slope);
-      ratios.insert(ratios.end(), lesson->ratios.begin(), lesson->ratios.end());
+      for (const auto& [evaluation, ratio] : lesson->ratios)
+        if (evaluation <= counted) ratios.push_back(ratio);
     }
     of.excess = std::round(kernel::excess_of_ratios(std::move(ratios)) / excess_step) * excess_step;
     for (kernel::Slope& slope : slopes) slope.u *= of.excess;
     if (const double spread = kernel::spread_of_slopes(slopes); spread > 0.0)
       of.spread = std::exp(std::round(std::log(spread) / spread_step) * spread_step);
   }
-  out.drift_below = told_below / static_cast<double>(in_steps(asked));
+  out.drift_below = told_below / static_cast<double>(upwards(asked));
   return out;
 }
 

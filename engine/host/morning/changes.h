@@ -29,13 +29,15 @@ struct OfQuantity {
 struct Lesson {
   std::string quantity;  ///< and its unit
   std::uint64_t points = 0;
-  std::vector<double> ratios{};  ///< see `kernel::scatter_ratios`
+  /// See `kernel::Scatter`, each with the evaluation that completed it.
+  std::vector<std::pair<std::uint64_t, double>> ratios{};
   std::optional<nonio::history::Slope> slope{};
 };
 Lesson lesson_of(const FollowedSeries& series, Fits& fits);
 
-/// By quantity and unit, for all machines of a site. In coarse steps, so that one more campaign
-/// seldom moves what was said before.
+/// By quantity and unit, for all machines of a site. In coarse steps, and of very many evaluations
+/// of the first ones, in two digits of their number: a new campaign seldom moves what was said of
+/// all other machines.
 struct Learned {
   std::map<std::string, OfQuantity> of;
   double drift_below = 1.0;  ///< share of series

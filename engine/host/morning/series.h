@@ -18,6 +18,7 @@ namespace nonio::host::morning {
 struct FollowedSeries {
   std::string axis, quantity, unit;
   std::vector<std::size_t> results;  ///< of the points: indices into StoredMachine::results
+  std::vector<std::uint64_t> evaluations{};  ///< of the points
   /// Numbers of the same quantity before this series began, which cannot be joined.
   struct Apart {
     std::size_t result = 0;

@@ -273,7 +273,7 @@ TEST(ExcessScatter, IsThatOfTheLaboratory) {
 
 TEST(SpreadOfSlopes, HoldsASlopeWhereAStepIsAskedAndNotWhereItIsTold) {
   Series s = reference_series();
-  s.spread = 0.05;
+  s.spread = 0.3;
   s.declared = {{4, Declared::Kind::event}};
   const auto trend = trend_of(s);
   ASSERT_TRUE(trend);

@@ -112,9 +112,11 @@ TEST(MorningLines, WhatConformsAndChangedIsAChange) {
 TEST(MorningLines, AChangeThatIsNotSureIsNotMailed) {
   Laboratory lab;
   MadeMachine m("S-42");
-  m.follow("X", "B_mean", flat(0.0, 0.4), 0.1);
+  m.follow("X", "B_mean", flat(-4.0, -4.6), 0.1);
+  m.judge("X", "B", flat(6.0, 6.0));
   lab.machines.push_back(std::move(m));
   ASSERT_EQ(lab.lines().size(), 1U);
+  ASSERT_EQ(lab.lines()[0].kind, Kind::changed);
   const auto evidence = lab.lines()[0].finding.evidence;
   const auto p = std::find_if(evidence.begin(), evidence.end(),
                               [](const Number& n) { return n.name == "p"; });

@@ -64,8 +64,12 @@ Expected<void> check(const Series&);
 /// few of them moves a median little. Not over a declared event; not below 1, and 1 for fewer than
 /// 20 points.
 double excess_scatter(const std::vector<const Series*>&);
-/// d^2/u(d)^2 of one series, and what it gives for those of many together.
-std::vector<double> scatter_ratios(const Series&);
+/// d^2/u(d)^2 at a point of one series, and what it gives for those of many together.
+struct Scatter {
+  std::size_t point = 0;
+  double ratio = 0.0;
+};
+std::vector<Scatter> scatter_of(const Series&);
 double excess_of_ratios(std::vector<double> ratios);
 
 /// Slope per year beside a step at each declared event and at each place where chance makes one in
