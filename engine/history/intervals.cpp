@@ -43,15 +43,15 @@ Proposal staircase(double months, Found found, double target) {
   return out;
 }
 
-Proposal control_chart(const Series& s, const Trend& t, double limit) {
+Proposal control_chart(const Series& s, const Trend& t, double limit,
+                       std::optional<std::size_t> changed_after) {
   if (s.points.size() < fewest_campaigns || t.coefficients.empty())
     return refused(Method::control_chart, "few-campaigns",
                    {{"campaigns", static_cast<double>(s.points.size())}});
   const double last = s.points.back().time, span = last - s.points.front().time;
   if (std::fabs(s.points.back().value) > limit)
     return refused(Method::control_chart, "out-already", {{"value", s.points.back().value}});
-  const std::size_t behind =
-      t.changes.empty() ? s.points.size() : s.points.size() - t.changes.back().after - 1;
+  const std::size_t behind = s.points.size() - (changed_after ? *changed_after + 1 : 0);
   if (behind < fewest_behind_a_change)
     return refused(Method::control_chart, "change-not-explained",
                    {{"campaigns", static_cast<double>(behind)}});

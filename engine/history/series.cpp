@@ -55,17 +55,20 @@ Expected<void> check(const Series& s) {
   for (const Declared& d : s.declared)
     if (d.after + 1 >= s.points.size())
       return fail("an event behind " + which(d.after) + ": expected a point after it");
+  for (const std::size_t after : s.steps.value_or(std::vector<std::size_t>{}))
+    if (after + 1 >= s.points.size())
+      return fail("a step behind " + which(after) + ": expected a point after it");
   if (!std::isfinite(s.spread) || s.spread < 0.0)
     return fail("expected a spread of slopes of 0 or more");
   if (!std::isfinite(s.excess) || s.excess < 1.0) return fail("expected an excess of 1 or more");
   return {};
 }
 
-std::vector<double> scatter_ratios(const Series& s) {
-  std::vector<double> ratios;
+std::vector<Scatter> scatter_of(const Series& s) {
+  std::vector<Scatter> out;
   for (std::size_t i = 1; i + 1 < s.points.size(); ++i)
-    if (const auto ratio = off_line(s, i)) ratios.push_back(*ratio);
-  return ratios;
+    if (const auto ratio = off_line(s, i)) out.push_back({i, *ratio});
+  return out;
 }
 
 double excess_of_ratios(std::vector<double> ratios) {
@@ -77,10 +80,8 @@ double excess_of_ratios(std::vector<double> ratios) {
 
 double excess_scatter(const std::vector<const Series*>& all) {
   std::vector<double> ratios;
-  for (const Series* s : all) {
-    const std::vector<double> own = scatter_ratios(*s);
-    ratios.insert(ratios.end(), own.begin(), own.end());
-  }
+  for (const Series* s : all)
+    for (const Scatter& one : scatter_of(*s)) ratios.push_back(one.ratio);
   return excess_of_ratios(std::move(ratios));
 }
 

@@ -67,6 +67,7 @@ class Trending {
     shape_.drifts = s_.spread > 0.0 && s_.points.size() >= 3;
     if (shape_.drifts && !fit(shape_)) shape_.drifts = false;
     declare();
+    if (s_.steps) know_steps(*s_.steps);
     for (int step = 0; step <= most_steps; ++step)
       if (!improve()) break;
     Trend out = fitted();
@@ -101,6 +102,17 @@ class Trending {
           {known.after, 0.0, 0.0, 1.0,
            known.kind == Declared::Kind::table ? Change::Cause::table : Change::Cause::event, d});
       if (fit(more)) shape_ = std::move(more);
+    }
+  }
+
+  void know_steps(const std::vector<std::size_t>& places) {
+    for (const std::size_t after : places) {
+      if (taken(after)) continue;
+      Shape more = shape_;
+      more.changes.push_back({after, 0.0, 0.0, 1.0, cause_at(after), {}});
+      if (!fit(more)) continue;
+      shape_ = std::move(more);
+      ++steps_;
     }
   }
 
@@ -174,7 +186,7 @@ class Trending {
     Shape stepped = shape_, drifting = shape_;
     double p_step = 1.0, p_drift = 1.0;
     const Places at = places(*base);
-    if (!at.after.empty() && steps_ < most_steps) {
+    if (!s_.steps && !at.after.empty() && steps_ < most_steps) {
       Index best = 0;
       const double G = (at.direction.transpose() * w_.y).cwiseAbs2().maxCoeff(&best);
       p_step = p_of_largest(at, G);
@@ -213,31 +225,41 @@ class Trending {
     return Change::Cause::undeclared;
   }
 
+  /// What is known of slopes helps to see a step. What is said of this machine's own slope comes from
+  /// its own points alone: its interval holds whatever the slopes of the others are.
+  std::optional<Gls> freed() const {
+    if (!shape_.drifts || shape_.free) return std::nullopt;
+    Shape own = shape_;
+    own.free = true;
+    return fit(own);
+  }
+
   Trend fitted() const {
     Trend out;
-    const auto last = fit(shape_);
-    if (!last) return out;
-    const Index p = last->b.size();
-    out.chi2 = last->chi2, out.dof = last->dof, out.drifts = shape_.drifts;
+    const auto held = fit(shape_);
+    if (!held) return out;
+    const auto last = freed().value_or(*held);
+    const Index p = last.b.size();
+    out.chi2 = last.chi2, out.dof = last.dof, out.drifts = shape_.drifts;
     out.line_or_step = line_or_step_;
-    out.coefficients.assign(last->b.begin(), last->b.end());
+    out.coefficients.assign(last.b.begin(), last.b.end());
     for (Index i = 0; i < p; ++i)
-      for (Index j = 0; j < p; ++j) out.covariance.push_back(last->C(i, j));
+      for (Index j = 0; j < p; ++j) out.covariance.push_back(last.C(i, j));
     out.changes = shape_.changes;
     for (std::size_t k = 0; k < out.changes.size(); ++k) {
       const auto i = static_cast<Index>(k) + 1;
       Change& c = out.changes[k];
-      c.size = last->b(i), c.u = std::sqrt(last->C(i, i));
-      if (c.declared) c.p = normal_two_sided(c.size / c.u);
+      c.size = last.b(i), c.u = std::sqrt(last.C(i, i));
+      if (c.declared) c.p = normal_two_sided(held->b(i) / std::sqrt(held->C(i, i)));
     }
-    segments(*last, out);
+    segments(last, out);
     std::stable_sort(out.changes.begin(), out.changes.end(),
                      [](const Change& a, const Change& b) { return a.after < b.after; });
     const bool undeclared = std::any_of(out.changes.begin(), out.changes.end(),
                                         [](const Change& c) { return !c.declared; });
     out.model = s_.points.size() < 3 ? Model::none
                 : undeclared         ? Model::step
-                : is_drift(*last)    ? Model::drift
+                : is_drift(last)     ? Model::drift
                                      : Model::level;
     return out;
   }
@@ -290,6 +312,7 @@ class Trending {
   void walk(Trend& out) const {
     constexpr double at_border = 5.412;  // its quantile of 1 %
     const bool restless = chi2_upper(out.chi2, out.dof) < named_below;
+    if (s_.steps && !s_.steps->empty()) return;
     if (s_.points.size() < fewest_for_walk || static_cast<int>(shape_.changes.size()) > steps_ ||
         !(steps_ > 1 || (steps_ == 0 && out.model == Model::level && restless)))
       return;

@@ -96,4 +96,6 @@ bool asks(const MorningLine& line) {
   return line.state == State::fresh && line.kind != Kind::information;
 }
 
+bool asks_by_mail(const MorningLine& line) { return asks(line) && line.sure; }
+
 }  // namespace nonio::reports

@@ -269,7 +269,7 @@ Expected<std::string> by_server(const config::Mail& mail, const fs::path& site,
 
 bool is_reason_for_mail(const reports::MorningLine& line, config::Mail::On on) {
   using Kind = reports::MorningLine::Kind;
-  if (line.state != reports::MorningLine::State::fresh) return false;
+  if (!reports::asks_by_mail(line)) return false;
   switch (on) {
     case config::Mail::On::lost:
       return line.kind <= Kind::failed;
@@ -278,7 +278,7 @@ bool is_reason_for_mail(const reports::MorningLine& line, config::Mail::On on) {
     case config::Mail::On::decision:
       break;
   }
-  return line.kind < Kind::information;
+  return true;
 }
 
 Expected<void> send_mail(const config::Mail& mail, const fs::path& site, const Letter& letter,

@@ -15,8 +15,8 @@ struct Letter {
   std::string text;     ///< UTF-8
 };
 
-/// Whether this line is grave enough for a mail. What somebody acknowledged is not, nor what is
-/// fixed.
+/// Whether this line is grave enough for a mail that is wanted `on` that. What somebody acknowledged
+/// is not, nor what is fixed, nor a change that is not sure enough.
 bool is_reason_for_mail(const reports::MorningLine& line, config::Mail::On on);
 
 /// Gives the letter to the program or the server of `mail`, once. Paths are relative to `site`. In

@@ -134,7 +134,7 @@ class Assessment::State {
     KeptMachine kept;
     std::optional<AssessedMachine> read{};  ///< out of the store, if it had to be
     bool fitted = false;                    ///< `read` has its trends
-    std::vector<std::vector<double>> p_adjusted{};
+    std::vector<std::vector<Adjusted>> adjusted{};
     std::optional<reports::MachineHistory> described{};
   };
 
@@ -286,7 +286,7 @@ class Assessment::State {
     for (Assessed& m : machines_) {
       alive_();
       for (std::size_t k = 0; k < m.kept.series.size(); ++k)
-        m.p_adjusted.push_back(std::move(p[next++]));
+        m.adjusted.push_back(std::move(p[next++]));
       const std::string key = standing_key(m);
       if (key == m.kept.stood && m.kept.date <= tonight_.date &&
           tonight_.date <= m.kept.standing.until) {
@@ -311,8 +311,8 @@ class Assessment::State {
       const KeptMachine::Series& s = m.kept.series[k];
       w(s.manner.excess, s.manner.spread, s.manner.drift_below);
       for (std::size_t i = 0; i < s.tests.changes.size(); ++i) {
-        const Verdict v = verdict_of(s.tests.changes[i], m.p_adjusted[k][i]);
-        w(v.told, v.surely, v.told ? m.p_adjusted[k][i] : 1.0);
+        const Verdict v = verdict_of(s.tests.changes[i], m.adjusted[k][i]);
+        w(v.told, v.surely, v.mailed, v.told ? m.adjusted[k][i].news : 1.0);
       }
     }
     w(std::int64_t{months_of_rule(m.state.machine.name, logs_).value_or(0)});
@@ -331,8 +331,10 @@ class Assessment::State {
       if (auto well = read(m); !well) return well;
     if (!m.fitted) fit_series(m);
     fits_.take_asked();
-    for (std::size_t k = 0; k < m.read->followed.size(); ++k)
-      tell(m.read->followed[k], m.p_adjusted[k]);
+    for (std::size_t k = 0; k < m.read->followed.size(); ++k) {
+      tell(m.read->followed[k], m.adjusted[k]);
+      drop_untold(m.read->followed[k], fits_);
+    }
     ask_others(*m.read, fits_);
     take_keys(m);
     const Due due = due_of(*m.read, logs_);

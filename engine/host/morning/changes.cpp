@@ -21,19 +21,22 @@ constexpr double spread_step = 0.1;  // of its logarithm
 /// in the covariance, would have to be wrong by as much as nobody sees in years.
 constexpr double no_instrument_below = 1e-4;
 
-/// Of very many in two digits, upwards: one more series moves no trend of the others.
-std::size_t in_steps(std::size_t n) {
-  constexpr std::size_t very_many = 10'000;
-  if (n < very_many) return n;
-  std::size_t step = 1;
-  while (n / step >= 100) step *= 10;
-  return (n + step - 1) / step * step;
+/// Of very many the last of two digits counts: one more series or campaign moves no trend of the
+/// others.
+std::uint64_t step_of(std::uint64_t n) {
+  constexpr std::uint64_t very_many = 10'000;
+  std::uint64_t step = 1;
+  while (n >= very_many && n / step >= 100) step *= 10;
+  return step;
 }
+std::uint64_t upwards(std::uint64_t n) { return (n + step_of(n) - 1) / step_of(n) * step_of(n); }
+std::uint64_t downwards(std::uint64_t n) { return n / step_of(n) * step_of(n); }
 
 void fit_again(FollowedSeries& s, Fits& fits) {
   s.trend = fits.trend(s.series);
   s.p_adjusted.assign(s.trend.changes.size(), 1.0);
   s.told.assign(s.trend.changes.size(), false);
+  s.mailed.assign(s.trend.changes.size(), false);
 }
 
 /// Whether the instrument changed in this gap, and this quantity would show it.
@@ -48,15 +51,16 @@ bool shows_instrument(const FollowedSeries& s, std::size_t gap) {
 /// One test of a night.
 struct Asked {
   double p = 1.0;
-  double* adjusted = nullptr;
+  Adjusted* adjusted = nullptr;
 };
 
-/// Benjamini and Hochberg over the tests of one night; what is no candidate counts with p = 1.
-void adjust(const std::vector<Asked>& tests, std::size_t asked) {
+/// Over the tests of one night; what is no candidate counts with p = 1.
+void adjust(const std::vector<Asked>& tests, std::size_t asked, double Adjusted::*which,
+            std::vector<double> by(const std::vector<double>&)) {
   std::vector<double> p(std::max(asked, tests.size()), 1.0);
   for (std::size_t i = 0; i < tests.size(); ++i) p[i] = tests[i].p;
-  const auto all = kernel::benjamini_hochberg(p);
-  for (std::size_t i = 0; i < tests.size(); ++i) *tests[i].adjusted = all[i];
+  const auto all = by(p);
+  for (std::size_t i = 0; i < tests.size(); ++i) tests[i].adjusted->*which = all[i];
 }
 
 /// Between which campaigns of a machine something is known to have changed.
@@ -116,6 +120,7 @@ void ask_there(FollowedSeries& s, std::size_t gap, double level, Fits& fits) {
         if (tried.trend.changes[j].after == s.trend.changes[k].after) {
           tried.told[j] = s.told[k];
           tried.p_adjusted[j] = s.p_adjusted[k];
+          tried.mailed[j] = s.mailed[k];
         }
     tried.series.declared.pop_back();
     tried.kinds.pop_back();
@@ -128,17 +133,23 @@ void ask_there(FollowedSeries& s, std::size_t gap, double level, Fits& fits) {
 }  // namespace
 
 Lesson lesson_of(const FollowedSeries& s, Fits& fits) {
-  return {s.quantity + " " + s.unit, s.series.points.size(), kernel::scatter_ratios(s.series),
-          fits.slope(s.series)};
+  Lesson out{s.quantity + " " + s.unit, s.series.points.size(), {}, fits.slope(s.series)};
+  for (const kernel::Scatter& one : kernel::scatter_of(s.series)) {
+    const auto first = s.evaluations.begin() + static_cast<std::ptrdiff_t>(one.point) - 1;
+    out.ratios.emplace_back(*std::max_element(first, first + 3), one.ratio);
+  }
+  return out;
 }
 
 Learned learn(const std::vector<const Lesson*>& lessons) {
   std::map<std::string, std::vector<const Lesson*>> all;
-  std::size_t asked = 0;
+  std::uint64_t asked = 0, last = 0;
   for (const Lesson* lesson : lessons) {
     all[lesson->quantity].push_back(lesson);
     asked += lesson->points >= 3;
+    for (const auto& [evaluation, ratio] : lesson->ratios) last = std::max(last, evaluation);
   }
+  const std::uint64_t counted = downwards(last);
   Learned out;
   for (const auto& [quantity, of_quantity] : all) {
     OfQuantity& of = out.of[quantity];
@@ -146,14 +157,15 @@ Learned learn(const std::vector<const Lesson*>& lessons) {
     std::vector<double> ratios;
     for (const Lesson* lesson : of_quantity) {
       if (lesson->slope) slopes.push_back(*lesson->slope);
-      ratios.insert(ratios.end(), lesson->ratios.begin(), lesson->ratios.end());
+      for (const auto& [evaluation, ratio] : lesson->ratios)
+        if (evaluation <= counted) ratios.push_back(ratio);
     }
     of.excess = std::round(kernel::excess_of_ratios(std::move(ratios)) / excess_step) * excess_step;
     for (kernel::Slope& slope : slopes) slope.u *= of.excess;
     if (const double spread = kernel::spread_of_slopes(slopes); spread > 0.0)
       of.spread = std::exp(std::round(std::log(spread) / spread_step) * spread_step);
   }
-  out.drift_below = told_below / static_cast<double>(in_steps(asked));
+  out.drift_below = told_below / static_cast<double>(upwards(asked));
   return out;
 }
 
@@ -166,6 +178,7 @@ void fit(FollowedSeries& s, const Manner& manner, Fits& fits) {
   s.series.excess = manner.excess;
   s.series.spread = manner.spread;
   s.series.drift_below = manner.drift_below;
+  s.series.steps.reset();
   fit_again(s, fits);
 }
 
@@ -176,12 +189,13 @@ SeriesTests tests_of(const FollowedSeries& s) {
   return out;
 }
 
-/// What nobody has said, and what is known to have happened: each a family of its own.
-std::vector<std::vector<double>> adjusted_by_night(
+/// News: what nobody has said, and what is known to have happened, are families of their own. For a
+/// mail they are one.
+std::vector<std::vector<Adjusted>> adjusted_by_night(
     const std::vector<const SeriesTests*>& tests,
     const std::map<std::uint64_t, std::uint64_t>& asked) {
-  std::vector<std::vector<double>> out;
-  for (const SeriesTests* s : tests) out.emplace_back(s->changes.size(), 1.0);
+  std::vector<std::vector<Adjusted>> out;
+  for (const SeriesTests* s : tests) out.emplace_back(s->changes.size());
   std::map<std::uint64_t, std::vector<Asked>> unsaid, said;
   std::map<std::uint64_t, std::size_t> still;  // of the series whose last night it was
   for (std::size_t k = 0; k < tests.size(); ++k) {
@@ -190,33 +204,61 @@ std::vector<std::vector<double>> adjusted_by_night(
     for (std::size_t i = 0; i < s.changes.size(); ++i)
       (s.changes[i].declared ? said : unsaid)[s.night].push_back({s.changes[i].p, &out[k][i]});
   }
-  for (const auto& [night, of_night] : unsaid) {
+  for (const auto& [night, open] : still) {
     const auto found = asked.find(night);
-    const std::size_t many = found == asked.end() ? 0 : found->second;
-    adjust(of_night, std::max(many, still[night]));
+    const std::size_t many = std::max(found == asked.end() ? 0 : found->second, open);
+    std::vector<Asked> all = unsaid[night];
+    adjust(all, many, &Adjusted::news, kernel::benjamini_hochberg);
+    adjust(said[night], 0, &Adjusted::news, kernel::benjamini_hochberg);
+    all.insert(all.end(), said[night].begin(), said[night].end());
+    adjust(all, many + said[night].size(), &Adjusted::any, kernel::holm);
   }
-  for (const auto& [night, of_night] : said) adjust(of_night, 0);
   return out;
 }
 
-Verdict verdict_of(const SeriesTests::Of& test, double adjusted) {
+Verdict verdict_of(const SeriesTests::Of& test, const Adjusted& adjusted) {
   Verdict out;
-  out.surely = adjusted < no_instrument_below;
-  out.told = adjusted < told_below && (!test.declared || test.p < declared_below);
+  out.surely = adjusted.news < no_instrument_below;
+  out.told = adjusted.news < told_below && (!test.declared || test.p < declared_below);
   if (test.shows_instrument && test.declared) out.told = out.told && out.surely;
+  out.mailed = out.told && adjusted.any < mailed_below;
   return out;
 }
 
-void tell(FollowedSeries& s, const std::vector<double>& adjusted) {
+void tell(FollowedSeries& s, const std::vector<Adjusted>& adjusted) {
   const SeriesTests tests = tests_of(s);
   for (std::size_t i = 0; i < s.trend.changes.size(); ++i) {
     kernel::Change& c = s.trend.changes[i];
     const Verdict verdict = verdict_of(tests.changes[i], adjusted[i]);
-    s.p_adjusted[i] = adjusted[i];
+    s.p_adjusted[i] = adjusted[i].news;
     s.told[i] = verdict.told;
+    s.mailed[i] = verdict.mailed;
     if (tests.changes[i].shows_instrument && c.cause == Cause::instrument && verdict.surely)
       c.cause = Cause::undeclared;
   }
+}
+
+void drop_untold(FollowedSeries& s, Fits& fits) {
+  std::vector<std::size_t> places;
+  bool all = true;
+  for (std::size_t i = 0; i < s.trend.changes.size(); ++i) {
+    if (s.trend.changes[i].declared) continue;
+    all = all && s.told[i];
+    if (s.told[i]) places.push_back(s.trend.changes[i].after);
+  }
+  if (all) return;
+  const FollowedSeries judged = s;
+  s.series.steps = std::move(places);
+  fit_again(s, fits);
+  for (std::size_t j = 0; j < s.trend.changes.size(); ++j)
+    for (std::size_t k = 0; k < judged.trend.changes.size(); ++k) {
+      kernel::Change& c = s.trend.changes[j];
+      const kernel::Change& before = judged.trend.changes[k];
+      if (c.after != before.after || c.declared != before.declared) continue;
+      c.p = before.p, c.cause = before.cause;
+      s.p_adjusted[j] = judged.p_adjusted[k];
+      s.told[j] = judged.told[k], s.mailed[j] = judged.mailed[k];
+    }
 }
 
 void ask_others(AssessedMachine& m, Fits& fits) {
@@ -263,7 +305,10 @@ void find_changes(std::vector<AssessedMachine>& machines,
   const auto p = adjusted_by_night(all, asked);
   std::size_t k = 0;
   for (AssessedMachine& m : machines)
-    for (FollowedSeries& s : m.followed) tell(s, p[k++]);
+    for (FollowedSeries& s : m.followed) {
+      tell(s, p[k++]);
+      drop_untold(s, fits);
+    }
   for (AssessedMachine& m : machines) ask_others(m, fits);
 }
 

@@ -14,7 +14,7 @@
 /// What changed, over all machines of a site.
 namespace nonio::host::morning {
 
-/// False news in this share of nights: for a list that somebody reads, for a mail.
+/// False news in this share of nights: for a list that somebody reads, for a mail that wakes him.
 inline constexpr double told_below = 0.05, mailed_below = 0.01;
 /// A step at a place where something is known to have happened.
 inline constexpr double declared_below = 0.01;
@@ -29,13 +29,15 @@ struct OfQuantity {
 struct Lesson {
   std::string quantity;  ///< and its unit
   std::uint64_t points = 0;
-  std::vector<double> ratios{};  ///< see `kernel::scatter_ratios`
+  /// See `kernel::Scatter`, each with the evaluation that completed it.
+  std::vector<std::pair<std::uint64_t, double>> ratios{};
   std::optional<nonio::history::Slope> slope{};
 };
 Lesson lesson_of(const FollowedSeries& series, Fits& fits);
 
-/// By quantity and unit, for all machines of a site. In coarse steps, so that one more campaign
-/// seldom moves what was said before.
+/// By quantity and unit, for all machines of a site. In coarse steps, and of very many evaluations
+/// of the first ones, in two digits of their number: a new campaign seldom moves what was said of
+/// all other machines.
 struct Learned {
   std::map<std::string, OfQuantity> of;
   double drift_below = 1.0;  ///< share of series
@@ -63,19 +65,28 @@ struct SeriesTests {
 };
 SeriesTests tests_of(const FollowedSeries& series);
 
-/// p of each change of each series, adjusted for all that its night has asked: Benjamini and
-/// Hochberg over that night. `asked`: how many each night asked.
-std::vector<std::vector<double>> adjusted_by_night(
+/// p of a change, adjusted for all that its night has asked.
+struct Adjusted {
+  double news = 1.0;  ///< Benjamini and Hochberg: of what is told, few are false
+  double any = 1.0;   ///< Holm: the chance that the night tells any that is false
+};
+
+/// Of each change of each series. `asked`: how many each night asked.
+std::vector<std::vector<Adjusted>> adjusted_by_night(
     const std::vector<const SeriesTests*>& tests,
     const std::map<std::uint64_t, std::uint64_t>& asked);
 
-/// Whether a change is told, and whether it is surely more than its instrument.
+/// Whether a change is told, whether it is surely more than its instrument, and whether it is sure
+/// enough for a mail.
 struct Verdict {
-  bool told = false, surely = false;
+  bool told = false, surely = false, mailed = false;
 };
-Verdict verdict_of(const SeriesTests::Of& test, double adjusted);
+Verdict verdict_of(const SeriesTests::Of& test, const Adjusted& adjusted);
 /// Puts the verdicts into a series that was fitted.
-void tell(FollowedSeries& series, const std::vector<double>& adjusted);
+void tell(FollowedSeries& series, const std::vector<Adjusted>& adjusted);
+/// A step that no test of the night confirmed is no part of what is said of the series: one of a
+/// hundred level series has one by chance, and it would bend slope and forecast.
+void drop_untold(FollowedSeries& series, Fits& fits);
 /// What is news in one quantity of an axis is asked of the others at that place.
 void ask_others(AssessedMachine& machine, Fits& fits);
 

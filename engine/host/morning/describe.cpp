@@ -158,6 +158,7 @@ class Describing {
     out.after_campaign = campaign(s, c.after).id;
     out.before_campaign = campaign(s, c.after + 1).id;
     out.p_alone = c.p;
+    out.mailed = s.mailed[i];
     return out;
   }
 

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Another program may come to another trend of the same series.
-constexpr std::string_view magic = "nonio-trends/1\n";
+constexpr std::string_view magic = "nonio-trends/2\n";
 constexpr const char* kept_folder = ".nonio";
 constexpr const char* kept_name = "trends";
 constexpr std::size_t key_size = 64;
@@ -29,6 +29,8 @@ std::string key_of(char what, const kernel::Series& s) {
     w.each(p.common, [&](const kernel::Common& c) { w.put(c.source), w.put(c.u); });
   });
   w.each(s.declared, [&](const kernel::Declared& d) { w.put(d.after), w.put(d.kind); });
+  w.put(s.steps.has_value());
+  if (s.steps) w.each(*s.steps, [&](std::size_t after) { w.put(after); });
   w.put(s.seed), w.put(s.excess), w.put(s.spread), w.put(s.drift_below);
   return storage::sha256(w.take());
 }

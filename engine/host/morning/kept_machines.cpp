@@ -23,7 +23,7 @@ template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, MorningLine>
 void fields(Io& io, T& l) {
   io(l.kind, l.state, l.id, l.machine, l.axis, l.quantity, l.campaign, l.customer, l.value, l.u,
-     l.limit, l.unit, l.finding, l.since, l.link, l.by, l.until, l.why);
+     l.limit, l.unit, l.finding, l.since, l.link, l.by, l.until, l.why, l.sure);
 }
 
 template <class Io, class T>
@@ -77,7 +77,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Another program may find out something else.
-constexpr std::string_view machines_magic = "nonio-machines/1 " NONIO_VERSION "\n";
+constexpr std::string_view machines_magic = "nonio-machines/2 " NONIO_VERSION "\n";
 constexpr const char* machines_folder = ".nonio";
 constexpr const char* machines_name = "machines";
 constexpr std::size_t digest_size = 64;

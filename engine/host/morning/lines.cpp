@@ -170,9 +170,14 @@ double size_of(const MorningLine& l) {
   return 0.0;
 }
 
+/// What wears out of its limit has been coming; what was hit is news.
+bool wears(const MorningLine& l) {
+  return l.kind == Kind::out && !l.finding.id.starts_with("morning.out-changed");
+}
+
 bool comes_before(const MorningLine& a, const MorningLine& b) {
-  return std::tuple(a.kind, a.state, -size_of(a), std::tie(a.machine, a.axis, a.id)) <
-         std::tuple(b.kind, b.state, -size_of(b), std::tie(b.machine, b.axis, b.id));
+  return std::tuple(a.kind, a.state, wears(a), -size_of(a), std::tie(a.machine, a.axis, a.id)) <
+         std::tuple(b.kind, b.state, wears(b), -size_of(b), std::tie(b.machine, b.axis, b.id));
 }
 
 }  // namespace

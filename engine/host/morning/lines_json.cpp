@@ -48,6 +48,7 @@ Json json_of(const MorningLine& l, const Templates& templates) {
   put(json, "by", l.by);
   put(json, "until", l.until);
   put(json, "why", l.why);
+  json["mail"] = reports::asks_by_mail(l);
   return json;
 }
 

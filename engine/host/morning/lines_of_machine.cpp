@@ -145,6 +145,8 @@ class OfMachine {
       l.u = first.series->points.back().u;
       l.limit = first.series->limit;
     }
+    l.sure = std::any_of(cause.seen.begin(), cause.seen.end(),
+                         [](const AxisChange::Seen& s) { return s.change->mailed; });
     describe(l, cause);
     return l;
   }

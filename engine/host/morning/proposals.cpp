@@ -91,6 +91,14 @@ std::optional<IntervalProposal> fleet(const IntervalFacts& m, const Counted& cou
   return out;
 }
 
+/// Behind which point the last change lies that was told. What no test confirmed is none; how unsure
+/// it makes the level is in the forecast.
+std::optional<std::size_t> last_told(const FollowedSeries& s) {
+  for (std::size_t i = s.trend.changes.size(); i-- > 0;)
+    if (s.told[i]) return s.trend.changes[i].after;
+  return std::nullopt;
+}
+
 /// The shortest of what has a limit and is followed; `refusal`: why one of them cannot say.
 std::optional<IntervalProposal> chart(const AssessedMachine& m,
                                       std::optional<IntervalProposal>& refusal) {
@@ -99,7 +107,7 @@ std::optional<IntervalProposal> chart(const AssessedMachine& m,
   for (const FollowedSeries& s : m.followed) {
     const auto limit = limit_of(m, s);
     if (s.ended || !limit) continue;
-    const kernel::Proposal p = kernel::control_chart(s.series, s.trend, *limit);
+    const kernel::Proposal p = kernel::control_chart(s.series, s.trend, *limit, last_told(s));
     const Quantity q = quantity_of_unit(s.unit);
     IntervalProposal one = because(control_chart_name, p.why);
     one.axis = s.axis, one.quantity = s.quantity;

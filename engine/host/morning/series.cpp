@@ -241,6 +241,7 @@ class Joining {
       for (const history::CommonPart& part : r.common) p.common.push_back({part.source, part.u});
       s.series.points.push_back(std::move(p));
       s.night = std::max(s.night, c.night);
+      s.evaluations.push_back(static_cast<std::uint64_t>(c.evaluation));
     }
     pool(s.series.points);
     s.series.seed = seed_of(m_, results);

@@ -18,6 +18,7 @@ namespace nonio::host::morning {
 struct FollowedSeries {
   std::string axis, quantity, unit;
   std::vector<std::size_t> results;  ///< of the points: indices into StoredMachine::results
+  std::vector<std::uint64_t> evaluations{};  ///< of the points
   /// Numbers of the same quantity before this series began, which cannot be joined.
   struct Apart {
     std::size_t result = 0;
@@ -32,8 +33,8 @@ struct FollowedSeries {
   nonio::history::Trend trend{};
   /// Of each change of the trend: p, adjusted for all that its night has asked.
   std::vector<double> p_adjusted{};
-  /// Whether it is told.
-  std::vector<bool> told{};
+  /// Whether it is told, and whether a mail tells it.
+  std::vector<bool> told{}, mailed{};
 };
 
 /// Largest deviations and the like of one axis: shown, and held against limits.

@@ -5,8 +5,8 @@
     nights.py PROGRAM FOLDER [--preset mixed] [--sites 200] [--seed 1] [--nights 2] [--machines N] [--count N] [--known] [--plain]
 
 For each site (seed, seed + 1, ...): its last nights, one month apart, each made as it was then and run (PROGRAM run SITE --out OUT), and
-`PROGRAM history OUT --json` after each (--plain: plain.py judges instead). FOLDER/<seed>/ has truth.json and history-<night>.json; sites
-and results are removed. Prints what score.py says of all of them. FOLDER must be empty or not there. What vanishes does so in the last night:
+`PROGRAM history OUT --json` and `PROGRAM morning OUT --json` after each (--plain: plain.py judges instead). FOLDER/<seed>/ has truth.json,
+history-<night>.json and morning-<night>.json; sites and results are removed. Prints what score.py says of all of them. FOLDER must be empty or not there. What vanishes does so in the last night:
 it takes two to see it.
 """
 import argparse
@@ -30,10 +30,10 @@ MONTH = 30
 
 
 def nights_of(program, folder, given, seed):
-    """(truth, histories) of one laboratory."""
+    """(truth, histories, mornings) of one laboratory."""
     sizes = {k: v for k, v in (("machines", given.machines), ("count", given.count)) if v is not None}
     last = presets.build(given.preset, seed, **sizes).night
-    histories, truth = [], None
+    histories, mornings, truth = [], [], None
     for night in range(given.nights):
         until = last - MONTH * (given.nights - 1 - night)
         truth = make_laboratory.write(presets.build(given.preset, seed, **sizes), folder / "site", until, given.known)
@@ -48,13 +48,14 @@ def nights_of(program, folder, given, seed):
             histories.append(plain.history(folder / "out", events, line=True))
             (folder / ("history-%02d.json" % (night + 1))).write_text(json.dumps(histories[-1]))
             continue
-        told = subprocess.run([program, "history", str(folder / "out"), "--json"], capture_output=True, text=True)
-        if told.returncode not in (0, 1):
-            raise SystemExit("seed %d, night %d: history ended with %d\n%s" % (seed, night + 1, told.returncode, told.stderr))
-        (folder / ("history-%02d.json" % (night + 1))).write_text(told.stdout)
-        histories.append(json.loads(told.stdout))
+        for what, said in (("history", histories), ("morning", mornings)):
+            told = subprocess.run([program, what, str(folder / "out"), "--json"], capture_output=True, text=True)
+            if told.returncode not in (0, 1):
+                raise SystemExit("seed %d, night %d: %s ended with %d\n%s" % (seed, night + 1, what, told.returncode, told.stderr))
+            (folder / ("%s-%02d.json" % (what, night + 1))).write_text(told.stdout)
+            said.append(json.loads(told.stdout))
     truths.save(truth, folder / "truth.json")
-    return truth, histories
+    return truth, histories, mornings
 
 
 def main():
@@ -74,8 +75,8 @@ def main():
     for seed in range(given.seed, given.seed + given.sites):
         folder = given.folder / str(seed)
         folder.mkdir(parents=True)
-        truth, histories = nights_of(given.program, folder, given, seed)
-        total.add(truths.rounded(truth), histories)
+        truth, histories, mornings = nights_of(given.program, folder, given, seed)
+        total.add(truths.rounded(truth), histories, mornings)
         shutil.rmtree(folder / "site")
         shutil.rmtree(folder / "out")
     print("preset %s, seeds %d to %d, %d nights each" % (given.preset, given.seed, given.seed + given.sites - 1, given.nights))

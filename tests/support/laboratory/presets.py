@@ -93,17 +93,17 @@ def between_plans(noise, machine, least_before, least_after):
     return days[k - 1] + noise.uniform(0.1, 0.9) * (days[k] - days[k - 1])
 
 
-def laboratory(seed):
+def laboratory(seed, machines=60, count=8):
     """60 machines, 510 campaigns, five years, twelve crashes of 4 um."""
     lab = Laboratory("lab", seed, "2021-11-22", "2026-11-22")
     instruments = lasers(lab, "2021-10-01")
     hit = set()
     draw = Noise("%s/crashes" % seed)
     while len(hit) < 12:
-        hit.add(int(draw.uniform(0, 60)))
-    for k in range(60):
+        hit.add(int(draw.uniform(0, machines)))
+    for k in range(machines):
         noise, machine = common_machine(lab, k)
-        campaigns(lab, machine, noise, 8 + k % 2, 11, instruments)
+        campaigns(lab, machine, noise, count + k % 2, count + 3, instruments)
         if k in hit:
             axis, day = machine.axes[int(noise.uniform(0, len(machine.axes)))], between_plans(noise, machine, 3, 2)
             axis.new |= {"s": noise.uniform(0.52, 0.58), "own": 0.0, "shared": 0.0, "rho": 0.0}  # so large a jump that nobody can miss it

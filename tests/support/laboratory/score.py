@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A program's history of made-up laboratories held against what is true of them.
 
-    score.py --site TRUTH HISTORY [HISTORY ...] [--site ...] [--json] [--check]
+    score.py --site TRUTH HISTORY [HISTORY ...] [MORNING ...] [--site ...] [--json] [--check]
 
 HISTORY: what `nonio history OUT --json` printed (schema nonio-history/1), one file for each night in the order of the nights. The last one
-is held against TRUTH, of the day of that night (make_laboratory.py --until); of a quiet site every night is looked at. Several sites are
-added up. All intervals are Wilson's, 95 %.
+is held against TRUTH, of the day of that night (make_laboratory.py --until); of a quiet site every night is looked at. MORNING: what `nonio
+morning OUT --json` printed (schema nonio-morning/1), of each night too. Several sites are added up. All intervals are Wilson's, 95 %.
 
 --check: exit status 1 unless, as far as these numbers can tell, 95 % of the steps of 3 standard uncertainties or more are named, at most 5 %
-of quiet nights tell something, 94 to 96 % of slopes and forecasts are covered, no instrument is taken for a machine, and what vanished is
+of quiet nights tell something and at most 1 % write a mail of it, 94 to 96 % of slopes and forecasts are covered, no instrument is taken for a machine, and what vanished is
 named.
 """
 import argparse
@@ -114,11 +114,11 @@ class Score:
         self.by_cause = {"undeclared": Count(), "declared": Count(), "table": Count()}
         self.main, self.causes, self.sizes = Count(), Count(), Count()
         self.slopes, self.forecasts, self.forecasts_bent = Count(), Count(), Count()
-        self.quiet_nights, self.instruments = Count(), Count()
+        self.quiet_nights, self.quiet_mails, self.instruments = Count(), Count(), Count()
         self.missed, self.false, self.blamed, self.vanished_wrong, self.vanished = {}, [], [], [], Count()
         self.quiet_sites = self.sites = 0
 
-    def add(self, truth, nights):
+    def add(self, truth, nights, mornings=()):
         site = Site(truth, nights[-1])
         self.sites += 1
         self.add_steps(site)
@@ -128,6 +128,7 @@ class Score:
         if truth["preset"] == "quiet":
             self.quiet_sites += 1
             self.add_quiet(truth, nights)
+            self.add_mails(mornings)
 
     def add_steps(self, site):
         for c in site.truth["changes"]:
@@ -203,6 +204,16 @@ class Score:
             self.quiet_nights.add(bool(told - before))
             before |= told
 
+    def add_mails(self, mornings):
+        """Of nights of a quiet site: one is false when it mails a change that none before it did."""
+        before = set()
+        for morning in mornings:
+            if morning.get("schema") != "nonio-morning/1":
+                raise SystemExit("morning: expected schema nonio-morning/1, found %r" % morning.get("schema"))
+            mailed = {line["id"] for line in morning["lines"] if line["kind"] == "changed" and line["mail"]}
+            self.quiet_mails.add(bool(mailed - before))
+            before |= mailed
+
     def fails(self):
         """Sentences that do not hold, as far as the numbers tell."""
         out = []
@@ -214,6 +225,8 @@ class Score:
         below(self.steps["all"], 0.95, "steps named")
         if self.quiet_nights.of and wilson(self.quiet_nights.hits, self.quiet_nights.of)[1] > 0.05:
             out.append("quiet nights that tell something: %s" % self.quiet_nights)
+        if self.quiet_mails.of and wilson(self.quiet_mails.hits, self.quiet_mails.of)[1] > 0.01:
+            out.append("mails in quiet nights: %s" % self.quiet_mails)
         for count, what in ((self.slopes, "slopes"), (self.forecasts, "forecasts")):
             below(count, 0.94, what + " covered")
             if count.of and wilson(count.hits, count.of)[1] > 0.96:
@@ -231,7 +244,7 @@ class Score:
         return {"sites": self.sites, "steps": self.steps["all"].document(), "steps_by_size": bins, "steps_by_u_of_levels": levels,
                 "steps_by_cause": causes, "happenings": self.main.document(),
                 "missed": self.missed, "sizes": self.sizes.document(), "causes": self.causes.document(), "false": self.false,
-                "quiet_nights": self.quiet_nights.document(), "instruments_blamed": self.blamed, "slopes": self.slopes.document(),
+                "quiet_nights": self.quiet_nights.document(), "quiet_mails": self.quiet_mails.document(), "instruments_blamed": self.blamed, "slopes": self.slopes.document(),
                 "forecasts": self.forecasts.document(), "forecasts_of_bent_wear": self.forecasts_bent.document(),
                 "vanished": self.vanished.document(), "vanished_wrong": self.vanished_wrong, "fails": self.fails()}
 
@@ -243,7 +256,7 @@ class Score:
         out += ["  missed, %s: %d" % item for item in sorted(self.missed.items())]
         out += ["happenings with at least one quantity named: %s" % self.main, "size within 1.96 u: %s" % self.sizes, "cause right: %s" % self.causes]
         out += ["changes told of which nothing is true: %d" % len(self.false)] + ["  " + t for t in self.false[:20]]
-        out += ["quiet nights that tell a change: %s" % self.quiet_nights, "changes of instrument: %d, taken for the machine: %d" % (
+        out += ["quiet nights that tell a change: %s" % self.quiet_nights, "mails in quiet nights: %s" % self.quiet_mails, "changes of instrument: %d, taken for the machine: %d" % (
             self.instruments.of, len(self.blamed))] + ["  " + t for t in self.blamed[:20]]
         out += ["slopes within 1.96 u: %s" % self.slopes, "forecasts within 1.96 u: %s; of wear by no line: %s" % (self.forecasts, self.forecasts_bent)]
         out += ["vanished campaigns named: %s; named and there: %d" % (self.vanished, len(self.vanished_wrong))]
@@ -303,7 +316,9 @@ def main():
     for truth, *nights in given.site:
         if not nights:
             raise SystemExit("%s: expected a history of at least one night behind it" % truth)
-        score.add(json.loads(truth.read_text()), [json.loads(n.read_text()) for n in nights])
+        said = [json.loads(n.read_text()) for n in nights]
+        mornings = [s for s in said if s.get("schema") == "nonio-morning/1"]
+        score.add(json.loads(truth.read_text()), [s for s in said if s not in mornings], mornings)
     print(json.dumps(score.document(), indent=1) if given.json else score.text())
     return 1 if given.check and score.fails() else 0
 

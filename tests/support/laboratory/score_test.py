@@ -171,6 +171,23 @@ class OfKnownSites(unittest.TestCase):
         self.assertEqual(len(result.false), 1)
         self.assertEqual(scored(self.truth, told(self.truth)).quiet_nights.of, 0)
 
+    def test_a_mail_counts_once_when_it_tells_something_new(self):
+        def morning(*lines):
+            return {"schema": "nonio-morning/1", "lines": [dict(zip(("id", "kind", "mail"), line)) for line in lines]}
+
+        one, other = ("morning.changed:A:X:1", "changed", True), ("morning.changed:B:X:1", "changed", True)
+        for mornings, hits in (((morning(), morning(one), morning(one), morning(one, other)), 2),
+                               ((morning(("morning.changed:A:X:1", "changed", False)), morning(("morning.overdue:A", "overdue", True))), 0)):
+            result = score.Score()
+            result.add(self.quiet, [told(self.quiet)] * len(mornings), mornings)
+            self.assertEqual((result.quiet_mails.hits, result.quiet_mails.of), (hits, len(mornings)))
+        result = score.Score()
+        result.add(self.quiet, [told(self.quiet)], [morning(one)] + [morning()] * 9)
+        self.assertTrue(any(f.startswith("mails") for f in result.fails()))
+        result = score.Score()
+        result.add(self.truth, [told(self.truth)], [morning(one)])
+        self.assertEqual(result.quiet_mails.of, 0)
+
     def test_too_many_quiet_nights_fail(self):
         nights, quiet = [], told(self.quiet)
         ids = [p["campaign"] for p in self.quiet["series"][0]["points"]]

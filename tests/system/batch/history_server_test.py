@@ -4,11 +4,8 @@ import csv
 import io
 import json
 import os
-import random
 import shutil
-import signal
 import subprocess
-import time
 import unittest
 
 from nightly import NONIO, NightTest, manifest
@@ -148,31 +145,12 @@ class HistoryServerTest(NightTest):
             shutil.rmtree(copy)
 
     def test_killed_nights(self):
-        print(f"seed {SEED}, {KILLS} kills", flush=True)
-        rng = random.Random(SEED)
-        for i in range(6):
-            self.campaign(f"c{i}")
-        self.run_nonio()
-        killed, moment, longest = 0, 0, 5.0
-        while killed < KILLS:
-            self.assertLess(moment, 20 * KILLS + 20, "no night could be killed before its end")
-            for i in range(3):
-                self.campaign(f"c{(moment + i) % 6}", seed=100.0 + 3 * moment + i)
-            moment += 1
-            start = time.monotonic()
-            night = subprocess.Popen(self.command(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                                     start_new_session=True)
-            try:
-                night.wait(rng.uniform(0.0, longest))
-                longest = time.monotonic() - start
-                continue
-            except subprocess.TimeoutExpired:
-                os.killpg(night.pid, signal.SIGKILL)
-                night.wait()
-            killed += 1
+        def check(what):
             self.query()
             self.run_nonio()
-            self.assertEqual(self.rows(), self.made_again(), f"kill {killed}")
+            self.assertEqual(self.rows(), self.made_again(), what)
+
+        self.kill_nights(KILLS, SEED, check)
         said = self.said()
         self.assertEqual(self.in_sqlite(), said)
 

@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The laboratory's memory grows with the nights: the same rows as made again, whatever ends a night."""
 import os
-import random
 import shutil
-import signal
 import sqlite3
 import subprocess
-import time
 import unittest
 
 from nightly import NONIO, NightTest
@@ -117,32 +114,13 @@ class HistoryTest(NightTest):
 
     def test_killed_nights(self):
         """At any moment: the night after it leaves the rows of a store that is made from nothing."""
-        print(f"seed {SEED}, {KILLS} kills", flush=True)
-        rng = random.Random(SEED)
-        for i in range(6):
-            self.campaign(f"c{i}")
-        self.run_nonio()
-        killed, moment, longest = 0, 0, 5.0
-        while killed < KILLS:
-            self.assertLess(moment, 20 * KILLS, "no night could be killed before its end")
-            for i in range(3):
-                self.campaign(f"c{(moment + i) % 6}", seed=100.0 + 3 * moment + i)
-            moment += 1
-            start = time.monotonic()
-            night = subprocess.Popen(self.command(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                                     start_new_session=True)
-            try:
-                night.wait(rng.uniform(0.0, longest))
-                longest = time.monotonic() - start
-                continue
-            except subprocess.TimeoutExpired:
-                os.killpg(night.pid, signal.SIGKILL)
-                night.wait()
-            killed += 1
+        def check(what):
             self.assertEqual(self.ask("PRAGMA integrity_check"), [("ok",)])
             self.run_nonio()
-            self.assertEqual(self.rows(), self.made_again(), f"kill {killed}")
-        self.assertEqual(len(self.ask("SELECT 1 FROM evaluation")), 6 + 3 * moment)
+            self.assertEqual(self.rows(), self.made_again(), what)
+
+        nights = self.kill_nights(KILLS, SEED, check)
+        self.assertEqual(len(self.ask("SELECT 1 FROM evaluation")), 6 + 3 * nights)
 
 
 if __name__ == "__main__":

@@ -4,9 +4,11 @@ import json
 import os
 import pathlib
 import random
+import signal
 import sqlite3
 import subprocess
 import tempfile
+import time
 import unittest
 
 NONIO = os.environ["NONIO"]
@@ -58,6 +60,32 @@ class NightTest(unittest.TestCase):
         if expect is not None:
             self.assertEqual(done.returncode, expect, done.stderr + done.stdout)
         return done
+
+    def kill_nights(self, kills, seed, check):
+        """Kills nights with three changed campaigns of six at random moments, `check` after each. Returns how many nights began."""
+        print(f"seed {seed}, {kills} kills", flush=True)
+        rng = random.Random(seed)
+        for i in range(6):
+            self.campaign(f"c{i}")
+        self.run_nonio()
+        killed, moment, longest = 0, 0, 5.0
+        while killed < kills:
+            self.assertLess(moment, 20 * kills + 20, "no night could be killed before its end")
+            for i in range(3):
+                self.campaign(f"c{(moment + i) % 6}", seed=100.0 + 3 * moment + i)
+            moment += 1
+            start = time.monotonic()
+            night = subprocess.Popen(self.command(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+            try:
+                night.wait(rng.uniform(0.0, longest))
+                longest = time.monotonic() - start
+                continue
+            except subprocess.TimeoutExpired:
+                os.killpg(night.pid, signal.SIGKILL)
+                night.wait()
+            killed += 1
+            check(f"kill {killed}")
+        return moment
 
     def results(self, campaign_id, out=None):
         return json.loads(((out or self.out) / campaign_id / "results.json").read_text("utf-8"))

@@ -148,6 +148,16 @@ class Laboratory(unittest.TestCase):
         kept = sqlite3.connect(out / "history.sqlite").execute("SELECT * FROM due_rule ORDER BY machine").fetchall()
         self.assertEqual(kept, [("", 12), ("LAB-11", 6)])
 
+    def test_what_is_out_names_the_event_of_its_jump(self):
+        site, out = self.site.parent / "said", self.site.parent / "said-out"
+        shutil.copytree(self.site / "LAB-02", site / "LAB-02")
+        nonio("event", site, "--machine", "LAB-02", "--axis", "X", "--kind", "crash", "--date", "2025-10-14", "--text", "tool in the chuck")
+        nonio("run", site, "--out", out, "--quiet", "--date", "2026-11-22")
+        lines = json.loads(nonio("morning", out, "--json", expect=1).stdout)["lines"]
+        says = [line["says"] for line in lines if (line["kind"], line["machine"], line["axis"]) == ("out", "LAB-02", "X")]
+        self.assertEqual(len(says), 1)
+        self.assertIn("between 2025-07-14 and 2026-01-24: crash: tool in the chuck", says[0])
+
     def with_table(self, name, left):
         """LAB-05 until its table was loaded, which Nonio wrote; `left` changes a deviation found into one left."""
         site, out = self.site.parent / name, self.site.parent / (name + "-out")

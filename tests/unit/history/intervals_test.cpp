@@ -160,7 +160,12 @@ TEST(Intervals, TheControlChartEndsWhereTheBoundMeetsTheLimit) {
   EXPECT_EQ(control_chart(two, *trend_of(two), 50).why, "few-campaigns");
   Series crashed = s;
   crashed.points.back().value = 20.0;
-  EXPECT_EQ(control_chart(crashed, *trend_of(crashed), 50).why, "change-not-explained");
+  const Trend stepped = *trend_of(crashed);
+  const std::size_t last_point = s.points.size() - 1;
+  ASSERT_EQ(stepped.changes.back().after + 1, last_point);
+  EXPECT_EQ(control_chart(crashed, stepped, 50, last_point - 1).why, "change-not-explained");
+  EXPECT_TRUE(control_chart(crashed, stepped, 50, last_point - 2).months);
+  EXPECT_TRUE(control_chart(crashed, stepped, 50).months) << "nobody was told of it";
 }
 
 }  // namespace

@@ -126,6 +126,21 @@ TEST(MorningChanges, ScatterAndSlopesAreLearnedFromTheLaboratory) {
   EXPECT_LT(learned.at("ln_s um").spread, 0.05);
 }
 
+TEST(MorningChanges, OfVeryManyCampaignsTheNewestWait) {
+  // The excess of 100,000 campaigns or more is that of the first 100,000, until there are 110,000.
+  const auto excess = [](std::uint64_t first, std::uint64_t last) {
+    morning::Lesson lesson{"B_mean um", 8, {}, {}};
+    for (std::uint64_t i = 0; i < 50; ++i) lesson.ratios.emplace_back(first - i, 0.454936);
+    for (std::uint64_t i = 0; i < 150; ++i) lesson.ratios.emplace_back(last - i, 4 * 0.454936);
+    return morning::learn({&lesson}).of.at("B_mean um").excess;
+  };
+  EXPECT_DOUBLE_EQ(excess(100'000, 100'150), 1.0);
+  EXPECT_DOUBLE_EQ(excess(100'000, 109'999), 1.0);
+  EXPECT_DOUBLE_EQ(excess(100'000, 110'149), 1.0);  // one of them is among the first 110,000
+  EXPECT_DOUBLE_EQ(excess(100'000, 110'000), 2.0);
+  EXPECT_DOUBLE_EQ(excess(9'000, 9'999), 2.0);
+}
+
 TEST(MorningChanges, ANightChargesATestOnce) {
   // What one night asked of many machines is a family; a later night of one machine is another.
   std::mt19937_64 random(16);
@@ -140,11 +155,48 @@ TEST(MorningChanges, ANightChargesATestOnce) {
   const std::map<std::uint64_t, std::uint64_t> asked{{1, 1000}, {2, 2}};
   morning::find_changes(one, asked, fits, not_asked);
   morning::find_changes(other, asked, fits, not_asked);
-  ASSERT_EQ(one[0].followed[0].p_adjusted.size(), 1U);
-  EXPECT_NEAR(one[0].followed[0].p_adjusted[0],
-              std::min(1.0, 500.0 * other[0].followed[0].p_adjusted[0]), 1e-9);
-  EXPECT_FALSE(one[0].followed[0].told[0]);
-  EXPECT_TRUE(other[0].followed[0].told[0]);
+  EXPECT_TRUE(one[0].followed[0].trend.changes.empty()) << "what is not told bends no line";
+  ASSERT_EQ(other[0].followed[0].told, std::vector<bool>{true});
+  const double p = other[0].followed[0].trend.changes[0].p;
+  EXPECT_DOUBLE_EQ(other[0].followed[0].p_adjusted[0], 2.0 * p);
+  EXPECT_GE(1000.0 * p, 0.05);
+}
+
+TEST(MorningChanges, AMailIsSurerThanAList) {
+  // The same history, in nights that asked more and more: told below 5 %, mailed below 1 %.
+  std::mt19937_64 random(17);
+  std::cout << "seed 17\n";
+  const auto values = around(random, 8, 0.1, 4, 0.5);
+  const auto after = [&](std::uint64_t asked) {
+    MadeMachine m("S-1");
+    m.follow("X", "B_mean", values, 0.1);
+    std::vector<morning::AssessedMachine> machines{m.assessed()};
+    morning::Fits fits;
+    morning::learn(machines, fits);
+    morning::find_changes(machines, {{1, asked}}, fits, not_asked);
+    return machines[0].followed[0];
+  };
+  const double p = after(1).p_adjusted.at(0);
+  ASSERT_LT(p, 1e-4);
+  const auto of = [&](double level) { return static_cast<std::uint64_t>(level / p); };
+  for (const auto& [asked, told, mailed] :
+       {std::tuple(of(0.0099), true, true), std::tuple(of(0.0101) + 1, true, false),
+        std::tuple(of(0.0499), true, false), std::tuple(of(0.0501) + 1, false, false)}) {
+    const auto s = after(asked);
+    EXPECT_EQ(s.told, std::vector<bool>(told ? 1 : 0, true)) << asked;
+    EXPECT_EQ(s.mailed, std::vector<bool>(told ? 1 : 0, mailed)) << asked;
+  }
+}
+
+TEST(MorningChanges, AMailCountsAllThatItCouldTell) {
+  // Holm over both families: of two news alike the list is as sure as of one, the mail is not.
+  const morning::SeriesTests said{1, true, {{1e-3, true, false}}},
+      unsaid{1, true, {{2e-3, false, false}}}, quiet{1, true, {}};
+  const auto adjusted = morning::adjusted_by_night({&said, &unsaid, &quiet}, {{1, 9}});
+  EXPECT_DOUBLE_EQ(adjusted[0][0].news, 1e-3);
+  EXPECT_DOUBLE_EQ(adjusted[1][0].news, 9 * 2e-3);
+  EXPECT_DOUBLE_EQ(adjusted[0][0].any, 10 * 1e-3);
+  EXPECT_DOUBLE_EQ(adjusted[1][0].any, 9 * 2e-3);
 }
 
 }  // namespace

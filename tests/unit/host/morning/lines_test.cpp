@@ -12,8 +12,10 @@
 #include <random>
 #include <sstream>
 
+#include "host/batch/mail.h"
 #include "host/config/manifest.h"
 #include "host/morning/describe.h"
+#include "host/morning/lines_of_machine.h"
 #include "host/morning/tables_kept.h"
 #include "made.h"
 #include "nonio/sdk/format.h"
@@ -32,13 +34,14 @@ struct Laboratory {
   std::map<std::string, std::string> machine_of_campaign{};
   std::vector<history::Spelling> spellings{};
   std::string due{};
+  std::map<std::uint64_t, std::uint64_t> asked{};
 
   std::vector<MorningLine> lines() const {
     std::vector<morning::AssessedMachine> assessed;
     for (const MadeMachine& m : machines) assessed.push_back(m.assessed());
     morning::Fits fits;
     const auto learned = morning::learn(assessed, fits);
-    morning::find_changes(assessed, {}, fits, not_asked);
+    morning::find_changes(assessed, asked, fits, not_asked);
     std::vector<morning::Standing> standings;
     for (const auto& m : assessed)
       standings.push_back(morning::standing_of(m, morning::describe(m, "out", due, "12 months"),
@@ -104,6 +107,32 @@ TEST(MorningLines, WhatConformsAndChangedIsAChange) {
   EXPECT_EQ(lines[0].kind, Kind::changed);
   EXPECT_EQ(lines[0].id, "morning.changed:S-42:X:2022-07-15");
   EXPECT_EQ(text_of(lines[0], "also"), "curve_2");
+}
+
+TEST(MorningLines, AChangeThatIsNotSureIsNotMailed) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.follow("X", "B_mean", flat(-4.0, -4.6), 0.1);
+  m.judge("X", "B", flat(6.0, 6.0));
+  lab.machines.push_back(std::move(m));
+  ASSERT_EQ(lab.lines().size(), 1U);
+  ASSERT_EQ(lab.lines()[0].kind, Kind::changed);
+  const auto evidence = lab.lines()[0].finding.evidence;
+  const auto p = std::find_if(evidence.begin(), evidence.end(),
+                              [](const Number& n) { return n.name == "p"; });
+  ASSERT_NE(p, evidence.end());
+  for (const double level : {0.008, 0.03}) {
+    lab.asked = {{1, static_cast<std::uint64_t>(level / p->value)}};
+    const auto lines = lab.lines();
+    ASSERT_EQ(lines.size(), 1U) << level;
+    EXPECT_TRUE(reports::asks(lines[0]));
+    EXPECT_EQ(reports::asks_by_mail(lines[0]), level < 0.01);
+    for (const auto on : {config::Mail::On::lost, config::Mail::On::out})
+      EXPECT_FALSE(host::batch::is_reason_for_mail(lines[0], on));
+    EXPECT_EQ(host::batch::is_reason_for_mail(lines[0], config::Mail::On::decision), level < 0.01);
+  }
+  MorningLine lost = morning::line_of(Kind::lost, "morning.lost", "c");
+  EXPECT_TRUE(host::batch::is_reason_for_mail(lost, config::Mail::On::lost));
 }
 
 TEST(MorningLines, OutNamesTheEventOfItsChange) {

@@ -96,6 +96,36 @@ TEST(Proposals, AreRefusedByName) {
   EXPECT_EQ(refusal(worn), "interval.out-already");
 }
 
+TEST(Proposals, WhatNoTestConfirmedIsNoReasonToRefuse) {
+  // A step that alone would be one in a hundred, among many that were asked in that night.
+  std::mt19937_64 random(21);
+  MadeMachine odd = yearly("S-1", {5, 5, 5, 5, 5, 5, 5, 5});
+  odd.follow("X", "B_mean", {-3, -3.1, -2.9, -3, -3.1, -2.9, -3, -3.39}, 0.1);
+  std::vector<MadeMachine> machines{odd};
+  for (int i = 0; i < 40; ++i) {
+    machines.push_back(yearly("T-" + std::to_string(100 + i), {5, 5, 5, 5, 5, 5, 5, 5}));
+    machines.back().follow("X", "B_mean", around(random, 8, 0.1), 0.1);
+  }
+  std::vector<morning::AssessedMachine> assessed;
+  for (const MadeMachine& m : machines) assessed.push_back(m.assessed());
+  judge_all(assessed);
+  const auto& s = assessed[0].followed[0];
+  EXPECT_TRUE(s.told.empty());
+  nonio::history::Series alone = s.series;
+  alone.steps.reset();
+  const auto trend = nonio::history::trend_of(alone);
+  ASSERT_EQ(trend->changes.size(), 1U);
+  ASSERT_EQ(trend->changes[0].after, 6U);
+  EXPECT_TRUE(proposed(machines)[0].months) << why(proposed(machines)[0]);
+}
+
+TEST(Proposals, AnEventThatChangedNothingIsNoReasonToRefuse) {
+  MadeMachine m = yearly("S-1", {5, 5, 5, 5, 5, 5, 5, 5});
+  m.follow("X", "B_mean", {-3, -3.1, -2.9, -3, -3.1, -2.9, -3, -3.1}, 0.1);
+  m.events() = {{"2026-06-01", "S-1", "X", "software", "control 4.8", "", 1}};
+  EXPECT_TRUE(proposed({m})[0].months) << why(proposed({m})[0]);
+}
+
 TEST(Proposals, ATrendShortensTheInterval) {
   // 1 um a year, 5 um now, limit 8 um: before three years are over, and 36 months are the rule.
   MadeMachine m = yearly("S-1", {1, 2, 3, 4, 5, 6, 7, 7});

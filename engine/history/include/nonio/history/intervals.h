@@ -33,8 +33,10 @@ Proposal staircase(double months, Found, double target = 0.95);
 /// From the machine's own readings: the day on which the one-sided 95 % bound of the forecast meets
 /// the limit ("meets-limit"), but not farther than the forecast may look, half the observed span
 /// ("as-far-as-seen"). None: "few-campaigns" (three), "out-already", "change-not-explained" (the
-/// last change has fewer than two campaigns behind it).
-Proposal control_chart(const Series&, const Trend&, double limit);
+/// last change that was told, behind the point `changed_after`, has fewer than two campaigns behind
+/// it).
+Proposal control_chart(const Series&, const Trend&, double limit,
+                       std::optional<std::size_t> changed_after = {});
 
 /// Method A3 of NCSL RP-1 for machines of one kind with one interval: `passed` of `machines` were
 /// in tolerance. Observed reliability R0 = passed/machines. Below the target: Q = 1 - 2 B(passed;

@@ -44,11 +44,14 @@ struct Series {
   /// (excess_scatter).
   double excess = 1.0;
   /// Standard deviation, per year, of the slopes that such series have in this laboratory
-  /// (spread_of_slopes): what is known of a slope before the points. 0: nothing is known, and a
-  /// drift is tested.
+  /// (spread_of_slopes): what is known of a slope before the points, while steps are asked for.
+  /// 0: nothing is known, and a drift is tested.
   double spread = 0.0;
   /// A drift comes in where chance makes one in fewer series than this share.
   double drift_below = 0.01;
+  /// Behind which points steps are that nobody declared, where that is known: others are not looked
+  /// for.
+  std::optional<std::vector<std::size_t>> steps{};
 };
 
 /// An error that names the first point at fault: a value that is not finite, u that is not above 0,
@@ -61,8 +64,12 @@ Expected<void> check(const Series&);
 /// few of them moves a median little. Not over a declared event; not below 1, and 1 for fewer than
 /// 20 points.
 double excess_scatter(const std::vector<const Series*>&);
-/// d^2/u(d)^2 of one series, and what it gives for those of many together.
-std::vector<double> scatter_ratios(const Series&);
+/// d^2/u(d)^2 at a point of one series, and what it gives for those of many together.
+struct Scatter {
+  std::size_t point = 0;
+  double ratio = 0.0;
+};
+std::vector<Scatter> scatter_of(const Series&);
 double excess_of_ratios(std::vector<double> ratios);
 
 /// Slope per year beside a step at each declared event and at each place where chance makes one in

@@ -29,6 +29,7 @@ struct MorningLine {
   std::string since{};  ///< the night or campaign's day from which on
   std::string link{};
   std::string by{}, until{}, why{};  ///< of an acknowledgement
+  bool sure = true;                  ///< enough for a mail
 };
 
 struct HistoryPoint {
@@ -57,6 +58,7 @@ struct HistoryChange {
   std::string event{};
   std::string after_campaign{}, before_campaign{};
   double p_alone = 1.0;  ///< of this test alone
+  bool mailed = true;    ///< sure enough for a mail
 };
 
 struct HistoryForecast {
@@ -160,6 +162,8 @@ struct SiteHistory {
 
 /// Whether somebody must decide something: it is new, and no mere note.
 bool asks(const MorningLine& line);
+/// The same, and it is sure enough to write to somebody.
+bool asks_by_mail(const MorningLine& line);
 
 /// summary.txt and `nonio morning`: one line a decision, at most `most`, then how many more there
 /// are of each kind. Where there is none, the one sentence that says so.
