@@ -6,6 +6,7 @@
 
 #include "embedded.h"
 #include "nonio/reports/number.h"
+#include "nonio/reports/quantity_words.h"
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/text.h"
@@ -109,16 +110,7 @@ std::string proposal_text(const Page& page, const IntervalProposal& proposal) {
 }
 
 std::string quantity_text(const Page& page, const std::string& quantity) {
-  const auto colon = quantity.find(':');
-  const std::string kind = quantity.substr(0, colon);
-  const std::string name = page.words.get_or("site.quantity." + kind, quantity);
-  if (name == quantity || colon == std::string::npos) return name;
-  // "straightness:Z.curve_2": of which movement, and which part of it.
-  const auto dot = quantity.find('.', colon);
-  const std::string of = name + " " + quantity.substr(colon + 1, dot - colon - 1);
-  if (dot == std::string::npos || quantity.substr(dot + 1) == "c") return of;
-  const std::string part = quantity.substr(dot + 1);
-  return of + ", " + page.words.get_or("site.part." + part, part);
+  return followed_quantity(page.words, quantity);
 }
 
 std::optional<Day> day_of(std::string_view date) {

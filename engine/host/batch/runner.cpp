@@ -65,6 +65,7 @@ class Runner {
         releasing_(desk.releasing != nullptr),
         twins_(releasing_ ? &desk.releasing->twins : nullptr),
         recheck_(desk.recheck),
+        histories_(desk.histories),
         campaigns_(campaigns),
         disk_(options.out),
         losses_(campaigns.size()),
@@ -114,8 +115,9 @@ class Runner {
     const auto task = [this](int stream) {
       return [this, stream](std::size_t c, bool first, process::SharedStatus& stage) {
         Evaluator evaluator(stream, secrets_);
-        const Answer answer = work_guarded(c, first, stage, evaluator);
-        return Outcome(answer, evaluator.grown());
+        bool shows_history = false;
+        const Answer answer = work_guarded(c, first, stage, evaluator, shows_history);
+        return Outcome(answer, evaluator.grown(), shows_history);
       };
     };
     auto worker = Worker::start(plugins_, task, context_.site.limits.memory_MB);
@@ -190,13 +192,23 @@ class Runner {
   Expected<evaluation::Evaluated> evaluated_apart(const CampaignState& c, const fs::path& folder,
                                                   certificates::CampaignFiles& files, bool as_draft,
                                                   bool& locked, Evaluator& evaluator) const {
+    const auto history = history_of(c);
+    if (!history) return fail(history.error());
     const auto analysed =
-        evaluator.analyse(folder, c.id, releasing_ ? *twins_ : twins_of(c, campaigns_));
+        evaluator.analyse(folder, c.id, releasing_ ? *twins_ : twins_of(c, campaigns_), *history);
     if (!analysed) return fail(analysed.error());
     std::optional<evaluation::AssignedNumber> number;
     if (analysed->missing)
       number = number_of(analysed->evaluated, *analysed->missing, files, as_draft, locked);
     return evaluator.write_documents(c.id, std::move(number));
+  }
+
+  Expected<std::optional<HistorySoFar>> history_of(const CampaignState& c) const {
+    const auto basis = histories_.find(c.id);
+    if (basis == histories_.end()) return std::optional<HistorySoFar>();
+    auto history = morning::history_so_far(options_.out, basis->second);
+    if (!history) return fail(history.error());
+    return std::optional(std::move(*history));
   }
 
   /// Refused while the register is not known to be sound, or another process keeps it to itself.
@@ -240,9 +252,9 @@ class Runner {
 
   /// What plugins throw is caught where they are called.
   Answer work_guarded(std::size_t index, bool first, process::SharedStatus& stage,
-                      Evaluator& evaluator) const {
+                      Evaluator& evaluator, bool& shows_history) const {
     try {
-      return work(index, first, stage, evaluator);
+      return work(index, first, stage, evaluator, shows_history);
     } catch (const std::bad_alloc&) {
       stage.set(stage.get() +
                 ": out of memory (the limit for one campaign is in site.toml, [limits])");
@@ -254,8 +266,8 @@ class Runner {
   }
 
   /// In the worker's process, which has no plugin code: that runs at the other end of the stream.
-  Answer work(std::size_t index, bool first, process::SharedStatus& stage,
-              Evaluator& evaluator) const {
+  Answer work(std::size_t index, bool first, process::SharedStatus& stage, Evaluator& evaluator,
+              bool& shows_history) const {
     if (first && signer_ != nullptr) signer_->leave_to_worker();
     const CampaignState& c = campaigns_[index];
     bool locked = false;
@@ -265,6 +277,7 @@ class Runner {
       return Answer::not_stored;
     }
     const evaluation::Evaluated& evaluated = *evaluation;
+    shows_history = evaluated.history.has_value();
     if (locked && !last_trial_) return Answer::waits;
     if (evaluated.status == evaluation::Status::failed && !first) return Answer::again;
     const bool may_pass = evaluated.retry || is_of_the_machine(evaluated);
@@ -341,6 +354,7 @@ class Runner {
       case Answer::attention:
       case Answer::failed:
         campaigns_[worker.campaign()].status = status_of(answer);
+        note_history(campaigns_[worker.campaign()], worker.shows_history());
         store_staged(worker.campaign());
         return answer != Answer::failed && worker.given() < campaigns_per_worker_ &&
                !worker.grown() && again_.empty();
@@ -360,6 +374,12 @@ class Runner {
     const process::ChildEnd end = worker.end();
     not_done(worker, stage + ": " + (end.well ? "ended the process" : end.words));
     return false;
+  }
+
+  void note_history(CampaignState& c, bool shown) const {
+    c.history.reset();
+    const auto basis = histories_.find(c.id);
+    if (shown) c.history = basis == histories_.end() ? std::string() : basis->second.sha256;
   }
 
   /// Nobody pays for his predecessors: only what fails in a new process has failed.
@@ -474,6 +494,7 @@ class Runner {
   const bool releasing_;         ///< what is not issued leaves everything as it was
   const reading::Twins* twins_;  ///< of the one campaign that is released
   NumbersCheck recheck_;
+  const std::map<std::string, morning::HistoryBasis>& histories_;
   std::string unsound_;  ///< why no number is drawn
   std::vector<CampaignState>& campaigns_;
   const storage::Disk disk_;           ///< before the first process that writes

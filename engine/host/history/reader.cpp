@@ -71,6 +71,14 @@ LEFT JOIN evaluation n ON n.supersedes = e.evaluation
 ORDER BY e.evaluation
 )sql";
 
+constexpr const char* counted_sql = R"sql(
+SELECT COALESCE(a.machine, c.machine) AS name, e.campaign, c.day, e.evaluation_sha256
+FROM latest e
+JOIN campaign c ON c.campaign = e.campaign AND c.campaign_sha256 = e.campaign_sha256
+LEFT JOIN machine_alias a ON a.alias = c.machine
+WHERE e.status <> 'failed' ORDER BY name, c.day, e.campaign
+)sql";
+
 constexpr const char* followed_sql = R"sql(
 SELECT night, COUNT(*) FROM (
   SELECT DISTINCT e.night AS night, COALESCE(a.machine, c.machine), r.axis, r.quantity FROM evaluation e
@@ -202,6 +210,14 @@ Expected<std::vector<StoredEvaluation>> StoreReader::evaluations() {
   for (Database::Row& r : database_.rows(evaluations_sql))
     out.push_back({std::move(r[0]), std::move(r[1]), std::move(r[2]), whole_of<std::uint64_t>(r[3]),
                    r[4].empty()});
+  if (auto well = database_.take_error(); !well) return fail(well.error());
+  return out;
+}
+
+Expected<std::vector<CountedCampaign>> StoreReader::counted_campaigns() {
+  std::vector<CountedCampaign> out;
+  for (Database::Row& r : database_.rows(counted_sql))
+    out.push_back({std::move(r[0]), std::move(r[1]), std::move(r[2]), std::move(r[3])});
   if (auto well = database_.take_error(); !well) return fail(well.error());
   return out;
 }
