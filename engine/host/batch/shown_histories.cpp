@@ -14,10 +14,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* name = "histories";
+constexpr const char* histories_name = "histories";
 
 /// What people say that stands in histories; nothing else of it can change without a campaign.
-std::string digest_of(const history::Told& told) {
+std::string digest_of_told(const history::Told& told) {
   storage::Json json = storage::Json::array();
   for (const auto* events : {&told.logs.events, &told.of_records}) {
     json.push_back(storage::Json::array());
@@ -29,19 +29,19 @@ std::string digest_of(const history::Told& told) {
   return storage::sha256(json.dump(-1, ' ', false, storage::Json::error_handler_t::replace));
 }
 
-std::string noted(const fs::path& out) {
-  const auto text = storage::read_small_file(out / state_folder / name);
+std::string noted_histories(const fs::path& out) {
+  const auto text = storage::read_small_file(out / state_folder / histories_name);
   return text ? *text : std::string();
 }
 
-bool shows(const CampaignState& c) { return c.is_campaign && c.history.has_value(); }
+bool shows_history(const CampaignState& c) { return c.is_campaign && c.history.has_value(); }
 
 }  // namespace
 
 Expected<void> ShownHistories::begin() const {
-  const std::string none = "none\n", now = noted(options_.out);
+  const std::string none = "none\n", now = noted_histories(options_.out);
   if (now.empty() || now == none) return {};
-  return storage::publish(options_.out / state_folder, {{name, none}});
+  return storage::publish(options_.out / state_folder, {{histories_name, none}});
 }
 
 Expected<std::map<std::string, morning::HistoryBasis>> ShownHistories::others(
@@ -49,8 +49,8 @@ Expected<std::map<std::string, morning::HistoryBasis>> ShownHistories::others(
   using Bases = std::map<std::string, morning::HistoryBasis>;
   std::map<std::string, std::string> shown;
   for (const CampaignState& c : campaigns)
-    if (shows(c)) shown[c.id] = *c.history;
-  if (shown.empty() || (!looked && noted(options_.out) == digest_of(told) + "\n")) return Bases();
+    if (shows_history(c)) shown[c.id] = *c.history;
+  if (shown.empty() || (!looked && noted_histories(options_.out) == digest_of_told(told) + "\n")) return Bases();
   return read_apart<Bases>(
       "the history of the machines", context_.site.limits.disk_seconds,
       [&](process::SignsOfLife& signs) -> Expected<Bases> {
@@ -68,10 +68,10 @@ Expected<std::map<std::string, morning::HistoryBasis>> ShownHistories::others(
 
 Expected<void> ShownHistories::end(const std::vector<CampaignState>& campaigns,
                                    const history::Told& told) const {
-  if (std::none_of(campaigns.begin(), campaigns.end(), shows)) return {};
-  std::string now = digest_of(told) + "\n";
-  if (noted(options_.out) == now) return {};
-  return storage::publish(options_.out / state_folder, {{name, std::move(now)}});
+  if (std::none_of(campaigns.begin(), campaigns.end(), shows_history)) return {};
+  std::string now = digest_of_told(told) + "\n";
+  if (noted_histories(options_.out) == now) return {};
+  return storage::publish(options_.out / state_folder, {{histories_name, std::move(now)}});
 }
 
 }  // namespace nonio::host::batch

@@ -33,7 +33,8 @@ constexpr const char* campaigns_sql = R"sql(
 SELECT c.campaign, c.day, c.customer, c.purpose, e.status, c.instrument_maker, c.instrument_model,
   c.instrument_serial, c.instrument_calibrated, c.instrument_certificate, c.instrument_valid_until, e.evaluation, e.night,
   (SELECT number FROM certificate n WHERE n.campaign = c.campaign AND NOT EXISTS
-     (SELECT 1 FROM certificate m WHERE m.replaces = n.number) ORDER BY number DESC LIMIT 1)
+     (SELECT 1 FROM certificate m WHERE m.replaces = n.number) ORDER BY number DESC LIMIT 1),
+  e.place, e.control
 FROM campaign c
 JOIN evaluation e ON e.campaign = c.campaign AND e.campaign_sha256 = c.campaign_sha256
 WHERE (c.machine = ? OR c.machine IN (SELECT alias FROM machine_alias WHERE machine = ?))
@@ -159,7 +160,9 @@ Expected<StoredMachine> StoreReader::machine(const std::string& name) {
                                             .valid_until = std::move(r[10])},
                              .evaluation = whole_of<std::int64_t>(r[11]),
                              .night = whole_of<std::uint64_t>(r[12]),
-                             .number = std::move(r[13])});
+                             .number = std::move(r[13]),
+                             .place = std::move(r[14]),
+                             .control = std::move(r[15])});
   out.findings.resize(out.campaigns.size());
   for (std::size_t i = 0; i < out.campaigns.size(); ++i) {
     const std::int64_t evaluation = out.campaigns[i].evaluation;

@@ -24,6 +24,7 @@ struct StoredCampaign {
   std::int64_t evaluation = 0;
   std::uint64_t night = 0;  ///< in which that evaluation came
   std::string number{};     ///< of its last certificate
+  std::string place{}, control{};
 };
 
 /// A number of a campaign: of what is followed, or a result with a tolerance or U.

@@ -19,7 +19,7 @@ namespace kernel = nonio::history;
 
 namespace {
 
-std::string digest_of(const HistoryBasis& b) {
+std::string digest_of_basis(const HistoryBasis& b) {
   storage::Json json = {b.campaign,
                         b.day,
                         b.machine.name,
@@ -33,9 +33,9 @@ std::string digest_of(const HistoryBasis& b) {
 }
 
 /// Bases of the campaigns of one machine.
-class Machine {
+class BasisMachine {
  public:
-  Machine(const std::vector<history::MachineState>& machines, const std::string& name,
+  BasisMachine(const std::vector<history::MachineState>& machines, const std::string& name,
           const history::StoredLogs& logs) {
     const auto at = std::find_if(machines.begin(), machines.end(),
                                  [&](const auto& m) { return m.machine.name == name; });
@@ -60,7 +60,7 @@ class Machine {
         out.campaigns.emplace_back(c->campaign, c->sha256);
     for (const config::Event& e : events_)
       if (placed && e.date <= of.day) out.events.push_back(e);
-    out.sha256 = digest_of(out);
+    out.sha256 = digest_of_basis(out);
     return out;
   }
 
@@ -89,7 +89,7 @@ Expected<std::vector<HistoryBasis>> history_bases(const fs::path& out,
     if (std::none_of(of_machine.begin(), of_machine.end(),
                      [&](const auto* c) { return wanted.contains(c->campaign); }))
       continue;
-    const Machine machine(*machines, name, *logs);
+    const BasisMachine machine(*machines, name, *logs);
     for (const history::CountedCampaign* c : of_machine)
       if (wanted.contains(c->campaign)) bases.push_back(machine.basis(*c, of_machine));
   }
@@ -99,7 +99,7 @@ Expected<std::vector<HistoryBasis>> history_bases(const fs::path& out,
 namespace {
 
 /// The campaigns of the basis and the campaign itself, as if all had come in one night.
-history::StoredMachine only(const history::StoredMachine& all, const HistoryBasis& basis) {
+history::StoredMachine campaigns_up_to(const history::StoredMachine& all, const HistoryBasis& basis) {
   std::set<std::string> wanted{basis.campaign};
   for (const auto& [campaign, digest] : basis.campaigns) wanted.insert(campaign);
   history::StoredMachine out;
@@ -124,7 +124,7 @@ history::StoredMachine only(const history::StoredMachine& all, const HistoryBasi
   return out;
 }
 
-kernel::Point point_of(const history::StoredResult& r) {
+kernel::Point kernel_point(const history::StoredResult& r) {
   kernel::Point p{0.0, r.value, *r.u_repeat, {}};
   for (const history::CommonPart& part : r.common) p.common.push_back({part.source, part.u});
   return p;
@@ -138,7 +138,7 @@ Expected<void> add_steps(const AssessedMachine& m, const FollowedSeries& s,
     const history::StoredResult &before = m.stored.results[s.results[k - 1]],
                                 &now = m.stored.results[s.results[k]];
     if (m.stored.campaigns[now.campaign].id != campaign) continue;
-    const auto step = kernel::difference(point_of(before), point_of(now));
+    const auto step = kernel::difference(kernel_point(before), kernel_point(now));
     if (!step) return fail(step.error());
     const history::StoredCampaign& other = m.stored.campaigns[before.campaign];
     HistoryStep out{s.axis, s.quantity, series, campaign, other.id, other.day};
@@ -170,7 +170,7 @@ Expected<HistorySoFar> history_so_far(const fs::path& out, const HistoryBasis& b
   if (!store) return fail(store.error());
   const auto all = store->machine(basis.machine.name);
   if (!all) return fail(all.error());
-  std::vector<AssessedMachine> one{{{basis.machine, 0, {}}, only(*all, basis), basis.events, {}, {}}};
+  std::vector<AssessedMachine> one{{{basis.machine, 0, {}}, campaigns_up_to(*all, basis), basis.events, {}, {}}};
   AssessedMachine& m = one.front();
   m.followed = followed_series(m.stored, m.events);
   m.shown = shown_series(m.stored);

@@ -20,7 +20,7 @@ using Curve = Plot::Curve;
 
 namespace {
 
-constexpr const char* field = "history";
+constexpr const char* history_field = "history";
 
 /// Days since 1970-01-01; the host gives no others than YYYY-MM-DD.
 double day_number(const std::string& day) {
@@ -66,7 +66,7 @@ class HistoryPage {
 
   void add(Blocks& blocks) const {
     const auto say = [&](const std::string& text, Paragraph::Look look = Paragraph::Look::body) {
-      blocks.push_back({Paragraph{text, look}, field});
+      blocks.push_back({Paragraph{text, look}, history_field});
     };
     if (h_.machine.empty()) return say(w_.get("history.no_machine"));
     if (h_.day.empty()) return say(w_.get("history.no_date"));
@@ -233,7 +233,7 @@ class HistoryPage {
               last && !s.changes.empty()}});
       }
     }
-    if (!table.rows.empty()) blocks.push_back({std::move(table), field});
+    if (!table.rows.empty()) blocks.push_back({std::move(table), history_field});
   }
 
   /// Days as the horizontal axis has them.
@@ -348,9 +348,9 @@ class HistoryPage {
       Columns row;
       for (std::size_t k = i; k < i + per_row; ++k)
         row.parts.push_back(k < all.size()
-                                ? Blocks{{plot(h_.series[all[k]], scale, height), field}}
+                                ? Blocks{{plot(h_.series[all[k]], scale, height), history_field}}
                                 : Blocks{});
-      blocks.push_back({std::move(row), field});
+      blocks.push_back({std::move(row), history_field});
     }
   }
 
@@ -404,9 +404,9 @@ class HistoryPage {
 void add_history(const Source& source, Blocks& blocks) {
   if (!source.in.options.flag("history")) return;
   blocks.push_back({PageBreak{}});
-  blocks.push_back({Heading{source.words.get("history.title"), 1}, field});
+  blocks.push_back({Heading{source.words.get("history.title"), 1}, history_field});
   if (source.in.history == nullptr)
-    blocks.push_back({Paragraph{source.words.get("history.not_yet")}, field});
+    blocks.push_back({Paragraph{source.words.get("history.not_yet")}, history_field});
   else
     HistoryPage(source, *source.in.history).add(blocks);
 }
