@@ -16,4 +16,9 @@ std::string followed_quantity(const Wording& site, const std::string& quantity) 
   return of + ", " + site.get_or("site.part." + part, part);
 }
 
+std::string event_text(const Wording& site, const std::string& event) {
+  const std::string kind = event.substr(0, event.find(": "));
+  return site.get_or("site.event." + kind, kind) + event.substr(kind.size());
+}
+
 }  // namespace nonio::reports

@@ -129,18 +129,14 @@ class HistoryPage {
     if (c.cause == "instrument") return w_.get("history.instrument_cause");
     if (c.cause == "table") return w_.get("history.table_cause");
     if (c.cause != "event") return w_.get("history.unknown_cause");
-    const auto colon = c.event.find(": ");
-    return without_end(w_.get(
-        "history.event_cause",
-        {{"kind", kind(c.event.substr(0, colon))},
-         {"text", colon == std::string::npos ? "" : visible(c.event.substr(colon + 2))}}));
-  }
-  static std::string without_end(std::string text) {
-    while (text.ends_with(' ')) text.pop_back();
-    return text;
+    return visible(event_text(source_.site, c.event));
   }
 
   std::string change(const HistorySeries& s, const HistoryChange& c) const {
+    if (c.cause == "table" && c.after == c.before)
+      return w_.get("history.adjusted", {{"size", printed(c.size, c.u, s.unit)},
+                                         {"unit", unit_text(s.unit)},
+                                         {"date", c.before}});
     return w_.get("history.changed", {{"size", printed(c.size, c.u, s.unit)},
                                       {"unit", unit_text(s.unit)},
                                       {"after", c.after},

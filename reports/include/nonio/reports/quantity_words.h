@@ -11,4 +11,7 @@ namespace nonio::reports {
 /// symbol where it has no words. `site`: the words of site.toml.
 std::string followed_quantity(const Wording& site, const std::string& quantity);
 
+/// "crash: tool hit the vice", as a change of a series has it, with the kind in words.
+std::string event_text(const Wording& site, const std::string& event);
+
 }  // namespace nonio::reports
