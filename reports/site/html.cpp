@@ -109,6 +109,18 @@ std::string proposal_text(const Page& page, const IntervalProposal& proposal) {
   return months + ". " + why;
 }
 
+std::string line_text(const Page& page, const MorningLine& l, const char* part) {
+  Finding finding = l.finding;
+  for (auto& [name, text] : finding.texts)
+    if (name == "event") text = event_text(page.words, text);
+  return finding_text(page.templates, page.words.language(), finding, part);
+}
+
+std::string since_text(const Page& page, const MorningLine& l) {
+  if (l.since.empty() || l.kind == MorningLine::Kind::overdue) return {};
+  return page.words.get("site.since", {{"date", l.since}});
+}
+
 std::string quantity_text(const Page& page, const std::string& quantity) {
   return followed_quantity(page.words, quantity);
 }

@@ -68,12 +68,13 @@ std::string due_page(const Page& page) {
   std::string out, rows, open;
   const auto close = [&] {
     if (!rows.empty())
-      out += element("h2", html(open)) +
-             scrolled(open, element("table",
-                                    head(page, {"due", "machine", "customer", "place", "rule",
-                                                "proposal"}) +
-                                        element("tbody", rows),
-                                    "class=\"due\""));
+      out +=
+          element("h2", html(open)) +
+          scrolled(open,
+                   element("table",
+                           head(page, {"due", "machine", "customer", "place", "rule", "proposal"}) +
+                               element("tbody", rows),
+                           "class=\"due\""));
     rows.clear();
   };
   for (const MachineHistory* m : by_due(page.site)) {

@@ -39,8 +39,7 @@ std::string open_lines(const Page& page, const MachineHistory& m) {
     if (!l.quantity.empty()) text += html(quantity_text(page, l.quantity)) + " ";
     if (l.value) text += html(value_text(page, *l.value, l.u, l.unit)) + ". ";
     for (const char* part : {"says", "advice"})
-      text +=
-          typeset_html(finding_text(page.templates, page.words.language(), l.finding, part)) + " ";
+      text += typeset_html(line_text(page, l, part)) + " ";
     items += element("li", text);
   }
   return items.empty() ? items : element("ul", items);
@@ -50,9 +49,10 @@ std::string events(const Page& page, const MachineHistory& m) {
   if (m.events.empty()) return {};
   std::string items;
   for (const MachineEvent& e : m.events)
-    items += element("li", with_whole_days(html(e.date + " " + e.axis + (e.axis.empty() ? "" : " ") +
-                                page.words.get_or("site.event." + e.kind, e.kind) +
-                                (e.text.empty() ? "" : ": ") + e.text)));
+    items +=
+        element("li", with_whole_days(html(e.date + " " + e.axis + (e.axis.empty() ? "" : " ") +
+                                           page.words.get_or("site.event." + e.kind, e.kind) +
+                                           (e.text.empty() ? "" : ": ") + e.text)));
   return element("h2", html(page.words.get("site.events"))) + element("ol", items);
 }
 
@@ -77,13 +77,13 @@ std::string change_text(const Page& page, const HistorySeries& s, const HistoryC
   const std::string size = value_text(page, c.size, c.u, s.unit);
   if (c.cause == "table" && c.after == c.before)
     return page.words.get("site.change.adjusted", {{"size", size}, {"date", c.before}});
-  return page.words.get("site.change." + c.cause,
-                        {{"size", size},
-                         {"after", c.after},
-                         {"before", c.before},
-                         {"event", event_text(page.words, c.event)},
-                         {"p", localised(evidence_text({"p", c.p, Quantity::probability}),
-                                         page.words.language())}});
+  return page.words.get(
+      "site.change." + c.cause,
+      {{"size", size},
+       {"after", c.after},
+       {"before", c.before},
+       {"event", event_text(page.words, c.event)},
+       {"p", localised(evidence_text({"p", c.p, Quantity::probability}), page.words.language())}});
 }
 
 std::string changes(const Page& page, const HistorySeries& s) {
@@ -139,10 +139,16 @@ std::string numbers(const Page& page, const HistorySeries& s) {
                                                               element("tbody", rows))));
 }
 
+/// Of two series of one quantity the one that has ended says so.
+std::string title_of(const Page& page, const HistorySeries& s) {
+  const std::string title = s.axis + " · " + quantity_text(page, s.quantity);
+  if (!s.ended || s.points.empty()) return title;
+  return title + ", " + page.words.get("site.until", {{"date", s.points.back().date}});
+}
+
 std::string one_series(const Page& page, const MachineHistory& m, const HistorySeries& s) {
-  return element("section", element("h3", html(s.axis + " · " + quantity_text(page, s.quantity))) +
-                                history_chart(page, m, s) + changes(page, s) + forecast(page, s) +
-                                numbers(page, s));
+  return element("section", element("h3", html(title_of(page, s))) + history_chart(page, m, s) +
+                                changes(page, s) + forecast(page, s) + numbers(page, s));
 }
 
 std::string curves(const Page& page, const MachineHistory& m) {

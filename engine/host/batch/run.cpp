@@ -233,7 +233,9 @@ bool show_histories(const RunOptions& options, const RunEvents& events,
   const ShownHistories shown(options, context);
   auto others = shown.others(night.campaigns, *told, history.rebuilt());
   std::string error = others ? std::string() : others.error().message;
-  if (others && !others->empty()) {
+  if (others && !others->empty())
+    if (const auto begun = shown.begin(); !begun) error = begun.error().message;
+  if (error.empty() && !others->empty()) {
     std::vector<std::string> again;
     for (CampaignState& c : night.campaigns) {
       if (!others->contains(c.id)) continue;

@@ -50,20 +50,21 @@ Expected<std::map<std::string, morning::HistoryBasis>> ShownHistories::others(
   std::map<std::string, std::string> shown;
   for (const CampaignState& c : campaigns)
     if (shows_history(c)) shown[c.id] = *c.history;
-  if (shown.empty() || (!looked && noted_histories(options_.out) == digest_of_told(told) + "\n")) return Bases();
-  return read_apart<Bases>(
-      "the history of the machines", context_.site.limits.disk_seconds,
-      [&](process::SignsOfLife& signs) -> Expected<Bases> {
-        signs.reading(options_.out.string());
-        std::vector<std::string> ids;
-        for (const auto& [id, digest] : shown) ids.push_back(id);
-        auto bases = morning::history_bases(options_.out, ids);
-        if (!bases) return fail(bases.error());
-        Bases out;
-        for (morning::HistoryBasis& b : *bases)
-          if (b.sha256 != shown[b.campaign]) out.emplace(b.campaign, std::move(b));
-        return out;
-      });
+  if (shown.empty() || (!looked && noted_histories(options_.out) == digest_of_told(told) + "\n"))
+    return Bases();
+  return read_apart<Bases>("the history of the machines", context_.site.limits.disk_seconds,
+                           [&](process::SignsOfLife& signs) -> Expected<Bases> {
+                             signs.reading(options_.out.string());
+                             std::vector<std::string> ids;
+                             for (const auto& [id, digest] : shown) ids.push_back(id);
+                             auto bases = morning::history_bases(options_.out, ids);
+                             if (!bases) return fail(bases.error());
+                             Bases out;
+                             for (morning::HistoryBasis& b : *bases)
+                               if (b.sha256 != shown[b.campaign])
+                                 out.emplace(b.campaign, std::move(b));
+                             return out;
+                           });
 }
 
 Expected<void> ShownHistories::end(const std::vector<CampaignState>& campaigns,

@@ -48,7 +48,7 @@ struct Evaluated {
   std::optional<Certificate> certificate{};
   bool retry = false;  ///< it failed for a reason that does not lie in its files
   std::vector<FollowedGroup> followed{};
-  std::string purpose{};  ///< as the manifest says it
+  std::string purpose{};                  ///< as the manifest says it
   std::optional<ShownHistory> history{};  ///< none: no document asks for it
 };
 

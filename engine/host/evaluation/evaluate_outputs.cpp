@@ -106,9 +106,9 @@ WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes) {
     if (!applies("output ", *o)) continue;
     auto options = work.settle(o->info);
     if (!options) continue;
-    const bool history =
-        o->wants_history != nullptr &&
-        work.asks_to_apply("output " + o->info.name, "", [&] { return o->wants_history(*options); });
+    const bool history = o->wants_history != nullptr &&
+                         work.asks_to_apply("output " + o->info.name, "",
+                                            [&] { return o->wants_history(*options); });
     wanted.outputs.push_back({o, std::move(*options), history});
   }
   return wanted;
@@ -312,14 +312,13 @@ void write_document(const Work& work, const WantedOutput& w, const HistorySoFar*
     return keep_result(output.info, as_issued(*out.certificate, output.info.name), out.results);
   const std::string who = "output " + output.info.name;
   work.stage(who);
-  take_result(
-      work, output.info, who,
-      process::guarded(who,
-                       [&] {
-                         return output.write(
-                             document_input(work, w, out.results, out.certificate, history));
-                       }),
-      out.results);
+  take_result(work, output.info, who,
+              process::guarded(who,
+                               [&] {
+                                 return output.write(document_input(work, w, out.results,
+                                                                    out.certificate, history));
+                               }),
+              out.results);
 }
 
 bool needs_attention(const Results& results) {
@@ -347,8 +346,8 @@ Evaluated write_documents(AnalysedCampaign analysed, const AssignedNumber* assig
   for (const WantedOutput& w : analysed.documents) {
     write_document(work, w, history, out);
     if (w.history)
-      out.history = history != nullptr ? ShownHistory{history->sha256, history->campaigns}
-                                       : ShownHistory{};
+      out.history =
+          history != nullptr ? ShownHistory{history->sha256, history->campaigns} : ShownHistory{};
   }
   const bool attention = !analysed.read.unread.empty() || needs_attention(out.results);
   out.status = !out.results.errors.empty() ? Status::failed

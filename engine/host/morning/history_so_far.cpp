@@ -20,15 +20,10 @@ namespace kernel = nonio::history;
 namespace {
 
 std::string digest_of_basis(const HistoryBasis& b) {
-  storage::Json json = {b.campaign,
-                        b.day,
-                        b.machine.name,
-                        b.machine.stated.serial,
-                        b.aliases,
-                        b.campaigns,
-                        storage::Json::array(),
-                        b.months};
-  for (const config::Event& e : b.events) json[6].push_back({e.date, e.axis, e.kind, e.text});
+  storage::Json events = storage::Json::array();
+  for (const config::Event& e : b.events) events.push_back({e.date, e.axis, e.kind, e.text});
+  const storage::Json json = {b.campaign,  b.day,  b.machine.name, b.aliases,
+                              b.campaigns, events, b.months};
   return storage::sha256(json.dump(-1, ' ', false, storage::Json::error_handler_t::replace));
 }
 
@@ -36,7 +31,7 @@ std::string digest_of_basis(const HistoryBasis& b) {
 class BasisMachine {
  public:
   BasisMachine(const std::vector<history::MachineState>& machines, const std::string& name,
-          const history::StoredLogs& logs) {
+               const history::StoredLogs& logs) {
     const auto at = std::find_if(machines.begin(), machines.end(),
                                  [&](const auto& m) { return m.machine.name == name; });
     if (at == machines.end()) return;
@@ -99,7 +94,8 @@ Expected<std::vector<HistoryBasis>> history_bases(const fs::path& out,
 namespace {
 
 /// The campaigns of the basis and the campaign itself, as if all had come in one night.
-history::StoredMachine campaigns_up_to(const history::StoredMachine& all, const HistoryBasis& basis) {
+history::StoredMachine campaigns_up_to(const history::StoredMachine& all,
+                                       const HistoryBasis& basis) {
   std::set<std::string> wanted{basis.campaign};
   for (const auto& [campaign, digest] : basis.campaigns) wanted.insert(campaign);
   history::StoredMachine out;
@@ -150,9 +146,8 @@ Expected<void> add_steps(const AssessedMachine& m, const FollowedSeries& s,
 }
 
 bool has_point(const HistorySeries& s, const std::string& campaign) {
-  return std::any_of(s.points.begin(), s.points.end(), [&](const HistoryPoint& p) {
-    return p.joined && p.campaign == campaign;
-  });
+  return std::any_of(s.points.begin(), s.points.end(),
+                     [&](const HistoryPoint& p) { return p.joined && p.campaign == campaign; });
 }
 
 }  // namespace
@@ -170,7 +165,8 @@ Expected<HistorySoFar> history_so_far(const fs::path& out, const HistoryBasis& b
   if (!store) return fail(store.error());
   const auto all = store->machine(basis.machine.name);
   if (!all) return fail(all.error());
-  std::vector<AssessedMachine> one{{{basis.machine, 0, {}}, campaigns_up_to(*all, basis), basis.events, {}, {}}};
+  std::vector<AssessedMachine> one{
+      {{basis.machine, 0, {}}, campaigns_up_to(*all, basis), basis.events, {}, {}}};
   AssessedMachine& m = one.front();
   m.followed = followed_series(m.stored, m.events);
   m.shown = shown_series(m.stored);
@@ -184,8 +180,7 @@ Expected<HistorySoFar> history_so_far(const fs::path& out, const HistoryBasis& b
     for (HistoryPoint& p : series.points) p.link.clear();
     so_far.series.push_back(std::move(series));
     if (i >= m.followed.size()) continue;
-    if (auto well =
-            add_steps(m, m.followed[i], basis.campaign, so_far.series.size() - 1, so_far);
+    if (auto well = add_steps(m, m.followed[i], basis.campaign, so_far.series.size() - 1, so_far);
         !well)
       return fail(well.error());
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The page of the machine's history up to this campaign.
+#include "nonio/sdk/history.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,7 +12,6 @@
 #include "nonio/reports/quantity_words.h"
 #include "nonio/reports/text.h"
 #include "nonio/sdk/format.h"
-#include "nonio/sdk/history.h"
 #include "report.h"
 
 namespace nonio::pdf_report {
@@ -184,7 +185,8 @@ class HistoryPage {
     const HistorySeries& s = h_.series[series];
     if (is_largest(s)) {
       for (std::size_t k = point; k-- > 0;)
-        if (const HistoryPoint& p = s.points[k]; p.campaign != id_ || p.state != s.points[point].state)
+        if (const HistoryPoint& p = s.points[k];
+            p.campaign != id_ || p.state != s.points[point].state)
           return {printed(p, s.unit), p.date, "–", true};
       return {};
     }
@@ -198,14 +200,10 @@ class HistoryPage {
   void add_table(Blocks& blocks) const {
     constexpr const char* states[] = {"as_found", "as_left", "check"};
     Table table;
-    table.columns = {{w_.get("history.axis"), ""},
-                     {w_.get("history.quantity"), ""},
-                     {w_.get("history.state"), ""},
-                     {w_.get("history.value"), "", true},
-                     {w_.get("history.unit"), ""},
-                     {w_.get("history.before"), "", true},
-                     {w_.get("history.since"), ""},
-                     {w_.get("history.difference"), "", true},
+    table.columns = {{w_.get("history.axis"), ""},  {w_.get("history.quantity"), ""},
+                     {w_.get("history.state"), ""}, {w_.get("history.value"), "", true},
+                     {w_.get("history.unit"), ""},  {w_.get("history.before"), "", true},
+                     {w_.get("history.since"), ""}, {w_.get("history.difference"), "", true},
                      {w_.get("history.says"), ""}};
     for (const std::size_t i : shown_) {
       const HistorySeries& s = h_.series[i];
@@ -296,8 +294,8 @@ class HistoryPage {
         out.curves.push_back(
             line({x, x}, {out.range->first, out.range->second}, style.muted, Dash::dotted));
     for (const HistorySegment& g : s.segments)
-      out.curves.push_back(line({time.at(g.from), time.at(g.to)}, {g.first * per_si, g.last * per_si},
-                                style.plus, Dash::solid));
+      out.curves.push_back(line({time.at(g.from), time.at(g.to)},
+                                {g.first * per_si, g.last * per_si}, style.plus, Dash::solid));
     for (Curve& c : bars) {
       c.kind = Curve::Kind::bars, c.colour = &c == bars ? style.accent : style.rule, c.width = 0.7;
       if (!c.x.empty()) out.curves.push_back(std::move(c));
@@ -356,13 +354,12 @@ class HistoryPage {
     for (const std::size_t i : shown_)
       for (const HistoryChange& c : h_.series[i].changes)
         if (last == nullptr || c.before > last->before ||
-            (c.before == last->before &&
-             std::fabs(c.size) * last->u > std::fabs(last->size) * c.u))
+            (c.before == last->before && std::fabs(c.size) * last->u > std::fabs(last->size) * c.u))
           series = &h_.series[i], last = &c;
     if (last == nullptr) return w_.get("history.none_changed");
-    return without_gaps(w_.get("history.last_change", {{"axis", series->axis},
-                                                       {"quantity", name(*series)},
-                                                       {"what", change(*series, *last)}}));
+    return without_gaps(w_.get(
+        "history.last_change",
+        {{"axis", series->axis}, {"quantity", name(*series)}, {"what", change(*series, *last)}}));
   }
 
   std::string events() const {
@@ -375,8 +372,7 @@ class HistoryPage {
       all += (all.empty() ? "" : "; ") + e.date + " " + e.axis + (e.axis.empty() ? "" : " ") +
              kind(e.kind) + (e.text.empty() ? "" : ": " + visible(e.text));
     }
-    if (from > 0)
-      all += "; " + w_.get("history.more_events", {{"count", std::to_string(from)}});
+    if (from > 0) all += "; " + w_.get("history.more_events", {{"count", std::to_string(from)}});
     return w_.get("history.events", {{"events", all}});
   }
 

@@ -31,9 +31,10 @@ Expected<OutputResult> write(const OutputInput& in) {
     return fail(sound.error());
   if (wants_history(in.options) &&
       std::find(look->blocks.begin(), look->blocks.end(), "history") == look->blocks.end())
-    return fail(Error{"options.pdf-report.history: the template has no block \"history\"; expected "
-                      "it in the list `blocks` of templates/" +
-                      in.options.text("template", default_template) + ".toml"});
+    return fail(
+        Error{"options.pdf-report.history: the template has no block \"history\"; expected "
+              "it in the list `blocks` of templates/" +
+              in.options.text("template", default_template) + ".toml"});
   const Wording words(in.templates, language, {"results", "report"}),
       pictures(in.templates, language, {"pictures"}), site(in.templates, language, {"site"});
   const reports::Document document = compose({{in, *look, words, **fonts}, pictures, site});

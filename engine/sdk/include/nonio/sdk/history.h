@@ -68,10 +68,10 @@ struct MachineEvent {
 /// instrument under one certificate) is not in `u`.
 struct HistoryStep {
   std::string axis, quantity;
-  std::size_t series = 0;             ///< index into HistorySoFar::series
-  std::string campaign;               ///< of the value
-  std::string before, before_date;    ///< campaign and day of the one before it
-  std::size_t point = 0;              ///< index into that series' points
+  std::size_t series = 0;           ///< index into HistorySoFar::series
+  std::string campaign;             ///< of the value
+  std::string before, before_date;  ///< campaign and day of the one before it
+  std::size_t point = 0;            ///< index into that series' points
   double size = 0.0, u = 0.0;
 };
 
