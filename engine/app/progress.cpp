@@ -70,7 +70,7 @@ void Progress::planned(std::size_t campaigns, std::size_t to_do) {
 }
 
 void Progress::finished(const host::batch::CampaignState& c) {
-  ++done_;
+  to_do_ = std::max(to_do_, ++done_);  // a report is done again when its history is another one
   const bool failed = c.status == host::evaluation::Status::failed;
   if (failed) ++failed_;
   if (json_) {

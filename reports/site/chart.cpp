@@ -126,7 +126,7 @@ class HistoryDrawing {
     if (path.empty()) return {};
     std::string out = "<path class=\"line\" d=\"" + path + "\"/>";
     if (shows_limit_)
-      for (const double side : {1.0, -1.0}) {
+      for (const double side : sides()) {
         const double y = 22 - frame_.y.at(side * value(*series_.limit)) * 20;
         if (y >= 0 && y <= 24) out += line_of(0, y, 120, y, "limit");
       }
@@ -135,6 +135,11 @@ class HistoryDrawing {
 
  private:
   double value(double si) const { return scaled(si, series_.unit); }
+
+  /// What is followed has a sign and a limit on both sides; the largest deviations are none below 0.
+  std::vector<double> sides() const {
+    return series_.model.empty() ? std::vector<double>{1.0} : std::vector<double>{1.0, -1.0};
+  }
 
   void fit() {
     for (const HistoryPoint& p : series_.points) {
@@ -156,7 +161,7 @@ class HistoryDrawing {
       shows_limit_ = limit <= 3 * most || most == 0.0;
       if (shows_limit_) {
         if (y_.high > 0) y_.show(limit);
-        if (y_.low < 0) y_.show(-limit);
+        if (y_.low < 0 && sides().size() > 1) y_.show(-limit);
       }
     }
     x_.widen(0.03, 20);
@@ -176,7 +181,7 @@ class HistoryDrawing {
     if (!shows_limit_ || series_.points.empty()) return {};
     std::string out;
     const double U = 2 * series_.points.back().u;
-    for (const double side : {1.0, -1.0}) {
+    for (const double side : sides()) {
       const double limit = side * *series_.limit, kept = limit - side * U;
       if (value(limit) > frame_.y.to || value(limit) < frame_.y.from) continue;
       const double a = at_value(limit), b = std::clamp(at_value(kept), top, height - bottom);

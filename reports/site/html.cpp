@@ -6,6 +6,7 @@
 
 #include "embedded.h"
 #include "nonio/reports/number.h"
+#include "nonio/reports/quantity_words.h"
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/text.h"
@@ -108,17 +109,20 @@ std::string proposal_text(const Page& page, const IntervalProposal& proposal) {
   return months + ". " + why;
 }
 
+std::string line_text(const Page& page, const MorningLine& l, const char* part) {
+  Finding finding = l.finding;
+  for (auto& [name, text] : finding.texts)
+    if (name == "event") text = event_text(page.words, text);
+  return finding_text(page.templates, page.words.language(), finding, part);
+}
+
+std::string since_text(const Page& page, const MorningLine& l) {
+  if (l.since.empty() || l.kind == MorningLine::Kind::overdue) return {};
+  return page.words.get("site.since", {{"date", l.since}});
+}
+
 std::string quantity_text(const Page& page, const std::string& quantity) {
-  const auto colon = quantity.find(':');
-  const std::string kind = quantity.substr(0, colon);
-  const std::string name = page.words.get_or("site.quantity." + kind, quantity);
-  if (name == quantity || colon == std::string::npos) return name;
-  // "straightness:Z.curve_2": of which movement, and which part of it.
-  const auto dot = quantity.find('.', colon);
-  const std::string of = name + " " + quantity.substr(colon + 1, dot - colon - 1);
-  if (dot == std::string::npos || quantity.substr(dot + 1) == "c") return of;
-  const std::string part = quantity.substr(dot + 1);
-  return of + ", " + page.words.get_or("site.part." + part, part);
+  return followed_quantity(page.words, quantity);
 }
 
 std::optional<Day> day_of(std::string_view date) {

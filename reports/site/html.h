@@ -37,6 +37,10 @@ std::string whole_page(const Page&, const std::string& title, const std::string&
 std::string value_text(const Page&, double value, std::optional<double> u, Quantity);
 /// "6 months. Why.", or why there is none; empty where nobody asked.
 std::string proposal_text(const Page&, const IntervalProposal&);
+/// What a line says or advises ("says", "advice"), with kinds of events in words; not yet typeset.
+std::string line_text(const Page&, const MorningLine&, const char* part);
+/// "Since 2026-01-24."; nothing where what it says has the day already.
+std::string since_text(const Page&, const MorningLine&);
 /// Name of a quantity in words, with its symbol where it has none.
 std::string quantity_text(const Page&, const std::string& quantity);
 /// A number with three significant digits, in its printed unit, without the unit.

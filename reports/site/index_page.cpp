@@ -95,7 +95,7 @@ std::string where(const Page& page, const MorningLine& l) {
 
 /// HTML.
 std::string says(const Page& page, const MorningLine& l, const char* part) {
-  return typeset_html(finding_text(page.templates, page.words.language(), l.finding, part));
+  return typeset_html(line_text(page, l, part));
 }
 
 std::string row_of(const Page& page, const MorningLine& l) {
@@ -108,7 +108,7 @@ std::string row_of(const Page& page, const MorningLine& l) {
                   html(value_text(page, *l.value, l.u, l.unit))) +
              html(limit_text(page, l));
   std::string text = says(page, l, "says");
-  if (!l.since.empty()) text += " " + html(page.words.get("site.since", {{"date", l.since}}));
+  if (const std::string since = since_text(page, l); !since.empty()) text += " " + html(since);
   std::string advice = says(page, l, "advice");
   if (l.state == MorningLine::State::known)
     advice = html(

@@ -68,15 +68,18 @@ std::string due_page(const Page& page) {
   std::string out, rows, open;
   const auto close = [&] {
     if (!rows.empty())
-      out += element("h2", html(open)) +
-             scrolled(open, element("table", head(page, {"due", "machine", "customer", "place",
-                                                         "rule", "proposal"}) +
-                                                 element("tbody", rows)));
+      out +=
+          element("h2", html(open)) +
+          scrolled(open,
+                   element("table",
+                           head(page, {"due", "machine", "customer", "place", "rule", "proposal"}) +
+                               element("tbody", rows),
+                           "class=\"due\""));
     rows.clear();
   };
   for (const MachineHistory* m : by_due(page.site)) {
     if (const std::string now = bucket(page, m->due); now != open) close(), open = now;
-    rows += element("tr", element("td", html(m->due)) +
+    rows += element("tr", element("td", with_whole_days(html(m->due))) +
                               element("td", link("machines/" + m->file, html(m->id))) +
                               element("td", html(m->customer)) + element("td", html(m->place)) +
                               element("td", html(m->why_due)) +
@@ -118,7 +121,8 @@ std::string instruments_page(const Page& page) {
                             {{"date", i.valid_until}});
     std::string rows;
     for (const auto& on : i.results)
-      rows += element("tr", element("td", html(on.date)) + element("td", html(on.machine)) +
+      rows += element("tr", element("td", with_whole_days(html(on.date))) +
+                                element("td", html(on.machine)) +
                                 element("td", link(on.link, html(on.campaign))) +
                                 element("td", html(on.number)));
     out += element(

@@ -5,6 +5,7 @@
 #include "chart.h"
 #include "html.h"
 #include "nonio/reports/number.h"
+#include "nonio/reports/quantity_words.h"
 #include "nonio/sdk/format.h"
 #include "pages.h"
 
@@ -38,8 +39,7 @@ std::string open_lines(const Page& page, const MachineHistory& m) {
     if (!l.quantity.empty()) text += html(quantity_text(page, l.quantity)) + " ";
     if (l.value) text += html(value_text(page, *l.value, l.u, l.unit)) + ". ";
     for (const char* part : {"says", "advice"})
-      text +=
-          typeset_html(finding_text(page.templates, page.words.language(), l.finding, part)) + " ";
+      text += typeset_html(line_text(page, l, part)) + " ";
     items += element("li", text);
   }
   return items.empty() ? items : element("ul", items);
@@ -49,8 +49,10 @@ std::string events(const Page& page, const MachineHistory& m) {
   if (m.events.empty()) return {};
   std::string items;
   for (const MachineEvent& e : m.events)
-    items += element("li", html(e.date + " " + e.axis + (e.axis.empty() ? "" : " ") +
-                                page.words.get_or("site.event." + e.kind, e.kind) + ": " + e.text));
+    items +=
+        element("li", with_whole_days(html(e.date + " " + e.axis + (e.axis.empty() ? "" : " ") +
+                                           page.words.get_or("site.event." + e.kind, e.kind) +
+                                           (e.text.empty() ? "" : ": ") + e.text)));
   return element("h2", html(page.words.get("site.events"))) + element("ol", items);
 }
 
@@ -70,17 +72,24 @@ std::string tables(const Page& page, const MachineHistory& m) {
   return element("h2", html(page.words.get("site.last_tables"))) + element("ul", items);
 }
 
+/// As found and as left on one day has words of its own.
+std::string change_text(const Page& page, const HistorySeries& s, const HistoryChange& c) {
+  const std::string size = value_text(page, c.size, c.u, s.unit);
+  if (c.cause == "table" && c.after == c.before)
+    return page.words.get("site.change.adjusted", {{"size", size}, {"date", c.before}});
+  return page.words.get(
+      "site.change." + c.cause,
+      {{"size", size},
+       {"after", c.after},
+       {"before", c.before},
+       {"event", event_text(page.words, c.event)},
+       {"p", localised(evidence_text({"p", c.p, Quantity::probability}), page.words.language())}});
+}
+
 std::string changes(const Page& page, const HistorySeries& s) {
   std::string out;
   for (const HistoryChange& c : s.changes)
-    out += element(
-        "p", html(page.words.get("site.change." + c.cause,
-                                 {{"size", value_text(page, c.size, c.u, s.unit)},
-                                  {"after", c.after},
-                                  {"before", c.before},
-                                  {"event", c.event},
-                                  {"p", localised(evidence_text({"p", c.p, Quantity::probability}),
-                                                  page.words.language())}})));
+    out += element("p", with_whole_days(html(change_text(page, s, c))));
   if (s.changes.empty() && s.smallest_change)
     out +=
         element("p",
@@ -120,7 +129,7 @@ std::string numbers(const Page& page, const HistorySeries& s) {
       state += " (" + page.words.get_or("site.not_joined." + p.why_not, p.why_not) + ")";
     rows += element(
         "tr",
-        element("td", html(p.date)) + element("td", html(state)) +
+        element("td", with_whole_days(html(p.date))) + element("td", html(state)) +
             element("td", html(value_text(page, p.value, p.u, s.unit)), "class=\"number\"") +
             element("td", link(p.link.empty() ? "" : page.to_root + p.link, html(p.campaign))));
   }
@@ -130,10 +139,16 @@ std::string numbers(const Page& page, const HistorySeries& s) {
                                                               element("tbody", rows))));
 }
 
+/// Of two series of one quantity the one that has ended says so.
+std::string title_of(const Page& page, const HistorySeries& s) {
+  const std::string title = s.axis + " · " + quantity_text(page, s.quantity);
+  if (!s.ended || s.points.empty()) return title;
+  return title + ", " + page.words.get("site.until", {{"date", s.points.back().date}});
+}
+
 std::string one_series(const Page& page, const MachineHistory& m, const HistorySeries& s) {
-  return element("section", element("h3", html(s.axis + " · " + quantity_text(page, s.quantity))) +
-                                history_chart(page, m, s) + changes(page, s) + forecast(page, s) +
-                                numbers(page, s));
+  return element("section", element("h3", html(title_of(page, s))) + history_chart(page, m, s) +
+                                changes(page, s) + forecast(page, s) + numbers(page, s));
 }
 
 std::string curves(const Page& page, const MachineHistory& m) {

@@ -44,9 +44,7 @@ void say(std::string& line, const std::string& sentence) {
 }
 
 std::string text_of(const Page& page, const MorningLine& l) {
-  const auto part = [&](const char* name) {
-    return typeset(finding_text(page.templates, page.words.language(), l.finding, name));
-  };
+  const auto part = [&](const char* name) { return typeset(site::line_text(page, l, name)); };
   std::string line = head_of(page, l);
   const std::string where = where_of(l), number = number_of(page, l);
   if (!where.empty() || !number.empty()) line += "  ";
@@ -56,7 +54,7 @@ std::string text_of(const Page& page, const MorningLine& l) {
   else
     line += " ";
   say(line, part("says"));
-  if (!l.since.empty()) say(line, page.words.get("site.since", {{"date", l.since}}));
+  say(line, site::since_text(page, l));
   if (l.state == State::known)
     say(line,
         page.words.get("site.acknowledged", {{"by", l.by}, {"until", l.until}, {"why", l.why}}));

@@ -80,12 +80,14 @@ void evaluate_for(int stream, const reading::Context& context, process::SharedSt
     fs::path folder;
     std::string id;
     reading::Twins twins;
-    if (!wire::unpack(request, folder, id, twins)) return;
+    std::optional<HistorySoFar> history;
+    if (!wire::unpack(request, folder, id, twins, history)) return;
     evaluation::AnalysedCampaign analysed = evaluation::analyse(
         reading::read_campaign(folder, context, tell), id, context, tell, twins);
     const auto number = ask_for_number(stream, analysed);
-    const evaluation::Evaluated evaluated = evaluation::write_documents(
-        std::move(analysed), number ? &*number : nullptr, context, tell);
+    const evaluation::Evaluated evaluated =
+        evaluation::write_documents(std::move(analysed), number ? &*number : nullptr, context, tell,
+                                    history ? &*history : nullptr);
     prints.pass_on(now);
     const bool grown = process::has_grown(at_start);
     if (!process::write_text(stream, has_done + wire::pack(evaluated, grown))) return;
@@ -119,8 +121,9 @@ constexpr const char* no_process_of_ours =
 }  // namespace
 
 Expected<Evaluator::Analysed> Evaluator::analyse(const fs::path& folder, const std::string& id,
-                                                 const reading::Twins& twins) {
-  if (!process::write_text(stream_, wire::pack(folder, id, twins))) ::_exit(0);
+                                                 const reading::Twins& twins,
+                                                 const std::optional<HistorySoFar>& history) {
+  if (!process::write_text(stream_, wire::pack(folder, id, twins, history))) ::_exit(0);
   for (std::string said;;) {
     if (!process::read_text(stream_, said)) ::_exit(0);
     if (said.empty()) break;

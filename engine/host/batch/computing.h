@@ -9,6 +9,7 @@
 #include "host/batch/prints.h"
 #include "host/batch/worker.h"
 #include "host/evaluation/evaluate.h"
+#include "nonio/sdk/history.h"
 
 namespace nonio::host::batch {
 
@@ -33,7 +34,8 @@ class Evaluator {
   /// `read_campaign` and `analyse`, done by the other side. Where that is gone, this process ends
   /// too: its parent knows why. An error: it says what no process of ours says.
   Expected<Analysed> analyse(const std::filesystem::path& folder, const std::string& id,
-                             const reading::Twins& twins);
+                             const reading::Twins& twins,
+                             const std::optional<HistorySoFar>& history);
   /// `write_documents` of the same campaign. `assigned`: where a number was wanted.
   Expected<evaluation::Evaluated> write_documents(
       const std::string& id, std::optional<evaluation::AssignedNumber> assigned);

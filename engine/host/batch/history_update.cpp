@@ -74,7 +74,7 @@ Expected<void> HistoryUpdate::begin() {
 
 Expected<std::vector<std::string>> HistoryUpdate::end(std::uint64_t last, std::uint64_t night,
                                                       const std::vector<std::string>& campaigns,
-                                                      const Expected<history::Told>& told) const {
+                                                      const Expected<history::Told>& told) {
   if (!told) return fail(told.error());
   auto updated =
       read_apart<history::Updated>("the history", context_.site.limits.disk_seconds,
@@ -84,16 +84,18 @@ Expected<std::vector<std::string>> HistoryUpdate::end(std::uint64_t last, std::u
                                                             *told, [&] { signs.beat(); });
                                    });
   if (!updated) return fail(updated.error());
+  rebuilt_ = rebuilt_ || updated->rebuilt;
   std::vector<std::string> notes;
   for (const std::string& left : updated->left_out) notes.push_back("not in the history: " + left);
   if (!notes.empty()) return notes;
   if (auto noted = history::note_known_night(options_.out, night); !noted)
     return fail(noted.error());
+  known_ = night;
   return notes;
 }
 
 Expected<std::vector<std::string>> HistoryUpdate::end(const std::vector<std::string>& campaigns,
-                                                      const Expected<history::Told>& told) const {
+                                                      const Expected<history::Told>& told) {
   if (!known_) return std::vector<std::string>{};
   return end(*known_, *known_, campaigns, told);
 }

@@ -29,15 +29,18 @@ class HistoryUpdate {
   /// the store as it was, and the next night makes it again.
   Expected<std::vector<std::string>> end(std::uint64_t last, std::uint64_t night,
                                          const std::vector<std::string>& campaigns,
-                                         const Expected<history::Told>& told) const;
+                                         const Expected<history::Told>& told);
   /// The same between nights, where a store that is behind is left to the next one.
   Expected<std::vector<std::string>> end(const std::vector<std::string>& campaigns,
-                                         const Expected<history::Told>& told) const;
+                                         const Expected<history::Told>& told);
+  /// Whether the store was made from nothing.
+  bool rebuilt() const { return rebuilt_; }
 
  private:
   const RunOptions& options_;
   const reading::Context& context_;
-  std::optional<std::uint64_t> known_{};  ///< the night that the store knew at the begin
+  std::optional<std::uint64_t> known_{};  ///< the night that the store knows
+  bool rebuilt_ = false;
 };
 
 }  // namespace nonio::host::batch

@@ -62,13 +62,23 @@ evaluation::AssignedNumber number_of(const SiteWork& site, const RegisterState& 
   return assigned;
 }
 
+Expected<std::optional<HistorySoFar>> history_of(const SiteWork& site, const CampaignState& c) {
+  const auto basis = site.histories.find(c.id);
+  if (basis == site.histories.end()) return std::optional<HistorySoFar>();
+  auto history = morning::history_so_far(site.options.out, basis->second);
+  if (!history) return fail(history.error());
+  return std::optional(std::move(*history));
+}
+
 /// Read, analysed, numbered, written. `as_draft`: without a number, whatever the rules say.
 Expected<evaluation::Evaluated> evaluated_apart(const SiteWork& site, const RegisterState& state,
                                                 const CampaignState& c, const fs::path& folder,
                                                 certificates::CampaignFiles& files, bool as_draft,
                                                 bool& locked, Evaluator& evaluator) {
-  const auto analysed =
-      evaluator.analyse(folder, c.id, site.twins ? *site.twins : twins_of(c, site.campaigns));
+  const auto history = history_of(site, c);
+  if (!history) return fail(history.error());
+  const auto analysed = evaluator.analyse(
+      folder, c.id, site.twins ? *site.twins : twins_of(c, site.campaigns), *history);
   if (!analysed) return fail(analysed.error());
   std::optional<evaluation::AssignedNumber> number;
   if (analysed->missing)
@@ -101,7 +111,7 @@ Expected<evaluation::Evaluated> certified(const SiteWork& site, const RegisterSt
 
 /// In the worker's process, which has no plugin code: that runs at the other end of the stream.
 Answer work(const SiteWork& site, const RegisterState& state, std::size_t index, bool first,
-            process::SharedStatus& stage, Evaluator& evaluator) {
+            process::SharedStatus& stage, Evaluator& evaluator, bool& shows_history) {
   if (first && site.signer != nullptr) site.signer->leave_to_worker();
   const CampaignState& c = site.campaigns[index];
   bool locked = false;
@@ -111,6 +121,7 @@ Answer work(const SiteWork& site, const RegisterState& state, std::size_t index,
     return Answer::not_stored;
   }
   const evaluation::Evaluated& evaluated = *evaluation;
+  shows_history = evaluated.history.has_value();
   if (locked && !state.last_trial) return Answer::waits;
   if (evaluated.status == evaluation::Status::failed && !first) return Answer::again;
   const bool may_pass = evaluated.retry || is_of_the_machine(evaluated);
@@ -137,9 +148,9 @@ Answer work(const SiteWork& site, const RegisterState& state, std::size_t index,
 }  // namespace
 
 Answer do_campaign(const SiteWork& site, const RegisterState& state, std::size_t index, bool first,
-                   process::SharedStatus& stage, Evaluator& evaluator) {
+                   process::SharedStatus& stage, Evaluator& evaluator, bool& shows_history) {
   try {
-    return work(site, state, index, first, stage, evaluator);
+    return work(site, state, index, first, stage, evaluator, shows_history);
   } catch (const std::bad_alloc&) {
     stage.set(stage.get() +
               ": out of memory (the limit for one campaign is in site.toml, [limits])");

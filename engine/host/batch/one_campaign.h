@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "host/batch/worker.h"
 #include "host/certificates/numbering.h"
 #include "host/certificates/signer.h"
+#include "host/morning/history_so_far.h"
 
 namespace nonio::host::batch {
 
@@ -22,6 +24,8 @@ struct SiteWork {
   const certificates::Numbers& numbers;
   certificates::Signer* signer;  ///< null: nobody signs
   const reading::Twins* twins;   ///< of the one campaign that is released; null: it is a night
+  /// Of campaigns whose documents show their machine's history.
+  const std::map<std::string, morning::HistoryBasis>& histories;
 };
 
 /// The register of certificates, as known when a worker is started.
@@ -35,7 +39,8 @@ struct RegisterState {
 /// stream. Evaluates one campaign, numbers and signs it where that is wanted, and stages its files.
 /// `first`: no campaign was done in this process before. What plugins throw is caught where they
 /// are called. With Answer::not_stored the stage says why.
+/// `shows_history`: whether a document of the campaign shows the machine's.
 Answer do_campaign(const SiteWork& site, const RegisterState& state, std::size_t index, bool first,
-                   process::SharedStatus& stage, Evaluator& evaluator);
+                   process::SharedStatus& stage, Evaluator& evaluator, bool& shows_history);
 
 }  // namespace nonio::host::batch

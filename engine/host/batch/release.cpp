@@ -197,7 +197,10 @@ class Releaser {
     if (!(*place)->signer) return refuse("site.toml says nothing of a key; expected [signing]");
     if (!(*place)->no_key.empty()) return refuse((*place)->no_key);
     const certificates::Releasing releasing{*out_.draft, approval, twins_};
-    const ReleaseDesk desk{&*(*place)->signer, &releasing, {}, &*(*place)->host};
+    ReleaseDesk desk{&*(*place)->signer, &releasing, {}, &*(*place)->host};
+    // What the store does not know yet comes in with the next night.
+    if (auto bases = morning::history_bases(options_.out, {id_}); bases)
+      for (morning::HistoryBasis& b : *bases) desk.histories.emplace(id_, std::move(b));
     CampaignState campaign;
     campaign.id = id_;
     campaign.folder = out_.draft->folder;

@@ -14,6 +14,7 @@
 #include "host/batch/read_apart.h"
 #include "host/batch/runner.h"
 #include "host/batch/set_up.h"
+#include "host/batch/shown_histories.h"
 #include "host/batch/store.h"
 #include "host/batch/summary.h"
 #include "host/batch/survey.h"
@@ -173,12 +174,10 @@ void leave_out_forgotten(Night& night, const Expected<history::Told>& told) {
 }
 
 /// An index that cannot be written is no reason to lose a night: it is made again from the results.
-void write_history(Night& night, const HistoryUpdate& history, const NightState& state,
-                   const Expected<history::Told>& told, const RunEvents& events) {
-  std::vector<std::string> done;
-  for (const CampaignState& c : night.campaigns)
-    if (c.action == Action::done && c.is_campaign) done.push_back(c.id);
-  auto notes = history.end(state.last ? state.last->night.number : 0, state.number, done, told);
+void write_history(Night& night, HistoryUpdate& history, std::uint64_t known,
+                   const std::vector<std::string>& done, const Expected<history::Told>& told,
+                   const RunEvents& events) {
+  auto notes = history.end(known, night.night.number, done, told);
   if (!notes) {
     night.history_error = notes.error().message;
     notes = {"this night is not in the history: " + night.history_error +
@@ -190,6 +189,39 @@ void write_history(Night& night, const HistoryUpdate& history, const NightState&
     events.note(note);
     night.notes.push_back(std::move(note));
   }
+}
+
+/// Reports that show another history of their machine than the store has by now are written again:
+/// whatever the order in which campaigns came, each sees all that its day knew. False if it was
+/// interrupted.
+bool show_histories(const RunOptions& options, const RunEvents& events,
+                    const reading::Context& context, const NightState& state, ReleaseDesk desk,
+                    HistoryUpdate& history, const Expected<history::Told>& told, Night& night) {
+  if (!told || !night.history_error.empty()) return true;  // said already; the next night does it
+  const ShownHistories shown(options, context);
+  auto others = shown.others(night.campaigns, *told, history.rebuilt());
+  std::string error = others ? std::string() : others.error().message;
+  if (others && !others->empty())
+    if (const auto begun = shown.begin(); !begun) error = begun.error().message;
+  if (error.empty() && !others->empty()) {
+    std::vector<std::string> again;
+    for (CampaignState& c : night.campaigns) {
+      if (!others->contains(c.id)) continue;
+      if (c.action != Action::done) c.reason = "the history of its machine changed";
+      c.action = Action::todo;
+      again.push_back(c.id);
+    }
+    desk.histories = std::move(*others);
+    if (!do_campaigns(options, events, context, state, desk, night.campaigns)) return false;
+    write_history(night, history, state.number, again, told, events);
+  }
+  if (error.empty())
+    if (const auto ended = shown.end(night.campaigns, *told); !ended) error = ended.error().message;
+  if (error.empty() || process::is_stop_requested()) return !process::is_stop_requested();
+  night.history_error = "histories in reports are not up to date: " + error;
+  night.notes.push_back(night.history_error + "; the next night writes them");
+  events.note(night.notes.back());
+  return true;
 }
 
 /// Pages that cannot be made are no reason to lose a night: they are made again from the results.
@@ -308,6 +340,9 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
 
   HistoryUpdate history(options, context);
   if (const auto begun = history.begin(); !begun) return refuse(begun.error().message);
+  if (std::any_of(night.campaigns.begin(), night.campaigns.end(), is_todo))
+    if (const auto begun = ShownHistories(options, context).begin(); !begun)
+      return refuse(begun.error().message);
   store_refused(options, context, *state, events, night.campaigns);
   ReleaseDesk desk;
   auto& signer = place.signer;
@@ -318,12 +353,19 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
       if (!state->issued_before) state->issued_before = issued_so_far(numbers);
       return check_numbers(options.out, night.campaigns, numbers);
     };
-  if (!do_campaigns(options, events, context, *state, desk, night.campaigns)) {
+  const auto interrupted = [&] {
     night.end = Night::End::interrupted;
     tidy_root(options.out);
-    return;
+  };
+  if (!do_campaigns(options, events, context, *state, desk, night.campaigns)) return interrupted();
+  if (!process::is_stop_requested()) {
+    std::vector<std::string> done;
+    for (const CampaignState& c : night.campaigns)
+      if (c.action == Action::done && c.is_campaign) done.push_back(c.id);
+    write_history(night, history, state->last ? state->last->night.number : 0, done, told, events);
+    if (!show_histories(options, events, context, *state, desk, history, told, night))
+      return interrupted();
   }
-  if (!process::is_stop_requested()) write_history(night, history, *state, told, events);
   // The campaigns are safe; if this fails the night stays open, and the next run ends it.
   const auto closed = close_night(night, options, events, context, *state);
   if (closed) return;

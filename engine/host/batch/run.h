@@ -47,6 +47,9 @@ struct CampaignState {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> twins{};
   /// The same as its record knew it, with the other one's id.
   std::vector<std::pair<std::uint64_t, std::string>> twins_before{};
+  /// Digest of the machine's history that a document shows; empty: not known when it was written.
+  /// None: no document asks for it.
+  std::optional<std::string> history{};
 };
 
 /// A campaign that has results and is not in the site any more. Its results stay; a

@@ -61,9 +61,11 @@ class Runner {
               campaigns,
               numbers_,
               signer_,
-              desk.releasing ? &desk.releasing->twins : nullptr},
+              desk.releasing ? &desk.releasing->twins : nullptr,
+              desk.histories},
         recheck_(desk.recheck),
         register_{.read = recheck_ == nullptr},
+        histories_(desk.histories),
         campaigns_(campaigns),
         disk_(options.out),
         losses_(campaigns.size()),
@@ -113,8 +115,10 @@ class Runner {
     const auto task = [this](int stream) {
       return [this, stream](std::size_t c, bool first, process::SharedStatus& stage) {
         Evaluator evaluator(stream, secrets_);
-        const Answer answer = do_campaign(work_, register_, c, first, stage, evaluator);
-        return Outcome(answer, evaluator.grown());
+        bool shows_history = false;
+        const Answer answer =
+            do_campaign(work_, register_, c, first, stage, evaluator, shows_history);
+        return Outcome(answer, evaluator.grown(), shows_history);
       };
     };
     auto worker = Worker::start(plugins_, task, context_.site.limits.memory_MB);
@@ -218,6 +222,7 @@ class Runner {
       case Answer::attention:
       case Answer::failed:
         campaigns_[worker.campaign()].status = status_of(answer);
+        note_history(campaigns_[worker.campaign()], worker.shows_history());
         store_staged(worker.campaign());
         return answer != Answer::failed && worker.given() < campaigns_per_worker_ &&
                !worker.grown() && again_.empty();
@@ -237,6 +242,12 @@ class Runner {
     const process::ChildEnd end = worker.end();
     not_done(worker, stage + ": " + (end.well ? "ended the process" : end.words));
     return false;
+  }
+
+  void note_history(CampaignState& c, bool shown) const {
+    c.history.reset();
+    const auto basis = histories_.find(c.id);
+    if (shown) c.history = basis == histories_.end() ? std::string() : basis->second.sha256;
   }
 
   /// What an earlier campaign left behind in the process may be the cause: only what fails in a new
@@ -352,6 +363,7 @@ class Runner {
   const SiteWork work_;
   NumbersCheck recheck_;  ///< null: done
   RegisterState register_;
+  const std::map<std::string, morning::HistoryBasis>& histories_;
   std::vector<CampaignState>& campaigns_;
   const storage::Disk disk_;           ///< before the first process that writes
   std::vector<std::uint32_t> losses_;  ///< of the disk, when each campaign was begun

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "host/batch/night_state.h"
@@ -9,6 +11,7 @@
 #include "host/batch/run.h"
 #include "host/certificates/numbering.h"
 #include "host/certificates/signer.h"
+#include "host/morning/history_so_far.h"
 
 namespace nonio::host::batch {
 
@@ -21,6 +24,8 @@ struct ReleaseDesk {
   const certificates::Releasing* releasing = nullptr;  ///< null: it is a night
   NumbersCheck recheck{};                              ///< empty: the register was read before
   PluginHost* plugins = nullptr;                       ///< makes the processes that evaluate
+  /// Of campaigns whose documents show their machine's history; the others do without.
+  std::map<std::string, morning::HistoryBasis> histories{};
 };
 
 /// Does every campaign that is to do, in workers of its own. False if it was interrupted.

@@ -71,6 +71,7 @@ Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
   record.inputs.insert(record.inputs.end(), e.inputs.begin(), e.inputs.end());
   if (e.certificate) record.certificate = e.certificate->issue.number;
   record.draft = e.certificate && e.certificate->draft;
+  record.history = e.history;
   record.errors = e.results.errors;
   const std::string& language = context.site.language;
   if (language != "en") record.language = language;

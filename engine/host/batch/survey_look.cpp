@@ -117,6 +117,7 @@ void ChangeDetector::judge(CampaignState& state, const Last& last,
   if (state.reason.empty() && !(*last)->whole) state.reason = "its last results are not whole";
   if (!state.reason.empty()) return;
   state.twins_before = twins_of(record.inputs);
+  if (record.history) state.history = record.history->sha256;
   state.action = tonight ? CampaignState::Action::done : CampaignState::Action::unchanged;
   state.reason = tonight ? record.reason : "nothing changed";
   state.status = record.status;

@@ -30,6 +30,7 @@ process::Parcel packed(const CampaignState& state, const std::string& unknown) {
   for (const std::uint64_t digest : state.readings) parcel.add(digest);
   parcel.add(state.twins_before.size());
   for (const auto& [digest, id] : state.twins_before) parcel.add(digest).add(id);
+  parcel.add(std::uint64_t{state.history.has_value()}).add(state.history.value_or(""));
   return parcel;
 }
 
@@ -55,6 +56,9 @@ std::string unpack(process::Parcel& parcel, CampaignState& state) {
     const std::uint64_t digest = parcel.number();
     state.twins_before.emplace_back(digest, parcel.text());
   }
+  const bool shows_history = parcel.number() != 0;
+  std::string history = parcel.text();
+  if (shows_history) state.history = std::move(history);
   return unknown;
 }
 

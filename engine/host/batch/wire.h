@@ -19,6 +19,8 @@
 #include "host/config/site_logs.h"
 #include "host/evaluation/evaluate.h"
 #include "host/history/store.h"
+#include "host/morning/history_so_far.h"
+#include "nonio/sdk/history.h"
 #include "nonio/sdk/plugin.h"
 
 /// Values as bytes, between two processes of one program: numbers bit by bit. What comes from a
@@ -240,13 +242,23 @@ NONIO_ON_THE_WIRE(Formula::Parameter, a, b, c, d)
 NONIO_ON_THE_WIRE(Formula, a, b, c, d, e)
 NONIO_ON_THE_WIRE(Campaign, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
 
+NONIO_ON_THE_WIRE(HistoryPoint, a, b, c, d, e, f, g, h, i)
+NONIO_ON_THE_WIRE(HistorySegment, a, b, c, d, e, f, g, h, i, j)
+NONIO_ON_THE_WIRE(HistoryChange, a, b, c, d, e, f, g, h, i, j)
+NONIO_ON_THE_WIRE(HistoryForecast, a, b, c, d, e, f)
+NONIO_ON_THE_WIRE(HistorySeries, a, b, c, d, e, f, g, h, i, j, k)
+NONIO_ON_THE_WIRE(MachineEvent, a, b, c, d)
+NONIO_ON_THE_WIRE(HistoryStep, a, b, c, d, e, f, g, h, i)
+NONIO_ON_THE_WIRE(HistorySoFar, a, b, c, d, e, f, g, h, i, j)
+
 NONIO_ON_THE_WIRE(evaluation::IssuedFile, a, b, c, d)
 NONIO_ON_THE_WIRE(evaluation::Certificate, a, b, c, d, e, f, g, h)
 NONIO_ON_THE_WIRE(evaluation::AssignedNumber, a, b, c)
 NONIO_ON_THE_WIRE(evaluation::FollowedQuantity::Common, a, b)
 NONIO_ON_THE_WIRE(evaluation::FollowedQuantity, a, b, c, d, e, f, g, h, i, j, k)
 NONIO_ON_THE_WIRE(evaluation::FollowedGroup, a, b)
-NONIO_ON_THE_WIRE(evaluation::Evaluated, a, b, c, d, e, f, g, h)
+NONIO_ON_THE_WIRE(evaluation::ShownHistory, a, b)
+NONIO_ON_THE_WIRE(evaluation::Evaluated, a, b, c, d, e, f, g, h, i)
 
 NONIO_ON_THE_WIRE(config::TemplateFiles, a, b)
 NONIO_ON_THE_WIRE(config::SiteFiles, a, b)
@@ -255,6 +267,9 @@ NONIO_ON_THE_WIRE(config::Acknowledgement, a, b, c, d, e, f, g, h, i, j, k)
 NONIO_ON_THE_WIRE(config::Forgotten, a, b, c, d, e)
 NONIO_ON_THE_WIRE(config::SiteLogs, a, b, c)
 NONIO_ON_THE_WIRE(history::Updated, a, b, c)
+NONIO_ON_THE_WIRE(history::MachineAsStated, a, b, c, d)
+NONIO_ON_THE_WIRE(history::NamedMachine, a, b, c)
+NONIO_ON_THE_WIRE(morning::HistoryBasis, a, b, c, d, e, f, g, h)
 NONIO_ON_THE_WIRE(evaluation::KnownFinding, a, b, c, d, e)
 NONIO_ON_THE_WIRE(certificates::Approval, a, b, c, d)
 NONIO_ON_THE_WIRE(certificates::RegisterEntry, a, b, c, d, e, f, g, h, i, j, k, l)

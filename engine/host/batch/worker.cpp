@@ -22,7 +22,7 @@ namespace {
 
 struct Message {
   Answer answer;
-  bool grown;
+  bool grown, shows_history;
 };
 
 [[noreturn]] void serve(const Worker::Task& task, int channel, double memory_MB,
@@ -34,7 +34,8 @@ struct Message {
   bool first = true;
   for (std::size_t campaign; ::read(channel, &campaign, sizeof campaign) == sizeof campaign;) {
     const Outcome outcome = task(campaign, first, stage);
-    const Message message{outcome.answer, outcome.grown || process::has_grown(at_start)};
+    const Message message{outcome.answer, outcome.grown || process::has_grown(at_start),
+                          outcome.shows_history};
     if (::write(channel, &message, sizeof message) != sizeof message) break;
     first = false;
   }
@@ -107,7 +108,8 @@ Worker::Worker(Worker&& other) noexcept
       campaign_(other.campaign_),
       given_(other.given_),
       deadline_(other.deadline_),
-      grown_(other.grown_) {}
+      grown_(other.grown_),
+      shows_history_(other.shows_history_) {}
 
 Worker& Worker::operator=(Worker&& other) noexcept {
   std::swap(pid_, other.pid_);
@@ -118,6 +120,7 @@ Worker& Worker::operator=(Worker&& other) noexcept {
   given_ = other.given_;
   deadline_ = other.deadline_;
   grown_ = other.grown_;
+  shows_history_ = other.shows_history_;
   return *this;
 }
 
@@ -142,6 +145,7 @@ std::optional<Answer> Worker::answer() {
     const bool silent = n < 0 && (errno == EAGAIN || errno == EINTR);
     if (n == sizeof message && message.answer < Answer::none) {
       grown_ = message.grown;
+      shows_history_ = message.shows_history;
       return message.answer;
     }
     if (gone || !silent) return Answer::none;

@@ -30,10 +30,11 @@ enum class Answer : char {
 class PluginHost;
 
 struct Outcome {
-  Outcome(Answer a, bool has_grown = false)
-      : answer(a), grown(has_grown) {}  // NOLINT: an answer is one
+  Outcome(Answer a, bool has_grown = false, bool history = false)
+      : answer(a), grown(has_grown), shows_history(history) {}  // NOLINT: an answer is one
   Answer answer;
-  bool grown;  ///< the memory of a process that works for this one
+  bool grown;          ///< the memory of a process that works for this one
+  bool shows_history;  ///< a document of the campaign asks for the machine's
 };
 
 /// A process that does campaigns one after the other, as its parent names them; with another one
@@ -62,6 +63,8 @@ class Worker {
 
   /// Whether the memory of the process has grown noticeably since its start.
   bool grown() const { return grown_; }
+  /// Of the campaign that was answered last.
+  bool shows_history() const { return shows_history_; }
   /// The answer to the campaign that was given last, if there is one yet.
   std::optional<Answer> answer();
   /// After Answer::none: what became of the process, or of the one with the plugins.
@@ -77,7 +80,7 @@ class Worker {
   process::SharedStatus stage_;
   std::size_t campaign_ = 0, given_ = 0;
   Clock::time_point deadline_{};
-  bool grown_ = false;
+  bool grown_ = false, shows_history_ = false;
 };
 
 /// Returns when one of them may have an answer, when `other` (a descriptor, or -1) can be read, or

@@ -34,6 +34,12 @@ struct Certificate {
   std::string released{};           ///< JSON: by whom, and why findings may stand
 };
 
+/// The history of the machine that a document shows: of which campaigns, in which state.
+struct ShownHistory {
+  std::string sha256;  ///< of all that it is made from; empty: it was not known yet
+  std::vector<std::pair<std::string, std::string>> campaigns{};  ///< id, digest of their results
+};
+
 struct Evaluated {
   Campaign campaign;
   Results results;
@@ -42,7 +48,8 @@ struct Evaluated {
   std::optional<Certificate> certificate{};
   bool retry = false;  ///< it failed for a reason that does not lie in its files
   std::vector<FollowedGroup> followed{};
-  std::string purpose{};  ///< as the manifest says it
+  std::string purpose{};                  ///< as the manifest says it
+  std::optional<ShownHistory> history{};  ///< none: no document asks for it
 };
 
 /// What has become of a campaign's wish to be issued under a number.

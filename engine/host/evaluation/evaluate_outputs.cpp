@@ -12,6 +12,7 @@
 #include "host/tables/table_check.h"
 #include "nonio/sdk/check.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/history.h"
 
 namespace nonio::host::evaluation {
 
@@ -101,9 +102,15 @@ WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes) {
       wanted.controllers.push_back(
           {c, std::move(*options), names.has_value() || control == c->info.name});
   }
-  for (const Output* o : chosen_plugins(work, plugins.outputs(), names))
-    if (applies("output ", *o))
-      if (auto options = work.settle(o->info)) wanted.outputs.push_back({o, std::move(*options)});
+  for (const Output* o : chosen_plugins(work, plugins.outputs(), names)) {
+    if (!applies("output ", *o)) continue;
+    auto options = work.settle(o->info);
+    if (!options) continue;
+    const bool history = o->wants_history != nullptr &&
+                         work.asks_to_apply("output " + o->info.name, "",
+                                            [&] { return o->wants_history(*options); });
+    wanted.outputs.push_back({o, std::move(*options), history});
+  }
   return wanted;
 }
 
@@ -228,9 +235,15 @@ const WantedOutput* numbered_output(const Work& work, const std::vector<WantedOu
 }
 
 OutputInput document_input(const Work& work, const WantedOutput& w, const Results& results,
-                           const std::optional<Certificate>& certificate) {
-  return {work.campaign(), work.read.observations, results,
-          w.options,       work.context.templates, certificate ? &certificate->issue : nullptr};
+                           const std::optional<Certificate>& certificate,
+                           const HistorySoFar* history = nullptr) {
+  return {work.campaign(),
+          work.read.observations,
+          results,
+          w.options,
+          work.context.templates,
+          certificate ? &certificate->issue : nullptr,
+          w.history ? history : nullptr};
 }
 
 }  // namespace
@@ -291,18 +304,21 @@ OutputResult as_issued(const Certificate& certificate, const std::string& output
   return issued;
 }
 
-void write_document(const Work& work, const WantedOutput& w, Evaluated& out) {
+void write_document(const Work& work, const WantedOutput& w, const HistorySoFar* history,
+                    Evaluated& out) {
   const Output& output = *w.output;
   if (output.certificate && !out.certificate) return;
   if (output.certificate && out.certificate->issued)
     return keep_result(output.info, as_issued(*out.certificate, output.info.name), out.results);
   const std::string who = "output " + output.info.name;
   work.stage(who);
-  take_result(
-      work, output.info, who,
-      process::guarded(
-          who, [&] { return output.write(document_input(work, w, out.results, out.certificate)); }),
-      out.results);
+  take_result(work, output.info, who,
+              process::guarded(who,
+                               [&] {
+                                 return output.write(document_input(work, w, out.results,
+                                                                    out.certificate, history));
+                               }),
+              out.results);
 }
 
 bool needs_attention(const Results& results) {
@@ -321,12 +337,18 @@ bool needs_attention(const Results& results) {
 }  // namespace
 
 Evaluated write_documents(AnalysedCampaign analysed, const AssignedNumber* assigned,
-                          const reading::Context& context, const reading::Stage& stage) {
+                          const reading::Context& context, const reading::Stage& stage,
+                          const HistorySoFar* history) {
   Evaluated out = std::move(analysed.evaluated);
   const Work work{context, stage, analysed.read, out.results.errors};
   if (analysed.number)
     take_number(work, std::move(*analysed.number), assigned, analysed.documents, out);
-  for (const WantedOutput& w : analysed.documents) write_document(work, w, out);
+  for (const WantedOutput& w : analysed.documents) {
+    write_document(work, w, history, out);
+    if (w.history)
+      out.history =
+          history != nullptr ? ShownHistory{history->sha256, history->campaigns} : ShownHistory{};
+  }
   const bool attention = !analysed.read.unread.empty() || needs_attention(out.results);
   out.status = !out.results.errors.empty() ? Status::failed
                : attention                 ? Status::attention

@@ -35,6 +35,7 @@ struct WantedController {
 struct WantedOutput {
   const Output* output = nullptr;
   Settings options;
+  bool history = false;  ///< it shows the machine's
 };
 
 /// The output that is issued under a number, and what it lacks for one.
@@ -56,9 +57,11 @@ AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
                          const reading::Context& context, const reading::Stage& stage,
                          const reading::Twins& twins);
 
-/// `assigned`: the answer to `AnalysedCampaign::number`; null where nobody draws one.
+/// `assigned`: the answer to `AnalysedCampaign::number`; null where nobody draws one. `history`: of
+/// the machine up to this campaign; null where nobody knows it.
 Evaluated write_documents(AnalysedCampaign analysed, const AssignedNumber* assigned,
-                          const reading::Context& context, const reading::Stage& stage);
+                          const reading::Context& context, const reading::Stage& stage,
+                          const HistorySoFar* history = nullptr);
 
 // What `analyse` and `write_documents` are made of.
 

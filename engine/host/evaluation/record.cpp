@@ -90,6 +90,11 @@ Record record_of(dom::object json) {
   if (bool draft = false; json["draft"].get(draft) == simdjson::SUCCESS) r.draft = draft;
   for (const auto [name, size_and_digest] : dom::object(json["files"]))
     r.files.push_back({std::string(name), size_and_digest.at(0), text(size_and_digest.at(1))});
+  if (dom::object shown; json["history"].get(shown) == simdjson::SUCCESS) {
+    r.history = ShownHistory{text(shown["sha256"])};
+    for (const auto [campaign, digest] : dom::object(shown["campaigns"]))
+      r.history->campaigns.emplace_back(campaign, text(digest));
+  }
   for (const dom::object e : dom::array(json["errors"])) r.errors.push_back(error_of(e));
   r.findings = findings_of(json["findings"]);
   r.previous = findings_of(json["previous_findings"]);
@@ -132,6 +137,16 @@ std::string to_json(const Record& r) {
   if (r.draft) json.member("draft", true);
   if (!r.language.empty()) json.member("language", r.language);
   put_files(json, r.files);
+  if (r.history) {
+    json.key("history");
+    json.begin_object();
+    json.member("sha256", r.history->sha256);
+    json.key("campaigns");
+    json.begin_object();
+    for (const auto& [campaign, digest] : r.history->campaigns) json.member(campaign, digest);
+    json.end_object();
+    json.end_object();
+  }
   json.key("errors");
   json.begin_array();
   for (const Error& e : r.errors) storage::put_error(json, e);

@@ -59,6 +59,7 @@ struct Record {
   std::string certificate;                ///< its number; empty: none
   bool draft = false;                     ///< of a certificate that waits for its release
   std::vector<RecordedFile> files;
+  std::optional<ShownHistory> history{};  ///< that a document shows; none: no document asks for it
   std::vector<Error> errors;
   std::string language{};                        ///< of the site, for `nonio show`; empty: English
   std::vector<KnownFinding> findings, previous;  ///< previous: of the last night before this one

@@ -80,10 +80,13 @@ class EntryReader {
     entry_.campaign = std::string(std::string_view(c["id"]));
     entry_.day = text_at(c, "date");
     entry_.customer = text_at(c, "customer");
+    entry_.place = text_at(c, "site");
     entry_.purpose = text_at(c, "purpose");
-    if (dom::object m; c["machine"].get(m) == simdjson::SUCCESS)
+    if (dom::object m; c["machine"].get(m) == simdjson::SUCCESS) {
       entry_.machine = {text_at(m, "asset"), text_at(m, "maker"), text_at(m, "model"),
                         text_at(m, "serial")};
+      entry_.control = text_at(m, "control");
+    }
     if (dom::object i; c["instrument"].get(i) == simdjson::SUCCESS)
       entry_.instrument = {text_at(i, "maker"),       text_at(i, "model"),
                            text_at(i, "serial"),      text_at(i, "calibrated"),
@@ -252,6 +255,7 @@ std::string canonical_of(const Entry& e) {
   Canonical put;
   put(e.campaign)(e.campaign_sha256)(e.day)(e.customer)(e.purpose)(e.status)(e.message);
   put(e.machine.asset)(e.machine.maker)(e.machine.model)(e.machine.serial);
+  if (!e.place.empty() || !e.control.empty()) put(e.place)(e.control);
   const InstrumentAsStated& i = e.instrument;
   put(i.maker)(i.model)(i.serial)(i.calibrated)(i.certificate)(i.valid_until);
   put(e.results.size());

@@ -64,6 +64,7 @@ struct CertificateRow {
 /// What the history keeps of one evaluation of one campaign.
 struct Entry {
   std::string campaign, campaign_sha256, day, customer, purpose, status, message;
+  std::string place, control;  ///< of the machine, as this evaluation knew them
   MachineAsStated machine;
   InstrumentAsStated instrument;
   std::vector<ResultRow> results;  ///< those with a covariance first

@@ -33,7 +33,8 @@ constexpr const char* campaigns_sql = R"sql(
 SELECT c.campaign, c.day, c.customer, c.purpose, e.status, c.instrument_maker, c.instrument_model,
   c.instrument_serial, c.instrument_calibrated, c.instrument_certificate, c.instrument_valid_until, e.evaluation, e.night,
   (SELECT number FROM certificate n WHERE n.campaign = c.campaign AND NOT EXISTS
-     (SELECT 1 FROM certificate m WHERE m.replaces = n.number) ORDER BY number DESC LIMIT 1)
+     (SELECT 1 FROM certificate m WHERE m.replaces = n.number) ORDER BY number DESC LIMIT 1),
+  e.place, e.control
 FROM campaign c
 JOIN evaluation e ON e.campaign = c.campaign AND e.campaign_sha256 = c.campaign_sha256
 WHERE (c.machine = ? OR c.machine IN (SELECT alias FROM machine_alias WHERE machine = ?))
@@ -69,6 +70,14 @@ JOIN campaign c ON c.campaign = e.campaign AND c.campaign_sha256 = e.campaign_sh
 LEFT JOIN machine_alias a ON a.alias = c.machine
 LEFT JOIN evaluation n ON n.supersedes = e.evaluation
 ORDER BY e.evaluation
+)sql";
+
+constexpr const char* counted_sql = R"sql(
+SELECT COALESCE(a.machine, c.machine) AS name, e.campaign, c.day, e.evaluation_sha256
+FROM latest e
+JOIN campaign c ON c.campaign = e.campaign AND c.campaign_sha256 = e.campaign_sha256
+LEFT JOIN machine_alias a ON a.alias = c.machine
+WHERE e.status <> 'failed' ORDER BY name, c.day, e.campaign
 )sql";
 
 constexpr const char* followed_sql = R"sql(
@@ -151,7 +160,9 @@ Expected<StoredMachine> StoreReader::machine(const std::string& name) {
                                             .valid_until = std::move(r[10])},
                              .evaluation = whole_of<std::int64_t>(r[11]),
                              .night = whole_of<std::uint64_t>(r[12]),
-                             .number = std::move(r[13])});
+                             .number = std::move(r[13]),
+                             .place = std::move(r[14]),
+                             .control = std::move(r[15])});
   out.findings.resize(out.campaigns.size());
   for (std::size_t i = 0; i < out.campaigns.size(); ++i) {
     const std::int64_t evaluation = out.campaigns[i].evaluation;
@@ -202,6 +213,14 @@ Expected<std::vector<StoredEvaluation>> StoreReader::evaluations() {
   for (Database::Row& r : database_.rows(evaluations_sql))
     out.push_back({std::move(r[0]), std::move(r[1]), std::move(r[2]), whole_of<std::uint64_t>(r[3]),
                    r[4].empty()});
+  if (auto well = database_.take_error(); !well) return fail(well.error());
+  return out;
+}
+
+Expected<std::vector<CountedCampaign>> StoreReader::counted_campaigns() {
+  std::vector<CountedCampaign> out;
+  for (Database::Row& r : database_.rows(counted_sql))
+    out.push_back({std::move(r[0]), std::move(r[1]), std::move(r[2]), std::move(r[3])});
   if (auto well = database_.take_error(); !well) return fail(well.error());
   return out;
 }

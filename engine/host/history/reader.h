@@ -24,6 +24,7 @@ struct StoredCampaign {
   std::int64_t evaluation = 0;
   std::uint64_t night = 0;  ///< in which that evaluation came
   std::string number{};     ///< of its last certificate
+  std::string place{}, control{};
 };
 
 /// A number of a campaign: of what is followed, or a result with a tolerance or U.
@@ -62,6 +63,12 @@ struct StoredEvaluation {
   bool counts = true;  ///< no other supersedes it
 };
 
+/// A campaign's last evaluation.
+struct CountedCampaign {
+  std::string machine;  ///< aliases joined; empty: of none
+  std::string campaign, day, sha256;
+};
+
 /// What people say, as the store has it.
 struct StoredLogs {
   std::vector<config::Event> events;
@@ -85,6 +92,8 @@ class StoreReader {
   Expected<std::map<std::string, std::string>> machine_of_campaigns();
   /// In their order: the same list, the same results.
   Expected<std::vector<StoredEvaluation>> evaluations();
+  /// Of each campaign the one that counts, without those that failed; by machine, day and id.
+  Expected<std::vector<CountedCampaign>> counted_campaigns();
   /// Numbers of each campaign and what they replace, as one text.
   Expected<std::map<std::string, std::string>> certificates();
   /// How many different quantities of axes each night from this one on has evaluated.

@@ -71,11 +71,11 @@ void insert(Database& database, std::int64_t evaluation, const Known& known, con
   insert_campaign(database, e);
   const Database::Value supersedes = before.evaluation == 0 ? Database::Value(Database::Null{})
                                                             : Database::Value(before.evaluation);
-  database.put(
-      "INSERT INTO evaluation VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-      {evaluation, known.since.sha256, e.campaign, e.campaign_sha256,
-       static_cast<std::int64_t>(known.since.night.number), known.since.night.date,
-       known.since.version, e.status, e.message, supersedes, std::string_view(why(known, before))});
+  database.put("INSERT INTO evaluation VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+               {evaluation, known.since.sha256, e.campaign, e.campaign_sha256,
+                static_cast<std::int64_t>(known.since.night.number), known.since.night.date,
+                known.since.version, e.status, e.message, supersedes,
+                std::string_view(why(known, before)), e.place, e.control});
   for (std::size_t i = 0; i < e.results.size(); ++i)
     insert_result(database, evaluation, number(i), e.results[i]);
   for (const CovarianceRow& c : e.covariance) {

@@ -25,6 +25,7 @@ CREATE TABLE evaluation (
   evaluation BIGINT PRIMARY KEY, evaluation_sha256 TEXT NOT NULL, campaign TEXT NOT NULL,
   campaign_sha256 TEXT NOT NULL, night BIGINT NOT NULL, date TEXT NOT NULL, version TEXT NOT NULL,
   status TEXT NOT NULL, message TEXT NOT NULL, supersedes BIGINT UNIQUE REFERENCES evaluation, why TEXT NOT NULL,
+  place TEXT NOT NULL, control TEXT NOT NULL,
   FOREIGN KEY (campaign, campaign_sha256) REFERENCES campaign);
 CREATE INDEX evaluation_of_campaign ON evaluation (campaign, evaluation);
 CREATE INDEX campaign_of_machine ON campaign (machine);

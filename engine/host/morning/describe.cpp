@@ -261,7 +261,11 @@ reports::MachineHistory describe(const AssessedMachine& machine, const fs::path&
   reports::MachineHistory m;
   m.id = named.name, m.maker = named.stated.maker;
   m.model = named.stated.model, m.serial = named.stated.serial;
-  if (!machine.stored.campaigns.empty()) m.customer = machine.stored.campaigns.back().customer;
+  for (const StoredCampaign& c : machine.stored.campaigns) {  // the last that says it
+    m.customer = c.customer;
+    if (!c.place.empty()) m.place = c.place;
+    if (!c.control.empty()) m.control = c.control;
+  }
   for (const config::Event& e : machine.events)
     m.events.push_back({e.date, e.axis, e.kind, e.text});
   m.tables = tables_kept(machine);

@@ -15,6 +15,17 @@ template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, Finding>
 void fields(Io& io, T& f) { io(f.id, f.attention, f.evidence, f.texts, f.measurement, f.advice); }
 
+template <class Io, class T>
+requires std::is_same_v<std::remove_const_t<T>, HistoryPoint>
+void fields(Io& io, T& p) {
+  io(p.campaign, p.date, p.link, p.state, p.value, p.u, p.joined, p.why_not, p.u_common);
+}
+
+/// Of one that is only compared.
+template <class Io, class T>
+requires std::is_same_v<std::remove_const_t<T>, HistorySeries>
+void fields(Io& io, T& s) { io(s.axis, s.quantity, s.unit, s.points, s.model); }
+
 }  // namespace nonio
 
 namespace nonio::reports {
@@ -27,19 +38,8 @@ void fields(Io& io, T& l) {
 }
 
 template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, HistoryPoint>
-void fields(Io& io, T& p) {
-  io(p.campaign, p.date, p.link, p.state, p.value, p.u, p.joined, p.why_not, p.u_common);
-}
-
-template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, IntervalProposal>
 void fields(Io& io, T& p) { io(p.months, p.method, p.axis, p.quantity, p.why); }
-
-/// Of one that is only compared.
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, HistorySeries>
-void fields(Io& io, T& s) { io(s.axis, s.quantity, s.unit, s.points, s.model); }
 
 /// Of one that is only compared.
 template <class Io, class T>

@@ -32,8 +32,8 @@ void add_measurements(const Source& source, Blocks& blocks) {
 
 Expected<pages::Look> look_of(const Templates& templates, const std::string& name) {
   return pages::read_look(templates, name,
-                          {"title", "identity", "status", "measurements", "notes", "laboratory",
-                           "models", "tables", "residuals"},
+                          {"title", "identity", "status", "measurements", "notes", "history",
+                           "laboratory", "models", "tables", "residuals"},
                           {"results", "plots", "findings", "targets", "budget"});
 }
 
@@ -67,6 +67,7 @@ Document compose(const Source& source) {
       add_measurements(source, document.blocks);
       add_plans(source, document.blocks);
     }
+    if (block == "history") add_history(source, document.blocks);
     if (block == "laboratory") add_laboratory(source, document.blocks);
     if (block == "models") add_models(source, document.blocks);
     if (block == "tables") add_tables(source, document.blocks);

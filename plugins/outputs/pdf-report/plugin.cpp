@@ -3,6 +3,8 @@
 // The report of a campaign as a PDF, for people. What it says and shows is in templates/.
 #include "nonio/sdk/plugin.h"
 
+#include <algorithm>
+
 #include "report.h"
 
 namespace nonio::pdf_report {
@@ -11,6 +13,8 @@ namespace {
 constexpr const char* default_template = "report";
 
 bool applies(const Campaign&) { return true; }
+
+bool wants_history(const Settings& options) { return options.flag("history"); }
 
 void prepare(const Templates& templates) {
   if (const auto look = look_of(templates, default_template))
@@ -25,10 +29,16 @@ Expected<OutputResult> write(const OutputInput& in) {
   if (!fonts) return fail(fonts.error());
   if (const auto sound = pages::check_texts(in.campaign, **fonts); !sound)
     return fail(sound.error());
+  if (wants_history(in.options) &&
+      std::find(look->blocks.begin(), look->blocks.end(), "history") == look->blocks.end())
+    return fail(
+        Error{"options.pdf-report.history: the template has no block \"history\"; expected "
+              "it in the list `blocks` of templates/" +
+              in.options.text("template", default_template) + ".toml"});
   const Wording words(in.templates, language, {"results", "report"}),
-      pictures(in.templates, language, {"pictures"});
-  const reports::Document document = compose({{in, *look, words, **fonts}, pictures});
-  for (const Wording* asked : {&words, &pictures})
+      pictures(in.templates, language, {"pictures"}), site(in.templates, language, {"site"});
+  const reports::Document document = compose({{in, *look, words, **fonts}, pictures, site});
+  for (const Wording* asked : {&words, &pictures, &site})
     if (const auto complete = asked->complete(); !complete) return fail(complete.error());
   auto bytes = reports::pdf_bytes(document, **fonts);
   if (!bytes) return fail(bytes.error());
@@ -50,13 +60,16 @@ NONIO_PLUGIN(registry) {
   output.info = {
       "pdf-report",
       "1.0.0",
-      "The campaign's report as a PDF with plots, in English or Italian.",
+      "The campaign's report as a PDF with plots, in English, German or Italian.",
       {{"language", std::string("en"), "", "Language of the report.", {"de", "en", "it"}},
        {"template", std::string("report"), "", "Name of the template: templates/<name>.toml."},
-       {"sign", false, "", "Have it signed with the key of [signing] in site.toml."}}};
+       {"sign", false, "", "Have it signed with the key of [signing] in site.toml."},
+       {"history", false, "",
+        "A page with the machine's history up to this campaign: trends, changes, next due date."}}};
   output.applies = nonio::pdf_report::applies;
   output.check_templates = nonio::pdf_report::check_templates;
   output.write = nonio::pdf_report::write;
   output.prepare = nonio::pdf_report::prepare;
+  output.wants_history = nonio::pdf_report::wants_history;
   registry.add(std::move(output));
 }

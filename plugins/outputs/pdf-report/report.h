@@ -21,6 +21,7 @@ using pages::Measured;
 /// What every part of the report is made from.
 struct Source : pages::Source {
   const Wording& pictures;  ///< words of the model's pictures
+  const Wording& site;      ///< words of the laboratory's pages: quantities, events
 };
 
 /// Its template, checked.
@@ -54,6 +55,9 @@ void add_models(const Source&, Blocks&);
 void add_residuals(const Source&, Blocks&);
 /// Always the same nine, in the same places, together with their heading on one page.
 void add_pictures(const Source&, const ModelFit&, Blocks&);
+
+/// The machine over its campaigns up to this one: a page, where the options ask for it.
+void add_history(const Source&, Blocks&);
 
 void add_tables(const Source&, Blocks&);
 void add_notes(const Source&, Blocks&);

@@ -9,11 +9,13 @@ OPERATORS = [Operator("A. Sample", 0.3, 0.3, 0.2), Operator("B. Invented", 0.9, 
 
 
 class Laboratory:
-    """`start`: first day; `night`: the day of its last night. `aliases`: two spellings and who owns them."""
+    """`start`: first day; `night`: the day of its last night. `aliases`: two spellings and who owns them. `due`: rules of the
+    site."""
 
     def __init__(self, preset, seed, start, night, decimals=2):
         self.preset, self.seed, self.start, self.night, self.decimals = preset, seed, day_of(start), day_of(night), decimals
         self.machines, self.aliases, self.outputs, self.instruments = [], [], (), []
+        self.due = []  # machine (empty: all others), months
         self.hall = Hall(seed)
 
     def instrument(self, *what, **more):

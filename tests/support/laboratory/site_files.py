@@ -32,14 +32,15 @@ def new_keys(plan, known):
 
 
 def new_tables(laboratory, known):
-    """The same of site.toml."""
+    """The same of site.toml; and its rules of due dates."""
+    due = "".join("\n[[due]]\n%smonths = %d\n" % ('machine = "%s"\n' % machine if machine else "", months) for machine, months in laboratory.due)
     if not known:
-        return ""
+        return due
     def called(serial):  # as the program calls a machine without an asset
         machine = next(m for m in laboratory.machines if serial in [m.serial] + [p.serial for p in m.plans])
         return machine.asset or "%s %s" % (machine.maker, serial)
 
-    return "".join('\n[[alias]]\nname = "%s"\nasset = "%s"\nwhy = "%s"\n' % (called(a), called(b), why) for a, b, why in laboratory.aliases)
+    return due + "".join('\n[[alias]]\nname = "%s"\nasset = "%s"\nwhy = "%s"\n' % (called(a), called(b), why) for a, b, why in laboratory.aliases)
 
 
 def axis_keys(axis, tolerance):

@@ -47,6 +47,10 @@ def small(seed):
     told = Stories(seed)
     for number, story in enumerate((nothing, reversal, nut, wear, table, comparator, season, bent, edition, gantry, five_axis, spelling)):
         story(told, number + 1, Noise("%s/story %d" % (seed, number + 1)))
+    # Half a year for all others. LAB-01 never moved: a year. LAB-08 is watched since its collision: in December again.
+    told.lab.due = [("", 6), ("LAB-01", 12), ("LAB-03", 4), ("LAB-04", 4), ("LAB-07", 4), ("LAB-08", 5)]
+    for m in told.lab.machines:
+        m.interval = {"LAB-01": 365, "LAB-03": 122, "LAB-04": 122, "LAB-07": 122, "LAB-08": 152}.get(m.asset, m.interval)
     return told.lab
 
 

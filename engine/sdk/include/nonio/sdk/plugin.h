@@ -22,6 +22,8 @@
 ///     NONIO_PLUGIN(registry) { registry.add(nonio::Analysis{...}); }
 namespace nonio {
 
+struct HistorySoFar;
+
 /// One option of a plugin. The host checks kind, range and choices and fills in the default.
 struct Option {
   std::string name;
@@ -152,6 +154,9 @@ struct OutputInput {
   const Settings& options;
   const Templates& templates;
   const Issue* issue = nullptr;  ///< of a certificate; null while it is asked what is missing
+  /// The machine over its campaigns (sdk/history.h), where `Output::wants_history` asks for it; null
+  /// where nobody knows it yet.
+  const HistorySoFar* history = nullptr;
 };
 
 /// results -> documents. It is written after the tables of all controllers, and sees in
@@ -174,6 +179,9 @@ struct Output {
   /// Optional: what is wrong with the templates and words that this output uses.
   std::vector<Error> (*check_templates)(const Templates&) = nullptr;
   std::optional<Certificate> certificate{};  ///< none: it is written without a number
+  /// Optional: whether it shows the machine's history with these options. It is then written again
+  /// when that history is another one.
+  bool (*wants_history)(const Settings&) = nullptr;
 };
 
 struct ControllerInput {

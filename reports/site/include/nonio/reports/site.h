@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "nonio/sdk/history.h"
 #include "nonio/sdk/results.h"
 #include "nonio/sdk/settings.h"
 
@@ -32,58 +33,12 @@ struct MorningLine {
   bool sure = true;                  ///< enough for a mail
 };
 
-struct HistoryPoint {
-  enum class State { as_found, as_left, check };
-  std::string campaign, date, link;
-  State state = State::as_found;
-  double value = 0.0, u = 0.0;
-  bool joined = true;
-  std::string why_not{};  ///< it is not joined
-  double u_common = 0.0;  ///< of what it shares with other campaigns: the instrument, the expansion
-};
-
-/// What the model of a series says between two days.
-struct HistorySegment {
-  std::string from, to;
-  double first = 0.0, last = 0.0;      ///< at `from`, at `to`
-  double u_first = 0.0, u_last = 0.0;  ///< of these
-  double slope = 0.0, u_slope = 0.0;   ///< per year
-  std::string from_campaign{}, to_campaign{};
-};
-
-struct HistoryChange {
-  std::string after, before;            ///< days of the last campaign before it, the first after it
-  double size = 0.0, u = 0.0, p = 1.0;  ///< p: adjusted for all that was asked
-  std::string cause;                    ///< undeclared, event, instrument, table
-  std::string event{};
-  std::string after_campaign{}, before_campaign{};
-  double p_alone = 1.0;  ///< of this test alone
-  bool mailed = true;    ///< sure enough for a mail
-};
-
-struct HistoryForecast {
-  std::string date;
-  double value = 0.0, u = 0.0;
-  double p_out = 0.0;
-  std::string leaves{};  ///< day on which the 95 % bound meets the limit; empty: never
-  std::string answer;    ///< keep, watch, act, cannot-say
-};
-
-struct HistorySeries {
-  std::string axis, quantity;
-  Quantity unit = Quantity::deviation;
-  std::vector<HistoryPoint> points;
-  std::string model;  ///< none, level, drift, step, walk; empty of a largest deviation
-  std::vector<HistorySegment> segments{};
-  std::vector<HistoryChange> changes{};
-  std::optional<double> smallest_change{}, limit{};
-  std::optional<HistoryForecast> forecast{};
-  bool ended = false;  ///< later campaigns measure it otherwise, in a series of their own
-};
-
-struct MachineEvent {
-  std::string date, axis, kind, text;
-};
+using nonio::HistoryChange;
+using nonio::HistoryForecast;
+using nonio::HistoryPoint;
+using nonio::HistorySegment;
+using nonio::HistorySeries;
+using nonio::MachineEvent;
 
 /// Mean deviation along an axis, as one campaign found it.
 struct ErrorCurve {

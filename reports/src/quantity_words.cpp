@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/reports/quantity_words.h"
+
+namespace nonio::reports {
+
+std::string followed_quantity(const Wording& site, const std::string& quantity) {
+  const auto colon = quantity.find(':');
+  const std::string kind = quantity.substr(0, colon);
+  const std::string name = site.get_or("site.quantity." + kind, quantity);
+  if (name == quantity || colon == std::string::npos) return name;
+  // "straightness:Z.curve_2": of which movement, and which part of it.
+  const auto dot = quantity.find('.', colon);
+  const std::string of = name + " " + quantity.substr(colon + 1, dot - colon - 1);
+  if (dot == std::string::npos || quantity.substr(dot + 1) == "c") return of;
+  const std::string part = quantity.substr(dot + 1);
+  return of + ", " + site.get_or("site.part." + part, part);
+}
+
+std::string event_text(const Wording& site, const std::string& event) {
+  const std::string kind = event.substr(0, event.find(": "));
+  return site.get_or("site.event." + kind, kind) + event.substr(kind.size());
+}
+
+}  // namespace nonio::reports
