@@ -150,6 +150,7 @@ Expected<void> note_certificates(Night& night, const RunOptions& options,
     return {};
   }
   const std::uint64_t before = state.issued_before.value_or(0);
+  state.issued_at_begin = before;
   state.issued_before = issued_so_far((*known)->numbers);
   for (certificates::RegisterEntry& e : (*known)->numbers)
     if (e.order > before) night.issued.push_back(std::move(e));
@@ -210,7 +211,10 @@ void write_history(Night& night, const HistoryUpdate& history, const NightState&
   std::vector<std::string> done;
   for (const CampaignState& c : night.campaigns)
     if (c.action == Action::done && c.is_campaign) done.push_back(c.id);
-  auto notes = history.end(state.last ? state.last->night.number : 0, state.number, done, told);
+  const std::uint64_t known = state.reopened ? state.number
+                              : state.last   ? state.last->night.number
+                                             : 0;
+  auto notes = history.end(known, state.number, done, told);
   if (!notes) {
     night.history_error = notes.error().message;
     notes = {"this night is not in the history: " + night.history_error +
@@ -256,7 +260,7 @@ Expected<void> close_night(Night& night, const RunOptions& options, const RunEve
   if (auto tidied = tidy_all(night, options.out, state.resumed); !tidied) return tidied;
   if (auto noted = note_certificates(night, options, context, state); !noted) return noted;
   const Morning morning = morning_of(night, options, events, context);
-  write_mail(night, options, events, context, morning);
+  if (!state.reopened) write_mail(night, options, events, context, morning);
   const config::TerminalWords words(context.templates, context.site.language);
   if (auto written = write_summary(night, options.out, options.version, words, morning); !written)
     return written;
@@ -273,6 +277,42 @@ void tell_vanished(const Night& night, const RunEvents& events) {
                 " more campaigns have vanished: see the summary");
 }
 
+/// Of a night that is reopened: one campaign is to do, every other one stands as the night left it.
+/// An error if no campaign has that folder or id.
+Expected<void> leave_only(const RunOptions& options, const NightState& state, Night& night) {
+  const std::string wanted = fs::path(options.only).lexically_normal().generic_string();
+  std::size_t found = 0;
+  for (CampaignState& c : night.campaigns) {
+    const bool is_one = c.is_campaign && (c.id == options.only ||
+                                          fs::path(c.folder).generic_string() == wanted);
+    if (is_one) ++found;
+    if (is_one && c.action != Action::todo) {
+      c.action = Action::todo;
+      c.status = evaluation::Status::none;
+      c.errors.clear();
+      c.reason = "--only";
+    }
+    if (is_one || c.action != Action::todo) continue;
+    const auto record = evaluation::read_record(storage::results_folder(options.out, c.id));
+    const bool tonight = record && record->night == state.number;
+    c.action = tonight ? Action::done : Action::unchanged;
+    c.status = record ? record->status : evaluation::Status::none;
+    c.errors = record ? record->errors : std::vector<Error>{};
+    c.reason = tonight ? record->reason : "nothing changed";
+  }
+  if (found == 1) return {};
+  return fail("--only: there is " + std::string(found == 0 ? "no" : "more than one") +
+              " campaign with the folder or id \"" + options.only + "\" in this site");
+}
+
+/// Those that came after the night are the next one's.
+void leave_out_new(const NightState& state, std::vector<CampaignState>& campaigns) {
+  if (!state.reopened) return;
+  std::erase_if(campaigns, [](const CampaignState& c) {
+    return c.action != Action::todo && c.status == evaluation::Status::none;
+  });
+}
+
 /// The night itself, in an output folder that nobody else uses.
 void do_night(const RunOptions& options, const RunEvents& events, const std::string& site_text,
               SetUp& place, const std::optional<Known>& known, Night& night) {
@@ -285,8 +325,11 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
           settle_folders(options.out, context.site.hashed_folders, options.dry_run);
       !settled)
     return refuse(settled.error().message);
-  auto state = begin_night(options, site_text,
-                           known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
+  auto state = !options.only.empty()
+                   ? reopen_night(options, site_text)
+                   : begin_night(options, site_text,
+                                 known ? std::optional(issued_so_far(known->numbers))
+                                       : std::nullopt);
   if (!state) return refuse(state.error().message);
   night.night = state->of();
   if (state->last) night.seen_before = state->last->seen;
@@ -306,6 +349,10 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
     for (const certificates::WaitingDraft& draft : known->drafts)
       input.drafts.insert(draft.campaign);
   }
+  const auto stage = [&](const char* name) {
+    if (events.stage) events.stage(name);
+  };
+  stage("survey");
   auto surveyed = survey(input);
   if (process::is_stop_requested()) {
     night.end = Night::End::interrupted;
@@ -314,6 +361,9 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
   if (!surveyed) return refuse(surveyed.error().message);
   night.campaigns = std::move(surveyed->campaigns);
   night.vanished = std::move(surveyed->vanished);
+  if (state->reopened)
+    if (const auto well = leave_only(options, *state, night); !well)
+      return refuse(well.error().message);
   const auto told = read_told(options, context);
   leave_out_forgotten(night, told);
   night.may_vanish = context.site.limits.vanished;
@@ -325,6 +375,7 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
                      std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));
   if (options.dry_run) return;
 
+  stage("campaigns");
   HistoryUpdate history(options, context);
   if (const auto begun = history.begin(); !begun) return refuse(begun.error().message);
   store_refused(options, context, *state, events, night.campaigns);
@@ -339,10 +390,15 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
     };
   if (!do_campaigns(options, events, context, *state, desk, night.campaigns)) {
     night.end = Night::End::interrupted;
+    if (state->reopened && std::any_of(night.campaigns.begin(), night.campaigns.end(), is_todo))
+      history.nothing_done();
     tidy_root(options.out);
     return;
   }
+  leave_out_new(*state, night.campaigns);
+  stage("history");
   if (!process::is_stop_requested()) write_history(night, history, *state, told, events);
+  stage("pages");
   // The campaigns are safe; if this fails the night stays open, and the next run ends it.
   const auto closed = close_night(night, options, events, context, *state);
   if (closed) return;
