@@ -157,7 +157,7 @@ Verb run_verb(Common& common) {
                   {"--jobs", &options.jobs, "Campaigns at a time (default: one for each core)"}),
            {"--force", &options.force, "Do every campaign again, changed or not"},
            {"--only", &options.only,
-            "One campaign (its folder below SITE, or its id) of the last night again, changed or\n"
+            "One campaign (its folder, or its id) of the last night again, changed or\n"
             "not; all others stay as the night left them, and the night keeps its number"},
            {"--verify-results", &options.verify_results,
             "Compare the digests of all result files, not only of those that look modified; a\n"

@@ -280,11 +280,18 @@ void tell_vanished(const Night& night, const RunEvents& events) {
 /// Of a night that is reopened: one campaign is to do, every other one stands as the night left it.
 /// An error if no campaign has that folder or id.
 Expected<void> leave_only(const RunOptions& options, const NightState& state, Night& night) {
-  const std::string wanted = fs::path(options.only).lexically_normal().generic_string();
+  std::error_code error;
+  std::string below = fs::path(options.only).lexically_normal().generic_string();
+  while (below.ends_with('/')) below.pop_back();
+  // As a person in another folder writes it.
+  const std::string from_here = fs::weakly_canonical(options.only, error)
+                                    .lexically_relative(fs::weakly_canonical(options.site, error))
+                                    .generic_string();
   std::size_t found = 0;
   for (CampaignState& c : night.campaigns) {
-    const bool is_one = c.is_campaign && (c.id == options.only ||
-                                          fs::path(c.folder).generic_string() == wanted);
+    const std::string folder = fs::path(c.folder).generic_string();
+    const bool is_one =
+        c.is_campaign && (c.id == options.only || folder == below || folder == from_here);
     if (is_one) ++found;
     if (is_one && c.action != Action::todo) {
       c.action = Action::todo;

@@ -189,18 +189,21 @@ bool is_token(std::string_view text) {
   });
 }
 
-bool is_request_line(std::string_view line) {
+int request_line_status(std::string_view line) {
   constexpr std::size_t longest_method = 32;
   const std::size_t first = line.find(' '), last = line.rfind(' ');
-  if (first == std::string_view::npos || first == last) return false;
+  if (first == std::string_view::npos || first == last) return 400;
   const std::string_view method = line.substr(0, first), version = line.substr(last + 1),
                          target = line.substr(first + 1, last - first - 1);
-  const bool plain = std::all_of(target.begin(), target.end(),
-                                 [](char c) { return c > ' ' && c < '\x7f'; });
-  return is_token(method) && method.size() <= longest_method && !target.empty() && plain &&
-         (version == "HTTP/1.1" || version == "HTTP/1.0");
+  const bool plain =
+      std::all_of(target.begin(), target.end(), [](char c) { return c > ' ' && c < '\x7f'; });
+  if (!is_token(method) || method.size() > longest_method || target.empty() || !plain ||
+      (version != "HTTP/1.1" && version != "HTTP/1.0"))
+    return 400;
+  return target.size() > most_target ? 414 : 200;
 }
 
+/// As long as the reader behind takes them.
 bool is_field(std::string_view line) {
   constexpr std::size_t longest_name = 200, longest_value = 8000;
   const std::size_t colon = line.find(':');
@@ -214,17 +217,19 @@ bool is_field(std::string_view line) {
 
 }  // namespace
 
-bool is_head(std::string_view bytes) {
-  bool first = true;
-  while (!bytes.empty()) {
+int head_status(std::string_view bytes) {
+  if (bytes.size() > most_head) return 431;
+  int status = 400;
+  for (std::size_t lines = 0; !bytes.empty(); ++lines) {
     const std::size_t end = std::min(bytes.find('\n'), bytes.size());
     std::string_view line = bytes.substr(0, end);
     if (line.ends_with('\r')) line.remove_suffix(1);
     bytes.remove_prefix(std::min(end + 1, bytes.size()));
-    if (!(first ? is_request_line(line) : is_field(line))) return false;
-    first = false;
+    status = lines == 0 ? request_line_status(line) : is_field(line) ? 200 : 400;
+    if (lines > most_fields) status = 431;
+    if (status != 200) return status;
   }
-  return !first;
+  return status;
 }
 
 std::vector<std::string> Head::all(std::string_view name) const {

@@ -65,10 +65,11 @@ struct Verdict {
   std::vector<std::string> names{};  ///< what stands for {part}, percent-decoded
 };
 
-/// Whether these bytes, up to the empty line, are the head of a request as RFC 9112 wants it, so that
+/// 200 if these bytes, up to the empty line, are the head of a request as RFC 9112 wants it, so that
 /// everybody who reads it reads the same: one blank between method, target and version, no field on
-/// two lines, no blank before a colon, no control character.
-bool is_head(std::string_view bytes);
+/// two lines, no blank before a colon, no control character. 400 if not, 431 if it is too large,
+/// 414 if its target is.
+int head_status(std::string_view bytes);
 
 /// The first thing that is wrong, or the route. Tests in this order: size of the head (414, 431),
 /// Host (421), Sec-Fetch-Site and Origin (403), method (405), token (403), path (404, 405), --edit

@@ -165,7 +165,8 @@ void refuse(int socket, int status, const Sentences& sentences) {
   const Answer answer = sentences.spelled(
       status == 431 ? refused(status, "head", {{"fields", std::to_string(most_fields)},
                                                {"bytes", std::to_string(most_head)}})
-                    : refused(status, status == 408 ? "slow" : "no_request"));
+      : status == 414 ? refused(status, "target", {{"most", std::to_string(most_target)}})
+                      : refused(status, status == 408 ? "slow" : "no_request"));
   std::string text =
       "HTTP/1.1 " + std::to_string(status) + " " +
       net::HTTPResponse::getReasonForStatus(static_cast<net::HTTPResponse::HTTPStatus>(status)) +

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <chrono>
+#include <utility>
 
 #include "host/batch/night_status.h"
 #include "host/certificates/certificate_list.h"

@@ -2,6 +2,7 @@
 #include "host/live/site_run.h"
 
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 
@@ -27,7 +28,7 @@ ResultsNow results_now(const std::filesystem::path& out, const std::string& id) 
 namespace {
 
 /// Of `all` those that `other` has not.
-Json without(const std::vector<std::string>& all, const std::vector<std::string>& other) {
+Json only_in(const std::vector<std::string>& all, const std::vector<std::string>& other) {
   Json out = Json::array();
   for (const std::string& one : all)
     if (std::find(other.begin(), other.end(), one) == other.end()) out.push_back(one);
@@ -125,8 +126,8 @@ void SiteRun::end(const ToolEnd& end) {
       now_["status"] = after.status;
       now_["was"] = before_.status;
       now_["same_results"] = !after.sha256.empty() && after.sha256 == before_.sha256;
-      now_["new_findings"] = without(after.findings, before_.findings);
-      now_["gone_findings"] = without(before_.findings, after.findings);
+      now_["new_findings"] = only_in(after.findings, before_.findings);
+      now_["gone_findings"] = only_in(before_.findings, after.findings);
     }
   }
   changed_();

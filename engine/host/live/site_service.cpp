@@ -144,7 +144,6 @@ void SiteService::add_routes() {
 
 void SiteService::close() {
   over_ = true;
-  news_.reset();
   if (run_) run_->close();
   events_.close();
   const std::lock_guard lock(mutex_);

@@ -67,6 +67,8 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
   if (child == 0) become(program, arguments, out[1], errors[1]);
   ::close(out[1]);
   ::close(errors[1]);
+  // What a run prints are events; what others print is one answer.
+  const bool tells = !arguments.empty() && arguments.front() == "run";
   std::string printed, said;
   std::size_t told_out = 0, told = 0;
   std::array<pollfd, 3> all{
@@ -82,7 +84,7 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
     }
     if (all[0].revents != 0 && !take_from(out[0], printed)) all[0].fd = -1;
     if (all[1].revents != 0 && !take_from(errors[0], said)) all[1].fd = -1;
-    tell_lines(printed, told_out, channel.get());
+    if (tells) tell_lines(printed, told_out, channel.get());
     tell_lines(said, told, channel.get());
   }
   int status = 0;

@@ -17,8 +17,8 @@ struct ToolEnd {
   std::string out, errors;  ///< what it printed; of the errors the end
 };
 
-/// In a process of one thread: starts the program with these arguments, tells each line that it
-/// prints over the channel, and at the end how it ended. It asks the program to end (SIGTERM) when
+/// In a process of one thread: starts the program with these arguments, tells each line of its
+/// errors (and each event of a run) over the channel, and at the end how it ended. It asks the program to end (SIGTERM) when
 /// the other side says so, and ends it if the other side has gone.
 [[noreturn]] void run_tool(const std::string& program, const std::vector<std::string>& arguments,
                            process::Handle channel);
