@@ -260,6 +260,12 @@
     draw(true).then(() => (document.body.dataset.ready = view())).catch(complain);
   }
   addEventListener("hashchange", moved);
+  // Filters change the address without a word.
+  document.addEventListener("change", (event) => {
+    if (view() !== "index.html" || !event.target.closest(".filters")) return;
+    filters = location.hash.slice(1);
+    drawHead();
+  });
 
   by("app").replaceChildren(el("div", {id: "alarm", role: "alert", hidden: true}),
     el("header", {}, el("nav", {id: "nav", "aria-label": say("site.pages")}), el("p", {class: "muted", id: "beside"})),
