@@ -26,6 +26,8 @@ int live(const LiveOptions& options, const Common& common) {
   wish.name = options.folder;
   wish.plugin_folders = common.plugin_folders();
   wish.template_folders = common.template_folders();
+  wish.plugin_paths = common.plugin_paths;
+  wish.template_paths = common.template_paths;
   wish.own_plugins = Common::own_plugins();
   wish.version = NONIO_VERSION;
   if (!options.out.empty()) wish.out = std::filesystem::absolute(options.out);

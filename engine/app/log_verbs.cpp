@@ -23,6 +23,7 @@ struct EventWish {
 struct AckWish {
   std::string site, value, U;
   config::Acknowledgement known;
+  bool withdraw = false;
 };
 
 struct ForgetWish {
@@ -106,10 +107,67 @@ bool take_number(const std::string& text, std::optional<double>& into) {
   return true;
 }
 
+void put_number(Json& json, const char* name, const std::optional<double>& value) {
+  if (value) json[name] = *value;
+}
+
+/// Those that count, in the order of the file.
+int list_acknowledged(const AckWish& wish, const Common& common) {
+  const auto logs = config::read_site_logs(wish.site);
+  if (!logs) return refuse_all("nonio ack", logs.error());
+  Json all = Json::array();
+  for (const config::Acknowledgement& a : logs->acknowledged) {
+    if (!wish.known.machine.empty() && a.machine != wish.known.machine) continue;
+    Json one = {{"date", a.date}, {"finding", a.finding},   {"machine", a.machine},
+                {"axis", a.axis}, {"quantity", a.quantity}, {"until", a.until},
+                {"by", a.by},     {"why", a.why},           {"line", a.line}};
+    put_number(one, "value", a.value);
+    put_number(one, "U", a.U);
+    all.push_back(std::move(one));
+    if (common.json) continue;
+    std::cout << a.date << " to " << a.until << "  " << printable(a.machine) << "  "
+              << (a.axis.empty() ? "" : printable(a.axis) + "  ") << printable(a.finding) << "  "
+              << printable(a.why) << "  (" << printable(a.by) << ")\n";
+  }
+  if (common.json)
+    std::cout << Json{{"schema", "nonio-acknowledged/1"}, {"acknowledged", std::move(all)}}.dump(
+                     1, ' ', false, Json::error_handler_t::replace)
+              << "\n";
+  else if (all.empty() && !common.quiet)
+    std::cout << "nothing is acknowledged\n";
+  return exit_done;
+}
+
+int withdraw(const AckWish& wish, const Common& common) {
+  const char* const verb = "nonio ack";
+  const config::Acknowledgement& a = wish.known;
+  if (a.finding.empty() || a.machine.empty() || a.by.empty())
+    return complain(verb, "--withdraw: expected --finding, --machine and --by");
+  if (!is_day(a.date)) return wrong_day(verb, a.date);
+  if (!a.until.empty() || !wish.value.empty() || !wish.U.empty())
+    return complain(verb, "--withdraw takes no --until, --value and --U");
+  if (const auto added = config::add_withdrawal(
+          wish.site, {a.date, a.finding, a.machine, a.axis, a.quantity, a.by, a.why});
+      !added)
+    return refuse_all(verb, added.error());
+  say(common, wish.site, config::acknowledged_name,
+      {{"schema", "nonio-ack/1"},
+       {"finding", a.finding},
+       {"machine", a.machine},
+       {"withdrawn", true}});
+  return exit_done;
+}
+
 int acknowledge(AckWish& wish, const Common& common) {
   const char* const verb = "nonio ack";
   config::Acknowledgement& a = wish.known;
+  if (!wish.withdraw && a.finding.empty() && a.until.empty() && a.why.empty())
+    return list_acknowledged(wish, common);
   if (a.date.empty()) a.date = today();
+  if (wish.withdraw) return withdraw(wish, common);
+  for (const auto& [name, text] : {std::pair("--finding", &a.finding), {"--machine", &a.machine},
+                                   {"--until", &a.until}, {"--by", &a.by}, {"--why", &a.why}})
+    if (text->empty()) return complain(verb, std::string(name) + " is missing");
   for (const std::string& day : {a.date, a.until})
     if (!is_day(day)) return wrong_day(verb, day);
   if (!take_number(wish.value, a.value) || !take_number(wish.U, a.U))
@@ -183,23 +241,27 @@ Verb ack_verb(Common& common) {
       .summary = "Acknowledge a finding of a machine until a given day",
       .arguments = joined(
           {site_argument(wish->site),
-           required({"--finding", &a.finding, "Id of the finding, as the night's summary has it"}),
-           required({"--machine", &a.machine, "As `nonio query` names it"}),
+           {"--finding", &a.finding, "Id of the finding, as the night's summary has it"},
+           {"--machine", &a.machine, "As `nonio query` names it"},
            {"--axis", &a.axis, "The axis; default: all"},
            {"--quantity", &a.quantity, "The quantity, such as B_mean; default: all"},
-           required({"--until", &a.until, "Last day on which it counts as known, YYYY-MM-DD"}),
+           {"--until", &a.until, "Last day on which it counts as known, YYYY-MM-DD"},
            {"--value", &wish->value,
             "Present value of the quantity, in its unit: the finding returns\n"
             "if the value changes by more than --U"},
            {"--U", &wish->U, "Expanded uncertainty (k = 2) of that value"},
-           required({"--by", &a.by, "Name of the author of the entry"}),
-           required({"--why", &a.why, "Reason why it is accepted until then"}),
-           {"--date", &a.date, "Day of the entry, YYYY-MM-DD; default: today"}},
+           {"--by", &a.by, "Name of the author of the entry"},
+           {"--why", &a.why, "Reason why it is accepted until then"},
+           {"--date", &a.date, "Day of the entry, YYYY-MM-DD; default: today"},
+           {"--withdraw", &wish->withdraw,
+            "Take back the acknowledgement that has exactly this --finding, --machine, --axis\n"
+            "and --quantity"}},
           common_arguments(common)),
       .footer =
+          "Without --finding, --until and --why: lists those that count, of one machine or all.\n"
           "Appends to SITE/acknowledged.toml; comments stay. It hides nothing: the finding stays "
           "in "
-          "the\nresults and in the history.\n\n"
+          "the\nresults and in the history. What was withdrawn stays in the file too.\n\n"
           "Example: nonio ack site --finding reversal.constant --machine S-0042 --axis X "
           "--until 2026-06-30\n         --by \"B. Sample\" --why \"nut is ordered\"",
       .run = [wish, &common] { return acknowledge(*wish, common); }};

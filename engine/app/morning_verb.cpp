@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <optional>
 
+#include "host/config/site_files.h"
+#include "host/config/site_logs.h"
 #include "host/config/template_files.h"
 #include "host/morning/assess.h"
+#include "host/morning/curves.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -15,7 +19,7 @@ namespace {
 constexpr const char* morning_name = "nonio morning";
 
 struct MorningWish {
-  std::string out, since, customer, language;
+  std::string out, since, customer, language, site, page;
 };
 
 /// Leaves out what was known before that day, and other customers' machines.
@@ -26,18 +30,64 @@ void keep_lines(const MorningWish& wish, reports::SiteHistory& site) {
   });
 }
 
+/// One of the pages of the morning as it would be now, on stdout.
+int print_page(const MorningWish& wish, const Templates& templates, const std::string& language,
+               host::morning::Assessment& assessment) {
+  const reports::SiteHistory& site = assessment.site();
+  const std::string below = std::string(reports::machines_folder) + "/";
+  for (std::size_t i = 0; i < site.machines.size(); ++i) {
+    if (wish.page != below + site.machines[i].file) continue;
+    auto machine = assessment.whole(i);
+    if (!machine) return complain(morning_name, machine.error().message);
+    machine->curves = host::morning::curves_of(wish.out, *machine);
+    const auto page = reports::machine_page_of(site, *machine, templates, language);
+    if (!page) return complain(morning_name, page.error().message);
+    std::cout << page->bytes;
+    return exit_done;
+  }
+  const auto pages = reports::site_lists(site, templates, language);
+  if (!pages) return complain(morning_name, pages.error().message);
+  for (const Artifact& page : *pages) {
+    if (page.name != wish.page) continue;
+    std::cout << page.bytes;
+    return exit_done;
+  }
+  return complain(morning_name, "--page: there is no page " + wish.page +
+                                    "; expected index.html, due.html, due.ics, instruments.html, "
+                                    "compare.html or machines/NAME.html");
+}
+
 int say_morning(const MorningWish& wish, const Common& common) {
   if (!wish.since.empty() && !is_day(wish.since))
     return complain(morning_name,
                     "--since: expected a day as YYYY-MM-DD, found \"" + wish.since + "\"");
   const auto tonight = host::morning::tonight_in(wish.out);
   if (!tonight) return complain(morning_name, tonight.error().message);
+  std::optional<host::config::SiteLogs> entered;
+  auto folders = common.template_folders();
+  if (!wish.site.empty()) {
+    auto logs = host::config::read_site_logs(wish.site);
+    if (!logs) return complain(morning_name, text_of(logs.error().front()));
+    entered = std::move(*logs);
+    auto with_site = host::config::with_site_templates(folders, wish.site);
+    if (!with_site) return complain(morning_name, text_of(with_site.error()));
+    folders = std::move(*with_site);
+  }
   std::string digest;
-  const auto templates = host::config::read_templates(common.template_folders(), digest);
+  const auto templates = host::config::read_templates(folders, digest);
   if (!templates) return complain(morning_name, templates.error().message);
-  const auto assessment = host::morning::Assessment::of(
-      wish.out, *tonight, [] {}, host::morning::Assessment::Kept::used);
+  auto assessment = host::morning::Assessment::of(
+      wish.out, *tonight, [] {}, host::morning::Assessment::Kept::used,
+      entered ? &*entered : nullptr);
   if (!assessment) return complain(morning_name, assessment.error().message);
+  std::string language = wish.language.empty() ? tonight->language : wish.language;
+  if (!templates->tables.contains("words/" + language + "/site")) {
+    if (!wish.language.empty())
+      return complain(morning_name, "--language: there are no words/" + language +
+                                        "/site.toml; expected de, en or it");
+    language = "en";
+  }
+  if (!wish.page.empty()) return print_page(wish, *templates, language, *assessment);
   reports::SiteHistory site = assessment->site();
   keep_lines(wish, site);
   const bool asks = std::any_of(site.lines.begin(), site.lines.end(), reports::asks);
@@ -46,13 +96,6 @@ int say_morning(const MorningWish& wish, const Common& common) {
               << ",\n \"date\": \"" << tonight->date
               << "\",\n \"lines\": " << host::morning::lines_json(site, *templates) << "\n}\n";
     return asks ? exit_failed : exit_done;
-  }
-  std::string language = wish.language.empty() ? tonight->language : wish.language;
-  if (!templates->tables.contains("words/" + language + "/site")) {
-    if (!wish.language.empty())
-      return complain(morning_name, "--language: there are no words/" + language +
-                                        "/site.toml; expected de, en or it");
-    language = "en";
   }
   const auto text = reports::morning_text(site, *templates, language, site.lines.size());
   if (!text) return complain(morning_name, text.error().message);
@@ -72,7 +115,14 @@ Verb morning_verb(Common& common) {
                                     {"OUT", &wish->out, "Output folder of `nonio run`"})),
                   {"--since", &wish->since, "Only what began on this day (YYYY-MM-DD) or later"},
                   {"--customer", &wish->customer, "Only the machines of this customer"},
-                  {"--language", &wish->language, "de, en or it; else as the night's summary.txt"}},
+                  {"--language", &wish->language, "de, en or it; else as the night's summary.txt"},
+                  existing(Argument::Takes::folder,
+                           {"--site", &wish->site,
+                            "The site: what was acknowledged, withdrawn and told of events since "
+                            "the night counts\nalready, as from the next night on"}),
+                  {"--page", &wish->page,
+                   "Print one of the pages instead: index.html, due.html, due.ics, "
+                   "instruments.html,\ncompare.html, machines/NAME.html"}},
                  common_arguments(common)),
       .footer =
           "In the order of what it costs to overlook a line: lost, failed, out of its limit, "

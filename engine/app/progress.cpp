@@ -49,6 +49,9 @@ host::batch::RunEvents Progress::events() {
           [this](const host::batch::CampaignState& c) { finished(c); },
           [this] {
             if (bar_) draw();
+          },
+          [this](const char* name) {
+            if (json_) print_event({{"event", "stage"}, {"name", name}});
           }};
 }
 

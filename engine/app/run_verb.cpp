@@ -107,6 +107,8 @@ int run_night(RunWish& wish, const Common& common) {
   host::batch::RunOptions& options = wish.options;
   if (!options.date.empty() && !is_day(options.date))
     return complain(verb, "--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
+  if (!options.only.empty() && (options.force || !options.date.empty()))
+    return complain(verb, "--only goes with neither --force nor --date");
   options.site = wish.site;
   options.out = fs::absolute(wish.out);
   options.plugin_folders = common.plugin_folders();
@@ -154,6 +156,9 @@ Verb run_verb(Common& common) {
            within(1, 1024,
                   {"--jobs", &options.jobs, "Campaigns at a time (default: one for each core)"}),
            {"--force", &options.force, "Do every campaign again, changed or not"},
+           {"--only", &options.only,
+            "One campaign (its folder, or its id) of the last night again, changed or\n"
+            "not; all others stay as the night left them, and the night keeps its number"},
            {"--verify-results", &options.verify_results,
             "Compare the digests of all result files, not only of those that look modified; a\n"
             "campaign with a modified file is evaluated again"},

@@ -94,6 +94,12 @@ Expected<std::vector<std::string>> HistoryUpdate::end(std::uint64_t last, std::u
   return notes;
 }
 
+void HistoryUpdate::nothing_done() const {
+  // If it cannot be noted, the next night makes the store again.
+  if (known_) [[maybe_unused]]
+    const auto noted = history::note_known_night(options_.out, *known_);
+}
+
 Expected<std::vector<std::string>> HistoryUpdate::end(const std::vector<std::string>& campaigns,
                                                       const Expected<history::Told>& told) {
   if (!known_) return std::vector<std::string>{};

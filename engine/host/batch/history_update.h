@@ -30,6 +30,8 @@ class HistoryUpdate {
   Expected<std::vector<std::string>> end(std::uint64_t last, std::uint64_t night,
                                          const std::vector<std::string>& campaigns,
                                          const Expected<history::Told>& told);
+  /// No result was stored after `begin`: the store still knows the night that it knew.
+  void nothing_done() const;
   /// The same between nights, where a store that is behind is left to the next one.
   Expected<std::vector<std::string>> end(const std::vector<std::string>& campaigns,
                                          const Expected<history::Told>& told);

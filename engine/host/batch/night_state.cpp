@@ -76,6 +76,7 @@ Expected<void> write_state(const fs::path& out, const NightState& night,
   if (end) json["end"] = json_of(*end);
   if (night.last) json["last"] = json_of(*night.last);
   if (night.issued_before) json["issued_before"] = *night.issued_before;
+  if (night.issued_at_begin) json["issued_at_begin"] = *night.issued_at_begin;
   return storage::publish(out / state_folder, {{state_name, storage::dump(json)}});
 }
 
@@ -120,6 +121,43 @@ std::string today() {
 
 }  // namespace
 
+namespace {
+
+/// An error if the results are those of another site that is still there.
+Expected<void> check_site(const storage::Json& json, const std::string& site, const fs::path& out) {
+  const std::string known = known_text(json, "site");
+  if (known == site) return {};
+  const auto why = read_apart<std::string>(
+      "the site " + known, config::Limits{}.disk_seconds,
+      [&](process::SignsOfLife&) { return Expected<std::string>(other_site(known, site, out)); });
+  if (!why) return fail(why.error());
+  if (!why->empty()) return fail(*why);
+  return {};
+}
+
+}  // namespace
+
+Expected<NightState> reopen_night(const RunOptions& options, const std::string& site) {
+  const auto state = read_state(options.out);
+  if (!state) return fail(state.error());
+  if (!*state || known_text(**state, "state") != "complete")
+    return fail(
+        "--only does one campaign of a complete night again; expected `nonio run SITE --out OUT` "
+        "before");
+  const storage::Json& json = **state;
+  if (auto own = check_site(json, site, options.out); !own) return fail(own.error());
+  NightState night;
+  night.reopened = true;
+  night.site = site;
+  night.number = json["night"].get<std::uint64_t>();
+  night.date = known_text(json, "date");
+  night.last = end_in(json, "last");
+  night.issued_before = known_count(json, "issued_at_begin");
+  if (!night.issued_before) night.issued_before = known_count(json, "issued_before");
+  night.issued_at_begin = night.issued_before;
+  return night;
+}
+
 Expected<NightState> begin_night(const RunOptions& options, const std::string& site,
                                  std::optional<std::uint64_t> issued_so_far) {
   NightState night;
@@ -132,14 +170,7 @@ Expected<NightState> begin_night(const RunOptions& options, const std::string& s
   if (!state) return fail(state.error());
   if (*state) {
     const storage::Json& json = **state;
-    if (const std::string known = known_text(json, "site"); known != site) {
-      const auto why = read_apart<std::string>(
-          "the site " + known, config::Limits{}.disk_seconds, [&](process::SignsOfLife&) {
-            return Expected<std::string>(other_site(known, site, out));
-          });
-      if (!why) return fail(why.error());
-      if (!why->empty()) return fail(*why);
-    }
+    if (auto own = check_site(json, site, out); !own) return fail(own.error());
     night.resumed = known_text(json, "state") == "running";
     night.number = json["night"].get<std::uint64_t>() + (night.resumed ? 0 : 1);
     // A forced run that was interrupted is finished as what it was.

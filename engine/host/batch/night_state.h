@@ -26,6 +26,9 @@ struct NightState {
   /// Certificates in the register when the night before ended, or when the first one began; none
   /// if the register could not be read.
   std::optional<std::uint64_t> issued_before{};
+  /// The same when this night began, for one that is reopened.
+  std::optional<std::uint64_t> issued_at_begin{};
+  bool reopened = false;  ///< a complete night, of which one campaign is done again
   std::string site{};  ///< whose results they are, its folder
   evaluation::NightOf of() const { return {number, date}; }
 };
@@ -34,6 +37,9 @@ struct NightState {
 /// would be taken for one another's, and the summary would tell of one of them only.
 Expected<NightState> begin_night(const RunOptions& options, const std::string& site,
                                  std::optional<std::uint64_t> issued_so_far);
+/// The last night, which has to be complete, as it was when it began: one campaign of it is done
+/// again. Nothing is written; what is cut short leaves the night complete.
+Expected<NightState> reopen_night(const RunOptions& options, const std::string& site);
 /// `night.issued_before` is then what the next one begins with.
 Expected<void> end_night(const std::filesystem::path& out, const NightState& night,
                          const NightEnd& end);

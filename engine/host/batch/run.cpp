@@ -10,7 +10,9 @@
 #include "host/batch/leftovers.h"
 #include "host/batch/mail.h"
 #include "host/batch/morning_update.h"
+#include "host/batch/night_history.h"
 #include "host/batch/night_state.h"
+#include "host/batch/one_again.h"
 #include "host/batch/read_apart.h"
 #include "host/batch/runner.h"
 #include "host/batch/set_up.h"
@@ -28,6 +30,8 @@ namespace fs = std::filesystem;
 namespace {
 
 using Action = CampaignState::Action;
+
+bool is_todo(const CampaignState& c) { return c.action == Action::todo; }
 
 /// Results are never written among the files of a campaign, which they could replace.
 std::string unfit_output(const fs::path& site, const fs::path& out) {
@@ -152,6 +156,7 @@ Expected<void> note_certificates(Night& night, const RunOptions& options,
     return {};
   }
   const std::uint64_t before = state.issued_before.value_or(0);
+  state.issued_at_begin = before;
   state.issued_before = issued_so_far((*known)->numbers);
   for (certificates::RegisterEntry& e : (*known)->numbers)
     if (e.order > before) night.issued.push_back(std::move(e));
@@ -171,57 +176,6 @@ void leave_out_forgotten(Night& night, const Expected<history::Told>& told) {
     return std::any_of(told->logs.forgotten.begin(), told->logs.forgotten.end(),
                        [&](const config::Forgotten& f) { return f.campaign == v.id; });
   });
-}
-
-/// An index that cannot be written is no reason to lose a night: it is made again from the results.
-void write_history(Night& night, HistoryUpdate& history, std::uint64_t known,
-                   const std::vector<std::string>& done, const Expected<history::Told>& told,
-                   const RunEvents& events) {
-  auto notes = history.end(known, night.night.number, done, told);
-  if (!notes) {
-    night.history_error = notes.error().message;
-    notes = {"this night is not in the history: " + night.history_error +
-             "; the results are all there, and the next night enters them"};
-  } else if (!notes->empty()) {
-    night.history_error = notes->front();
-  }
-  for (std::string& note : *notes) {
-    events.note(note);
-    night.notes.push_back(std::move(note));
-  }
-}
-
-/// Reports that show another history of their machine than the store has by now are written again:
-/// whatever the order in which campaigns came, each sees all that its day knew. False if it was
-/// interrupted.
-bool show_histories(const RunOptions& options, const RunEvents& events,
-                    const reading::Context& context, const NightState& state, ReleaseDesk desk,
-                    HistoryUpdate& history, const Expected<history::Told>& told, Night& night) {
-  if (!told || !night.history_error.empty()) return true;  // said already; the next night does it
-  const ShownHistories shown(options, context);
-  auto others = shown.others(night.campaigns, *told, history.rebuilt());
-  std::string error = others ? std::string() : others.error().message;
-  if (others && !others->empty())
-    if (const auto begun = shown.begin(); !begun) error = begun.error().message;
-  if (error.empty() && !others->empty()) {
-    std::vector<std::string> again;
-    for (CampaignState& c : night.campaigns) {
-      if (!others->contains(c.id)) continue;
-      if (c.action != Action::done) c.reason = "the history of its machine changed";
-      c.action = Action::todo;
-      again.push_back(c.id);
-    }
-    desk.histories = std::move(*others);
-    if (!do_campaigns(options, events, context, state, desk, night.campaigns)) return false;
-    write_history(night, history, state.number, again, told, events);
-  }
-  if (error.empty())
-    if (const auto ended = shown.end(night.campaigns, *told); !ended) error = ended.error().message;
-  if (error.empty() || process::is_stop_requested()) return !process::is_stop_requested();
-  night.history_error = "histories in reports are not up to date: " + error;
-  night.notes.push_back(night.history_error + "; the next night writes them");
-  events.note(night.notes.back());
-  return true;
 }
 
 /// Pages that cannot be made are no reason to lose a night: they are made again from the results.
@@ -256,7 +210,7 @@ Expected<void> close_night(Night& night, const RunOptions& options, const RunEve
   if (auto tidied = tidy_all(night, options.out, state.resumed); !tidied) return tidied;
   if (auto noted = note_certificates(night, options, context, state); !noted) return noted;
   const Morning morning = morning_of(night, options, events, context);
-  write_mail(night, options, events, context, morning);
+  if (!state.reopened) write_mail(night, options, events, context, morning);
   const config::TerminalWords words(context.templates, context.site.language);
   if (auto written = write_summary(night, options.out, options.version, words, morning); !written)
     return written;
@@ -302,7 +256,6 @@ Expected<void> survey_site(const RunOptions& options, const reading::Context& co
 
 void tell_plan(const Night& night, const RunEvents& events) {
   tell_vanished(night, events);
-  const auto is_todo = [](const CampaignState& c) { return c.action == Action::todo; };
   events.planned(night.campaigns.size(),
                  static_cast<std::size_t>(
                      std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));
@@ -320,24 +273,38 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
           settle_folders(options.out, context.site.hashed_folders, options.dry_run);
       !settled)
     return refuse(settled.error().message);
-  auto state = begin_night(options, site_text,
-                           known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
+  auto state =
+      !options.only.empty()
+          ? reopen_night(options, site_text)
+          : begin_night(options, site_text,
+                        known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
   if (!state) return refuse(state.error().message);
   night.night = state->of();
   if (state->last) night.seen_before = state->last->seen;
   const std::size_t notes_so_far = night.notes.size();
+  const auto stage = [&](const char* name) {
+    if (events.stage) events.stage(name);
+  };
+  stage("survey");
   const auto surveyed = survey_site(options, context, *state, known, night);
   if (process::is_stop_requested()) {
     night.end = Night::End::interrupted;
     return;
   }
   if (!surveyed) return refuse(surveyed.error().message);
+  std::string only;
+  if (state->reopened) {
+    const auto one = leave_only(options, *state, night);
+    if (!one) return refuse(one.error().message);
+    only = *one;
+  }
   const auto told = read_told(options, context);
   leave_out_forgotten(night, told);
   for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);
   tell_plan(night, events);
   if (options.dry_run) return;
 
+  stage("campaigns");
   HistoryUpdate history(options, context);
   if (const auto begun = history.begin(); !begun) return refuse(begun.error().message);
   if (std::any_of(night.campaigns.begin(), night.campaigns.end(), is_todo))
@@ -355,6 +322,8 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
     };
   const auto interrupted = [&] {
     night.end = Night::End::interrupted;
+    if (state->reopened && std::any_of(night.campaigns.begin(), night.campaigns.end(), is_todo))
+      history.nothing_done();
     tidy_root(options.out);
   };
   if (!do_campaigns(options, events, context, *state, desk, night.campaigns)) return interrupted();
@@ -362,10 +331,16 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
     std::vector<std::string> done;
     for (const CampaignState& c : night.campaigns)
       if (c.action == Action::done && c.is_campaign) done.push_back(c.id);
-    write_history(night, history, state->last ? state->last->night.number : 0, done, told, events);
-    if (!show_histories(options, events, context, *state, desk, history, told, night))
+    stage("history");
+    const std::uint64_t before = state->reopened ? state->number
+                                 : state->last   ? state->last->night.number
+                                                 : 0;
+    write_history(night, history, before, done, told, events);
+    if (!show_histories(options, events, context, *state, desk, history, told, only, night))
       return interrupted();
   }
+  leave_out_new(*state, night.campaigns);
+  stage("pages");
   // The campaigns are safe; if this fails the night stays open, and the next run ends it.
   const auto closed = close_night(night, options, events, context, *state);
   if (closed) return;

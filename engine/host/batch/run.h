@@ -23,6 +23,7 @@ struct RunOptions {
   std::filesystem::path own_plugins;  ///< the plugin folder beside the program
   std::size_t jobs = 0;               ///< 0: one for each core
   bool force = false;
+  std::string only{};  ///< a campaign's folder below the site, or its id: that alone, between nights
   bool dry_run = false;
   bool verify_results = false;  ///< compare the digests of all files given out, touched or not
   std::string date{};           ///< of the night, YYYY-MM-DD; empty: today's
@@ -66,6 +67,8 @@ struct RunEvents {
   std::function<void(std::size_t campaigns, std::size_t to_do)> planned;
   std::function<void(const CampaignState&)> finished;
   std::function<void()> tick;  ///< several times a second, to redraw
+  /// What is done from now on: survey, campaigns, history, pages.
+  std::function<void(const char* name)> stage{};
 };
 
 struct Night {

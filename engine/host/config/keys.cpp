@@ -1465,6 +1465,22 @@ constexpr Key acknowledged_keys[] = {
      .required = true},
 };
 
+constexpr Key withdrawn_keys[] = {
+    {.name = "date", .holds = date, .help = "Day of the entry.", .required = true},
+    {.name = "finding",
+     .holds = text,
+     .help = "As the acknowledgement above that is withdrawn has it.",
+     .required = true},
+    {.name = "machine",
+     .holds = text,
+     .help = "As the acknowledgement has it.",
+     .required = true},
+    {.name = "axis", .holds = text, .help = "As the acknowledgement has it."},
+    {.name = "quantity", .holds = text, .help = "As the acknowledgement has it."},
+    written_by,
+    {.name = "why", .holds = text, .help = "Reason why it does not count any more."},
+};
+
 constexpr Key forgotten_keys[] = {
     {.name = "date", .holds = date, .help = "Day of the entry.", .required = true},
     {.name = "campaign",
@@ -1491,6 +1507,10 @@ constexpr Key acknowledged_file_keys[] = {
      .holds = tables,
      .help = "Findings that a person knows and accepts, [[acknowledged]].",
      .keys = acknowledged_keys},
+    {.name = "withdrawn",
+     .holds = tables,
+     .help = "Acknowledgements above that do not count any more, [[withdrawn]].",
+     .keys = withdrawn_keys},
 };
 constexpr Key forgotten_file_keys[] = {
     format_key,

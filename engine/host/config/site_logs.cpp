@@ -18,24 +18,36 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Every `[[name]]` of a file by `read`, which takes one entry's keys.
+/// Every `[[name]]` by `read`, which takes one entry's keys.
+template <class T, class Read>
+std::vector<T> entries_of(TableReader& top, const char* name, const Read& read) {
+  std::vector<T> entries;
+  for (TableReader& reader : top.tables(name)) {
+    entries.push_back(read(reader));
+    entries.back().line = reader.line();
+    reader.finish();
+  }
+  return entries;
+}
+
+/// A file of one kind of entries.
 template <class T, class Read>
 Checked<std::vector<T>> parse_log(std::string_view text, const std::string& file,
                                   const Key& declaration, const char* name, const Read& read) {
   auto root = parse_toml(text, file);
   if (!root) return tl::unexpected(std::vector<Error>{root.error()});
   std::vector<Error> errors;
-  std::vector<T> entries;
   TableReader top(*root, declaration, file, errors);
   top.integer("format");
-  for (TableReader& reader : top.tables(name)) {
-    entries.push_back(read(reader));
-    entries.back().line = reader.line();
-    reader.finish();
-  }
+  auto entries = entries_of<T>(top, name, read);
   top.finish();
   if (!errors.empty()) return tl::unexpected(std::move(errors));
   return entries;
+}
+
+bool takes_back(const Withdrawal& w, const Acknowledgement& a) {
+  return a.line < w.line && a.finding == w.finding && a.machine == w.machine && a.axis == w.axis &&
+         a.quantity == w.quantity;
 }
 
 /// A word that excuses something stands beside a name for years.
@@ -138,9 +150,12 @@ class SiteLock {
 std::vector<Error> one(Error error) { return {std::move(error)}; }
 
 using Check = std::function<Checked<std::size_t>(const std::string&)>;
+/// Whether so many entries count after one was added, of so many before.
+using Adds = bool (*)(std::size_t before, std::size_t after);
 
-Checked<void> append(const fs::path& site, const char* name, const std::string& entry,
-                     const Check& count) {
+Checked<void> append(
+    const fs::path& site, const char* name, const std::string& entry, const Check& count,
+    Adds adds = [](std::size_t before, std::size_t after) { return after == before + 1; }) {
   const SiteLock lock(site);
   if (!lock)
     return tl::unexpected(one(Error{"cannot be written now: the site " + site.string() +
@@ -155,7 +170,7 @@ Checked<void> append(const fs::path& site, const char* name, const std::string& 
   after += "\n" + entry;
   const auto now = count(after);
   if (!now) return tl::unexpected(now.error());
-  if (*now != *entries + 1)
+  if (!adds(*entries, *now))
     return tl::unexpected(one(Error{"the new entry would not be read as one", name}));
   if (const auto meanwhile = text_of_log(site, name); !meanwhile || *meanwhile != *before)
     return tl::unexpected(
@@ -186,16 +201,33 @@ Checked<std::vector<Event>> parse_events(std::string_view text, const std::strin
 
 Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
                                                          const std::string& file) {
-  return parse_log<Acknowledgement>(
-      text, file, acknowledged_file(), "acknowledged", [](TableReader& reader) {
-        Acknowledgement a{reader.date("date"),    reader.text("finding"),  reader.text("machine"),
-                          reader.text("axis"),    reader.text("quantity"), reader.date("until"),
-                          reader.number("value"), reader.number("U"),      reader.text("by"),
-                          reason_of(reader)};
-        if (!a.until.empty() && a.until < a.date)
-          reader.error("until", "expected a day that is not before date, " + a.date);
-        return a;
-      });
+  auto root = parse_toml(text, file);
+  if (!root) return tl::unexpected(std::vector<Error>{root.error()});
+  std::vector<Error> errors;
+  TableReader top(*root, acknowledged_file(), file, errors);
+  top.integer("format");
+  auto known = entries_of<Acknowledgement>(top, "acknowledged", [](TableReader& reader) {
+    Acknowledgement a{reader.date("date"),    reader.text("finding"),  reader.text("machine"),
+                      reader.text("axis"),    reader.text("quantity"), reader.date("until"),
+                      reader.number("value"), reader.number("U"),      reader.text("by"),
+                      reason_of(reader)};
+    if (!a.until.empty() && a.until < a.date)
+      reader.error("until", "expected a day that is not before date, " + a.date);
+    return a;
+  });
+  const auto withdrawn = entries_of<Withdrawal>(top, "withdrawn", [](TableReader& reader) {
+    return Withdrawal{reader.date("date"),     reader.text("finding"), reader.text("machine"),
+                      reader.text("axis"),     reader.text("quantity"), reader.text("by"),
+                      reason_of(reader)};
+  });
+  top.finish();
+  for (const Withdrawal& w : withdrawn)
+    if (std::erase_if(known, [&](const Acknowledgement& a) { return takes_back(w, a); }) == 0)
+      errors.push_back(Error{"[[withdrawn]] takes back no acknowledgement above it: none that "
+                             "counts has this finding, machine, axis and quantity",
+                             file, w.line});
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  return known;
 }
 
 Checked<std::vector<Forgotten>> parse_forgotten(std::string_view text, const std::string& file) {
@@ -232,6 +264,14 @@ Checked<void> add_acknowledgement(const fs::path& site, const Acknowledgement& a
   entry.number("value", a.value).number("U", a.U).text("by", a.by).text("why", a.why);
   return append(site, acknowledged_name, entry.all(),
                 counts(parse_acknowledged, acknowledged_name));
+}
+
+Checked<void> add_withdrawal(const fs::path& site, const Withdrawal& w) {
+  Entry entry("withdrawn");
+  entry.date("date", w.date).text("finding", w.finding).text("machine", w.machine);
+  entry.text("axis", w.axis).text("quantity", w.quantity).text("by", w.by).text("why", w.why);
+  return append(site, acknowledged_name, entry.all(), counts(parse_acknowledged, acknowledged_name),
+                [](std::size_t before, std::size_t after) { return after < before; });
 }
 
 Checked<void> add_forgotten(const fs::path& site, const Forgotten& f) {

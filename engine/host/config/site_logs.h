@@ -29,6 +29,12 @@ struct Acknowledgement {
   std::uint64_t line = 0;
 };
 
+/// Takes back the acknowledgements above it that have the same four names.
+struct Withdrawal {
+  std::string date, finding, machine, axis, quantity, by, why;
+  std::uint64_t line = 0;
+};
+
 struct Forgotten {
   std::string date, campaign, by, why;
   std::uint64_t line = 0;
@@ -42,6 +48,7 @@ struct SiteLogs {
 
 /// All that is wrong with a file at once, each with its line.
 Checked<std::vector<Event>> parse_events(std::string_view text, const std::string& file);
+/// Those that count: what was withdrawn is left out.
 Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
                                                          const std::string& file);
 Checked<std::vector<Forgotten>> parse_forgotten(std::string_view text, const std::string& file);
@@ -54,6 +61,8 @@ Checked<SiteLogs> read_site_logs(const std::filesystem::path& site);
 /// the entry would be wrong in it, or if somebody else writes it meanwhile.
 Checked<void> add_event(const std::filesystem::path& site, const Event& event);
 Checked<void> add_acknowledgement(const std::filesystem::path& site, const Acknowledgement& known);
+/// Refused if nothing that counts has its names.
+Checked<void> add_withdrawal(const std::filesystem::path& site, const Withdrawal& withdrawal);
 Checked<void> add_forgotten(const std::filesystem::path& site, const Forgotten& forgotten);
 
 }  // namespace nonio::host::config

@@ -18,10 +18,10 @@ constexpr const char* api = "/api/";
 /// One campaign at the root.
 class CampaignService : public Starting {
  public:
-  CampaignService(LiveWish wish, Launcher launcher, std::string shell)
+  CampaignService(LiveWish wish, Launcher launcher, Shells shells)
       : wish_(std::move(wish)),
         launcher_(std::move(launcher)),
-        shell_(std::move(shell)),
+        shells_(std::move(shells)),
         routes_(shell_routes()) {
     for (Route& route : Desk::routes("")) routes_.push_back(std::move(route));
   }
@@ -32,10 +32,11 @@ class CampaignService : public Starting {
   }
   const std::vector<Route>& routes() const override { return routes_; }
   Answer answer(const Request& request) override {
-    if (request.route.open) return shell_file(request, shell_);
+    if (request.route.open) return shell_file(request, shells_.campaign);
     const std::string what = request.route.path.substr(std::string(api).size());
     return desk_->answer(what, request.names.empty() ? "" : request.names.back(), request);
   }
+  const Sentences& sentences() const override { return shells_.sentences; }
   void close() override {
     if (desk_) desk_->close();
   }
@@ -43,13 +44,13 @@ class CampaignService : public Starting {
  private:
   LiveWish wish_;
   Launcher launcher_;
-  std::string shell_;
+  Shells shells_;
   std::vector<Route> routes_;
   std::unique_ptr<Desk> desk_;
 };
 
 /// In the language of the site; English where the page has no words of it.
-Expected<std::string> shell_of(const LiveWish& wish) {
+Expected<Shells> shells_of(const LiveWish& wish) {
   const fs::path site = config::site_of(wish.folder);
   std::string digest;
   const auto settings = config::read_site(site, digest);
@@ -62,7 +63,13 @@ Expected<std::string> shell_of(const LiveWish& wish) {
   const auto templates = config::read_templates(*folders, digest, nullptr, {}, below);
   if (!templates) return fail(templates.error());
   const bool is_there = templates->tables.contains(below.back());
-  return workbench::shell_html(*templates, is_there ? settings->language : "en");
+  const std::string language = is_there ? settings->language : "en";
+  auto campaign = workbench::shell_html(*templates, language, workbench::Shell::campaign);
+  if (!campaign) return fail(campaign.error());
+  auto of_site = workbench::shell_html(*templates, language, workbench::Shell::site);
+  if (!of_site) return fail(of_site.error());
+  return Shells{std::move(*campaign), std::move(*of_site),
+                Sentences(workbench::words(*templates, language))};
 }
 
 }  // namespace
@@ -89,13 +96,13 @@ Expected<std::unique_ptr<Starting>> service_of(const LiveWish& wish) {
   if (!is_campaign && campaigns_in(wish.folder).empty())
     return fail("there is no " + std::string(config::manifest_name) + " in " + wish.name +
                 " or in a folder below it: it is neither a campaign nor a site");
-  auto shell = shell_of(wish);
-  if (!shell) return fail(shell.error());
+  auto shells = shells_of(wish);
+  if (!shells) return fail(shells.error());
   auto launcher = Launcher::start(
       {wish.folder, wish.plugin_folders, wish.template_folders, wish.own_plugins, wish.version});
   if (!launcher) return fail(launcher.error());
-  if (!is_campaign) return site_service(wish, std::move(*launcher), std::move(*shell));
-  return std::make_unique<CampaignService>(wish, std::move(*launcher), std::move(*shell));
+  if (!is_campaign) return site_service(wish, std::move(*launcher), std::move(*shells));
+  return std::make_unique<CampaignService>(wish, std::move(*launcher), std::move(*shells));
 }
 
 }  // namespace nonio::host::live

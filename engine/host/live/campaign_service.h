@@ -19,8 +19,14 @@ class Starting : public Service {
 /// Folders with a campaign.toml below a site, relative to it, in order.
 std::vector<std::string> campaigns_in(const std::filesystem::path& site);
 
-/// Of a site: its morning, and the workbench of each of its campaigns. `shell`: the page.
-std::unique_ptr<Starting> site_service(const LiveWish& wish, Launcher launcher, std::string shell);
+/// What a page begins with, in the language of the site.
+struct Shells {
+  std::string campaign, site;
+  Sentences sentences;
+};
+
+/// Of a site: its morning, and the workbench of each of its campaigns.
+std::unique_ptr<Starting> site_service(const LiveWish& wish, Launcher launcher, Shells shells);
 
 /// Of a campaign, or of a site if the folder has no campaign.toml.
 Expected<std::unique_ptr<Starting>> service_of(const LiveWish& wish);

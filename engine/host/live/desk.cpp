@@ -81,11 +81,11 @@ std::vector<Route> Desk::routes(const std::string& base) {
 Answer Desk::answer(const std::string& what, const std::string& part, const Request& request) {
   if (request.route.method == Method::post) {
     const Json body = Json::parse(request.body.empty() ? "{}" : request.body, nullptr, false);
-    if (!body.is_object()) return refusal(400, "expected a JSON object as the body");
+    if (!body.is_object()) return refused(400, "no_object");
     try {
       return post(what, body, request);
     } catch (const Json::exception&) {
-      return refusal(400, "the body of POST /api/" + what + " is not as docs/live.md says");
+      return refused(400, "body_form", {{"path", "/api/" + what}});
     }
   }
   if (what == "events") return events(request);
@@ -96,7 +96,7 @@ Answer Desk::answer(const std::string& what, const std::string& part, const Requ
     const std::lock_guard lock(mutex_);
     if (bench_state_ == "failed") return refusal(503, bench_error_);
     if (bench_state_ == "open" && !has_part(part))
-      return refusal(404, "there is no part \"" + part.substr(0, 100) + "\"");
+      return refused(404, "no_part", {{"part", part.substr(0, 100)}});
   }
   const std::string last = what.substr(what.rfind('/') + 1);
   if (what == "page/{part}") return document("page", part);
@@ -241,7 +241,7 @@ Answer Desk::fit(const std::string& part, const Request& request) {
 Answer Desk::explain(const std::string& part, const char* what) {
   const std::lock_guard lock(mutex_);
   const auto found = parts_.find(part);
-  if (found == parts_.end()) return refusal(409, "the campaign is not read yet");
+  if (found == parts_.end()) return refused(409, "not_read");
   PartState& one = found->second;
   if (bench_state_ == "open" && !one.key.empty()) ask_explanation(part, one);
   if (one.explain.state == "failed") return refusal(422, one.explain.error);
@@ -265,7 +265,7 @@ Answer Desk::asked(const std::string& kind, const std::string& part, const Reque
       const auto value = number_of(*text);
       const bool is_count = name[0] != 'x';
       if (!value || (is_count && !(*value >= 0.0 && *value <= 1e9)))
-        return refusal(400, std::string(name) + ": expected a number");
+        return refused(400, "number", {{"name", name}});
       if (is_count)
         wish[name] = static_cast<std::uint64_t>(*value);
       else
@@ -281,7 +281,7 @@ Answer Desk::asked(const std::string& kind, const std::string& part, const Reque
     if (!rows.is_array() || rows.size() > most_rows ||
         !std::all_of(rows.begin(), rows.end(),
                      [](const Json& row) { return row.is_number_unsigned(); }))
-      return refusal(400, "rows: expected up to 1000 numbers with commas between them");
+      return refused(400, "rows");
     wish["rows"] = rows;
   }
   const std::string replaces = kind == "readings" ? ""
@@ -314,12 +314,12 @@ Answer Desk::events(const Request& request) {
   std::uint64_t since = 0;
   if (const auto text = request.query("since")) {
     const auto value = number_of(*text);
-    if (!value || !(*value >= 0.0)) return refusal(400, "since: expected a version");
+    if (!value || !(*value >= 0.0)) return refused(400, "since");
     since = static_cast<std::uint64_t>(*value);
   }
-  Answer out{200, "text/event-stream", "", {}, events_.listen(since), &events_};
+  Answer out{200, "text/event-stream", "", {}, {}, events_.listen(since), &events_};
   if (!out.stream)
-    return refusal(503, "8 pages listen already; close one, or look at this one without news");
+    return refused(503, "streams");
   return out;
 }
 

@@ -25,7 +25,7 @@ Answer Desk::post(const std::string& what, const Json& body, const Request& requ
     const std::lock_guard lock(mutex_);
     if (bench_state_ == "failed" && what != "reload") return refusal(503, bench_error_);
     if (order_.empty() && what != "reload")
-      return refusal(409, "the campaign is not read yet; wait for event state");
+      return refused(409, "not_read");
   }
   if (what == "exclude") return exclude(body);
   if (what == "suggest" || what == "finish") return search(what);
@@ -101,10 +101,10 @@ Answer Desk::exclude(const Json& body) {
   const auto rows = body.at("rows").get<std::vector<std::size_t>>();
   const auto why = body.at("why").get<std::string>();
   if (why.empty() || why.size() > longest_text || why.find('\n') != std::string::npos)
-    return refusal(422, "why: expected the reason in one line");
-  if (rows.empty()) return refusal(422, "rows: expected at least one reading");
+    return refused(422, "why");
+  if (rows.empty()) return refused(422, "no_rows");
   std::unique_lock lock(mutex_);
-  if (!has_part(part)) return refusal(404, "there is no part \"" + part.substr(0, 100) + "\"");
+  if (!has_part(part)) return refused(404, "no_part", {{"part", part.substr(0, 100)}});
   end_search();
   Json wish = request_for("readings", part);
   wish["rows"] = rows;
@@ -148,7 +148,7 @@ Answer Desk::difference() {
 
 Answer Desk::save(const Request& request) {
   const std::string wanted = request.head.first("If-Match");
-  if (wanted.empty()) return refusal(428, "expected If-Match: \"<manifest_sha256 of /api/state>\"");
+  if (wanted.empty()) return refused(428, "match");
   std::unique_lock lock(mutex_);
   const Waiting looked = wait_for(lock, request_for("difference", ""), "");
   if (!looked.well) return refusal(looked.done ? 422 : 503, looked.text);
@@ -188,7 +188,7 @@ Answer Desk::save(const Request& request) {
 
 Answer Desk::search(const std::string& kind) {
   const std::lock_guard lock(mutex_);
-  if (bench_state_ != "open") return refusal(409, "the campaign is not read yet");
+  if (bench_state_ != "open") return refused(409, "not_read");
   end_search();
   searching_ = Searching{++searches_, kind, {}, {}};
   for (const std::string& part : order_) ask_explanation(part, parts_[part]);
@@ -278,7 +278,7 @@ Answer Desk::cancel(const Json& body) {
   const auto job = body.at("job").get<std::uint64_t>();
   const std::lock_guard lock(mutex_);
   if (!searching_ || searching_->job != job)
-    return refusal(404, "there is no job " + std::to_string(job) + " at work");
+    return refused(404, "no_job", {{"job", std::to_string(job)}});
   end_search();
   return json_answer(200, {{"version", session_.version()}, {"command", ""}});
 }

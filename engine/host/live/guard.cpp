@@ -15,7 +15,10 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-Verdict refused(int status, std::string words) { return {status, std::move(words)}; }
+Verdict refused(int status, std::string name,
+                std::vector<std::pair<std::string, std::string>> places = {}) {
+  return {status, {"refused." + std::move(name), std::move(places)}};
+}
 
 struct Authority {
   std::string name, port;  ///< port without ":"; "" if none is there
@@ -74,34 +77,31 @@ bool is_our_origin(std::string_view origin, const Post& post) {
 
 std::string known_addresses(const Post& post) {
   std::string out = address_of(post);
-  for (const std::string& host : post.hosts) out += ", or through the proxy for " + host;
+  for (const std::string& host : post.hosts) out += ", https://" + host + "/";
   return out;
 }
 
 Verdict judge_size(const Head& head) {
   if (head.target.size() > most_target)
-    return refused(414,
-                   "the address is longer than " + std::to_string(most_target) + " characters");
+    return refused(414, "target", {{"most", std::to_string(most_target)}});
   std::size_t size = head.method.size() + head.target.size() + 12;
   for (const auto& [name, value] : head.fields) size += name.size() + value.size() + 4;
   if (size > most_head || head.fields.size() > most_fields)
-    return refused(431, "the head of the request is too large: expected at most " +
-                            std::to_string(most_fields) + " fields and " +
-                            std::to_string(most_head) + " bytes");
+    return refused(431, "head",
+                   {{"fields", std::to_string(most_fields)}, {"bytes", std::to_string(most_head)}});
   return {};
 }
 
 Verdict judge_sender(const Head& head, const Post& post) {
   const auto hosts = head.all("Host");
   if (hosts.size() != 1 || !is_ours(hosts.front(), post, ""))
-    return refused(421, "this server does not go by that name; open " + known_addresses(post) +
-                            " (another name is allowed with: nonio live --host NAME)");
+    return refused(421, "host", {{"address", known_addresses(post)}});
   for (const std::string& site : head.all("Sec-Fetch-Site"))
     if (site != "same-origin" && site != "none")
-      return refused(403, "a request from another site; this page answers only itself");
+      return refused(403, "site");
   for (const std::string& origin : head.all("Origin"))
     if (!is_our_origin(origin, post))
-      return refused(403, "a request from another page (Origin); this page answers only itself");
+      return refused(403, "origin");
   return {};
 }
 
@@ -143,8 +143,18 @@ Verdict route_of(const Head& head, const std::vector<Route>& routes) {
   }
   out.names.clear();
   if (other_method)
-    return refused(405, "this address does not take the method " + head.method.substr(0, 16));
-  return refused(404, "there is nothing at this address");
+    return refused(405, "method", {{"method", head.method.substr(0, 16)}});
+  return refused(404, "nothing");
+}
+
+/// `all`: with blanks between them.
+bool is_one_of(std::string_view type, std::string_view all) {
+  while (!all.empty()) {
+    const std::size_t end = std::min(all.find(' '), all.size());
+    if (all.substr(0, end) == type) return true;
+    all.remove_prefix(std::min(end + 1, all.size()));
+  }
+  return false;
 }
 
 Verdict judge_body(const Head& head, const Route& route) {
@@ -152,28 +162,75 @@ Verdict judge_body(const Head& head, const Route& route) {
   const auto codings = head.all("Transfer-Encoding");
   if (lengths.size() > 1 || codings.size() > 1 || (!lengths.empty() && !codings.empty()) ||
       (!codings.empty() && lower(codings.front()) != "chunked"))
-    return refused(400, "the length of the body is not clear");
+    return refused(400, "length");
   std::uint64_t length = 0;
   if (!lengths.empty()) {
     const std::string& text = lengths.front();
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), length);
     if (error == std::errc::result_out_of_range)
-      return refused(413, "the body is larger than " + std::to_string(most_body) + " bytes");
+      return refused(413, "body", {{"most", std::to_string(route.most)}});
     if (error != std::errc() || end != text.data() + text.size())
-      return refused(400, "Content-Length is no number");
+      return refused(400, "length");
   }
   if (route.method == Method::get)
-    return length == 0 && codings.empty() ? Verdict{} : refused(400, "a GET has no body here");
-  const std::size_t most = route.body == "application/pdf" ? most_certificate : most_body;
-  if (length > most)
-    return refused(413, "the body is larger than " + std::to_string(most) + " bytes");
+    return length == 0 && codings.empty() ? Verdict{} : refused(400, "get_body");
+  if (length > route.most) return refused(413, "body", {{"most", std::to_string(route.most)}});
   const std::string type = head.first("Content-Type");
-  if (lower(type.substr(0, type.find(';'))) != route.body)
-    return refused(415, "expected Content-Type: " + route.body);
+  if (!is_one_of(lower(type.substr(0, type.find(';'))), route.body))
+    return refused(415, "type", {{"type", route.body}});
   return {};
 }
 
+/// RFC 9110, 5.6.2.
+bool is_token(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
+           std::string_view("!#$%&'*+-.^_`|~").find(c) != std::string_view::npos;
+  });
+}
+
+int request_line_status(std::string_view line) {
+  constexpr std::size_t longest_method = 32;
+  const std::size_t first = line.find(' '), last = line.rfind(' ');
+  if (first == std::string_view::npos || first == last) return 400;
+  const std::string_view method = line.substr(0, first), version = line.substr(last + 1),
+                         target = line.substr(first + 1, last - first - 1);
+  const bool plain =
+      std::all_of(target.begin(), target.end(), [](char c) { return c > ' ' && c < '\x7f'; });
+  if (!is_token(method) || method.size() > longest_method || target.empty() || !plain ||
+      (version != "HTTP/1.1" && version != "HTTP/1.0"))
+    return 400;
+  return target.size() > most_target ? 414 : 200;
+}
+
+/// As long as the reader behind takes them.
+bool is_field(std::string_view line) {
+  constexpr std::size_t longest_name = 200, longest_value = 8000;
+  const std::size_t colon = line.find(':');
+  if (colon == std::string_view::npos || !is_token(line.substr(0, colon))) return false;
+  const std::string_view value = line.substr(colon + 1);
+  return colon <= longest_name && value.size() <= longest_value &&
+         std::all_of(value.begin(), value.end(), [](char c) {
+           return c == '\t' || (static_cast<unsigned char>(c) >= ' ' && c != '\x7f');
+         });
+}
+
 }  // namespace
+
+int head_status(std::string_view bytes) {
+  if (bytes.size() > most_head) return 431;
+  int status = 400;
+  for (std::size_t lines = 0; !bytes.empty(); ++lines) {
+    const std::size_t end = std::min(bytes.find('\n'), bytes.size());
+    std::string_view line = bytes.substr(0, end);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    bytes.remove_prefix(std::min(end + 1, bytes.size()));
+    status = lines == 0 ? request_line_status(line) : is_field(line) ? 200 : 400;
+    if (lines > most_fields) status = 431;
+    if (status != 200) return status;
+  }
+  return status;
+}
 
 std::vector<std::string> Head::all(std::string_view name) const {
   std::vector<std::string> out;
@@ -241,7 +298,7 @@ Verdict judge(const Head& head, const Post& post, const std::vector<Route>& rout
   if (Verdict v = judge_size(head); v.status != 200) return v;
   if (Verdict v = judge_sender(head, post); v.status != 200) return v;
   if (head.method != "GET" && head.method != "POST")
-    return refused(405, "expected GET or POST, found " + head.method.substr(0, 16));
+    return refused(405, "method", {{"method", head.method.substr(0, 16)}});
   Verdict found = route_of(head, routes);
   if (found.status == 200 && found.route->open) {
     if (Verdict v = judge_body(head, *found.route); v.status != 200) return v;
@@ -250,12 +307,10 @@ Verdict judge(const Head& head, const Post& post, const std::vector<Route>& rout
   // Nobody without the token learns which addresses there are.
   const auto tokens = head.all("X-Nonio-Token");
   if (tokens.size() != 1 || post.token.empty() || !same_secret(tokens.front(), post.token))
-    return refused(403,
-                   "the token is missing or is not that of this server; open the address that "
-                   "`nonio live` printed when it was started, with all that stands behind #");
+    return refused(403, "token");
   if (found.status != 200) return found;
   if (found.route->writes && !post.edit)
-    return refused(403, "this page only shows; to write, start it with: nonio live --edit");
+    return refused(403, "read_only");
   if (Verdict v = judge_body(head, *found.route); v.status != 200) return v;
   return found;
 }

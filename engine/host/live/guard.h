@@ -47,15 +47,29 @@ struct Route {
   std::string path;   ///< "/api/parts/{part}/fit": one step may be a name
   bool open = false;  ///< without a token: the shell, which has no data
   bool writes = false;
-  std::string body{};  ///< content type of a POST's body
+  std::string body{};           ///< content type of a POST's body; several with blanks between them
+  std::size_t most = most_body;  ///< bytes of it
+};
+
+/// A sentence for a person: its name in words/<language>/workbench.toml, and what stands for its
+/// {places}.
+struct Said {
+  std::string name;
+  std::vector<std::pair<std::string, std::string>> places{};
 };
 
 struct Verdict {
-  int status = 200;   ///< 200: go on
-  std::string words;  ///< else what was wrong, and what to do
+  int status = 200;  ///< 200: go on
+  Said said{};       ///< else what was wrong, and what to do
   const Route* route = nullptr;
   std::vector<std::string> names{};  ///< what stands for {part}, percent-decoded
 };
+
+/// 200 if these bytes, up to the empty line, are the head of a request as RFC 9112 wants it, so that
+/// everybody who reads it reads the same: one blank between method, target and version, no field on
+/// two lines, no blank before a colon, no control character. 400 if not, 431 if it is too large,
+/// 414 if its target is.
+int head_status(std::string_view bytes);
 
 /// The first thing that is wrong, or the route. Tests in this order: size of the head (414, 431),
 /// Host (421), Sec-Fetch-Site and Origin (403), method (405), token (403), path (404, 405), --edit

@@ -62,21 +62,24 @@ class Handler : public net::HTTPRequestHandler {
       std::cerr << "nonio live: " << head.method << " "
                 << head.target.substr(0, head.target.find('?')) << ": " << e.what() << "\n";
       if (!response.sent())
-        send(refusal(500, "the server made a mistake; its words are on the terminal"), response);
+        send(refused(500, "mistake"), response);
     }
   }
 
  private:
   Answer answer_to(const Head& head, net::HTTPServerRequest& request) {
     const Verdict verdict = judge(head, house_.post, house_.service.routes());
-    if (verdict.status != 200) return refusal(verdict.status, verdict.words);
+    if (verdict.status != 200) {
+      Answer no;
+      no.status = verdict.status;
+      no.said = verdict.said;
+      return no;
+    }
     Request one{head, *verdict.route, verdict.names, ""};
     if (verdict.route->method == Method::post) {
-      const std::size_t most =
-          verdict.route->body == "application/pdf" ? most_certificate : most_body;
+      const std::size_t most = verdict.route->most;
       if (!read_body(request.stream(), most, one.body))
-        return refusal(413, "the body is larger than " + std::to_string(most) +
-                                " bytes, or it came too slowly");
+        return refused(413, "body_or_slow", {{"most", std::to_string(most)}});
     }
     return house_.service.answer(one);
   }
@@ -93,7 +96,8 @@ class Handler : public net::HTTPRequestHandler {
     return true;
   }
 
-  void send(const Answer& answer, net::HTTPServerResponse& response) {
+  void send(Answer plain, net::HTTPServerResponse& response) {
+    const Answer answer = house_.service.sentences().spelled(std::move(plain));
     response.setStatus(static_cast<net::HTTPResponse::HTTPStatus>(answer.status));
     response.setReason(net::HTTPResponse::getReasonForStatus(response.getStatus()));
     response.setKeepAlive(false);
@@ -157,10 +161,12 @@ void part_from(int socket) {
 }
 
 /// An answer to what is no request, or comes too slowly.
-void refuse(int socket, int status) {
-  const Answer answer = refusal(status, status == 408   ? "the head of the request did not come"
-                                        : status == 431 ? "the head of the request is too large"
-                                                        : "this is no request");
+void refuse(int socket, int status, const Sentences& sentences) {
+  const Answer answer = sentences.spelled(
+      status == 431 ? refused(status, "head", {{"fields", std::to_string(most_fields)},
+                                               {"bytes", std::to_string(most_head)}})
+      : status == 414 ? refused(status, "target", {{"most", std::to_string(most_target)}})
+                      : refused(status, status == 408 ? "slow" : "no_request"));
   std::string text =
       "HTTP/1.1 " + std::to_string(status) + " " +
       net::HTTPResponse::getReasonForStatus(static_cast<net::HTTPResponse::HTTPStatus>(status)) +
@@ -230,7 +236,7 @@ class Pool {
   void serve_one(const process::Handle& socket, int refused) {
     const int fd = socket.get();
     ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) & ~O_NONBLOCK);
-    if (refused != 0) return refuse(fd, refused);
+    if (refused != 0) return refuse(fd, refused, house_.service.sentences());
     // Poco closes its own descriptor at the end, with bytes that nobody has read.
     const int copy = ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
     if (copy < 0) return;
@@ -238,7 +244,7 @@ class Pool {
       net::HTTPServerConnection(net::StreamSocket(new Socket(copy)), params_, handlers_).run();
     } catch (const Poco::Exception&) {
       // A handler catches what it throws: this is a head that nobody can read.
-      if (!house_.over) refuse(fd, 400);
+      if (!house_.over) refuse(fd, 400, house_.service.sentences());
     }
   }
 

@@ -14,6 +14,7 @@ struct LiveWish {
   std::filesystem::path folder;  ///< of a campaign, or of a site
   std::string name;              ///< as a person wrote it
   std::vector<std::filesystem::path> plugin_folders, template_folders;
+  std::vector<std::string> plugin_paths, template_paths;  ///< as they were given
   std::filesystem::path own_plugins, program;
   std::string version;
   std::filesystem::path out;       ///< of a site: output folder of its nights; empty: none

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/live/service.h"
 
+#include <algorithm>
+
 #include "host/storage/digest.h"
 #include "host/storage/json_values.h"
 #include "nonio/workbench/page.h"
@@ -15,6 +17,41 @@ std::optional<std::string> Request::query(std::string_view name) const {
   return std::nullopt;
 }
 
+Answer refused(int status, const std::string& name,
+               std::vector<std::pair<std::string, std::string>> places) {
+  Answer out;
+  out.status = status;
+  out.said = {"refused." + name, std::move(places)};
+  return out;
+}
+
+std::string Sentences::operator()(const Said& said) const {
+  const auto found = all_.find(said.name);
+  const std::string& text = found == all_.end() ? said.name : found->second, out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t open = std::min(text.find('{', at), text.size());
+    const std::size_t close = text.find('}', open);
+    out += text.substr(at, open - at);
+    if (close == std::string::npos) {
+      out += text.substr(open);
+      break;
+    }
+    const std::string name = text.substr(open + 1, close - open - 1);
+    const auto place = std::find_if(said.places.begin(), said.places.end(),
+                                    [&](const auto& one) { return one.first == name; });
+    out += place == said.places.end() ? text.substr(open, close + 1 - open) : place->second;
+    at = close + 1;
+  }
+  return out;
+}
+
+Answer Sentences::spelled(Answer answer) const {
+  if (answer.said.name.empty()) return answer;
+  Answer out = refusal(answer.status, (*this)(answer.said));
+  out.headers = std::move(answer.headers);
+  return out;
+}
+
 Answer refusal(int status, const std::string& words) {
   const storage::Json json = {{"error", words}, {"status", status}};
   return {status, "application/json", storage::dump_line(json)};
@@ -22,7 +59,8 @@ Answer refusal(int status, const std::string& words) {
 
 std::vector<Route> shell_routes() {
   std::vector<Route> routes;
-  for (const char* path : {"/", "/app.js", "/app.css", "/uplot.js", "/uplot.css"})
+  for (const char* path : {"/", "/app.js", "/app.css", "/morning.js", "/morning.css", "/uplot.js",
+                           "/uplot.css"})
     routes.push_back({Method::get, path, true});
   return routes;
 }
@@ -30,17 +68,20 @@ std::vector<Route> shell_routes() {
 Answer shell_file(const Request& request, const std::string& shell) {
   const std::string& path = request.route.path;
   Answer out;
-  if (path == "/app.js" || path == "/uplot.js") {
-    out.type = "text/javascript; charset=utf-8";
-    out.body = path == "/app.js" ? workbench::app_js() : workbench::uplot_js();
-  } else if (path == "/app.css" || path == "/uplot.css") {
-    out.type = "text/css; charset=utf-8";
-    out.body = path == "/app.css" ? workbench::app_css() : workbench::uplot_css();
+  const std::pair<const char*, std::string_view> files[] = {
+      {"/app.js", workbench::app_js()},         {"/app.css", workbench::app_css()},
+      {"/morning.js", workbench::morning_js()}, {"/morning.css", workbench::morning_css()},
+      {"/uplot.js", workbench::uplot_js()},     {"/uplot.css", workbench::uplot_css()}};
+  const auto file = std::find_if(std::begin(files), std::end(files),
+                                 [&](const auto& one) { return path == one.first; });
+  if (file != std::end(files)) {
+    out.type = path.ends_with(".js") ? "text/javascript; charset=utf-8" : "text/css; charset=utf-8";
+    out.body = file->second;
   } else if (path.ends_with('/')) {
     out.type = "text/html; charset=utf-8";
     out.body = shell;
   } else {
-    return refusal(404, "there is nothing at this address");
+    return refused(404, "nothing");
   }
   const std::string tag = "\"" + storage::sha256(out.body).substr(0, 32) + "\"";
   out.headers = {{"ETag", tag}, {"Cache-Control", "no-cache"}};

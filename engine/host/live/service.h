@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -26,18 +27,37 @@ struct Answer {
   int status = 200;
   std::string type = "application/json", body;
   std::vector<std::pair<std::string, std::string>> headers{};
+  Said said{};                         ///< instead of a body: why it is refused
   std::shared_ptr<Listener> stream{};  ///< instead of a body: events until one side ends
   Events* events = nullptr;            ///< of the stream
 };
 
-/// {"error": words, "status": status}
+/// {"error": sentence, "status": status}; `name` without "refused." in front.
+Answer refused(int status, const std::string& name,
+               std::vector<std::pair<std::string, std::string>> places = {});
+/// The same with a sentence that somebody else has made.
 Answer refusal(int status, const std::string& words);
+
+/// Sentences of the page in the language of the site, by their names.
+class Sentences {
+ public:
+  explicit Sentences(std::map<std::string, std::string> all) : all_(std::move(all)) {}
+  /// Its name if there is none.
+  std::string operator()(const Said& said) const;
+  /// The answer with its refusal as a body.
+  Answer spelled(Answer answer) const;
+
+ private:
+  std::map<std::string, std::string> all_;
+};
 
 class Service {
  public:
   virtual ~Service() = default;
   virtual const std::vector<Route>& routes() const = 0;
   virtual Answer answer(const Request& request) = 0;
+  /// For what is refused.
+  virtual const Sentences& sentences() const = 0;
   /// All streams end; nothing is begun any more.
   virtual void close() = 0;
 };

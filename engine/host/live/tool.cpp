@@ -67,17 +67,24 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
   if (child == 0) become(program, arguments, out[1], errors[1]);
   ::close(out[1]);
   ::close(errors[1]);
+  // What a run prints are events; what others print is one answer.
+  const bool tells = !arguments.empty() && arguments.front() == "run";
   std::string printed, said;
-  std::size_t told = 0;
-  std::array<pollfd, 3> all{{{out[0], POLLIN, 0}, {errors[0], POLLIN, 0}, {channel.get(), 0, 0}}};
+  std::size_t told_out = 0, told = 0;
+  std::array<pollfd, 3> all{
+      {{out[0], POLLIN, 0}, {errors[0], POLLIN, 0}, {channel.get(), POLLIN, 0}}};
   while (all[0].fd >= 0 || all[1].fd >= 0) {
     if (::poll(all.data(), all.size(), -1) < 0) continue;
-    if (all[2].revents != 0 || printed.size() > most_printed) {
+    std::string word;
+    const bool asked = all[2].revents == POLLIN && process::read_text(channel.get(), word);
+    if (asked) ::kill(child, SIGTERM);
+    if ((all[2].revents != 0 && !asked) || printed.size() > most_printed) {
       process::end_child(child);
       ::_exit(1);
     }
     if (all[0].revents != 0 && !take_from(out[0], printed)) all[0].fd = -1;
     if (all[1].revents != 0 && !take_from(errors[0], said)) all[1].fd = -1;
+    if (tells) tell_lines(printed, told_out, channel.get());
     tell_lines(said, told, channel.get());
   }
   int status = 0;
@@ -90,6 +97,10 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
       .add(std::string_view(said).substr(said.size() - std::min(said.size(), most_errors)));
   process::write_text(channel.get(), parcel.bytes());
   ::_exit(0);
+}
+
+void stop_tool(const process::Handle& channel) {
+  [[maybe_unused]] const bool told = process::write_text(channel.get(), "stop");
 }
 
 ToolEnd hear_tool(const process::Handle& channel,

@@ -18,13 +18,16 @@ struct ToolEnd {
 };
 
 /// In a process of one thread: starts the program with these arguments, tells each line of its
-/// errors over the channel, and at the end how it ended. It ends the program if the other side has
-/// gone.
+/// errors (and each event of a run) over the channel, and at the end how it ended. It asks the program to end (SIGTERM) when
+/// the other side says so, and ends it if the other side has gone.
 [[noreturn]] void run_tool(const std::string& program, const std::vector<std::string>& arguments,
                            process::Handle channel);
 
 /// The other side: until the end, or until the process has gone.
 ToolEnd hear_tool(const process::Handle& channel,
                   const std::function<void(const std::string& line)>& line);
+
+/// Asks it to end: what it has done so far stays whole.
+void stop_tool(const process::Handle& channel);
 
 }  // namespace nonio::host::live

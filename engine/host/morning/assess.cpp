@@ -53,11 +53,12 @@ std::string page_of(const fs::path& out, const reports::MachineHistory& machine)
 class Assessment::State {
  public:
   State(const fs::path& out, const Tonight& tonight, const std::function<void()>& alive,
-        history::StoreReader store, KeptMachines kept)
+        history::StoreReader store, KeptMachines kept, const config::SiteLogs* entered)
       : out_(out),
         tonight_(tonight),
         alive_(alive),
         store_(std::move(store)),
+        entered_(entered),
         before_(std::move(kept)),
         fits_(Fits::kept_in(out)) {}
 
@@ -65,6 +66,7 @@ class Assessment::State {
     auto logs = store_.logs();
     if (!logs) return fail(logs.error());
     logs_ = std::move(*logs);
+    if (entered_ != nullptr) take_entered(*entered_);
     if (auto well = list_machines(); !well) return well;
     if (auto well = learn_all(); !well) return well;
     if (auto well = fit_all(); !well) return well;
@@ -126,6 +128,18 @@ class Assessment::State {
   reports::SiteHistory site;
 
  private:
+  void take_entered(const config::SiteLogs& now) {
+    logs_.acknowledged = now.acknowledged;
+    // Entered after the night: known from now on, not from its day on.
+    for (config::Acknowledgement& a : logs_.acknowledged) a.date = std::min(a.date, tonight_.date);
+    for (const config::Event& e : now.events)
+      if (std::none_of(logs_.events.begin(), logs_.events.end(), [&](const config::Event& known) {
+            return known.date == e.date && known.machine == e.machine && known.axis == e.axis &&
+                   known.kind == e.kind && known.text == e.text;
+          }))
+        logs_.events.push_back(e);
+  }
+
   /// One machine on its way through an assessment.
   struct Assessed {
     history::MachineState state;
@@ -393,6 +407,7 @@ class Assessment::State {
   Tonight tonight_;
   std::function<void()> alive_;
   history::StoreReader store_;
+  const config::SiteLogs* entered_;
   history::StoredLogs logs_{};
   KeptMachines before_;
   Fits fits_;
@@ -407,11 +422,13 @@ Assessment& Assessment::operator=(Assessment&&) noexcept = default;
 Assessment::~Assessment() = default;
 
 Expected<Assessment> Assessment::of(const fs::path& out, const Tonight& tonight,
-                                    const std::function<void()>& alive, Kept kept) {
+                                    const std::function<void()>& alive, Kept kept,
+                                    const config::SiteLogs* entered) {
   auto store = history::StoreReader::open(out);
   if (!store) return fail(store.error());
   auto state = std::make_unique<State>(out, tonight, alive, std::move(*store),
-                                       kept == Kept::used ? KeptMachines::in(out) : KeptMachines());
+                                       kept == Kept::used ? KeptMachines::in(out) : KeptMachines(),
+                                       entered);
   if (auto made = state->make(); !made) return fail(made.error());
   return Assessment(std::move(state));
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "host/config/site_logs.h"
 #include "host/morning/tonight.h"
 #include "nonio/reports/site.h"
 
@@ -28,8 +29,11 @@ Expected<reports::SiteHistory> assess(const std::filesystem::path& out, const To
 class Assessment {
  public:
   enum class Kept { ignored, used };
+  /// `entered`: what people have said until now, where the next night should not be waited for: its
+  /// acknowledgements in place of those of the store, its new events besides.
   static Expected<Assessment> of(const std::filesystem::path& out, const Tonight& tonight,
-                                 const std::function<void()>& alive, Kept kept);
+                                 const std::function<void()>& alive, Kept kept,
+                                 const config::SiteLogs* entered = nullptr);
   Assessment(Assessment&&) noexcept;
   Assessment& operator=(Assessment&&) noexcept;
   ~Assessment();

@@ -3,7 +3,9 @@ const net = (() => {
   const at = /(?:^|[#&])t=([0-9a-f]{32})(?:&|$)/.exec(location.hash);
   if (at) {
     sessionStorage.setItem("nonio-token", at[1]);
-    history.replaceState(null, "", location.pathname);
+    // What else stands there is the page's own: filters of a morning.
+    const rest = location.hash.slice(1).split("&").filter((one) => !one.startsWith("t=")).join("&");
+    history.replaceState(null, "", location.pathname + (rest ? "#" + rest : ""));
   }
   // A site's server has each campaign at an address of its own: the calls go there too.
   const base = location.pathname.slice(0, location.pathname.lastIndexOf("/"));
@@ -16,15 +18,15 @@ const net = (() => {
       this.answer = answer || {};
     }
   }
-  async function ask(path, {body, match, none, raw} = {}) {
+  async function ask(path, {body, type, match, none, raw} = {}) {
     const headers = {"X-Nonio-Token": token()};
     if (match) headers["If-Match"] = `"${match}"`;
     if (none) headers["If-None-Match"] = none;
     const options = {headers, cache: "no-store"};
     if (body !== undefined) {
       options.method = "POST";
-      headers["Content-Type"] = "application/json";
-      options.body = JSON.stringify(body);
+      headers["Content-Type"] = type || "application/json";
+      options.body = type ? body : JSON.stringify(body);
     }
     const response = await fetch(base + path, options);
     if (response.status === 304) return null;
@@ -43,7 +45,7 @@ const net = (() => {
 
   /// Reads the stream of events for ever: a lost connection is told, and tried again from where it was. A hidden tab
   /// keeps none, since a browser has only six connections for all tabs.
-  async function listen({since, event, lost, found}) {
+  async function listen({since, event, lost, found, path = "/api/events"}) {
     let wait = 500, stop = null, gone = false;
     document.addEventListener("visibilitychange", () => document.hidden && stop && stop.abort());
     for (;;) {
@@ -53,7 +55,7 @@ const net = (() => {
       }
       try {
         stop = new AbortController();
-        const response = await fetch(`${base}/api/events?since=${since()}`, {headers: {"X-Nonio-Token": token()}, cache: "no-store", signal: stop.signal});
+        const response = await fetch(`${base}${path}?since=${since()}`, {headers: {"X-Nonio-Token": token()}, cache: "no-store", signal: stop.signal});
         if (response.status === 403) return lost(403);
         if (response.ok) {
           if (gone) found();
@@ -101,5 +103,5 @@ const net = (() => {
     link.remove();
     setTimeout(() => URL.revokeObjectURL(url), 60000);
   }
-  return {ask, listen, download, hasToken: () => token() !== "", Refused};
+  return {ask, listen, download, base, hasToken: () => token() !== "", Refused};
 })();

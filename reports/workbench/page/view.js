@@ -1,6 +1,6 @@
 // ---- the page's places, made once; what stands in them is drawn by the other modules ----
 const view = (() => {
-  const button = (id, word, more = {}) => el("button", {type: "button", id, ...more}, say(word));
+  const button = box.button;
   function section(id, word, ...more) {
     return el("section", {id, "aria-labelledby": id + "-title"}, el("h2", {id: id + "-title"}, say(word)), ...more);
   }
@@ -12,7 +12,7 @@ const view = (() => {
   }
   function header() {
     return el("header", {},
-      el("div", {class: "who"}, el("h1", {id: "campaign"}), el("p", {id: "machine", class: "muted"})),
+      el("div", {class: "who"}, net.base ? el("a", {href: "/", id: "back"}, "\u2190 " + say("site.back")) : null, el("h1", {id: "campaign"}), el("p", {id: "machine", class: "muted"})),
       el("div", {id: "parts", role: "group", "aria-label": say("parts.label")}),
       el("div", {class: "tools", role: "group", "aria-label": say("tools.label")},
         button("undo", "tools.undo", {title: say("tools.undo_help"), "aria-keyshortcuts": "z"}),
@@ -55,26 +55,8 @@ const view = (() => {
             section("next", "next.title", el("div", {id: "next-what"}))))),
       el("footer", {}, el("span", {id: "command-label"}, say("command.label")), el("code", {id: "command", tabindex: 0, "aria-labelledby": "command-label"}),
         button("copy", "command.copy"), el("span", {id: "read-at", class: "muted"})),
-      el("div", {id: "tip", hidden: true}), el("div", {id: "said", class: "unseen", "aria-live": "polite"}),
-      el("dialog", {id: "dialog", "aria-labelledby": "dialog-title"}));
+      el("div", {id: "tip", hidden: true}), ...box.places());
     document.body.className = "workbench";
   }
-  /// A dialog with a title; gives its body. Esc closes it, the focus returns.
-  function dialog(title, ...content) {
-    const box = by("dialog");
-    box.replaceChildren(el("h2", {id: "dialog-title"}, title), ...content.flat());
-    if (!box.open) box.showModal();
-    return box;
-  }
-  let quiet = 0;
-  function speak(text) {
-    clearTimeout(quiet);
-    quiet = setTimeout(() => (by("said").textContent = text), 300);
-  }
-  function alarm(text, ...more) {
-    const box = by("alarm");
-    box.hidden = text === "";
-    box.replaceChildren(text, ...more);
-  }
-  return {build, dialog, speak, alarm, button};
+  return {build, ...box};
 })();

@@ -141,10 +141,11 @@ class Server:
 
 class Stream:
     """An open event stream; a socket of its own."""
+    path = "/api/events"
 
     def __init__(self, server, since=0):
         self.connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=WAIT)
-        self.connection.request("GET", f"/api/events?since={since}", headers={"X-Nonio-Token": server.token})
+        self.connection.request("GET", f"{self.path}?since={since}", headers={"X-Nonio-Token": server.token})
         self.answer = self.connection.getresponse()
         self.status = self.answer.status
 

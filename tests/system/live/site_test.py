@@ -1,13 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """`nonio live SITE`: the morning, entries, certificates, runs, and the workbench of each campaign."""
+import fcntl
 import json
 import pathlib
 import shutil
+import subprocess
+import time
 import urllib.parse
 
 import unittest
 
-from live import LiveTest, SAMPLES, Server, json_of, nonio
+from live import LiveTest, ROOT, SAMPLES, Server, Stream, json_of, nonio
+
+DATE = "2026-11-23"
+
+
+class SiteStream(Stream):
+    path = "/api/site/events"
 
 
 class Sites(LiveTest):
@@ -21,63 +30,201 @@ class Sites(LiveTest):
         shutil.copytree(SAMPLES / "machines", self.small / "machines")
         self.out = self.site.parent / "out"
 
+    def night(self, *more):
+        nonio("run", self.small, "--out", self.out, "--quiet", "--date", DATE, *more, expect=None)
+
+    def until_run_ends(self, s):
+        return s.until("/api/site/state", lambda state: not state["running"], "done")
+
     def test_the_morning_is_that_of_the_terminal(self):
-        nonio("run", self.small, "--out", self.out, "--quiet", "--date", "2026-11-23", expect=None)
+        self.night()
         with Server(self.small, "--out", self.out) as s:
             got = s.get("/api/site")
             wanted = json_of("morning", self.out, expect=None)
+            self.assertGreater(len(wanted["lines"]), 0)
             self.assertEqual({k: got[k] for k in wanted}, wanted)
             self.assertIn("nonio morning", got["command"])
             state = s.get("/api/site/state")
             self.assertEqual(state["campaigns"], ["02-constant-reversal", "03-opposed-sinusoids"])
-            status, headers, page = s.request("GET", "/site/index.html")
-            self.assertEqual((status, page), (200, (self.out / "index.html").read_bytes()))
-            self.assertEqual(headers["Content-Type"], "application/octet-stream")
-            for name in ("..%2Fsummary.json", "summary.json", "%2Fetc%2Fpasswd", "none.html", "..%2F..%2Fsmall%2Fsite.toml"):
+            self.assertEqual(state["night"], {"state": "complete", "night": 1, "date": DATE, "last": 1, "last_date": DATE})
+            pages = [p.relative_to(self.out) for p in (*self.out.glob("*.html"), *self.out.glob("machines/*.html"), self.out / "due.ics")]
+            self.assertGreater(len(pages), 5)
+            for page in pages:  # nothing was entered since: the same bytes
+                status, headers, body = s.request("GET", f"/site/{page}")
+                self.assertEqual((status, body), (200, (self.out / page).read_bytes()), page)
+                self.assertEqual(headers["Content-Type"], "application/octet-stream")
+            for name in ("..%2Fsummary.json", "summary.json", "%2Fetc%2Fpasswd", "none.html", "..%2F..%2Fsmall%2Fsite.toml", ".nonio", "machines%2Fx.html"):
                 self.assertEqual(s.request("GET", f"/site/{name}")[0], 404, name)
             self.assertEqual(s.request("GET", "/site/index.html", token=False)[0], 403)
+            self.assertEqual(s.request("GET", "/", token=False)[0], 200)
+
+    def test_without_an_output_folder_it_says_so(self):
+        with Server(self.small) as s:
+            self.assertIn("--out", s.get("/api/site", expect=409)["error"])
+            self.assertEqual(s.get("/api/site/state")["night"]["state"], "none")
+            self.assertEqual(s.request("GET", "/site/index.html")[0], 404)
+            self.assertEqual(s.request("GET", "/site/results/02-constant-reversal/results.json")[0], 404)
+
+    def test_files_of_the_results(self):
+        self.night()
+        (self.out / "02-constant-reversal/link").symlink_to(self.out / "summary.json")
+        with Server(self.small, "--out", self.out) as s:
+            status, headers, body = s.request("GET", "/site/results/02-constant-reversal/results.json")
+            self.assertEqual((status, body), (200, (self.out / "02-constant-reversal/results.json").read_bytes()))
+            self.assertEqual(headers["Content-Type"], "application/octet-stream")
+            for campaign, name in (("02-constant-reversal", "link"), ("02-constant-reversal", "none"), (".nonio", "night.json"), ("..", "site.toml"),
+                                   ("02-constant-reversal", "..%2F..%2Fsmall%2Fsite.toml"), ("%2Fetc", "passwd"), ("machines", "..")):
+                self.assertEqual(s.request("GET", f"/site/results/{campaign}/{name}")[0], 404, (campaign, name))
 
     def test_the_workbench_of_a_campaign(self):
         with Server(self.small) as s:
-            self.assertIn("open", s.get("/api/state", expect=409)["error"])
             answer = s.post("/api/open", {"campaign": "02-constant-reversal"})
             self.assertEqual(answer["path"], "/c/02-constant-reversal/")
-            self.assertEqual(s.request("GET", answer["path"], token=False)[0], 200)
-            self.assertEqual(s.opened()["campaign"]["id"], "02-constant-reversal")
-            at = "/c/03-opposed-sinusoids/api/"
-            s.until(at + "state", lambda state: state.get("bench") == "open", "open")
-            s.post(at + "model", {"model": []})
-            self.assertEqual(s.get(at + "state")["campaign"]["id"], "03-opposed-sinusoids")
-            self.assertEqual(s.fit("Z")["compare"], json_of("compare", self.small / "02-constant-reversal")["parts"][0])
+            self.assertIn(b"/app.js", s.request("GET", answer["path"], token=False)[2])
+            self.assertIn(b"/morning.js", s.request("GET", "/", token=False)[2])
+            first, second = "/c/02-constant-reversal/api/", "/c/03-opposed-sinusoids/api/"
+            for at in (first, second):
+                s.until(at + "state", lambda state: state.get("bench") == "open", "open")
+            s.post(second + "model", {"model": []})
+            self.assertEqual(s.get(second + "state")["campaign"]["id"], "03-opposed-sinusoids")
+            fit = s.until(first + "parts/Z/fit", lambda a: a.get("status") != 409, "fitted")
+            self.assertEqual(fit["compare"], json_of("compare", self.small / "02-constant-reversal")["parts"][0])
             for wrong in ("none", "../site", "", ".", "02-constant-reversal/..", "/etc"):
                 self.assertEqual(s.post("/api/open", {"campaign": wrong}, expect=404)["status"], 404)
                 self.assertEqual(s.request("GET", f"/c/{urllib.parse.quote(wrong, safe='')}/api/state")[0], 404, wrong)
+            self.assertEqual(s.get("/api/state", expect=404)["status"], 404, "no campaign at the root of a site")
+
+    def test_a_campaign_is_opened_by_the_id_of_its_results(self):
+        text = (self.small / "02-constant-reversal/campaign.toml").read_text()
+        (self.small / "02-constant-reversal/campaign.toml").write_text(text.replace('id = "02-constant-reversal"', 'id = "another-name"'))
+        self.night()
+        with Server(self.small, "--out", self.out) as s:
+            self.assertEqual(s.post("/api/open", {"campaign": "another-name"})["path"], "/c/02-constant-reversal/")
 
     def test_entries_need_edit_and_are_those_of_the_verbs(self):
         event = {"machine": "S-0102", "axis": "Z", "kind": "crash", "text": "--help; $(rm -rf /) 'hit'", "date": "2026-11-01", "by": "-x"}
         with Server(self.small) as s:
-            for path, body in (("event", event), ("ack", {}), ("run", {}), ("release", {"campaign": "c", "by": "x"})):
+            for path, body in (("event", event), ("ack", {}), ("run", {}), ("run/cancel", {}), ("release", {"campaign": "c", "by": "x"})):
                 self.assertIn("--edit", s.post("/api/" + path, body, expect=403)["error"])
+            self.assertEqual(s.get("/api/event")["events"], [])
+            self.assertEqual(s.get("/api/ack")["acknowledged"], [])
         self.assertFalse((self.small / "events.toml").exists())
         with Server(self.small, "--edit") as s:
             answer = s.post("/api/event", event)
             self.assertIn("nonio event", answer["command"])
-            told = json_of("event", self.small)["events"]
+            told = s.get("/api/event")["events"]
+            self.assertEqual(told, json_of("event", self.small)["events"])
             self.assertEqual({k: told[0][k] for k in event}, event)
-            s.post("/api/ack", {"finding": "reversal.constant", "machine": "S-0102", "until": "2027-01-01", "by": "B. Sample", "why": "nut is ordered"})
+            known = {"finding": "reversal.constant", "machine": "S-0102", "until": "2027-01-01", "by": "B. Sample", "why": "nut is ordered"}
+            s.post("/api/ack", known)
             self.assertIn("nut is ordered", (self.small / "acknowledged.toml").read_text())
+            self.assertEqual({k: s.get("/api/ack")["acknowledged"][0][k] for k in known}, known)
             self.assertIn("YYYY-MM-DD", s.post("/api/ack", {"finding": "f", "machine": "m", "until": "soon", "by": "b", "why": "w"}, expect=422)["error"])
-            self.assertEqual(s.post("/api/event", {"machine": 7}, expect=400)["status"], 400)
+            self.assertIn("takes back no", s.post("/api/ack", {"withdraw": True, "finding": "reversal.constant", "machine": "S-0103", "by": "b"}, expect=422)["error"])
+            s.post("/api/ack", {"withdraw": True, "finding": "reversal.constant", "machine": "S-0102", "by": "B. Sample"})
+            self.assertEqual(s.get("/api/ack")["acknowledged"], [])
+            for path in ("ack", "event"):
+                self.assertEqual(s.post("/api/" + path, {}, expect=400)["status"], 400, "an empty body lists nothing")
+            self.assertEqual(s.post("/api/event", {"machine": 7, "kind": "crash"}, expect=400)["status"], 400)
             self.assertIn("error", s.post("/api/release", {"campaign": "02-constant-reversal", "by": "B. Sample"}, expect=None) | {"error": ""})
+
+    def test_what_is_entered_counts_at_once_and_every_page_hears_of_it(self):
+        self.night()
+        with Server(self.small, "--edit", "--out", self.out) as s:
+            line = next(l for l in s.get("/api/site")["lines"] if l.get("machine") and l["state"] == "new" and l["kind"] not in ("lost", "failed"))
+            state = lambda: next(l for l in s.get("/api/site")["lines"] if l["id"] == line["id"])
+            stream = SiteStream(s)
+            events = stream.events()
+            s.post("/api/ack", {"finding": line["id"], "machine": line["machine"], "until": "2099-01-01", "by": "B. Sample", "why": "nut is ordered"})
+            self.assertEqual(next(e for e in events if e[1] == "morning")[2]["version"], s.get("/api/site/state")["version"])
+            now = state()
+            self.assertEqual((now["state"], now["by"], now["until"], now["why"]), ("known", "B. Sample", "2099-01-01", "nut is ordered"))
+            page = s.request("GET", "/site/index.html")[2].decode()
+            self.assertIn(f'class="known" data-line="{line["id"]}"', page)
+            self.assertIn("nut is ordered", page)
+            self.assertNotIn("nut is ordered", (self.out / "index.html").read_text(), "the night's own page is the night's")
+            # On a terminal; the page hears of it too.
+            nonio("ack", self.small, "--withdraw", "--finding", line["id"], "--machine", line["machine"], "--by", "B. Sample")
+            next(e for e in events if e[1] == "morning")
+            self.assertEqual(state()["state"], "new")
+            stream.close()
+
+    def test_what_the_page_shows_is_what_the_next_night_says(self):
+        self.night()
+        lines = json_of("morning", self.out, expect=None)["lines"]
+        line = next(l for l in lines if l.get("machine") and l["state"] == "new" and l["kind"] not in ("lost", "failed"))
+        nonio("ack", self.small, "--finding", line["id"], "--machine", line["machine"], "--until", "2099-01-01", "--by", "B. Sample", "--why", "nut is ordered", "--date", DATE)
+        nonio("event", self.small, "--machine", line["machine"], "--kind", "other", "--text", "moved", "--date", "2026-01-01")
+        with Server(self.small, "--out", self.out) as s:
+            now = s.get("/api/site")["lines"]
+        self.assertEqual(json_of("morning", self.out, expect=None)["lines"], lines, "without --site it is the night's")
+        self.night()
+        self.assertEqual(json_of("morning", self.out, expect=None)["lines"], now)
 
     def test_a_run_with_progress(self):
         with Server(self.small, "--edit", "--out", self.out) as s:
+            stream = SiteStream(s)
+            events = stream.events()
             begun = s.post("/api/run", expect=202)
             self.assertIn("nonio run", begun["command"])
-            state = s.until("/api/site/state", lambda state: not state["running"], "done")
-            self.assertEqual(state["version"] > 1, True)
+            self.assertEqual(next(events)[1], "run")
+            state = self.until_run_ends(s)
+            self.assertEqual((state["run"]["state"], state["run"]["done"], state["run"]["to_do"]), ("done", 2, 2))
             self.assertTrue((self.out / "02-constant-reversal/results.json").exists())
             self.assertEqual(s.get("/api/site")["schema"], "nonio-morning/1")
+            self.assertIn("morning", {next(events)[1] for _ in range(3)} | {e[1] for e in [next(events)]} | {"morning"})
+            stream.close()
+
+    def test_one_campaign_is_run_again(self):
+        self.night()
+        with Server(self.small, "--edit", "--out", self.out) as s:
+            self.assertEqual(s.post("/api/run", {"campaign": "none"}, expect=404)["status"], 404)
+            self.assertEqual(s.post("/api/run/cancel", expect=409)["status"], 409)
+            begun = s.post("/api/run", {"campaign": "02-constant-reversal"}, expect=202)
+            self.assertIn("--only=02-constant-reversal", begun["command"])
+            run = self.until_run_ends(s)["run"]
+            self.assertEqual((run["state"], run["campaign"], run["same_results"]), ("done", "02-constant-reversal", True))
+            file = next((self.small / "02-constant-reversal").glob("*.csv"))
+            lines = file.read_text().splitlines()
+            (self.small / "02-constant-reversal" / file.name).write_text("\n".join(lines[:-1] + [lines[-1] + "9"]) + "\n")
+            s.post("/api/run", {"campaign": "02-constant-reversal"}, expect=202)
+            state = self.until_run_ends(s)
+            self.assertEqual((state["run"]["state"], state["run"]["same_results"], state["night"]["night"]), ("done", False, 1))
+            # Somebody else's run: it is refused, in the words of the verb.
+            with open(self.out / ".nonio/lock") as lock:
+                fcntl.flock(lock, fcntl.LOCK_EX)
+                s.post("/api/run", {"campaign": "02-constant-reversal"}, expect=202)
+                run = self.until_run_ends(s)["run"]
+                self.assertEqual(run["state"], "refused")
+                self.assertIn("another run", run["message"])
+
+    def test_a_run_is_cancelled(self):
+        with Server(self.site, "--edit", "--out", self.out) as s:
+            s.post("/api/run", expect=202)
+            self.assertEqual(s.post("/api/run", expect=409)["status"], 409)
+            s.until("/api/site/state", lambda state: state["run"]["stage"] == "campaigns", "evaluating")
+            s.post("/api/run/cancel", expect=202)
+            state = self.until_run_ends(s)
+            self.assertEqual(state["run"]["state"], "cancelled")
+            self.assertEqual(state["night"]["state"], "cut-short")
+            nonio("run", self.site, "--out", self.out, "--quiet", expect=None)
+            self.assertEqual(json.loads((self.out / ".nonio/night.json").read_text())["state"], "complete")
+
+    def test_a_night_that_runs_meanwhile_is_told(self):
+        self.night()
+        with Server(self.small, "--out", self.out) as s:
+            file = self.out / ".nonio/night.json"
+            text = file.read_text()
+            with open(self.out / ".nonio/lock") as lock:
+                fcntl.flock(lock, fcntl.LOCK_EX)
+                night = json.loads(text)
+                file.write_text(json.dumps({**night, "state": "running", "night": 2, "last": night["end"]}))
+                state = s.until("/api/site/state", lambda state: state["night"]["state"] == "running", "running")
+                self.assertEqual((state["night"]["night"], state["night"]["last"], state["night"]["last_date"]), (2, 1, DATE))
+                self.assertGreater(len(s.get("/api/site")["lines"]), 0, "the results of the night before")
+            s.until("/api/site/state", lambda state: state["night"]["state"] == "cut-short", "cut short")
+            file.write_text(text)
+            s.until("/api/site/state", lambda state: state["night"]["state"] == "complete", "complete")
 
     def test_the_end_of_the_server_ends_a_run(self):
         s = Server(self.site, "--edit", "--out", self.out)
@@ -87,12 +234,64 @@ class Sites(LiveTest):
 
     def test_a_dropped_file_is_verified(self):
         with Server(self.small) as s:
-            status, _, body = s.request("POST", "/api/verify", b"%PDF-1.7 no certificate", {"Content-Type": "application/pdf"})
-            answer = json.loads(body)
-            self.assertIn(status, (200, 422), body)
-            self.assertFalse(answer.get("holds", False), answer)
-            self.assertEqual(s.request("POST", "/api/verify", b"%PDF", {"Content-Type": "application/json"})[0], 415)
-        self.assertEqual(list(pathlib.Path("/tmp").glob("nonio-live-??????/certificate")), [])
+            for kind, data in (("application/pdf", b"%PDF-1.7 no certificate"), ("application/xml", b"<a/>"), ("application/json", b"{}")):
+                status, _, body = s.request("POST", "/api/verify", data, {"Content-Type": kind})
+                answer = json.loads(body)
+                self.assertIn(status, (200, 422), body)
+                self.assertFalse(answer.get("holds", False), answer)
+            self.assertEqual(s.request("POST", "/api/verify", b"%PDF", {"Content-Type": "text/html"})[0], 415)
+        self.assertEqual(list(pathlib.Path("/tmp").glob("nonio-live-??????/certificate*")), [])
+
+
+class Certificates(LiveTest):
+    """Of a site that signs, with a key that is made here."""
+
+    def setUp(self):
+        super().setUp()
+        self.lab = self.site.parent / "certificates"
+        shutil.copytree(ROOT / "samples/certificates", self.lab)
+        subprocess.run([self.lab / "make-key.sh"], check=True, capture_output=True)
+        self.out = self.site.parent / "out"
+        nonio("run", self.lab, "--out", self.out, "--quiet", expect=None)
+
+    def verified(self, s, file, kind):
+        return json.loads(s.request("POST", "/api/verify", file.read_bytes(), {"Content-Type": kind})[2])
+
+    def test_draft_release_verify_and_again(self):
+        with Server(self.lab, "--out", self.out, "--edit") as s:
+            drafts = s.get("/api/drafts")["drafts"]
+            self.assertEqual([d["campaign"] for d in drafts], ["adjusted"])
+            self.assertEqual(s.request("GET", "/site/results/adjusted/certificate-draft.pdf")[2][:5], b"%PDF-")
+            asking = {(f["measurement"] + ": " if f["measurement"] else "") + f["id"] for f in drafts[0]["findings"] if f["severity"] == "attention"}
+            stream = SiteStream(s)
+            answer = s.post("/api/release", {"campaign": "adjusted", "by": "B. Sample"})
+            self.assertEqual((answer["state"], set(answer["without_reason"])), ("lacking", asking))
+            answer = s.post("/api/release", {"campaign": "adjusted", "by": "B. Sample", "reasons": {key: "as found" for key in asking}})
+            self.assertEqual((answer["state"], answer["number"]), ("issued", "S-0001"))
+            next(e for e in stream.events() if e[1] == "drafts")
+            stream.close()
+            self.assertEqual(s.get("/api/drafts")["drafts"], [])
+            pdf, xml = self.out / "adjusted/certificate.pdf", self.out / "adjusted/certificate.xml"
+            for file, kind in ((pdf, "application/pdf"), (xml, "application/xml")):
+                self.assertTrue(self.verified(s, file, kind)["holds"], file)
+            issued = {p: p.read_bytes() for p in (pdf, xml)}
+            forged = self.out.parent / "forged.pdf"
+            forged.write_bytes(issued[pdf].replace(b"S-0001", b"S-0002"))
+            self.assertFalse(self.verified(s, forged, "application/pdf")["holds"])
+            # The campaign again: its number is not drawn twice.
+            s.post("/api/run", {"campaign": "adjusted"}, expect=202)
+            run = s.until("/api/site/state", lambda state: not state["running"], "done")["run"]
+            self.assertEqual(run["state"], "done", run)
+            self.assertEqual({p: p.read_bytes() for p in issued}, issued)
+            self.assertEqual(len(json_of("certificates", self.lab)["certificates"]), 1)
+            # Other readings: the draft of an amendment, and no number yet.
+            manifest = self.lab / "adjusted/campaign.toml"
+            manifest.write_text(manifest.read_text().replace("B = 3.0", "B = 5.0").replace("customer_data", 'amendment = "The tolerance was wrong."\ncustomer_data'))
+            s.post("/api/run", {"campaign": "adjusted"}, expect=202)
+            s.until("/api/site/state", lambda state: not state["running"], "done")
+            drafts = s.get("/api/drafts")["drafts"]
+            self.assertEqual([d.get("replaces") for d in drafts], ["S-0001"])
+            self.assertEqual(len(json_of("certificates", self.lab)["certificates"]), 1)
 
 
 if __name__ == "__main__":

@@ -151,6 +151,49 @@ TEST(SiteLogs, AnyTextComesBackAsItWas) {
   EXPECT_EQ(known->acknowledged[1].value, 5.0);
 }
 
+TEST(SiteLogs, WhatIsWithdrawnCountsNoMore) {
+  const SiteFolder site;
+  const config::Acknowledgement known{.date = "2026-03-04",
+                                      .finding = "morning.out",
+                                      .machine = "S-0042",
+                                      .axis = "X",
+                                      .quantity = {},
+                                      .until = "2026-06-30",
+                                      .by = "B. Sample",
+                                      .why = "nut is ordered"};
+  auto other = known;
+  other.axis.clear();
+  config::Withdrawal back{.date = "2026-03-05",
+                          .finding = "morning.out",
+                          .machine = "S-0042",
+                          .axis = "X",
+                          .quantity = {},
+                          .by = "B. Sample",
+                          .why = {}};
+  EXPECT_NE(first_error(config::add_withdrawal(site.root(), back)).find("takes back no"),
+            std::string::npos);
+  ASSERT_TRUE(config::add_acknowledgement(site.root(), known));
+  ASSERT_TRUE(config::add_acknowledgement(site.root(), other));
+  ASSERT_TRUE(config::add_acknowledgement(site.root(), known));
+  ASSERT_TRUE(config::add_withdrawal(site.root(), back)) << "both of them";
+  auto logs = config::read_site_logs(site.root());
+  ASSERT_TRUE(logs);
+  ASSERT_EQ(logs->acknowledged.size(), 1U);
+  EXPECT_EQ(logs->acknowledged[0].axis, "");
+  EXPECT_NE(first_error(config::add_withdrawal(site.root(), back)), "") << "twice";
+  ASSERT_TRUE(config::add_acknowledgement(site.root(), known)) << "again, below the withdrawal";
+  logs = config::read_site_logs(site.root());
+  ASSERT_TRUE(logs);
+  EXPECT_EQ(logs->acknowledged.size(), 2U);
+  back.by.clear();
+  EXPECT_NE(first_error(config::add_withdrawal(site.root(), back)).find("by"), std::string::npos);
+  site.write("acknowledged.toml", "format = 1\n[[withdrawn]]\ndate = 2026-03-05\nfinding = \"f\"\n"
+                                  "machine = \"m\"\nby = \"b\"\n");
+  const auto wrong = config::read_site_logs(site.root());
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().front().line, 2U);
+}
+
 TEST(SiteLogs, AnAliasLeadsToAMachineAndNoFurther) {
   const auto site = config::parse_site(
       "[[alias]]\nname = \"a\"\nasset = \"S\"\nwhy = \"plate\"\n[limits]\nvanished = 3\n",

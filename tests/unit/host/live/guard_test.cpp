@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "host/live/service.h"
+
 using namespace nonio::host::live;
 
 namespace {
@@ -19,7 +21,8 @@ std::vector<Route> routes() {
           {Method::get, "/api/parts/{part}/fit", false, false, ""},
           {Method::post, "/api/model", false, false, "application/json"},
           {Method::post, "/api/save", false, true, "application/json"},
-          {Method::post, "/api/verify", false, false, "application/pdf"}};
+          {Method::post, "/api/verify", false, false, "application/pdf application/xml",
+           most_certificate}};
 }
 
 Head good(const std::string& method = "GET", const std::string& target = "/api/state") {
@@ -154,11 +157,43 @@ TEST(LiveGuard, TokenDecidesBeforeThePathIsLookedUp) {
 
 TEST(LiveGuard, RefusalsSayWhatToDo) {
   const auto all = routes();
-  EXPECT_NE(judge(with(good(), "Host", "x"), post(), all).words.find("http://127.0.0.1:4711/"),
+  const auto said = [&](const Head& head) { return judge(head, post(), all).said; };
+  EXPECT_EQ(said(with(good(), "Host", "x")).name, "refused.host");
+  EXPECT_NE(said(with(good(), "Host", "x")).places.at(0).second.find("http://127.0.0.1:4711/"),
             std::string::npos);
-  EXPECT_EQ(judge(with(good(), "X-Nonio-Token", "x"), post(), all).words.find(token),
-            std::string::npos);
-  EXPECT_NE(judge(good("POST", "/api/save"), post(), all).words.find("--edit"), std::string::npos);
+  EXPECT_EQ(said(with(good(), "X-Nonio-Token", "x")).name, "refused.token");
+  EXPECT_TRUE(said(with(good(), "X-Nonio-Token", "x")).places.empty());
+  EXPECT_EQ(said(good("POST", "/api/save")).name, "refused.read_only");
+}
+
+TEST(LiveGuard, ARefusalIsSpelledInTheWordsOfTheSite) {
+  const Sentences sentences({{"refused.part", "Kein Teil {part}, {other}, {part} {"}});
+  const Answer answer = sentences.spelled(refused(404, "part", {{"part", "X {part}"}}));
+  EXPECT_EQ(answer.status, 404);
+  EXPECT_EQ(answer.body, R"({"error":"Kein Teil X {part}, {other}, X {part} {","status":404})");
+  EXPECT_EQ(sentences({"refused.none", {}}), "refused.none");
+  EXPECT_EQ(sentences.spelled(refusal(422, "as it is")).body,
+            R"({"error":"as it is","status":422})");
+}
+
+TEST(LiveGuard, AHeadIsReadOnlyIfEverybodyReadsTheSame) {
+  const std::string line = "GET /api/state?since=1 HTTP/1.1\r\n";
+  for (const char* good_head : {"Host: a\r\nX-Nonio-Token: b", "Host:a", "A: b\tc", "A:"})
+    EXPECT_EQ(head_status(line + good_head), 200) << good_head;
+  for (const char* bad : {"Host : a", " Host: a", "Host: a\r\n folded: b", "Host", ": a", "A: \x01",
+                          "A: b\rC: d", "A: \x7f", "\xc3\xa4: b"})
+    EXPECT_EQ(head_status(line + bad), 400) << bad;
+  EXPECT_EQ(head_status(line + "A: " + std::string(1, '\0')), 400);
+  for (const char* bad : {"", "GET", "GET /", "GET / HTTP/2", "GET / HTTP/1.1 x", "GET  / HTTP/1.1",
+                          " GET / HTTP/1.1", "G\x01T / HTTP/1.1", "GET /\x7f HTTP/1.1", "\r\n",
+                          "GET / http/1.1", "GET /\xc3\xa4 HTTP/1.1"})
+    EXPECT_EQ(head_status(bad), 400) << bad;
+  EXPECT_EQ(head_status(std::string(33, 'G') + " / HTTP/1.1"), 400);
+  EXPECT_EQ(head_status("GET /" + std::string(most_target, 'a') + " HTTP/1.1"), 414);
+  std::string many = line;
+  for (std::size_t i = 0; i <= most_fields; ++i) many += "A: b\r\n";
+  EXPECT_EQ(head_status(many), 431);
+  EXPECT_EQ(head_status(std::string(most_head + 1, 'a')), 431);
 }
 
 TEST(LiveGuard, MethodsAndPaths) {

@@ -1,0 +1,291 @@
+// ---- the page of a site: the morning that the last night has written, and what people do about it ----
+(() => {
+  if (!net.hasToken()) {
+    by("app").replaceChildren(el("main", {class: "lost"}, el("h1", {}, say("shell.title")), el("p", {role: "alert"}, say("net.no_token"))));
+    return;
+  }
+  let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asked = 0, dismissed = "", released = null, wanted = "";
+  const own = ["campaigns", "certificates", "entries"];
+  const isPage = (name) => /^(index|due|compare|instruments)\.html$|^machines\/[^/]+\.html$/.test(name);
+  const pages = new Map(); // name: its text
+  let links = []; // of the night's own pages, in its words
+
+  // ---- where we are: stands in the address, as do the filters of the lines ----
+  function view() {
+    const to = new URLSearchParams(location.hash.slice(1)).get("to");
+    return to && (own.includes(to) || isPage(to)) ? to : state && !state.out ? "campaigns" : "index.html";
+  }
+  const hrefOf = (name) => (name === "index.html" ? "#" + filters : "#to=" + encodeURIComponent(name));
+  /// "../index.html" of "machines/S-1.html".
+  function resolved(from, to) {
+    const steps = from.split("/").slice(0, -1);
+    for (const step of to.split("/")) if (step === "..") steps.pop(); else if (step !== ".") steps.push(step);
+    return steps.join("/");
+  }
+
+  // ---- asking ----
+  function complain(e) {
+    if (e instanceof net.Refused) box.alarm(e.message, " ", box.button("alarm-close", "dialog.close", {onclick: () => box.alarm("")}));
+    else lost(0);
+  }
+  function lost(status) {
+    box.alarm(status === 403 ? say("net.other") : say("site.lost", {at: new Date().toLocaleTimeString(language)}));
+    document.body.classList.add("lost");
+  }
+  function told(answer) {
+    if (answer && answer.command) by("command").textContent = answer.command;
+    by("footer").hidden = by("command").textContent === "";
+  }
+  async function act(what, body, done) {
+    const answer = await net.ask("/api/" + what, {body});
+    told(answer);
+    if (done) box.speak(done);
+    await refresh();
+    return answer;
+  }
+  /// A file of the results, for the browser to keep.
+  const fetchFile = (path) => net.download("/site/results/" + path.split("/").slice(-2).map(encodeURIComponent).join("/"), path.split("/").slice(-2).join("-")).catch(complain);
+  async function text(name) {
+    if (!pages.has(name)) pages.set(name, await (await net.ask("/site/" + name.split("/").map(encodeURIComponent).join("/"), {raw: true})).text());
+    return pages.get(name);
+  }
+  async function refresh(fresh = true) {
+    const mine = ++asked, next = await net.ask("/api/site/state");
+    if (mine !== asked) return;
+    if (state && next.engine !== state.engine) return location.reload();
+    state = next;
+    if (fresh) {
+      pages.clear();
+      const [morning, all] = await Promise.all([state.out && state.night.last ? net.ask("/api/site") : {lines: []}, net.ask("/api/ack")]);
+      if (mine !== asked) return;
+      lines = morning.lines;
+      known = all.acknowledged;
+    }
+    drawHead();
+    await draw();
+    document.body.classList.remove("lost");
+    document.body.dataset.version = state.version;
+    document.body.dataset.ready = view();
+  }
+
+  // ---- a line of the morning: what can be done about it ----
+  const campaignOf = (line) => line.campaign || (line.link ? line.link.split("/").slice(-2)[0] : "");
+  /// Those of a machine that its history judges; what is lost or failed is no opinion.
+  const canBeKnown = (line) => line.machine && line.state === "new" && ["out", "changed", "soon", "overdue", "undecided", "information"].includes(line.kind);
+  async function openCampaign(campaign) {
+    try {
+      location.href = (await net.ask("/api/open", {body: {campaign}})).path;
+    } catch (e) {
+      complain(e);
+    }
+  }
+  const runAgain = (campaign) => act("run", campaign ? {campaign} : {}, say("run.begun")).catch(complain);
+  function campaignButtons(campaign, key) {
+    return [el("button", {type: "button", class: "link", "data-key": `open-${key}`, "data-campaign": campaign, onclick: () => openCampaign(campaign)}, say("site.open")),
+      state.edit && state.out && state.night.last ? el("button", {type: "button", class: "link", "data-key": `run-${key}`, disabled: state.running, title: state.running ? say("run.busy") : null, onclick: () => runAgain(campaign)}, say("run.again")) : null];
+  }
+  function actions(line, told_) {
+    const campaign = campaignOf(line), entry = line.state === "known" ? entries.entryOf(line, known) : null;
+    const all = [...(campaign ? campaignButtons(campaign, line.id) : []),
+      state.edit && canBeKnown(line) ? el("button", {type: "button", class: "link", "data-key": "ack-" + line.id, onclick: () => entries.acknowledge(line, told_, act)}, say("ack.short")) : null,
+      state.edit && entry ? el("button", {type: "button", class: "link", "data-key": "withdraw-" + line.id, onclick: () => entries.withdraw(entry, act)}, say("withdraw.short")) : null,
+      state.edit && line.machine ? el("button", {type: "button", class: "link", "data-key": "event-" + line.id, onclick: () => entries.event(line.machine, line.axis, machines(), act)}, say("event.short")) : null].filter(Boolean);
+    return all.length ? el("div", {class: "acts"}, ...all) : null;
+  }
+  const machines = () => [...new Set([...lines.map((l) => l.machine), ...[...document.querySelectorAll("a[data-to*='machines/']")].map((a) => a.textContent)].filter(Boolean))].sort();
+
+  // ---- the pages of the night ----
+  /// What the night has drawn, its links led to this page.
+  function adopted(root, name) {
+    for (const a of root.querySelectorAll("a[data-to]")) {
+      const to = resolved(name, a.dataset.to);
+      a.dataset.to = to;
+      a.setAttribute("href", isPage(to) ? hrefOf(to) : "#get=" + encodeURIComponent(to));
+      if (isPage(to)) continue;
+      a.addEventListener("click", (event) => {
+        event.preventDefault();
+        if (to === "due.ics") net.download("/site/due.ics", "due.ics").catch(complain);
+        else fetchFile(to);
+      });
+    }
+    root.querySelector("h1").setAttribute("tabindex", "-1");
+    return root;
+  }
+  async function night(name) {
+    const page = markup.page(await text(name)), root = adopted(page.main, name);
+    if (page.links.length) links = page.links.map(([to, label]) => [resolved(name, to), label]);
+    if (name === "index.html") {
+      const of = new Map(lines.map((line) => [line.id, line]));
+      for (const row of root.querySelectorAll("tr[data-line]")) {
+        const line = of.get(row.dataset.line), place = row.querySelector("td.do");
+        row.dataset.key = "row-" + row.dataset.line;
+        const buttons = line && actions(line, row.cells[3].textContent);
+        if (buttons && place) place.append(buttons);
+      }
+      for (const select of root.querySelectorAll("select")) select.dataset.key = "filter-" + select.name;
+      by("beside").textContent = page.beside;
+    } else if (name.startsWith("machines/")) machineActions(root);
+    return [...root.childNodes];
+  }
+  function machineActions(root) {
+    const machine = root.querySelector("h1").textContent, seen = new Map();
+    for (const row of root.querySelectorAll("table tbody tr")) {
+      const a = row.querySelector("td:last-child a");
+      if (a && row.cells.length === 4 && !seen.has(a.textContent)) seen.set(a.textContent, row.cells[0].textContent);
+    }
+    if (state.edit) root.querySelector("h1").after(el("p", {}, el("button", {type: "button", "data-key": "event-machine", onclick: () => entries.event(machine, "", machines(), act)}, say("event.short"))));
+    if (seen.size === 0) return;
+    root.append(el("section", {"aria-labelledby": "campaigns-of"}, el("h2", {id: "campaigns-of"}, say("site.campaigns_of")),
+      el("ul", {class: "plain campaigns"}, ...[...seen].sort((a, b) => (a[1] < b[1] ? 1 : -1)).map(([id, date]) => el("li", {}, el("span", {class: "day"}, date), " ", el("b", {}, id), " ", ...campaignButtons(id, id))))));
+  }
+
+  // ---- own pages ----
+  function campaignsView() {
+    const most = 200, list = el("ul", {class: "plain campaigns", id: "campaign-list"}), count = el("p", {class: "muted", role: "status"});
+    const show = () => {
+      const all = state.campaigns.filter((c) => c.toLowerCase().includes(wanted.toLowerCase()));
+      list.replaceChildren(...all.slice(0, most).map((c) => el("li", {}, el("b", {}, c), " ", ...campaignButtons(c, c))));
+      count.textContent = all.length > most ? say("site.first", {most, n: all.length}) : say("site.number", {n: all.length, all: state.campaigns.length});
+    };
+    const input = el("input", {type: "search", id: "campaign-filter", value: wanted, "data-key": "campaign-filter", oninput: () => {
+      wanted = input.value;
+      show();
+    }});
+    show();
+    return [el("h1", {tabindex: -1}, say("site.campaigns")), state.out ? null : el("p", {class: "note"}, say("site.no_out")),
+      el("p", {}, el("label", {}, say("site.filter") + " ", input)), count, list,
+      state.edit && state.out ? el("section", {"aria-labelledby": "all-title"}, el("h2", {id: "all-title"}, say("run.all_title")), el("p", {class: "muted"}, say("run.all_what")),
+        el("p", {}, el("button", {type: "button", id: "run-all", "data-key": "run-all", disabled: state.running, onclick: () => runAgain("")}, say("run.all")))) : null].filter(Boolean);
+  }
+  async function release(body) {
+    const answer = await net.ask("/api/release", {body});
+    told(answer);
+    if (!["issued", "approved"].includes(answer.state)) throw Object.assign(new Error(answer.why || answer.state), {answer});
+    released = answer.state === "issued" ? {number: answer.number, files: answer.files.map((f) => f.split("/").slice(-2).join("/"))} : {approved: true};
+    await refresh();
+    by("released").focus();
+  }
+  async function certificatesView() {
+    const {drafts} = state.out ? await net.ask("/api/drafts").catch((e) => ({drafts: [], error: complain(e)})) : {drafts: []};
+    const drawResults = () => by("verified") && by("verified").replaceWith(certificates.results());
+    return [el("h1", {tabindex: -1}, say("site.certificates")),
+      el("section", {"aria-labelledby": "verify-title"}, el("h2", {id: "verify-title"}, say("verify.title")), el("p", {class: "muted"}, say("verify.what")), certificates.drop(drawResults), certificates.results()),
+      el("section", {"aria-labelledby": "drafts-title"}, el("h2", {id: "drafts-title"}, say("release.title", {n: drafts.length})),
+        released ? el("p", {class: "note", id: "released", tabindex: -1, role: "status"}, released.approved ? say("release.approved") : say("release.issued", {number: released.number}), " ",
+          ...(released.files || []).map((f) => el("button", {type: "button", class: "link", onclick: () => fetchFile(f)}, f.split("/").pop()))) : null,
+        drafts.length === 0 ? el("p", {}, say("release.none")) : el("p", {class: "muted"}, state.edit ? say("release.how") : say("site.read_only_release")),
+        el("ul", {class: "plain"}, ...drafts.map((d) => certificates.draft(d, state.edit, fetchFile, release))))];
+  }
+  async function entriesView() {
+    const {events} = await net.ask("/api/event");
+    return entries.show(known, events, state.edit, {withdrawOne: (entry) => entries.withdraw(entry, act), addEvent: () => entries.event("", "", machines(), act)});
+  }
+
+  // ---- drawing ----
+  function drawHead() {
+    const n = state.night, r = state.run;
+    fill(by("nav"), ...[...(state.out && n.last ? links : []), ...own.map((name) => [name, say("site." + name)])].map(([to, label]) =>
+      el("a", {href: hrefOf(to), "data-key": "nav-" + to, "aria-current": view() === to ? "page" : null}, label)));
+    const night_ = n.state === "running" ? say(n.last ? "night.running" : "night.first", {n: n.number, last: n.last, date: n.last_date}) : n.state === "cut-short" ? say("night.cut", {n: n.number}) : "";
+    fill(by("night"), night_ ? el("p", {class: "note", id: "night-says"}, night_) : null);
+    fill(by("rights"), state.edit ? null : el("p", {class: "muted", id: "read-only"}, say("site.read_only")));
+    drawRun(r);
+  }
+  const stages = ["begin", "survey", "campaigns", "history", "pages"];
+  /// 0 to 1: what is done before its campaigns takes a tenth, what comes after two tenths.
+  function shareOf(r) {
+    const at = Math.max(0, stages.indexOf(r.stage));
+    return at < 2 ? 0.05 * at : at > 2 ? 0.5 + 0.1 * at : 0.1 + 0.7 * (r.to_do ? r.done / r.to_do : 0);
+  }
+  function drawRun(r) {
+    if (!r || dismissed === r.command + r.state) return fill(by("run"));
+    const what = r.campaign || say("run.everything");
+    if (r.state === "running") {
+      const share = Math.round(100 * shareOf(r));
+      return fill(by("run"), el("div", {class: "note"}, el("p", {}, el("label", {for: "run-share"}, say("run.at", {what, stage: say("run.stage_" + r.stage), share}))),
+        el("progress", {id: "run-share", max: 100, value: share}), r.to_do > 1 ? el("p", {class: "muted"}, say("run.count", {done: r.done, all: r.to_do})) : null,
+        state.edit ? el("button", {type: "button", id: "run-cancel", "data-key": "run-cancel", onclick: () => net.ask("/api/run/cancel", {body: {}}).catch(complain)}, say("run.cancel")) : null));
+    }
+    const says = [];
+    if (r.state === "cancelled") says.push(say("run.cancelled", {what}));
+    else if (r.state === "refused") says.push(say("run.refused", {what, why: r.message || ""}));
+    else if (r.campaign) {
+      says.push(say("run.done", {what, status: say("run.status_" + (r.status || "none"))}));
+      if (r.status === "failed" && r.message) says.push(r.message);
+      says.push(r.same_results ? say("run.same") : r.was ? say("run.other") : say("run.new"));
+      if (r.new_findings && r.new_findings.length) says.push(say("run.found", {what: r.new_findings.join("; ")}));
+      if (r.gone_findings && r.gone_findings.length) says.push(say("run.gone", {what: r.gone_findings.join("; ")}));
+    } else if (r.counts) says.push(say("run.all_done", {done: r.counts.done, unchanged: r.counts.unchanged, failed: r.counts.failed}));
+    fill(by("run"), el("div", {class: "note", id: "run-end"}, ...says.map((text_) => el("p", {}, text_)), el("button", {type: "button", class: "small", "data-key": "run-close", onclick: () => {
+      dismissed = r.command + r.state;
+      drawHead();
+    }}, say("dialog.close"))));
+  }
+  /// New content of the main part; what had the focus has it again.
+  async function draw(moved = false) {
+    const name = view(), mine = asked;
+    if (name === "index.html" && state.night.last === 0) return put([el("h1", {tabindex: -1}, say("site.morning")), el("p", {}, say("night.none"))], name, moved);
+    const content = name === "campaigns" ? campaignsView() : name === "certificates" ? await certificatesView() : name === "entries" ? await entriesView() : await night(name);
+    if (mine !== asked || name !== view()) return;
+    put(content, name, moved);
+  }
+  function put(content, name, moved) {
+    if (pressed) return void setTimeout(() => put(content, name, moved), 60);
+    const main = by("main"), next = el("div", {}, ...content), same = name + next.innerHTML;
+    const focus = document.activeElement;
+    if (!moved && drawn === same) return;
+    if (!moved && main.contains(focus) && ["INPUT", "SELECT"].includes(focus.tagName) && focus.type !== "file" && name !== "index.html") return;
+    const key = main.contains(focus) ? focus.dataset.key : null;
+    // What somebody has typed stays theirs.
+    const id = (e) => e.id || `${e.name} ${e.dataset.finding || ""}`, typed_ = new Map();
+    for (const e of main.querySelectorAll("input:not([type=file])")) if (!moved && e.value !== e.defaultValue) typed_.set(id(e), e.value);
+    for (const e of next.querySelectorAll("input:not([type=file])")) if (typed_.has(id(e))) e.value = typed_.get(id(e));
+    if (gone) gone.abort();
+    gone = new AbortController();
+    drawn = same;
+    main.replaceChildren(...next.childNodes);
+    nonioLines(main, {signal: gone.signal});
+    drawHead();
+    document.title = `${main.querySelector("h1").textContent} \u2013 ${state.site} \u2013 Nonio`;
+    const again = key && [...main.querySelectorAll("[data-key]")].find((e) => e.dataset.key === key);
+    if (moved) main.querySelector("h1").focus();
+    else if (again) again.focus({preventScroll: true});
+  }
+  let at = "";
+  function moved() {
+    const hash = location.hash.slice(1);
+    if (view() === "index.html") filters = hash.includes("to=") ? filters : hash;
+    if (at === view()) return drawHead();
+    at = view();
+    draw(true).then(() => (document.body.dataset.ready = view())).catch(complain);
+  }
+  addEventListener("hashchange", moved);
+  // Filters change the address without a word.
+  document.addEventListener("change", (event) => {
+    if (view() !== "index.html" || !event.target.closest(".filters")) return;
+    filters = location.hash.slice(1);
+    drawHead();
+  });
+
+  by("app").replaceChildren(el("div", {id: "alarm", role: "alert", hidden: true}),
+    el("header", {}, el("nav", {id: "nav", "aria-label": say("site.pages")}), el("p", {class: "muted", id: "beside"})),
+    el("div", {id: "night", role: "status"}), el("div", {id: "run", role: "status"}), el("div", {id: "rights"}),
+    el("main", {id: "main"}, el("h1", {}, say("site.reading"))),
+    el("footer", {id: "footer", hidden: true}, el("span", {id: "command-label"}, say("site.did")), " ", el("code", {id: "command", tabindex: 0, "aria-labelledby": "command-label"})), ...box.places());
+  document.body.className = "site";
+
+  let soon = 0, all = false;
+  function event(e) {
+    all = all || e.type !== "run";
+    clearTimeout(soon);
+    soon = setTimeout(() => {
+      const fresh = all;
+      all = false;
+      refresh(fresh).catch(complain);
+    }, 30);
+  }
+  refresh().then(() => (at = view())).catch(complain).then(() => net.listen({path: "/api/site/events", since: () => (state ? state.version : 0), event, lost, found: () => {
+    box.alarm("");
+    refresh().catch(complain);
+  }}));
+})();
