@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <numeric>
 
 #include "host/live/columns.h"
 #include "host/live/documents.h"
@@ -148,10 +150,13 @@ Expected<void> try_periods(Bench& bench, const Json& request) {
   return {};
 }
 
-/// A part with the model that is tried.
+/// A part with the model that is tried: one of the bench, or of its own where readings or periods
+/// are others.
 struct Tried {
-  PartModel part;
+  std::unique_ptr<PartModel> own;
+  PartModel* of_bench = nullptr;
   std::vector<std::size_t> row;  ///< of each of its readings: that of the part with all readings
+  const PartModel& part() const { return own ? *own : *of_bench; }
 };
 
 std::vector<std::size_t> rows_of(const PartModel& part, const PartModel& whole, const Bench& bench,
@@ -173,46 +178,48 @@ std::vector<std::size_t> rows_of(const PartModel& part, const PartModel& whole, 
 
 Expected<Tried> tried(Bench& bench, const Json& request) {
   const auto name = request.at("part").get<std::string>();
-  const PartModel* whole = bench.part(name);
+  const auto model = request.at("model").get<std::vector<std::string>>();
+  PartModel* const whole = bench.part(name);
   if (whole == nullptr) return fail("there is no part \"" + name + "\"");
-  const auto kept = exclude(bench, request);
-  if (!kept) return fail(kept.error());
-  if (auto done = try_periods(bench, request); !done) return fail(done.error());
-  auto parts =
-      modelling::part_models(bench.read, request.at("model").get<std::vector<std::string>>());
-  if (!parts) return fail(parts.error());
+  Tried out;
   const bool all = request.value("excluded", Json::array()).empty();
-  for (PartModel& part : *parts) {
-    if (part.part.name != name) continue;
-    Tried out{std::move(part), {}};
-    if (all)
-      for (std::size_t i = 0; i < out.part.part.table.size(); ++i) out.row.push_back(i);
-    else
-      out.row = rows_of(out.part, *whole, bench, *kept);
-    return out;
+  if (all && request.value("period_mm", Json::object()).empty()) {
+    if (auto right = modelling::without_mistakes(model, bench.read); !right)
+      return fail(right.error());
+    modelling::set_model(*whole, model, bench.read);
+    out.of_bench = whole;
+  } else {
+    const auto kept = exclude(bench, request);
+    if (!kept) return fail(kept.error());
+    if (auto done = try_periods(bench, request); !done) return fail(done.error());
+    auto parts = modelling::part_models(bench.read, model);
+    if (!parts) return fail(parts.error());
+    const auto found = std::find_if(parts->begin(), parts->end(),
+                                    [&](const PartModel& p) { return p.part.name == name; });
+    if (found == parts->end()) return fail("no reading of part " + name + " is left");
+    out.own = std::make_unique<PartModel>(std::move(*found));
+    if (!all) out.row = rows_of(*out.own, *whole, bench, *kept);
   }
-  return fail("no reading of part " + name + " is left");
+  if (all) {
+    out.row.resize(out.part().part.table.size());
+    std::iota(out.row.begin(), out.row.end(), std::size_t{0});
+  }
+  return out;
 }
 
 std::vector<std::size_t> kept_rows(const ModelFit& fit) {
   return workbench::kept_readings(fit).rows;
 }
 
-/// What model-html embeds, and `row`, where the page has not all readings: of each of them its row
-/// in the part as the files have it.
+/// What model-html embeds, with the rows as the files have them.
 Expected<std::string> page_data(const Bench& bench, const ModelFit& fit,
                                 const std::vector<std::size_t>& rows) {
   const reports::Wording words(bench.place->context.templates, bench.language(), {"pictures"});
   const workbench::Drawn drawn{bench.campaign(), fit, words, reports::picture_words(fit, words)};
-  const workbench::Kept kept = workbench::kept_readings(fit);
+  workbench::Kept kept = workbench::kept_readings(fit);
+  for (std::size_t i = 0; i < rows.size() && kept.row_in_files.empty(); ++i)
+    if (rows[i] != i) kept.row_in_files = rows;
   std::string data = workbench::data_of(drawn, kept);
-  Json places = Json::array();
-  bool same = true;
-  for (const std::size_t k : kept.rows) {
-    same = same && rows[k] == places.size();
-    places.push_back(rows[k]);
-  }
-  if (!same) data = "{\"row\":" + places.dump() + "," + data.substr(1);
   if (const auto complete = words.complete(); !complete) return fail(complete.error());
   return data;
 }
@@ -231,18 +238,26 @@ Json text_of(const Bench& bench, const PartModel& part, const model::Comparison&
 Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> residual) {
   const auto one = tried(bench, request);
   if (!one) return fail(one.error());
-  auto compared = modelling::compare_part(one->part);
+  auto compared = modelling::compare_part(one->part());
   if (!compared) return fail(compared.error());
   std::fill(residual.begin(), residual.end(), std::nan(""));
   for (std::size_t i = 0; i < one->row.size(); ++i)
     residual[one->row[i]] = compared->fit.residual[i];
-  const ModelFit fitted = modelling::fitted_value(one->part, *compared);
+  const ModelFit fitted = modelling::fitted_value(one->part(), *compared);
   auto data = page_data(bench, fitted, one->row);
   if (!data) return data;
-  const std::string text = storage::dump(text_of(bench, one->part, *compared));
-  const modelling::Compared both{one->part, std::move(*compared)};
+  const std::string text = storage::dump(text_of(bench, one->part(), *compared));
+  const modelling::Compared both{one->part(), std::move(*compared)};
   return "{\"compare\":" + modelling::part_json(both, bench.campaign(), words_of(bench)) +
          ",\"page\":" + *data + ",\"text\":" + text + "}";
+}
+
+/// The readings as they were measured: what the page draws until there is a fit.
+Expected<std::string> look(Bench& bench, const PartModel& part) {
+  const ModelFit measured = modelling::measured_value(part);
+  auto data = page_data(bench, measured, {});
+  if (!data) return data;
+  return "{\"page\":" + *data + "}";
 }
 
 /// A column over the readings that the page has.
@@ -277,10 +292,10 @@ Json fingerprints_of(const PartModel& part, const model::Explanation& e) {
 Expected<std::string> explain(Bench& bench, const Json& request) {
   const auto one = tried(bench, request);
   if (!one) return fail(one.error());
-  auto explained = modelling::explain_part(one->part, request.value("seed", std::uint64_t{1}));
+  auto explained = modelling::explain_part(one->part(), request.value("seed", std::uint64_t{1}));
   if (!explained) return fail(explained.error());
-  const Json fingerprints = fingerprints_of(one->part, *explained);
-  const modelling::Explained both{one->part, std::move(*explained)};
+  const Json fingerprints = fingerprints_of(one->part(), *explained);
+  const modelling::Explained both{one->part(), std::move(*explained)};
   return "{\"explain\":" + modelling::part_json(both, bench.campaign(), words_of(bench)) +
          ",\"fingerprints\":" + storage::dump_line(fingerprints) + "}";
 }
@@ -288,12 +303,12 @@ Expected<std::string> explain(Bench& bench, const Json& request) {
 Expected<std::string> without(Bench& bench, const Json& request) {
   const auto one = tried(bench, request);
   if (!one) return fail(one.error());
-  const auto compared = modelling::compare_part(one->part);
+  const auto compared = modelling::compare_part(one->part());
   if (!compared) return fail(compared.error());
-  const auto rows = kept_rows(modelling::fitted_value(one->part, *compared));
-  const Quantity q = one->part.deviation();
+  const auto rows = kept_rows(modelling::fitted_value(one->part(), *compared));
+  const Quantity q = one->part().deviation();
   Json list = Json::array();
-  for (const ModelFit::Without& w : modelling::without_each(one->part)) {
+  for (const ModelFit::Without& w : modelling::without_each(one->part())) {
     Json item = {{"effect", w.effect}};
     storage::put(item, "rms", w.rms, q);
     storage::put(item, "cv_rms", w.cv_rms, q);
@@ -301,7 +316,7 @@ Expected<std::string> without(Bench& bench, const Json& request) {
     list.push_back(std::move(item));
   }
   Json out = {{"without", std::move(list)}};
-  if (one->part.part.table.size() > 0 && !one->part.names().empty() && out["without"].empty())
+  if (one->part().part.table.size() > 0 && !one->part().names().empty() && out["without"].empty())
     out["why_not"] = "more than 20000 readings: each fit takes seconds";
   return storage::dump_line(out);
 }
@@ -317,7 +332,7 @@ Expected<void> fill_residuals(Bench& bench, const Json& request, std::span<doubl
 
 }  // namespace
 
-const PartModel* Bench::part(const std::string& name) const {
+PartModel* Bench::part(const std::string& name) {
   const auto found = std::find_if(parts.begin(), parts.end(),
                                   [&](const PartModel& p) { return p.part.name == name; });
   return found == parts.end() ? nullptr : &*found;
@@ -395,8 +410,11 @@ Expected<std::string> calculate(Bench& bench, const Json& request, std::span<dou
   }
   const PartModel* const part = bench.part(request.at("part").get<std::string>());
   if (part == nullptr) return fail("there is no such part");
-  if (auto done = fill_residuals(bench, request, residual, fitted); !done)
-    return fail(done.error());
+  if (kind == "look") return look(bench, *part);
+  if (kind == "places") return readings(*part, bench.campaign(), request, {});
+  if (kind != "series" || is_of_fit(request))
+    if (auto done = fill_residuals(bench, request, residual, fitted); !done)
+      return fail(done.error());
   if (kind == "series") return series(*part, request, residual);
   if (kind == "readings") return readings(*part, bench.campaign(), request, residual);
   return fail("there is no request \"" + kind + "\"");

@@ -27,11 +27,11 @@ struct Bench {
   std::filesystem::path folder;
   std::unique_ptr<reading::Workplace> place;
   reading::ReadCampaign read;
-  std::vector<modelling::PartModel> parts;  ///< without a model
+  std::vector<modelling::PartModel> parts;  ///< with any model
 
   const Campaign& campaign() const { return read.manifest->campaign; }
   const std::string& language() const { return place->context.site.language; }
-  const modelling::PartModel* part(const std::string& name) const;
+  modelling::PartModel* part(const std::string& name);
 };
 
 /// Reads the campaign; the process goes on in a child that is kept apart. An error tells why the

@@ -106,7 +106,7 @@ Answer Desk::exclude(const Json& body) {
   std::unique_lock lock(mutex_);
   if (!has_part(part)) return refusal(404, "there is no part \"" + part.substr(0, 100) + "\"");
   end_search();
-  Json wish = request_for("readings", part);
+  Json wish = request_for("places", part);
   wish["rows"] = rows;
   const Waiting found = wait_for(lock, wish, "");
   if (!found.well) return refusal(422, found.text);

@@ -40,10 +40,11 @@ std::string mistake_of(const std::string& effect, const reading::ReadCampaign& r
   const auto [kind, axis] = split(effect);
   const auto is_kind = [&, &k = kind](const Effect& e) { return e.info.name == k; };
   const auto known = std::find_if(read.effects.begin(), read.effects.end(), is_kind);
-  const std::string nearest = storage::suggestion(effect, known_names(read));
+  // All effects are asked whether they apply to all readings: only where it is said.
+  const auto nearest = [&] { return storage::suggestion(effect, known_names(read)); };
   if (kind.empty() || axis.empty())
-    return "expected kind:axis, such as backlash:X; found \"" + effect + "\"" + nearest;
-  if (known == read.effects.end()) return "there is no effect \"" + kind + "\"" + nearest;
+    return "expected kind:axis, such as backlash:X; found \"" + effect + "\"" + nearest();
+  if (known == read.effects.end()) return "there is no effect \"" + kind + "\"" + nearest();
   if (known->is_nuisance)
     return "\"" + effect + "\" belongs to the set-up: it is in every model, and not written";
   if (known->instances)
@@ -51,9 +52,9 @@ std::string mistake_of(const std::string& effect, const reading::ReadCampaign& r
                ? ""
                : "\"" + effect +
                      "\": expected what the effect can be of, such as straightness:EYX, " +
-                     "squareness:XY or yaw:X" + nearest;
+                     "squareness:XY or yaw:X" + nearest();
   if (read.manifest->campaign.machine.axis(axis) == nullptr)
-    return "\"" + effect + "\": the machine has no axis \"" + axis + "\"" + nearest;
+    return "\"" + effect + "\": the machine has no axis \"" + axis + "\"" + nearest();
   return {};
 }
 
@@ -126,27 +127,34 @@ RowsPlace place_of(const PartModel& part, const Campaign& campaign,
   return out;
 }
 
+Expected<void> without_mistakes(const std::vector<std::string>& effects,
+                                const reading::ReadCampaign& read) {
+  const auto mistakes = model_mistakes(effects, read);
+  if (mistakes.empty()) return {};
+  const auto line = read.manifest->lines.find("model.effects");
+  return fail(Error{"model.effects: " + mistakes.front(), config::manifest_name,
+                    line == read.manifest->lines.end() ? 0 : line->second});
+}
+
+void set_model(PartModel& part, const std::vector<std::string>& effects,
+               const reading::ReadCampaign& read) {
+  auto terms =
+      model::terms_of(part.part, read.manifest->campaign.machine, effects, read.effects);
+  part.unfit = terms ? "" : terms.error().message;
+  part.terms = terms ? std::move(*terms) : std::vector<model::Term>{};
+}
+
 Expected<std::vector<PartModel>> part_models(const reading::ReadCampaign& read,
                                              const std::vector<std::string>& effects) {
   const Campaign& campaign = read.manifest->campaign;
-  const auto at_effects = [&](const std::string& message) {
-    const auto line = read.manifest->lines.find("model.effects");
-    return fail(Error{"model.effects: " + message, config::manifest_name,
-                      line == read.manifest->lines.end() ? 0 : line->second});
-  };
-  if (const auto mistakes = model_mistakes(effects, read); !mistakes.empty())
-    return at_effects(mistakes.front());
+  if (auto right = without_mistakes(effects, read); !right) return fail(right.error());
   std::vector<PartModel> parts;
   for (model::Part& part : model::parts_of(campaign, read.observations)) {
-    auto terms = model::terms_of(part, campaign.machine, effects, read.effects);
-    auto catalogue = model::catalogue(part, read.effects);
-    auto left_out = model::not_applying(part, read.effects);
-    PartModel one{std::move(part), {}, std::move(catalogue), {}, std::move(left_out)};
+    PartModel one{std::move(part), {}, {}, {}};
+    set_model(one, effects, read);
+    one.catalogue = model::catalogue(one.part, read.effects);
+    one.left_out = model::not_applying(one.part, read.effects);
     one.interpolated = place_of(one, campaign, model::interpolated_temperatures(one.part));
-    if (terms)
-      one.terms = std::move(*terms);
-    else
-      one.unfit = terms.error().message;
     parts.push_back(std::move(one));
   }
   return parts;

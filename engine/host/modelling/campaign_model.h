@@ -62,6 +62,13 @@ std::vector<std::string> model_mistakes(const std::vector<std::string>& effects,
 Expected<std::vector<PartModel>> part_models(const reading::ReadCampaign& read,
                                              const std::vector<std::string>& effects);
 
+/// The first mistake as an error, with the line of [model] effects.
+Expected<void> without_mistakes(const std::vector<std::string>& effects,
+                                const reading::ReadCampaign& read);
+/// Another model for the same readings. `effects` has no mistakes.
+void set_model(PartModel& part, const std::vector<std::string>& effects,
+               const reading::ReadCampaign& read);
+
 /// Effects of the model that no measurement here can show.
 std::vector<std::string> unmeasured(const std::vector<std::string>& effects,
                                     const std::vector<PartModel>& parts);

@@ -122,10 +122,9 @@ class SquaresOf {
       : o_(o), white_(white), left_(white(y)) {
     std::vector<Term> others = terms;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(t));
-    const auto d = design_of(o, others, white);
+    auto d = design_of(o, others, white);
     if (!d) return;
-    const MatrixXd scaled =
-        d->a * d->a.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal();
+    const MatrixXd scaled = of_unit_length(std::move(d->a));
     const Eigen::HouseholderQR<MatrixXd> qr(scaled);
     others_ = qr.householderQ() * MatrixXd::Identity(scaled.rows(), scaled.cols());
     left_ -= others_ * (others_.transpose() * left_);

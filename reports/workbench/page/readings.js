@@ -2,7 +2,7 @@
 const readings = (() => {
   let first = 0, columns = null;
   /// The row of a reading as the files have it, of its place on the page.
-  const rowOf = (shown, i) => (shown.fit.rows ? shown.fit.rows[i] : i);
+  const rowOf = (shown, i) => (shown.fit.page.row ? shown.fit.page.row[i] : i);
   const excludedIn = (state, shown) => (state.excluded || []).filter((e) => e.part === shown.part);
 
   /// Form that leaves readings out: nothing goes without a reason.
