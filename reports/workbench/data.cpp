@@ -133,11 +133,11 @@ std::string lanes_text(const ModelFit& fit) {
 
 }  // namespace
 
-Kept kept_readings(const ModelFit& fit, std::size_t most) {
+Kept kept_readings(const std::vector<double>& values, std::size_t most) {
   Kept kept;
-  kept.rows = all_rows(fit.size());
-  kept.counted.assign(fit.size(), 1);
-  if (fit.size() <= most) return kept;
+  kept.rows = all_rows(values.size());
+  kept.counted.assign(values.size(), 1);
+  if (values.size() <= most) return kept;
   const std::size_t largest = most / 100;
   std::vector<std::size_t> order = kept.rows;
   const auto first = [&](std::size_t n, const auto& key) {
@@ -148,7 +148,7 @@ Kept kept_readings(const ModelFit& fit, std::size_t most) {
   };
   std::map<std::size_t, char> rows;
   for (const std::size_t i :
-       first(largest, [&](std::size_t row) { return -std::fabs(fit.residual[row]); }))
+       first(largest, [&](std::size_t row) { return -std::fabs(values[row]); }))
     rows[i] = 0;
   for (const std::size_t i : first(most - largest, scrambled)) rows[i] = 1;
   kept = {};

@@ -144,18 +144,31 @@ void set_model(PartModel& part, const std::vector<std::string>& effects,
   part.terms = terms ? std::move(*terms) : std::vector<model::Term>{};
 }
 
+std::vector<PartModel> bare_parts(const reading::ReadCampaign& read) {
+  std::vector<PartModel> parts;
+  for (model::Part& part : model::parts_of(read.manifest->campaign, read.observations))
+    parts.push_back({std::move(part), {}, {}, {}});
+  return parts;
+}
+
+void fill_catalogue(PartModel& part, const reading::ReadCampaign& read) {
+  part.catalogue = model::catalogue(part.part, read.effects);
+  part.left_out = model::not_applying(part.part, read.effects);
+  fill_interpolated(part, read);
+}
+
+void fill_interpolated(PartModel& part, const reading::ReadCampaign& read) {
+  part.interpolated = place_of(part, read.manifest->campaign,
+                               model::interpolated_temperatures(part.part));
+}
+
 Expected<std::vector<PartModel>> part_models(const reading::ReadCampaign& read,
                                              const std::vector<std::string>& effects) {
-  const Campaign& campaign = read.manifest->campaign;
   if (auto right = without_mistakes(effects, read); !right) return fail(right.error());
-  std::vector<PartModel> parts;
-  for (model::Part& part : model::parts_of(campaign, read.observations)) {
-    PartModel one{std::move(part), {}, {}, {}};
-    set_model(one, effects, read);
-    one.catalogue = model::catalogue(one.part, read.effects);
-    one.left_out = model::not_applying(one.part, read.effects);
-    one.interpolated = place_of(one, campaign, model::interpolated_temperatures(one.part));
-    parts.push_back(std::move(one));
+  std::vector<PartModel> parts = bare_parts(read);
+  for (PartModel& part : parts) {
+    set_model(part, effects, read);
+    fill_catalogue(part, read);
   }
   return parts;
 }
@@ -185,16 +198,18 @@ std::vector<std::string> below_uncertainty(const model::Fit& fit) {
   return out;
 }
 
-Expected<model::Comparison> compare_part(const PartModel& part) {
+Expected<model::Comparison> compare_part(const PartModel& part, const model::Groundwork* known,
+                                         const model::Fitted& fitted) {
   if (!part.unfit.empty()) return fail(part.unfit);
   return process::guarded(kind_of(part.part) + " " + part.part.name,
-                          [&] { return model::compare(part.part, part.terms); });
+                          [&] { return model::compare(part.part, part.terms, known, fitted); });
 }
 
-Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed) {
+Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
+                                          const model::Groundwork* known) {
   if (!part.unfit.empty()) return fail(part.unfit);
   return process::guarded(kind_of(part.part) + " " + part.part.name, [&] {
-    auto out = model::explain(part.part, part.terms, part.catalogue, seed);
+    auto out = model::explain(part.part, part.terms, part.catalogue, seed, known);
     // None vanishes in silence.
     if (out)
       out->candidates.insert(out->candidates.end(), part.left_out.begin(), part.left_out.end());
