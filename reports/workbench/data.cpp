@@ -133,12 +133,12 @@ std::string lanes_text(const ModelFit& fit) {
 
 }  // namespace
 
-Kept kept_readings(const ModelFit& fit) {
+Kept kept_readings(const std::vector<double>& values, std::size_t most) {
   Kept kept;
-  kept.rows = all_rows(fit.size());
-  kept.counted.assign(fit.size(), 1);
-  if (fit.size() <= most_readings) return kept;
-  constexpr std::size_t largest = most_readings / 100;
+  kept.rows = all_rows(values.size());
+  kept.counted.assign(values.size(), 1);
+  if (values.size() <= most) return kept;
+  const std::size_t largest = most / 100;
   std::vector<std::size_t> order = kept.rows;
   const auto first = [&](std::size_t n, const auto& key) {
     std::nth_element(
@@ -148,9 +148,9 @@ Kept kept_readings(const ModelFit& fit) {
   };
   std::map<std::size_t, char> rows;
   for (const std::size_t i :
-       first(largest, [&](std::size_t row) { return -std::fabs(fit.residual[row]); }))
+       first(largest, [&](std::size_t row) { return -std::fabs(values[row]); }))
     rows[i] = 0;
-  for (const std::size_t i : first(most_readings - largest, scrambled)) rows[i] = 1;
+  for (const std::size_t i : first(most - largest, scrambled)) rows[i] = 1;
   kept = {};
   for (const auto& [row, counted] : rows) kept.rows.push_back(row), kept.counted.push_back(counted);
   return kept;
@@ -189,7 +189,10 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   out.raw("words", words_of(source));
   out.raw("pictures", pictures_of(source, titles));
   out.raw("files", files_of(source));
-  if (rows.size() < fit.size()) out.raw("row", column(all_rows(fit.size()), rows));
+  if (!kept.row_in_files.empty())
+    out.raw("row", column(kept.row_in_files, rows));
+  else if (rows.size() < fit.size())
+    out.raw("row", column(all_rows(fit.size()), rows));
   out.raw("measurement", column(known(fit.measurement, fit.size()), rows));
   out.raw("line", column(known(fit.source_line, fit.size()), rows));
   out.raw("run", column(known(fit.run, fit.size()), rows));

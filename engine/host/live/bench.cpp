@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,6 +17,7 @@
 #include <iostream>
 #include <map>
 #include <new>
+#include <optional>
 
 #include "host/process/child.h"
 #include "host/process/confine.h"
@@ -48,10 +50,23 @@ class Shared {
   double* data_ = nullptr;
 };
 
-/// What was fitted last of a part.
-struct Fitted {
-  std::string key;
-  std::shared_ptr<Shared> residual;
+/// What was fitted last of a part: the newest, by their trials.
+class Fitted {
+ public:
+  std::shared_ptr<Shared> find(const std::string& key) const {
+    for (const auto& [known, residual] : all_)
+      if (known == key) return residual;
+    return nullptr;
+  }
+  void put(const std::string& key, std::shared_ptr<Shared> residual) {
+    std::erase_if(all_, [&](const auto& one) { return one.first == key; });
+    all_.emplace_back(key, std::move(residual));
+    if (all_.size() > most) all_.pop_front();
+  }
+
+ private:
+  static constexpr std::size_t most = 8;  // steps to and fro; 8 MB each of 1,000,000 readings
+  std::deque<std::pair<std::string, std::shared_ptr<Shared>>> all_;
 };
 
 struct Job {
@@ -66,6 +81,7 @@ struct Running {
   process::Handle pipe{};
   std::string received{};
   std::shared_ptr<Shared> residual{};
+  bool fills = false;  ///< `residual`
   Clock::time_point begun = Clock::now();
   int told = 0;  ///< seconds that were reported
 };
@@ -85,12 +101,34 @@ std::string words_of(const Error& e) {
          e.message;
 }
 
-/// The first byte of what a child sends: an answer, or why there is none.
-constexpr char answers = '+', refuses = '-';
+/// The first byte of what a child sends: an answer, or why there is none. Before it may come what
+/// is there first, with its length.
+constexpr char begins = '1', answers = '+', refuses = '-';
+constexpr std::size_t before_first = 1 + sizeof(std::uint64_t);
 
-std::string answer_of(Bench& bench, const Job& job, std::span<double> residual, bool fitted) {
+void send_first(int pipe, const std::string& text) {
+  const std::uint64_t size = text.size();
+  std::string bytes(before_first, begins);
+  std::memcpy(bytes.data() + 1, &size, sizeof size);
+  write_all(pipe, bytes + text);
+}
+
+/// What came first, once it is complete.
+std::optional<std::string> take_first(std::string& received) {
+  std::uint64_t size = 0;
+  if (received.size() < before_first || received.front() != begins) return std::nullopt;
+  std::memcpy(&size, received.data() + 1, sizeof size);
+  if (received.size() - before_first < size) return std::nullopt;
+  std::string out = received.substr(before_first, size);
+  received.erase(0, before_first + size);
+  return out;
+}
+
+std::string answer_of(Bench& bench, const Job& job, std::span<double> residual, bool fitted,
+                      int pipe) {
   try {
-    auto done = calculate(bench, job.request, residual, fitted);
+    auto done = calculate(bench, job.request, residual, fitted,
+                          [pipe](const std::string& text) { send_first(pipe, text); });
     if (done) return answers + *done;
     return refuses + words_of(done.error());
   } catch (const std::bad_alloc&) {
@@ -100,10 +138,13 @@ std::string answer_of(Bench& bench, const Job& job, std::span<double> residual, 
   }
 }
 
+bool is_slow(const Job& job) { return job.kind == "explain" || job.kind == "without"; }
+
 [[noreturn]] void do_job(Bench& bench, const Job& job, int pipe, std::span<double> residual,
                          bool fitted) {
   process::init_child();
   process::limit_memory(bench.place->context.site.limits.memory_MB);
+  if (is_slow(job)) ::setpriority(PRIO_PROCESS, 0, 10);  // somebody waits for the others
   if (!needs_files(job.kind)) {
     std::string why = process::confine_files();
     if (why.empty()) why = process::confine_computing();
@@ -112,7 +153,7 @@ std::string answer_of(Bench& bench, const Job& job, std::span<double> residual, 
       ::_exit(1);
     }
   }
-  const std::string answer = answer_of(bench, job, residual, fitted);
+  const std::string answer = answer_of(bench, job, residual, fitted, pipe);
   ::_exit(write_all(pipe, answer) ? 0 : 1);
 }
 
@@ -135,9 +176,7 @@ class Loop {
   }
 
  private:
-  static constexpr std::size_t most_running = 3, most_slow = 2, most_waiting = 64;
-
-  static bool is_slow(const Job& job) { return job.kind == "explain"; }
+  static constexpr std::size_t most_running = 4, most_slow = 2, most_waiting = 64;
 
   void tell(std::uint64_t number, const char* state, std::string_view text) {
     process::Parcel parcel;
@@ -151,7 +190,8 @@ class Loop {
     for (const bool is_quick : {true, false})
       for (auto it = waiting_.begin(); it != waiting_.end();) {
         const bool may = is_slow(*it) != is_quick && running_.size() < most_running &&
-                         (is_quick || slow < most_slow);
+                         (is_quick || slow < most_slow) &&
+                         (bench_.has_catalogue || it->kind != "explain");
         if (!may) {
           ++it;
           continue;
@@ -163,13 +203,15 @@ class Loop {
   }
 
   void start(const Job& job) {
-    std::shared_ptr<Shared> residual;
-    const auto known = fitted_.find(job.part);
-    const bool fitted = job.kind != "fit" && known != fitted_.end() && known->second.key == job.key;
+    const bool fills = job.kind == "fit" || needs_residual(job.request);
+    const auto known = job.kind == "fit" ? nullptr : fitted_[job.part].find(job.key);
+    const bool fitted = known != nullptr;
     const modelling::PartModel* const part = bench_.part(job.part);
+    std::shared_ptr<Shared> residual;
     try {
-      residual = fitted ? known->second.residual
-                        : std::make_shared<Shared>(part != nullptr ? part->part.table.size() : 0);
+      residual = fitted ? known
+                        : std::make_shared<Shared>(
+                              fills && part != nullptr ? part->part.table.size() : 0);
     } catch (const std::bad_alloc&) {
       return tell(job.number, job_state::failed, "out of memory");
     }
@@ -186,20 +228,44 @@ class Loop {
       do_job(bench_, job, to.get(), residual->values(), fitted);
     }
     tell(job.number, job_state::running, "0");
-    running_[job.number] = {job, child, std::move(from), "", std::move(residual), Clock::now(), 0};
+    running_[job.number] = {job,   child,         std::move(from), "", std::move(residual),
+                            fills, Clock::now(), 0};
+  }
+
+  /// What this process does itself, since all requests want it: while nobody waits for anything.
+  bool has_work() const {
+    const auto waited_for = [](const auto& one) { return !is_slow(one.second.job); };
+    return !bench_.has_catalogue ||
+           (std::none_of(running_.begin(), running_.end(), waited_for) &&
+            without_groundwork(bench_) != nullptr);
+  }
+  void work() {
+    if (!bench_.has_catalogue)
+      tell(0, job_state::catalogue, storage::dump_line(fill_catalogue(bench_)));
+    else if (const auto* part = without_groundwork(bench_))
+      do_groundwork(bench_, *part);
   }
 
   void wait() {
     std::vector<pollfd> all{{channel_.get(), POLLIN, 0}};
     for (const auto& [number, one] : running_) all.push_back({one.pipe.get(), POLLIN, 0});
-    constexpr int tick = 200;
-    if (::poll(all.data(), all.size(), running_.empty() ? -1 : tick) <= 0) return;
+    constexpr int tick = 200, idle = 150;
+    const int patience = has_work() ? idle : running_.empty() ? -1 : tick;
+    if (::poll(all.data(), all.size(), patience) <= 0) {
+      if (patience == idle) work();
+      return;
+    }
     if (all.front().revents != 0) take_request();
     std::size_t k = 1;
     std::vector<std::uint64_t> ended;
     for (auto& [number, one] : running_) {
-      if (k < all.size() && all[k].fd == one.pipe.get() && all[k].revents != 0 && !read_from(one))
-        ended.push_back(number);
+      if (k < all.size() && all[k].fd == one.pipe.get() && all[k].revents != 0) {
+        if (!read_from(one)) ended.push_back(number);
+        if (const auto first = take_first(one.received)) {
+          keep_residual(one);
+          tell(number, job_state::begun, *first);
+        }
+      }
       ++k;
     }
     for (const std::uint64_t number : ended) finish(number);
@@ -248,15 +314,20 @@ class Loop {
     Running one = std::move(found->second);
     running_.erase(found);
     const process::ChildEnd end = process::wait_for_child(one.child, 5.0);
-    if (one.received.empty() || (!end.well && one.received.front() == answers))
+    if (one.received.empty() || one.received.front() == begins ||
+        (!end.well && one.received.front() == answers))
       return tell(number, job_state::failed,
                   "a plugin brought the process down in which it ran: " +
                       (end.well ? std::string("it ended without an answer") : end.words));
     const std::string_view text = std::string_view(one.received).substr(1);
     if (one.received.front() == refuses) return tell(number, job_state::failed, text);
-    if (one.job.kind == "fit") fitted_[one.job.part] = {one.job.key, one.residual};
+    keep_residual(one);
     if (one.job.kind == "save") take_saved(text);
     tell(number, job_state::done, text);
+  }
+
+  void keep_residual(const Running& one) {
+    if (one.fills) fitted_[one.job.part].put(one.job.key, one.residual);
   }
 
   void take_saved(std::string_view text) {

@@ -10,10 +10,12 @@
 namespace nonio::host::live {
 
 /// What travels from the bench process to the server, as a Parcel: number of the job, state, text.
-/// Job 0: the campaign itself ("opened" with `described`, or "failed").
+/// Job 0: the campaign itself ("opened" with `described`, perhaps "catalogue" later, or "failed").
 namespace job_state {
 inline constexpr const char* opened = "opened";
+inline constexpr const char* catalogue = "catalogue";
 inline constexpr const char* running = "running";  ///< text: seconds so far
+inline constexpr const char* begun = "begun";      ///< text: what is there before all of it
 inline constexpr const char* done = "done";
 inline constexpr const char* failed = "failed";
 }  // namespace job_state

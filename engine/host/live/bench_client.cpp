@@ -99,9 +99,10 @@ void BenchClient::hear() {
     process::Parcel parcel(std::move(bytes));
     const std::uint64_t job = parcel.number();
     const std::string state = parcel.text();
-    if (state != job_state::running && job != 0) {
+    if (job != 0) {
+      const bool goes_on = state == job_state::running || state == job_state::begun;
       const std::lock_guard lock(mutex_);
-      if (open_.erase(job) == 0) continue;  // it was cancelled
+      if (goes_on ? !open_.contains(job) : open_.erase(job) == 0) continue;  // it was cancelled
     }
     tell_(job, state, parcel.text());
   }

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <numeric>
 
 #include "host/live/columns.h"
 #include "host/live/documents.h"
 #include "host/modelling/model_fit.h"
 #include "host/modelling/model_json.h"
 #include "host/process/keep_apart.h"
+#include "host/process/watched.h"
 #include "nonio/reports/residuals.h"
 #include "nonio/reports/wording.h"
 #include "nonio/workbench/data.h"
@@ -148,10 +151,13 @@ Expected<void> try_periods(Bench& bench, const Json& request) {
   return {};
 }
 
-/// A part with the model that is tried.
+/// A part with the model that is tried: one of the bench, or of its own where readings or periods
+/// are others.
 struct Tried {
-  PartModel part;
+  std::unique_ptr<PartModel> own;
+  PartModel* of_bench = nullptr;
   std::vector<std::size_t> row;  ///< of each of its readings: that of the part with all readings
+  const PartModel& part() const { return own ? *own : *of_bench; }
 };
 
 std::vector<std::size_t> rows_of(const PartModel& part, const PartModel& whole, const Bench& bench,
@@ -173,46 +179,54 @@ std::vector<std::size_t> rows_of(const PartModel& part, const PartModel& whole, 
 
 Expected<Tried> tried(Bench& bench, const Json& request) {
   const auto name = request.at("part").get<std::string>();
-  const PartModel* whole = bench.part(name);
+  const auto model = request.at("model").get<std::vector<std::string>>();
+  PartModel* const whole = bench.part(name);
   if (whole == nullptr) return fail("there is no part \"" + name + "\"");
-  const auto kept = exclude(bench, request);
-  if (!kept) return fail(kept.error());
-  if (auto done = try_periods(bench, request); !done) return fail(done.error());
-  auto parts =
-      modelling::part_models(bench.read, request.at("model").get<std::vector<std::string>>());
-  if (!parts) return fail(parts.error());
+  Tried out;
   const bool all = request.value("excluded", Json::array()).empty();
-  for (PartModel& part : *parts) {
-    if (part.part.name != name) continue;
-    Tried out{std::move(part), {}};
-    if (all)
-      for (std::size_t i = 0; i < out.part.part.table.size(); ++i) out.row.push_back(i);
-    else
-      out.row = rows_of(out.part, *whole, bench, *kept);
-    return out;
+  if (all && request.value("period_mm", Json::object()).empty()) {
+    if (auto right = modelling::without_mistakes(model, bench.read); !right)
+      return fail(right.error());
+    modelling::set_model(*whole, model, bench.read);
+    if (!bench.has_catalogue) modelling::fill_interpolated(*whole, bench.read);
+    out.of_bench = whole;
+  } else {
+    const auto kept = exclude(bench, request);
+    if (!kept) return fail(kept.error());
+    if (auto done = try_periods(bench, request); !done) return fail(done.error());
+    auto parts = modelling::part_models(bench.read, model);
+    if (!parts) return fail(parts.error());
+    const auto found = std::find_if(parts->begin(), parts->end(),
+                                    [&](const PartModel& p) { return p.part.name == name; });
+    if (found == parts->end()) return fail("no reading of part " + name + " is left");
+    out.own = std::make_unique<PartModel>(std::move(*found));
+    if (!all) out.row = rows_of(*out.own, *whole, bench, *kept);
   }
-  return fail("no reading of part " + name + " is left");
+  if (all) {
+    out.row.resize(out.part().part.table.size());
+    std::iota(out.row.begin(), out.row.end(), std::size_t{0});
+  }
+  return out;
 }
 
-std::vector<std::size_t> kept_rows(const ModelFit& fit) {
-  return workbench::kept_readings(fit).rows;
+/// What the page holds: the same readings whatever the model is. Of very many it draws columns of
+/// pixels, and needs a sample for quantiles and tables only.
+workbench::Kept kept_of(const PartModel& part) {
+  constexpr std::size_t sample = 5000;
+  const std::vector<double>& measured = part.part.table.deviation;
+  const bool is_drawn = measured.size() <= workbench::most_readings;
+  return workbench::kept_readings(measured, is_drawn ? workbench::most_readings : sample);
 }
 
-/// What model-html embeds, and `row`, where the page has not all readings: of each of them its row
-/// in the part as the files have it.
-Expected<std::string> page_data(const Bench& bench, const ModelFit& fit,
+/// What model-html embeds, with the rows as the files have them.
+Expected<std::string> page_data(const Bench& bench, const PartModel& part, const ModelFit& fit,
                                 const std::vector<std::size_t>& rows) {
   const reports::Wording words(bench.place->context.templates, bench.language(), {"pictures"});
   const workbench::Drawn drawn{bench.campaign(), fit, words, reports::picture_words(fit, words)};
-  const workbench::Kept kept = workbench::kept_readings(fit);
+  workbench::Kept kept = kept_of(part);
+  for (std::size_t i = 0; i < rows.size() && kept.row_in_files.empty(); ++i)
+    if (rows[i] != i) kept.row_in_files = rows;
   std::string data = workbench::data_of(drawn, kept);
-  Json places = Json::array();
-  bool same = true;
-  for (const std::size_t k : kept.rows) {
-    same = same && rows[k] == places.size();
-    places.push_back(rows[k]);
-  }
-  if (!same) data = "{\"row\":" + places.dump() + "," + data.substr(1);
   if (const auto complete = words.complete(); !complete) return fail(complete.error());
   return data;
 }
@@ -228,21 +242,53 @@ Json text_of(const Bench& bench, const PartModel& part, const model::Comparison&
   return text;
 }
 
-Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> residual) {
+/// None where it is of other readings.
+const model::Groundwork* groundwork_of(const Bench& bench, const Tried& tried) {
+  if (tried.own) return nullptr;
+  const auto found = bench.groundwork.find(tried.part().part.name);
+  return found == bench.groundwork.end() ? nullptr : &found->second;
+}
+
+/// All of a fit but the page.
+std::string head_of(const Bench& bench, const PartModel& part, const model::Comparison& c) {
+  const modelling::Compared both{part, c};
+  return "\"compare\":" + modelling::part_json(both, bench.campaign(), words_of(bench)) +
+         ",\"text\":" + storage::dump(text_of(bench, part, c));
+}
+
+Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> residual,
+                          const First& first) {
   const auto one = tried(bench, request);
   if (!one) return fail(one.error());
-  auto compared = modelling::compare_part(one->part);
+  const auto page_of = [&](const model::Comparison& c) {
+    std::fill(residual.begin(), residual.end(), std::nan(""));
+    for (std::size_t i = 0; i < one->row.size(); ++i) residual[one->row[i]] = c.fit.residual[i];
+    return page_data(bench, one->part(), modelling::fitted_value(one->part(), c), one->row);
+  };
+  bool is_begun = false;
+  const auto begin = [&](const model::Comparison& c) {
+    const auto page = page_of(c);
+    if (!page || !first) return;
+    process::Parcel parcel;
+    parcel.add(head_of(bench, one->part(), c)).add(*page);
+    first(parcel.bytes());
+    is_begun = true;
+  };
+  const auto compared =
+      modelling::compare_part(one->part(), groundwork_of(bench, *one), begin);
   if (!compared) return fail(compared.error());
-  std::fill(residual.begin(), residual.end(), std::nan(""));
-  for (std::size_t i = 0; i < one->row.size(); ++i)
-    residual[one->row[i]] = compared->fit.residual[i];
-  const ModelFit fitted = modelling::fitted_value(one->part, *compared);
-  auto data = page_data(bench, fitted, one->row);
+  auto page = is_begun ? Expected<std::string>("") : page_of(*compared);
+  if (!page) return page;
+  process::Parcel parcel;
+  parcel.add(head_of(bench, one->part(), *compared)).add(*page);
+  return parcel.bytes();
+}
+
+/// The readings as they were measured: what the page draws until there is a fit.
+Expected<std::string> look(Bench& bench, const PartModel& part) {
+  const auto data = page_data(bench, part, modelling::measured_value(part), {});
   if (!data) return data;
-  const std::string text = storage::dump(text_of(bench, one->part, *compared));
-  const modelling::Compared both{one->part, std::move(*compared)};
-  return "{\"compare\":" + modelling::part_json(both, bench.campaign(), words_of(bench)) +
-         ",\"page\":" + *data + ",\"text\":" + text + "}";
+  return "{\"page\":" + *data + "}";
 }
 
 /// A column over the readings that the page has.
@@ -258,7 +304,7 @@ Json column(const std::vector<double>& values, const std::vector<std::size_t>& r
 /// What each candidate would take away, beside the model, on these readings.
 Json fingerprints_of(const PartModel& part, const model::Explanation& e) {
   constexpr std::size_t most = 40;
-  const std::vector<std::size_t> rows = kept_rows(modelling::fitted_value(part, e.comparison));
+  const std::vector<std::size_t> rows = kept_of(part).rows;
   Json list = Json::array();
   for (const model::Candidate& c : e.candidates) {
     if (!modelling::is_ranked(c) || list.size() == most) continue;
@@ -274,26 +320,25 @@ Json fingerprints_of(const PartModel& part, const model::Explanation& e) {
   return list;
 }
 
-Expected<std::string> explain(Bench& bench, const Json& request) {
+Expected<std::string> explain(Bench& bench, const Json& request, const First& first) {
   const auto one = tried(bench, request);
   if (!one) return fail(one.error());
-  auto explained = modelling::explain_part(one->part, request.value("seed", std::uint64_t{1}));
+  auto explained = modelling::explain_part(one->part(), request.value("seed", std::uint64_t{1}),
+                                           groundwork_of(bench, *one));
   if (!explained) return fail(explained.error());
-  const Json fingerprints = fingerprints_of(one->part, *explained);
-  const modelling::Explained both{one->part, std::move(*explained)};
-  return "{\"explain\":" + modelling::part_json(both, bench.campaign(), words_of(bench)) +
-         ",\"fingerprints\":" + storage::dump_line(fingerprints) + "}";
+  const modelling::Explained both{one->part(), std::move(*explained)};
+  first("{\"explain\":" + modelling::part_json(both, bench.campaign(), words_of(bench)) + "}");
+  return "{\"fingerprints\":" +
+         storage::dump_line(fingerprints_of(one->part(), both.explanation)) + "}";
 }
 
 Expected<std::string> without(Bench& bench, const Json& request) {
   const auto one = tried(bench, request);
   if (!one) return fail(one.error());
-  const auto compared = modelling::compare_part(one->part);
-  if (!compared) return fail(compared.error());
-  const auto rows = kept_rows(modelling::fitted_value(one->part, *compared));
-  const Quantity q = one->part.deviation();
+  const auto rows = kept_of(one->part()).rows;
+  const Quantity q = one->part().deviation();
   Json list = Json::array();
-  for (const ModelFit::Without& w : modelling::without_each(one->part)) {
+  for (const ModelFit::Without& w : modelling::without_each(one->part())) {
     Json item = {{"effect", w.effect}};
     storage::put(item, "rms", w.rms, q);
     storage::put(item, "cv_rms", w.cv_rms, q);
@@ -301,23 +346,14 @@ Expected<std::string> without(Bench& bench, const Json& request) {
     list.push_back(std::move(item));
   }
   Json out = {{"without", std::move(list)}};
-  if (one->part.part.table.size() > 0 && !one->part.names().empty() && out["without"].empty())
+  if (one->part().part.table.size() > 0 && !one->part().names().empty() && out["without"].empty())
     out["why_not"] = "more than 20000 readings: each fit takes seconds";
   return storage::dump_line(out);
 }
 
-/// Of each reading of the part what was fitted before, or now.
-Expected<void> fill_residuals(Bench& bench, const Json& request, std::span<double> residual,
-                              bool fitted) {
-  if (fitted) return {};
-  const auto done = fit(bench, request, residual);
-  if (!done) return fail(done.error());
-  return {};
-}
-
 }  // namespace
 
-const PartModel* Bench::part(const std::string& name) const {
+PartModel* Bench::part(const std::string& name) {
   const auto found = std::find_if(parts.begin(), parts.end(),
                                   [&](const PartModel& p) { return p.part.name == name; });
   return found == parts.end() ? nullptr : &*found;
@@ -325,17 +361,28 @@ const PartModel* Bench::part(const std::string& name) const {
 
 Expected<Bench> open_bench(const BenchWish& wish) {
   process::keep_plugins_apart(wish.own_plugins);
-  Bench bench{wish.folder, nullptr, {}, {}};
+  Bench bench{wish.folder, nullptr, {}, {}, false, {}};
   auto place = reading::open_workplace(wish.folder, wish.plugin_folders, wish.template_folders,
                                        wish.version);
   if (!place) return fail(place.error());
   bench.place = std::move(*place);
   bench.read = reading::read_campaign(wish.folder, bench.place->context, [](const std::string&) {});
   if (!bench.read.manifest) return fail(bench.read.errors.front());
-  auto parts = modelling::part_models(bench.read, {});
-  if (!parts) return fail(parts.error());
-  bench.parts = std::move(*parts);
+  bench.parts = modelling::bare_parts(bench.read);
+  std::size_t readings = 0;
+  for (PartModel& part : bench.parts) {
+    modelling::set_model(part, {}, bench.read);
+    readings += part.part.table.size();
+  }
+  constexpr std::size_t many = 50000;  // below, it takes less than a tenth of a second
+  if (readings <= many) fill_catalogue(bench);
   return bench;
+}
+
+Json fill_catalogue(Bench& bench) {
+  for (PartModel& part : bench.parts) modelling::fill_catalogue(part, bench.read);
+  bench.has_catalogue = true;
+  return catalogue_json(bench);
 }
 
 Json described(const Bench& bench) {
@@ -347,7 +394,7 @@ Json described(const Bench& bench) {
                {"language", bench.language()},
                {"model", campaign.model},
                {"parts", Json::array()},
-               {"catalogue", catalogue_json(bench)},
+               {"catalogue", bench.has_catalogue ? catalogue_json(bench) : Json(nullptr)},
                {"inputs", Json::object()},
                {"mistakes", modelling::model_mistakes(campaign.model, bench.read)},
                {"errors", Json::array()},
@@ -380,11 +427,30 @@ std::string trial_key(const Json& request) {
   return key.dump();
 }
 
+bool needs_residual(const Json& request) {
+  const auto kind = request.value("kind", "");
+  return kind == "readings" || (kind == "series" && is_of_fit(request));
+}
+
+const PartModel* without_groundwork(const Bench& bench) {
+  constexpr std::size_t worth = 5000;  // readings
+  for (const PartModel& part : bench.parts)
+    if (part.part.table.size() >= worth && !bench.groundwork.contains(part.part.name) &&
+        std::none_of(part.terms.begin(), part.terms.end(),
+                     [](const model::Term& t) { return t.effect->is_nuisance; }))
+      return &part;
+  return nullptr;
+}
+
+void do_groundwork(Bench& bench, const PartModel& part) {
+  bench.groundwork.emplace(part.part.name, model::Groundwork(part.part, {}));
+}
+
 Expected<std::string> calculate(Bench& bench, const Json& request, std::span<double> residual,
-                                bool fitted) {
+                                bool fitted, const First& first) {
   const auto kind = request.at("kind").get<std::string>();
-  if (kind == "fit") return fit(bench, request, residual);
-  if (kind == "explain") return explain(bench, request);
+  if (kind == "fit") return fit(bench, request, residual, first);
+  if (kind == "explain") return explain(bench, request, first);
   if (kind == "without") return without(bench, request);
   if (kind == "save") return save(bench, request);
   if (kind == "difference") return difference(bench, request);
@@ -395,8 +461,10 @@ Expected<std::string> calculate(Bench& bench, const Json& request, std::span<dou
   }
   const PartModel* const part = bench.part(request.at("part").get<std::string>());
   if (part == nullptr) return fail("there is no such part");
-  if (auto done = fill_residuals(bench, request, residual, fitted); !done)
-    return fail(done.error());
+  if (kind == "look") return look(bench, *part);
+  if (kind == "places") return readings(*part, bench.campaign(), request, {});
+  if (needs_residual(request) && !fitted)
+    if (auto done = fit(bench, request, residual, {}); !done) return fail(done.error());
   if (kind == "series") return series(*part, request, residual);
   if (kind == "readings") return readings(*part, bench.campaign(), request, residual);
   return fail("there is no request \"" + kind + "\"");

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
+#include <numeric>
 
 namespace nonio::host::live {
 using modelling::PartModel;
@@ -12,11 +12,15 @@ using storage::Json;
 
 namespace {
 
-/// One value of a reading, by its row.
+/// One value of each reading, as it is printed.
 struct Column {
-  std::function<double(std::size_t)> at;
+  std::vector<double> own;  ///< where it is not a column of the table
+  std::span<const double> si;
   Quantity quantity = Quantity::number;
   double from = 0.0;
+  double per_si = 1.0;
+
+  double shown(std::size_t i) const { return (si[i] - from) * per_si; }
 };
 
 double first_of(const std::vector<double>& values) {
@@ -24,13 +28,6 @@ double first_of(const std::vector<double>& values) {
   for (const double v : values)
     if (std::isfinite(v)) first = std::min(first, v);
   return std::isfinite(first) ? first : 0.0;
-}
-
-template <class T>
-std::function<double(std::size_t)> of(const std::vector<T>& values) {
-  return [&values](std::size_t i) {
-    return i < values.size() ? static_cast<double>(values[i]) : std::nan("");
-  };
 }
 
 double period_of(const PartModel& part, const Json& request) {
@@ -42,29 +39,53 @@ double period_of(const PartModel& part, const Json& request) {
   return axis.screw_pitch.value_or(0.0);
 }
 
+Column column_in(const std::vector<double>& values, std::size_t n, Quantity q, double from = 0.0) {
+  Column c{{}, values, q, from, unit_of(q).per_si};
+  if (values.size() < n) {
+    c.own = values;
+    c.own.resize(n, std::nan(""));
+    c.si = c.own;
+  }
+  return c;
+}
+
+Column made(std::vector<double> values, Quantity q) {
+  Column c{std::move(values), {}, q, 0.0, unit_of(q).per_si};
+  c.si = c.own;
+  return c;
+}
+
 Expected<Column> column_of(const std::string& name, const PartModel& part, const Json& request,
                            std::span<const double> residual) {
   const Observations& o = part.part.table;
-  if (name == "target") return Column{of(part.part.along), part.position()};
-  if (name == "time") return Column{of(o.time), Quantity::time, first_of(o.time)};
-  if (name == "temperature") return Column{of(o.material), Quantity::temperature};
-  if (name == "run") return Column{of(o.run), Quantity::count};
-  if (name == "order")
-    return Column{[](std::size_t i) { return static_cast<double>(i); }, Quantity::count};
-  if (name == "deviation") return Column{of(o.deviation), part.deviation()};
+  const std::size_t n = o.size();
+  if (name == "target") return column_in(part.part.along, n, part.position());
+  if (name == "time") return column_in(o.time, n, Quantity::time, first_of(o.time));
+  if (name == "temperature") return column_in(o.material, n, Quantity::temperature);
+  if (name == "deviation") return column_in(o.deviation, n, part.deviation());
   if (name == "residual")
-    return Column{[residual](std::size_t i) { return residual[i]; }, part.deviation()};
-  if (name == "model")
-    return Column{[residual, &o](std::size_t i) { return o.deviation[i] - residual[i]; },
-                  part.deviation()};
+    return Column{{}, residual, part.deviation(), 0.0, unit_of(part.deviation()).per_si};
+  std::vector<double> values(n);
+  if (name == "run") {
+    for (std::size_t i = 0; i < n; ++i) values[i] = o.run_of(i);
+    return made(std::move(values), Quantity::count);
+  }
+  if (name == "order") {
+    std::iota(values.begin(), values.end(), 0.0);
+    return made(std::move(values), Quantity::count);
+  }
+  if (name == "model") {
+    for (std::size_t i = 0; i < n; ++i) values[i] = o.deviation[i] - residual[i];
+    return made(std::move(values), part.deviation());
+  }
   if (name == "phase") {
     const double period = period_of(part, request);
     if (!(period > 0.0)) return fail("the period of this part is not known");
-    return Column{[period, &part](std::size_t i) {
-                    const double phase = std::fmod(part.part.along[i], period);
-                    return phase < 0.0 ? phase + period : phase;
-                  },
-                  part.position()};
+    for (std::size_t i = 0; i < n; ++i) {
+      const double phase = std::fmod(part.part.along[i], period);
+      values[i] = phase < 0.0 ? phase + period : phase;
+    }
+    return made(std::move(values), part.position());
   }
   return fail("\"" + name.substr(0, 40) +
               "\": expected target, time, temperature, run, phase, order, deviation, model or "
@@ -75,16 +96,12 @@ struct Range {
   double from, to;
 };
 
-/// In printed units.
-double shown(const Column& c, std::size_t i) {
-  return (c.at(i) - c.from) * unit_of(c.quantity).per_si;
-}
-
-Range range_of(const Column& x, const Column& y, std::size_t n, const Json& request) {
+Range range_of(const Column& x, const Column& y, const Json& request) {
   Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (std::size_t i = 0; i < n; ++i) {
-    const double value = shown(x, i);
-    if (!std::isfinite(value) || !std::isfinite(y.at(i))) continue;
+  const bool is_asked = request.contains("x0") && request.contains("x1");
+  for (std::size_t i = 0; i < x.si.size() && !is_asked; ++i) {
+    const double value = x.shown(i);
+    if (!std::isfinite(value) || !std::isfinite(y.si[i])) continue;
     range.from = std::min(range.from, value);
     range.to = std::max(range.to, value);
   }
@@ -93,9 +110,35 @@ Range range_of(const Column& x, const Column& y, std::size_t n, const Json& requ
   return range;
 }
 
+/// Of a column of pixels.
 struct Extremes {
   std::size_t least = 0, most = 0, count = 0;
 };
+
+/// All readings of a range: by columns of pixels, and as they are while they are few.
+struct Binned {
+  std::vector<Extremes> columns;
+  std::vector<std::size_t> rows;  ///< all, or more than `few` of them
+  std::size_t count = 0;
+};
+
+Binned binned(const Column& x, const Column& y, const Range& range, std::size_t px,
+              std::size_t few) {
+  Binned out;
+  out.columns.resize(px);
+  const double width = (range.to - range.from) / static_cast<double>(px);
+  for (std::size_t i = 0; i < x.si.size(); ++i) {
+    const double value = x.shown(i), up = y.si[i];
+    if (!(value >= range.from && value <= range.to) || !std::isfinite(up)) continue;
+    if (out.count++ <= few) out.rows.push_back(i);
+    const double at = width > 0.0 ? (value - range.from) / width : 0.0;
+    Extremes& c = out.columns[std::min(px - 1, static_cast<std::size_t>(at))];
+    if (c.count == 0 || up < y.si[c.least]) c.least = i;
+    if (c.count == 0 || up > y.si[c.most]) c.most = i;
+    ++c.count;
+  }
+  return out;
+}
 
 Json number(double value, Quantity q) {
   const double out = printed(value / unit_of(q).per_si, q);
@@ -105,29 +148,21 @@ Json number(double value, Quantity q) {
 /// Each reading for itself.
 void put_points(Json& out, const std::vector<std::size_t>& rows, const Column& x, const Column& y) {
   for (const std::size_t i : rows) {
-    out["x"].push_back(number(shown(x, i), x.quantity));
-    for (const char* name : {"min", "max"}) out[name].push_back(number(shown(y, i), y.quantity));
+    out["x"].push_back(number(x.shown(i), x.quantity));
+    for (const char* name : {"min", "max"}) out[name].push_back(number(y.shown(i), y.quantity));
     for (const char* name : {"min_row", "max_row"}) out[name].push_back(i);
   }
 }
 
-void put_columns(Json& out, const std::vector<std::size_t>& rows, const Column& x, const Column& y,
-                 const Range& range, std::size_t px) {
-  std::vector<Extremes> columns(px);
-  const double width = (range.to - range.from) / static_cast<double>(px);
-  for (const std::size_t i : rows) {
-    const double at = width > 0.0 ? (shown(x, i) - range.from) / width : 0.0;
-    Extremes& c = columns[std::min(px - 1, static_cast<std::size_t>(std::max(0.0, at)))];
-    if (c.count == 0 || y.at(i) < y.at(c.least)) c.least = i;
-    if (c.count == 0 || y.at(i) > y.at(c.most)) c.most = i;
-    ++c.count;
-  }
-  for (std::size_t k = 0; k < px; ++k) {
+void put_columns(Json& out, const std::vector<Extremes>& columns, const Column& x, const Column& y,
+                 const Range& range) {
+  const double width = (range.to - range.from) / static_cast<double>(columns.size());
+  for (std::size_t k = 0; k < columns.size(); ++k) {
     const Extremes& c = columns[k];
     if (c.count == 0) continue;
     out["x"].push_back(number(range.from + (static_cast<double>(k) + 0.5) * width, x.quantity));
-    out["min"].push_back(number(shown(y, c.least), y.quantity));
-    out["max"].push_back(number(shown(y, c.most), y.quantity));
+    out["min"].push_back(number(y.shown(c.least), y.quantity));
+    out["max"].push_back(number(y.shown(c.most), y.quantity));
     out["min_row"].push_back(c.least);
     out["max_row"].push_back(c.most);
   }
@@ -146,9 +181,11 @@ Json reading_json(const PartModel& part, const Campaign& campaign, std::size_t r
   if (at.direction != 0) json["direction"] = at.direction > 0 ? "+" : "-";
   storage::put(json, "target", at.target, at.position);
   storage::put(json, "deviation", o.deviation[row], part.deviation());
-  storage::put(json, "residual", residual[row], part.deviation());
-  storage::put(json, "model", o.deviation[row] - residual[row], part.deviation());
-  json["excluded"] = std::isnan(residual[row]);
+  if (!residual.empty()) {
+    storage::put(json, "residual", residual[row], part.deviation());
+    storage::put(json, "model", o.deviation[row] - residual[row], part.deviation());
+    json["excluded"] = std::isnan(residual[row]);
+  }
   if (row < o.time.size())
     storage::put(json, "time", o.time[row] - first_of(o.time), Quantity::time);
   if (row < o.material.size())
@@ -165,23 +202,25 @@ Expected<std::string> series(const PartModel& part, const Json& request,
   if (!x) return fail(x.error());
   if (!y) return fail(y.error());
   const std::size_t px = request.value("px", std::size_t{800});
-  const std::size_t n = part.part.table.size();
-  const Range range = range_of(*x, *y, n, request);
-  std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double at = shown(*x, i);
-    if (at >= range.from && at <= range.to && std::isfinite(y->at(i))) rows.push_back(i);
-  }
-  Json out = {{"n", rows.size()},
+  const std::size_t few = 2 * px;
+  const Range range = range_of(*x, *y, request);
+  const Binned all = binned(*x, *y, range, px, few);
+  Json out = {{"n", all.count},
               {"x_unit", unit_of(x->quantity).symbol},
               {"y_unit", unit_of(y->quantity).symbol},
-              {"each", rows.size() <= 2 * px}};
+              {"each", all.count <= few}};
   for (const char* name : {"x", "min", "max", "min_row", "max_row"}) out[name] = Json::array();
-  if (rows.size() <= 2 * px)
-    put_points(out, rows, *x, *y);
+  if (all.count <= few)
+    put_points(out, all.rows, *x, *y);
   else
-    put_columns(out, rows, *x, *y, range, px);
+    put_columns(out, all.columns, *x, *y, range);
   return storage::dump_line(out);
+}
+
+bool is_of_fit(const Json& series) {
+  for (const std::string& name : {series.value("x", "target"), series.value("y", "residual")})
+    if (name == "residual" || name == "model") return true;
+  return false;
 }
 
 Expected<std::string> readings(const PartModel& part, const Campaign& campaign, const Json& request,

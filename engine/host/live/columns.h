@@ -15,7 +15,11 @@ namespace nonio::host::live {
 Expected<std::string> series(const modelling::PartModel& part, const storage::Json& request,
                              std::span<const double> residual);
 
+/// Whether a series has to do with what a fit leaves.
+bool is_of_fit(const storage::Json& series);
+
 /// Readings by their rows, or `count` of them from `from` on: file, line, run, direction, values.
+/// Without residuals where `residual` is empty.
 Expected<std::string> readings(const modelling::PartModel& part, const Campaign& campaign,
                                const storage::Json& request, std::span<const double> residual);
 

@@ -25,18 +25,6 @@ std::optional<double> number_of(const std::string& text) {
   return value;
 }
 
-/// RMS and the like of a part, with their units.
-Json figures_of(const std::string& fit) {
-  Json out = Json::object();
-  const Json all = Json::parse(fit, nullptr, false);
-  if (!all.is_object() || !all.contains("compare")) return out;
-  for (const auto& [name, value] : all["compare"].items())
-    if (value.is_number() &&
-        (name.starts_with("rms") || name.starts_with("cv_rms") || name.starts_with("noise_floor")))
-      out[name] = value;
-  return out;
-}
-
 }  // namespace
 
 Desk::Desk(Launcher& launcher, const std::filesystem::path& folder, std::string name, bool edit,
@@ -67,9 +55,9 @@ void Desk::close() {
 std::vector<Route> Desk::routes(const std::string& base) {
   std::vector<Route> out;
   for (const char* path :
-       {"state", "parts/{part}/fit", "parts/{part}/explain", "parts/{part}/without",
-        "parts/{part}/fingerprints", "parts/{part}/series", "parts/{part}/readings", "page/{part}",
-        "report", "save", "events"})
+       {"state", "parts/{part}/look", "parts/{part}/picture", "parts/{part}/fit",
+        "parts/{part}/explain", "parts/{part}/without", "parts/{part}/fingerprints",
+        "parts/{part}/series", "parts/{part}/readings", "page/{part}", "report", "save", "events"})
     out.push_back({Method::get, base + "/api/" + path});
   for (const char* path : {"model", "undo", "redo", "name", "goto", "exclude", "include", "period",
                            "suggest", "finish", "cancel", "reload"})
@@ -100,9 +88,8 @@ Answer Desk::answer(const std::string& what, const std::string& part, const Requ
   }
   const std::string last = what.substr(what.rfind('/') + 1);
   if (what == "page/{part}") return document("page", part);
-  if (last == "fit") return fit(part, request);
-  if (last == "explain" || last == "fingerprints")
-    return explain(part, last == "explain" ? "explain" : "fingerprints");
+  if (last == "fit" || last == "picture") return fit(part, request, last == "picture");
+  if (last == "explain" || last == "fingerprints") return explain(part, last == "fingerprints");
   return asked(last, part, request);
 }
 
@@ -112,6 +99,8 @@ Json Desk::part_state(const PartState& state) const {
   Json json = {{"fit", state.fit.state}, {"explain", state.explain.state}};
   const std::string& error = state.fit.error.empty() ? state.explain.error : state.fit.error;
   if (!error.empty()) json["error"] = error;
+  if (state.fit.state == "running" && !state.fit.rest.empty()) json["picture"] = true;
+  if (!state.explain.rest.empty()) json["fingerprints"] = true;
   const int seconds = std::max(state.fit.seconds, state.explain.seconds);
   if (state.fit.state == "running" || state.explain.state == "running") json["seconds"] = seconds;
   return json;
@@ -139,8 +128,7 @@ Json Desk::steps() const {
         request["excluded"].push_back({{"measurement", e.measurement}, {"row", e.measurement_row}});
       request["period_mm"] = Json::object();
       for (const auto& [axis, mm] : step.trial.period_mm) request["period_mm"][axis] = mm;
-      if (const std::string* known = fits_.find(trial_key(request)))
-        one["parts"][part] = figures_of(*known);
+      if (const auto* known = fits_.find(trial_key(request))) one["parts"][part] = known->figures;
     }
     list.push_back(std::move(one));
   }
@@ -201,6 +189,7 @@ Answer Desk::state() {
   json["model"] = session_.trial().model;
   json["saved_model"] = session_.saved();
   json["catalogue"] = campaign_.value("catalogue", Json::array());
+  if (json["catalogue"].is_null()) json["catalogue"] = Json::array();
   json["excluded"] = std::move(excluded);
   json["period_mm"] = Json::object();
   for (const auto& [axis, mm] : session_.trial().period_mm) json["period_mm"][axis] = mm;
@@ -215,13 +204,15 @@ Answer Desk::state() {
   return {200, json_type, storage::dump_line(json)};
 }
 
-Answer Desk::fit(const std::string& part, const Request& request) {
+/// `picture`: also one whose places are still looked for.
+Answer Desk::fit(const std::string& part, const Request& request, bool picture) {
   std::unique_lock lock(mutex_);
   const auto is_known = [&] {
     const auto found = parts_.find(part);
-    return over_ || bench_state_ == "failed" ||
-           (found != parts_.end() &&
-            (found->second.fit.state == "done" || found->second.fit.state == "failed"));
+    if (over_ || bench_state_ == "failed") return true;
+    if (found == parts_.end()) return false;
+    const PartState::Work& work = found->second.fit;
+    return work.state == "done" || work.state == "failed" || (picture && !work.rest.empty());
   };
   answered_.wait_for(lock, fit_patience, is_known);
   const auto found = parts_.find(part);
@@ -231,28 +222,40 @@ Answer Desk::fit(const std::string& part, const Request& request) {
     json["state"] = found == parts_.end() ? Json::object() : part_state(found->second);
     return {409, json_type, storage::dump_line(json)};
   }
-  const PartState& one = found->second;
-  if (one.fit.state == "failed") return refusal(422, one.fit.error);
+  const PartState::Work& work = found->second.fit;
+  if (work.state == "failed") return refusal(422, work.error);
+  const bool partial = work.state != "done";
   const std::string tag = "\"" + std::to_string(session_.version()) + "\"";
-  if (request.head.first("If-None-Match") == tag) return {304, json_type, "", {{"ETag", tag}}};
-  return {200, json_type, with_version(session_.version(), one.fit.text), {{"ETag", tag}}};
+  if (!partial && request.head.first("If-None-Match") == tag)
+    return {304, json_type, "", {{"ETag", tag}}};
+  const bool with_page = request.query("page").value_or("1") != "0";
+  Answer out{200, json_type,
+             "{\"version\":" + std::to_string(session_.version()) + "," + work.head +
+                 (partial ? ",\"partial\":true" : "") +
+                 (with_page ? ",\"page\":" + work.rest : "") + "}"};
+  if (!partial) out.headers = {{"ETag", tag}};
+  return out;
 }
 
-Answer Desk::explain(const std::string& part, const char* what) {
-  const std::lock_guard lock(mutex_);
+Answer Desk::explain(const std::string& part, bool fingerprints) {
+  std::unique_lock lock(mutex_);
   const auto found = parts_.find(part);
   if (found == parts_.end()) return refused(409, "not_read");
   PartState& one = found->second;
   if (bench_state_ == "open" && !one.key.empty()) ask_explanation(part, one);
+  const std::string key = one.key;
+  const auto& text = fingerprints ? one.explain.rest : one.explain.head;
+  if (fingerprints && one.explain.state == "done")
+    answered_.wait_for(lock, fit_patience, [&] {
+      return over_ || one.key != key || !text.empty() || one.explain.job == 0;
+    });
   if (one.explain.state == "failed") return refusal(422, one.explain.error);
-  if (one.explain.state != "done") {
+  if (one.explain.state != "done" || text.empty()) {
     Json json = {{"error", "the explanation is not ready yet"}, {"status", 409}};
     json["state"] = part_state(one);
     return {409, json_type, storage::dump_line(json)};
   }
-  const Json all = Json::parse(one.explain.text);
-  const Json out = {{"version", session_.version()}, {what, all.at(what)}};
-  return {200, json_type, storage::dump_line(out)};
+  return {200, json_type, with_version(session_.version(), text)};
 }
 
 Answer Desk::asked(const std::string& kind, const std::string& part, const Request& request) {
@@ -284,10 +287,7 @@ Answer Desk::asked(const std::string& kind, const std::string& part, const Reque
       return refused(400, "rows");
     wish["rows"] = rows;
   }
-  const std::string replaces = kind == "readings" ? ""
-                                                  : kind + " " + part + " " + wish.value("x", "") +
-                                                        " " + wish.value("y", "");
-  const Waiting done = wait_for(lock, wish, replaces);
+  const Waiting done = wait_for(lock, wish, kind == "readings" ? "" : replaced_by(wish));
   if (!done.done) return refusal(503, done.text);
   if (!done.well) return refusal(done.text == newer_words ? 409 : 422, done.text);
   return {200, json_type, with_version(session_.version(), done.text)};

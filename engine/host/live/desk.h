@@ -19,8 +19,11 @@ struct PartState {
   struct Work {
     std::string state = "none";  ///< none, queued, running, done, failed
     std::uint64_t job = 0;
-    std::string text, error;
+    std::string error;
     int seconds = 0;
+    /// fit: members "compare" and "text", value of "page"; without places before it is done.
+    /// explain: {"explain": ...}, {"fingerprints": ...}; the second may come later.
+    std::string head, rest;
   };
   std::string key;  ///< of the trial that this belongs to
   Work fit, explain;
@@ -29,13 +32,18 @@ struct PartState {
 /// Answers that were calculated, by what they depend on; the newest 64 MB.
 class Remembered {
  public:
-  void put(const std::string& key, std::string text);
-  const std::string* find(const std::string& key) const;
+  struct Text {
+    std::string head, rest;
+    storage::Json figures = storage::Json::object();  ///< of a fit: RMS and the like, with units
+    std::size_t size() const { return head.size() + rest.size(); }
+  };
+  void put(const std::string& key, Text text);
+  const Text* find(const std::string& key) const;
   void clear();
 
  private:
   static constexpr std::size_t most_bytes = 64 << 20;
-  std::map<std::string, std::string> texts_;
+  std::map<std::string, Text> texts_;
   std::deque<std::string> order_;
   std::size_t bytes_ = 0;
 };
@@ -73,8 +81,8 @@ class Desk {
 
   // answers to GET
   Answer state();
-  Answer fit(const std::string& part, const Request& request);
-  Answer explain(const std::string& part, const char* what);
+  Answer fit(const std::string& part, const Request& request, bool picture);
+  Answer explain(const std::string& part, bool fingerprints);
   Answer asked(const std::string& kind, const std::string& part, const Request& request);
   Answer document(const std::string& kind, const std::string& part);
   Answer difference();
@@ -97,12 +105,18 @@ class Desk {
   void take_campaign(const std::string& state, const std::string& text);
   void take_work(const std::string& part, PartState::Work& work, bool is_fit,
                  const std::string& state, std::string text);
+  void take_fit(const std::string& part, PartState::Work& work, const std::string& text,
+                bool is_done);
+  void take_explanation(const std::string& part, PartState::Work& work, const std::string& text,
+                        bool is_done);
   bool take_waiting(std::uint64_t job, const std::string& state, std::string& text);
 
   // work
   Json request_for(const std::string& kind, const std::string& part) const;
   void refresh();
   void forget_parts();
+  static std::string replaced_by(const Json& request);
+  void cancel_waiting(const std::string& replaces);
   void ask_explanation(const std::string& part, PartState& state);
   void search_on();
   bool is_explained() const;

@@ -55,6 +55,7 @@ std::optional<std::string> Desk::mistake_in(const std::vector<std::string>& effe
         session_.saved().end())
       continue;
     const Json& catalogue = campaign_.at("catalogue");
+    if (catalogue.is_null()) return "the effects still look at the readings; wait for event state";
     if (std::none_of(catalogue.begin(), catalogue.end(),
                      [&](const Json& one) { return one.at("effect") == effect; }))
       return "no measurement of this campaign can show \"" + effect.substr(0, 100) + "\"";
@@ -106,7 +107,7 @@ Answer Desk::exclude(const Json& body) {
   std::unique_lock lock(mutex_);
   if (!has_part(part)) return refused(404, "no_part", {{"part", part.substr(0, 100)}});
   end_search();
-  Json wish = request_for("readings", part);
+  Json wish = request_for("places", part);
   wish["rows"] = rows;
   const Waiting found = wait_for(lock, wish, "");
   if (!found.well) return refusal(422, found.text);
@@ -251,7 +252,7 @@ void Desk::search_on() {
         }
         continue;
       }
-      const Json verdict = Json::parse(one.explain.text).at("explain");
+      const Json verdict = Json::parse(one.explain.head).at("explain");
       told.push_back({verdict.at("verdict").at("kind").get<std::string>(),
                       verdict.at("verdict").value("effect", ""),
                       verdict.at("certain").get<std::vector<std::string>>()});

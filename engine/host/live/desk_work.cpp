@@ -5,6 +5,7 @@
 
 #include "host/live/bench.h"
 #include "host/live/desk.h"
+#include "host/process/watched.h"
 
 namespace nonio::host::live {
 using storage::Json;
@@ -22,10 +23,27 @@ std::string now() {
   return text;
 }
 
+/// RMS and the like of a fit, with their units.
+Json figures_of(const std::string& head) {
+  Json out = Json::object();
+  const Json all = Json::parse("{" + head + "}", nullptr, false);
+  if (!all.is_object() || !all.contains("compare")) return out;
+  for (const auto& [name, value] : all["compare"].items())
+    if (value.is_number() &&
+        (name.starts_with("rms") || name.starts_with("cv_rms") || name.starts_with("noise_floor")))
+      out[name] = value;
+  return out;
+}
+
 }  // namespace
 
-void Remembered::put(const std::string& key, std::string text) {
-  if (texts_.contains(key)) return;
+void Remembered::put(const std::string& key, Text text) {
+  if (const auto known = texts_.find(key); known != texts_.end()) {
+    bytes_ += text.size();
+    bytes_ -= known->second.size();
+    known->second = std::move(text);
+    return;
+  }
   bytes_ += text.size();
   texts_[key] = std::move(text);
   order_.push_back(key);
@@ -36,7 +54,7 @@ void Remembered::put(const std::string& key, std::string text) {
   }
 }
 
-const std::string* Remembered::find(const std::string& key) const {
+const Remembered::Text* Remembered::find(const std::string& key) const {
   const auto found = texts_.find(key);
   return found == texts_.end() ? nullptr : &found->second;
 }
@@ -69,7 +87,8 @@ void Desk::refresh() {
       *work = {};
       work->state = "queued";
     }
-    const std::string* known = fits_.find(key);
+    cancel_waiting(replaced_by(request_for("without", part)));
+    const auto* known = fits_.find(key);
     if (known == nullptr && bench_state_ != "open") {
       state.key.clear();
       continue;
@@ -77,7 +96,8 @@ void Desk::refresh() {
     state.key = key;
     if (known != nullptr) {
       state.fit.state = "done";
-      state.fit.text = *known;
+      state.fit.head = known->head;
+      state.fit.rest = known->rest;
       publish("fit", part, {{"part", part}});
     } else {
       state.fit.job = bench_->ask(request_for("fit", part));
@@ -88,9 +108,10 @@ void Desk::refresh() {
 
 void Desk::ask_explanation(const std::string& part, PartState& state) {
   if (state.explain.state != "queued" || state.explain.job != 0) return;
-  if (const std::string* known = explanations_.find(state.key)) {
+  if (const auto* known = explanations_.find(state.key)) {
     state.explain.state = "done";
-    state.explain.text = *known;
+    state.explain.head = known->head;
+    state.explain.rest = known->rest;
     publish("explain", part, {{"part", part}});
     return;
   }
@@ -118,7 +139,11 @@ void Desk::tell(std::uint64_t job, const std::string& state, std::string text) {
 }
 
 void Desk::take_campaign(const std::string& state, const std::string& text) {
-  if (state == job_state::failed) {
+  if (state == job_state::catalogue) {
+    campaign_["catalogue"] = Json::parse(text);
+    session_.touch();
+    publish("state", "", Json::object());
+  } else if (state == job_state::failed) {
     bench_state_ = "failed";
     bench_error_ = text;
     publish("failed", "bench", {{"error", text}});
@@ -168,42 +193,80 @@ void Desk::forget_parts() {
 void Desk::take_work(const std::string& part, PartState::Work& work, bool is_fit,
                      const std::string& state, std::string text) {
   const char* const what = is_fit ? "fit" : "explain";
-  work.state = state;
   if (state == job_state::running) {
     work.seconds = std::atoi(text.c_str());
+    if (work.state == "done") return;
+    work.state = state;
     publish("progress", part + what, {{"part", part}, {"what", what}, {"seconds", work.seconds}});
     return;
   }
-  work.job = 0;
-  if (state == job_state::done) {
-    (is_fit ? fits_ : explanations_).put(parts_[part].key, text);
-    work.text = std::move(text);
-    publish(what, part, {{"part", part}});
-  } else {
+  const bool is_done = state == job_state::done;
+  if (state != job_state::begun) work.job = 0;
+  if (state == job_state::failed && work.state == "done") {  // only its fingerprints are missing
+    answered_.notify_all();
+    return;
+  }
+  if (state == job_state::failed) {
+    work.state = state;
     work.error = std::move(text);
     publish("failed", part + what, {{"part", part}, {"what", what}, {"error", work.error}});
+  } else if (is_fit) {
+    take_fit(part, work, text, is_done);
+  } else {
+    take_explanation(part, work, text, is_done);
   }
   answered_.notify_all();
   search_on();
 }
 
+void Desk::take_fit(const std::string& part, PartState::Work& work, const std::string& text,
+                    bool is_done) {
+  process::Parcel parcel(text);
+  work.head = parcel.text();
+  if (std::string page = parcel.text(); !page.empty()) work.rest = std::move(page);
+  if (!is_done) return publish("picture", part, {{"part", part}});
+  work.state = job_state::done;
+  fits_.put(parts_[part].key, {work.head, work.rest, figures_of(work.head)});
+  publish("fit", part, {{"part", part}});
+}
+
+void Desk::take_explanation(const std::string& part, PartState::Work& work,
+                            const std::string& text, bool is_done) {
+  (is_done ? work.rest : work.head) = text;
+  if (work.head.empty()) return;
+  work.state = job_state::done;
+  if (is_done) explanations_.put(parts_[part].key, {work.head, work.rest});
+  publish(is_done ? "fingerprints" : "explain", part, {{"part", part}});
+}
+
 bool Desk::take_waiting(std::uint64_t job, const std::string& state, std::string& text) {
   const auto found = waiting_.find(job);
   if (found == waiting_.end()) return false;
-  if (state == job_state::running) return true;
+  if (state == job_state::running || state == job_state::begun) return true;
   found->second = {true, state == job_state::done, std::move(text)};
   answered_.notify_all();
   return true;
 }
 
+/// A newer request with the same takes the place of an older one.
+std::string Desk::replaced_by(const Json& request) {
+  std::string out;
+  for (const char* name : {"kind", "part", "x", "y"}) out += request.value(name, "") + "\n";
+  return out;
+}
+
+/// What waits for an answer that nobody wants any more gets none.
+void Desk::cancel_waiting(const std::string& replaces) {
+  const auto older = replaces.empty() ? replaceable_.end() : replaceable_.find(replaces);
+  if (older == replaceable_.end()) return;
+  bench_->cancel(older->second);
+  waiting_[older->second] = {true, false, newer_words};
+  answered_.notify_all();
+}
+
 Desk::Waiting Desk::wait_for(std::unique_lock<std::mutex>& lock, const Json& request,
                              const std::string& replaces) {
-  if (!replaces.empty())
-    if (const auto older = replaceable_.find(replaces); older != replaceable_.end()) {
-      bench_->cancel(older->second);
-      waiting_[older->second] = {true, false, newer_words};
-      answered_.notify_all();
-    }
+  cancel_waiting(replaces);
   const std::uint64_t job = bench_->ask(request);
   waiting_[job];
   if (!replaces.empty()) replaceable_[replaces] = job;

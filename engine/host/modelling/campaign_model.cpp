@@ -40,10 +40,11 @@ std::string mistake_of(const std::string& effect, const reading::ReadCampaign& r
   const auto [kind, axis] = split(effect);
   const auto is_kind = [&, &k = kind](const Effect& e) { return e.info.name == k; };
   const auto known = std::find_if(read.effects.begin(), read.effects.end(), is_kind);
-  const std::string nearest = storage::suggestion(effect, known_names(read));
+  // All effects are asked whether they apply to all readings: only where it is said.
+  const auto nearest = [&] { return storage::suggestion(effect, known_names(read)); };
   if (kind.empty() || axis.empty())
-    return "expected kind:axis, such as backlash:X; found \"" + effect + "\"" + nearest;
-  if (known == read.effects.end()) return "there is no effect \"" + kind + "\"" + nearest;
+    return "expected kind:axis, such as backlash:X; found \"" + effect + "\"" + nearest();
+  if (known == read.effects.end()) return "there is no effect \"" + kind + "\"" + nearest();
   if (known->is_nuisance)
     return "\"" + effect + "\" belongs to the set-up: it is in every model, and not written";
   if (known->instances)
@@ -51,9 +52,9 @@ std::string mistake_of(const std::string& effect, const reading::ReadCampaign& r
                ? ""
                : "\"" + effect +
                      "\": expected what the effect can be of, such as straightness:EYX, " +
-                     "squareness:XY or yaw:X" + nearest;
+                     "squareness:XY or yaw:X" + nearest();
   if (read.manifest->campaign.machine.axis(axis) == nullptr)
-    return "\"" + effect + "\": the machine has no axis \"" + axis + "\"" + nearest;
+    return "\"" + effect + "\": the machine has no axis \"" + axis + "\"" + nearest();
   return {};
 }
 
@@ -126,28 +127,48 @@ RowsPlace place_of(const PartModel& part, const Campaign& campaign,
   return out;
 }
 
+Expected<void> without_mistakes(const std::vector<std::string>& effects,
+                                const reading::ReadCampaign& read) {
+  const auto mistakes = model_mistakes(effects, read);
+  if (mistakes.empty()) return {};
+  const auto line = read.manifest->lines.find("model.effects");
+  return fail(Error{"model.effects: " + mistakes.front(), config::manifest_name,
+                    line == read.manifest->lines.end() ? 0 : line->second});
+}
+
+void set_model(PartModel& part, const std::vector<std::string>& effects,
+               const reading::ReadCampaign& read) {
+  auto terms =
+      model::terms_of(part.part, read.manifest->campaign.machine, effects, read.effects);
+  part.unfit = terms ? "" : terms.error().message;
+  part.terms = terms ? std::move(*terms) : std::vector<model::Term>{};
+}
+
+std::vector<PartModel> bare_parts(const reading::ReadCampaign& read) {
+  std::vector<PartModel> parts;
+  for (model::Part& part : model::parts_of(read.manifest->campaign, read.observations))
+    parts.push_back({std::move(part), {}, {}, {}});
+  return parts;
+}
+
+void fill_catalogue(PartModel& part, const reading::ReadCampaign& read) {
+  part.catalogue = model::catalogue(part.part, read.effects);
+  part.left_out = model::not_applying(part.part, read.effects);
+  fill_interpolated(part, read);
+}
+
+void fill_interpolated(PartModel& part, const reading::ReadCampaign& read) {
+  part.interpolated = place_of(part, read.manifest->campaign,
+                               model::interpolated_temperatures(part.part));
+}
+
 Expected<std::vector<PartModel>> part_models(const reading::ReadCampaign& read,
                                              const std::vector<std::string>& effects) {
-  const Campaign& campaign = read.manifest->campaign;
-  const auto at_effects = [&](const std::string& message) {
-    const auto line = read.manifest->lines.find("model.effects");
-    return fail(Error{"model.effects: " + message, config::manifest_name,
-                      line == read.manifest->lines.end() ? 0 : line->second});
-  };
-  if (const auto mistakes = model_mistakes(effects, read); !mistakes.empty())
-    return at_effects(mistakes.front());
-  std::vector<PartModel> parts;
-  for (model::Part& part : model::parts_of(campaign, read.observations)) {
-    auto terms = model::terms_of(part, campaign.machine, effects, read.effects);
-    auto catalogue = model::catalogue(part, read.effects);
-    auto left_out = model::not_applying(part, read.effects);
-    PartModel one{std::move(part), {}, std::move(catalogue), {}, std::move(left_out)};
-    one.interpolated = place_of(one, campaign, model::interpolated_temperatures(one.part));
-    if (terms)
-      one.terms = std::move(*terms);
-    else
-      one.unfit = terms.error().message;
-    parts.push_back(std::move(one));
+  if (auto right = without_mistakes(effects, read); !right) return fail(right.error());
+  std::vector<PartModel> parts = bare_parts(read);
+  for (PartModel& part : parts) {
+    set_model(part, effects, read);
+    fill_catalogue(part, read);
   }
   return parts;
 }
@@ -177,16 +198,18 @@ std::vector<std::string> below_uncertainty(const model::Fit& fit) {
   return out;
 }
 
-Expected<model::Comparison> compare_part(const PartModel& part) {
+Expected<model::Comparison> compare_part(const PartModel& part, const model::Groundwork* known,
+                                         const model::Fitted& fitted) {
   if (!part.unfit.empty()) return fail(part.unfit);
   return process::guarded(kind_of(part.part) + " " + part.part.name,
-                          [&] { return model::compare(part.part, part.terms); });
+                          [&] { return model::compare(part.part, part.terms, known, fitted); });
 }
 
-Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed) {
+Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
+                                          const model::Groundwork* known) {
   if (!part.unfit.empty()) return fail(part.unfit);
   return process::guarded(kind_of(part.part) + " " + part.part.name, [&] {
-    auto out = model::explain(part.part, part.terms, part.catalogue, seed);
+    auto out = model::explain(part.part, part.terms, part.catalogue, seed, known);
     // None vanishes in silence.
     if (out)
       out->candidates.insert(out->candidates.end(), part.left_out.begin(), part.left_out.end());

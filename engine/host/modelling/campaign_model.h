@@ -62,6 +62,18 @@ std::vector<std::string> model_mistakes(const std::vector<std::string>& effects,
 Expected<std::vector<PartModel>> part_models(const reading::ReadCampaign& read,
                                              const std::vector<std::string>& effects);
 
+/// What `part_models` is made of: readings without a model and a catalogue, and the catalogue, for
+/// which every effect looks at every reading.
+std::vector<PartModel> bare_parts(const reading::ReadCampaign& read);
+void fill_catalogue(PartModel& part, const reading::ReadCampaign& read);
+void fill_interpolated(PartModel& part, const reading::ReadCampaign& read);
+/// The first mistake as an error, with the line of [model] effects.
+Expected<void> without_mistakes(const std::vector<std::string>& effects,
+                                const reading::ReadCampaign& read);
+/// Another model for the same readings. `effects` has no mistakes.
+void set_model(PartModel& part, const std::vector<std::string>& effects,
+               const reading::ReadCampaign& read);
+
 /// Effects of the model that no measurement here can show.
 std::vector<std::string> unmeasured(const std::vector<std::string>& effects,
                                     const std::vector<PartModel>& parts);
@@ -69,7 +81,11 @@ std::vector<std::string> unmeasured(const std::vector<std::string>& effects,
 /// Effects of a fit whose values are all below their uncertainty (|value| < 2 u).
 std::vector<std::string> below_uncertainty(const model::Fit& fit);
 
-Expected<model::Comparison> compare_part(const PartModel& part);
-Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed);
+/// `known` and `fitted` as in model/explain.h.
+Expected<model::Comparison> compare_part(const PartModel& part,
+                                         const model::Groundwork* known = nullptr,
+                                         const model::Fitted& fitted = {});
+Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
+                                          const model::Groundwork* known = nullptr);
 
 }  // namespace nonio::host::modelling

@@ -271,7 +271,7 @@ Remark compensated(const PartModel& part, const std::vector<std::string>& effect
 
 }  // namespace
 
-ModelFit fitted_value(const PartModel& part, const model::Comparison& comparison) {
+ModelFit measured_value(const PartModel& part) {
   const bool balls = part.part.kind == model::Part::Kind::balls;
   const Axis* const axis = balls ? nullptr : one_moved(part.part);
   ModelFit out;
@@ -286,6 +286,12 @@ ModelFit fitted_value(const PartModel& part, const model::Comparison& comparison
   else if (!balls)
     out.period = 0.0;
   put_readings(out, part.part);
+  out.residual = out.deviation;
+  return out;
+}
+
+ModelFit fitted_value(const PartModel& part, const model::Comparison& comparison) {
+  ModelFit out = measured_value(part);
   put_fit(out, part, comparison);
   return out;
 }

@@ -20,6 +20,9 @@ struct ModelFits {
 /// fitted is a finding; one that names what does not exist is an error.
 Expected<ModelFits> model_fit(const reading::ReadCampaign& read, const reading::Context& context);
 
+/// The readings of a part as documents draw them, of no model: all that was measured is left.
+ModelFit measured_value(const PartModel& part);
+
 /// A comparison as documents draw it: readings, residuals, effects, parameters, noise floor; without
 /// what an explanation adds.
 ModelFit fitted_value(const PartModel& part, const model::Comparison& comparison);

@@ -143,6 +143,7 @@ std::string copied(const ReadCampaign& out, const std::vector<model::Part>& part
 
 /// The campaign's own effects join those of the plugins.
 void add_own_effects(ReadCampaign& out) {
+  if (campaign_in(out).formulas.empty()) return;
   const auto parts = model::parts_of(campaign_in(out), out.observations);
   for (const Formula& formula : campaign_in(out).formulas) {
     const auto blame = [&](const std::string& why) {

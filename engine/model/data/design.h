@@ -57,6 +57,13 @@ VectorXd root_weights(const Observations& o, const std::vector<double>& weight);
 /// Rows come in multiplied by their root weights and stay so.
 void take_out_zeros(const Observations& o, const VectorXd& root_weight, MatrixXd& columns);
 
+/// The same columns, each of unit length.
+inline MatrixXd of_unit_length(MatrixXd columns) {
+  const VectorXd length = columns.colwise().norm().cwiseMax(1e-300).transpose();
+  for (Index k = 0; k < columns.cols(); ++k) columns.col(k) *= 1.0 / length(k);
+  return columns;
+}
+
 /// Quantity of a parameter on this axis.
 inline Quantity quantity_of(const Effect::Parameter& p, const Axis& axis) {
   return axis.rotary ? p.rotary : p.quantity;

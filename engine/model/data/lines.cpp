@@ -155,7 +155,9 @@ std::vector<std::size_t> coordinates_of(const Observations& o) {
 
 void append_run(Part& part, const Observations& listed, const Measurement& m) {
   const Order order = order_of(listed, m.order);
-  const Observations more = rearranged(listed, order.rows);
+  const bool as_listed = std::is_sorted(order.rows.begin(), order.rows.end());
+  const Observations other = as_listed ? Observations{} : rearranged(listed, order.rows);
+  const Observations& more = as_listed ? listed : other;
   if (order.assumed) part.order_assumed.push_back(m.id);
   Observations& to = part.table;
   to.order_known = to.order_known && order.known;

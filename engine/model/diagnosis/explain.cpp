@@ -32,14 +32,13 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
 
 /// The search on means of neighbours; how well the model and each candidate do, on all readings.
 Expected<Explanation> explain_on_means(const Part& part, const std::vector<Term>& model,
-                                       const std::vector<Term>& catalogue, std::uint64_t seed) {
-  const Repeats repeats(part.table);
-  auto suspects = suspects_of(part.table, repeats, model);
-  const auto weight = weights_without(part.table.size(), suspects);
-  const Part thin = thinned(part, weight);
+                                       const std::vector<Term>& catalogue, std::uint64_t seed,
+                                       const Groundwork::Found& ground) {
+  const std::vector<double>& weight = ground.whole.weight;
+  const Part& thin = *ground.thin;
   auto out = explain_all(thin, model, catalogue, seed);
   if (!out) return out;
-  auto whole = compare_without(part, out->comparison.fit.terms, repeats, std::move(suspects));
+  auto whole = compare_on(part, out->comparison.fit.terms, ground.whole);
   if (!whole) return fail(whole.error());
   whole->places = std::move(out->comparison.places);
   whole->seats = std::move(out->comparison.seats);
@@ -62,11 +61,12 @@ Expected<Explanation> explain_on_means(const Part& part, const std::vector<Term>
 }  // namespace
 
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
-                              const std::vector<Term>& catalogue, std::uint64_t seed) {
+                              const std::vector<Term>& catalogue, std::uint64_t seed,
+                              const Groundwork* known) {
   if (part.table.size() == 0) return fail("there are no readings of an axis to explain");
   if (part.table.size() <= thin_beyond || !can_be_thinned(part.table))
     return explain_all(part, model, catalogue, seed);
-  return explain_on_means(part, model, catalogue, seed);
+  return explain_on_means(part, model, catalogue, seed, *GroundworkOf(part, model, known));
 }
 
 }  // namespace nonio::model

@@ -121,7 +121,7 @@ MatrixXd basis_of(const Observations& o, const std::vector<Term>& terms, const W
   }
   if (a.cols() == 0) return a;
   white.take_out_zeros(a);
-  a = a * a.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal();
+  a = of_unit_length(std::move(a));
   const Eigen::HouseholderQR<MatrixXd> qr(a);
   return qr.householderQ() * MatrixXd::Identity(a.rows(), a.cols());
 }
@@ -216,33 +216,58 @@ Expected<Fit> with_its_zero(const Observations& o, Fit fitted, const std::vector
   return again;
 }
 
-Expected<Comparison> compare_without(const Part& part, const std::vector<Term>& model,
-                                     const Repeats& repeats, std::vector<Suspect> suspects) {
-  auto weight = weights_without(part.table.size(), suspects);
-  const Noise noise = noise_of(part, repeats, weight);
-  auto fitted = fit(part.table, model, weight, noise);
+namespace {
+
+Ground ground_of(const Part& part, Repeats repeats, std::vector<Suspect> suspects) {
+  Ground out{std::move(repeats), std::move(suspects)};
+  out.weight = weights_without(part.table.size(), out.suspects);
+  out.noise = noise_of(part, out.repeats, out.weight);
+  return out;
+}
+
+Groundwork::Found found_in(const Part& part, const std::vector<Term>& model) {
+  Repeats repeats(part.table);
+  auto suspects = suspects_of(part.table, repeats, model);
+  Groundwork::Found out{ground_of(part, std::move(repeats), std::move(suspects))};
+  if (part.table.size() <= thin_beyond || !can_be_thinned(part.table)) return out;
+  out.thin = thinned(part, out.whole.weight);
+  out.of_thin = ground_of(*out.thin, Repeats(out.thin->table), {});
+  return out;
+}
+
+}  // namespace
+
+Groundwork::Groundwork(const Part& part, const std::vector<Term>& model)
+    : found_(std::make_unique<const Found>(found_in(part, model))) {}
+Groundwork::Groundwork(Groundwork&&) noexcept = default;
+Groundwork::~Groundwork() = default;
+
+Expected<Comparison> compare_on(const Part& part, const std::vector<Term>& model,
+                                const Ground& ground, const Observations* thin) {
+  auto fitted = fit(part.table, model, ground.weight, ground.noise, thin);
   if (!fitted) return fail(fitted.error());
   fitted = with_its_zero(part.table, std::move(*fitted), searched_in(model));
   if (!fitted) return fail(fitted.error());
-  return comparison_of(part, repeats, std::move(*fitted), std::move(suspects));
+  return comparison_of(part, ground.repeats, std::move(*fitted), ground.suspects);
 }
 
-Expected<Comparison> compare(const Part& part, const std::vector<Term>& model) {
+Expected<Comparison> compare(const Part& part, const std::vector<Term>& model,
+                             const Groundwork* known, const Fitted& fitted) {
   if (part.table.size() == 0) return fail("there are no readings of an axis to compare with");
-  const Repeats repeats(part.table);
-  auto out = compare_without(part, model, repeats, suspects_of(part.table, repeats, model));
+  const GroundworkOf ground(part, model, known);
+  auto out = compare_on(part, model, ground->whole, ground->thin ? &ground->thin->table : nullptr);
   if (!out) return out;
-  if (part.table.size() <= thin_beyond || !can_be_thinned(part.table)) {
-    if (out->fails()) out->seats = seats_in(part, repeats, *out);
+  if (!ground->thin) {
+    if (out->fails()) out->seats = seats_in(part, ground->whole.repeats, *out);
     return out;
   }
-  const Part thin = thinned(part, out->fit.weight);
-  const Repeats of_thin(thin.table);
-  auto of_means = compare_without(thin, out->fit.terms, of_thin, {});
-  if (!of_means) return fail(of_means.error());
-  if (of_means->fails()) out->seats = seats_in(thin, of_thin, *of_means);
-  out->places = std::move(of_means->places);
+  const Part& thin = *ground->thin;
   out->means = thin.table.size();
+  if (fitted) fitted(*out);
+  auto of_means = compare_on(thin, out->fit.terms, *ground->of_thin);
+  if (!of_means) return fail(of_means.error());
+  if (of_means->fails()) out->seats = seats_in(thin, ground->of_thin->repeats, *of_means);
+  out->places = std::move(of_means->places);
   return out;
 }
 

@@ -9,6 +9,36 @@ namespace nonio::model {
 
 std::vector<double> weights_without(std::size_t readings, const std::vector<Suspect>& suspects);
 
+/// What the comparison with one table stands on.
+struct Ground {
+  Repeats repeats;
+  std::vector<Suspect> suspects{};
+  std::vector<double> weight{};
+  Noise noise{};
+};
+
+struct Groundwork::Found {
+  Ground whole;
+  /// Of a long table its means, which places are looked for in and shapes are searched on.
+  std::optional<Part> thin{};
+  std::optional<Ground> of_thin{};
+};
+
+/// `known`, or made and held here.
+class GroundworkOf {
+ public:
+  GroundworkOf(const Part& part, const std::vector<Term>& model, const Groundwork* known) {
+    if (known == nullptr) known = &made_.emplace(part, model);
+    found_ = &known->found();
+  }
+  const Groundwork::Found& operator*() const { return *found_; }
+  const Groundwork::Found* operator->() const { return found_; }
+
+ private:
+  std::optional<Groundwork> made_;
+  const Groundwork::Found* found_;
+};
+
 /// The comparison with these readings suspected, around a fit that is there already.
 Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
                          std::vector<Suspect> suspects);
@@ -19,9 +49,10 @@ std::vector<char> searched_in(const std::vector<Term>& terms);
 /// The fit anew, where its zero walks or is another one in each run.
 Expected<Fit> with_its_zero(const Observations& o, Fit fitted, const std::vector<char>& searched);
 
-/// The comparison with these readings suspected; no places of a long table.
-Expected<Comparison> compare_without(const Part& part, const std::vector<Term>& model,
-                                     const Repeats& repeats, std::vector<Suspect> suspects);
+/// The comparison with these readings suspected; no places of a long table, whose shapes are
+/// searched on `thin`.
+Expected<Comparison> compare_on(const Part& part, const std::vector<Term>& model,
+                                const Ground& ground, const Observations* thin = nullptr);
 
 /// Where what a fit leaves sits.
 std::vector<Place> seats_in(const Part& part, const Repeats& repeats, const Comparison& comparison);

@@ -122,10 +122,9 @@ class SquaresOf {
       : o_(o), white_(white), left_(white(y)) {
     std::vector<Term> others = terms;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(t));
-    const auto d = design_of(o, others, white);
+    auto d = design_of(o, others, white);
     if (!d) return;
-    const MatrixXd scaled =
-        d->a * d->a.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal();
+    const MatrixXd scaled = of_unit_length(std::move(d->a));
     const Eigen::HouseholderQR<MatrixXd> qr(scaled);
     others_ = qr.householderQ() * MatrixXd::Identity(scaled.rows(), scaled.cols());
     left_ -= others_ * (others_.transpose() * left_);
@@ -415,12 +414,14 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
 }  // namespace
 
 Expected<Fit> fit(const Observations& o, std::vector<Term> terms, std::vector<double> weight,
-                  const Noise& noise) {
+                  const Noise& noise, const Observations* known_thin) {
   std::vector<char> searched;
   for (const Term& term : terms)
     searched.push_back(term.shape.empty() && !term.effect->shapes.empty());
   const bool any = std::find(searched.begin(), searched.end(), 1) != searched.end();
-  const Observations thin = any && o.size() > thin_beyond ? thinned(o, weight) : Observations{};
+  const bool is_long = any && o.size() > thin_beyond;
+  const Observations made = is_long && known_thin == nullptr ? thinned(o, weight) : Observations{};
+  const Observations& thin = is_long && known_thin != nullptr ? *known_thin : made;
   if (thin.size() > 0 && thin.size() < o.size()) {
     auto near = fit(thin, terms);
     if (!near) return fail(near.error());
@@ -438,6 +439,8 @@ Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
   const Whitening white(o, weight, Whitening::of_repeats(noise));
   const VectorXd y =
       Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.deviation.size()));
+  if (std::find(searched.begin(), searched.end(), 1) == searched.end())
+    return fit_at(o, std::move(terms), searched, std::move(weight), noise);
   if (o.size() > thin_beyond)
     step_shapes(o, terms, searched, white, y);
   else

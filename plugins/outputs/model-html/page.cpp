@@ -271,7 +271,7 @@ std::string legend(const Source& source, const workbench::Kept& kept) {
 
 std::string page_of(const Source& source) {
   const Wording& words = source.words;
-  const workbench::Kept kept = workbench::kept_readings(source.fit);
+  const workbench::Kept kept = workbench::kept_readings(source.fit.residual);
   const workbench::Drawn drawn{source.in.campaign, source.fit, words, source.pictures};
   std::string body = identity(source) + notes(source);
   if (!source.fit.steps.empty())

@@ -3,9 +3,9 @@
 // brings the data, from the page itself or from the server, and says what is hidden and what is done with a reading.
 "use strict";
 /// figure(k): the element of picture k; tip: what shows a reading; hidden: {d: directions, r: runs}, sets.
-/// Where a caller wants them: pick(row) and brushed(rows) when a reading or a region is chosen, said(lines) when a key
+/// Where a caller wants them: elsewhere(k) where it draws a picture itself, pick(row) and brushed(rows) when a reading or a region is chosen, said(lines) when a key
 /// moves to a reading, drawn(k, frame) after each picture.
-function nonioPictures({figure, tip, hidden, pick, brushed, said, drawn}) {
+function nonioPictures({figure, tip, hidden, elsewhere, pick, brushed, said, drawn}) {
   let data, words, n, wrong, residual, place, ends_of_lane, lines, ghost = null;
   let shown = [], range = [0, 1], pictures = [], marked = -1, by_key = false, printing = false, chosen = new Set();
 
@@ -63,7 +63,7 @@ function nonioPictures({figure, tip, hidden, pick, brushed, said, drawn}) {
     parent.appendChild(node);
     return node;
   }
-  const r1 = (v) => v.toFixed(1);
+  const r1 = (v) => Math.round(v * 10) / 10;
 
   class Frame {
     constructor(k, xs, options) {
@@ -74,8 +74,7 @@ function nonioPictures({figure, tip, hidden, pick, brushed, said, drawn}) {
       this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
       Object.assign(this, {k, x: 46, y: 6, w: width - 52, h: height - 44, points: []});
       const said = data.pictures[k];
-      const ends = (list) => list.reduce(([a, b], v) => (finite(v) ? [Math.min(a, v), Math.max(b, v)] : [a, b]), [Infinity, -Infinity]);
-      let [low, high] = ends(xs);
+      let [low, high] = extremes(xs);
       this.empty = !(low <= high);
       if (this.empty) [low, high] = [0, 1];
       const side = 0.025 * (high - low) || 0.5;
@@ -146,27 +145,44 @@ function nonioPictures({figure, tip, hidden, pick, brushed, said, drawn}) {
   }
   const of_line = (rows, m) => rows.filter((i) => data.measurement[i] === m);
 
-  const mean = (list) => list.reduce((a, b) => a + b, 0) / list.length;
+  /// Of each value of the key, ascending: [key, readings that count, their mean].
   function grouped(rows, key, values) {
     const map = new Map();
     for (const i of rows)
       if (counts(i)) {
-        if (!map.has(key[i])) map.set(key[i], []);
-        map.get(key[i]).push(values[i]);
+        const sum = map.get(key[i]);
+        if (!sum) map.set(key[i], [key[i], 1, values[i]]);
+        else sum[1]++, (sum[2] += values[i]);
       }
-    return [...map.entries()].sort((a, b) => a[0] - b[0]);
+    return [...map.values()].map(([k, m, sum]) => [k, m, sum / m]).sort((a, b) => a[0] - b[0]);
   }
+  const by_key_of = (groups) => new Map(groups.map((g) => [g[0], g]));
   function mean_by_part(frame, rows, xs) {
-    const used = rows.map((i, j) => [xs[j], residual[i], i]).filter((p) => finite(p[0]) && counts(p[2]));
-    const low = Math.min(...extremes(used.map((p) => p[0]))), high = Math.max(...extremes(used.map((p) => p[0])));
-    if (!(low < high) || used.length < 12) return;
-    const parts = Math.min(12, Math.floor(used.length / 6));
-    const groups = Array.from({length: parts}, () => []);
-    for (const p of used) groups[Math.min(parts - 1, Math.floor(((p[0] - low) / (high - low)) * parts))].push(p);
-    const good = groups.filter((g) => g.length >= 3);
-    frame.line(good.map((g) => mean(g.map((p) => p[0]))), good.map((g) => mean(g.map((p) => p[1]))), "mean");
+    const usable = (j) => finite(xs[j]) && counts(rows[j]), [low, high] = extremes(xs.filter((x, j) => usable(j)));
+    let used = 0;
+    for (let j = 0; j < rows.length; j++) if (usable(j)) used++;
+    if (!(low < high) || used < 12) return;
+    const parts = Math.min(12, Math.floor(used / 6));
+    const groups = Array.from({length: parts}, () => [0, 0, 0]);
+    for (let j = 0; j < rows.length; j++) {
+      if (!usable(j)) continue;
+      const sum = groups[Math.min(parts - 1, Math.floor(((xs[j] - low) / (high - low)) * parts))];
+      sum[0]++;
+      sum[1] += xs[j];
+      sum[2] += residual[rows[j]];
+    }
+    const good = groups.filter((g) => g[0] >= 3);
+    frame.line(good.map((g) => g[1] / g[0]), good.map((g) => g[2] / g[0]), "mean");
   }
-  const extremes = (list) => list.reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [Infinity, -Infinity]);
+  function extremes(list) {
+    let low = Infinity, high = -Infinity;
+    for (const v of list)
+      if (finite(v)) {
+        if (v < low) low = v;
+        if (v > high) high = v;
+      }
+    return [low, high];
+  }
 
   function over(k, column, kind) {
     const xs = shown.map((i) => column[i]);
@@ -183,7 +199,7 @@ function nonioPictures({figure, tip, hidden, pick, brushed, said, drawn}) {
     for (const m of lines)
       for (const d of [1, -1, 0]) {
         const groups = grouped(of_line(shown, m).filter((i) => data.direction[i] === d), data.target, residual);
-        frame.line(groups.map((g) => place_of(m, g[0])), groups.map((g) => mean(g[1])), d > 0 ? "plus" : d < 0 ? "minus" : "other");
+        frame.line(groups.map((g) => place_of(m, g[0])), groups.map((g) => g[2]), d > 0 ? "plus" : d < 0 ? "minus" : "other");
       }
     return frame;
   }
@@ -208,13 +224,13 @@ function nonioPictures({figure, tip, hidden, pick, brushed, said, drawn}) {
   /// floor.
   function reversal_of(m) {
     const rows = of_line(shown, m);
-    const minus = new Map(grouped(rows.filter((i) => data.direction[i] < 0), data.target, residual));
+    const minus = by_key_of(grouped(rows.filter((i) => data.direction[i] < 0), data.target, residual));
     const both = grouped(rows.filter((i) => data.direction[i] > 0), data.target, residual).filter((g) => minus.has(g[0]));
     return {
       targets: both.map((g) => g[0]),
       xs: both.map((g) => place_of(m, g[0])),
-      ys: both.map((g) => mean(g[1]) - mean(minus.get(g[0]))),
-      half: both.map((g) => 2 * (data.floor || 0) * Math.sqrt(1 / g[1].length + 1 / minus.get(g[0]).length)),
+      ys: both.map((g) => g[2] - minus.get(g[0])[2]),
+      half: both.map((g) => 2 * (data.floor || 0) * Math.sqrt(1 / g[1] + 1 / minus.get(g[0])[1])),
     };
   }
 
@@ -234,7 +250,7 @@ function nonioPictures({figure, tip, hidden, pick, brushed, said, drawn}) {
   function by_run() {
     const frame = over(3, data.run, "whole");
     const groups = grouped(shown, data.run, residual);
-    frame.line(groups.map((g) => g[0]), groups.map((g) => mean(g[1])), "mean");
+    frame.line(groups.map((g) => g[0]), groups.map((g) => g[2]), "mean");
     return frame;
   }
 
@@ -326,9 +342,9 @@ function nonioPictures({figure, tip, hidden, pick, brushed, said, drawn}) {
   function ghost_reversal(frame) {
     for (const m of lines) {
       const rows = of_line(shown, m);
-      const minus = new Map(grouped(rows.filter((i) => data.direction[i] < 0), data.target, ghost));
+      const minus = by_key_of(grouped(rows.filter((i) => data.direction[i] < 0), data.target, ghost));
       const both = grouped(rows.filter((i) => data.direction[i] > 0), data.target, ghost).filter((g) => minus.has(g[0]));
-      frame.line(both.map((g) => place_of(m, g[0])), both.map((g) => mean(g[1]) - mean(minus.get(g[0]))), "ghost");
+      frame.line(both.map((g) => place_of(m, g[0])), both.map((g) => g[2] - minus.get(g[0])[2]), "ghost");
     }
   }
 
@@ -346,7 +362,7 @@ function nonioPictures({figure, tip, hidden, pick, brushed, said, drawn}) {
     if (ghost && !data.pictures[4].none) columns[4] = phases();
     pictures = [];
     drawers.forEach((drawer, k) => {
-      if (data.pictures[k].none) return;
+      if (data.pictures[k].none || (elsewhere && elsewhere(k))) return;
       const frame = drawer();
       ghost_in(frame, k, columns);
       pictures.push(frame);
@@ -529,7 +545,7 @@ function nonioPictures({figure, tip, hidden, pick, brushed, said, drawn}) {
       ghost = null;
       if (other) [marked, chosen] = [-1, new Set()];
       ends_of_lane = (data.lanes || []).map((name, m) =>
-        data.target.reduce(([a, b], v, i) => (data.measurement[i] === m ? [Math.min(a, v), Math.max(b, v)] : [a, b]), [Infinity, -Infinity]));
+        extremes(data.target.filter((v, i) => data.measurement[i] === m)));
       place = data.target.map((v, i) => place_of(data.measurement[i], v));
       lines = Array.from({length: Math.max(1, data.measurements)}, (_, m) => m);
     },

@@ -49,7 +49,7 @@ const effects = (() => {
     const g = groups(state, shown), unit = shown.unit, rms = field((shown.fit || {}).compare, "rms");
     const list = (word, items, help) => items.length ? [el("h3", {}, say(word)), help ? el("p", {class: "muted"}, say(help)) : null, el("ul", {class: "effects-of", "data-group": word}, ...items)] : [];
     const inModel = g.inModel.map((effect) => {
-      const without = shown.fitIsOld ? null : (shown.without || []).find((w) => w.effect === effect);
+      const without = shown.fitIsOld || shown.of.without !== shown.fitOf ? null : (shown.without || []).find((w) => w.effect === effect);
       return row(state, shown, effect, true, act, valuesOf(shown, effect), without ? el("p", {class: "muted", "data-without": field(without, "rms")}, say("row.without", {rms: short(field(without, "rms")), cv: short(field(without, "cv_rms")), unit})) : null);
     });
     const help = shown.learning ? [] : g.help.map((c) => {

@@ -2,7 +2,7 @@
 const readings = (() => {
   let first = 0, columns = null;
   /// The row of a reading as the files have it, of its place on the page.
-  const rowOf = (shown, i) => (shown.fit.rows ? shown.fit.rows[i] : i);
+  const rowOf = (shown, i) => (shown.fit.page.row ? shown.fit.page.row[i] : i);
   const excludedIn = (state, shown) => (state.excluded || []).filter((e) => e.part === shown.part);
 
   /// Form that leaves readings out: nothing goes without a reason.
@@ -39,7 +39,7 @@ const readings = (() => {
   }
   function drawRegion(state, shown, rows, act) {
     const box = by("region");
-    if (!shown.fit) return fill(box);
+    if (!shown.fit || shown.looks) return fill(box);
     if (rows.length === 0) return fill(box, el("details", {}, el("summary", {}, say("region.summary")), regionForm(shown, act.select)));
     const data = shown.fit.page, squares = rows.reduce((s, i) => s + data.residual[i] ** 2, 0), mean = rows.reduce((s, i) => s + data.residual[i], 0) / rows.length;
     fill(box, el("div", {class: "note"}, el("p", {}, el("b", {}, say("region.chosen", {n: rows.length, all: data.residual.length, rms: short(Math.sqrt(squares / rows.length)), mean: short(mean), unit: shown.unit}))),
@@ -49,7 +49,7 @@ const readings = (() => {
   /// Every reading in a table, 25 a page, and those that were left out.
   function drawTable(state, shown, act) {
     const box = by("readings-list");
-    if (!shown.fit) return fill(box);
+    if (!shown.fit || shown.looks) return fill(box);
     const data = shown.fit.page, n = data.residual.length, size = 25, gone = excludedIn(state, shown);
     first = Math.min(first, Math.max(0, n - 1));
     const sign = (d) => (d > 0 ? "+" : d < 0 ? "\u2212" : "?"), cell = (v) => el("td", {class: "number"}, finite(v) ? local(v.toFixed(3)) : "\u2013");
@@ -78,13 +78,14 @@ const readings = (() => {
   // ---- more readings than a page holds: the server sends least and greatest of each column of pixels ----
   const big = new Map();
   const axes = {0: "target", 2: "time", 3: "run", 4: "phase", 5: "temperature", 6: "model"};
+  const isBig = (shown, k) => shown.thinned && axes[k] !== undefined && !(shown.looks && axes[k] === "model");
   async function drawBig(shown, k, x0, x1) {
     const figure = by("picture-" + k), drawing = figure.querySelector("svg");
     const width = Math.max(240, Math.round(figure.clientWidth));
     const query = new URLSearchParams({x: axes[k], y: shown.column, px: String(width)});
     if (finite(x0) && finite(x1)) for (const [name, v] of [["x0", x0], ["x1", x1]]) query.set(name, String(v));
-    const version = shown.version, series = await net.ask(`/api/parts/${encodeURIComponent(shown.part)}/series?${query}`);
-    if (version !== shown.version || series.x.length === 0) return;
+    const times = shown.drawnTimes, series = await net.ask(`/api/parts/${encodeURIComponent(shown.part)}/series?${query}`);
+    if (times !== shown.drawnTimes || series.x.length === 0) return;
     const old = big.get(k);
     if (old) old.plot.destroy();
     for (const node of figure.querySelectorAll(".zoom, .big")) node.remove();
@@ -95,38 +96,47 @@ const readings = (() => {
     const label = series.x_unit ? `${data.pictures[k].x.split(" / ")[0]} / ${shownUnit(series.x_unit)}` : data.pictures[k].x;
     drawing.classList.add("replaced");
     drawing.after(holder);
+    const again = (a, b) => drawBig(shown, k, a, b).then(() => {
+      requestAnimationFrame(() => setTimeout(() => performance.mark("zoomed")));
+    }).catch((e) => e.status === 409 || view.alarm(e.message));
     const plot = new uPlot({width, height: 230, legend: {show: false}, scales: {x: {time: false}},
       cursor: {drag: {x: true, y: false, setScale: false}, points: {show: false}},
       series: [{}, {stroke: colour("--plus"), width: 1}, {stroke: colour("--plus"), width: 1}], bands: [{series: [2, 1], fill: colour("--band")}],
-      axes: [{...axis, label, labelSize: 16, labelFont: axis.font}, {...axis, size: 46, label: data.pictures[k].y, labelSize: 14, labelFont: axis.font}],
-      hooks: {setSelect: [(u) => u.select.width > 4 && drawBig(shown, k, u.posToVal(u.select.left, "x"), u.posToVal(u.select.left + u.select.width, "x"))]}},
+      axes: [{...axis, label, labelSize: 16, labelFont: axis.font}, {...axis, size: 46, label: shown.looks ? `${data.words.deviation} / ${data.unit}` : data.pictures[k].y, labelSize: 14, labelFont: axis.font}],
+      hooks: {setSelect: [(u) => u.select.width > 4 && again(u.posToVal(u.select.left, "x"), u.posToVal(u.select.left + u.select.width, "x"))]}},
       [series.x, series.min, series.max], holder);
-    big.set(k, {plot});
+    big.set(k, {plot, range: [x0, x1]});
     const ends = [series.x[0], series.x[series.x.length - 1]], span = ends[1] - ends[0];
-    const zoom = (word, a, b) => el("button", {type: "button", class: "small", onclick: () => drawBig(shown, k, a, b)}, say(word));
+    const zoom = (word, a, b) => el("button", {type: "button", class: "small", onclick: () => again(a, b)}, say(word));
     holder.addEventListener("keydown", (event) => {
       const to = {"+": [ends[0] + span / 4, ends[1] - span / 4], "-": [ends[0] - span / 2, ends[1] + span / 2], 0: [NaN, NaN], ArrowRight: [ends[0] + span / 4, ends[1] + span / 4], ArrowLeft: [ends[0] - span / 4, ends[1] - span / 4]}[event.key];
       if (!to) return;
       event.preventDefault();
       event.stopPropagation();
-      drawBig(shown, k, ...to).then(() => figure.querySelector(".big").focus({preventScroll: true}));
+      again(...to).then(() => figure.querySelector(".big").focus({preventScroll: true}));
     });
     holder.after(el("div", {class: "zoom"}, zoom("big.in", ends[0] + span / 4, ends[1] - span / 4), zoom("big.out", ends[0] - span / 2, ends[1] + span / 2), zoom("big.left", ends[0] - span / 4, ends[1] - span / 4), zoom("big.right", ends[0] + span / 4, ends[1] + span / 4), zoom("big.all", NaN, NaN),
       el("span", {class: "muted"}, say("big.shown", {n: series.n}))));
   }
+  /// Where one was enlarged it stays so, whatever the model is.
   function drawAllBig(shown) {
-    const data = shown.fit.page;
-    const wanted = data.row && data.row.length < (shown.readings || 0);
+    const data = shown.fit.page, all = [];
     for (let k = 0; k < 9; k++) {
       const figure = by("picture-" + k);
-      if (wanted && axes[k] !== undefined && !data.pictures[k].none) drawBig(shown, k).catch((e) => view.alarm(e.message));
-      else if (big.has(k)) {
+      if (isBig(shown, k) && !data.pictures[k].none) {
+        all.push(drawBig(shown, k, ...((big.get(k) || {}).range || [])).catch((e) => e.status === 409 || view.alarm(e.message)));
+      } else if (big.has(k)) {
         big.get(k).plot.destroy();
         big.delete(k);
         for (const node of figure.querySelectorAll(".zoom, .big")) node.remove();
         figure.querySelector("svg").classList.remove("replaced");
       }
     }
+    return Promise.all(all);
   }
-  return {openOne, drawRegion, drawTable, drawAllBig};
+  /// Another part has other ranges.
+  function forget() {
+    for (const one of big.values()) one.range = [];
+  }
+  return {openOne, drawRegion, drawTable, drawAllBig, isBig, forget};
 })();

@@ -7,15 +7,16 @@
   view.build();
   let state = null, busy = 0, job = null, again = false, asking = false;
   /// What is shown: one part, its fit, what explain says of it.
-  const shown = {part: sessionStorage.getItem("nonio-part"), effect: null, drawing: "residual", version: 0, fitted: [], unit: "", column: "residual", etags: {},
+  const shown = {part: sessionStorage.getItem("nonio-part"), effect: null, drawing: "residual", version: 0, fitted: [], unit: "", column: "residual", etags: {}, of: {},
     /// What these readings could not separate when an effect was taken: the verdict "complete" does not settle that.
     aliases: JSON.parse(sessionStorage.getItem("nonio-aliases") || "{}")};
   const hidden = {d: new Set(), r: new Set()};
   const pictures = nonioPictures({figure: (k) => by("picture-" + k), tip: by("tip"), hidden,
+    elsewhere: (k) => readings.isBig(shown, k),
     pick: (i) => readings.openOne(shown, pictures, i, act), brushed: (rows) => region(rows), said: (lines) => view.speak(lines.join(", "))});
   const part = () => state.parts.find((p) => p.name === shown.part);
   /// What a fit depends on beside the files: numbers of another trial are never shown as those of this one.
-  const trial = () => JSON.stringify([state.model, (state.excluded || []).map((e) => [e.part, e.row]), state.period_mm]);
+  const trial = () => JSON.stringify([state.campaign.read_at, state.model, (state.excluded || []).map((e) => [e.part, e.row]), state.period_mm]);
   const path = (what) => `/api/parts/${encodeURIComponent(shown.part)}/${what}`;
 
   // ---- asking ----
@@ -50,14 +51,31 @@
     by("cancel").hidden = n === null;
     for (const id of ["suggest", "finish"]) by(id).disabled = n !== null;
   }
-  async function piece(name, what) {
-    const part_ = shown.part, etag = shown.etags[name] && shown.etags[name].part === shown.part ? shown.etags[name].etag : null;
-    const answer = await net.ask(path(what), {none: etag});
-    if (answer === null) return false;
-    if (shown.part === part_) shown.etags[name] = {part: part_, etag: answer.etag};
-    return answer;
+  /// One piece of what the server knows of this part and trial, for `take`; what belongs to another one meanwhile is
+  /// dropped. True if it is settled: there, or never to come.
+  const under_way = new Map();
+  async function piece(name, take, query = "") {
+    const part_ = shown.part, of = trial(), key = [name, part_, of].join("\n");
+    if (under_way.has(key)) return under_way.set(key, true);
+    under_way.set(key, false);
+    try {
+      const known = shown.etags[name], etag = known && known.part === part_ ? known.etag : null;
+      const answer = await net.ask(path(name) + query, {none: etag});
+      if (shown.part !== part_ || trial() !== of) return;
+      if (answer) shown.etags[name] = {part: part_, etag: answer.etag};
+      shown.of[name] = of;
+      await take(answer, of);
+    } catch (e) {
+      if (shown.part !== part_ || trial() !== of) return;
+      if (e.status !== 409) shown.of[name] = of;
+      if (e.status !== 409 && e.status !== 422) throw e;
+    } finally {
+      const again = under_way.get(key);
+      under_way.delete(key);
+      if (again && shown.of[name] !== of) piece(name, take, query).catch(complain);
+    }
   }
-  /// The state, then what belongs to it; a newer event while it is asked makes it ask once more.
+  /// The state; then what belongs to it, each piece as it comes. A newer event while it is asked makes it ask once more.
   async function refresh() {
     if (asking) {
       again = true;
@@ -72,7 +90,7 @@
         state = next;
         if (state.bench === "opening") view.speak(say("bench.opening"));
         if (!part()) choosePart(state.parts.length ? state.parts[0].name : null);
-        if (shown.part) await parts();
+        if (shown.part) pieces();
         draw();
       } while (again);
       document.body.classList.remove("lost");
@@ -80,60 +98,93 @@
       asking = false;
     }
   }
-  async function parts() {
-    const name = shown.part, still = () => shown.part === name;
+  function pieces() {
     const of = (state.parts_state || {})[shown.part] || {fit: "done", explain: "done"};
-    shown.error = of.fit === "failed" ? of.error || say("net.failed") : null;
+    shown.error = of.fit === "failed" || of.explain === "failed" ? of.error || say("net.failed") : null;
     shown.seconds = of.seconds || 0;
     running(state.job ? state.job.job : null);
-    if (of.fit === "done") {
-      const of_trial = trial(), fit = await piece("fit", "fit");
-      if (!still()) return;
-      shown.fitOf = of_trial;
-      if (fit) {
-        shown.fit = fit;
-        shown.version = fit.version;
-        shown.unit = fit.page.unit;
-        shown.fitted = fit.compare.model.effects;
-        shown.readings = part().readings;
-        pictures.set(fit.page);
-        legends();
-        drawPictures();
-        readings.drawAllBig(shown);
-      }
-      draw();
-      const without = await piece("without", "without").catch(() => null);
-      if (!still()) return;
-      if (without) shown.without = without.without || without;
+    const ask = (...one) => piece(...one).catch(complain), due = (name) => shown.of[name] !== trial();
+    if (!shown.fit && due("look")) ask("look", takeLook);
+    if (due("picture")) {
+      if (of.fit !== "failed" && state.bench === "open") ask("picture", takePicture);
+    } else if (shown.fit.partial) ask("fit", takeRest, "?page=0");
+    if (of.explain !== "done" && of.explain !== "none") stale();
+    else if (due("explain")) ask("explain", takeExplanation);
+    else if (due("fingerprints")) ask("fingerprints", takeFingerprints);
+  }
+  /// Until there is a fit: the readings as they were measured.
+  function takeLook(measured) {
+    if (shown.fit) return;
+    shown.looks = true;
+    shown.fit = {page: measured.page, compare: null, text: {}};
+    show(measured.version);
+    draw();
+  }
+  function takePicture(fit, of) {
+    if (fit) {
+      shown.looks = false;
+      shown.fit = fit;
+      shown.fitted = fit.compare.model.effects;
     }
-    if (of.explain === "done" || of.explain === "none") {
-      try {
-        const of_trial = trial(), explain = await piece("explain", "explain");
-        if (!still()) return;
-        shown.explainOf = of_trial;
-        if (explain) shown.explain = explain.explain;
-        for (const c of shown.explain.candidates || []) if (c.aliases.length) shown.aliases[c.effect] = c.aliases;
-        sessionStorage.setItem("nonio-aliases", JSON.stringify(shown.aliases));
-        if (!shown.effect && !learn.on) shown.effect = (shown.explain.verdict || {}).effect || null;
-        const says = await piece("fingerprints", "fingerprints").catch(() => null);
-        if (!still()) return;
-        if (says) shown.fingerprints = says.fingerprints || says;
-        drawPictures();
-      } catch (e) {
-        if (e.status !== 409) throw e;
-        stale();
-      }
-    } else stale();
-    if (of.explain === "failed") shown.error = shown.error || of.error;
+    shown.fitOf = of;
+    const drawn = fit ? show(fit.version) : null;
+    draw();
+    if (drawn) drawn.then(() => painted("fitted"));
+    if (shown.fit.partial) piece("fit", takeRest, "?page=0").catch(complain);
+    else others();
+  }
+  /// Where it fails: of many readings after the picture.
+  function takeRest(rest) {
+    if (!rest) return;
+    shown.fit = {...rest, page: shown.fit.page};
+    draw();
+    others();
+  }
+  function others() {
+    if (shown.of.without === trial()) return;
+    piece("without", (without) => (shown.without = without.without)).catch(() => null).then(draw);
+  }
+  function takeExplanation(explain, of) {
+    shown.explainOf = of;
+    shown.explain = explain.explain;
+    for (const c of shown.explain.candidates || []) if (c.aliases.length) shown.aliases[c.effect] = c.aliases;
+    sessionStorage.setItem("nonio-aliases", JSON.stringify(shown.aliases));
+    if (!shown.effect && !learn.on) shown.effect = (shown.explain.verdict || {}).effect || null;
+    draw();
+    piece("fingerprints", takeFingerprints).catch(() => null).then(draw);
+  }
+  function takeFingerprints(says) {
+    shown.fingerprints = says.fingerprints;
+    if (shown.fit) drawPictures();
+    draw();
+  }
+  /// Draws the page that is there. A mark is set after the frame that shows it: what measurements take.
+  const painted = (name) => requestAnimationFrame(() => setTimeout(() => performance.mark(name)));
+  function show(version) {
+    const page = shown.fit.page, all = shown.looks ? part().readings : shown.fit.compare.observations;
+    shown.version = version;
+    shown.drawnTimes = (shown.drawnTimes || 0) + 1;
+    shown.unit = page.unit;
+    shown.all = all;
+    shown.thinned = page.residual.length < all;
+    shown.column = shown.looks ? "deviation" : "residual";
+    pictures.set(page);
+    legends();
+    drawPictures();
+    const big = readings.drawAllBig(shown);
+    big.then(() => painted("picture"));
+    return big;
   }
   function stale() {
     shown.explain = null;
-    shown.etags.explain = shown.etags.fingerprints = null;
+    delete shown.of.explain;
+    delete shown.of.fingerprints;
   }
   function choosePart(name) {
     shown.part = name;
     sessionStorage.setItem("nonio-part", name || "");
-    Object.assign(shown, {fit: null, explain: null, without: null, fingerprints: null, effect: null, etags: {}, fitted: []});
+    Object.assign(shown, {fit: null, explain: null, without: null, fingerprints: null, effect: null, etags: {}, fitted: [], of: {}, fitOf: null, explainOf: null, looks: false});
+    readings.forget();
   }
 
   // ---- drawing ----
@@ -147,12 +198,13 @@
       figure.querySelector("svg").classList.toggle("replaced", p.none !== "");
       if (p.none) figure.querySelector("svg").after(el("p", {class: "none"}, p.none));
     });
-    const data = shown.fit.page, thinned = data.row && data.row.length < part().readings;
-    by("legend").textContent = [say("legend.all"), finite(data.floor) ? say("legend.floor", {s: short(data.floor), unit: data.unit}) : say("bar.no_floor"), data.suspects.length ? say("legend.suspects", {n: data.suspects.length}) : "", thinned ? say("legend.thinned", {n: data.row.length, all: part().readings}) : ""].filter(Boolean).join(" ");
+    const data = shown.fit.page, thinned = shown.thinned;
+    by("legend").textContent = shown.looks ? say("legend.measured", {n: shown.all}) : [say("legend.all"), finite(data.floor) ? say("legend.floor", {s: short(data.floor), unit: data.unit}) : say("bar.no_floor"), data.suspects.length ? say("legend.suspects", {n: data.suspects.length}) : "", thinned ? say("legend.thinned", {n: data.residual.length, all: shown.all}) : ""].filter(Boolean).join(" ");
   }
   /// Residual, deviation, or what a table of the control would leave.
   function values() {
     const data = shown.fit.page;
+    if (shown.looks) return data.deviation;
     if (shown.drawing === "residual") return data.residual;
     const taken = shown.drawing === "table" ? data.effects.filter((e) => (state.catalogue.find((c) => c.effect === e.name) || {}).compensable) : [];
     return data.deviation.map((d, i) => d - taken.reduce((s, e) => s + (e.says[i] || 0), 0));
@@ -171,7 +223,7 @@
     return 0;
   };
   function drawPlaces() {
-    const compare = shown.fit && shown.fit.compare, all = compare ? compare.left && compare.left.length ? compare.left : compare.fails || [] : [];
+    const compare = shown.fit && !shown.fit.partial && shown.fit.compare, all = compare ? compare.left && compare.left.length ? compare.left : compare.fails || [] : [];
     for (let k = 0; k < 9; k++) {
       by("fails-" + k).textContent = "";
       by("picture-" + k).classList.remove("failing");
@@ -274,7 +326,9 @@
     readings.drawTable(state, shown, act);
     space.draw(state, shown, () => space.draw(state, shown, () => {}));
     document.body.dataset.version = state.version;
-    document.body.dataset.ready = shown.fit && !shown.fitIsOld ? (shown.explain && !shown.explainIsOld ? "explained" : "fitted") : "";
+    const settled = (name) => shown.of[name] === trial();
+    const explained = shown.explain && !shown.explainIsOld && settled("fingerprints") && settled("without");
+    document.body.dataset.ready = shown.fit && !shown.fitIsOld && !shown.fit.partial ? (explained ? "explained" : "fitted") : "";
   }
 
   // ---- what a person does ----
@@ -424,6 +478,7 @@
     document.body.classList.remove("lost");
     running(null);
     shown.etags = {};
+    shown.of = {};
     refresh().catch(complain);
   }}));
 })();

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -212,11 +214,33 @@ struct Explanation {
   Verdict verdict;
 };
 
-/// Errors are those of `fit`: parameters that the readings cannot tell apart.
-Expected<Comparison> compare(const Part& part, const std::vector<Term>& model);
+/// What is found out of the readings before any model of them: how they repeat each other, which
+/// are misread, how their noise hangs together. Kept where many models are held against the same
+/// readings.
+class Groundwork {
+ public:
+  /// Of `model` only the set-up counts.
+  Groundwork(const Part& part, const std::vector<Term>& model);
+  Groundwork(Groundwork&&) noexcept;
+  ~Groundwork();
+  struct Found;
+  const Found& found() const { return *found_; }
+
+ private:
+  std::unique_ptr<const Found> found_;
+};
+
+/// Called once the fit of a long table is there, with all but its places.
+using Fitted = std::function<void(const Comparison&)>;
+
+/// Errors are those of `fit`: parameters that the readings cannot tell apart. `known`: of this
+/// part, if it is there already.
+Expected<Comparison> compare(const Part& part, const std::vector<Term>& model,
+                             const Groundwork* known = nullptr, const Fitted& fitted = {});
 
 /// `seed` is for the shuffles behind the false-alarm rate.
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
-                              const std::vector<Term>& catalogue, std::uint64_t seed = 1);
+                              const std::vector<Term>& catalogue, std::uint64_t seed = 1,
+                              const Groundwork* known = nullptr);
 
 }  // namespace nonio::model

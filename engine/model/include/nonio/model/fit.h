@@ -85,8 +85,9 @@ struct Fit {
 /// misreadings. Parameters that the readings cannot tell apart are an error that names them; there
 /// is no minimum-norm guess. Source: GUM-6:2020 9 for the covariance. Where repeats show noise that
 /// is not independent, generalised least squares: all rows whitened first; what else is known of it
-/// is in u only.
+/// is in u only. `thin`: means of neighbours of a long table, if they are there already.
 Expected<Fit> fit(const Observations& observations, std::vector<Term> terms,
-                  std::vector<double> weight = {}, const Noise& noise = {});
+                  std::vector<double> weight = {}, const Noise& noise = {},
+                  const Observations* thin = nullptr);
 
 }  // namespace nonio::model

@@ -26,12 +26,14 @@ struct Drawn {
 inline constexpr std::size_t most_readings = 20000;
 
 /// The readings that a page holds: all, or of many a sample, and with it those with the largest
-/// residuals, which are drawn but do not count in RMS and means.
+/// values, which are drawn but do not count in RMS and means.
 struct Kept {
   std::vector<std::size_t> rows;
   std::vector<char> counted;
+  /// Of each reading of the fit its row in the files, where that is another one; else empty.
+  std::vector<std::size_t> row_in_files{};
 };
-Kept kept_readings(const ModelFit& fit);
+Kept kept_readings(const std::vector<double>& values, std::size_t most = most_readings);
 
 /// The data as JSON, in the units that are printed (um, mm; arcsec, deg). `titles`: with title and
 /// sentence of each picture, which a page from disk has in its text.
