@@ -7,6 +7,7 @@
 #include <new>
 
 #include "host/batch/history_update.h"
+#include "host/batch/known_numbers.h"
 #include "host/batch/leftovers.h"
 #include "host/batch/mail.h"
 #include "host/batch/morning_update.h"
@@ -90,59 +91,6 @@ Expected<std::string> look_at_site(const RunOptions& options) {
                                      return fail(std::move(why));
                                    return fs::weakly_canonical(site, error).string();
                                  });
-}
-
-/// A register in an output folder below the site would be lost with it.
-Expected<void> check_register_place(const RunOptions& options, const reading::Context& context) {
-  const auto path = certificates::register_path(options.site, context.site.numbering);
-  if (!path) return fail(path.error());
-  std::error_code error;
-  const auto is_below = [](const fs::path& one, const fs::path& folder) {
-    const fs::path way = one.lexically_relative(folder);
-    return !way.empty() && *way.begin() != "..";
-  };
-  const fs::path out = fs::weakly_canonical(options.out, error);
-  if (is_below(*path, out) && is_below(out, fs::weakly_canonical(options.site, error)))
-    return fail("the register of certificates " + path->string() +
-                " would lie in the output folder; expected it elsewhere in the site");
-  return {};
-}
-
-/// What the register says before the night; nothing if another process keeps it locked.
-struct Known {
-  std::vector<certificates::RegisterEntry> numbers;
-  std::vector<certificates::WaitingDraft> drafts;
-};
-
-Expected<std::optional<Known>> known_of(const RunOptions& options,
-                                        const reading::Context& context) {
-  const config::Numbering& numbering = context.site.numbering;
-  const double patience = std::min(5.0, numbering.patience);
-  auto known = read_apart<
-      std::pair<std::vector<certificates::RegisterEntry>, std::vector<certificates::WaitingDraft>>>(
-      "the register of certificates", context.site.limits.disk_seconds + patience,
-      [&](process::SignsOfLife& signs)
-          -> Expected<std::pair<std::vector<certificates::RegisterEntry>,
-                                std::vector<certificates::WaitingDraft>>> {
-        signs.reading((options.site / numbering.register_file).string());
-        if (const auto sound = check_register_place(options, context); !sound)
-          return fail(sound.error());
-        auto numbers = certificates::Register::entries(options.site, numbering, patience);
-        if (!numbers) return fail(numbers.error());
-        signs.beat();
-        auto drafts = certificates::Register::drafts(options.site, numbering, patience);
-        if (!drafts) return fail(drafts.error());
-        return std::pair(std::move(*numbers), std::move(*drafts));
-      });
-  if (!known && storage::is_locked(known.error())) return std::nullopt;
-  if (!known) return fail(known.error());
-  return Known{std::move(known->first), std::move(known->second)};
-}
-
-std::uint64_t issued_so_far(const std::vector<certificates::RegisterEntry>& numbers) {
-  std::uint64_t last = 0;
-  for (const certificates::RegisterEntry& e : numbers) last = std::max(last, e.order);
-  return last;
 }
 
 /// What is new, in the order of the numbers, and what waits. An error if the register cannot be
@@ -261,12 +209,83 @@ void tell_plan(const Night& night, const RunEvents& events) {
                      std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));
 }
 
+/// What was found out before the first campaign is done.
+struct Plan {
+  Expected<history::Told> told;
+  std::string only;  ///< the campaign of a night that is reopened
+};
+
+/// Surveyed and told. An error: the night ends here; empty if somebody wants to stop.
+Expected<Plan> plan_night(const RunOptions& options, const RunEvents& events,
+                          const reading::Context& context, const NightState& state,
+                          const std::optional<Known>& known, Night& night) {
+  const std::size_t notes_so_far = night.notes.size();
+  const auto surveyed = survey_site(options, context, state, known, night);
+  if (process::is_stop_requested()) return fail("");
+  if (!surveyed) return fail(surveyed.error());
+  std::string only;
+  if (state.reopened) {
+    auto one = leave_only(options, state, night);
+    if (!one) return fail(one.error());
+    only = std::move(*one);
+  }
+  Plan plan{read_told(options, context), std::move(only)};
+  leave_out_forgotten(night, plan.told);
+  for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);
+  tell_plan(night, events);
+  return plan;
+}
+
+void tell_stage(const RunEvents& events, const char* name) {
+  if (events.stage) events.stage(name);
+}
+
+/// Every campaign that is to do, and what the history and the reports know of it. An error: the
+/// night ends here; empty if somebody wants to stop.
+Expected<void> do_planned(const RunOptions& options, const RunEvents& events, SetUp& place,
+                          const Plan& plan, bool register_known, NightState& state, Night& night) {
+  const reading::Context& context = place.context;
+  tell_stage(events, "campaigns");
+  HistoryUpdate history(options, context);
+  if (const auto begun = history.begin(); !begun) return begun;
+  if (std::any_of(night.campaigns.begin(), night.campaigns.end(), is_todo))
+    if (const auto begun = ShownHistories(options, context).begin(); !begun) return begun;
+  store_refused(options, context, state, events, night.campaigns);
+  ReleaseDesk desk;
+  desk.signer = place.signer ? &*place.signer : nullptr;
+  desk.plugins = &*place.host;
+  if (!register_known)
+    desk.recheck = [&](const std::vector<certificates::RegisterEntry>& numbers) {
+      if (!state.issued_before) state.issued_before = issued_so_far(numbers);
+      return check_numbers(options.out, night.campaigns, numbers);
+    };
+  bool well = do_campaigns(options, events, context, state, desk, night.campaigns);
+  if (well && !process::is_stop_requested()) {
+    std::vector<std::string> done;
+    for (const CampaignState& c : night.campaigns)
+      if (c.action == Action::done && c.is_campaign) done.push_back(c.id);
+    tell_stage(events, "history");
+    const std::uint64_t before = state.reopened ? state.number
+                                 : state.last   ? state.last->night.number
+                                                : 0;
+    write_history(night, history, before, done, plan.told, events);
+    well =
+        show_histories(options, events, context, state, desk, history, plan.told, plan.only, night);
+  }
+  if (well) return {};
+  if (state.reopened && std::any_of(night.campaigns.begin(), night.campaigns.end(), is_todo))
+    history.nothing_done();
+  tidy_root(options.out);
+  return fail("");
+}
+
 /// The night itself, in an output folder that nobody else uses.
 void do_night(const RunOptions& options, const RunEvents& events, const std::string& site_text,
               SetUp& place, const std::optional<Known>& known, Night& night) {
   const reading::Context& context = place.context;
   const auto refuse = [&](std::string why) {
-    night.end = process::is_stop_requested() ? Night::End::interrupted : Night::End::refused;
+    night.end =
+        process::is_stop_requested() || why.empty() ? Night::End::interrupted : Night::End::refused;
     night.error = std::move(why);
   };
   if (const auto settled =
@@ -281,66 +300,15 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
   if (!state) return refuse(state.error().message);
   night.night = state->of();
   if (state->last) night.seen_before = state->last->seen;
-  const std::size_t notes_so_far = night.notes.size();
-  const auto stage = [&](const char* name) {
-    if (events.stage) events.stage(name);
-  };
-  stage("survey");
-  const auto surveyed = survey_site(options, context, *state, known, night);
-  if (process::is_stop_requested()) {
-    night.end = Night::End::interrupted;
-    return;
-  }
-  if (!surveyed) return refuse(surveyed.error().message);
-  std::string only;
-  if (state->reopened) {
-    const auto one = leave_only(options, *state, night);
-    if (!one) return refuse(one.error().message);
-    only = *one;
-  }
-  const auto told = read_told(options, context);
-  leave_out_forgotten(night, told);
-  for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);
-  tell_plan(night, events);
+  tell_stage(events, "survey");
+  const auto plan = plan_night(options, events, context, *state, known, night);
+  if (!plan) return refuse(plan.error().message);
   if (options.dry_run) return;
-
-  stage("campaigns");
-  HistoryUpdate history(options, context);
-  if (const auto begun = history.begin(); !begun) return refuse(begun.error().message);
-  if (std::any_of(night.campaigns.begin(), night.campaigns.end(), is_todo))
-    if (const auto begun = ShownHistories(options, context).begin(); !begun)
-      return refuse(begun.error().message);
-  store_refused(options, context, *state, events, night.campaigns);
-  ReleaseDesk desk;
-  auto& signer = place.signer;
-  desk.signer = signer ? &*signer : nullptr;
-  desk.plugins = &*place.host;
-  if (!known)
-    desk.recheck = [&](const std::vector<certificates::RegisterEntry>& numbers) {
-      if (!state->issued_before) state->issued_before = issued_so_far(numbers);
-      return check_numbers(options.out, night.campaigns, numbers);
-    };
-  const auto interrupted = [&] {
-    night.end = Night::End::interrupted;
-    if (state->reopened && std::any_of(night.campaigns.begin(), night.campaigns.end(), is_todo))
-      history.nothing_done();
-    tidy_root(options.out);
-  };
-  if (!do_campaigns(options, events, context, *state, desk, night.campaigns)) return interrupted();
-  if (!process::is_stop_requested()) {
-    std::vector<std::string> done;
-    for (const CampaignState& c : night.campaigns)
-      if (c.action == Action::done && c.is_campaign) done.push_back(c.id);
-    stage("history");
-    const std::uint64_t before = state->reopened ? state->number
-                                 : state->last   ? state->last->night.number
-                                                 : 0;
-    write_history(night, history, before, done, told, events);
-    if (!show_histories(options, events, context, *state, desk, history, told, only, night))
-      return interrupted();
-  }
+  if (const auto done = do_planned(options, events, place, *plan, known.has_value(), *state, night);
+      !done)
+    return refuse(done.error().message);
   leave_out_new(*state, night.campaigns);
-  stage("pages");
+  tell_stage(events, "pages");
   // The campaigns are safe; if this fails the night stays open, and the next run ends it.
   const auto closed = close_night(night, options, events, context, *state);
   if (closed) return;

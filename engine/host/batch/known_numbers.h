@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "host/batch/run.h"
+#include "host/certificates/register.h"
+#include "host/reading/context.h"
+
+namespace nonio::host::batch {
+
+/// What the register says before the night; nothing if another process keeps it locked.
+struct Known {
+  std::vector<certificates::RegisterEntry> numbers;
+  std::vector<certificates::WaitingDraft> drafts;
+};
+
+/// An error if the register cannot be read, or lies where it would be lost.
+Expected<std::optional<Known>> known_of(const RunOptions& options, const reading::Context& context);
+
+/// Order of the last number.
+std::uint64_t issued_so_far(const std::vector<certificates::RegisterEntry>& numbers);
+
+}  // namespace nonio::host::batch
