@@ -62,22 +62,23 @@ std::string with(std::string text, const std::string& from, const std::string& t
   return text.replace(at, from.size(), to);
 }
 
-/// From `from` on; of a long row of zeros every 97th.
+/// Each byte in one other way of the 255. From `from` on; of a long row of zeros every 97th.
 void flip_every_byte(const std::string& good, std::size_t from = 0) {
+  constexpr unsigned seed = 20261123;
+  std::cout << "seed " << seed << '\n';
+  std::mt19937 rng(seed);
+  std::uniform_int_distribution<int> other(1, 255);
   const Scene& s = scene();
   ASSERT_TRUE(s.holds(good));
   std::string bytes = good;
   std::size_t accepted = 0;
   for (std::size_t i = from; i < good.size(); ++i) {
     if (from != 0 && i % 97 != 0 && good.compare(i, 64, std::string(64, '0')) == 0) continue;
-    for (const char mask : {'\x01', '\x20', '\xFF'}) {
-      bytes[i] = static_cast<char>(bytes[i] ^ mask);
-      const std::string check = s.fails(bytes);
-      if (check == "none" && ++accepted <= 20)
-        ADD_FAILURE() << "byte " << i << " ^ " << int(static_cast<unsigned char>(mask))
-                      << " is accepted";
-      bytes[i] = good[i];
-    }
+    const int mask = other(rng);
+    bytes[i] = static_cast<char>(bytes[i] ^ mask);
+    if (s.fails(bytes) == "none" && ++accepted <= 20)
+      ADD_FAILURE() << "byte " << i << " ^ " << mask << " is accepted";
+    bytes[i] = good[i];
   }
   EXPECT_EQ(accepted, 0U);
 }
