@@ -434,9 +434,9 @@ constexpr Key measurement_keys[] = {
      .help = "Length of the foot or mirror base of a level or autocollimator that was moved by its "
              "own length along the line: the angles then give the straightness.",
      .unit = "mm",
+     .only = {"kind", angle},
      .wanted = "expected a length above 0",
-     .least = 0.001,
-     .only = {"kind", angle}},
+     .least = 0.001},
     {.name = "reversal_of",
      .holds = text,
      .help = "The measurement of the same line before the straightedge was turned over: both give "

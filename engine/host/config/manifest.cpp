@@ -294,6 +294,24 @@ void add_axis(const std::string& name, bool any_named, Manifest& manifest) {
   if (any_named) manifest.undeclared_axes.push_back(name);
 }
 
+/// A straightedge that was turned over: the same line, and each measurement in one pair.
+void check_reversals(std::vector<TableReader>& list, const std::vector<Measurement>& all) {
+  std::set<std::string> taken;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string& of = all[i].reversal_of;
+    if (of.empty()) continue;
+    const auto first =
+        std::find_if(all.begin(), all.end(), [&](const Measurement& m) { return m.id == of; });
+    const bool fits = first != all.end() && first->kind == "straightness" &&
+                      first->axis == all[i].axis && first->lateral == all[i].lateral &&
+                      first->reversal_of.empty() && of != all[i].id;
+    if (!fits || !taken.insert(of).second)
+      list[i].error("reversal_of", "expected the id of another straightness of " + all[i].axis +
+                                       " towards " + all[i].lateral +
+                                       " that has one reversal, found \"" + of + "\"");
+  }
+}
+
 void read_measurements(TableReader& top, Manifest& manifest, bool plans) {
   Campaign& campaign = manifest.campaign;
   const bool any_named = !campaign.machine.axes.empty();
@@ -317,24 +335,6 @@ void read_measurements(TableReader& top, Manifest& manifest, bool plans) {
     campaign.measurements.push_back(std::move(m));
   }
   if (list.size() == campaign.measurements.size()) check_reversals(list, campaign.measurements);
-}
-
-/// A straightedge that was turned over: the same line, and each measurement in one pair.
-void check_reversals(std::vector<TableReader>& list, const std::vector<Measurement>& all) {
-  std::set<std::string> taken;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::string& of = all[i].reversal_of;
-    if (of.empty()) continue;
-    const auto first =
-        std::find_if(all.begin(), all.end(), [&](const Measurement& m) { return m.id == of; });
-    const bool fits = first != all.end() && first->kind == "straightness" &&
-                      first->axis == all[i].axis && first->lateral == all[i].lateral &&
-                      first->reversal_of.empty() && of != all[i].id;
-    if (!fits || !taken.insert(of).second)
-      list[i].error("reversal_of", "expected the id of another straightness of " + all[i].axis +
-                                       " towards " + all[i].lateral +
-                                       " that has one reversal, found \"" + of + "\"");
-  }
 }
 
 void read_tables(TableReader& top, Manifest& manifest) {
