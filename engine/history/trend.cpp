@@ -251,8 +251,8 @@ class Trending {
     for (std::size_t k = 0; k < out.changes.size(); ++k) {
       const auto i = static_cast<Index>(k) + 1;
       Change& c = out.changes[k];
-      c.size = last.b(i), c.u = std::sqrt(last.C(i, i));
-      if (c.declared) c.p = normal_two_sided(held->b(i) / std::sqrt(held->C(i, i)));
+      c.size = held->b(i), c.u = std::sqrt(held->C(i, i));
+      if (c.declared) c.p = normal_two_sided(c.size / c.u);
     }
     segments(last, told, out);
     std::stable_sort(out.changes.begin(), out.changes.end(),
