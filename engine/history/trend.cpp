@@ -227,20 +227,22 @@ class Trending {
 
   /// What is known of slopes helps to see a step. What is said of this machine's own slope comes from
   /// its own points alone: its interval holds whatever the slopes of the others are.
-  std::optional<Gls> freed() const {
-    if (!shape_.drifts || shape_.free) return std::nullopt;
-    Shape own = shape_;
-    own.free = true;
-    return fit(own);
+  void free_slope(Shape& shape) const {
+    Shape own = shape;
+    own.drifts = own.free = true;
+    const bool wanted = shape.drifts || s_.own_slope;
+    if (wanted && s_.points.size() >= 3 && fit(own)) shape = std::move(own);
   }
 
   Trend fitted() const {
     Trend out;
     const auto held = fit(shape_);
     if (!held) return out;
-    const auto last = freed().value_or(*held);
+    Shape told = shape_;
+    free_slope(told);
+    const Gls last = *fit(told);
     const Index p = last.b.size();
-    out.chi2 = last.chi2, out.dof = last.dof, out.drifts = shape_.drifts;
+    out.chi2 = held->chi2, out.dof = held->dof, out.drifts = told.drifts;
     out.line_or_step = line_or_step_;
     out.coefficients.assign(last.b.begin(), last.b.end());
     for (Index i = 0; i < p; ++i)
@@ -249,10 +251,10 @@ class Trending {
     for (std::size_t k = 0; k < out.changes.size(); ++k) {
       const auto i = static_cast<Index>(k) + 1;
       Change& c = out.changes[k];
-      c.size = last.b(i), c.u = std::sqrt(last.C(i, i));
-      if (c.declared) c.p = normal_two_sided(held->b(i) / std::sqrt(held->C(i, i)));
+      c.size = held->b(i), c.u = std::sqrt(held->C(i, i));
+      if (c.declared) c.p = normal_two_sided(c.size / c.u);
     }
-    segments(last, out);
+    segments(last, told, out);
     std::stable_sort(out.changes.begin(), out.changes.end(),
                      [](const Change& a, const Change& b) { return a.after < b.after; });
     const bool undeclared = std::any_of(out.changes.begin(), out.changes.end(),
@@ -271,10 +273,10 @@ class Trending {
            (shape_.free || normal_two_sided(last.b(i) / std::sqrt(last.C(i, i))) < named_below);
   }
 
-  void segments(const Gls& last, Trend& out) const {
+  void segments(const Gls& last, const Shape& told, Trend& out) const {
     std::set<std::size_t> ends{s_.points.size() - 1};
-    for (const Change& c : shape_.changes) ends.insert(c.after);
-    const MatrixXd X = columns_.of(shape_);
+    for (const Change& c : told.changes) ends.insert(c.after);
+    const MatrixXd X = columns_.of(told);
     const auto u_of = [&](std::size_t i) {
       const VectorXd x = X.row(static_cast<Index>(i)).transpose();
       return std::sqrt(x.dot(last.C * x));
@@ -287,7 +289,7 @@ class Trending {
                 X.row(static_cast<Index>(to)).dot(last.b),
                 u_of(from),
                 u_of(to)};
-      if (shape_.drifts) {
+      if (told.drifts) {
         s.slope = last.b(last.b.size() - 1);
         s.u_slope = std::sqrt(last.C(last.b.size() - 1, last.b.size() - 1));
       }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/morning/describe.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -225,12 +227,10 @@ Quantity quantity_of_unit(const std::string& symbol) {
 double si(double shown, Quantity quantity) { return shown / unit_of(quantity).per_si; }
 
 std::string link_of(const fs::path& out, const std::string& campaign) {
-  const fs::path folder = storage::results_folder(out, campaign);
-  std::error_code error;
-  const bool report = fs::exists(folder / "report.pdf", error);
-  return (folder / (report ? "report.pdf" : evaluation::results_name))
-      .lexically_relative(out)
-      .generic_string();
+  const std::string folder = storage::results_folder(out, campaign).string() + "/";
+  const bool report = ::access((folder + "report.pdf").c_str(), F_OK) == 0;
+  return folder.substr((out / "").native().size()) +
+         (report ? "report.pdf" : evaluation::results_name);
 }
 
 std::optional<std::int64_t> usual_interval(const std::vector<StoredCampaign>& campaigns) {

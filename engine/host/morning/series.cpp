@@ -245,6 +245,7 @@ class Joining {
     }
     pool(s.series.points);
     s.series.seed = seed_of(m_, results);
+    s.series.own_slope = true;
     return s;
   }
 

@@ -17,7 +17,7 @@ namespace nonio::host::morning {
 /// One quantity of one axis, as far as its campaigns can be compared.
 struct FollowedSeries {
   std::string axis, quantity, unit;
-  std::vector<std::size_t> results;  ///< of the points: indices into StoredMachine::results
+  std::vector<std::size_t> results;          ///< of the points: indices into StoredMachine::results
   std::vector<std::uint64_t> evaluations{};  ///< of the points
   /// Numbers of the same quantity before this series began, which cannot be joined.
   struct Apart {

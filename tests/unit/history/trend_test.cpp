@@ -296,7 +296,7 @@ TEST(SpreadOfSlopes, HoldsASlopeWhereAStepIsAskedAndNotWhereItIsTold) {
   EXPECT_NEAR(trend->changes[0].p, std::erfc(std::fabs(held[0]) / std::sqrt(2.0)), 1e-9);
   EXPECT_NEAR(trend->segments[0].slope, own[1], 1e-9);
   EXPECT_NEAR(trend->segments[0].u_slope, own[2], 1e-9);
-  EXPECT_NEAR(trend->changes[0].size / trend->changes[0].u, own[0], 1e-9);
+  EXPECT_NEAR(trend->changes[0].size / trend->changes[0].u, held[0], 1e-9);
 }
 
 TEST(SpreadOfSlopes, ASlopeThatIsUnlikeTheOthersIsFree) {

@@ -112,14 +112,14 @@ TEST(MorningLines, WhatConformsAndChangedIsAChange) {
 TEST(MorningLines, AChangeThatIsNotSureIsNotMailed) {
   Laboratory lab;
   MadeMachine m("S-42");
-  m.follow("X", "B_mean", flat(-4.0, -4.6), 0.1);
+  m.follow("X", "B_mean", flat(-4.0, -4.35), 0.1);
   m.judge("X", "B", flat(6.0, 6.0));
   lab.machines.push_back(std::move(m));
   ASSERT_EQ(lab.lines().size(), 1U);
   ASSERT_EQ(lab.lines()[0].kind, Kind::changed);
   const auto evidence = lab.lines()[0].finding.evidence;
-  const auto p = std::find_if(evidence.begin(), evidence.end(),
-                              [](const Number& n) { return n.name == "p"; });
+  const auto p =
+      std::find_if(evidence.begin(), evidence.end(), [](const Number& n) { return n.name == "p"; });
   ASSERT_NE(p, evidence.end());
   for (const double level : {0.008, 0.03}) {
     lab.asked = {{1, static_cast<std::uint64_t>(level / p->value)}};

@@ -47,6 +47,9 @@ struct Series {
   /// (spread_of_slopes): what is known of a slope before the points, while steps are asked for.
   /// 0: nothing is known, and a drift is tested.
   double spread = 0.0;
+  /// A slope is told of a level too, and its uncertainty is in every forecast: that a drift was not
+  /// seen does not say that there is none.
+  bool own_slope = false;
   /// A drift comes in where chance makes one in fewer series than this share.
   double drift_below = 0.01;
   /// Behind which points steps are that nobody declared, where that is known: others are not looked

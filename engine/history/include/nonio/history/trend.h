@@ -23,8 +23,8 @@
 /// two steps or three if it is likelier than they are at a price of 3 ln n each.
 ///
 /// Where the laboratory's slopes are known to spread (Series::spread), a slope is held near 0 by a
-/// row slope/spread = 0 while steps are asked for. Sizes, slopes and forecasts are of the fit
-/// without that row: an interval that leans on the slopes of other machines covers 95 % of all
+/// row slope/spread = 0 while steps are asked for, and for their sizes. Slopes, segments and
+/// forecasts are of a fit with a free slope (Series::own_slope: of a level too): an interval that leans on the slopes of other machines covers 95 % of all
 /// slopes together, but too few of those that wear.
 ///
 /// Sources: JCGM 100:2008; generalised likelihood ratio (general knowledge; the null of the largest
@@ -52,8 +52,8 @@ struct Change {
 struct Trend {
   Model model = Model::none;
   std::vector<Segment> segments;
-  std::vector<Change> changes;  ///< by time
-  double chi2 = 0.0, dof = 0.0;
+  std::vector<Change> changes;   ///< by time
+  double chi2 = 0.0, dof = 0.0;  ///< with the slope held
   /// A step at the last place that is named 8 times in 10.
   std::optional<double> smallest_change{};
   bool line_or_step = false;  ///< these points cannot tell a drift from a step
