@@ -135,7 +135,7 @@ class HistoryPage {
     if (c.cause == "instrument") return w_.get("history.instrument_cause");
     if (c.cause == "table") return w_.get("history.table_cause");
     if (c.cause != "event") return w_.get("history.unknown_cause");
-    return visible(event_text(source_.site, c.event));
+    return kind(c.event.substr(0, c.event.find(": ")));  // its text stands with the events
   }
 
   std::string change(const HistorySeries& s, const HistoryChange& c) const {
@@ -220,8 +220,7 @@ class HistoryPage {
         table.rows.push_back(
             {{s.axis.empty() ? "–" : s.axis},
              {name(s)},
-             {source_.site.get("site.state." +
-                               std::string(states[static_cast<int>(s.points[k].state)]))},
+             {w_.get("history." + std::string(states[static_cast<int>(s.points[k].state)]))},
              {printed(s.points[k], s.unit), true},
              {unit_text(s.unit).empty() ? "–" : unit_text(s.unit)},
              {b.value},
@@ -413,7 +412,9 @@ class HistoryPage {
 
 void add_history(const Source& source, Blocks& blocks) {
   if (!source.in.options.flag("history")) return;
-  blocks.push_back({PageBreak{}});
+  // What is only a sentence needs no page.
+  if (source.in.history != nullptr && !source.in.history->campaigns.empty())
+    blocks.push_back({PageBreak{}});
   blocks.push_back({Heading{source.words.get("history.title"), 1}, history_field});
   if (source.in.history == nullptr)
     blocks.push_back({Paragraph{source.words.get("history.not_yet")}, history_field});

@@ -15,7 +15,7 @@ from nightly import NightTest, tree
 
 DAYS = ("2025-01-15", "2025-07-14", "2026-01-20", "2026-07-11")
 SEED = int(os.environ.get("NONIO_SEED", "19"))
-KILLS = int(os.environ.get("NONIO_KILLS", "6"))
+KILLS = int(os.environ.get("NONIO_KILLS", "3"))
 SITE = """[run]
 analyses = ["iso230-2"]
 outputs = ["pdf-report"]
