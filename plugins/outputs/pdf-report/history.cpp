@@ -72,14 +72,13 @@ class HistoryPage {
     if (h_.machine.empty()) return say(w_.get("history.no_machine"));
     if (h_.day.empty()) return say(w_.get("history.no_date"));
     say(made_from());
-    if (!h_.campaigns.empty()) {
-      say(last_change());
-      add_table(blocks);
-      add_plots(blocks);
-      say(w_.get("history.legend"), Paragraph::Look::small);
-    }
-    say(events(), Paragraph::Look::small);
+    if (!h_.campaigns.empty()) say(last_change());
     say(next_due());
+    say(events(), Paragraph::Look::small);
+    if (h_.campaigns.empty()) return;
+    add_table(blocks);
+    add_plots(blocks);
+    say(w_.get("history.legend"), Paragraph::Look::small);
   }
 
  private:
@@ -122,6 +121,12 @@ class HistoryPage {
     return localised(short_text(value * unit_of(q).per_si), source_.language());
   }
 
+  /// With its unit, where it has one.
+  static std::string with_unit(const std::string& number, Quantity q) {
+    const std::string unit = unit_text(q);
+    return unit.empty() ? number : number + " " + unit;
+  }
+
   std::string kind(const std::string& kind) const {
     return source_.site.get_or("site.event." + kind, kind);
   }
@@ -130,39 +135,38 @@ class HistoryPage {
     if (c.cause == "instrument") return w_.get("history.instrument_cause");
     if (c.cause == "table") return w_.get("history.table_cause");
     if (c.cause != "event") return w_.get("history.unknown_cause");
-    return visible(event_text(source_.site, c.event));
+    return kind(c.event.substr(0, c.event.find(": ")));  // its text stands with the events
   }
 
   std::string change(const HistorySeries& s, const HistoryChange& c) const {
     if (c.cause == "table" && c.after == c.before)
-      return w_.get("history.adjusted", {{"size", printed(c.size, c.u, s.unit)},
-                                         {"unit", unit_text(s.unit)},
+      return w_.get("history.adjusted", {{"size", with_unit(printed(c.size, c.u, s.unit), s.unit)},
                                          {"date", c.before}});
-    return w_.get("history.changed", {{"size", printed(c.size, c.u, s.unit)},
-                                      {"unit", unit_text(s.unit)},
+    return w_.get("history.changed", {{"size", with_unit(printed(c.size, c.u, s.unit), s.unit)},
                                       {"after", c.after},
                                       {"before", c.before},
                                       {"cause", cause(c)}});
   }
 
   std::string statement(const HistorySeries& s) const {
-    const std::string limit = s.limit ? w_.get("history.limit", {{"limit", brief(*s.limit, s.unit)},
-                                                                 {"unit", unit_text(s.unit)}})
-                                      : "";
+    const std::string limit =
+        s.limit ? w_.get("history.limit", {{"limit", with_unit(brief(*s.limit, s.unit), s.unit)}})
+                : "";
     if (is_largest(s)) return limit.empty() ? "–" : limit;
     std::string says;
     if (!s.changes.empty())
       says = change(s, s.changes.back());
     else if (s.model == "drift" && !s.segments.empty())
-      says = w_.get("history.drift",
-                    {{"slope", printed(s.segments.back().slope, s.segments.back().u_slope, s.unit)},
-                     {"unit", unit_text(s.unit)}});
+      says = w_.get(
+          "history.drift",
+          {{"slope", with_unit(printed(s.segments.back().slope, s.segments.back().u_slope, s.unit),
+                               s.unit)}});
     else if (std::count_if(s.points.begin(), s.points.end(),
                            [](const HistoryPoint& p) { return p.joined; }) < 3)
       says = w_.get("history.few");
     else if (s.smallest_change)
       says = w_.get("history.no_change",
-                    {{"smallest", brief(*s.smallest_change, s.unit)}, {"unit", unit_text(s.unit)}});
+                    {{"smallest", with_unit(brief(*s.smallest_change, s.unit), s.unit)}});
     else
       says = w_.get(s.model == "none" ? "history.cannot_say" : "history.no_change_said");
     return limit.empty() ? says : says + "; " + limit;
@@ -216,8 +220,7 @@ class HistoryPage {
         table.rows.push_back(
             {{s.axis.empty() ? "–" : s.axis},
              {name(s)},
-             {source_.site.get("site.state." +
-                               std::string(states[static_cast<int>(s.points[k].state)]))},
+             {w_.get("history." + std::string(states[static_cast<int>(s.points[k].state)]))},
              {printed(s.points[k], s.unit), true},
              {unit_text(s.unit).empty() ? "–" : unit_text(s.unit)},
              {b.value},
@@ -278,9 +281,11 @@ class HistoryPage {
       widen(y - U), widen(y + U);
     }
     const double left = time.at(first_day(time)), right = time.at(h_.day);
+    const double margin = std::max(0.04 * (right - left), 0.01);
     const auto across = [&](double y) {
       widen(y);
-      out.curves.push_back(line({left, right}, {y, y}, style.failed, Dash::solid));
+      out.curves.push_back(
+          line({left - margin, right + margin}, {y, y}, style.failed, Dash::solid));
     };
     if (s.limit) {
       across(*s.limit * per_si);
@@ -288,6 +293,10 @@ class HistoryPage {
     }
     const double edge = std::max(0.06 * (high - low), 1e-9);
     out.range = {low - edge, high + edge};
+    // Nothing lies on the frame.
+    Curve sides = line({left - margin, right + margin}, {low, low}, style.text, Dash::solid);
+    sides.kind = Curve::Kind::points;
+    out.curves.push_back(std::move(sides));
     for (const MachineEvent& e : h_.events)
       if (const double x = time.at(e.date);
           x >= left && x <= right && (e.axis.empty() || e.axis == s.axis))
@@ -317,8 +326,16 @@ class HistoryPage {
 
   /// As many as one page has room for below the table; what changed first.
   std::vector<std::size_t> drawn(double height, std::size_t per_row) const {
-    const double taken = 175 + 13.0 * static_cast<double>(shown_.size());
-    const double rows = std::floor((page_room(source_.look.style) - taken) / (height + 6));
+    constexpr double line = 8.6, around = 2.4;
+    double taken = 150 + line * std::ceil(static_cast<double>(events().size()) / 140.0);
+    for (const std::size_t i : shown_) {
+      const HistorySeries& s = h_.series[i];
+      const double lines = is_largest(s) ? 1 : s.changes.empty() ? 2 : 3;
+      const auto own = std::count_if(s.points.begin(), s.points.end(),
+                                     [&](const HistoryPoint& p) { return p.campaign == id_; });
+      taken += line * lines + around + (line + around) * static_cast<double>(own - 1);
+    }
+    const double rows = std::floor((page_room(source_.look.style) - taken) / (height + 7));
     const std::size_t most = per_row * static_cast<std::size_t>(std::clamp(rows, 1.0, 6.0));
     std::vector<std::size_t> out = shown_;
     const auto later = [&](std::size_t i) {
@@ -395,7 +412,9 @@ class HistoryPage {
 
 void add_history(const Source& source, Blocks& blocks) {
   if (!source.in.options.flag("history")) return;
-  blocks.push_back({PageBreak{}});
+  // What is only a sentence needs no page.
+  if (source.in.history != nullptr && !source.in.history->campaigns.empty())
+    blocks.push_back({PageBreak{}});
   blocks.push_back({Heading{source.words.get("history.title"), 1}, history_field});
   if (source.in.history == nullptr)
     blocks.push_back({Paragraph{source.words.get("history.not_yet")}, history_field});
