@@ -27,7 +27,8 @@ Answer refused(int status, const std::string& name,
 
 std::string Sentences::operator()(const Said& said) const {
   const auto found = all_.find(said.name);
-  const std::string& text = found == all_.end() ? said.name : found->second, out;
+  const std::string& text = found == all_.end() ? said.name : found->second;
+  std::string out;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t open = std::min(text.find('{', at), text.size());
     const std::size_t close = text.find('}', open);

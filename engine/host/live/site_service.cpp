@@ -402,7 +402,7 @@ Answer SiteService::event(const Json& body) {
 
 Answer SiteService::release(const Json& body) {
   const auto folder = folder_of(body.at("campaign").get<std::string>());
-  if (!folder) return refused(404, "no_campaign", {{"campaign", body["campaign"]}});
+  if (!folder) return refused(404, "no_campaign", {{"campaign", body["campaign"].get<std::string>()}});
   std::vector<std::string> arguments{"release", "--json",
                                      option("by", body.at("by").get<std::string>())};
   add_options(arguments, body, {"as"});
@@ -430,7 +430,7 @@ Answer SiteService::run(const Json& body) {
   std::string id;
   if (body.contains("campaign")) {
     const auto folder = folder_of(body["campaign"].get<std::string>());
-    if (!folder) return refused(404, "no_campaign", {{"campaign", body["campaign"]}});
+    if (!folder) return refused(404, "no_campaign", {{"campaign", body["campaign"].get<std::string>()}});
     id = id_of(*folder);
     arguments.push_back(option("only", *folder));
   }

@@ -89,7 +89,7 @@
     const all = [...(campaign ? campaignButtons(campaign, line.id) : []),
       state.edit && canBeKnown(line) ? el("button", {type: "button", class: "link", "data-key": "ack-" + line.id, onclick: () => entries.acknowledge(line, told_, act)}, say("ack.short")) : null,
       state.edit && entry ? el("button", {type: "button", class: "link", "data-key": "withdraw-" + line.id, onclick: () => entries.withdraw(entry, act)}, say("withdraw.short")) : null,
-      state.edit && line.machine ? el("button", {type: "button", class: "link", "data-key": "event-" + line.id, onclick: () => entries.event(line.machine, line.axis, machines(), act)}, say("event.short")) : null].filter(Boolean);
+      state.edit && line.machine ? el("button", {type: "button", class: "link", "data-key": "event-" + line.id, onclick: () => entries.event(line.machine, line.axis, machines(), act)}, say("event.line")) : null].filter(Boolean);
     return all.length ? el("div", {class: "acts"}, ...all) : null;
   }
   const machines = () => [...new Set([...lines.map((l) => l.machine), ...[...document.querySelectorAll("a[data-to*='machines/']")].map((a) => a.textContent)].filter(Boolean))].sort();
@@ -153,9 +153,9 @@
     }});
     show();
     return [el("h1", {tabindex: -1}, say("site.campaigns")), state.out ? null : el("p", {class: "note"}, say("site.no_out")),
-      el("p", {}, el("label", {}, say("site.filter") + " ", input)), count, list,
       state.edit && state.out ? el("section", {"aria-labelledby": "all-title"}, el("h2", {id: "all-title"}, say("run.all_title")), el("p", {class: "muted"}, say("run.all_what")),
-        el("p", {}, el("button", {type: "button", id: "run-all", "data-key": "run-all", disabled: state.running, onclick: () => runAgain("")}, say("run.all")))) : null].filter(Boolean);
+        el("p", {}, el("button", {type: "button", id: "run-all", "data-key": "run-all", disabled: state.running, onclick: () => runAgain("")}, say("run.all")))) : null,
+      el("section", {"aria-labelledby": "each-title"}, el("h2", {id: "each-title"}, say("site.each")), el("p", {}, el("label", {}, say("site.filter") + " ", input)), count, list)].filter(Boolean);
   }
   async function release(body) {
     const answer = await net.ask("/api/release", {body});
