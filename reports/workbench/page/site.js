@@ -4,7 +4,7 @@
     by("app").replaceChildren(el("main", {class: "lost"}, el("h1", {}, say("shell.title")), el("p", {role: "alert"}, say("net.no_token"))));
     return;
   }
-  let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asked = 0, dismissed = "", released = null, wanted = "";
+  let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asked = 0, dismissed = "", shown = "", released = null, wanted = "";
   const own = ["campaigns", "certificates", "entries"];
   const isPage = (name) => /^(index|due|compare|instruments)\.html$|^machines\/[^/]+\.html$/.test(name);
   const pages = new Map(); // name: its text
@@ -65,7 +65,6 @@
     await draw();
     document.body.classList.remove("lost");
     document.body.dataset.version = state.version;
-    document.body.dataset.ready = view();
   }
 
   // ---- a line of the morning: what can be done about it ----
@@ -186,7 +185,7 @@
     const n = state.night, r = state.run;
     fill(by("nav"), ...[...(state.out && n.last ? links : []), ...own.map((name) => [name, say("site." + name)])].map(([to, label]) =>
       el("a", {href: hrefOf(to), "data-key": "nav-" + to, "aria-current": view() === to ? "page" : null}, label)));
-    const night_ = n.state === "running" ? say(n.last ? "night.running" : "night.first", {n: n.number, last: n.last, date: n.last_date}) : n.state === "cut-short" ? say("night.cut", {n: n.number}) : "";
+    const night_ = n.state === "running" ? say(n.last ? "night.running" : "night.first", {n: n.night, last: n.last, date: n.last_date}) : n.state === "cut-short" ? say("night.cut", {n: n.night}) : "";
     fill(by("night"), night_ ? el("p", {class: "note", id: "night-says"}, night_) : null);
     fill(by("rights"), state.edit ? null : el("p", {class: "muted", id: "read-only"}, say("site.read_only")));
     drawRun(r);
@@ -231,6 +230,8 @@
   }
   function put(content, name, moved) {
     if (pressed) return void setTimeout(() => put(content, name, moved), 60);
+    moved = moved || (shown !== "" && shown !== name);
+    document.body.dataset.ready = shown = name;
     const main = by("main"), next = el("div", {}, ...content), same = name + next.innerHTML;
     const focus = document.activeElement;
     if (!moved && drawn === same) return;
@@ -257,7 +258,7 @@
     if (view() === "index.html") filters = hash.includes("to=") ? filters : hash;
     if (at === view()) return drawHead();
     at = view();
-    draw(true).then(() => (document.body.dataset.ready = view())).catch(complain);
+    draw(true).catch(complain);
   }
   addEventListener("hashchange", moved);
   // Filters change the address without a word.
