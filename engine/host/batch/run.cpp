@@ -332,11 +332,11 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
           settle_folders(options.out, context.site.hashed_folders, options.dry_run);
       !settled)
     return refuse(settled.error().message);
-  auto state = !options.only.empty()
-                   ? reopen_night(options, site_text)
-                   : begin_night(options, site_text,
-                                 known ? std::optional(issued_so_far(known->numbers))
-                                       : std::nullopt);
+  auto state =
+      !options.only.empty()
+          ? reopen_night(options, site_text)
+          : begin_night(options, site_text,
+                        known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
   if (!state) return refuse(state.error().message);
   night.night = state->of();
   if (state->last) night.seen_before = state->last->seen;

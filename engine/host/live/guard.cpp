@@ -16,7 +16,7 @@ std::string lower(std::string_view text) {
 }
 
 Verdict denied(int status, std::string name,
-                std::vector<std::pair<std::string, std::string>> places = {}) {
+               std::vector<std::pair<std::string, std::string>> places = {}) {
   return {status, {"refused." + std::move(name), std::move(places)}};
 }
 
@@ -88,7 +88,7 @@ Verdict judge_size(const Head& head) {
   for (const auto& [name, value] : head.fields) size += name.size() + value.size() + 4;
   if (size > most_head || head.fields.size() > most_fields)
     return denied(431, "head",
-                   {{"fields", std::to_string(most_fields)}, {"bytes", std::to_string(most_head)}});
+                  {{"fields", std::to_string(most_fields)}, {"bytes", std::to_string(most_head)}});
   return {};
 }
 
@@ -97,11 +97,9 @@ Verdict judge_sender(const Head& head, const Post& post) {
   if (hosts.size() != 1 || !is_ours(hosts.front(), post, ""))
     return denied(421, "host", {{"address", known_addresses(post)}});
   for (const std::string& site : head.all("Sec-Fetch-Site"))
-    if (site != "same-origin" && site != "none")
-      return denied(403, "site");
+    if (site != "same-origin" && site != "none") return denied(403, "site");
   for (const std::string& origin : head.all("Origin"))
-    if (!is_our_origin(origin, post))
-      return denied(403, "origin");
+    if (!is_our_origin(origin, post)) return denied(403, "origin");
   return {};
 }
 
@@ -142,8 +140,7 @@ Verdict route_of(const Head& head, const std::vector<Route>& routes) {
     other_method = true;
   }
   out.names.clear();
-  if (other_method)
-    return denied(405, "method", {{"method", head.method.substr(0, 16)}});
+  if (other_method) return denied(405, "method", {{"method", head.method.substr(0, 16)}});
   return denied(404, "nothing");
 }
 
@@ -169,8 +166,7 @@ Verdict judge_body(const Head& head, const Route& route) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), length);
     if (error == std::errc::result_out_of_range)
       return denied(413, "body", {{"most", std::to_string(route.most)}});
-    if (error != std::errc() || end != text.data() + text.size())
-      return denied(400, "length");
+    if (error != std::errc() || end != text.data() + text.size()) return denied(400, "length");
   }
   if (route.method == Method::get)
     return length == 0 && codings.empty() ? Verdict{} : denied(400, "get_body");
@@ -309,8 +305,7 @@ Verdict judge(const Head& head, const Post& post, const std::vector<Route>& rout
   if (tokens.size() != 1 || post.token.empty() || !same_secret(tokens.front(), post.token))
     return denied(403, "token");
   if (found.status != 200) return found;
-  if (found.route->writes && !post.edit)
-    return denied(403, "read_only");
+  if (found.route->writes && !post.edit) return denied(403, "read_only");
   if (Verdict v = judge_body(head, *found.route); v.status != 200) return v;
   return found;
 }

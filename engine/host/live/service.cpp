@@ -60,8 +60,8 @@ Answer refusal(int status, const std::string& words) {
 
 std::vector<Route> shell_routes() {
   std::vector<Route> routes;
-  for (const char* path : {"/", "/app.js", "/app.css", "/morning.js", "/morning.css", "/uplot.js",
-                           "/uplot.css"})
+  for (const char* path :
+       {"/", "/app.js", "/app.css", "/morning.js", "/morning.css", "/uplot.js", "/uplot.css"})
     routes.push_back({Method::get, path, true});
   return routes;
 }

@@ -26,7 +26,8 @@ const std::vector<Route>& routes() {
       {Method::get, "/c/{campaign}/api/parts/{part}/fit"},
       {Method::post, "/api/model", false, false, "application/json"},
       {Method::post, "/api/ack", false, true, "application/json"},
-      {Method::post, "/api/verify", false, false, "application/pdf application/xml", most_certificate}};
+      {Method::post, "/api/verify", false, false, "application/pdf application/xml",
+       most_certificate}};
   return all;
 }
 
@@ -62,8 +63,7 @@ void check(const Head& head, bool edit) {
   must(!verdict.route->writes || edit);
   must(head.method == (verdict.route->method == Method::get ? "GET" : "POST"));
   must(head.target.size() <= most_target && head.fields.size() <= most_fields);
-  const auto names =
-      std::count(verdict.route->path.begin(), verdict.route->path.end(), '{');
+  const auto names = std::count(verdict.route->path.begin(), verdict.route->path.end(), '{');
   must(static_cast<std::size_t>(names) == verdict.names.size());
   for (const std::string& name : verdict.names)
     must(!name.empty() && name.find('\0') == std::string::npos);

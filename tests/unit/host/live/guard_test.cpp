@@ -167,8 +167,8 @@ TEST(LiveGuard, RefusalsSayWhatToDo) {
 }
 
 TEST(LiveGuard, ARefusalIsSpelledInTheWordsOfTheSite) {
-  const Sentences sentences(std::map<std::string, std::string>{
-      {"refused.part", "Kein Teil {part}, {other}, {part} {"}});
+  const Sentences sentences(
+      std::map<std::string, std::string>{{"refused.part", "Kein Teil {part}, {other}, {part} {"}});
   const Answer answer = sentences.spelled(refused(404, "part", {{"part", "X {part}"}}));
   EXPECT_EQ(answer.status, 404);
   EXPECT_EQ(answer.body, R"({"error":"Kein Teil X {part}, {other}, X {part} {","status":404})");
