@@ -165,8 +165,11 @@ int acknowledge(AckWish& wish, const Common& common) {
     return list_acknowledged(wish, common);
   if (a.date.empty()) a.date = today();
   if (wish.withdraw) return withdraw(wish, common);
-  for (const auto& [name, text] : {std::pair("--finding", &a.finding), {"--machine", &a.machine},
-                                   {"--until", &a.until}, {"--by", &a.by}, {"--why", &a.why}})
+  for (const auto& [name, text] : {std::pair("--finding", &a.finding),
+                                   {"--machine", &a.machine},
+                                   {"--until", &a.until},
+                                   {"--by", &a.by},
+                                   {"--why", &a.why}})
     if (text->empty()) return complain(verb, std::string(name) + " is missing");
   for (const std::string& day : {a.date, a.until})
     if (!is_day(day)) return wrong_day(verb, day);

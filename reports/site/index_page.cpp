@@ -118,9 +118,8 @@ std::string row_of(const Page& page, const MorningLine& l) {
                                                              : "fresh";
   const std::string what = l.state == MorningLine::State::fixed ? "fixed" : kind;
   return "<tr tabindex=\"0\" class=\"" + std::string(state) + "\" data-line=\"" + html(l.id) +
-         "\" data-kind=\"" + kind +
-         "\" data-customer=\"" + html(l.customer) + "\" data-machine=\"" + html(l.machine) +
-         "\" data-axis=\"" + html(l.axis) + "\">" +
+         "\" data-kind=\"" + kind + "\" data-customer=\"" + html(l.customer) +
+         "\" data-machine=\"" + html(l.machine) + "\" data-axis=\"" + html(l.axis) + "\">" +
          element("td",
                  element("span", html(page.words.get("site.kind." + what)),
                          "class=\"kind " + what + "\""),

@@ -29,7 +29,7 @@ struct NightState {
   /// The same when this night began, for one that is reopened.
   std::optional<std::uint64_t> issued_at_begin{};
   bool reopened = false;  ///< a complete night, of which one campaign is done again
-  std::string site{};  ///< whose results they are, its folder
+  std::string site{};     ///< whose results they are, its folder
   evaluation::NightOf of() const { return {number, date}; }
 };
 

@@ -23,7 +23,8 @@ struct RunOptions {
   std::filesystem::path own_plugins;  ///< the plugin folder beside the program
   std::size_t jobs = 0;               ///< 0: one for each core
   bool force = false;
-  std::string only{};  ///< a campaign's folder below the site, or its id: that alone, between nights
+  std::string
+      only{};  ///< a campaign's folder below the site, or its id: that alone, between nights
   bool dry_run = false;
   bool verify_results = false;  ///< compare the digests of all files given out, touched or not
   std::string date{};           ///< of the night, YYYY-MM-DD; empty: today's

@@ -216,16 +216,17 @@ Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
     return a;
   });
   const auto withdrawn = entries_of<Withdrawal>(top, "withdrawn", [](TableReader& reader) {
-    return Withdrawal{reader.date("date"),     reader.text("finding"), reader.text("machine"),
-                      reader.text("axis"),     reader.text("quantity"), reader.text("by"),
+    return Withdrawal{reader.date("date"), reader.text("finding"),  reader.text("machine"),
+                      reader.text("axis"), reader.text("quantity"), reader.text("by"),
                       reason_of(reader)};
   });
   top.finish();
   for (const Withdrawal& w : withdrawn)
     if (std::erase_if(known, [&](const Acknowledgement& a) { return takes_back(w, a); }) == 0)
-      errors.push_back(Error{"[[withdrawn]] takes back no acknowledgement above it: none that "
-                             "counts has this finding, machine, axis and quantity",
-                             file, w.line});
+      errors.push_back(
+          Error{"[[withdrawn]] takes back no acknowledgement above it: none that "
+                "counts has this finding, machine, axis and quantity",
+                file, w.line});
   if (!errors.empty()) return tl::unexpected(std::move(errors));
   return known;
 }

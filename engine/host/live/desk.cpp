@@ -318,8 +318,7 @@ Answer Desk::events(const Request& request) {
     since = static_cast<std::uint64_t>(*value);
   }
   Answer out{200, "text/event-stream", "", {}, {}, events_.listen(since), &events_};
-  if (!out.stream)
-    return refused(503, "streams");
+  if (!out.stream) return refused(503, "streams");
   return out;
 }
 

@@ -24,8 +24,7 @@ Answer Desk::post(const std::string& what, const Json& body, const Request& requ
   {
     const std::lock_guard lock(mutex_);
     if (bench_state_ == "failed" && what != "reload") return refusal(503, bench_error_);
-    if (order_.empty() && what != "reload")
-      return refused(409, "not_read");
+    if (order_.empty() && what != "reload") return refused(409, "not_read");
   }
   if (what == "exclude") return exclude(body);
   if (what == "suggest" || what == "finish") return search(what);

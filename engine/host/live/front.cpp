@@ -56,8 +56,7 @@ int Front::look_at(int socket) const {
   if (n == 0) return -1;
   const std::string_view seen(bytes.data(), static_cast<std::size_t>(n));
   const std::size_t end = std::min(seen.find("\r\n\r\n"), seen.find("\n\n"));
-  if (end != std::string_view::npos)
-    return head_status(seen.substr(0, end));
+  if (end != std::string_view::npos) return head_status(seen.substr(0, end));
   return seen.size() >= room ? 431 : 0;
 }
 

@@ -15,8 +15,8 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-Verdict refused(int status, std::string name,
-                std::vector<std::pair<std::string, std::string>> places = {}) {
+Verdict denied(int status, std::string name,
+               std::vector<std::pair<std::string, std::string>> places = {}) {
   return {status, {"refused." + std::move(name), std::move(places)}};
 }
 
@@ -83,25 +83,23 @@ std::string known_addresses(const Post& post) {
 
 Verdict judge_size(const Head& head) {
   if (head.target.size() > most_target)
-    return refused(414, "target", {{"most", std::to_string(most_target)}});
+    return denied(414, "target", {{"most", std::to_string(most_target)}});
   std::size_t size = head.method.size() + head.target.size() + 12;
   for (const auto& [name, value] : head.fields) size += name.size() + value.size() + 4;
   if (size > most_head || head.fields.size() > most_fields)
-    return refused(431, "head",
-                   {{"fields", std::to_string(most_fields)}, {"bytes", std::to_string(most_head)}});
+    return denied(431, "head",
+                  {{"fields", std::to_string(most_fields)}, {"bytes", std::to_string(most_head)}});
   return {};
 }
 
 Verdict judge_sender(const Head& head, const Post& post) {
   const auto hosts = head.all("Host");
   if (hosts.size() != 1 || !is_ours(hosts.front(), post, ""))
-    return refused(421, "host", {{"address", known_addresses(post)}});
+    return denied(421, "host", {{"address", known_addresses(post)}});
   for (const std::string& site : head.all("Sec-Fetch-Site"))
-    if (site != "same-origin" && site != "none")
-      return refused(403, "site");
+    if (site != "same-origin" && site != "none") return denied(403, "site");
   for (const std::string& origin : head.all("Origin"))
-    if (!is_our_origin(origin, post))
-      return refused(403, "origin");
+    if (!is_our_origin(origin, post)) return denied(403, "origin");
   return {};
 }
 
@@ -142,9 +140,8 @@ Verdict route_of(const Head& head, const std::vector<Route>& routes) {
     other_method = true;
   }
   out.names.clear();
-  if (other_method)
-    return refused(405, "method", {{"method", head.method.substr(0, 16)}});
-  return refused(404, "nothing");
+  if (other_method) return denied(405, "method", {{"method", head.method.substr(0, 16)}});
+  return denied(404, "nothing");
 }
 
 /// `all`: with blanks between them.
@@ -162,22 +159,21 @@ Verdict judge_body(const Head& head, const Route& route) {
   const auto codings = head.all("Transfer-Encoding");
   if (lengths.size() > 1 || codings.size() > 1 || (!lengths.empty() && !codings.empty()) ||
       (!codings.empty() && lower(codings.front()) != "chunked"))
-    return refused(400, "length");
+    return denied(400, "length");
   std::uint64_t length = 0;
   if (!lengths.empty()) {
     const std::string& text = lengths.front();
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), length);
     if (error == std::errc::result_out_of_range)
-      return refused(413, "body", {{"most", std::to_string(route.most)}});
-    if (error != std::errc() || end != text.data() + text.size())
-      return refused(400, "length");
+      return denied(413, "body", {{"most", std::to_string(route.most)}});
+    if (error != std::errc() || end != text.data() + text.size()) return denied(400, "length");
   }
   if (route.method == Method::get)
-    return length == 0 && codings.empty() ? Verdict{} : refused(400, "get_body");
-  if (length > route.most) return refused(413, "body", {{"most", std::to_string(route.most)}});
+    return length == 0 && codings.empty() ? Verdict{} : denied(400, "get_body");
+  if (length > route.most) return denied(413, "body", {{"most", std::to_string(route.most)}});
   const std::string type = head.first("Content-Type");
   if (!is_one_of(lower(type.substr(0, type.find(';'))), route.body))
-    return refused(415, "type", {{"type", route.body}});
+    return denied(415, "type", {{"type", route.body}});
   return {};
 }
 
@@ -298,7 +294,7 @@ Verdict judge(const Head& head, const Post& post, const std::vector<Route>& rout
   if (Verdict v = judge_size(head); v.status != 200) return v;
   if (Verdict v = judge_sender(head, post); v.status != 200) return v;
   if (head.method != "GET" && head.method != "POST")
-    return refused(405, "method", {{"method", head.method.substr(0, 16)}});
+    return denied(405, "method", {{"method", head.method.substr(0, 16)}});
   Verdict found = route_of(head, routes);
   if (found.status == 200 && found.route->open) {
     if (Verdict v = judge_body(head, *found.route); v.status != 200) return v;
@@ -307,10 +303,9 @@ Verdict judge(const Head& head, const Post& post, const std::vector<Route>& rout
   // Nobody without the token learns which addresses there are.
   const auto tokens = head.all("X-Nonio-Token");
   if (tokens.size() != 1 || post.token.empty() || !same_secret(tokens.front(), post.token))
-    return refused(403, "token");
+    return denied(403, "token");
   if (found.status != 200) return found;
-  if (found.route->writes && !post.edit)
-    return refused(403, "read_only");
+  if (found.route->writes && !post.edit) return denied(403, "read_only");
   if (Verdict v = judge_body(head, *found.route); v.status != 200) return v;
   return found;
 }

@@ -47,7 +47,7 @@ struct Route {
   std::string path;   ///< "/api/parts/{part}/fit": one step may be a name
   bool open = false;  ///< without a token: the shell, which has no data
   bool writes = false;
-  std::string body{};           ///< content type of a POST's body; several with blanks between them
+  std::string body{};  ///< content type of a POST's body; several with blanks between them
   std::size_t most = most_body;  ///< bytes of it
 };
 

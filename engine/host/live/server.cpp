@@ -61,8 +61,7 @@ class Handler : public net::HTTPRequestHandler {
     } catch (const std::exception& e) {
       std::cerr << "nonio live: " << head.method << " "
                 << head.target.substr(0, head.target.find('?')) << ": " << e.what() << "\n";
-      if (!response.sent())
-        send(refused(500, "mistake"), response);
+      if (!response.sent()) send(refused(500, "mistake"), response);
     }
   }
 
@@ -163,8 +162,9 @@ void part_from(int socket) {
 /// An answer to what is no request, or comes too slowly.
 void refuse(int socket, int status, const Sentences& sentences) {
   const Answer answer = sentences.spelled(
-      status == 431 ? refused(status, "head", {{"fields", std::to_string(most_fields)},
-                                               {"bytes", std::to_string(most_head)}})
+      status == 431
+          ? refused(status, "head",
+                    {{"fields", std::to_string(most_fields)}, {"bytes", std::to_string(most_head)}})
       : status == 414 ? refused(status, "target", {{"most", std::to_string(most_target)}})
                       : refused(status, status == 408 ? "slow" : "no_request"));
   std::string text =

@@ -27,7 +27,8 @@ Answer refused(int status, const std::string& name,
 
 std::string Sentences::operator()(const Said& said) const {
   const auto found = all_.find(said.name);
-  const std::string& text = found == all_.end() ? said.name : found->second, out;
+  const std::string& text = found == all_.end() ? said.name : found->second;
+  std::string out;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t open = std::min(text.find('{', at), text.size());
     const std::size_t close = text.find('}', open);
@@ -59,8 +60,8 @@ Answer refusal(int status, const std::string& words) {
 
 std::vector<Route> shell_routes() {
   std::vector<Route> routes;
-  for (const char* path : {"/", "/app.js", "/app.css", "/morning.js", "/morning.css", "/uplot.js",
-                           "/uplot.css"})
+  for (const char* path :
+       {"/", "/app.js", "/app.css", "/morning.js", "/morning.css", "/uplot.js", "/uplot.css"})
     routes.push_back({Method::get, path, true});
   return routes;
 }

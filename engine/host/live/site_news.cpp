@@ -84,7 +84,8 @@ SiteNews::Seen SiteNews::look() const {
        {config::events_name, config::acknowledged_name, config::forgotten_name, "site.toml"})
     out.morning += news_stamp(site_ / name);
   if (!out_.empty()) out.morning += news_stamp(out_ / "summary.json");
-  if (!register_.empty()) out.drafts = news_stamp(register_) + news_stamp(register_.string() + "-wal");
+  if (!register_.empty())
+    out.drafts = news_stamp(register_) + news_stamp(register_.string() + "-wal");
   return out;
 }
 

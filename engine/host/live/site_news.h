@@ -14,11 +14,11 @@ namespace nonio::host::live {
 
 /// How the nights of an output folder stand.
 struct NightNow {
-  std::string state;       ///< none, complete, running, cut-short
+  std::string state{};       ///< none, complete, running, cut-short
   std::uint64_t number = 0;  ///< of the last that began
-  std::string date;
+  std::string date{};
   std::uint64_t last = 0;  ///< the last complete one; 0: none
-  std::string last_date;
+  std::string last_date{};
   bool operator==(const NightNow&) const = default;
 };
 

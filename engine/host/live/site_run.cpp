@@ -58,8 +58,8 @@ Expected<bool> SiteRun::begin(const std::vector<std::string>& arguments, const s
   before_ = results_now(out_, id);
   channel_ = channel->get();
   last_words_.clear();
-  now_ = {{"state", "running"}, {"campaign", id}, {"command", command}, {"stage", "begin"},
-          {"done", 0},          {"to_do", 0}};
+  now_ = {{"state", "running"}, {"campaign", id}, {"command", command},
+          {"stage", "begin"},   {"done", 0},      {"to_do", 0}};
   thread_ = std::thread([this, from = channel->release()] { follow(process::Handle(from)); });
   return true;
 }

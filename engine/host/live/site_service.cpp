@@ -187,9 +187,9 @@ std::shared_ptr<Desk> SiteService::desk(const std::string& campaign) {
       desks_.erase(order_.front());
       order_.erase(order_.begin());
     }
-    desks_[campaign] = std::make_shared<Desk>(
-        launcher_, wish_.folder / campaign, (fs::path(wish_.name) / campaign).string(), wish_.edit,
-        wish_.version);
+    desks_[campaign] = std::make_shared<Desk>(launcher_, wish_.folder / campaign,
+                                              (fs::path(wish_.name) / campaign).string(),
+                                              wish_.edit, wish_.version);
   }
   order_.push_back(campaign);
   return desks_[campaign];
@@ -197,8 +197,7 @@ std::shared_ptr<Desk> SiteService::desk(const std::string& campaign) {
 
 Answer SiteService::answer(const Request& request) {
   const std::string& path = request.route.path;
-  if (request.route.open)
-    return shell_file(request, path == "/" ? shells_.site : shells_.campaign);
+  if (request.route.open) return shell_file(request, path == "/" ? shells_.site : shells_.campaign);
   constexpr std::string_view root = "/api/", below = "/c/{campaign}/api/";
   if (path.starts_with(below)) {
     const auto one = desk(request.names.front());
@@ -296,8 +295,7 @@ Answer SiteService::entered(const std::vector<std::string>& arguments) {
 
 Answer SiteService::morning() {
   if (wish_.out.empty()) return refused(409, "no_out");
-  return of_verb(
-      {"morning", "--json", option("site", wish_.folder.string()), wish_.out.string()});
+  return of_verb({"morning", "--json", option("site", wish_.folder.string()), wish_.out.string()});
 }
 
 Answer SiteService::state() {
@@ -339,8 +337,8 @@ Answer SiteService::page(const std::string& name) {
   if (wish_.out.empty() || !(plain.ends_with(".html") || plain == "due.ics") ||
       !is_plain_file_in(folder, plain))
     return refused(404, "no_page");
-  const ToolEnd end = call({"morning", option("site", wish_.folder.string()),
-                            option("page", name), wish_.out.string()});
+  const ToolEnd end = call(
+      {"morning", option("site", wish_.folder.string()), option("page", name), wish_.out.string()});
   if (end.status != 0) return refusal(422, end.errors);
   // To be kept or shown by the page itself: its own script would run with this address.
   return {200, "application/octet-stream", end.out, {}};
@@ -368,10 +366,10 @@ Answer SiteService::open(const std::string& campaign) {
     std::snprintf(code, sizeof code, "%%%02X", static_cast<unsigned char>(c));
     path += plain ? std::string(1, c) : code;
   }
-  return answered(200, {{"version", version_.load()},
-                        {"path", path + "/"},
-                        {"command", "nonio live " + quoted_for_shell(
-                                                        (wish_.folder / *folder).string())}});
+  return answered(
+      200, {{"version", version_.load()},
+            {"path", path + "/"},
+            {"command", "nonio live " + quoted_for_shell((wish_.folder / *folder).string())}});
 }
 
 /// The members that a body has, as options.
@@ -384,8 +382,9 @@ void add_options(std::vector<std::string>& arguments, const Json& body,
 Answer SiteService::acknowledge(const Json& body) {
   std::vector<std::string> arguments{"ack", "--json"};
   if (body.value("withdraw", false)) arguments.emplace_back("--withdraw");
-  add_options(arguments, body, {"finding", "machine", "axis", "quantity", "until", "value", "U",
-                                "by", "why", "date"});
+  add_options(
+      arguments, body,
+      {"finding", "machine", "axis", "quantity", "until", "value", "U", "by", "why", "date"});
   // Without what it is about the verb would list.
   if (!body.contains("finding")) return refused(400, "body_form", {{"path", "/api/ack"}});
   arguments.push_back(wish_.folder.string());
@@ -402,7 +401,8 @@ Answer SiteService::event(const Json& body) {
 
 Answer SiteService::release(const Json& body) {
   const auto folder = folder_of(body.at("campaign").get<std::string>());
-  if (!folder) return refused(404, "no_campaign", {{"campaign", body["campaign"]}});
+  if (!folder)
+    return refused(404, "no_campaign", {{"campaign", body["campaign"].get<std::string>()}});
   std::vector<std::string> arguments{"release", "--json",
                                      option("by", body.at("by").get<std::string>())};
   add_options(arguments, body, {"as"});
@@ -419,8 +419,8 @@ Answer SiteService::verify(const Request& request) {
                              : type.find("xml") != std::string::npos ? ".xml"
                                                                      : ".json";
   const Temporary file(request.body, suffix);
-  return of_verb(with_places(
-      {"verify", "--json", option("site", wish_.folder.string()), file.file()}));
+  return of_verb(
+      with_places({"verify", "--json", option("site", wish_.folder.string()), file.file()}));
 }
 
 /// One campaign of the last night again; or what a night would do now, of all that has changed.
@@ -430,7 +430,8 @@ Answer SiteService::run(const Json& body) {
   std::string id;
   if (body.contains("campaign")) {
     const auto folder = folder_of(body["campaign"].get<std::string>());
-    if (!folder) return refused(404, "no_campaign", {{"campaign", body["campaign"]}});
+    if (!folder)
+      return refused(404, "no_campaign", {{"campaign", body["campaign"].get<std::string>()}});
     id = id_of(*folder);
     arguments.push_back(option("only", *folder));
   }

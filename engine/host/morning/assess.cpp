@@ -426,9 +426,9 @@ Expected<Assessment> Assessment::of(const fs::path& out, const Tonight& tonight,
                                     const config::SiteLogs* entered) {
   auto store = history::StoreReader::open(out);
   if (!store) return fail(store.error());
-  auto state = std::make_unique<State>(out, tonight, alive, std::move(*store),
-                                       kept == Kept::used ? KeptMachines::in(out) : KeptMachines(),
-                                       entered);
+  auto state =
+      std::make_unique<State>(out, tonight, alive, std::move(*store),
+                              kept == Kept::used ? KeptMachines::in(out) : KeptMachines(), entered);
   if (auto made = state->make(); !made) return fail(made.error());
   return Assessment(std::move(state));
 }

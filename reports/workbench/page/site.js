@@ -4,7 +4,7 @@
     by("app").replaceChildren(el("main", {class: "lost"}, el("h1", {}, say("shell.title")), el("p", {role: "alert"}, say("net.no_token"))));
     return;
   }
-  let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asked = 0, dismissed = "", released = null, wanted = "";
+  let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asked = 0, dismissed = "", shown = "", released = null, wanted = "";
   const own = ["campaigns", "certificates", "entries"];
   const isPage = (name) => /^(index|due|compare|instruments)\.html$|^machines\/[^/]+\.html$/.test(name);
   const pages = new Map(); // name: its text
@@ -65,7 +65,6 @@
     await draw();
     document.body.classList.remove("lost");
     document.body.dataset.version = state.version;
-    document.body.dataset.ready = view();
   }
 
   // ---- a line of the morning: what can be done about it ----
@@ -89,7 +88,7 @@
     const all = [...(campaign ? campaignButtons(campaign, line.id) : []),
       state.edit && canBeKnown(line) ? el("button", {type: "button", class: "link", "data-key": "ack-" + line.id, onclick: () => entries.acknowledge(line, told_, act)}, say("ack.short")) : null,
       state.edit && entry ? el("button", {type: "button", class: "link", "data-key": "withdraw-" + line.id, onclick: () => entries.withdraw(entry, act)}, say("withdraw.short")) : null,
-      state.edit && line.machine ? el("button", {type: "button", class: "link", "data-key": "event-" + line.id, onclick: () => entries.event(line.machine, line.axis, machines(), act)}, say("event.short")) : null].filter(Boolean);
+      state.edit && line.machine ? el("button", {type: "button", class: "link", "data-key": "event-" + line.id, onclick: () => entries.event(line.machine, line.axis, machines(), act)}, say("event.line")) : null].filter(Boolean);
     return all.length ? el("div", {class: "acts"}, ...all) : null;
   }
   const machines = () => [...new Set([...lines.map((l) => l.machine), ...[...document.querySelectorAll("a[data-to*='machines/']")].map((a) => a.textContent)].filter(Boolean))].sort();
@@ -153,9 +152,9 @@
     }});
     show();
     return [el("h1", {tabindex: -1}, say("site.campaigns")), state.out ? null : el("p", {class: "note"}, say("site.no_out")),
-      el("p", {}, el("label", {}, say("site.filter") + " ", input)), count, list,
       state.edit && state.out ? el("section", {"aria-labelledby": "all-title"}, el("h2", {id: "all-title"}, say("run.all_title")), el("p", {class: "muted"}, say("run.all_what")),
-        el("p", {}, el("button", {type: "button", id: "run-all", "data-key": "run-all", disabled: state.running, onclick: () => runAgain("")}, say("run.all")))) : null].filter(Boolean);
+        el("p", {}, el("button", {type: "button", id: "run-all", "data-key": "run-all", disabled: state.running, onclick: () => runAgain("")}, say("run.all")))) : null,
+      el("section", {"aria-labelledby": "each-title"}, el("h2", {id: "each-title"}, say("site.each")), el("p", {}, el("label", {}, say("site.filter") + " ", input)), count, list)].filter(Boolean);
   }
   async function release(body) {
     const answer = await net.ask("/api/release", {body});
@@ -186,7 +185,7 @@
     const n = state.night, r = state.run;
     fill(by("nav"), ...[...(state.out && n.last ? links : []), ...own.map((name) => [name, say("site." + name)])].map(([to, label]) =>
       el("a", {href: hrefOf(to), "data-key": "nav-" + to, "aria-current": view() === to ? "page" : null}, label)));
-    const night_ = n.state === "running" ? say(n.last ? "night.running" : "night.first", {n: n.number, last: n.last, date: n.last_date}) : n.state === "cut-short" ? say("night.cut", {n: n.number}) : "";
+    const night_ = n.state === "running" ? say(n.last ? "night.running" : "night.first", {n: n.night, last: n.last, date: n.last_date}) : n.state === "cut-short" ? say("night.cut", {n: n.night}) : "";
     fill(by("night"), night_ ? el("p", {class: "note", id: "night-says"}, night_) : null);
     fill(by("rights"), state.edit ? null : el("p", {class: "muted", id: "read-only"}, say("site.read_only")));
     drawRun(r);
@@ -231,6 +230,8 @@
   }
   function put(content, name, moved) {
     if (pressed) return void setTimeout(() => put(content, name, moved), 60);
+    moved = moved || (shown !== "" && shown !== name);
+    document.body.dataset.ready = shown = name;
     const main = by("main"), next = el("div", {}, ...content), same = name + next.innerHTML;
     const focus = document.activeElement;
     if (!moved && drawn === same) return;
@@ -257,7 +258,7 @@
     if (view() === "index.html") filters = hash.includes("to=") ? filters : hash;
     if (at === view()) return drawHead();
     at = view();
-    draw(true).then(() => (document.body.dataset.ready = view())).catch(complain);
+    draw(true).catch(complain);
   }
   addEventListener("hashchange", moved);
   // Filters change the address without a word.

@@ -2,19 +2,45 @@
 """`nonio run --only`: one campaign of the last night again. The night stays what it was but for that campaign."""
 import fcntl
 import json
+import pathlib
 import shutil
 import sqlite3
+import tempfile
 import unittest
 
 from nightly import NightTest
 
 
 class OnlyTest(NightTest):
+    """Each test begins after the same first night."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.place = tempfile.TemporaryDirectory(prefix="nonio-only-")
+        cls.kept = None
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.place.cleanup()
+
     def setUp(self):
         super().setUp()
-        for name in ("a", "b", "c"):
-            self.campaign(name)
-        self.run_nonio("--date", "2026-03-01", expect=0)
+        # The output folder knows its site by name: the same place each time.
+        root = pathlib.Path(self.place.name)
+        self.site, self.out = root / "site", root / "out"
+        for folder in (self.site, self.out, root / "other"):
+            shutil.rmtree(folder, ignore_errors=True)
+        if not self.kept:
+            self.site.mkdir()
+            for name in ("a", "b", "c"):
+                self.campaign(name)
+            self.run_nonio("--date", "2026-03-01", expect=0)
+            type(self).kept = root / "kept"
+            for folder in (self.site, self.out):
+                shutil.copytree(folder, self.kept / folder.name)
+        else:
+            for folder in (self.site, self.out):
+                shutil.copytree(self.kept / folder.name, folder)
 
     def whole(self):
         """Every file of the output folder but the history, which keeps times of its pages."""

@@ -132,9 +132,9 @@ class Fuzz(LiveTest):
             s = self.server
             token = f"Host: 127.0.0.1:{s.port}\r\nX-Nonio-Token: {s.token}\r\n"
             for path in (*POSTS, *VERBS, "/api/run"):
-                for length, more in (("1048577", b""), ("99999999999999999999", b"")):
-                    answer = s.raw(f"POST {path} HTTP/1.1\r\n{token}Content-Type: application/json\r\nContent-Length: {length}\r\n\r\n".encode() + more)
-                    self.assertEqual(int(answer.split()[1]), 413, path)
+                for length, expected in (("1048577", (413,)), ("99999999999999999999", (400, 413))):
+                    answer = s.raw(f"POST {path} HTTP/1.1\r\n{token}Content-Type: application/json\r\nContent-Length: {length}\r\n\r\n".encode())
+                    self.assertIn(int(answer.split()[1]), expected, path)
             answer = s.raw(f"POST /api/verify HTTP/1.1\r\n{token}Content-Type: application/pdf\r\nContent-Length: {(32 << 20) + 1}\r\n\r\n".encode())
             self.assertEqual(int(answer.split()[1]), 413)
             chunk = b"10000\r\n" + b"x" * 0x10000 + b"\r\n"

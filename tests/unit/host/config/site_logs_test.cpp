@@ -187,8 +187,9 @@ TEST(SiteLogs, WhatIsWithdrawnCountsNoMore) {
   EXPECT_EQ(logs->acknowledged.size(), 2U);
   back.by.clear();
   EXPECT_NE(first_error(config::add_withdrawal(site.root(), back)).find("by"), std::string::npos);
-  site.write("acknowledged.toml", "format = 1\n[[withdrawn]]\ndate = 2026-03-05\nfinding = \"f\"\n"
-                                  "machine = \"m\"\nby = \"b\"\n");
+  site.write("acknowledged.toml",
+             "format = 1\n[[withdrawn]]\ndate = 2026-03-05\nfinding = \"f\"\n"
+             "machine = \"m\"\nby = \"b\"\n");
   const auto wrong = config::read_site_logs(site.root());
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error().front().line, 2U);

@@ -16,8 +16,7 @@ enum class Shell { campaign, site };
 
 /// The shell without data: language, words and the addresses of the rest. The words are those of
 /// templates/words/<language>/workbench.toml; an error says which are missing.
-Expected<std::string> shell_html(const Templates& templates, const std::string& language,
-                                 Shell of);
+Expected<std::string> shell_html(const Templates& templates, const std::string& language, Shell of);
 /// The same words, "refused.token" and so on.
 std::map<std::string, std::string> words(const Templates& templates, const std::string& language);
 
