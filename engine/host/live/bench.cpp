@@ -178,7 +178,10 @@ class Loop {
   /// Until the server has gone.
   void run() {
     tell(0, job_state::opened, storage::dump(described(bench_)));
-    if (!bench_.has_catalogue) waiting_.push_back({0, {{"kind", "catalogue"}}, "", "catalogue", ""});
+    if (!bench_.has_catalogue) {
+      Job& job = waiting_.emplace_back();
+      job.request["kind"] = job.kind = "catalogue";
+    }
     while (!gone_) {
       start_what_may();
       wait();

@@ -33,7 +33,9 @@ class Numbers(LiveTest):
             got = server.fit(name)
             self.assertEqual(got["compare"], wanted, name)
             self.assertEqual(len(got["page"]["residual"]), wanted["observations"])
-            self.assertEqual(got["version"], server.get("/api/state")["version"])
+            # A file that was changed beside it may be noticed meanwhile.
+            self.assertGreaterEqual(got["version"], state["version"])
+            self.assertLessEqual(got["version"], server.get("/api/state")["version"])
             if name in explained:
                 said = server.explained(name)
                 mine = {k: v for k, v in said["explain"].items() if k not in ("axis", "measurements")}
