@@ -140,11 +140,22 @@ std::string answer_of(Bench& bench, const Job& job, std::span<double> residual, 
 
 bool is_slow(const Job& job) { return job.kind == "explain" || job.kind == "without"; }
 
+/// Somebody waits for a picture while the others calculate.
+int niceness(const Job& job, const Bench& bench) {
+  constexpr std::size_t takes_seconds = 100000;  // readings
+  if (is_slow(job)) return 10;
+  if (job.number == 0) return 5;
+  for (const auto& part : bench.parts)
+    if (job.kind == "fit" && part.part.name == job.part && part.part.table.size() > takes_seconds)
+      return 5;
+  return 0;
+}
+
 [[noreturn]] void do_job(Bench& bench, const Job& job, int pipe, std::span<double> residual,
                          bool fitted) {
   process::init_child();
   process::limit_memory(bench.place->context.site.limits.memory_MB);
-  if (is_slow(job)) ::setpriority(PRIO_PROCESS, 0, 10);  // somebody waits for the others
+  if (const int nice = niceness(job, bench); nice > 0) ::setpriority(PRIO_PROCESS, 0, nice);
   if (!needs_files(job.kind)) {
     std::string why = process::confine_files();
     if (why.empty()) why = process::confine_computing();
@@ -167,6 +178,10 @@ class Loop {
   /// Until the server has gone.
   void run() {
     tell(0, job_state::opened, storage::dump(described(bench_)));
+    if (!bench_.has_catalogue) {
+      Job& job = waiting_.emplace_back();
+      job.request["kind"] = job.kind = "catalogue";
+    }
     while (!gone_) {
       start_what_may();
       wait();
@@ -176,7 +191,7 @@ class Loop {
   }
 
  private:
-  static constexpr std::size_t most_running = 4, most_slow = 2, most_waiting = 64;
+  static constexpr std::size_t most_running = 8, most_slow = 2, most_waiting = 64;
 
   void tell(std::uint64_t number, const char* state, std::string_view text) {
     process::Parcel parcel;
@@ -190,8 +205,7 @@ class Loop {
     for (const bool is_quick : {true, false})
       for (auto it = waiting_.begin(); it != waiting_.end();) {
         const bool may = is_slow(*it) != is_quick && running_.size() < most_running &&
-                         (is_quick || slow < most_slow) &&
-                         (bench_.has_catalogue || it->kind != "explain");
+                         (is_quick || slow < most_slow);
         if (!may) {
           ++it;
           continue;
@@ -227,23 +241,16 @@ class Loop {
       channel_ = process::Handle();
       do_job(bench_, job, to.get(), residual->values(), fitted);
     }
-    tell(job.number, job_state::running, "0");
+    if (job.number != 0) tell(job.number, job_state::running, "0");
     running_[job.number] = {job,   child,         std::move(from), "", std::move(residual),
                             fills, Clock::now(), 0};
   }
 
   /// What this process does itself, since all requests want it: while nobody waits for anything.
   bool has_work() const {
-    const auto waited_for = [](const auto& one) { return !is_slow(one.second.job); };
-    return !bench_.has_catalogue ||
-           (std::none_of(running_.begin(), running_.end(), waited_for) &&
-            without_groundwork(bench_) != nullptr);
-  }
-  void work() {
-    if (!bench_.has_catalogue)
-      tell(0, job_state::catalogue, storage::dump_line(fill_catalogue(bench_)));
-    else if (const auto* part = without_groundwork(bench_))
-      do_groundwork(bench_, *part);
+    return without_groundwork(bench_) != nullptr &&
+           std::all_of(running_.begin(), running_.end(),
+                       [](const auto& one) { return is_slow(one.second.job); });
   }
 
   void wait() {
@@ -252,7 +259,7 @@ class Loop {
     constexpr int tick = 200, idle = 150;
     const int patience = has_work() ? idle : running_.empty() ? -1 : tick;
     if (::poll(all.data(), all.size(), patience) <= 0) {
-      if (patience == idle) work();
+      if (patience == idle) do_groundwork(bench_, *without_groundwork(bench_));
       return;
     }
     if (all.front().revents != 0) take_request();
@@ -323,7 +330,7 @@ class Loop {
     if (one.received.front() == refuses) return tell(number, job_state::failed, text);
     keep_residual(one);
     if (one.job.kind == "save") take_saved(text);
-    tell(number, job_state::done, text);
+    tell(number, number == 0 ? job_state::catalogue : job_state::done, text);
   }
 
   void keep_residual(const Running& one) {
@@ -345,7 +352,7 @@ class Loop {
         overdue.push_back(number);
       } else if (seconds >= one.told + 1) {
         one.told = static_cast<int>(seconds);
-        tell(number, job_state::running, std::to_string(one.told));
+        if (number != 0) tell(number, job_state::running, std::to_string(one.told));
       }
     }
     for (const std::uint64_t number : overdue) {

@@ -323,6 +323,7 @@ Json fingerprints_of(const PartModel& part, const model::Explanation& e) {
 Expected<std::string> explain(Bench& bench, const Json& request, const First& first) {
   const auto one = tried(bench, request);
   if (!one) return fail(one.error());
+  if (!one->own && !bench.has_catalogue) modelling::fill_catalogue(*one->of_bench, bench.read);
   auto explained = modelling::explain_part(one->part(), request.value("seed", std::uint64_t{1}),
                                            groundwork_of(bench, *one));
   if (!explained) return fail(explained.error());
@@ -433,9 +434,10 @@ bool needs_residual(const Json& request) {
 }
 
 const PartModel* without_groundwork(const Bench& bench) {
-  constexpr std::size_t worth = 5000;  // readings
+  // Of fewer readings it takes milliseconds; of more it would keep others waiting.
+  constexpr std::size_t fewest = 5000, most = 200000;
   for (const PartModel& part : bench.parts)
-    if (part.part.table.size() >= worth && !bench.groundwork.contains(part.part.name) &&
+    if (part.part.table.size() >= fewest && part.part.table.size() <= most && !bench.groundwork.contains(part.part.name) &&
         std::none_of(part.terms.begin(), part.terms.end(),
                      [](const model::Term& t) { return t.effect->is_nuisance; }))
       return &part;
@@ -452,6 +454,7 @@ Expected<std::string> calculate(Bench& bench, const Json& request, std::span<dou
   if (kind == "fit") return fit(bench, request, residual, first);
   if (kind == "explain") return explain(bench, request, first);
   if (kind == "without") return without(bench, request);
+  if (kind == "catalogue") return storage::dump_line(fill_catalogue(bench));
   if (kind == "save") return save(bench, request);
   if (kind == "difference") return difference(bench, request);
   if (kind == "page" || kind == "report") {

@@ -30,7 +30,7 @@ struct Bench {
   std::unique_ptr<reading::Workplace> place;
   reading::ReadCampaign read;
   std::vector<modelling::PartModel> parts;  ///< with any model
-  bool has_catalogue = false;  ///< of very many readings it comes when they have been shown
+  bool has_catalogue = false;  ///< of very many readings each process that wants it makes it
   /// Of parts with many readings: the same for each model that is tried.
   std::map<std::string, model::Groundwork> groundwork{};
 
@@ -49,7 +49,7 @@ storage::Json described(const Bench& bench);
 /// The catalogue of all parts, where it is not there yet; as "catalogue" of `described`.
 storage::Json fill_catalogue(Bench& bench);
 
-/// The next part whose groundwork is to be done; none if all is. Only of parts without a set-up:
+/// The next part whose groundwork is to be done; none if all is. Of parts without a set-up:
 /// no plugin takes part, so it may be done in the process that all requests come from.
 const modelling::PartModel* without_groundwork(const Bench& bench);
 void do_groundwork(Bench& bench, const modelling::PartModel& part);

@@ -113,7 +113,7 @@ void Desk::ask_explanation(const std::string& part, PartState& state) {
     state.explain.head = known->head;
     state.explain.rest = known->rest;
     publish("explain", part, {{"part", part}});
-    return;
+    if (!known->rest.empty()) return;  // else its fingerprints were cancelled
   }
   if (bench_state_ == "open") state.explain.job = bench_->ask(request_for("explain", part));
 }
@@ -235,7 +235,7 @@ void Desk::take_explanation(const std::string& part, PartState::Work& work,
   (is_done ? work.rest : work.head) = text;
   if (work.head.empty()) return;
   work.state = job_state::done;
-  if (is_done) explanations_.put(parts_[part].key, {work.head, work.rest});
+  explanations_.put(parts_[part].key, {work.head, work.rest});
   publish(is_done ? "fingerprints" : "explain", part, {{"part", part}});
 }
 

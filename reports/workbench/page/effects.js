@@ -71,8 +71,11 @@ const effects = (() => {
   }
 
   /// The picture of an effect: what it says of each reading against what orders it best.
-  function fingerprint(shown, says) {
-    const data = shown.fit.page, columns = [["position", data.target, data.position_unit], ["time", data.time, data.time_unit], ["run", data.run, ""], ["temperature", data.temperature, "\u00B0C"]].filter((c) => c[1]);
+  function fingerprint(shown, all) {
+    // Of many readings a sample that falls in step with nothing: the picture is small.
+    const most = 1500, share = most / all.length, keep = (_, i) => share >= 1 || ((i * 2654435761) >>> 0) / 4294967296 < share;
+    const thin = (column) => column && column.filter(keep), whole = shown.fit.page, says = thin(all);
+    const data = {...whole, target: thin(whole.target), time: thin(whole.time), run: thin(whole.run), temperature: thin(whole.temperature), direction: thin(whole.direction)}, columns = [["position", data.target, data.position_unit], ["time", data.time, data.time_unit], ["run", data.run, ""], ["temperature", data.temperature, "\u00B0C"]].filter((c) => c[1]);
     const score = ([, xs]) => { // share of the variance within 24 parts of x: small is orderly
       const parts = new Map(), usable = xs.map((x, i) => [x, says[i], data.direction[i]]).filter((p) => finite(p[0]) && finite(p[1]));
       if (usable.length < 4) return Infinity;

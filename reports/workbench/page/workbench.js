@@ -104,7 +104,7 @@
     shown.seconds = of.seconds || 0;
     running(state.job ? state.job.job : null);
     const ask = (...one) => piece(...one).catch(complain), due = (name) => shown.of[name] !== trial();
-    if (!shown.fit && due("look")) ask("look", takeLook);
+    if (!shown.fit && of.fit !== "done" && due("look")) ask("look", takeLook);
     if (due("picture")) {
       if (of.fit !== "failed" && state.bench === "open") ask("picture", takePicture);
     } else if (shown.fit.partial) ask("fit", takeRest, "?page=0");
@@ -195,7 +195,7 @@
       by(`picture-${k}-says`).textContent = p.says || "";
       const old = figure.querySelector(".none");
       if (old) old.remove();
-      figure.querySelector("svg").classList.toggle("replaced", p.none !== "");
+      figure.querySelector("svg").classList.toggle("replaced", p.none !== "" || readings.isBig(shown, k));
       if (p.none) figure.querySelector("svg").after(el("p", {class: "none"}, p.none));
     });
     const data = shown.fit.page, thinned = shown.thinned;

@@ -176,6 +176,19 @@ class Page(live_browser.LivePage):
         self.wait(lambda: "beam interrupted" not in self.text("readings-list") and abs(self.rms() - before) < 1e-9)
         self.no_complaints()
 
+    def test_of_two_readings_that_are_left_out_each_is_the_one_that_was_touched(self):
+        self.open(self.serve(self.campaign()))
+        for line in (3, 4):
+            self.js("document.querySelector('#picture-2 svg').focus()")
+            self.press(Keys.HOME, Keys.ENTER)
+            self.wait(lambda: self.js("document.getElementById('dialog').open"))
+            self.assertIn(f"x.csv:{line}", re.sub(r",? line ", ":", self.text("dialog")))
+            self.d.find_element(By.CSS_SELECTOR, "#dialog .exclude input").send_keys("chip", Keys.ENTER)
+            self.wait(lambda: f"x.csv:{line} " in self.text("readings-list"))
+            self.ready()
+        self.assertIn("x.csv:3 ", self.text("readings-list"))
+        self.assertEqual(0, self.js("document.querySelectorAll('.big').length"), "few readings are drawn one by one")
+
     def test_a_region_is_the_same_readings_in_all_pictures(self):
         self.open(self.serve(self.campaign()))
         picture = self.d.find_element(By.CSS_SELECTOR, "#picture-2 svg")

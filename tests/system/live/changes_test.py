@@ -21,6 +21,7 @@ class Changes(LiveTest):
     def test_steps_undo_redo_name_goto(self):
         with Server(self.folder) as s:
             s.opened()
+            s.fit("Z")  # one that is left before it is fitted has no figures
             self.assertIn("before", s.post("/api/undo", expect=422)["error"])
             first = s.post("/api/model", {"add": "backlash:Z"})
             self.assertIn("nonio model add", first["command"])
