@@ -124,7 +124,7 @@ class Score:
         self.add_steps(site)
         self.add_false(site)
         self.add_lines(site)
-        self.add_vanished(site)
+        self.add_vanished(site, nights[:-1])
         if truth["preset"] == "quiet":
             self.quiet_sites += 1
             self.add_quiet(truth, nights)
@@ -189,8 +189,10 @@ class Score:
             bent = true["segments"][-1]["law"] == "other"
             (self.forecasts_bent if bent else self.forecasts).add(abs(f["value"] - value) <= Z * f["u"])
 
-    def add_vanished(self, site):
+    def add_vanished(self, site, before):
         wanted = {v["campaign"] for v in site.truth["vanished"]}
+        if before:  # what came and went between two nights nobody can miss
+            wanted &= {p["campaign"] for night in before for s in night["series"] for p in s["points"]}
         told = {v["campaign"] for v in site.history.get("vanished", [])}
         for campaign in wanted:
             self.vanished.add(campaign in told)
