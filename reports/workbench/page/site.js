@@ -58,6 +58,12 @@
       pages.clear();
       const [morning, all] = await Promise.all([state.out && state.night.last ? net.ask("/api/site") : {lines: []}, net.ask("/api/ack")]);
       if (mine !== asked) return;
+      if (state.out && state.night.last) {
+        // In the words of the night: the names of its pages, its number and date.
+        const page = markup.page(await text("index.html"));
+        links = page.links;
+        by("beside").textContent = page.beside;
+      }
       lines = morning.lines;
       known = all.acknowledged;
     }
@@ -112,7 +118,6 @@
   }
   async function night(name) {
     const page = markup.page(await text(name)), root = adopted(page.main, name);
-    if (page.links.length) links = page.links.map(([to, label]) => [resolved(name, to), label]);
     if (name === "index.html") {
       const of = new Map(lines.map((line) => [line.id, line]));
       for (const row of root.querySelectorAll("tr[data-line]")) {
@@ -122,7 +127,6 @@
         if (buttons && place) place.append(buttons);
       }
       for (const select of root.querySelectorAll("select")) select.dataset.key = "filter-" + select.name;
-      by("beside").textContent = page.beside;
     } else if (name.startsWith("machines/")) machineActions(root);
     return [...root.childNodes];
   }
