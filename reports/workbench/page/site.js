@@ -4,10 +4,10 @@
     by("app").replaceChildren(el("main", {class: "lost"}, el("h1", {}, say("shell.title")), el("p", {role: "alert"}, say("net.no_token"))));
     return;
   }
-  let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asked = 0, dismissed = "", shown = "", released = null, wanted = "";
+  let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asked = 0, stale = true, dismissed = "", shown = "", released = null, wanted = "";
   const own = ["campaigns", "certificates", "entries"];
   const isPage = (name) => /^(index|due|compare|instruments)\.html$|^machines\/[^/]+\.html$/.test(name);
-  const pages = new Map(); // name: its text
+  let pages = new Map(); // name: its text
   let links = []; // of the night's own pages, in its words
 
   // ---- where we are: stands in the address, as do the filters of the lines ----
@@ -46,20 +46,28 @@
   /// A file of the results, for the browser to keep.
   const fetchFile = (path) => net.download("/site/results/" + path.split("/").slice(-2).map(encodeURIComponent).join("/"), path.split("/").slice(-2).join("-")).catch(complain);
   async function text(name) {
-    if (!pages.has(name)) pages.set(name, await (await net.ask("/site/" + name.split("/").map(encodeURIComponent).join("/"), {raw: true})).text());
-    return pages.get(name);
+    const of = pages; // what was asked before something changed does not come back among the new ones
+    if (!of.has(name)) of.set(name, await (await net.ask("/site/" + name.split("/").map(encodeURIComponent).join("/"), {raw: true})).text());
+    return of.get(name);
   }
   async function refresh(fresh = true) {
+    stale = stale || fresh;
     const mine = ++asked, next = await net.ask("/api/site/state");
     if (mine !== asked) return;
     if (state && next.engine !== state.engine) return location.reload();
     state = next;
-    if (fresh) {
-      pages.clear();
-      const [morning, all] = await Promise.all([state.out && state.night.last ? net.ask("/api/site") : {lines: []}, net.ask("/api/ack")]);
-      if (mine !== asked) return;
+    if (stale) {
+      pages = new Map();
+      const has = state.out && state.night.last;
+      const [morning, all, index] = await Promise.all([has ? net.ask("/api/site") : {lines: []}, net.ask("/api/ack"), has ? text("index.html") : ""]);
+      if (mine !== asked) return; // the newer one asks again
+      stale = false;
       lines = morning.lines;
       known = all.acknowledged;
+      // In the words of the night: the names of its pages, its number and date.
+      const page = markup.page(index);
+      links = page.links;
+      by("beside").textContent = page.beside;
     }
     drawHead();
     await draw();
@@ -112,7 +120,6 @@
   }
   async function night(name) {
     const page = markup.page(await text(name)), root = adopted(page.main, name);
-    if (page.links.length) links = page.links.map(([to, label]) => [resolved(name, to), label]);
     if (name === "index.html") {
       const of = new Map(lines.map((line) => [line.id, line]));
       for (const row of root.querySelectorAll("tr[data-line]")) {
@@ -122,7 +129,6 @@
         if (buttons && place) place.append(buttons);
       }
       for (const select of root.querySelectorAll("select")) select.dataset.key = "filter-" + select.name;
-      by("beside").textContent = page.beside;
     } else if (name.startsWith("machines/")) machineActions(root);
     return [...root.childNodes];
   }

@@ -113,12 +113,11 @@ class OnlyTest(NightTest):
         self.assertEqual(rows["result"], again["result"])
 
     def test_it_is_refused(self):
-        for wanted in ("none", "../b", "/etc", "x.csv"):
+        for wanted in ("none", "../b"):
             done = self.run_nonio("--only", wanted, expect=None)
             self.assertEqual(done.returncode, 2)
             self.assertIn("no campaign", done.stderr)
-        for more in (("--force",), ("--date", "2026-03-05")):
-            self.assertEqual(self.run_nonio("--only", "b", *more, expect=None).returncode, 2)
+        self.assertEqual(self.run_nonio("--only", "b", "--force", expect=None).returncode, 2)
         with open(self.out / ".nonio/lock") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             done = self.run_nonio("--only", "b", expect=None)
