@@ -81,7 +81,8 @@ struct Running {
   process::Handle pipe{};
   std::string received{};
   std::shared_ptr<Shared> residual{};
-  bool fills = false;  ///< `residual`
+  bool fills = false;     ///< `residual`
+  bool is_begun = false;  ///< what is there first was told
   Clock::time_point begun = Clock::now();
   int told = 0;  ///< seconds that were reported
 };
@@ -199,9 +200,15 @@ class Loop {
     if (!process::write_text(channel_.get(), parcel.bytes())) gone_ = true;
   }
 
+  /// What is slow begins when the picture that somebody waits for is there.
+  bool is_awaited(const Running& one) const {
+    return one.job.kind == "fit" && !one.is_begun && niceness(one.job, bench_) == 0;
+  }
+
   void start_what_may() {
     std::size_t slow = 0;
-    for (const auto& [number, one] : running_) slow += is_slow(one.job) ? 1 : 0;
+    for (const auto& [number, one] : running_)
+      slow += is_awaited(one) ? most_slow : is_slow(one.job) ? 1 : 0;
     for (const bool is_quick : {true, false})
       for (auto it = waiting_.begin(); it != waiting_.end();) {
         const bool may = is_slow(*it) != is_quick && running_.size() < most_running &&
@@ -210,8 +217,12 @@ class Loop {
           ++it;
           continue;
         }
-        slow += is_quick ? 0 : 1;
         start(*it);
+        const auto started = running_.find(it->number);
+        if (started != running_.end() && is_awaited(started->second))
+          slow += most_slow;
+        else
+          slow += is_quick ? 0 : 1;
         it = waiting_.erase(it);
       }
   }
@@ -242,8 +253,9 @@ class Loop {
       do_job(bench_, job, to.get(), residual->values(), fitted);
     }
     if (job.number != 0) tell(job.number, job_state::running, "0");
-    running_[job.number] = {job,   child,         std::move(from), "", std::move(residual),
-                            fills, Clock::now(), 0};
+    Running& one = running_[job.number];
+    one.job = job, one.child = child, one.pipe = std::move(from);
+    one.residual = std::move(residual), one.fills = fills;
   }
 
   /// What this process does itself, since all requests want it: while nobody waits for anything.
@@ -269,6 +281,7 @@ class Loop {
       if (k < all.size() && all[k].fd == one.pipe.get() && all[k].revents != 0) {
         if (!read_from(one)) ended.push_back(number);
         if (const auto first = take_first(one.received)) {
+          one.is_begun = true;
           keep_residual(one);
           tell(number, job_state::begun, *first);
         }
