@@ -200,9 +200,11 @@ class Loop {
     if (!process::write_text(channel_.get(), parcel.bytes())) gone_ = true;
   }
 
-  /// What is slow begins when the picture that somebody waits for is there.
+  /// What is slow begins when the picture that somebody waits for is there, or takes long itself.
   bool is_awaited(const Running& one) const {
-    return one.job.kind == "fit" && !one.is_begun && niceness(one.job, bench_) == 0;
+    constexpr auto long_time = std::chrono::seconds(1);
+    return one.job.kind == "fit" && !one.is_begun && niceness(one.job, bench_) == 0 &&
+           Clock::now() - one.begun < long_time;
   }
 
   void start_what_may() {
@@ -234,9 +236,9 @@ class Loop {
     const modelling::PartModel* const part = bench_.part(job.part);
     std::shared_ptr<Shared> residual;
     try {
-      residual = fitted ? known
-                        : std::make_shared<Shared>(
-                              fills && part != nullptr ? part->part.table.size() : 0);
+      residual =
+          fitted ? known
+                 : std::make_shared<Shared>(fills && part != nullptr ? part->part.table.size() : 0);
     } catch (const std::bad_alloc&) {
       return tell(job.number, job_state::failed, "out of memory");
     }
