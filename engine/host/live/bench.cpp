@@ -3,14 +3,12 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <deque>
@@ -19,6 +17,7 @@
 #include <new>
 #include <optional>
 
+#include "host/live/shared_column.h"
 #include "host/process/child.h"
 #include "host/process/confine.h"
 #include "host/process/watched.h"
@@ -29,45 +28,6 @@ using storage::Json;
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// Numbers that a child writes and others read: one a reading of a part.
-class Shared {
- public:
-  explicit Shared(std::size_t size) : size_(size) {
-    void* const at =
-        ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (at == MAP_FAILED) throw std::bad_alloc();
-    data_ = static_cast<double*>(at);
-  }
-  Shared(const Shared&) = delete;
-  Shared& operator=(const Shared&) = delete;
-  ~Shared() { ::munmap(data_, bytes()); }
-  std::span<double> values() { return {data_, size_}; }
-
- private:
-  std::size_t bytes() const { return std::max<std::size_t>(size_, 1) * sizeof(double); }
-  std::size_t size_;
-  double* data_ = nullptr;
-};
-
-/// What was fitted last of a part: the newest, by their trials.
-class Fitted {
- public:
-  std::shared_ptr<Shared> find(const std::string& key) const {
-    for (const auto& [known, residual] : all_)
-      if (known == key) return residual;
-    return nullptr;
-  }
-  void put(const std::string& key, std::shared_ptr<Shared> residual) {
-    std::erase_if(all_, [&](const auto& one) { return one.first == key; });
-    all_.emplace_back(key, std::move(residual));
-    if (all_.size() > most) all_.pop_front();
-  }
-
- private:
-  static constexpr std::size_t most = 8;  // steps to and fro; 8 MB each of 1,000,000 readings
-  std::deque<std::pair<std::string, std::shared_ptr<Shared>>> all_;
-};
 
 struct Job {
   std::uint64_t number = 0;
@@ -80,7 +40,7 @@ struct Running {
   pid_t child = -1;
   process::Handle pipe{};
   std::string received{};
-  std::shared_ptr<Shared> residual{};
+  std::shared_ptr<SharedColumn> residual{};
   bool fills = false;     ///< `residual`
   bool is_begun = false;  ///< what is there first was told
   Clock::time_point begun = Clock::now();
@@ -234,11 +194,11 @@ class Loop {
     const auto known = job.kind == "fit" ? nullptr : fitted_[job.part].find(job.key);
     const bool fitted = known != nullptr;
     const modelling::PartModel* const part = bench_.part(job.part);
-    std::shared_ptr<Shared> residual;
+    std::shared_ptr<SharedColumn> residual;
     try {
-      residual =
-          fitted ? known
-                 : std::make_shared<Shared>(fills && part != nullptr ? part->part.table.size() : 0);
+      residual = fitted ? known
+                        : std::make_shared<SharedColumn>(
+                              fills && part != nullptr ? part->part.table.size() : 0);
     } catch (const std::bad_alloc&) {
       return tell(job.number, job_state::failed, "out of memory");
     }
@@ -384,7 +344,7 @@ class Loop {
   double seconds_;
   std::deque<Job> waiting_;
   std::map<std::uint64_t, Running> running_;
-  std::map<std::string, Fitted> fitted_;
+  std::map<std::string, FittedBefore> fitted_;
   bool gone_ = false;
 };
 

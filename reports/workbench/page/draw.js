@@ -3,8 +3,9 @@
 // brings the data, from the page itself or from the server, and says what is hidden and what is done with a reading.
 "use strict";
 /// figure(k): the element of picture k; tip: what shows a reading; hidden: {d: directions, r: runs}, sets.
-/// Where a caller wants them: inTurn() when all pictures are drawn, those in view before the others; elsewhere(k) where it draws a picture itself, pick(row) and brushed(rows) when a reading or a region is chosen, said(lines) when a key
-/// moves to a reading, drawn(k, frame) after each picture.
+/// Where a caller wants them: elsewhere(k) where it draws picture k itself, pick(row) and brushed(rows) when a reading or
+/// a region is chosen, said(lines) when a key moves to a reading, drawn(k, frame) after each picture, inTurn() after all
+/// of them; with it those in view come first.
 function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, said, drawn}) {
   let data, words, n, wrong, residual, place, ends_of_lane, lines, ghost = null;
   let shown = [], range = [0, 1], pictures = [], marked = -1, by_key = false, printing = false, chosen = new Set(), turns = 0;
